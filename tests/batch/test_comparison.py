@@ -11,13 +11,12 @@ from xml.etree import ElementTree
 import pytest
 
 import taylor_verify
-from taylor_verify.batch.comparison import compare_with_baseline, read_baseline
+from taylor_verify.batch.comparison import compare_with_baseline, read_baseline, shown_verdicts
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.batch.report import (
     compare_with_published,
     read_report,
     remarks,
-    shown_verdicts,
     write_junit,
 )
 from taylor_verify.batch.selection import select

@@ -25,24 +25,25 @@ from builders.studies.worst import worst_of
 from builders.verdicts import row
 from taylor_verify.batch.job import Job
 from taylor_verify.controls.defects import DEFECTS
+from taylor_verify.judge.judgement import Judgement
+from taylor_verify.publish.pictures.picture import save
 from taylor_verify.run import run
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.studies import report
+from taylor_verify.studies import figures, registry, report
 from taylor_verify.studies.claims.page import CLAIMS
 from taylor_verify.studies.controls import measure as sight
 from taylor_verify.studies.controls import study as controls
-from taylor_verify.studies.controls.stored import CONTROLS
+from taylor_verify.studies.controls.document import CONTROLS, ControlsStudy
 from taylor_verify.studies.extremes.page import EXTREMES
 from taylor_verify.studies.gallery import page as gallery
 from taylor_verify.studies.growth.page import GROWTH
 from taylor_verify.studies.growth.published import Entry, followed
-from taylor_verify.studies.portraits import stored as portraits
 from taylor_verify.studies.portraits.measure import portrait
+from taylor_verify.studies.portraits.study import PORTRAITS
 from taylor_verify.studies.reach.page import REACH
 from taylor_verify.studies.reference import page as reference_files
 from taylor_verify.studies.reference.measure import reference
-from taylor_verify.studies.registry import STUDIES
 from taylor_verify.studies.tradeoff.stored import write as write_tradeoff
 from taylor_verify.studies.worst import measure as hunt
 from taylor_verify.studies.worst.page import WORST
@@ -69,9 +70,32 @@ def folder() -> Path:
     return place
 
 
+@cache
+def result_of(scene: str, rung: str) -> Judgement:
+    """Return a run of a scene by the Taylor driver."""
+    return run(load(scene), "taylor", rung)
+
+
+@cache
+def portrait_of(scene: str) -> dict[str, Any]:
+    """Return the portrait of a scene."""
+    return portrait(load(scene))
+
+
+@cache
+def portrait_without_run(scene: str) -> dict[str, Any]:
+    """Return a portrait whose run is left out: the rest does not depend on it, and it takes longest."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(
+            "taylor_verify.studies.portraits.measure.explanation",
+            lambda scene, rung: {"cost": {"seconds": 1.0}},
+        )
+        return portrait(load(scene))
+
+
 def write_runs(place: Path, runs: Iterable[tuple[str, str]]) -> None:
     """Run scenes on rungs by the Taylor driver, and write verdicts and records."""
-    results = [run(load(scene), "taylor", rung) for scene, rung in runs]
+    results = [result_of(scene, rung) for scene, rung in runs]
     verdicts = [verdict for result in results for verdict in result.verdicts]
     records = [result.record for result in results if result.record is not None]
     report.write(place, verdicts, records)
@@ -96,15 +120,19 @@ def write_remade(place: Path, monkeypatch: pytest.MonkeyPatch, errors: Mapping[s
 
 def write_portraits(place: Path, scenes: Iterable[str]) -> None:
     """Write portraits and exact trajectories."""
-    loaded = [load(scene) for scene in scenes]
-    portraits.write(place, [portrait(scene) for scene in loaded])
-    reference_files.write(place, [reference(scene) for scene in loaded])
+    asked = list(scenes)
+    PORTRAITS.write(place, map(portrait_of, asked))
+    reference_files.write(place, [reference(load(scene)) for scene in asked])
+
+
+@cache
+def _controls() -> ControlsStudy:
+    return sight.study(sight.sights(defect for defect in DEFECTS if defect.name in _BROKEN))
 
 
 def write_controls(place: Path) -> None:
     """Write what each gate sees of some solvers that are broken on purpose."""
-    defects = [defect for defect in DEFECTS if defect.name in _BROKEN]
-    CONTROLS.write(place, sight.study(sight.sights(defects)))
+    CONTROLS.write(place, _controls())
     controls.STUDY.publish(place)
 
 
@@ -112,7 +140,7 @@ def write_controls(place: Path) -> None:
 def every_portrait() -> Path:
     """Return a report with the portrait of every scene of the standard set."""
     place = folder()
-    portraits.write(place, [portrait(load(scene)) for scene in names()])
+    PORTRAITS.write(place, map(portrait_of, names()))
     return place
 
 
@@ -126,11 +154,17 @@ def every_reference() -> Path:
 
 @cache
 def for_gallery() -> Path:
-    """Return a report with everything that the gallery draws, and some scenes that it does not."""
+    """Return a report with everything that the gallery draws, and some scenes that it does not.
+
+    One scene has been run on every rung; the others lack the one that takes longest.
+    """
     place = folder()
-    drawn = product(gallery.scenes(), RUNGS)
-    write_runs(place, [*drawn, ("manufactured/euler-tones", "f64"), ("euler/rest", "f64")])
-    write_portraits(place, dict.fromkeys((*gallery.scenes(), *gallery.QUARTICS, *_UNDRAWN)))
+    drawn = product(gallery.scenes(), RUNGS[:-1])
+    undrawn = [("manufactured/euler-tones", "f64"), ("euler/rest", "f64")]
+    write_runs(place, [*drawn, ("euler/generic", RUNGS[-1]), *undrawn])
+    scenes = dict.fromkeys((*gallery.scenes(), *gallery.QUARTICS, *_UNDRAWN))
+    PORTRAITS.write(place, map(portrait_without_run, scenes))
+    reference_files.write(place, [reference(load(scene)) for scene in scenes])
     write_controls(place)
     return place
 
@@ -148,7 +182,6 @@ def small() -> Path:
     WORST.write(place, hunt.study([worst_of("euler-a", 1.5)], 60.0, 3))
     EXTREMES.write(place, extremes_study())
     CLAIMS.write(place, STUDY)
-    for study in STUDIES:
-        study.publish(place)
+    save(registry.pictures(place), place / figures.FOLDER, ["svg"])
     report.publish(place)
     return place

@@ -15,7 +15,7 @@ import taylor_verify
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.conventions.readings import rotations
 from taylor_verify.judge.files.judgement import FileJudgement
-from taylor_verify.judge.velocities import angular_velocity
+from taylor_verify.judge.velocities import velocity
 from taylor_verify.models.problem import adopt
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.precision import rung
@@ -51,7 +51,7 @@ def columns_at(scene: Scene, instants: Sequence[Fraction], matrix: bool = False)
     columns: Columns = {"t": times}
     with mp.workdps(40):
         if isinstance(given.body, ImmersedBody):
-            motion["omega"] = angular_velocity(given.body, motion)
+            motion["omega"] = velocity("omega", given.body, motion)
         for quantity, names in VECTORS.items():
             if quantity in motion:
                 columns |= named(names, motion[quantity])

@@ -56,8 +56,10 @@ def equations(scene: Scene) -> Equations:
     """Those of the state and, where it is tracked, of a quaternion and of the way in body axes."""
     system = posed_exactly(scene)
     n, with_centre = system.size, "centre" in scene.track
-    rates: list[Polynomial] = [polynomial(row, n) for row in system.forms.hessian]
-    start, forms = list(system.start), list(system.forms.spin) if scene.track else []
+    rates: list[Polynomial] = [
+        polynomial(row, n) for row in system.equations.hessian.reshape(n, -1)
+    ]
+    start, forms = list(system.start), list(system.equations.spin) if scene.track else []
     added: dict[int, int] = {}
     if scene.track:
         size = n + (7 if with_centre else 4)
@@ -69,14 +71,14 @@ def equations(scene: Scene) -> Equations:
             rates.append({(q, size + i): half, **turned})
         start += [Fraction(int(i == 0)) for i in range(4)]
         if with_centre:
-            forms += system.forms.velocity
+            forms += list(system.equations.velocity)
             for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
                 rates.append({(d + j, size + k): Fraction(1), (d + k, size + j): Fraction(-1)})
                 added[d + i] = size + 3 + i
             start += [Fraction(0)] * 3
     products = sorted({pair for rate in rates for pair in rate})
     place = {pair: number for number, pair in enumerate(products)}
-    constants = system.constant + (Fraction(0),) * (len(rates) - n)
+    constants = tuple(system.equations.constant) + (Fraction(0),) * (len(rates) - n)
     combined = [combination(list(form)) for form in forms]
     return Equations(
         start,

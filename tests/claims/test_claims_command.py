@@ -11,7 +11,7 @@ from builders.studies.claims import ROWS, STUDY
 from builders.studies.stored import publish_document
 
 from taylor_verify.claims import ledger
-from taylor_verify.claims.claim import Verdict
+from taylor_verify.claims.claim import Claim, Verdict
 from taylor_verify.claims.document import ClaimResiduals
 from taylor_verify.claims.ledger import claims
 from taylor_verify.claims.numbers import CITED
@@ -22,6 +22,12 @@ from taylor_verify.studies.claims.study import STUDY as PUBLISHED
 
 QUICK = "hydromechanics 49 (11)"
 KEYS = {"id", "statement", "verdict", "correction", "residual"}
+
+
+def transcribed_is_true(claim: Claim) -> Claim:
+    """A false claim whose form as transcribed passes the check."""
+    return replace(claim, transcribed=claim.check)
+
 
 Captured = pytest.CaptureFixture[str]
 
@@ -68,12 +74,12 @@ def test_an_entry_that_lost_its_verdict_fails(
     capsys: Captured, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Exit status 1, and which verdict was expected; the row is told all the same."""
-    changed = tuple(replace(c, verdict=Verdict.HOLDS) if c.id == QUICK else c for c in claims())
+    changed = tuple(transcribed_is_true(c) if c.id == QUICK else c for c in claims())
     monkeypatch.setattr(ledger, "claims", lambda: changed)
     assert main(["claims", QUICK, "--json"]) == 1
     captured = capsys.readouterr()
-    assert json.loads(captured.out)[0]["recorded"] == "holds"
-    assert f"expected the verdict 'holds', got 'false as transcribed' @ {QUICK}" in captured.err
+    assert json.loads(captured.out)[0]["recorded"] == "false as transcribed"
+    assert f"expected the verdict 'false as transcribed', got 'holds' @ {QUICK}" in captured.err
 
 
 def test_the_page_has_the_errata_in_front() -> None:
@@ -145,7 +151,7 @@ def test_a_ledger_that_lost_a_verdict_is_not_published(
 ) -> None:
     """Exit status 1, and no page."""
     (quick,) = (c for c in claims() if c.id == QUICK)
-    monkeypatch.setattr(ledger, "claims", lambda: (replace(quick, verdict=Verdict.HOLDS),))
+    monkeypatch.setattr(ledger, "claims", lambda: (transcribed_is_true(quick),))
     assert main(["publish", "claims", "--from", str(tmp_path)]) == 1
     assert f"@ {QUICK}" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []

@@ -7,9 +7,10 @@ from itertools import pairwise
 
 import pytest
 
-from taylor_verify.claims.claim import Claim, Verdict, examine, measured
+from taylor_verify.claims.check import measured
+from taylor_verify.claims.claim import Claim, Verdict, examine
 from taylor_verify.claims.ledger import UnknownClaim, claims, find
-from taylor_verify.claims.numbers import CITED, NUMBERED, SENTENCES, in_order
+from taylor_verify.claims.numbers import CITED, IN_ORDER, NUMBERED, SENTENCES
 
 LEDGER = claims()
 MUTATIONS = [(claim, name) for claim in LEDGER for name in claim.mutants]
@@ -43,7 +44,7 @@ def test_an_id_is_given_once() -> None:
 
 def test_the_order_is_that_of_the_texts() -> None:
     """The ledger is in the order of the list, which holds every entry once."""
-    assert [claim.id for claim in LEDGER] == list(in_order())
+    assert [claim.id for claim in LEDGER] == list(IN_ORDER)
 
 
 @pytest.mark.parametrize("claim", LEDGER, ids=lambda claim: claim.id)
@@ -56,7 +57,7 @@ def test_an_entry_gets_its_recorded_verdict(claim: Claim) -> None:
 @pytest.mark.parametrize(("claim", "name"), MUTATIONS, ids=lambda part: getattr(part, "id", part))
 def test_a_mutation_is_rejected(claim: Claim, name: str) -> None:
     """A statement with one thing changed misses its bound by a factor that no carelessness explains."""
-    found = measured(claim.mutants[name])
+    found = measured(claim.changed(claim.mutants[name]))
     assert found.is_refuted, found
 
 
@@ -71,6 +72,7 @@ def test_an_entry_says_what_its_verdict_needs(claim: Claim) -> None:
     assert claim.statement
     assert claim.domain
     assert claim.method
+    assert bool(claim.transcribed) == bool(claim.counterexample)
     says = {
         Verdict.FALSE: [claim.correction, claim.counterexample, claim.transcribed],
         Verdict.ONLY_IF: [claim.condition, claim.counterexample, claim.transcribed],

@@ -191,7 +191,7 @@ def test_a_gate_without_its_one_baseline_is_a_wrong_call(
     options: list[str], said: str, scene: str, capsys: Captured, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Exit status 2 before anything runs."""
-    monkeypatch.setattr("taylor_verify.cli.verbs._published", lambda folder: None)
+    monkeypatch.setattr("taylor_verify.cli.run._published", lambda folder: None)
     assert main(["run", scene, "--gate", "baseline", *options]) == 2
     assert said in capsys.readouterr().err
 

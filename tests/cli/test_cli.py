@@ -27,7 +27,7 @@ from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.scenes import library, tensors
 from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.guide import GUIDE
+from taylor_verify.scenes.library import GUIDE
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.solvers import registry
 from taylor_verify.solvers.files.formats.reading import FORMATS

@@ -18,7 +18,7 @@ from rich.table import Table
 from rich.text import Text
 
 from taylor_verify.cli import main
-from taylor_verify.cli.console import EscapingConsole, new_console, print_line, text_of
+from taylor_verify.cli.console import EscapingConsole, Page
 from taylor_verify.scenes.names import escaped
 from taylor_verify.studies.accuracy import sheet as sheets
 
@@ -108,9 +108,9 @@ def test_text_without_control_characters_is_left_alone() -> None:
     """Tabs, line breaks, accents and mathematics stay as they are."""
     text = "ω = 1\tε\nfin d'été"
     assert escaped(text) == text
-    console = new_console()
-    print_line(console, text)
-    assert text_of(console).startswith("ω = 1")
+    page = Page()
+    page.line(text)
+    assert page.text().startswith("ω = 1")
 
 
 @pytest.mark.slow

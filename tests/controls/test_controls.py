@@ -22,9 +22,8 @@ from taylor_verify.scenes.reading.reader import load
 from taylor_verify.studies import report
 from taylor_verify.studies.controls import page as controls
 from taylor_verify.studies.controls import proof
-from taylor_verify.studies.controls.document import ControlsStudy, Sight
+from taylor_verify.studies.controls.document import CONTROLS, ControlsStudy, Sight
 from taylor_verify.studies.controls.measure import RUNG, Twins, sights, study
-from taylor_verify.studies.controls.stored import CONTROLS
 from taylor_verify.studies.controls.study import STUDY
 
 NAMED = {defect.name: defect for defect in DEFECTS}

@@ -304,9 +304,9 @@ def test_variational_equations_agree_with_differences(start: Scene) -> None:
     flow = Flow.of(start)
     steps = integrated(start, flow, instants)
     assert steps is not None
-    by_steps = Path.of(start, flow, instants, steps)
+    by_steps = Path(start, flow, instants, steps)
     differences = derivatives(start, instants, 12, 36).steps(flow)[0]
-    by_differences = Path.of(start, flow, instants, differences)
+    by_differences = Path(start, flow, instants, differences)
     for out in (*by_steps.blocks, *(["omega"] if start.model == "euler" else [])):
         for into in by_steps.blocks:
             one, other = (

@@ -11,7 +11,7 @@ from builders.clebsch import GENERIC, PLAIN, Six, State, around, body, derivativ
 from builders.scenes import one_instant, vector
 from mpmath import mp, mpf
 
-from taylor_verify.exact.kirchhoff.jacobi import closed_form
+from taylor_verify.exact.kirchhoff.closed import closed_form
 from taylor_verify.exact.kirchhoff.quartic import Nutation, RealRoots, value
 from taylor_verify.exact.solution import NoClosedForm, Solution
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody

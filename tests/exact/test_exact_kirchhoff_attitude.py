@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
+from taylor_verify.exact.elliptic import Landen
 from taylor_verify.exact.kirchhoff import orbit
-from taylor_verify.exact.kirchhoff.attitude import CayleyKlein
-from taylor_verify.exact.kirchhoff.centre import Rise
-from taylor_verify.exact.kirchhoff.jacobi import NutatingBody, closed_form
+from taylor_verify.exact.kirchhoff.closed import closed_form
+from taylor_verify.exact.kirchhoff.jacobi import NutatingBody
 from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.kirchhoff.regime import turning_points
-from taylor_verify.exact.kirchhoff.wave import SquareIntegral
-from taylor_verify.exact.kirchhoff.zeta import SquaredSine
+from taylor_verify.exact.kirchhoff.space import CayleyKlein
+from taylor_verify.exact.kirchhoff.wave import Rise, SquareIntegral
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Quantities
 from taylor_verify.exact.taylor import TaylorSolution
@@ -280,7 +280,7 @@ def test_a_million_nutations_are_a_power_of_one(name: str) -> None:
     solution = closed_form(asked)
     assert isinstance(solution, NutatingBody)
     with mp.workdps(digits + 10):
-        period = Fraction(*map(int, solution.period(digits + 5).as_integer_ratio()))
+        period = Fraction(*map(int, solution.elements(digits + 5)["period"].as_integer_ratio()))
     once = TaylorSolution(asked).motion([period], digits)
     found = solution.motion([n * period], DIGITS + 8)
     with mp.workdps(digits + 10):
@@ -352,7 +352,7 @@ def test_the_squared_sine_is_integrated(m: str) -> None:
         u = [K / 3, -K * mpf(9) / 10]
         expected = [v - mp.ellipe(mp.asin(mp.ellipfun("sn", v, m=m_)), m_) for v in u]
     with mp.workdps(50):
-        found = [SquaredSine(+m_, +m_prime).at(+v, +v) for v in u]
+        found = [Landen(+m_, +m_prime).squared_sine(+v) for v in u]
         # 50 digits of u, which is below 100.
         assert max(abs(a - b) for a, b in zip(found, expected, strict=True)) <= mpf(10) ** -46
 
@@ -364,7 +364,7 @@ SEEN_AT = [Fraction(8)]  # beyond a nutation
 
 def test_a_centre_that_does_not_rise_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without Z the integrals in space are as they should be; the Taylor route sees it."""
-    monkeypatch.setattr(Rise, "at", lambda self, t, place, swing: mpf(0))
+    monkeypatch.setattr(Rise, "at", lambda self, t, place: mpf(0))
     asked = scene("four real roots")
     motion = closed_form(asked).motion(SEEN_AT, DIGITS)
     assert off_space_integrals(asked, motion) <= AGREEMENT
@@ -397,8 +397,8 @@ def test_a_fixed_chart_at_the_pole_is_seen(monkeypatch: pytest.MonkeyPatch) -> N
     """With Euler's theta kept in [0, pi] the attitude is wrong once the axis has passed the pole."""
     root = orbit.Pole.root
 
-    def kept(pole: orbit.Pole, swing: Any, weight: mpf) -> tuple[mpf, mpf]:
-        size, slope = root(pole, swing, weight)
+    def kept(pole: orbit.Pole, place: Any, weight: mpf) -> tuple[mpf, mpf]:
+        size, slope = root(pole, place, weight)
         return abs(size), slope
 
     asked = scene("through the pole")

@@ -34,11 +34,11 @@ from mpmath import mp, mpf
 from taylor_verify.exact.balls import Undecidable, ball
 from taylor_verify.exact.kirchhoff import course as course_module
 from taylor_verify.exact.kirchhoff import lattice as lattice_module
+from taylor_verify.exact.kirchhoff.closed import closed_form, enclosed
 from taylor_verify.exact.kirchhoff.course import Course, course
-from taylor_verify.exact.kirchhoff.jacobi import closed_form
 from taylor_verify.exact.kirchhoff.lattice import Periods
 from taylor_verify.exact.kirchhoff.quartic import Nutation
-from taylor_verify.exact.kirchhoff.weierstrass import NutatingBody, Orbit, enclosed
+from taylor_verify.exact.kirchhoff.weierstrass import NutatingBody, Orbit
 from taylor_verify.exact.solution import NoClosedForm, Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody

@@ -84,10 +84,7 @@ def test_a_displacement_to_the_wrong_side_is_seen(
     """The broken twin: moved back by -a, y and the path are wrong in their first digit."""
     asked = scene(3, BODIES["four-roots"])
 
-    def astray(inner: object, a: Fraction, of: Scene) -> object:
-        return displaced.displaced(inner, -a, of)  # type: ignore[arg-type]
-
-    monkeypatch.setattr(closed, "displaced", astray)
+    monkeypatch.setattr(closed, "moved_back", lambda a, start: displaced.moved_back(-a, start))
     found = solution(asked, route).motion(TIMES, DIGITS)
     assert distance(found, TaylorSolution(asked).motion(TIMES, DIGITS)) > 0.1
 

@@ -81,7 +81,7 @@ def drawn(seed: int, size: int) -> Manufactured:
 
 @pytest.mark.parametrize("seed", range(6))
 def test_two_routes_overlap(seed: int) -> None:
-    """Arb's cosines and angles doubled in integers agree to the digits that both claim."""
+    """Arb's cosines and mpmath's agree to the digits that both claim."""
     scene, motion = bare(KIRCHHOFF), drawn(seed, 6)
     initial = replace(scene.initial, linear=motion.start[:3], angular=motion.start[3:])
     scene = replace(scene, body=replace(scene.body, manufactured=motion), initial=initial)

@@ -14,12 +14,12 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.balls import ball, midpoint
 from taylor_verify.exact.elements import elements
-from taylor_verify.exact.kirchhoff.general import screws_beside
 from taylor_verify.exact.kirchhoff.screws import (
     Screw,
     Stability,
     is_steady,
     screws,
+    screws_beside,
     turn_of,
 )
 from taylor_verify.exact.taylor import TaylorSolution

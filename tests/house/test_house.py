@@ -151,7 +151,7 @@ def processes_have_their_place(module: str, source: str) -> Iterator[str]:
     placed = within(
         module,
         "taylor_verify.batch",
-        *("taylor_verify.studies.tradeoff.cold", "taylor_verify.studies.tradeoff.measurement"),
+        "taylor_verify.studies.tradeoff.cold",
         "taylor_verify.solvers.taylor.ensemble",
     )
     for target, line, for_types_only in imports(source):

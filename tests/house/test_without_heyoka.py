@@ -146,7 +146,7 @@ def test_a_verb_that_needs_heyoka_says_so(tmp_path: Path) -> None:
         "import sys\nfrom taylor_verify import cli\n"
         "def act(options):\n from taylor_verify.solvers.taylor.ensemble import batch_width\n"
         " from taylor_verify.scenes.precision import rung\n batch_width(rung('f64'))\n"
-        "import taylor_verify.cli.verbs as verbs\nverbs.list_all = act\n"
+        "import taylor_verify.cli.list as verb\nverb.answer = act\n"
         "sys.exit(cli.main(['list']))"
     )
     done = lacking(tmp_path, HEYOKA, "-c", script)

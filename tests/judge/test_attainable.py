@@ -188,7 +188,7 @@ def test_two_routes_add_up_to_the_same(asked: Scene) -> None:
     times, flow = path(asked).elapsed, Flow.of(asked)
     found = integrated(asked, flow, times)
     assert found is not None
-    routes = sharp(asked, flow, times), Path.of(asked, flow, times, found)
+    routes = sharp(asked, flow, times), Path(asked, flow, times, found)
     draw = np.random.default_rng(1)
     errors = draw.uniform(0, 1, (len(times), 3 * len(routes[0].blocks)))
     one, other = (_in_scene_units(route, errors) for route in routes)
@@ -302,8 +302,8 @@ def _all_floors(asked: Scene) -> list[Array]:
 
     found, truth = _floor_of(asked, 40)
     floors = [found.of_state(errors) for errors in state_errors(asked, truth, truth)]
-    quick = in_mpfr(truth)
-    return floors + [found.of_invariant(i, quick, i.scale(truth)) for i in invariants(asked)]
+    quick = in_mpfr(truth.at(found.nodes))
+    return floors + [found.of_gradients(i, quick, i.scale(truth)) for i in invariants(asked)]
 
 
 def returning(samples: int) -> Scene:

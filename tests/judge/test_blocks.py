@@ -19,7 +19,6 @@ from mpmath import mp, mpf
 from taylor_verify import check, solve
 from taylor_verify.exact.invariants import decisive, invariants
 from taylor_verify.exact.route import solution
-from taylor_verify.judge.errors import accumulated as series
 from taylor_verify.judge.errors import measured
 from taylor_verify.judge.errors.accumulated import Series
 from taylor_verify.records.doubles import Doubles, four_digits
@@ -128,8 +127,8 @@ def test_the_blocks_change_no_verdict(
     changed(columns)
     path = written(tmp_path, columns)
     whole = check(name, path).verdicts
-    monkeypatch.setattr(series, "BLOCK", BLOCK)
-    monkeypatch.setattr(series, "BLOCK_OF_SERIES", BLOCK)
+    monkeypatch.setattr(measured, "BLOCK", BLOCK)
+    monkeypatch.setattr(measured, "BLOCK_OF_SERIES", BLOCK)
     parts = check(name, path).verdicts
     assert [v.quantity for v in parts] == [v.quantity for v in whole]
     for one, other in zip(whole, parts, strict=True):
@@ -147,7 +146,7 @@ def test_a_scale_that_is_forgotten_changes_a_verdict(
     def forgotten(self: Series) -> tuple[Any, Any]:
         return np.concatenate(self._blocks), self._scale
 
-    monkeypatch.setattr(series, "BLOCK", BLOCK)
+    monkeypatch.setattr(measured, "BLOCK", BLOCK)
     monkeypatch.setattr(Series, "joined", forgotten)
     (twin,) = (v for v in check("kirchhoff/whole-motion", path).verdicts if v.quantity == "centre")
     assert not alike(twin.max, whole.max)
@@ -161,7 +160,7 @@ def test_the_worst_row_of_a_long_file_is_among_those_of_its_shift(
     late(columns)
     columns["w1"][41] += 0.5
     path = written(tmp_path, columns)
-    monkeypatch.setattr(series, "BLOCK", BLOCK)
+    monkeypatch.setattr(measured, "BLOCK", BLOCK)
     monkeypatch.setattr(measured, "MOST_SHIFTED", 21)
     (omega,) = (v for v in check("euler/with-attitude", path).verdicts if v.quantity == "omega")
     assert omega.max == pytest.approx(0.5 / 1.1, rel=0.2)
@@ -252,12 +251,12 @@ def test_rows_are_formed_as_their_values_are() -> None:
         rows = Rows([column])
         assert [row[0] for row in rows][:4] == values[:4]
         places = range(len(column))
-        wanted = held([[value] for value in values], 181)
-        for mine, theirs in zip(rows.held(places, 181)[:, 0], wanted[:, 0], strict=True):
+        wanted = [held(value, 181) for value in values]
+        for mine, theirs in zip(rows.held(places, 181)[:, 0], wanted, strict=True):
             assert mine == theirs or (mp.isnan(mine) and mp.isnan(theirs))
         doubles = [float(value) for value in values]
         np.testing.assert_array_equal(rows.doubles()[:, 0], np.array(doubles))
-        assert rows.held([2, 0], 181)[:, 0].tolist() == [wanted[2, 0], wanted[0, 0]]
+        assert rows.held([2, 0], 181)[:, 0].tolist() == [wanted[2], wanted[0]]
 
 
 def test_a_file_tells_which_rows_are_numbers(tmp_path: Path) -> None:
@@ -269,7 +268,7 @@ def test_a_file_tells_which_rows_are_numbers(tmp_path: Path) -> None:
     few = file.at([3, 5])
     assert few.times == (Fraction(repr(columns["t"][3])), Fraction(repr(columns["t"][5])))
     assert few.groups["omega"][1][0] == Fraction(repr(columns["w1"][5]))
-    assert few.rows["omega"].doubles()[0, 2] == columns["w3"][3]
+    assert few.groups["omega"].doubles()[0, 2] == columns["w3"][3]
 
 
 MEMORY = """

@@ -359,7 +359,7 @@ def test_every_double_survives_its_texts(value: float) -> None:
     assert exact(value.hex()) == Fraction(value)
     assert exact(value) == Fraction(value)
     assert exact(repr(value)) == Fraction(repr(value))
-    ((mpf,),) = held([(Fraction(value),)], 53)
+    mpf = held(Fraction(value), 53)
     assert Fraction(*map(int, mpf.as_integer_ratio())) == Fraction(value)
 
 
@@ -385,7 +385,7 @@ def test_text_becomes_exact(text: str, value: Fraction) -> None:
 def test_held_numbers_are_right_to_the_bits_asked_for() -> None:
     """A third is rounded at the precision given, whatever mpmath's own precision is."""
     with mp.workprec(20):
-        ((third,),) = held([(Fraction(1, 3),)], 200)
+        third = held(Fraction(1, 3), 200)
     assert abs(Fraction(*map(int, third.as_integer_ratio())) - Fraction(1, 3)) < Fraction(1, 2**200)
 
 

@@ -15,8 +15,12 @@ import pytest
 
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.floor.attainable import radians
-from taylor_verify.judge.floor.steps import count_steps
-from taylor_verify.judge.gates import STEPS_PER_RADIAN, STEPS_PER_SECOND, WIDENING
+from taylor_verify.judge.floor.steps import (
+    STEPS_PER_RADIAN,
+    STEPS_PER_SECOND,
+    WIDENING,
+    count_steps,
+)
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict

@@ -13,7 +13,7 @@ from mpmath import mp, mpf
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Settled, Unsettled
 from taylor_verify.judge.errors.drifts import drifts
-from taylor_verify.judge.errors.state import Errors, arc_length, largest, state_errors
+from taylor_verify.judge.errors.state import Arc, Errors, largest, state_errors
 from taylor_verify.judge.floor.attainable import Floor, floor
 from taylor_verify.judge.gates import index_of_largest, judge
 from taylor_verify.models.problem import pose
@@ -219,7 +219,7 @@ def test_arc_length_of_a_steady_screw_is_speed_times_time() -> None:
         U = tensors.plus(U, tensors.apply(scene.body.coupling, scene.initial.angular))
         speed = mp.sqrt(mp.convert(tensors.dot(U, U)))
         expected = speed * mp.convert(abs(scene.clock.elapsed[-1]))
-        assert abs(arc_length(scene, truth) / expected - 1) <= mpf("1e-18")
+        assert abs(Arc().through(scene, truth) / expected - 1) <= mpf("1e-18")
 
 
 # Drift and balance.

@@ -161,7 +161,7 @@ def test_attitude_turns_with_the_body(seed: int) -> None:
     assert centre_rate(q, U) == [tensors.dot(tuple(row), U) for row in R]
 
 
-@pytest.mark.parametrize("form", FORMS, ids=lambda form: form.equations.__name__)
+@pytest.mark.parametrize("form", FORMS, ids=lambda form: "".join(form.states))
 def test_one_definition_serves_every_arithmetic(form: Form) -> None:
     """Fractions, mpf, Arb balls, NumPy arrays and heyoka expressions give one and the same number."""
     import heyoka as hy

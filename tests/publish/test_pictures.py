@@ -34,7 +34,6 @@ from taylor_verify.records.precisions import bits_of, place_of_rung
 from taylor_verify.studies.prices import picture as prices
 from taylor_verify.studies.tradeoff.pictures import time_by_rung, trade
 from taylor_verify.studies.tradeoff.pictures.series import front_of, panels_of, series_of
-from taylor_verify.studies.tradeoff.pictures.wording import label_of
 
 RUNGS = ("f32", "f64", "f80", "f128", "mp237")
 SVG = "{http://www.w3.org/2000/svg}"
@@ -300,7 +299,7 @@ def test_the_front_is_that_of_the_trade(crowded: dict) -> None:
         for line in axes.get_lines()
         if line.get_gid() == "front"
     ]
-    assert len(stairs) == len(panels_of(series_of(many())))
+    assert len(stairs) == len(panels_of(series_of(many(), "seconds")))
     sound = [one for one in many()["points"] if one["standing"] == "sound" and one["error"]]
     for corners in stairs:
         assert all(x <= x_next and y >= y_next for (x, y), (x_next, y_next) in pairwise(corners))
@@ -318,8 +317,8 @@ def test_the_front_agrees_with_the_judgement() -> None:
     scene = load("euler/generic")
     asked = [one for one in all_settings(scene, ["f32", "f64"]) if one.family.startswith("taylor")]
     made = trade_off(scene, asked, repeats=1).document()
-    found = front_of(made["points"], "seconds", "error")
-    assert [label_of(one) for one in found] == made["front"]
+    found = front_of(series_of(made, "seconds"))
+    assert [one.label for one in found] == made["front"]
     assert next(p.stem for p in trade.pictures(made)) == "euler-generic-time"
 
 
@@ -355,7 +354,7 @@ def test_floors_are_drawn_where_their_rung_is(crowded: dict) -> None:
         for axes in crowded["time"].axes
     ]
     assert [1e-34, 1e-15] in floors
-    assert floors.count([1e-15]) == len(panels_of(series_of(many()))) - 1
+    assert floors.count([1e-15]) == len(panels_of(series_of(many(), "seconds"))) - 1
 
 
 # Names
@@ -386,7 +385,7 @@ def test_no_name_overlaps_another(crowded: dict, name: str) -> None:
     """With all solvers there are, each has its name in its panel, and no two names touch."""
     assert_names_are_apart(crowded[name])
     written = {text.get_text() for axes in crowded[name].axes for text in axes.texts}
-    for series in series_of(many()):
+    for series in series_of(many(), "seconds"):
         assert {series.family, series.label} & written
 
 
@@ -412,7 +411,7 @@ def test_nothing_is_cut_off(kinds: list[str], panels: int) -> None:
 
     With one or two panels the legend is at the foot, with three it is beside the last.
     """
-    assert len(panels_of(series_of(few(*kinds)))) == panels
+    assert len(panels_of(series_of(few(*kinds), "seconds"))) == panels
     for _, figure in figures(few(*kinds)):
         assert_all_is_on_the_page(figure)
 
@@ -524,9 +523,9 @@ def test_alt_texts_need_no_matplotlib() -> None:
 def test_the_alt_text_has_the_numbers() -> None:
     """It names the fastest and the most accurate, and counts what is no answer."""
     time = trade.pictures(many())[0].alt
-    front = front_of(many()["points"], "seconds", "error")
-    assert label_of(front[0]) in time
-    assert label_of(front[-1]) in time
+    front = front_of(series_of(many(), "seconds"))
+    assert front[0].label in time
+    assert front[-1].label in time
     assert time.endswith("Marked at the border: 1 false success, 2 failed.")
 
 

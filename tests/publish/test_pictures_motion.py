@@ -27,6 +27,7 @@ from taylor_verify.publish.pictures.picture import Picture, plotting, save
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.studies.controls import picture as shifts
+from taylor_verify.studies.controls.document import CONTROLS
 from taylor_verify.studies.gallery import page as gallery
 from taylor_verify.studies.gallery.page import Stored
 from taylor_verify.studies.gallery.pictures import (
@@ -36,7 +37,7 @@ from taylor_verify.studies.gallery.pictures import (
     polhode,
     potential,
 )
-from taylor_verify.studies.gallery.pictures.solids import norm_of, scale
+from taylor_verify.studies.gallery.pictures.stage import norm_of, scale
 from taylor_verify.studies.gallery.pictures.view import Ellipsoid, View, pieces
 
 RUNGS = ("f32", "f64", "f80", "f128", "mp237")
@@ -297,7 +298,7 @@ def test_shifts_are_those_of_rows_that_have_one() -> None:
 
 def test_the_half_millisecond_is_found() -> None:
     """The defect that is read half a millisecond early has that shift, and next to nothing is left."""
-    rows = {row["solver"]: row for row in shifts.series(stored().controls())}
+    rows = {row["solver"]: row for row in shifts.series(CONTROLS.load(stored().folder).verdicts)}
     found = rows["half-a-millisecond-early"]
     assert found["shift"] == pytest.approx(-5e-4, rel=1e-6)
     assert found["residual"] <= 1e-10 * found["error"]

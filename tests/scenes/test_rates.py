@@ -13,7 +13,7 @@ from taylor_verify.explain.explanation import explanation
 from taylor_verify.scenes.bodies import COEFFICIENT_BITS, ImmersedBody
 from taylor_verify.scenes.motion import Impulse, Spin
 from taylor_verify.scenes.reading.faults import Refused
-from taylor_verify.scenes.reading.rates import degree
+from taylor_verify.scenes.reading.initial import degree
 from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Vector, apply

@@ -364,14 +364,6 @@ def test_kirchhoffs_equations_are_refused(name: str) -> None:
     assert "made for Euler's equations, got kirchhoff" in found.detail
 
 
-@pytest.mark.parametrize("wider", ["f32", "f80", "mp237"])
-def test_other_rungs_are_unavailable(wider: str) -> None:
-    """Python's floats are doubles."""
-    (verdict,) = run("euler/generic", "geometric:lie-rk4?step=0.1", wider).verdicts
-    assert verdict.verdict is Status.UNAVAILABLE
-    assert verdict.because.endswith("is made in float64: f64 alone")
-
-
 def test_a_step_without_a_solution_ends_the_run() -> None:
     """h |H| too large for [m]x = F D - D F^T: the run stops and says what to do."""
     found = solved("euler/generic", "moser-veselov", "1")

@@ -176,7 +176,7 @@ def sibling(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[str], Any]]:
     """Imports a module as the scripts do, from their own folder."""
     monkeypatch.syspath_prepend(str(SCRIPTS))
     yield import_module
-    for name in ("equations", "question"):
+    for name in ("equations", "question", "rk4"):
         sys.modules.pop(name, None)
 
 
@@ -207,6 +207,27 @@ def test_the_equations_of_the_scripts_lead_to_the_exact_motion(
     # tolerance of every step, carried on thirtyfold by these orbits.
     read_back = protocol.read(json.dumps(answer).encode(), asked)
     assert error(asked, read_back) <= tolerance * steps * 30
+
+
+@pytest.mark.parametrize(
+    ("changed", "fault"),
+    [
+        (
+            {"columns": ["t", "w1", "w2", "w3", "s1"]},
+            "among w1 w2 w3 q0 q1 q2 q3, got s1 @ columns",
+        ),
+        ({"model": "gyrostat"}, "expected the model euler or kirchhoff, got gyrostat"),
+    ],
+)
+def test_a_question_beyond_the_equations_is_refused_in_a_sentence(
+    changed: dict[str, Any], fault: str, sibling: Callable[[str], Any]
+) -> None:
+    """A state quantity or a model that the scripts do not know is named, by each reader of questions."""
+    document = {**protocol.question(problem()), **changed}
+    with pytest.raises(SystemExit, match=fault):
+        sibling("question").read(document)
+    with pytest.raises(SystemExit, match=fault):
+        sibling("rk4").known_columns(document)
 
 
 def error(asked: Problem, answer: protocol.Answer) -> float:

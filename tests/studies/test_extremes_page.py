@@ -44,8 +44,8 @@ def test_what_is_stored_reads_back(tmp_path: Path) -> None:
         for v in study().verdicts
     ]
     assert found == replace(study(), verdicts=tuple(stored))
-    assert [found.expected(verdict) for verdict in ALL] == list(FORESEEN.values())
-    assert [found.is_met(verdict) for verdict in ALL] == [True, True, True, False]
+    assert [verdict.expected for verdict in found.verdicts] == list(FORESEEN.values())
+    assert [verdict.is_met for verdict in found.verdicts] == [True, True, True, False]
     assert found.titles["extremes/long"] == "Title of extremes/long"
 
 
@@ -55,9 +55,9 @@ def test_a_row_that_was_compared_with_nothing_is_no_mismatch(tmp_path: Path) -> 
     publish_document(tmp_path, STUDY, extremes.EXTREMES, study((absent,), ()))
     (row,) = store.read_document(tmp_path / extremes.EXTREMES.name)["verdicts"]
     assert row["expected"] is None
-    found = extremes.EXTREMES.load(tmp_path)
-    assert found.expected(absent) is None
-    assert found.is_met(absent)
+    (found,) = extremes.EXTREMES.load(tmp_path).verdicts
+    assert found.expected is None
+    assert found.is_met
 
 
 def test_a_row_of_an_earlier_version_has_its_reason(tmp_path: Path) -> None:

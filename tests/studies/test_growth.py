@@ -10,10 +10,10 @@ import pytest
 from scipy import stats
 
 from taylor_verify.records.status import Status
+from taylor_verify.studies.growth.document import EXACT
 from taylor_verify.studies.growth.fit import (
     BIAS,
     BOUNDED,
-    EXACT,
     FALSE_ALARM,
     LEVEL,
     NO_WORD,

@@ -18,10 +18,10 @@ from taylor_verify.scenes.precision import exact_value, rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.taylor.ensemble import Lane
 from taylor_verify.solvers.trajectory import Outcome
-from taylor_verify.studies.growth import checkpoint, course
+from taylor_verify.studies.growth import checkpoint
 from taylor_verify.studies.growth.checkpoint import OfAnotherError, Progress
 from taylor_verify.studies.growth.errors import PHASE, lane_errors, told
-from taylor_verify.studies.growth.experiment import experiment
+from taylor_verify.studies.growth.experiment import course, experiment, numerical_versions
 from taylor_verify.studies.growth.question import Question
 
 SHORT = 10**3.5
@@ -94,7 +94,7 @@ def test_a_run_that_is_taken_up_again_is_the_same(
     """Stopped after every single piece and resumed from its file, it ends the same to the last bit."""
     several_pieces(monkeypatch)
     asked, file = question(on=on, lanes=3), tmp_path / "folder" / "run.json"
-    whole = course.course(asked)
+    whole = course(asked)
 
     def leave(done: int, of: int) -> None:
         if done < of:
@@ -102,12 +102,12 @@ def test_a_run_that_is_taken_up_again_is_the_same(
 
     for _ in range(len(asked.pieces) - 1):
         with pytest.raises(LeftError):
-            course.course(asked, file, leave)
-    resumed = course.course(asked, file, leave)
+            course(asked, file, leave)
+    resumed = course(asked, file, leave)
     assert resumed.samples == whole.samples
     assert resumed.lanes == whole.lanes
     # What is done is not done again.
-    assert course.course(asked, file, leave).samples == whole.samples
+    assert course(asked, file, leave).samples == whole.samples
 
 
 def test_a_checkpoint_holds_everything(tmp_path: Path) -> None:
@@ -141,8 +141,8 @@ def test_a_checkpoint_of_something_else_is_refused(
     """Another start, ensemble, setting, scene or version is named, and nothing is computed."""
     file, asked = tmp_path / "run.json", question()
     progress = Progress(0, (Lane(Fraction(0), (Fraction(1),)),) * 4)
-    checkpoint.write(file, asked.document(), course.numerical_versions(), progress)
-    other, versions = question(**changed).document(), course.numerical_versions() | made_with
+    checkpoint.write(file, asked.document(), numerical_versions(), progress)
+    other, versions = question(**changed).document(), numerical_versions() | made_with
     with pytest.raises(OfAnotherError, match=said):
         checkpoint.read(file, other, versions)
 
@@ -222,7 +222,7 @@ def test_what_a_lane_did_not_reach_is_no_number() -> None:
     """A lane that is lost after its first instant has errors there and none later."""
     asked = question(lanes=2)
     (first,) = asked.problems[:1]
-    followed = course.course(asked)
+    followed = course(asked)
     states = [followed.samples[0][0][0], None, None, None]  # type: ignore[index]
     for name, values in by_name(first, states, asked.period).items():
         assert np.isfinite(values).tolist() == [True, False, False, False], name

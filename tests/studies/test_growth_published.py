@@ -191,14 +191,19 @@ def test_a_run_that_was_stopped_goes_on(
         (["growth", "--periods", "many"], "expected a number of periods, got 'many'"),
         (["--periods", "1e4"], "expected --periods with `publish growth`, got it with no study"),
         (["prices", "--long"], "expected --long with `publish growth`, got it with prices"),
+        (["growth", "--period", "3"], "expected an option, got --period; did you mean --periods?"),
+        (["growth", "--period=3"], "expected an option, got --period; did you mean --periods?"),
+        (["--lon", "growth"], "expected an option, got --lon; did you mean --long?"),
     ],
 )
 def test_a_wrong_call_is_refused(
     options: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Too few periods, no number, and options without what they belong to: exit status 2, one line."""
+    """Too few periods, no number, options misspelt or without their study: exit status 2, one line."""
     assert main(["publish", *options, "--from", str(tmp_path)]) == 2
-    assert said in capsys.readouterr().err
+    error = capsys.readouterr().err
+    assert said in error
+    assert "expected a study" not in error
 
 
 @pytest.mark.usefixtures("one_short_entry")
@@ -226,7 +231,7 @@ def test_a_number_that_is_not_finite_is_stored_as_none() -> None:
     """An ensemble is the same when it is read again; one without a finite error has no numbers."""
     found = followed("euler/about-max-axis", lanes=2)
     errors = np.full((2, len(found.steps)), np.nan)
-    nothing = growth(np.array(found.course.question.counts), errors, Law.WALK, 1e-16)
+    nothing = growth(np.array(found.question.counts), errors, Law.WALK, 1e-16)
     lost = replace(found, found=(Found("T", errors, nothing),))
     for one in (found.ensemble("a test"), lost.ensemble()):
         assert converted(complete(one), Ensemble) == one

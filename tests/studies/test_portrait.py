@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.reports import every_portrait
+from builders.reports import every_portrait, portrait_without_run
 from latex2mathml.converter import convert
 
 from taylor_verify.cli import main
@@ -25,7 +25,6 @@ from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.studies.portraits import stored as portraits
 from taylor_verify.studies.portraits.equations import equations
 from taylor_verify.studies.portraits.measure import (
     DIGITS,
@@ -33,9 +32,9 @@ from taylor_verify.studies.portraits.measure import (
     INTERVALS,
     PERIODS,
     TIMES,
-    portrait,
     roots,
 )
+from taylor_verify.studies.portraits.study import PORTRAITS
 
 ROOT = Path(__file__).resolve().parents[2]
 SCENES = names()
@@ -47,20 +46,9 @@ HALF = 0.5 * 10.0 ** (1 - FIGURES)
 
 @cache
 def stored(scene: str) -> dict[str, Any]:
-    found = portraits.load(every_portrait(), scene)
+    found = PORTRAITS.find(every_portrait(), scene)
     assert found is not None
     return found
-
-
-@cache
-def made(scene: str) -> dict[str, Any]:
-    """A portrait whose run is left out: the rest does not depend on it, and it is most of the time."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(
-            "taylor_verify.studies.portraits.measure.explanation",
-            lambda scene, rung: {"cost": {"seconds": 1.0}},
-        )
-        return portrait(load(scene))
 
 
 def with_quartic() -> list[str]:
@@ -73,7 +61,7 @@ def with_quartic() -> list[str]:
 @pytest.mark.slow
 def test_every_scene_has_its_portrait() -> None:
     """There is one for each scene of the standard set, made of the scene as it is now, and no other."""
-    files = {file.stem for file in (every_portrait() / portraits.FOLDER).glob("*.json")}
+    files = {file.stem for file in (every_portrait() / PORTRAITS.folder).glob("*.json")}
     assert files == {of_scene(name) for name in names()}
     assert {name: stored(name)["sha256"] for name in names()} == {
         name: load(name).digest for name in names()
@@ -83,7 +71,7 @@ def test_every_scene_has_its_portrait() -> None:
 @pytest.mark.slow
 def test_a_portrait_is_small() -> None:
     """No file has more than 120 kB, and all together less than 7 MB: a page can load them."""
-    sizes = [file.stat().st_size for file in (every_portrait() / portraits.FOLDER).glob("*.json")]
+    sizes = [file.stat().st_size for file in (every_portrait() / PORTRAITS.folder).glob("*.json")]
     assert max(sizes) <= 120_000
     assert sum(sizes) <= 7_000_000
 
@@ -91,7 +79,7 @@ def test_a_portrait_is_small() -> None:
 @pytest.mark.parametrize("scene", FRESH)
 def test_a_portrait_is_the_same_when_made_again(scene: str) -> None:
     """Without the run on f64, whose roundings are those of a machine, the stored one is made again."""
-    again = json.loads(json.dumps(made(scene)))
+    again = json.loads(json.dumps(portrait_without_run(scene)))
     kept = dict(stored(scene))
     assert kept.pop("made_by").endswith("do not edit")
     assert again.pop("explain") == {"cost": {"seconds": None}}
@@ -120,7 +108,7 @@ def test_the_comment_and_the_text_are_those_of_the_file() -> None:
 @pytest.mark.parametrize("scene", FRESH)
 def test_the_course_is_the_motion_at_the_times_printed(scene: str) -> None:
     """Every number is within half a unit of its ninth digit of what the Taylor route finds."""
-    asked, course = load(scene), made(scene)["course"]
+    asked, course = load(scene), portrait_without_run(scene)["course"]
     rows = range(0, INTERVALS + 1, 45)
     elapsed = [Fraction(repr(course["t"][k])) - asked.clock.start for k in rows]
     motion = solution(asked, "taylor").motion(elapsed, 15)
@@ -166,7 +154,7 @@ def test_the_course_has_what_the_scene_tracks() -> None:
 def test_the_values_are_those_of_the_other_route() -> None:
     """Balls and mpmath print the same thirty digits, but for the last, at ten times over the span."""
     scene = load(FRESH[0])
-    values = made(scene.name)["values"]
+    values = portrait_without_run(scene.name)["values"]
     times = [(row["t"], Fraction(row["t"])) for row in values["rows"]]
     assert len(times) == TIMES
     assert times[-1][1] == scene.clock.instants[-1]
@@ -299,16 +287,16 @@ def test_the_equations_become_mathml() -> None:
 
 def test_portraits_of_scenes_that_are_gone_are_removed(tmp_path: Path) -> None:
     """A second set takes the place of the first; a file that names no maker of ours stays."""
-    document = made(FRESH[0])
+    document = portrait_without_run(FRESH[0])
     gone = {**document, "scene": "euler/gone"}
-    mine = tmp_path / portraits.FOLDER / "mine.json"
-    first = portraits.write(tmp_path, [document, gone])
+    mine = tmp_path / PORTRAITS.folder / "mine.json"
+    first = PORTRAITS.write(tmp_path, [document, gone])
     mine.write_text("{}", encoding="utf-8")
     contents = {file: file.read_bytes() for file in first}
-    second = portraits.write(tmp_path, [document])
+    second = PORTRAITS.write(tmp_path, [document])
     assert {file.name for file in second[0].parent.iterdir()} == {second[0].name, "mine.json"}
     assert contents[second[0]] == second[0].read_bytes()
-    assert portraits.load(tmp_path, "euler/gone") is None
+    assert PORTRAITS.find(tmp_path, "euler/gone") is None
 
 
 def test_the_command_writes_one_file_a_scene(
@@ -319,9 +307,9 @@ def test_the_command_writes_one_file_a_scene(
     assert main(["publish", "portraits", "--from", str(tmp_path)]) == 0
     out, err = capfd.readouterr()
     assert "1/1 euler/rest" in err
-    assert out.split() == [str(tmp_path / portraits.FOLDER / "euler-rest.json")]
+    assert out.split() == [str(tmp_path / PORTRAITS.folder / "euler-rest.json")]
     told = explanation("euler/rest", "f64")
     told["cost"]["seconds"] = None
-    found = portraits.load(tmp_path, "euler/rest")
+    found = PORTRAITS.find(tmp_path, "euler/rest")
     assert found is not None
     assert found["explain"] == json.loads(json.dumps(told))

@@ -35,7 +35,7 @@ from taylor_verify.claims.numbers import CITED
 from taylor_verify.judge import baseline
 from taylor_verify.judge.rounding_class import FACTOR, LEVEL, compare
 from taylor_verify.publish.page import MADE_BY
-from taylor_verify.publish.pictures.picture import save
+from taylor_verify.publish.pictures.picture import Picture, content
 from taylor_verify.records import store
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.replacement import first_line
@@ -49,7 +49,7 @@ from taylor_verify.studies.accuracy.attainable import attainable
 from taylor_verify.studies.bulk import patterns
 from taylor_verify.studies.claims import page as claims_page
 from taylor_verify.studies.controls import page as controls
-from taylor_verify.studies.controls.stored import CONTROLS
+from taylor_verify.studies.controls.document import CONTROLS
 from taylor_verify.studies.enclosure.measure import SCENES, widths
 from taylor_verify.studies.enclosure.study import ENCLOSURE
 from taylor_verify.studies.extremes import page as extremes
@@ -247,32 +247,81 @@ def test_exact_trajectories_are_those_of_the_code() -> None:
     assert [path for path in published if (REPORTS / path).read_bytes() != made_now[path]] == []
 
 
-def test_pictures_are_drawn_of_the_published_data(clone: Path, tmp_path: Path) -> None:
-    """Each picture of a measurement, and each of an exact motion, is the published file."""
-    # What errors of runs are drawn in needs their records, which are not published.
-    motions = [
-        one.picture
-        for one in gallery.shown(gallery.Stored(reports.for_gallery()))
-        if not one.picture.stem.endswith(("-errors", "-polhode", "controls-shifts"))
+class Motions(gallery.Stored):
+    """The report as the gallery reads it, with what is not published made without a run.
+
+    Motions are exact and come out as they were drawn. Records have one error at each sample.
+    """
+
+    def portrait(self, scene: str) -> Any:
+        return reports.portrait_without_run(scene)
+
+    def rungs(self, scene: str) -> list[str]:
+        return ["f64"]
+
+    def record(self, scene: str, rung: str) -> Any:
+        times = self.portrait(scene)["course"]["t"]
+        gates = [
+            {"quantity": name, "errors": [1e-16] * len(times)} for name in ("omega", "impulse")
+        ]
+        return {"rung": rung, "times": times, "unit_roundoff": 2.0**-53, "gates": gates}
+
+    def samples(self, scene: str, columns: Any) -> Any:
+        return self.portrait(scene)["course"]["omega"]
+
+
+@cache
+def gallery_shown() -> tuple[gallery.Shown, ...]:
+    return tuple(gallery.shown(Motions(REPORTS)))
+
+
+@cache
+def drawable() -> tuple[Picture, ...]:
+    """Each picture that is drawn of published data: of measurements, and of exact motions."""
+    measured = [
+        p for study in registry.STUDIES if study.name != "gallery" for p in study.pictures(REPORTS)
     ]
-    pictures = [*registry.pictures(clone), *motions]
-    assert len(pictures) > 25
-    for file in save(pictures, tmp_path / "drawn", ("svg",)):
-        assert file.read_bytes() == (REPORTS / "figures" / file.name).read_bytes(), file.name
+    without_runs = ("-errors", "-polhode")
+    motions = [
+        one.picture for one in gallery_shown() if not one.picture.stem.endswith(without_runs)
+    ]
+    return (*measured, *motions)
+
+
+def published_as(picture: Picture) -> Path:
+    return REPORTS / "figures" / f"{picture.stem}.svg"
+
+
+def test_a_picture_of_each_kind_is_drawn_of_the_published_data() -> None:
+    """Of all pictures that one function draws the smallest is the published file, byte for byte."""
+    kinds: dict[Any, list[Picture]] = {}
+    for picture in drawable():
+        kinds.setdefault(picture.figure.func, []).append(picture)
+    assert len(kinds) >= 10
+    for same in kinds.values():
+        picture = min(same, key=lambda one: published_as(one).stat().st_size)
+        assert content(picture, "svg") == published_as(picture).read_bytes(), picture.stem
+
+
+@pytest.mark.slow
+def test_pictures_are_drawn_of_the_published_data() -> None:
+    """Each picture of a measurement, and each of an exact motion, is the published file."""
+    assert len(drawable()) > 25
+    for picture in drawable():
+        assert content(picture, "svg") == published_as(picture).read_bytes(), picture.stem
 
 
 def test_every_published_picture_can_be_drawn_again() -> None:
     """`publish --paper` draws all of them, so that `make release-data` has a PDF of each."""
-    folder = reports.for_gallery()
-    gallery_stems = {one.picture.stem for one in gallery.shown(gallery.Stored(folder))}
-    drawn = gallery_stems | {picture.stem for picture in registry.pictures(REPORTS)}
+    shown = {one.picture.stem for one in gallery_shown()}
+    drawn = shown | {picture.stem for picture in drawable()}
     assert {file.stem for file in (REPORTS / "figures").glob("*.svg")} <= drawn
 
 
 def test_the_gallery_shows_every_picture() -> None:
     """The page has the pictures of the gallery, in their order, and names its maker."""
     page = REPORTS / "figures/README.md"
-    stems = [one.picture.stem for one in gallery.shown(gallery.Stored(reports.for_gallery()))]
+    stems = [one.picture.stem for one in gallery_shown()]
     assert first_line(page) == first_line_of(gallery.page([]))
     assert re.findall(r"\]\(([\w-]+)\.svg\)", page.read_text(encoding="utf-8")) == stems
 

@@ -19,6 +19,7 @@ from builders.reports import every_reference
 
 import taylor_verify
 from taylor_verify.batch.documents import document as document_of
+from taylor_verify.batch.documents import documents
 from taylor_verify.batch.failure import Failed
 from taylor_verify.cli import main
 from taylor_verify.exact.printed import document
@@ -29,7 +30,7 @@ from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.studies.reference import page as reference_files
-from taylor_verify.studies.reference.measure import DIGITS, reference, references
+from taylor_verify.studies.reference.measure import DIGITS, reference
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -361,7 +362,7 @@ def test_a_scene_that_cannot_be_solved_is_named(error: Exception, text: str) -> 
 def test_documents_come_in_the_order_asked_for() -> None:
     """Whichever worker ends first, and each is told of once."""
     asked, told = ["euler/rest", "euler/nesc-brick", "euler/generic"], []
-    found = references(asked, told.append)
+    found = documents(reference, asked, told.append)
     assert [each["scene"] for each in found] == asked
     assert sorted(told) == sorted(asked)
     assert found[2] == reference(load("euler/generic"))

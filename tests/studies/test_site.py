@@ -29,7 +29,7 @@ from taylor_verify.solvers.files.file import read
 from taylor_verify.studies.site import builder, conf, motion
 from taylor_verify.studies.site.builder import MADE_BY, build, contents
 from taylor_verify.studies.site.links import relinked
-from taylor_verify.studies.site.scene_page import ScenePage
+from taylor_verify.studies.site.scene_page import scene_page
 from taylor_verify.studies.site.source import Report
 from taylor_verify.studies.site.stage import Stage
 
@@ -361,7 +361,7 @@ def test_somebody_elses_html_is_text(report: Path, tmp_path: Path) -> None:
     markup = "<script>alert(1)</script>"
     portrait |= {"title": markup, "why": [markup], "toml": f"# {markup}\n# ```\n{markup}"}
     file.write_text(json.dumps(portrait), encoding="utf-8")
-    page = ScenePage("euler/with-attitude", Report(place), ()).markdown()
+    page = scene_page("euler/with-attitude", Report(place), ())
     html = MarkdownIt("commonmark").enable("table").render(page)
     assert html.count("alert(1)") >= 4
     assert "<script>alert" not in html

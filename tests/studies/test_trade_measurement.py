@@ -24,6 +24,7 @@ from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.studies import report
 from taylor_verify.studies.tradeoff import measurement, rounds
+from taylor_verify.studies.tradeoff.cold import in_a_new_process
 from taylor_verify.studies.tradeoff.document import TradePoint
 from taylor_verify.studies.tradeoff.measurement import PROCESSES, SCENES, published_settings
 from taylor_verify.studies.tradeoff.order_statistics import CONFIDENCE, coverage, estimate, place
@@ -210,7 +211,7 @@ def test_the_resolution_is_the_smallest_step_of_the_clock() -> None:
 @pytest.mark.parametrize("name", SCENES)
 def test_every_published_setting_can_be_named_again(name: str) -> None:
     """A worker process gets names alone: each leads to the same solver, once."""
-    asked = published_settings(load(name))
+    asked = tuple(published_settings(load(name)))
     found = [(one.solver.name, one.rung.name) for one in asked]
     assert len(set(found)) == len(found)
     assert YARDSTICK in found
@@ -233,12 +234,11 @@ def test_numbers_and_times_are_apart(monkeypatch: pytest.MonkeyPatch, scene: Sce
         replace(real_setting(name, _taylor()[1]), withheld=reason)  # type: ignore[arg-type]
         for name, reason in (("taylor", ""), ("taylor?tol=1e-6", ""), ("scipy:DOP853", "too slow"))
     ]
-    monkeypatch.setattr(measurement, "published_settings", lambda scene, outside: tuple(few))
+    monkeypatch.setattr(measurement, "published_settings", lambda scene, outside: few)
     monkeypatch.setattr(measurement, "plain_doubles", lambda: iter(()))
-    monkeypatch.setattr(measurement, "_in_a_new_process", measurement.one_process)
+    monkeypatch.setattr(measurement, "in_a_new_process", lambda work, *given: work(*given))
     told: list[str] = []
-    found = measurement.measurement(["euler/generic"], 2, 1, finished=told.append)
-    numbers, times = found.numbers(), found.times()
+    numbers, times = measurement.measurement(["euler/generic"], 2, 1, finished=told.append)
     (one,) = numbers.scenes
     assert {p.scene for p in numbers.points} == {one.scene}
     assert not {"seconds", "spread", "repeats"} & {f.name for f in fields(TradePoint)}
@@ -262,7 +262,7 @@ def test_a_process_of_its_own_measures_the_same_settings(scene: Scene) -> None:
     """What passes there and back is names and numbers."""
     short = replace(scene, clock=replace(scene.clock, instants=scene.clock.instants[:3]))
     asked = [(short, names("taylor", "taylor?tol=1e-6"))]
-    found = measurement._in_a_new_process(asked, 1, 1)
+    found = in_a_new_process(measurement.one_process, asked, 1, 1)
     assert set(found) == {short.name}
     assert set(found[short.name]) == set(names("taylor", "taylor?tol=1e-6"))
     assert all(one.seconds > 0 for one in found[short.name].values())
@@ -275,7 +275,7 @@ def test_the_verb_writes_data_and_page(
     few = (real_setting("taylor", _taylor()[1]),)  # type: ignore[arg-type]
     whole = measurement.measurement
     monkeypatch.setattr(measurement, "published_settings", lambda scene, outside: few)
-    monkeypatch.setattr(measurement, "_in_a_new_process", measurement.one_process)
+    monkeypatch.setattr(measurement, "in_a_new_process", lambda work, *given: work(*given))
     monkeypatch.setattr(
         measurement,
         "measurement",

@@ -14,7 +14,7 @@ from builders.studies.tradeoff import NUMBERS_MADE, POINTS, SCENE, TIMES_MADE, p
 
 from taylor_verify.publish.cells import NOTHING
 from taylor_verify.studies.tradeoff.page import front, page
-from taylor_verify.studies.tradeoff.pictures.wording import floors_of
+from taylor_verify.studies.tradeoff.pictures.trade import floors_of
 from taylor_verify.studies.tradeoff.stored import NUMBERS, TIMINGS, TimedPoint, Trades, load, write
 from taylor_verify.studies.tradeoff.study import STUDY
 

@@ -241,9 +241,10 @@ def test_a_cold_solve_is_told_part_by_part() -> None:
     assert list(found) == asked[:1]
     assert told == [one.label for one in asked]
     (one,) = found.values()
-    parts = one.process + one.importing + one.compiling + one.solving + one.rest
-    assert parts == pytest.approx(one.whole)
-    assert min(one.importing, one.compiling, one.solving) > 0
+    whole = one.pop("whole")
+    assert set(one) == {"process", "importing", "compiling", "solving", "rest"}
+    assert sum(one.values()) == pytest.approx(whole)
+    assert min(one["importing"], one["compiling"], one["solving"]) > 0
 
 
 def test_the_library_of_a_solver_is_imported_before_it_is_timed() -> None:

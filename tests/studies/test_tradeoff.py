@@ -19,7 +19,7 @@ from mpmath import mp
 
 import taylor_verify
 from taylor_verify.cli import main
-from taylor_verify.cli.tradeoff_text import tradeoff_text
+from taylor_verify.cli.tradeoff import tradeoff_text
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.records.standing import Standing
 from taylor_verify.scenes.precision import Rung, rung
@@ -30,18 +30,17 @@ from taylor_verify.solvers.taylor.driver import Taylor, at_tolerance
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.studies.tradeoff.accuracy import Accuracy, Truth
 from taylor_verify.studies.tradeoff.attainability import least_error
-from taylor_verify.studies.tradeoff.front import (
-    dominates,
-    front,
-    front_sentences,
-    request_sentences,
-)
 from taylor_verify.studies.tradeoff.point import Point, point
 from taylor_verify.studies.tradeoff.recommendation import MARGIN, OutOfReach, recommend, recommended
 from taylor_verify.studies.tradeoff.setting import Setting, settings
 from taylor_verify.studies.tradeoff.starts import STARTS, nearby
 from taylor_verify.studies.tradeoff.timing import Timed, cold_caches, timed
-from taylor_verify.studies.tradeoff.trade_off import trade_off
+from taylor_verify.studies.tradeoff.trade_off import (
+    front,
+    front_sentences,
+    request_sentences,
+    trade_off,
+)
 
 F64 = rung("f64")
 
@@ -110,6 +109,12 @@ MADE = st.builds(
     st.sampled_from([0.1, 0.2, 0.3, 0.5, 1.0]) | st.floats(1e-6, 10),
     st.sampled_from([Outcome.FINISHED] * 4 + [Outcome.STEP_LIMIT, Outcome.NON_FINITE]),
 )
+
+
+def dominates(one: Point, other: Point) -> bool:
+    """No slower and no less accurate, and better in one of them."""
+    no_worse = one.seconds <= other.seconds and one.error <= other.error
+    return no_worse and (one.seconds < other.seconds or one.error < other.error)
 
 
 @given(st.lists(MADE, max_size=12))

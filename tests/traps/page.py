@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.publish.cells import INFINITE, NOTHING, figure
-from taylor_verify.publish.markdown import Column, bold, bullets, prose, table
+from taylor_verify.publish.markdown import bold, bullets, prose, table
 from taylor_verify.publish.page import traced
 from taylor_verify.records import store
 from taylor_verify.records.json_text import complete, plain, read
@@ -118,12 +118,12 @@ def page(stored: TrapsStudy) -> str:
 
 def _in_short(traps: Iterable[TrapRow]) -> str:
     columns = [
-        Column("trap"),
-        Column("what happens"),
-        Column("heyoka reports"),
-        Column("error", True),
-        Column("driver's error", True),
-        Column("whose it is"),
+        "trap",
+        "what happens",
+        "heyoka reports",
+        "error:",
+        "driver's error:",
+        "whose it is",
     ]
     return table(columns, [_line(trap) for trap in traps])
 
@@ -161,10 +161,10 @@ def _behind(case: TrapCase) -> float:
 
 def _seen(traps: Iterable[TrapRow]) -> str:
     columns = [
-        Column("trap"),
-        Column("case"),
-        Column("error", True),
-        *(Column(heading, True) for heading in _GATES.values()),
+        "trap",
+        "case",
+        "error:",
+        *(f"{heading}:" for heading in _GATES.values()),
     ]
     rows = [
         [trap.key, prose(case.case), figure(case.error), *(_gate(case, q) for q in _GATES)]
@@ -230,12 +230,12 @@ def _cases(trap: TrapRow) -> str:
     if not trap.cases:
         return ""
     columns = [
-        Column("case"),
-        Column("heyoka reports"),
-        Column("steps", True),
-        Column("error", True),
-        Column("driver's error", True),
-        Column("the driver"),
+        "case",
+        "heyoka reports",
+        "steps:",
+        "error:",
+        "driver's error:",
+        "the driver",
     ]
     rows = [
         [

@@ -104,45 +104,22 @@ def check(
         from taylor_verify.solvers.solver import Callback
 
         return run(scene, Callback(solve_or_file), rung, tolerance)
-    if isinstance(solve_or_file, list | tuple):
-        options = (rung, accept_conventions, partial, tolerance, columns)
-        return _check_files(scene, solve_or_file, steps, *options)
-    if steps is not None:
-        raise ValueError("expected a list of files with steps, got one answer @ steps")
     from taylor_verify.judge.files.judgement import judge_file
+    from taylor_verify.judge.series.files import judge_files
     from taylor_verify.judge.tolerances import tolerances
     from taylor_verify.scenes.precision import rung as rung_named
     from taylor_verify.scenes.reading.reader import as_scene
     from taylor_verify.solvers.files.file import read
     from taylor_verify.solvers.files.objects import pairs, trajectory
 
-    scene, wanted = as_scene(scene), pairs(columns)
+    scene = as_scene(scene)
+    if isinstance(solve_or_file, list | tuple):
+        options = (rung, accept_conventions, partial, tolerance, columns)
+        return judge_files(solve_or_file, steps, lambda file: check(scene, file, *options))
+    if steps is not None:
+        raise ValueError("expected a list of files with steps, got one answer @ steps")
+    wanted = pairs(columns)
     asked = tolerances(tolerance, [scene])
     is_path = isinstance(solve_or_file, str | PathLike)
     file = read(solve_or_file, wanted) if is_path else trajectory(solve_or_file, scene, wanted)
     return judge_file(file, scene, rung_named(rung), accept_conventions, partial, asked)
-
-
-def _check_files(
-    scene: Scene | str | PathLike[str],
-    files: Sequence[Any],
-    steps: Sequence[float] | None,
-    *options: Any,
-) -> FilesJudgement:
-    """Judge each file of a list by itself with the same options, and all of them together."""
-    from taylor_verify.judge.series.files import (
-        checked_steps,
-        files_judgement,
-        judge_each,
-        repeated,
-    )
-    from taylor_verify.scenes.reading.reader import as_scene
-
-    scene = as_scene(scene)
-    if not files:
-        raise ValueError("expected at least one trajectory file, got an empty list")
-    if faults := repeated([file for file in files if isinstance(file, str | PathLike)]):
-        raise ValueError("\n".join(faults))
-    steps = None if steps is None else checked_steps(steps, len(files))
-    judged = judge_each(files, lambda file: check(scene, file, *options))
-    return files_judgement(judged, steps)

@@ -70,13 +70,13 @@ def run(
     asked = tolerances(tolerance, [scene])
     problem = _posed(scene, solver, rung)
     if isinstance(problem, Trajectory):
-        is_refused = problem.outcome is Outcome.NOT_REPRESENTABLE
+        outcome, detail = problem.outcome, problem.detail
+        is_refused = outcome is Outcome.NOT_REPRESENTABLE
         status = Status.REFUSED if is_refused else Status.UNAVAILABLE
-        is_missing = problem.outcome is Outcome.NO_PACKAGE
+        is_missing = outcome is Outcome.NO_PACKAGE
         cause = Cause.MISSING_PACKAGE if is_missing else Cause.NOT_POSED
-        return unjudged(scene, solver, rung, status, problem.detail, cause, problem.outcome)
-    costs = Costs()
-    began = perf_counter()
+        return unjudged(scene, solver, rung, status, detail, cause, outcome)
+    costs, began = Costs(), perf_counter()
     with costs.of(SOLVING):
         trajectory = _answer(solver, problem)
     seconds = perf_counter() - began

@@ -126,6 +126,7 @@ def _faults(
     solver: object, jobs: object, executor: object, resume: object, out: object, progress: object
 ) -> Iterator[str]:
     """Yield a sentence for each argument of a wrong kind."""
+    from numbers import Integral
     from os import PathLike
 
     from taylor_verify.scenes.reading.faults import brief
@@ -133,12 +134,11 @@ def _faults(
     if not isinstance(solver, str):
         mend = " (a callable is judged by taylor_verify.check)" if callable(solver) else ""
         yield f"expected the name of a solver, got {brief(solver)}{mend} @ solver"
-    if jobs is not None and not (_is_count(jobs) and executor is None):
-        is_count = _is_count(jobs)
-        expected = (
-            "jobs or an executor, which has its own number" if is_count else "jobs of at least 1"
-        )
-        yield f"expected {expected}, got {'both' if is_count else brief(jobs)} @ jobs"
+    is_count = isinstance(jobs, Integral) and not isinstance(jobs, bool) and int(jobs) >= 1
+    if jobs is not None and not is_count:
+        yield f"expected jobs of at least 1, got {brief(jobs)} @ jobs"
+    elif jobs is not None and executor is not None:
+        yield "expected jobs or an executor, which has its own number, got both @ jobs"
     if executor is not None and not callable(getattr(executor, "submit", None)):
         yield f"expected an executor with a method submit, got {brief(executor)} @ executor"
     if not isinstance(resume, bool):
@@ -147,10 +147,3 @@ def _faults(
         yield f"expected the path of a folder, got {brief(out)} @ out"
     if progress is not None and not callable(progress):
         yield f"expected a function (finished, total, job), got {brief(progress)} @ progress"
-
-
-def _is_count(jobs: object) -> bool:
-    """Return True for a whole number of at least 1."""
-    from numbers import Integral
-
-    return isinstance(jobs, Integral) and not isinstance(jobs, bool) and int(jobs) >= 1

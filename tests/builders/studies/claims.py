@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from taylor_verify.claims.claim import Claim, Residual
+from taylor_verify.claims.check import Residual
+from taylor_verify.claims.claim import Claim
 from taylor_verify.claims.document import ClaimRow, ClaimsStudy
 from taylor_verify.claims.ledger import claims, examined
 from taylor_verify.claims.numbers import CITED

@@ -76,7 +76,7 @@ class Earlier:
         before = _asked_again(before, results)
         report = baseline.hold(before, results.verdicts)
         if decides:
-            report = baseline.decided_alone(report, before, _unexpected(results))
+            report = baseline.decided_alone(report, before, shown_verdicts(results))
         departures = (report.regressions, report.undecided, report.changes)
         return Comparison(report.compared, *departures, before, notes, decides)
 
@@ -148,11 +148,9 @@ def _of_one_file(
     return tuple(replace(v, setting=name) if v.setting == other else v for v in before), (note,)
 
 
-def _unexpected(results: Judgements | Judgement) -> list[Verdict]:
-    """Return the rows that are not the expected answers of an extreme."""
-    if isinstance(results, Judgement):
-        return list(results.verdicts)
-    return [v for v in results.verdicts if results.agreement.met(v) is None]
+def shown_verdicts(results: Judgements | Judgement) -> list[Verdict]:
+    """Return the verdicts without those that are no pass and came as expected: a CI knows no such thing."""
+    return list(results.verdicts) if isinstance(results, Judgement) else results.unexpected
 
 
 def _run(verdict: Verdict) -> tuple[str, ...]:

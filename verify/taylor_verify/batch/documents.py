@@ -1,4 +1,4 @@
-"""One document for each of many shipped scenes, made on all cores."""
+"""Documents of many shipped scenes, made on all cores."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from concurrent.futures import Executor
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from taylor_verify.batch.failure import Failed, fault
+from taylor_verify.batch.failure import Failed, failing
 from taylor_verify.batch.runs import run_all
 
 if TYPE_CHECKING:
@@ -19,7 +19,6 @@ Document = dict[str, Any]
 def documents(
     make: Callable[[Scene], Document],
     names: Sequence[str],
-    expense: Callable[[str], Any],
     finished: Callable[[str], None],
     executor: Executor | None = None,
 ) -> list[Document]:
@@ -28,12 +27,11 @@ def documents(
     ``finished`` is called with the name of each scene as it ends. Raises Failed for one that came to
     nothing.
     """
-    work = partial(document, make)
     return run_all(
-        work,
+        partial(document, make),
         names,
         executor,
-        expense=expense,
+        expense=_expense,
         ended=lambda name, _: finished(name),
         raises=Failed,
     )
@@ -44,9 +42,13 @@ def document(make: Callable[[Scene], Document], name: str) -> Document:
     from taylor_verify.exact.solution import Unsettled
     from taylor_verify.scenes.reading.reader import load
 
-    try:
+    with failing(name, Unsettled):
         return make(load(name))
-    except Exception as error:
-        # Only text is sure to pass from process to process.
-        reason = str(error) if isinstance(error, Unsettled) else fault(error)
-        raise Failed(f"{name}: {reason}") from error
+
+
+def _expense(name: str) -> tuple[int, int]:
+    """Return a key to sort scenes by, the longest first: bodies in a fluid, and what is tracked."""
+    from taylor_verify.scenes.reading.reader import load
+
+    scene = load(name)
+    return -len(scene.initial.moving), -len(scene.track)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
@@ -15,6 +17,19 @@ _PACKAGE: Final = Path(__file__).parents[1]
 
 class Failed(RuntimeError):  # noqa: N818 (it names what happened to the run)
     """A run that came to no judgement, by no fault of its scene; the text says which and why."""
+
+
+@contextmanager
+def failing(place: str, *foreseen: type[Exception]) -> Iterator[None]:
+    """Raise Failed with the place for an error, in its own words if it was foreseen.
+
+    Only text is sure to pass from process to process.
+    """
+    try:
+        yield
+    except Exception as error:
+        reason = str(error) if isinstance(error, foreseen) else fault(error)
+        raise Failed(f"{place}: {reason}") from error
 
 
 def fault(error: BaseException) -> str:

@@ -1,8 +1,7 @@
-"""One unit of work of a run of many scenes."""
+"""The unit of work of a run of many scenes."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -32,8 +31,3 @@ class Job:
 
     def __str__(self) -> str:
         return f"{self.name} on {' '.join(self.rungs)}"
-
-
-def jobs(scenes: Iterable[str | Scene], solver: str, rungs: Sequence[str]) -> list[Job]:
-    """Return one job for each scene, on all the rungs."""
-    return [Job(scene, solver, tuple(rungs)) for scene in scenes]

@@ -73,6 +73,11 @@ class Judgements(Sequence[Judgement]):
         return compare_with_expectations(self.verdicts)
 
     @property
+    def unexpected(self) -> list[Verdict]:
+        """The verdicts without those that are no pass and came as expected."""
+        return [v for v in self.verdicts if self.agreement.met(v) is None]
+
+    @property
     def exit_status(self) -> int:
         """The exit status of `taylor-verify run`.
 
@@ -99,7 +104,7 @@ class Judgements(Sequence[Judgement]):
         """
         if self.passed:
             return
-        others = [v for v in self.verdicts if v.verdict is not Status.PASS and not self._is_met(v)]
+        others = [v for v in self.unexpected if v.verdict is not Status.PASS]
         lines = [f"{v.verdict}  {v.scene} {v.rung} {v.sentence}" for v in others]
         lines += [cause.line for cause in self.causes]
         lines += [str(mismatch) for mismatch in self.agreement.mismatches]
@@ -161,6 +166,3 @@ class Judgements(Sequence[Judgement]):
         more = len(self) - _MOST_SHOWN
         rest = f"<p>and {more} more runs: see <code>to_dataframe()</code></p>" if more > 0 else ""
         return html_table(repr(self)[1:-1], ("scene", "rung", "verdicts"), rows) + rest
-
-    def _is_met(self, verdict: Verdict) -> bool:
-        return self.agreement.met(verdict) is not None

@@ -7,7 +7,7 @@ from concurrent.futures import Executor
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from taylor_verify.batch.failure import Failed, fault
+from taylor_verify.batch.failure import Failed, failing
 from taylor_verify.batch.job import Job
 from taylor_verify.batch.runs import run_all
 from taylor_verify.batch.store import unfinished
@@ -74,27 +74,28 @@ def judge_all(
             report(job)
 
         stored = [store.recall(job) if store else None for job in jobs]
-        waiting = [job for job, known in zip(jobs, stored, strict=True) if known is None]
+        waiting = []
         for job, known in zip(jobs, stored, strict=True):
-            if known is not None:
+            if known is None:
+                waiting.append(job)
+            else:
                 report(job)
         try:
-            made = iter(
-                run_all(
-                    run_job,
-                    waiting,
-                    executor,
-                    workers=workers,
-                    expense=_expense,
-                    ended=keep,
-                    raises=Failed,
-                )
+            made = run_all(
+                run_job,
+                waiting,
+                executor,
+                workers=workers,
+                expense=_expense,
+                ended=keep,
+                raises=Failed,
             )
         except KeyboardInterrupt as interrupt:
             raise Interrupted(ended if store else 0, len(jobs)) from interrupt
         if store:
             store.forget()
-    return [each for known in stored for each in (next(made) if known is None else known)]
+    rest = iter(made)
+    return [each for known in stored for each in (next(rest) if known is None else known)]
 
 
 def run_job(job: Job) -> list[Judgement]:
@@ -103,16 +104,12 @@ def run_job(job: Job) -> list[Judgement]:
     from taylor_verify.scenes.reading.faults import Refused
     from taylor_verify.scenes.reading.reader import as_scene
 
-    judgements, place = [], job.name
-    try:
+    with failing(job.name, Refused):
         scene = as_scene(job.scene)
-        for rung in job.rungs:
-            place = f"{job.name} on {rung}"
+    judgements = []
+    for rung in job.rungs:
+        with failing(f"{job.name} on {rung}", Refused):
             judgements.append(run(scene, job.solver, rung, job.tolerances))
-    except Exception as error:
-        # Only text is sure to pass from process to process.
-        reason = str(error) if isinstance(error, Refused) else fault(error)
-        raise Failed(f"{place}: {reason}") from error
     return judgements
 
 

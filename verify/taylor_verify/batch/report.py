@@ -1,13 +1,13 @@
-"""Many runs beside an earlier report, and as a JUnit file. This module of batch alone knows `publish`."""
+"""The runs beside an earlier report, and as a JUnit file. This module of batch alone knows `publish`."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from dataclasses import replace
 from os import PathLike, fspath
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from taylor_verify.batch.comparison import Comparison, Earlier
+from taylor_verify.batch.comparison import Comparison, Earlier, shown_verdicts
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.judge.rounding_class import Departure
@@ -65,59 +65,32 @@ def write_junit(
     replace_files(place.parent, {place.name: text})
 
 
-# What a CI is shown.
-
-
-def shown_verdicts(results: Judgements | Judgement) -> list[Verdict]:
-    """Return the verdicts without those that are no pass and came as expected: a CI knows no such thing."""
-    if isinstance(results, Judgement):
-        return list(results.verdicts)
-    return [v for v in results.verdicts if results.agreement.met(v) is None]
-
-
 def remarks(results: Judgements | Judgement, comparison: Comparison | None = None) -> list[Remark]:
     """Return the remarks on rows for a CI, besides their verdicts: unexpected answers, and regressions."""
-    remarked = [] if comparison is not None and comparison.decides else _mismatches(results)
-    if isinstance(results, Judgements) and results.unjudged and results.exit_status:
-        remarked += _undecided(results.verdicts, "nothing was judged")
+    from taylor_verify.publish.ci.case import Remark
+
+    remarked: list[Remark] = []
+
+    def remark(row: Verdict | Departure, status: Status, text: str) -> None:
+        run = row.scene, row.solver, row.setting, row.rung
+        remarked.append(Remark(*run, row.quantity, status, text))
+
+    if isinstance(results, Judgements):
+        if comparison is None or not comparison.decides:
+            # The solver's name is taken from the run of the row.
+            runs = {(v.scene, v.rung): v for v in results.verdicts}
+            for mismatch in results.agreement.mismatches:
+                scene, rung, quantity = mismatch.row
+                row = replace(runs[scene, rung], quantity=quantity)
+                remark(row, Status.FAIL, str(mismatch))
+        if results.unjudged and results.exit_status:
+            for verdict in results.verdicts:
+                remark(verdict, Status.UNDECIDED, "nothing was judged")
     if comparison is not None:
-        remarked += _regressions(comparison)
-        if not comparison.compared:
-            remarked += _undecided(results.verdicts, "no row was compared with the baseline")
+        for failure in comparison.failures:
+            remark(failure, Status.FAIL, f"regression: {failure}")
+        for departure in comparison.undecided:
+            remark(departure, Status.UNDECIDED, f"not comparable: {departure}")
+        for verdict in results.verdicts if not comparison.compared else ():
+            remark(verdict, Status.UNDECIDED, "no row was compared with the baseline")
     return remarked
-
-
-def _mismatches(results: Judgements | Judgement) -> list[Remark]:
-    """Return a failure for each row that is not as expected, its solver's name taken from its run."""
-    from taylor_verify.publish.ci.case import Remark
-
-    if isinstance(results, Judgement):
-        return []
-    solvers = {(v.scene, v.rung): (v.solver, v.setting) for v in results.verdicts}
-    return [
-        Remark(scene, *solvers[scene, rung], rung, quantity, Status.FAIL, str(mismatch))
-        for mismatch in results.agreement.mismatches
-        for scene, rung, quantity in (mismatch.row,)
-    ]
-
-
-def _undecided(verdicts: Sequence[Verdict], text: str) -> list[Remark]:
-    from taylor_verify.publish.ci.case import Remark
-
-    return [
-        Remark(v.scene, v.solver, v.setting, v.rung, v.quantity, Status.UNDECIDED, text)
-        for v in verdicts
-    ]
-
-
-def _regressions(comparison: Comparison) -> list[Remark]:
-    from taylor_verify.publish.ci.case import Remark
-
-    def remark(status: Status, prefix: str, departure: Departure) -> Remark:
-        row = departure.scene, departure.solver, departure.setting, departure.rung
-        return Remark(*row, departure.quantity, status, f"{prefix}: {departure}")
-
-    return [
-        *(remark(Status.FAIL, "regression", each) for each in comparison.failures),
-        *(remark(Status.UNDECIDED, "not comparable", each) for each in comparison.undecided),
-    ]

@@ -1,10 +1,11 @@
-"""Many pieces of work on any executor: results in the order asked for, one clear end for all of them."""
+"""Pieces of work on any executor: results in the order asked for, one clear end for all of them."""
 
 from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, as_completed
+from contextlib import ExitStack
 from functools import partial
 from typing import Any, Final, TypeVar
 
@@ -42,40 +43,27 @@ def run_all(
     """
     if not asked:
         return []
-    if executor is not None:
-        return _gather(executor, work, asked, expense, ended, raises)
-    with LocalPool(min(workers or available_cores(), len(asked))) as pool:
-        try:
-            return _gather(pool, work, asked, expense, ended, raises)
-        except BaseException:
-            # Nobody waits for the rest, and the pool would.
-            pool.terminate()
-            raise
-
-
-def _gather(
-    executor: Executor,
-    work: Callable[[Asked], Result],
-    asked: Sequence[Asked],
-    expense: Callable[[Asked], Any] | None,
-    ended: Callable[[Asked, Result], None] | None,
-    raises: type[Exception],
-) -> list[Result]:
     places = sorted(range(len(asked)), key=lambda k: expense(asked[k]) if expense else k)
     futures: dict[Future[Result], int] = {}
     results: dict[int, Result] = {}
-    try:
-        for place in places:
-            futures[_submitted(executor, work, asked[place])] = place
-        for future in as_completed(futures):
-            place = futures[future]
-            results[place] = _result(future, asked[place], raises)
-            if ended is not None:
-                ended(asked[place], results[place])
-    except BaseException:
-        for future in futures:
-            future.cancel()
-        raise
+    with ExitStack() as stack:
+        if executor is None:
+            pool = LocalPool(min(workers or available_cores(), len(asked)))
+            executor = stack.enter_context(pool)
+            # Nobody waits for the rest of what ends early, and the pool would.
+            stack.push(lambda kind, *_: pool.terminate() if kind else None)
+        try:
+            for place in places:
+                futures[_submitted(executor, work, asked[place])] = place
+            for future in as_completed(futures):
+                place = futures[future]
+                results[place] = _result(future, asked[place], raises)
+                if ended is not None:
+                    ended(asked[place], results[place])
+        except BaseException:
+            for future in futures:
+                future.cancel()
+            raise
     return [results[place] for place in range(len(asked))]
 
 

@@ -26,10 +26,7 @@ from msgspec import to_builtins
 from platformdirs import user_cache_path
 
 from taylor_verify.batch.lock import Occupied, alone_in
-from taylor_verify.records.answers import LikelyCause
 from taylor_verify.records.json_text import converted
-from taylor_verify.records.record import Record
-from taylor_verify.records.verdict import Verdict
 
 if TYPE_CHECKING:
     from taylor_verify.batch.job import Job
@@ -106,21 +103,10 @@ def unfinished(asked: Sequence[Job], out: Path | None, resume: bool) -> Iterator
 # The files.
 
 
-@dataclass(frozen=True)
-class _Stored:
-    """A judgement as it is stored."""
-
-    verdicts: tuple[Verdict, ...]
-    record: Record | None
-    costs: dict[str, float]
-    causes: tuple[LikelyCause, ...] = ()
-
-
 def to_bytes(judgements: Sequence[Judgement]) -> bytes:
     """Return the content of a file: the digest of the rest, then JSON."""
-    rows = [_Stored(j.verdicts, j.record, dict(j.costs), j.causes) for j in judgements]
     # An error that is not finite stays what it is: Python reads its own NaN and Infinity.
-    text = json.dumps(to_builtins(rows, enc_hook=tuple)).encode()
+    text = json.dumps(to_builtins(judgements, enc_hook=tuple)).encode()
     return _digest(text).encode() + b"\n" + text
 
 
@@ -131,8 +117,7 @@ def from_bytes(content: bytes) -> list[Judgement]:
     digest, _, text = content.partition(b"\n")
     if digest != _digest(text).encode():
         raise ValueError("expected the digest of the content")
-    rows = converted(json.loads(text), tuple[_Stored, ...])
-    return [Judgement(r.verdicts, r.record, costs=r.costs, causes=r.causes) for r in rows]
+    return converted(json.loads(text), list[Judgement])
 
 
 # What a judgement depends on.

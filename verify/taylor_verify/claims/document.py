@@ -11,7 +11,7 @@ from taylor_verify.records.provenance import Provenance
 
 
 class Verdict(StrEnum):
-    """What became of a statement; only the first three count as holding, the third on a condition."""
+    """The fate of a statement. The first three count as holding, the third on a condition."""
 
     HOLDS = "holds"
     RESTORED = "holds as restored"
@@ -34,7 +34,7 @@ class ClaimResiduals:
 
 @dataclass(frozen=True, kw_only=True)
 class ClaimRow:
-    """One entry of the ledger; ``statement`` and ``correction`` are LaTeX.
+    """An entry of the ledger; ``statement`` and ``correction`` are LaTeX.
 
     ``verdict`` is what the checks give, ``recorded`` what the ledger expects. ``mutations`` are changes of
     the statement that its check rejects.
@@ -71,7 +71,7 @@ class ClaimRow:
 
 @dataclass(frozen=True)
 class ClaimsStudy:
-    """All entries; ``cited`` are numbers that a text refers to and does not have."""
+    """The entries of the ledger; ``cited`` are numbers that a text refers to and does not have."""
 
     provenance: Provenance
     cited: dict[str, str]

@@ -1,28 +1,34 @@
-"""Rational functions with exact coefficients, their time derivative, and the test of an identity.
+"""Rational functions with exact coefficients, and their time derivative.
 
 An element is a quotient of two polynomials over Q in the names of a field. Some names are square
 roots of polynomials in the others (i of -1, F of x.x): their squares are replaced wherever they occur,
 so that a numerator has one normal form, and an identity holds exactly if that form is zero. The
-denominators are no zero divisors, because none of these polynomials is a square.
+denominators are no zero divisors, because none of these polynomials is a square. Vectors and
+matrices are NumPy's arrays of elements.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from fractions import Fraction
-from functools import cache
 from math import hypot, isqrt
-from typing import Any, Final, TypeVar, cast, final
+from typing import Any, final
 
+import numpy as np
 from flint import fmpq, fmpq_mpoly_ctx
 
-from taylor_verify.claims.claim import Check, Residual
-
-Form = Callable[..., Iterable["Element"]]
 Point = Mapping[str, Fraction | int]
-Setting = TypeVar("Setting")
 
-_BECAUSE: Final = "expanded in exact rationals: an identity leaves zero"
+
+def _lifted(operation: Callable[[Any, Any], Any]) -> Callable[[Any, Any], Any]:
+    """Return an operation that takes numbers too, and leaves arrays to NumPy."""
+
+    def lifted(self: Element, other: Any) -> Any:
+        if isinstance(other, np.ndarray):
+            return NotImplemented
+        return operation(self, self.field.element(other))
+
+    return lifted
 
 
 @final
@@ -34,45 +40,44 @@ class Element:
     def __init__(self, field: Field, num: Any, den: Any) -> None:
         self.field, self.num, self.den = field, num, den
 
-    def __add__(self, other: Any) -> Element:
-        b = self.field.element(other)
+    @_lifted
+    def __add__(self, b: Element) -> Element:
         if self.den == b.den:
             return self.field.quotient(self.num + b.num, self.den)
         return self.field.quotient(self.num * b.den + b.num * self.den, self.den * b.den)
 
-    def __neg__(self) -> Element:
-        return Element(self.field, -self.num, self.den)
-
-    def __sub__(self, other: Any) -> Element:
-        return self + (-self.field.element(other))
-
-    def __mul__(self, other: Any) -> Element:
-        b = self.field.element(other)
+    @_lifted
+    def __mul__(self, b: Element) -> Element:
         return self.field.quotient(self.num * b.num, self.den * b.den)
 
-    def __truediv__(self, other: Any) -> Element:
-        b = self.field.element(other)
-        if b.num == 0:
+    @_lifted
+    def __truediv__(self, b: Element) -> Element:
+        if b.is_zero:
             raise ZeroDivisionError("expected a divisor that is not identically zero")
         return self.field.quotient(self.num * b.den, self.den * b.num)
 
+    @_lifted
+    def __sub__(self, b: Element) -> Element:
+        return self + -b  # type: ignore[no-any-return]
+
+    @_lifted
+    def __rsub__(self, b: Element) -> Element:
+        return b + -self  # type: ignore[no-any-return]
+
+    @_lifted
+    def __rtruediv__(self, b: Element) -> Element:
+        return b / self  # type: ignore[no-any-return]
+
+    __radd__, __rmul__ = __add__, __mul__
+
+    def __pos__(self) -> Element:
+        return self
+
+    def __neg__(self) -> Element:
+        return Element(self.field, -self.num, self.den)
+
     def __pow__(self, exponent: int) -> Element:
-        result = self.field.element(1)
-        for _ in range(exponent):
-            result = result * self
-        return result
-
-    def __radd__(self, other: Any) -> Element:
-        return self.field.element(other) + self
-
-    def __rmul__(self, other: Any) -> Element:
-        return self.field.element(other) * self
-
-    def __rsub__(self, other: Any) -> Element:
-        return self.field.element(other) + (-self)
-
-    def __rtruediv__(self, other: Any) -> Element:
-        return self.field.element(other) / self
+        return self.field.quotient(self.num**exponent, self.den**exponent)
 
     @property
     def is_zero(self) -> bool:
@@ -82,49 +87,41 @@ class Element:
 class Field:
     """Q(names), with some names square roots, a time derivative, and a rational point.
 
-    ``names`` come with their values at the point where a false statement is evaluated; ``roots`` maps
-    a name to the function that gives its square. A root that is not rational at the point, and so not
-    among the names, is taken there to 60 digits. ``turn`` sets the rates, which are zero else.
+    ``point`` gives the names with their values at the point where a false statement is evaluated; ``roots``
+    maps a name to its square, as text. A root that is not rational at the point, and so not in it, is
+    taken there to 60 digits. ``turn`` sets the rates, which are zero else. ``symbols`` are all names:
+    those that end in 1, 2, 3 also make a vector of three, and those in 11, 12 ... a matrix,
+    a symmetric one if only one of 12 and 21 is there.
     """
 
-    def __init__(
-        self,
-        names: Point,
-        roots: Mapping[str, Callable[[Field], Any]] | None = None,
-    ) -> None:
-        self.names = (*dict.fromkeys([*names, *(roots or {})]), "i")
-        self.point = {name: Fraction(value) for name, value in names.items()}
-        self._context = fmpq_mpoly_ctx.get(self.names, "degrevlex")
+    def __init__(self, point: Point, roots: Mapping[str, str] | None = None) -> None:
+        roots = roots or {}
+        # The roots come first: in this order of monomials each root's square leads its relation.
+        self.names = (*dict.fromkeys(["i", *roots, *point]),)
+        self.point = {name: Fraction(value) for name, value in point.items()}
+        self._context = fmpq_mpoly_ctx.get(self.names, "lex")
         self._one = self._context.constant(1)
         self._places = {name: place for place, name in enumerate(self.names)}
-        gens = zip(self.names, self._context.gens(), strict=True)
-        self._generators = {name: Element(self, g, self._one) for name, g in gens}
-        self._squares: dict[int, Any] = {self._places["i"]: self._context.constant(-1)}
+        generators = zip(self.names, self._context.gens(), strict=True)
+        self.symbols: dict[str, Any] = {n: Element(self, g, self._one) for n, g in generators}
+        self.symbols |= _arrays(self.symbols)
         self._rates: dict[str, Element] = {}
-        for name, square in (roots or {}).items():
-            found = square(self)
-            value = self._at_point(found.num)[0]
-            if self.point.setdefault(name, _root(value)) ** 2 != value and name in names:
+        self._relations = {"i": self["i"].num ** 2 + 1}
+        for name, text in roots.items():
+            square = eval(text, dict(self.symbols)).num
+            value = self._at_point(square)[0]
+            if self.point.setdefault(name, _root(value)) ** 2 != value and name in point:
                 raise ValueError(f"expected {name}^2 = {value} at the point of the field")
-            self._squares[self._places[name]] = found.num
+            self._relations[name] = self[name].num ** 2 - square
 
-    def __getitem__(self, name: str) -> Element:
-        return self._generators[name]
-
-    def vector(self, letter: str) -> list[Element]:
-        return [self[f"{letter}{k}"] for k in (1, 2, 3)]
-
-    def symmetric(self, letter: str) -> list[list[Element]]:
-        """The matrix of six names: letter, row and column, the lesser index first."""
-        return [[self[f"{letter}{min(j, k)}{max(j, k)}"] for k in (1, 2, 3)] for j in (1, 2, 3)]
-
-    def matrix(self, letter: str) -> list[list[Element]]:
-        """The matrix of nine names."""
-        return [[self[f"{letter}{j}{k}"] for k in (1, 2, 3)] for j in (1, 2, 3)]
+    def __getitem__(self, name: str) -> Any:
+        return self.symbols[name]
 
     def element(self, value: Any) -> Element:
         if isinstance(value, Element):
             return value
+        if isinstance(value, float):
+            raise TypeError(f"expected an exact number, got {value!r}")
         exact = Fraction(value)
         number = self._context.constant(fmpq(exact.numerator, exact.denominator))
         return Element(self, number, self._one)
@@ -141,43 +138,25 @@ class Field:
     def _reduced(self, polynomial: Any) -> Any:
         """The normal form: no root to a power above one."""
         degrees = polynomial.degrees()
-        for place, square in self._squares.items():
-            if degrees[place] > 1:
-                polynomial = self._without_square(polynomial, place, square)
-                degrees = polynomial.degrees()
+        for name, relation in self._relations.items():
+            if degrees[self._places[name]] > 1:
+                polynomial %= relation
         return polynomial
 
-    def _without_square(self, polynomial: Any, place: int, square: Any) -> Any:
-        parts: dict[int, dict[Any, Any]] = {}
-        for exponents, coefficient in polynomial.to_dict().items():
-            pairs, rest = divmod(int(exponents[place]), 2)
-            kept = (*exponents[:place], rest, *exponents[place + 1 :])
-            parts.setdefault(pairs, {})[kept] = coefficient
-        total = self._context.constant(0)
-        for pairs, terms in parts.items():
-            total += self._context.from_dict(terms) * square**pairs
-        return total
+    # Derivatives and substitutions, of elements and of arrays of elements.
 
-    # The time derivative.
+    def turn(self, **rates: Any) -> None:
+        """Set d/dt of names, or of vectors; that of a root must agree with that of its square."""
+        self._rates = self._components(rates)
+        for name, relation in self._relations.items():
+            if not self._total(relation).is_zero:
+                raise ValueError(f"expected the rate of a root, got another @ {name}")
 
-    def turn(self, rates: Mapping[str, Element]) -> None:
-        """Set d/dt of these names; that of a root must agree with that of its square."""
-        self._rates = dict(rates)
-        for place, square in self._squares.items():
-            root = self[self.names[place]]
-            rate = self._rates.get(self.names[place], self.element(0))
-            if not (2 * root * rate - self.rate(Element(self, square, self._one))).is_zero:
-                raise ValueError(f"expected the rate of a root, got another @ {self.names[place]}")
-
-    def rate(self, element: Element) -> Element:
+    def rate(self, value: Any) -> Any:
         """d/dt by the chain and quotient rules."""
-        top, bottom = self._rate(element.num), self._rate(element.den)
-        den = Element(self, element.den, self._one)
-        if bottom.is_zero:
-            return top / den
-        return (top * den - Element(self, element.num, self._one) * bottom) / (den * den)
+        return self._each(self._total, value)
 
-    def _rate(self, polynomial: Any) -> Element:
+    def _total(self, polynomial: Any) -> Element:
         total = self.element(0)
         for name, rate in self._rates.items():
             slope = polynomial.derivative(self._places[name])
@@ -185,26 +164,46 @@ class Field:
                 total = total + Element(self, slope, self._one) * rate
         return total
 
-    def rates(self, vector: Sequence[Element]) -> list[Element]:
-        return [self.rate(entry) for entry in vector]
-
-    def partial(self, element: Element, name: str) -> Element:
+    def partial(self, value: Any, name: str) -> Any:
         """The partial derivative by a name that is no root and in no root."""
         place = self._places[name]
-        top, den = element.num.derivative(place), element.den
-        if den.is_constant():
-            return self.quotient(top, den)
-        return self.quotient(top * den - element.num * den.derivative(place), den * den)
+        return self._each(lambda p: Element(self, p.derivative(place), self._one), value)
 
-    def without(self, element: Element, names: Iterable[str]) -> Element:
-        """The element where these names, none of them a root, are zero."""
-        zeros = {self._places[name]: fmpq(0) for name in names}
-        return self.quotient(element.num.subs(zeros), element.den.subs(zeros))
+    def grad(self, value: Any, letter: str) -> Any:
+        """The partial derivatives by the three components of a vector, along a last axis."""
+        return np.stack([self.partial(value, f"{letter}{k}") for k in (1, 2, 3)], axis=-1)
 
-    def renamed(self, element: Element, names: Mapping[str, str]) -> Element:
-        """The element with some names replaced by others."""
-        images = [self[names.get(name, name)].num for name in self.names]
-        return self.quotient(element.num.compose(*images), element.den.compose(*images))
+    def _each(self, slope: Callable[[Any], Element], value: Any) -> Any:
+        """Apply a derivation, given on polynomials, to an element or to an array."""
+
+        def derivative(entry: Any) -> Element:
+            element = self.element(entry)
+            den = Element(self, element.den, self._one)
+            top, bottom = slope(element.num), slope(element.den)
+            if bottom.is_zero:
+                return top / den  # type: ignore[no-any-return]
+            num = Element(self, element.num, self._one)
+            return (top * den - num * bottom) / (den * den)  # type: ignore[no-any-return]
+
+        return np.frompyfunc(derivative, 1, 1)(value)
+
+    def at(self, value: Any, **images: Any) -> Any:
+        """The value with polynomials for some names, none of them a root."""
+        given = self._components(images)
+        nums = [given[name].num if name in given else self[name].num for name in self.names]
+
+        def composed(element: Element) -> Element:
+            return self.quotient(element.num.compose(*nums), element.den.compose(*nums))
+
+        return np.frompyfunc(composed, 1, 1)(value)
+
+    def _components(self, values: Mapping[str, Any]) -> dict[str, Element]:
+        """Elements by their names, of values by names and of arrays by the names of vectors."""
+        return {
+            f"{name}{k}" if isinstance(value, np.ndarray) else name: self.element(entry)
+            for name, value in values.items()
+            for k, entry in enumerate(np.ravel(np.asarray(value, object)), start=1)
+        }
 
     # The value at the point.
 
@@ -220,9 +219,25 @@ class Field:
     def _at_point(self, polynomial: Any) -> tuple[Fraction, Fraction]:
         values = [self.point.get(name, Fraction(0)) for name in self.names]
         rational = [fmpq(v.numerator, v.denominator) for v in values]
-        imaginary = polynomial.derivative(self._places["i"])
-        found = polynomial(*rational), imaginary(*rational)
-        return _fraction(found[0]), _fraction(found[1])
+        parts = polynomial, polynomial.derivative(self._places["i"])
+        real, imaginary = (part(*rational) for part in parts)
+        return Fraction(int(real.p), int(real.q)), Fraction(int(imaginary.p), int(imaginary.q))
+
+
+def _arrays(symbols: Mapping[str, Element]) -> dict[str, Any]:
+    """Vectors and matrices of the names that are numbered; a name stands for itself first."""
+    arrays = {}
+    for letter in {name.rstrip("123") for name in symbols} - set(symbols):
+        if {f"{letter}{k}" for k in "123"} <= set(symbols):
+            arrays[letter] = np.array([symbols[f"{letter}{k}"] for k in "123"])
+        if f"{letter}11" in symbols:
+            arrays[letter] = np.array(
+                [
+                    [symbols.get(f"{letter}{j}{k}", symbols.get(f"{letter}{k}{j}")) for k in "123"]
+                    for j in "123"
+                ]
+            )
+    return arrays
 
 
 def _root(value: Fraction) -> Fraction:
@@ -231,106 +246,6 @@ def _root(value: Fraction) -> Fraction:
     return Fraction(isqrt(int(value * scale**2)), scale)
 
 
-def _fraction(value: Any) -> Fraction:
-    return Fraction(int(value.p), int(value.q))
-
-
-def symbols_of(setting: Callable[[], Setting]) -> Setting:
-    """Return the symbols of a setting, which are made once."""
-    return cast(Setting, _symbols(setting))
-
-
-@cache
-def _symbols(setting: Callable[[], Any]) -> Any:
-    return setting()
-
-
-def identity(setting: Callable[[], Any], form: Form, **changed: Any) -> Check:
-    """The check that all the differences of a form vanish identically in its setting.
-
-    A form takes the setting and gives left side minus right side; ``changed`` are arguments of the form
-    that make a mutant of it. A difference that is no zero is given the size it has at the point of its
-    field.
-    """
-
-    def check() -> Residual:
-        differences = list(form(symbols_of(setting), **changed))
-        if not differences:
-            return Residual(float("nan"), 0.0, "nothing was compared")
-        nonzero = [d.field.size(d) for d in differences if not d.is_zero]
-        # A polynomial that is no zero but vanishes at the point says nothing of its size.
-        size = (max(nonzero) or float("nan")) if nonzero else 0.0
-        return Residual(size, 0.0, _BECAUSE)
-
-    return check
-
-
 def values(names: Iterable[str]) -> dict[str, Fraction]:
     """A rational for each name, no two alike in the neighbourhood: a point without symmetry."""
     return {name: Fraction(3 + 5 * k % 13, 2 + 3 * k % 7) for k, name in enumerate(names)}
-
-
-# Vectors of elements.
-
-
-def cross(a: Sequence[Any], b: Sequence[Any]) -> list[Any]:
-    return [a[j] * b[k] - a[k] * b[j] for j, k in ((1, 2), (2, 0), (0, 1))]
-
-
-def dot(a: Sequence[Any], b: Sequence[Any]) -> Any:
-    return sum((p * q for p, q in zip(a, b, strict=True)), start=0)
-
-
-def minus(a: Sequence[Any], b: Sequence[Any]) -> list[Any]:
-    return [p - q for p, q in zip(a, b, strict=True)]
-
-
-def plus(*vectors: Sequence[Any]) -> list[Any]:
-    return [sum(entries, start=0) for entries in zip(*vectors, strict=True)]
-
-
-def apply(matrix: Sequence[Sequence[Any]], v: Sequence[Any]) -> list[Any]:
-    return [dot(row, v) for row in matrix]
-
-
-def transposed(matrix: Sequence[Sequence[Any]]) -> list[list[Any]]:
-    return [list(column) for column in zip(*matrix, strict=True)]
-
-
-def named(letter: str, vector: Sequence[Any]) -> dict[str, Any]:
-    """The components of a vector by their names."""
-    return {f"{letter}{k}": entry for k, entry in enumerate(vector, start=1)}
-
-
-def rotation(e: Sequence[Any]) -> list[list[Any]]:
-    """R of a quaternion of norm 1, scalar first: v_space = R v_body."""
-    e0, e1, e2, e3 = e
-    return [
-        [1 - 2 * (e2**2 + e3**2), 2 * (e1 * e2 - e0 * e3), 2 * (e1 * e3 + e0 * e2)],
-        [2 * (e1 * e2 + e0 * e3), 1 - 2 * (e1**2 + e3**2), 2 * (e2 * e3 - e0 * e1)],
-        [2 * (e1 * e3 - e0 * e2), 2 * (e2 * e3 + e0 * e1), 1 - 2 * (e1**2 + e2**2)],
-    ]
-
-
-QUATERNION: Final[Mapping[str, Fraction]] = {
-    f"e{k}": Fraction(entry, 5) for k, entry in enumerate((1, 2, 2, 4))
-}
-"""A rational quaternion of norm 1, for the points of fields with an attitude."""
-
-
-def unit_root(field: Field) -> Element:
-    """e0^2 = 1 - e1^2 - e2^2 - e3^2."""
-    return 1 - field["e1"] ** 2 - field["e2"] ** 2 - field["e3"] ** 2
-
-
-def quaternion_rates(field: Field, omega: Sequence[Any]) -> dict[str, Element]:
-    """e' = e (0, omega)/2, omega in body axes; then R' = R [omega]x."""
-    e0, e1, e2, e3 = (field[f"e{k}"] for k in range(4))
-    w1, w2, w3 = omega
-    half = Fraction(1, 2)
-    return {
-        "e0": half * (-e1 * w1 - e2 * w2 - e3 * w3),
-        "e1": half * (e0 * w1 + e2 * w3 - e3 * w2),
-        "e2": half * (e0 * w2 + e3 * w1 - e1 * w3),
-        "e3": half * (e0 * w3 + e1 * w2 - e2 * w1),
-    }

@@ -5,7 +5,6 @@ It shares no closed form with the text, and is settled to the digits asked for.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from fractions import Fraction
 from functools import lru_cache
 from typing import Final
@@ -18,21 +17,21 @@ from taylor_verify.scenes.scene import Scene
 DIGITS: Final = 60
 
 
-def trajectory(
-    body: Body,
-    start: State,
-    times: Sequence[Fraction],
-    digits: int = DIGITS,
-    track: frozenset[str] = frozenset(),
-) -> Motion:
-    """The motion at these times after the start, to ``digits`` digits of every vector."""
-    return _trajectory(body, start, tuple(times), digits, track)
+def scene_of(
+    body: Body, start: State, times: tuple[Fraction, ...], track: frozenset[str] = frozenset()
+) -> Scene:
+    """Return the scene of a body at these times after its start."""
+    name = "a trajectory of the ledger"
+    return Scene(name, name, body.MODEL, track, body, start, Clock(Fraction(0), times))
 
 
 @lru_cache(maxsize=64)
-def _trajectory(
-    body: Body, start: State, times: tuple[Fraction, ...], digits: int, track: frozenset[str]
+def trajectory(
+    body: Body,
+    start: State,
+    times: tuple[Fraction, ...],
+    digits: int = DIGITS,
+    track: frozenset[str] = frozenset(),
 ) -> Motion:
-    name = "a trajectory of the ledger"
-    scene = Scene(name, name, body.MODEL, track, body, start, Clock(Fraction(0), times))
-    return TaylorSolution(scene).motion(times, digits)
+    """Return the motion at these times after the start, to ``digits`` digits of every vector."""
+    return TaylorSolution(scene_of(body, start, times, track)).motion(times, digits)

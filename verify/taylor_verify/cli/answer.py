@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -13,6 +14,17 @@ _GRAVITY = (WRONG_CALL, FAIL, UNDECIDED, PASS)
 
 class WrongCall(Exception):  # noqa: N818 (it names what was done)
     """The call or its input was wrong; the text is the message."""
+
+
+@contextmanager
+def wrong_calls(
+    place: str = "", kinds: type[Exception] | tuple[type[Exception], ...] = ValueError
+) -> Iterator[None]:
+    """Report exceptions of some kinds as wrong calls, the place behind their text."""
+    try:
+        yield
+    except kinds as error:
+        raise WrongCall(f"{error}{place}") from error
 
 
 class Answer(NamedTuple):
@@ -30,6 +42,6 @@ def graver(*statuses: int) -> int:
 
 
 def files_written(paths: Iterable[Path]) -> Answer:
-    """The answer of a verb whose work is files: their names."""
+    """Return the answer of a verb whose work is files: their names."""
     written = [str(path) for path in paths]
     return Answer(PASS, {"written": written}, lambda: "\n".join(written))

@@ -1,36 +1,164 @@
-"""The arguments of every verb."""
+"""The arguments of every verb, read by argparse, and the module that answers it.
+
+That module is imported when its verb is called, so that `--help` needs nothing heavy. The arguments of
+a verb are a text: a line for each, with its help two blanks behind it, which goes on below.
+
+    --csv           an option without a value        --link NAME       one with a value
+    --jobs N        a whole number                   --rung R [f64]    with a default
+    --at! T,T,...   it must be given                 --solver* S       it may be repeated
+    --rung+ R       with several values as well      --route arb|mpmath  one of these words
+    link NAME       no option                        files+ FILE       at least one (*: any number)
+"""
 
 from __future__ import annotations
 
 import argparse
 import re
-from collections.abc import Callable, Iterable, Sequence
-from typing import Any, NoReturn
+from collections.abc import Iterable, Sequence
+from functools import partial
+from importlib import import_module
+from typing import Any, Final, NoReturn
 
-from taylor_verify.cli import (
-    check,
-    ci,
-    claims,
-    columns,
-    publishing,
-    question,
-    scene,
-    tolerance,
-    tradeoff,
-    verbs,
-)
+from taylor_verify.cli import publishing
 from taylor_verify.cli.answer import Answer
 from taylor_verify.records.version import __version__
 from taylor_verify.scenes.names import escaped
 
-_DEFAULT_DIGITS = 30
 # What may be meant as a rung, misspelt or not: a scene of such a name is written ./f64.
 _RUNG = re.compile(r"(f|mp)\d*", re.IGNORECASE)
 _NEGATIVE_TIME = re.compile(r"-[\d.]")
+# Name, sign, value, default and help of an argument.
+_ARGUMENT: Final = re.compile(r"([-\w]+)([!*+]?)(?: ([^ ]+))?(?: \[(.+?)\])?(?:  (.*))?")
+
+_TOLERANCE: Final = """
+--tolerance E  allow this error in place of what rounding leaves: relative, and radians for the attitude;
+  1e-8 for all quantities, or omega=1e-8,T=1e-10 for some
+"""
+_CI: Final = """
+--explain  show the arithmetic of every bound as well
+--junit FILE  write the verdicts there as JUnit XML
+--github  annotations for GitHub on stderr, and a summary to the file $GITHUB_STEP_SUMMARY
+--baseline FILE  fail if a row is worse than in that document of --json (or verdicts.json of --out) by
+  more than rounding explains
+--gate bound|baseline [bound]  what decides the exit status: the bounds (and --baseline besides), or the
+  baseline alone, so that an answer beyond its bounds is kept from getting worse; default: bound
+"""
+_VERBS: Final = {
+    "list": ("list the shipped scenes, solvers and rungs", "list --json", ""),
+    "scene": (
+        "write a scene from a URDF, SDF or MJCF file",
+        "scene from robot.urdf --link base",
+        """
+source from  the word `from`
+file FILE  a URDF, SDF or MJCF file
+--link NAME  the link or body; without it, the only one with an inertia
+--out FILE  write the scene there, to a file that is not there yet
+""",
+    ),
+    "question": (
+        "print a scene as any solver gets it, in exact text and hexadecimal floats",
+        "question euler/generic --csv",
+        """
+scene SCENE
+--rung R [f64]  default: f64
+--csv  print the header and the times of a trajectory file, for a program to fill in
+""",
+    ),
+    "run": (
+        "solve scenes, compare with the exact motion, judge",
+        "run euler/generic --rung f32 f64",
+        f"""
+scenes* SCENE  a folder of shipped scenes (extremes) is all of them; default: the standard set
+--solver S [taylor]  default: taylor
+--rung+ R  f32 f64 f80 f128 mpN; default: f64 for named scenes, all five for the standard set
+--jobs N  processes for several scenes; default: one a core
+--out DIR  write verdicts, records and tables there
+--resume  go on where the last run of several scenes was interrupted
+--against DIR  fail if a number has left the rounding class of the one published there
+{_TOLERANCE}{_CI}""",
+    ),
+    "exact": (
+        "print the exact motion of a scene at the times given",
+        "exact euler/generic --at 0,10,1e9 --digits 40",
+        """
+scene SCENE
+--at! T,T,...  decimals or a/b, absolute
+--digits N [30]  default: 30
+--route arb|mpmath|taylor  arb, the closed form in balls (default where there is one); mpmath, the same
+  by other formulas; taylor, Taylor series in balls (default elsewhere)
+""",
+    ),
+    "check": (
+        "judge somebody's trajectory: CSV, NPZ, Parquet or JSON; of several files the order too",
+        "check mine.csv --scene euler/generic --rung f64",
+        f"""
+files+ FILE  columns t and any of w1 w2 w3 (angular velocity, body axes); u1 u2 u3 (velocity of the
+  body's origin, body axes; with w it stands for the impulses); x1 x2 x3 y1 y2 y3 (impulses, body axes);
+  q0 q1 q2 q3 (scalar first, body to space) or r11 ... r33; c1 c2 c3 (centre, space axes). Usual other
+  names (time, wx, omega_x, qw, p q r) and units such as [ms] or [deg/s] are taken and said; all other
+  columns are ignored, and named; several are of one solver at several steps
+--columns* NAME=THEIRS,...  the file's column for a name above, or for a group (omega=gyro); a comma
+  belongs to THEIRS unless NAME= follows it; may be repeated: --columns 't=Time [ms],w1=rate, axis 1'
+--scene! SCENE  what the file is an answer to
+--rung R [f64]  precision of the arithmetic that made the file; default: f64
+--accept-conventions  correct what was found out (order of the quaternion, axes, units, time, ...) and
+  judge the rest; without it the file is judged as it stands
+--partial  judge what the file has, without undecided for tracked columns or a part of the span that it
+  lacks
+{_TOLERANCE}
+--steps H,H,...  the step of each of several files, for the order of convergence; default: what the
+  files or their names say (run_h0.05.csv)
+--picture FILE  draw the errors of several files against their steps (svg, pdf, png; matplotlib)
+{_CI}""",
+    ),
+    "explain": (
+        "show the equations as built, the regime of the orbit and the arithmetic of each gate",
+        "explain kirchhoff/screw --rung f80",
+        """
+scene SCENE
+--rung R [f64]  default: f64
+""",
+    ),
+    "tradeoff": (
+        "measure the time and the error of every setting of every solver",
+        "tradeoff euler/generic --rung f64 --target 1e-9",
+        """
+scenes* SCENE
+--target E  also find the fastest setting whose error stays below E on the scene and on starts nearby;
+  exit status 3 where there is none
+--rung+ R  default: f32 f64 f80 f128
+--solver* S  measure this setting of a solver and no others but taylor's, which are the yardstick; may
+  be repeated: --solver "process:./mine" --solver "geometric:splitting?step=0.01"
+--outside  measure the integrators of other libraries too, each in an environment of its own, which is
+  made the first time (a download)
+--cold  also start each setting in a new process with nothing compiled, and tell importing, compiling
+  and solving apart
+--repeats N [5]  timed solves of a setting; default: 5
+--seed N [1]  of the order and the starts; default: 1
+--out DIR  write the numbers and the work-precision pictures there
+""",
+    ),
+    "claims": (
+        "check every numbered equation and every claim of the two source texts",
+        'claims "hydromechanics 49 (17)"',
+        """
+ids* ID  "heinbockel (2.2.70)", its number "(2.2.70)", or a whole text: "hydromechanics 48"; default: all
+""",
+    ),
+    # Its arguments are those of the studies.
+    "publish": (
+        "measure and write what is published, or make its pages of what is stored",
+        "publish growth --periods 1e4",
+        "",
+    ),
+}
 
 
 def parse(arguments: Sequence[str]) -> argparse.Namespace:
-    """The options, ``act`` the function of the verb; SystemExit for --help and a wrong call."""
+    """Return the options, with the function of the verb as ``act``.
+
+    Raises SystemExit for --help and for a wrong call.
+    """
     parser = _parser("publish" in arguments)
     options, left = parser.parse_known_args(_with_times_attached(arguments))
     scenes = getattr(options, "scenes", None)
@@ -52,7 +180,7 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
 
 
 def _with_times_attached(arguments: Sequence[str]) -> list[str]:
-    """``--at -5,3`` as ``--at=-5,3``: argparse takes a leading minus for an option."""
+    """Write ``--at -5,3`` as ``--at=-5,3``: argparse takes a leading minus for an option."""
     attached: list[str] = []
     for word in arguments:
         if attached and attached[-1] == "--at" and _NEGATIVE_TIME.match(word):
@@ -63,7 +191,7 @@ def _with_times_attached(arguments: Sequence[str]) -> list[str]:
 
 
 def _split(groups: Iterable[Sequence[str]] | None) -> tuple[list[str], list[str]]:
-    """The rungs and the scenes of all that stood behind ``--rung``, whose first word is a rung."""
+    """Tell rungs from scenes in all that stood behind ``--rung``, whose first word is a rung."""
     rungs: list[str] = []
     scenes: list[str] = []
     for first, *others in groups or ():
@@ -96,212 +224,49 @@ def _parser(is_publishing: bool) -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"taylor-verify {__version__}")
     found = parser.add_subparsers(title="verbs", metavar="VERB", required=True)
-    _add_list(found)
-    _add_scene(found)
-    _add_question(found)
-    _add_run(found)
-    _add_exact(found)
-    _add_check(found)
-    _add_explain(found)
-    _add_tradeoff(found)
-    _add_claims(found)
-    _add_publish(found, is_publishing)
+    for name, (what, example, arguments) in _VERBS.items():
+        verb = found.add_parser(
+            name,
+            help=what,
+            description=what[0].upper() + what[1:] + ".",
+            epilog=f"example: taylor-verify {example}",
+            allow_abbrev=False,
+        )
+        verb.add_argument("--json", action="store_true", help="print one JSON document on stdout")
+        verb.set_defaults(act=partial(_act, name))
+        for line in arguments.replace("\n  ", " ").split("\n"):
+            if line:
+                _add(verb, line)
+        if name == "publish":
+            verb.set_defaults(act=publishing.publish)
+            publishing.add_options(verb, is_publishing)
     return parser
 
 
-def _verb(
-    found: Any, name: str, what: str, example: str, act: Callable[[argparse.Namespace], Answer]
-) -> argparse.ArgumentParser:
-    verb: argparse.ArgumentParser = found.add_parser(
-        name,
-        help=what,
-        description=what[0].upper() + what[1:] + ".",
-        epilog=f"example: taylor-verify {example}",
-        allow_abbrev=False,
-    )
-    verb.add_argument("--json", action="store_true", help="print one JSON document on stdout")
-    verb.set_defaults(act=act)
-    return verb
+def _act(name: str, options: argparse.Namespace) -> Answer:
+    """Import the module of a verb and let it answer."""
+    found: Answer = import_module(f"taylor_verify.cli.{name}").answer(options)
+    return found
 
 
-def _add_list(found: Any) -> None:
-    _verb(
-        found, "list", "list the shipped scenes, solvers and rungs", "list --json", verbs.list_all
-    )
-
-
-def _add_scene(found: Any) -> None:
-    what = "write a scene from a URDF, SDF or MJCF file"
-    scene.add_options(_verb(found, "scene", what, "scene from robot.urdf --link base", scene.scene))
-
-
-def _add_question(found: Any) -> None:
-    what = "print a scene as any solver gets it, in exact text and hexadecimal floats"
-    example = "question euler/generic --csv"
-    verb = _verb(found, "question", what, example, question.question)
-    verb.add_argument("scene", metavar="SCENE")
-    verb.add_argument("--rung", default="f64", metavar="R", help="default: f64")
-    verb.add_argument(
-        "--csv",
-        action="store_true",
-        help="print the header and the times of a trajectory file, for a program to fill in",
-    )
-
-
-def _add_run(found: Any) -> None:
-    what = "solve scenes, compare with the exact motion, judge"
-    verb = _verb(found, "run", what, "run euler/generic --rung f32 f64", verbs.run)
-    verb.add_argument(
-        "scenes",
-        nargs="*",
-        metavar="SCENE",
-        help="a folder of shipped scenes (extremes) is all of them; default: the standard set",
-    )
-    verb.add_argument("--solver", default="taylor", metavar="S", help="default: taylor")
-    verb.add_argument(
-        "--rung",
-        nargs="+",
-        action="append",
-        metavar="R",
-        help="f32 f64 f80 f128 mpN; default: f64 for named scenes, all five for the standard set",
-    )
-    verb.add_argument(
-        "--jobs", type=int, metavar="N", help="processes for several scenes; default: one a core"
-    )
-    verb.add_argument("--out", metavar="DIR", help="write verdicts, records and tables there")
-    verb.add_argument(
-        "--resume",
-        action="store_true",
-        help="go on where the last run of several scenes was interrupted",
-    )
-    verb.add_argument(
-        "--against",
-        metavar="DIR",
-        help="fail if a number has left the rounding class of the one published there",
-    )
-    tolerance.add_option(verb)
-    ci.add_options(verb)
-
-
-def _add_exact(found: Any) -> None:
-    what = "print the exact motion of a scene at the times given"
-    verb = _verb(found, "exact", what, "exact euler/generic --at 0,10,1e9 --digits 40", verbs.exact)
-    verb.add_argument("scene", metavar="SCENE")
-    verb.add_argument("--at", required=True, metavar="T,T,...", help="decimals or a/b, absolute")
-    verb.add_argument(
-        "--digits", type=int, default=_DEFAULT_DIGITS, metavar="N", help="default: 30"
-    )
-    verb.add_argument(
-        "--route",
-        choices=("arb", "mpmath", "taylor"),
-        help="arb, the closed form in balls (default where there is one); mpmath, the same by other "
-        "formulas; taylor, Taylor series in balls (default elsewhere)",
-    )
-
-
-def _add_check(found: Any) -> None:
-    what = "judge somebody's trajectory: CSV, NPZ, Parquet or JSON; of several files the order too"
-    verb = _verb(
-        found, "check", what, "check mine.csv --scene euler/generic --rung f64", check.check
-    )
-    verb.add_argument(
-        "files",
-        nargs="+",
-        metavar="FILE",
-        help=f"{columns.FILE}; several are of one solver at several steps",
-    )
-    columns.add_option(verb)
-    verb.add_argument(
-        "--scene", required=True, metavar="SCENE", help="what the file is an answer to"
-    )
-    verb.add_argument(
-        "--rung",
-        default="f64",
-        metavar="R",
-        help="precision of the arithmetic that made the file; default: f64",
-    )
-    verb.add_argument(
-        "--accept-conventions",
-        action="store_true",
-        help="correct what was found out (order of the quaternion, axes, units, time, ...) and judge "
-        "the rest; without it the file is judged as it stands",
-    )
-    verb.add_argument(
-        "--partial",
-        action="store_true",
-        help="judge what the file has, without undecided for tracked columns or a part of the span that "
-        "it lacks",
-    )
-    tolerance.add_option(verb)
-    check.add_options(verb)
-    ci.add_options(verb)
-
-
-def _add_explain(found: Any) -> None:
-    what = "show the equations as built, the regime of the orbit and the arithmetic of each gate"
-    verb = _verb(found, "explain", what, "explain kirchhoff/screw --rung f80", verbs.explain)
-    verb.add_argument("scene", metavar="SCENE")
-    verb.add_argument("--rung", default="f64", metavar="R", help="default: f64")
-
-
-def _add_tradeoff(found: Any) -> None:
-    what = "measure the time and the error of every setting of every solver"
-    example = "tradeoff euler/generic --rung f64 --target 1e-9"
-    verb = _verb(found, "tradeoff", what, example, tradeoff.tradeoff)
-    verb.add_argument("scenes", nargs="*", metavar="SCENE")
-    verb.add_argument(
-        "--target",
-        metavar="E",
-        help="also find the fastest setting whose error stays below E on the scene and on starts "
-        "nearby; exit status 3 where there is none",
-    )
-    verb.add_argument(
-        "--rung", nargs="+", action="append", metavar="R", help="default: f32 f64 f80 f128"
-    )
-    verb.add_argument(
-        "--solver",
-        action="append",
-        metavar="S",
-        help="measure this setting of a solver and no others but taylor's, which are the yardstick; "
-        'may be repeated: --solver "process:./mine" --solver "geometric:splitting?step=0.01"',
-    )
-    verb.add_argument(
-        "--outside",
-        action="store_true",
-        help="measure the integrators of other libraries too, each in an environment of its own, "
-        "which is made the first time (a download)",
-    )
-    verb.add_argument(
-        "--cold",
-        action="store_true",
-        help="also start each setting in a new process with nothing compiled, and tell importing, "
-        "compiling and solving apart",
-    )
-    verb.add_argument(
-        "--repeats", type=int, default=5, metavar="N", help="timed solves of a setting; default: 5"
-    )
-    verb.add_argument(
-        "--seed", type=int, default=1, metavar="N", help="of the order and the starts; default: 1"
-    )
-    verb.add_argument(
-        "--out", metavar="DIR", help="write the numbers and the work-precision pictures there"
-    )
-
-
-def _add_claims(found: Any) -> None:
-    what = "check every numbered equation and every claim of the two source texts"
-    example = 'claims "hydromechanics 49 (17)"'
-    verb = _verb(found, "claims", what, example, claims.claims)
-    verb.add_argument(
-        "ids",
-        nargs="*",
-        metavar="ID",
-        help='"heinbockel (2.2.70)", its number "(2.2.70)", or a whole text: "hydromechanics 48"; '
-        "default: all",
-    )
-
-
-def _add_publish(found: Any, is_publishing: bool) -> None:
-    what = "measure and write what is published, or make its pages of what is stored"
-    verb = _verb(found, "publish", what, "publish growth --periods 1e4", publishing.publish)
-    publishing.add_options(verb, is_publishing)
+def _add(verb: argparse.ArgumentParser, line: str) -> None:
+    """Add the argument that a line of the text is."""
+    match = _ARGUMENT.fullmatch(line)
+    assert match is not None, line
+    name, sign, value, default, said = match.groups()
+    if value is None:
+        verb.add_argument(name, action="store_true", help=said)
+        return
+    first, *others = value.split("|")
+    given: dict[str, Any] = {"help": said, "metavar": None if others else first}
+    if others:
+        given["choices"] = [first, *others]
+    if value == "N":
+        given["type"] = int
+    if sign == "!":
+        given["required"] = True
+    elif sign and name.startswith("-"):
+        given |= {"action": "append", "nargs": "+" if sign == "+" else None}
+    elif sign:
+        given["nargs"] = sign
+    verb.add_argument(name, default=default, **given)

@@ -3,124 +3,114 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import Any, Final
 
-from taylor_verify.cli.answer import Answer, WrongCall
-from taylor_verify.cli.verbs import known_rungs, read_number, read_scenes
+from rich.text import Text
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from pathlib import Path
+from taylor_verify.cli.answer import Answer, WrongCall, wrong_calls
+from taylor_verify.cli.ci import outputs, tell
+from taylor_verify.cli.console import Page, bold, print_table
+from taylor_verify.cli.folders import writable_file
+from taylor_verify.cli.inputs import (
+    known_rungs,
+    read_number,
+    read_scenes,
+    read_tolerances,
+    require_matplotlib,
+)
+from taylor_verify.cli.progress import working
+from taylor_verify.cli.sentences import (
+    figure,
+    print_arithmetic,
+    print_cause,
+    print_end,
+    print_sentence,
+    status_text,
+)
+from taylor_verify.judge.files.judgement import FileJudgement, judge_file
+from taylor_verify.judge.series.files import (
+    FilesJudgement,
+    checked_steps,
+    files_judgement,
+    judge_each,
+    repeated,
+    steps_of,
+)
+from taylor_verify.records.quantities import GATE_FACTOR, STATES
+from taylor_verify.records.showing import counts
+from taylor_verify.records.verdict import Verdict, exit_status
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.files.columns.request import request
+from taylor_verify.solvers.files.file import TrajectoryFile, read
 
-    from taylor_verify.judge.files.judgement import FileJudgement
-    from taylor_verify.judge.series.files import FilesJudgement
-    from taylor_verify.scenes.scene import Scene
-    from taylor_verify.solvers.files.file import TrajectoryFile
+_NUMBERS: Final = (
+    *("quantity", "verdict", ">error", ">at t", ">allowed", ">/floor", ">since t", "unit"),
+)
 
 
-def add_options(verb: argparse.ArgumentParser) -> None:
-    """Add the options that are about several files."""
-    verb.add_argument(
-        "--steps",
-        metavar="H,H,...",
-        help="the step of each of several files, for the order of convergence; default: what the files or "
-        "their names say (run_h0.05.csv)",
-    )
-    verb.add_argument(
-        "--picture",
-        metavar="FILE",
-        help="draw the errors of several files against their steps (svg, pdf, png; matplotlib)",
-    )
-
-
-def check(options: argparse.Namespace) -> Answer:
+def answer(options: argparse.Namespace) -> Answer:
     """Judge somebody's trajectory; of several files also find the order of convergence."""
-    from taylor_verify.cli.answers_text import check_text, files_text
-    from taylor_verify.cli.ci import outputs, tell
-    from taylor_verify.cli.progress import working
-    from taylor_verify.judge.series.files import files_judgement, judge_each
-    from taylor_verify.records.verdict import exit_status
-    from taylor_verify.scenes.reading.faults import Refused
-
     (options.rung,) = known_rungs([options.rung])
     with working(f"check {', '.join(options.files)}"):
         scene, files, steps = _asked(options)
     picture = _picture(options, files, steps)
     asked = outputs(options)
+    judged: FileJudgement | FilesJudgement
     if len(files) == 1:
-        judged = _judged(options, files[0], scene)
-        to_ci = tell(asked, judged, exit_status(judged.verdicts))
-        text = partial(
-            check_text, judged, scene.name, options.rung, to_ci.stated_status, options.explain
-        )
-        document = {**judged.document(), **to_ci.document}
-        return Answer(to_ci.status, document, to_ci.closing(text), to_ci.messages)
-    try:
-        each = judge_each(files, lambda file: _judged(options, file, scene))
-    except Refused as error:
-        raise WrongCall(str(error)) from error
-    several = files_judgement(each, steps)
-    to_ci = tell(asked, several, exit_status(several.verdicts))
-    document = {**several.document(), **to_ci.document}
-    messages = [*to_ci.messages, *_drawn(several, picture)]
-    text = partial(files_text, several, scene.name, options.rung)
+        judged = _judged(options, scene, files[0])
+    else:
+        judged = files_judgement(judge_each(files, partial(_judged, options, scene)), steps)
+    to_ci = tell(asked, judged, exit_status(judged.verdicts))
+    document = {**judged.document(), **to_ci.document}
+    messages = [*to_ci.messages]
+    text: Callable[[], str]
+    if isinstance(judged, FileJudgement):
+        said = (scene.name, options.rung, to_ci.stated_status, options.explain)
+        text = partial(_text_of_one, judged, *said)
+    else:
+        messages += _drawn(judged, picture)
+        text = partial(_text_of_several, judged, scene.name, options.rung)
     return Answer(to_ci.status, document, to_ci.closing(text), messages)
 
 
-def _judged(options: argparse.Namespace, file: TrajectoryFile, scene: Scene) -> FileJudgement:
+def _judged(options: argparse.Namespace, scene: Scene, file: TrajectoryFile) -> FileJudgement:
     """Judge one file as the options say."""
-    from taylor_verify.cli.progress import working
-    from taylor_verify.cli.tolerance import read_tolerances
-    from taylor_verify.judge.files.judgement import judge_file
-    from taylor_verify.scenes.precision import rung
-
     tolerances = read_tolerances(options.tolerance, [scene])
+    as_asked = (options.accept_conventions, options.partial, tolerances)
     with working(f"check {file.name}"):
-        return judge_file(
-            file,
-            scene,
-            rung(options.rung),
-            options.accept_conventions,
-            options.partial,
-            tolerances,
-        )
+        return judge_file(file, scene, rung(options.rung), *as_asked)
 
 
 def _asked(
     options: argparse.Namespace,
 ) -> tuple[Scene, list[TrajectoryFile], Sequence[float] | None]:
     """Read scene, files and steps; the faults of all are reported at once."""
-    from taylor_verify.judge.series.files import repeated
-    from taylor_verify.scenes.reading.faults import Refused
-    from taylor_verify.solvers.files.columns.request import request
-    from taylor_verify.solvers.files.file import read
-
     faults = repeated(options.files)
-    steps: list[float] | None = None
-    try:
-        steps = _steps(options)
-    except WrongCall as error:
-        faults.append(str(error))
-    try:
-        scenes = read_scenes([options.scene])
-    except WrongCall as error:
-        faults.append(str(error))
-    files = []
-    for file in dict.fromkeys(options.files):
+
+    def attempt(reading: Callable[..., Any], *given: Any) -> Any:
         try:
-            files.append(read(file, request(options.columns or ())))
-        except Refused as error:
+            return reading(*given)
+        except (WrongCall, Refused) as error:
             faults.append(str(error))
+
+    steps = attempt(_steps, options)
+    scenes = attempt(read_scenes, [options.scene])
+    files = [attempt(_read, file, options.columns or ()) for file in dict.fromkeys(options.files)]
     if faults:
         raise WrongCall("\n".join(faults))
     return scenes[0], files, steps
 
 
-def _steps(options: argparse.Namespace) -> list[float] | None:
-    from taylor_verify.judge.series.files import checked_steps
+def _read(file: str, columns: Sequence[str]) -> TrajectoryFile:
+    return read(file, request(columns))
 
+
+def _steps(options: argparse.Namespace) -> list[float] | None:
     if options.steps is None:
         return None
     if len(options.files) == 1:
@@ -130,10 +120,8 @@ def _steps(options: argparse.Namespace) -> list[float] | None:
         steps.append(read_number(text, "--steps"))
         if not steps[-1] > 0:
             raise WrongCall(f"expected a positive step, got {text!r} @ --steps")
-    try:
+    with wrong_calls(" (--steps)"):
         return checked_steps(steps, len(options.files))
-    except ValueError as error:
-        raise WrongCall(f"{error} (--steps)") from error
 
 
 # The picture.
@@ -145,10 +133,6 @@ def _picture(
     steps: Sequence[float] | None,
 ) -> Path | None:
     """Return the file of --picture, known to be possible before the work begins."""
-    from importlib.util import find_spec
-
-    from taylor_verify.cli.ci import writable_file
-    from taylor_verify.judge.series.files import steps_of
     from taylor_verify.publish.pictures.picture import ENDINGS
 
     if options.picture is None:
@@ -162,10 +146,7 @@ def _picture(
             "expected several files whose steps are known (--steps 0.1,0.05,...), got fewer than two "
             "@ --picture"
         )
-    if find_spec("matplotlib") is None:
-        raise WrongCall(
-            "expected matplotlib (pip install 'taylor-verify[plots]'), got none @ --picture"
-        )
+    require_matplotlib("--picture")
     return path
 
 
@@ -181,3 +162,127 @@ def _drawn(judged: FilesJudgement, path: Path | None) -> list[str]:
     verdict = judged.verdicts[0]
     save_as(order.picture(f"{verdict.scene} on {verdict.rung}", judged.order), path)
     return [f"wrote {path}"]
+
+
+# The text about a file.
+
+
+def _text_of_one(
+    judged: FileJudgement, scene: str, rung: str, status: int | None, explained: bool = False
+) -> str:
+    """Return the sentence for each quantity, the likely causes, the numbers, and the counts.
+
+    The conventions of the file come first. With ``explained`` the arithmetic of the bounds is there too.
+    """
+    page = Page()
+    times = judged.file.times
+    extent = f"{len(times)} row{'s' * (len(times) > 1)}"
+    span = f"from t = {float(times[0]):g} to t = {float(times[-1]):g}"
+    page.line(bold(judged.file.name), f": {extent} {span}")
+    page.line(f"judged as an answer to {scene} in {rung} arithmetic")
+    _print_conventions(page, judged)
+    page.line()
+    for verdict in judged.verdicts:
+        print_sentence(page, verdict)
+    for cause in judged.causes:
+        print_cause(page, cause)
+    for note in judged.notes:
+        page.line(Text("note", "yellow"), f": {note}")
+    page.line()
+    if any(verdict.is_compared for verdict in judged.verdicts):
+        _print_numbers(page, judged.verdicts)
+        page.line()
+        if explained:
+            print_arithmetic(page, judged.verdicts)
+            page.line()
+    print_end(page, judged.verdicts, counts(judged.verdicts), status, explained)
+    return page.text()
+
+
+def _print_conventions(page: Page, judged: FileJudgement) -> None:
+    if not judged.conventions:
+        return
+    is_certain = any(finding.is_certain for finding in judged.conventions)
+    if not is_certain:
+        how = " in a way that this motion cannot tell"
+    else:
+        how = ", and was corrected" if judged.accepted else ", and was judged as it stands"
+    page.line()
+    page.line(bold(f"the file departs from the scene's conventions{how}", "yellow"))
+    page.indented("  ", *(finding.sentence for finding in judged.conventions))
+    if is_certain and not judged.accepted:
+        page.line("  (--accept-conventions corrects this and judges the rest)")
+
+
+def _print_numbers(page: Page, verdicts: Sequence[Verdict]) -> None:
+    """Print the numbers of all quantities, and what stands in the columns."""
+    print_table(page.console, _NUMBERS, [_cells(verdict) for verdict in verdicts], keys=1)
+    page.line()
+    by_tolerance = any(verdict.tolerance is not None for verdict in verdicts)
+    asked = "the tolerance that was asked for, where there is one; else " if by_tolerance else ""
+    allowed = f"{asked}{GATE_FACTOR} times the roundoff floor, which perfect rounding would leave"
+    page.indented("", f"allowed: {allowed}; /floor: the largest error over that floor")
+
+
+def _cells(v: Verdict) -> list[str | Text]:
+    since = "" if v.since is None else figure(v.since)
+    numbers = (v.max, v.at, v.bound, v.ratio)
+    figures = [figure(number) if v.is_compared else "" for number in numbers]
+    return [v.quantity, status_text(v.verdict.value), *figures, since, v.unit]
+
+
+# The text about several files.
+
+
+def _text_of_several(judged: FilesJudgement, scene: str, rung: str) -> str:
+    """Return the order of each quantity, a line for each file, and what is peculiar to a file."""
+    page = Page()
+    page.line(
+        bold(f"{len(judged.files)} files"), f": judged as answers to {scene} in {rung} arithmetic"
+    )
+    page.indented("  ", *(order.sentence for order in judged.order))
+    first, *others = judged.files
+    common = [note for note in first.notes if all(note in one.notes for one in others)]
+    for note in (*judged.notes, *common):
+        page.line(Text("note", "yellow"), f"  {note}")
+    page.line()
+    _print_files(page, judged)
+    for one in judged.files:
+        _print_peculiar(page, one, common)
+    page.line(f"\n{counts(judged.verdicts)}; `check` of one file alone says the reasons")
+    return page.text()
+
+
+def _print_files(page: Page, judged: FilesJudgement) -> None:
+    """Print the largest error of each state quantity in each file, the largest step first."""
+    compared = {v.quantity for v in judged.verdicts if v.is_compared}
+    states = [name for name in STATES if name in compared]
+    headings = ["file", ">step", ">rows", *(f">{name}" for name in states), "verdicts"]
+    pairs = zip(judged.files, judged.steps, strict=True)
+    rows = []
+    for one, step in sorted(pairs, key=lambda pair: -pair[1].value if pair[1] else 0.0):
+        errors = {v.quantity: v.max for v in one.verdicts if v.is_compared}
+        begin = [one.file.name, f"{step.value:g}" if step else "", str(len(one.file.times))]
+        rows.append([*begin, *(figure(errors.get(name)) for name in states), counts(one.verdicts)])
+    print_table(page.console, headings, rows, keys=1)
+
+
+def _print_peculiar(page: Page, one: FileJudgement, common: Sequence[str]) -> None:
+    lines = [line for line in _peculiar(one) if line not in common]
+    if lines:
+        page.line()
+        page.line(bold(one.file.name))
+        page.indented("  ", *lines)
+
+
+def _peculiar(one: FileJudgement) -> Iterator[str]:
+    """Return the conventions, the causes and the notes of a file, and why something was not compared."""
+    for finding in one.conventions:
+        yield finding.sentence
+    for cause in one.causes:
+        yield cause.line
+    yield from one.notes
+    for verdict in one.verdicts:
+        if not verdict.is_compared:
+            status = status_text(verdict.verdict.value).plain
+            yield f"{status}: {verdict.quantity}: {verdict.because}"

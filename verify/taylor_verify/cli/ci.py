@@ -6,49 +6,28 @@ import argparse
 import os
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, Final
 
-from taylor_verify.cli.answer import WRONG_CALL, WrongCall, graver
+from taylor_verify.batch.comparison import Comparison, Earlier, read_baseline, shown_verdicts
+from taylor_verify.batch.judgements import Judgements
+from taylor_verify.batch.report import remarks, write_junit
+from taylor_verify.cli.answer import WRONG_CALL, WrongCall, graver, wrong_calls
+from taylor_verify.cli.folders import writable_file
 from taylor_verify.cli.streams import tell_runner
-
-if TYPE_CHECKING:
-    from taylor_verify.batch.comparison import Comparison, Earlier
-    from taylor_verify.batch.judgements import Judgements
-    from taylor_verify.judge.judgement import Judgement
-    from taylor_verify.records.verdict import Verdict
+from taylor_verify.judge.judgement import Judgement
+from taylor_verify.publish.ci.annotations import annotation_lines
+from taylor_verify.publish.ci.step_summary import step_summary
+from taylor_verify.records.answers import AgainstBaseline
+from taylor_verify.records.json_text import complete
+from taylor_verify.records.verdict import Verdict, exit_status
+from taylor_verify.scenes.reading.faults import Refused
 
 # Where GitHub's runner wants the summary of a step.
-_SUMMARY = "GITHUB_STEP_SUMMARY"
+_SUMMARY: Final = "GITHUB_STEP_SUMMARY"
 # What fails nothing must not bury what does.
-_MOST_CHANGES = 10
-BOUND, BASELINE = "bound", "baseline"
-
-
-def add_options(verb: argparse.ArgumentParser) -> None:
-    """Add the options of every verb whose answer is verdicts."""
-    verb.add_argument(
-        "--explain", action="store_true", help="show the arithmetic of every bound as well"
-    )
-    verb.add_argument("--junit", metavar="FILE", help="write the verdicts there as JUnit XML")
-    verb.add_argument(
-        "--github",
-        action="store_true",
-        help="annotations for GitHub on stderr, and a summary to the file $GITHUB_STEP_SUMMARY",
-    )
-    verb.add_argument(
-        "--baseline",
-        metavar="FILE",
-        help="fail if a row is worse than in that document of --json (or verdicts.json of --out) "
-        "by more than rounding explains",
-    )
-    verb.add_argument(
-        "--gate",
-        choices=(BOUND, BASELINE),
-        default=BOUND,
-        help="what decides the exit status: the bounds (and --baseline besides), or the baseline alone, so "
-        "that an answer beyond its bounds is kept from getting worse; default: bound",
-    )
+_MOST_CHANGES: Final = 10
 
 
 @dataclass(frozen=True)
@@ -83,7 +62,7 @@ class Told:
 def outputs(options: argparse.Namespace) -> Outputs:
     """Return what was asked for. Raises WrongCall for a file that cannot be written, or is no baseline."""
     junit = None if options.junit is None else writable_file(options.junit, "--junit")
-    by_baseline = options.gate == BASELINE
+    by_baseline = options.gate == "baseline"
     if by_baseline and options.baseline is None:
         raise WrongCall("expected --baseline FILE beside --gate baseline, got none @ --gate")
     if by_baseline and getattr(options, "against", None) is not None:
@@ -99,7 +78,7 @@ def tell(asked: Outputs, results: Judgements | Judgement, status: int) -> Told:
     comparison, decision = None, ""
     if asked.baseline is not None:
         comparison = asked.baseline.compare_as_baseline(results, asked.by_baseline)
-        document["baseline"] = _document(asked.baseline.source, comparison)
+        document["baseline"] = complete(_against(asked.baseline.source, comparison))
         messages += _messages(asked.baseline.source, comparison)
         if not comparison.compared:
             messages.append(_nothing_shared(asked.baseline.verdicts, results.verdicts))
@@ -107,9 +86,14 @@ def tell(asked: Outputs, results: Judgements | Judgement, status: int) -> Told:
             status = comparison.exit_status
             decision = _decision(asked.baseline.source, comparison, results.verdicts)
         status = graver(status, comparison.exit_status)
-    for write in (_write_junit, _write_github):
+    writers: list[Callable[[], list[str]]] = []
+    if asked.junit is not None:
+        writers.append(partial(_write_junit, asked.junit, results, comparison))
+    if asked.github:
+        writers.append(partial(_write_github, results, comparison, decision))
+    for write in writers:
         try:
-            messages += write(asked, results, comparison, decision)
+            messages += write()
         except OSError as error:
             # A run that took hours is shown in any case.
             messages.append(f"expected to write, got {error.strerror} @ {error.filename}")
@@ -119,8 +103,6 @@ def tell(asked: Outputs, results: Judgements | Judgement, status: int) -> Told:
 
 def _decision(file: str, comparison: Comparison, verdicts: Iterable[Verdict]) -> str:
     """Return the last line of a text whose exit status is that of the comparison alone."""
-    from taylor_verify.records.verdict import exit_status
-
     others = sum(exit_status([verdict]) != 0 for verdict in verdicts)
     if comparison.failures:
         found = f"{len(comparison.failures)} regressions"
@@ -135,26 +117,15 @@ def _decision(file: str, comparison: Comparison, verdicts: Iterable[Verdict]) ->
 
 
 def _write_junit(
-    asked: Outputs, results: Judgements | Judgement, comparison: Comparison | None, decision: str
+    file: Path, results: Judgements | Judgement, comparison: Comparison | None
 ) -> list[str]:
-    del decision
-    if asked.junit is None:
-        return []
-    from taylor_verify.batch.report import write_junit
-
-    write_junit(asked.junit, results, comparison)
-    return [f"wrote {asked.junit}"]
+    write_junit(file, results, comparison)
+    return [f"wrote {file}"]
 
 
 def _write_github(
-    asked: Outputs, results: Judgements | Judgement, comparison: Comparison | None, decision: str
+    results: Judgements | Judgement, comparison: Comparison | None, decision: str
 ) -> list[str]:
-    if not asked.github:
-        return []
-    from taylor_verify.batch.report import remarks, shown_verdicts
-    from taylor_verify.publish.ci.annotations import annotation_lines
-    from taylor_verify.publish.ci.step_summary import step_summary
-
     verdicts, remarked = shown_verdicts(results), remarks(results, comparison)
     by_remarks = comparison is not None and comparison.decides
     for line in annotation_lines(verdicts, remarked, by_remarks):
@@ -172,32 +143,21 @@ def _write_github(
 
 
 def _baseline(file: str) -> Earlier:
-    from taylor_verify.batch.comparison import read_baseline
-    from taylor_verify.scenes.reading.faults import Refused
-
     if Path(file).is_dir():
         raise WrongCall(
             f"expected a file, got a folder (its rows are in {file}/data/verdicts.json) "
             f"@ --baseline {file}"
         )
-    try:
+    with wrong_calls(" (--baseline)", (Refused, ValueError)):
         return read_baseline(file)
-    except (Refused, ValueError) as error:
-        raise WrongCall(f"{error} (--baseline)") from error
 
 
-def _document(file: str, comparison: Comparison) -> dict[str, Any]:
-    from taylor_verify.records.answers import AgainstBaseline
-    from taylor_verify.records.json_text import complete
-
+def _against(file: str, comparison: Comparison) -> AgainstBaseline:
     departures = (comparison.failures, comparison.undecided, comparison.changes)
     regressions, undecided, changes = (tuple(map(str, kind)) for kind in departures)
-    gate = BASELINE if comparison.decides else BOUND
-    against = AgainstBaseline(
-        file, comparison.compared, regressions, undecided, changes, comparison.notes, gate
-    )
-    found: dict[str, Any] = complete(against)
-    return found
+    gate = "baseline" if comparison.decides else "bound"
+    told = (regressions, undecided, changes, comparison.notes, gate)
+    return AgainstBaseline(file, comparison.compared, *told)
 
 
 def _messages(file: str, comparison: Comparison) -> list[str]:
@@ -227,21 +187,3 @@ def _nothing_shared(before: Iterable[Verdict], now: Iterable[Verdict]) -> str:
                 f": its file is {', '.join(names[0]) or 'none'}, and this one {', '.join(names[1])}"
             )
     return f"nothing of the baseline was run again, so nothing is shown{why}"
-
-
-def writable_file(name: str, option: str) -> Path:
-    """The file, its folder tried out before hours of work end in a refusal to write."""
-    import tempfile
-
-    path = Path(name)
-    try:
-        if not name or path.is_dir():
-            raise IsADirectoryError(0, "a folder" if name else "an empty name")
-        nearest = next(p for p in path.absolute().parents if p.exists())
-        with tempfile.TemporaryFile(dir=nearest):
-            return path
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise WrongCall(
-            f"expected a file that can be written, got {name!r} ({reason}) @ {option}"
-        ) from error

@@ -1,19 +1,29 @@
-"""A console for the texts that a person reads: in the width of stdout, and kept until it is asked for."""
+"""Pages of text for a person: in the width of stdout, with tables that lose no character at any width."""
 
 from __future__ import annotations
 
 import sys
 import textwrap
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 
+from rich.cells import cell_len
 from rich.console import Console, ConsoleOptions, RenderableType
 from rich.segment import Segment
+from rich.table import Table
 from rich.text import Text
 
 from taylor_verify.scenes.names import escaped
 
 # Piped output keeps whole rows: a table cut to 80 columns cannot be read by the next program.
 PIPED_WIDTH = 140
+
+
+Cell = str | Text
+
+# The blanks between two columns, one where this makes room for all.
+_GAP = 2
+# A key that has to be folded is not folded into less.
+_NARROWEST_KEY = 8
 
 
 class EscapingConsole(Console):
@@ -27,26 +37,84 @@ class EscapingConsole(Console):
             yield Segment(escaped(segment.text), segment.style) if is_text else segment
 
 
-def print_line(console: Console, *parts: str | Text) -> None:
-    """One line as it is: a name may hold brackets or colons, and a pipe takes any length."""
-    console.print(Text.assemble(*parts), soft_wrap=not sys.stdout.isatty())
+def bold(text: str, colour: str = "") -> Text:
+    """Return a text in bold type."""
+    return Text(text, f"bold {colour}".rstrip())
 
 
-def print_indented(console: Console, label: str, text: str) -> None:
-    """A line behind its label; on a terminal what is too long goes on below itself."""
-    width = max(console.width - len(label), 20) if sys.stdout.isatty() else len(text) + 1
-    for i, line in enumerate(textwrap.wrap(text, width, break_on_hyphens=False)):
-        print_line(console, (label if i == 0 else " " * len(label)) + line)
+class Page:
+    """A text that is kept until it is asked for, in the width and colours of stdout.
+
+    It takes no markup: a name may hold brackets or colons.
+    """
+
+    def __init__(self, piped_width: int = PIPED_WIDTH) -> None:
+        self.console = EscapingConsole(markup=False, emoji=False, highlight=False)
+        if not sys.stdout.isatty():
+            self.console.width = piped_width
+        self.console.begin_capture()
+
+    def line(self, *parts: str | Text) -> None:
+        """Print one line; a pipe takes any length."""
+        self.console.print(Text.assemble(*parts), soft_wrap=not sys.stdout.isatty())
+
+    def indented(self, label: str, *texts: str) -> None:
+        """Print texts behind the label of the first; on a terminal a long one goes on below itself."""
+        for text in texts:
+            width = max(self.console.width - len(label), 20)
+            width = width if sys.stdout.isatty() else len(text) + 1
+            for line in textwrap.wrap(text, width, break_on_hyphens=False):
+                self.line(label + line)
+                label = " " * len(label)
+
+    def text(self) -> str:
+        """Return everything printed."""
+        return self.console.end_capture().rstrip("\n")
 
 
-def new_console(piped_width: int = PIPED_WIDTH) -> Console:
-    """A console that keeps its text, in the width and colours of stdout, and adds no markup."""
-    console = EscapingConsole(markup=False, emoji=False, highlight=False)
-    if not sys.stdout.isatty():
-        console.width = piped_width
-    console.begin_capture()
-    return console
+def print_table(
+    console: Console, headings: Sequence[str], rows: Sequence[Sequence[Cell]], keys: int
+) -> None:
+    """Print a table in the width of the console; the first ``keys`` columns begin each of its parts.
+
+    A column whose heading begins with ``>`` stands to the right. The first column may hold cells of any
+    length, such as paths, and is folded. No other cell is.
+    """
+    cells = [[cell if isinstance(cell, Text) else Text(escaped(cell)) for cell in r] for r in rows]
+    columns = zip(*cells, strict=True) if cells else ([] for _ in headings)
+    widths = [
+        max(cell_len(heading.removeprefix(">")), *(cell.cell_len for cell in column), 0)
+        for heading, column in zip(headings, columns, strict=True)
+    ]
+    gap = _GAP if sum(widths) + _GAP * (len(widths) - 1) <= console.width else 1
+    widest = max(widths[keys:], default=0)
+    room = console.width - sum(width + gap for width in widths[1:keys]) - gap - widest
+    widths[0] = min(widths[0], max(room, _NARROWEST_KEY))
+    for number, part in enumerate(_parts(widths, keys, gap, console.width)):
+        table = Table(box=None, padding=(0, gap, 0, 0), pad_edge=False)
+        for i in part:
+            table.add_column(
+                headings[i].removeprefix(">"),
+                justify="right" if headings[i].startswith(">") else "left",
+                width=widths[i],
+                no_wrap=i > 0,
+                overflow="fold",
+            )
+        for row in cells:
+            table.add_row(*(row[i] for i in part))
+        if number:
+            console.print()
+        console.print(table)
 
 
-def text_of(console: Console) -> str:
-    return console.end_capture().rstrip("\n")
+def _parts(widths: Sequence[int], keys: int, gap: int, room: int) -> Iterator[list[int]]:
+    """Return the columns of each part, the keys first."""
+    begin = list(range(keys))
+    part = begin
+    for i in range(keys, len(widths)):
+        used = sum(widths[k] + gap for k in part)
+        if len(part) > keys and used + widths[i] > room:
+            yield part
+            part = begin
+        part = [*part, i]
+    yield part

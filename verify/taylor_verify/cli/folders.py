@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Final
 
-from taylor_verify.cli.answer import WrongCall
+from taylor_verify.cli.answer import WrongCall, wrong_calls
 
 _PROJECT: Final = 'name = "taylor-verify"'
 _REPORTS: Final = "reports"
+_FOLDER: Final = "a folder that can be written"
 IN_A_CHECKOUT: Final = (
     "what is published belongs to a checkout of the project, and no package has it: go to one, or "
     "name a folder that `run --out` has written"
@@ -26,21 +27,18 @@ def alone_in(folder: Path | None, option: str = "--out") -> Iterator[None]:
     """
     from taylor_verify.batch import lock
 
-    if folder is None:
-        yield
-        return
     with ExitStack() as stack:
-        try:
-            stack.enter_context(lock.alone_in(folder))
-        except lock.Occupied as error:
-            raise WrongCall(f"{error} ({option})") from error
-        except OSError as error:
-            raise _cannot_be_written(str(folder), option, error) from error
+        if folder is not None:
+            with (
+                wrong_calls(f" ({option})", lock.Occupied),
+                unwritable(_FOLDER, str(folder), option),
+            ):
+                stack.enter_context(lock.alone_in(folder))
         yield
 
 
 def reports_folder(folder: str | None, measures: bool) -> str:
-    """The folder of `publish --from`, or the reports of the checkout around.
+    """Return the folder of `publish --from`, or the reports of the checkout around.
 
     Raises WrongCall outside a checkout, unless files are made from a folder that is named.
     """
@@ -53,39 +51,50 @@ def reports_folder(folder: str | None, measures: bool) -> str:
 
 
 def _checkout(place: Path) -> Path | None:
-    """The checkout of this project in which a place lies."""
+    """Return the checkout of this project in which a place lies."""
     here = place.absolute()
     return next((path for path in (here, *here.parents) if _is_checkout(path)), None)
 
 
 def _is_checkout(path: Path) -> bool:
-    project = path / "pyproject.toml"
     try:
-        is_ours = _PROJECT in project.read_text(encoding="utf-8").splitlines()
+        project = (path / "pyproject.toml").read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError):
         return False
-    return is_ours and (path / "cases").is_dir()
+    return _PROJECT in project.splitlines() and (path / "cases").is_dir()
 
 
 def writable(folder: str, option: str = "--out") -> Path:
-    """The folder, tried out before hours of work end in a refusal to write, and not yet made."""
-    import tempfile
-
-    path = Path(folder)
-    try:
+    """Return the folder, tried out before hours of work end in a refusal to write, and not yet made."""
+    with unwritable(_FOLDER, folder, option):
         if not folder:
             raise NotADirectoryError(0, "an empty name")
-        with tempfile.TemporaryFile(dir=_nearest_existing(path)):
-            return path
-    except OSError as error:
-        raise _cannot_be_written(folder, option, error) from error
+        return _tried(Path(folder), [Path(folder)])
 
 
-def _cannot_be_written(folder: str, option: str, error: OSError) -> WrongCall:
-    return WrongCall(
-        f"expected a folder that can be written, got {folder!r} ({error.strerror}) @ {option}"
-    )
+def writable_file(name: str, option: str) -> Path:
+    """Return the file, its folder tried out before hours of work end in a refusal to write."""
+    path = Path(name)
+    with unwritable("a file that can be written", name, option):
+        if not name or path.is_dir():
+            raise IsADirectoryError(0, "a folder" if name else "an empty name")
+        return _tried(path)
 
 
-def _nearest_existing(path: Path) -> Path:
-    return next(folder for folder in (path, *path.absolute().parents) if folder.exists())
+@contextmanager
+def unwritable(expected: str, name: str, option: str) -> Iterator[None]:
+    """Report whatever keeps a file from being written as a wrong call."""
+    try:
+        yield
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise WrongCall(f"expected {expected}, got {name!r} ({reason}) @ {option}") from error
+
+
+def _tried(path: Path, within: Iterable[Path] = ()) -> Path:
+    """Return a path behind a file that was made for a moment in the nearest folder there is."""
+    import tempfile
+
+    nearest = next(place for place in (*within, *path.absolute().parents) if place.exists())
+    with tempfile.TemporaryFile(dir=nearest):
+        return path

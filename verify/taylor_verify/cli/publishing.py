@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 
 _TIME: Final = "one to three minutes for all of them on two cores"
 _ARCHIVE: Final = "taylor-verify-data"
+# The options that do something else than measure a study.
+_OTHERS: Final = ("list", "pages", "paper", "missing", "archive", "site")
 
 
 def add_options(verb: argparse.ArgumentParser, in_full: bool) -> None:
@@ -75,12 +78,12 @@ def publish(options: argparse.Namespace) -> Answer:
     """Measure the studies that are named; without names, make pages of what is stored."""
     from taylor_verify.studies.registry import STUDIES, UnknownStudy, find
 
+    _check_options(options.studies, STUDIES)
     try:
         studies = find(options.studies)
     except UnknownStudy as error:
         raise WrongCall(str(error)) from error
-    others = ("list", "pages", "paper", "missing", "archive", "site")
-    other = next((name for name in others if getattr(options, name)), "")
+    other = next((name for name in _OTHERS if getattr(options, name)), "")
     if studies and other:
         raise WrongCall(f"expected studies or --{other}, got both @ publish")
     given = {study.name: _options_of(study, options, study in studies) for study in STUDIES}
@@ -102,6 +105,22 @@ def publish(options: argparse.Namespace) -> Answer:
         if other == "missing":
             return make_missing(folder)
         return _rendered(folder) if other == "paper" else _pages(folder)
+
+
+def _check_options(words: Sequence[str], studies: Sequence[Study[Any]]) -> None:
+    """Raise WrongCall for words that look like options and are none, with the nearest that is one."""
+    own = (option.name for study in studies for option in study.options)
+    known = [f"--{name}" for name in (*_OTHERS, "from", "json", "help", *own)]
+    # The name of a study behind two hyphens is told as what it is by `find`.
+    studies_with_hyphens = {f"--{study.name}" for study in studies}
+    given = (word.partition("=")[0] for word in words if word.startswith("-"))
+    faults = []
+    for word in (word for word in given if word not in studies_with_hyphens):
+        close = get_close_matches(word, known, n=1)
+        hint = f"did you mean {close[0]}?" if close else f"known: {', '.join(known)}"
+        faults.append(f"expected an option, got {word}; {hint} @ publish")
+    if faults:
+        raise WrongCall("\n".join(faults))
 
 
 def _options_of(study: Study[Any], options: argparse.Namespace, is_asked: bool) -> dict[str, Any]:

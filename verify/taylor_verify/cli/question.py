@@ -5,21 +5,16 @@ from __future__ import annotations
 import argparse
 import json
 from functools import partial
-from typing import TYPE_CHECKING, Any
 
 from taylor_verify.cli.answer import PASS, Answer, WrongCall
-from taylor_verify.cli.verbs import known_rungs, read_scenes
+from taylor_verify.cli.inputs import known_rungs, read_scenes
+from taylor_verify.models.problem import NotRepresentable, Problem, pose
+from taylor_verify.scenes.precision import rung, shortest_decimal
+from taylor_verify.solvers.process.protocol import column_names, question
 
-if TYPE_CHECKING:
-    from taylor_verify.models.problem import Problem
 
-
-def question(options: argparse.Namespace) -> Answer:
-    """The question as JSON, or the header and the times of a trajectory file as CSV."""
-    from taylor_verify.models.problem import NotRepresentable, pose
-    from taylor_verify.scenes.precision import rung
-    from taylor_verify.solvers.process import protocol
-
+def answer(options: argparse.Namespace) -> Answer:
+    """Print the question as JSON, or the header and the times of a trajectory file as CSV."""
     if options.csv and options.json:
         raise WrongCall("expected one of --csv and --json, got both @ question")
     (name,) = known_rungs([options.rung])
@@ -28,23 +23,16 @@ def question(options: argparse.Namespace) -> Answer:
         problem = pose(scene, rung(name))
     except NotRepresentable as reason:
         raise WrongCall(f"expected a scene that {name} can hold, got {reason} @ --rung") from reason
-    document = protocol.question(problem)
+    document = question(problem)
     if not options.csv:
-        return Answer(PASS, document, partial(_json, document))
+        return Answer(PASS, document, partial(json.dumps, document, indent=1))
     how = f"fill in the empty cells, then: taylor-verify check FILE --scene {options.scene}"
     how += f" --rung {name}" * (name != "f64")
     return Answer(PASS, document, partial(_csv, problem), [how])
 
 
-def _json(document: dict[str, Any]) -> str:
-    return json.dumps(document, indent=1)
-
-
 def _csv(problem: Problem) -> str:
-    """A header, and for each sample its time and a cell for every other column."""
-    from taylor_verify.scenes.precision import shortest_decimal
-    from taylor_verify.solvers.process.protocol import column_names
-
+    """Return a header, and for each sample its time and a cell for every other column."""
     names, bits = column_names(problem), problem.rung.bits
     cells = "," * (len(names) - 1)
     times = [shortest_decimal(time, bits) for time in problem.given.clock.instants]

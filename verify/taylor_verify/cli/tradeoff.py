@@ -1,38 +1,54 @@
-"""The verb `tradeoff`: options in, an answer out."""
+"""The verb `tradeoff`: speed against accuracy of every setting of every solver."""
 
 from __future__ import annotations
 
 import argparse
+import json
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
-from taylor_verify.cli.answer import PASS, UNDECIDED, Answer, WrongCall
+from rich.table import Table
+from rich.text import Text
+
+from taylor_verify.cli.answer import PASS, UNDECIDED, Answer, WrongCall, wrong_calls
+from taylor_verify.cli.console import Page, bold
 from taylor_verify.cli.folders import alone_in, writable
-from taylor_verify.cli.verbs import known_rungs, read_scenes, read_time
+from taylor_verify.cli.inputs import known_rungs, read_number, read_scenes, require_matplotlib
+from taylor_verify.cli.progress import working
+from taylor_verify.cli.streams import say
+from taylor_verify.records.replacement import replace_files
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.engines.engine import engines, prepare
+from taylor_verify.solvers.engines.environment import NotMade
+from taylor_verify.studies.tradeoff.cold import cold
+from taylor_verify.studies.tradeoff.document import label
+from taylor_verify.studies.tradeoff.recommendation import OutOfReach, check_target, recommended
+from taylor_verify.studies.tradeoff.setting import RUNGS, Setting, chosen, outside, settings
+from taylor_verify.studies.tradeoff.timing import cold_caches
+from taylor_verify.studies.tradeoff.trade_off import TradeOff, sound_points, trade_off
 
-if TYPE_CHECKING:
-    from pathlib import Path
+_NOT_RUN = "not run"
+_HEADINGS = {
+    "The front": "sentences",
+    "The front of integrators": "integrators",
+    "Asked for and achieved": "requests",
+}
 
-    from taylor_verify.scenes.scene import Scene
-    from taylor_verify.studies.tradeoff.setting import Setting
-    from taylor_verify.studies.tradeoff.trade_off import TradeOff
 
-
-def tradeoff(options: argparse.Namespace) -> Answer:
-    """Speed against accuracy, and with a target the cheapest setting that reaches it."""
-    from taylor_verify.cli.progress import working
-    from taylor_verify.cli.tradeoff_text import tradeoff_text
-    from taylor_verify.studies.tradeoff.setting import RUNGS
-    from taylor_verify.studies.tradeoff.timing import cold_caches
-    from taylor_verify.studies.tradeoff.trade_off import trade_off
-
+def answer(options: argparse.Namespace) -> Answer:
+    """Measure each scene, and with a target find the cheapest setting that reaches it."""
     if not options.scenes:
         raise WrongCall("expected a scene, such as euler/generic, got none")
     if not options.repeats >= 1:
         raise WrongCall(f"expected --repeats of at least 1, got {options.repeats}")
     target = _target(options.target)
-    place = _drawable(options.out) if options.out is not None else None
+    place = None
+    if options.out is not None:
+        require_matplotlib("--out")
+        place = writable(options.out)
     rungs = known_rungs(options.rung or RUNGS)
     asked = _asked(options, rungs)
     if options.outside:
@@ -47,21 +63,20 @@ def tradeoff(options: argparse.Namespace) -> Answer:
                 if options.cold:
                     _add_cold(document, trade)
                 if target is not None:
-                    document["recommendation"], because = _recommended(trade, target)
-                    missed += because
+                    document["recommendation"] = None
+                    try:
+                        document["recommendation"] = recommended(trade, target).document()
+                    except OutOfReach as reason:
+                        missed.append(str(reason))
                 found.append(document)
-        messages = list(missed)
-        if place is not None:
-            messages += [f"wrote {path}" for path in _draw(found, place)]
+        drawn = [] if place is None else [f"wrote {path}" for path in _draw(found, place)]
     status = UNDECIDED if missed else PASS
-    return Answer(status, {"scenes": found}, partial(tradeoff_text, found), messages)
+    text = partial(tradeoff_text, found)
+    return Answer(status, {"scenes": found}, text, [*missed, *drawn])
 
 
 def _draw(found: Sequence[Mapping[str, Any]], place: Path) -> list[Path]:
-    """The pictures of each scene and the document itself, whole or not at all."""
-    import json
-
-    from taylor_verify.records.replacement import replace_files
+    """Write the pictures of each scene and the document itself, whole or not at all."""
     from taylor_verify.studies.tradeoff.pictures import trade
 
     sound = [one for one in found if any(row["standing"] == "sound" for row in one["points"])]
@@ -70,75 +85,148 @@ def _draw(found: Sequence[Mapping[str, Any]], place: Path) -> list[Path]:
     return [*replace_files(place, {"tradeoff.json": text}), *drawn]
 
 
-def _drawable(folder: str) -> Path:
-    """The folder, known to be writable and matplotlib to be there before anything is measured."""
-    from importlib.util import find_spec
-
-    if find_spec("matplotlib") is None:
-        raise WrongCall(
-            "expected matplotlib (pip install 'taylor-verify[plots]'), got none @ --out"
-        )
-    return writable(folder)
-
-
 def _asked(
     options: argparse.Namespace, rungs: Sequence[str]
 ) -> Callable[[Scene], Sequence[Setting]]:
-    """Of a scene the settings to be measured: all there are, or those of --solver and --outside."""
-    from taylor_verify.studies.tradeoff.setting import chosen, outside, settings
-
-    try:
+    """Return the settings to measure by scene: all there are, or those of --solver and --outside."""
+    with wrong_calls(" @ --solver"):
         named = chosen(options.solver, rungs) if options.solver else ()
         others = outside(rungs) if options.outside else ()
-    except ValueError as error:
-        raise WrongCall(f"{error} @ --solver") from error
-    if named:
-        return lambda scene: (*named, *others)
-    return lambda scene: (*settings(scene, rungs), *others)
+    return lambda scene: (*(named or settings(scene, rungs)), *others)
 
 
 def _make_environments() -> None:
-    """Before anything is timed: a download is no part of a solve. What cannot be made says so later."""
-    from contextlib import suppress
+    """Make the environments of engines before anything is timed: a download is no part of a solve.
 
-    from taylor_verify.cli.streams import say
-    from taylor_verify.solvers.engines.engine import engines, prepare
-    from taylor_verify.solvers.engines.environment import NotMade
-
+    The solve in one that cannot be made says so.
+    """
     for name in engines():
         with suppress(NotMade):
             prepare(name, say)
 
 
 def _add_cold(document: dict[str, Any], trade: TradeOff) -> None:
-    """Put into each point that is sound what its first solve takes in a process of its own."""
-    from taylor_verify.studies.tradeoff.cold import cold
-    from taylor_verify.studies.tradeoff.front import sound_points
-
+    """Put into each sound point the cost of its first solve in a process of its own."""
     asked = [p.timed.setting for p in sound_points(trade.points)]
-    taken = {setting.label: one.row() for setting, one in cold(trade.scene, asked).items()}
+    taken = {setting.label: parts for setting, parts in cold(trade.scene, asked).items()}
     for row, p in zip(document["points"], trade.points, strict=True):
         row["cold"] = taken.get(p.label)
 
 
 def _target(text: str | None) -> float | None:
-    from taylor_verify.studies.tradeoff.recommendation import check_target
-
     if text is None:
         return None
     try:
-        target = float(read_time(text))
+        target = float(read_number(text, "--target"))
         check_target(target)
     except (WrongCall, OverflowError, ValueError) as error:
         raise WrongCall(f"expected a positive error, got {text!r} @ --target") from error
     return target
 
 
-def _recommended(trade: TradeOff, target: float) -> tuple[dict[str, Any] | None, list[str]]:
-    """The document of a recommendation, or none and the reason."""
-    from taylor_verify.studies.tradeoff.recommendation import OutOfReach, recommended
+# The text.
 
-    try:
-        return recommended(trade, target).document(), []
-    except OutOfReach as reason:
-        return None, [str(reason)]
+
+def tradeoff_text(found: Sequence[Mapping[str, Any]]) -> str:
+    """Return for each scene a line for each setting, the front in words, the errors asked and achieved."""
+    page = Page()
+    for trade in found:
+        _print_trade(page, trade)
+    return page.text()
+
+
+def _print_trade(page: Page, trade: Mapping[str, Any]) -> None:
+    timing, machine = trade["timing"], trade["provenance"]
+    page.line(bold(trade["scene"]), f" on {machine['processor']}")
+    page.console.print(_points_table(trade))
+    for reason, names in _not_run(trade["points"]).items():
+        page.line(f"not run: {', '.join(names)} ({reason})")
+    for row in trade["points"]:
+        if row["standing"] not in ("sound", _NOT_RUN):
+            told = f"  {_label(row)}: {row['because']}"
+            page.line(bold(row["standing"], "red"), told)
+    page.line(
+        f"Best of up to {timing['repeats']} solves, {timing['order']} (seed {timing['seed']}); "
+        "* is on the front. first: the whole first solve, with compiling and start-up.",
+    )
+    page.line(f"seconds: {timing['of']}.")
+    floors = [f"{rung} {least:.2g}" for rung, least in trade.get("attainable", {}).items() if least]
+    if floors:
+        told = (
+            f"Attainable, one rounding of the state a sample and nothing else: {', '.join(floors)}."
+        )
+        page.line(told)
+    if any("cold" in row for row in trade["points"]):
+        page.line()
+        page.line(bold("In a process of its own, nothing compiled"))
+        page.console.print(_cold_table(trade["points"]))
+    for heading, key in _HEADINGS.items():
+        if trade.get(key):
+            page.line()
+            page.line(bold(heading))
+            page.indented("  ", *trade[key])
+    if trade.get("recommendation"):
+        page.line()
+        page.line(Text(trade["recommendation"]["sentence"], "green"))
+        page.line(f"  {trade['recommendation']['command']}")
+    page.line()
+
+
+def _label(row: Mapping[str, Any]) -> str:
+    return label(row["solver"], row["setting"], row["rung"])
+
+
+def _table(words: Sequence[str], numbers: Sequence[str]) -> Table:
+    """Return a table with columns of words to the left and of numbers to the right."""
+    table = Table(box=None, padding=(0, 1, 0, 0), pad_edge=False)
+    for heading in words:
+        table.add_column(heading, no_wrap=True)
+    for heading in numbers:
+        table.add_column(heading, justify="right", no_wrap=True)
+    return table
+
+
+def _points_table(trade: Mapping[str, Any]) -> Table:
+    rows = [row for row in trade["points"] if row["standing"] != _NOT_RUN]
+    quantities = list(dict.fromkeys(name for row in rows for name in row["max"]))
+    errors = [heading for name in quantities for heading in (name, "final")]
+    numbers = ("drift", "steps", "evals", "seconds", "spread", "first", "compile")
+    table = _table(("", "setting", "rung"), (*errors, *numbers))
+    for row in rows:
+        mark = "*" if _label(row) in trade["front"] else "" if row["standing"] == "sound" else "!"
+        cells = [row[part].get(name) for name in quantities for part in ("max", "final")]
+        table.add_row(
+            *(mark, Text(f"{row['solver']} {row['setting']}".rstrip()), row["rung"]),
+            *(_short(value) for value in (*cells, row["drift"])),
+            *(str(row["steps"]), str(row["evaluations"])),
+            *(_short(row[key]) for key in ("seconds", "spread", "first_seconds")),
+            _short(row["compile_seconds"]),
+        )
+    return table
+
+
+def _cold_table(points: Sequence[Mapping[str, Any]]) -> Table:
+    """Return the seconds of the first solve, part by part, and of a solve after it."""
+    parts = ("process", "importing", "compiling", "solving", "rest", "whole")
+    table = _table(("setting",), (*parts, "later solves"))
+    for row in points:
+        if row.get("cold"):
+            cells = [*(row["cold"][part] for part in parts), row["seconds"]]
+            table.add_row(Text(_label(row)), *(_short(value) for value in cells))
+    return table
+
+
+def _not_run(points: Sequence[Mapping[str, Any]]) -> dict[str, list[str]]:
+    """Return the settings that were not run, by the reason; a whole family by its name."""
+    ran = {row["family"] for row in points if row["standing"] != _NOT_RUN}
+    found: dict[str, dict[str, None]] = {}
+    for row in points:
+        if row["standing"] == _NOT_RUN:
+            name = f"{row['solver']} {row['setting']}".rstrip()
+            name = f"{name} {row['rung']}" if row["family"] in ran else row["family"]
+            found.setdefault(row["because"], {})[name] = None
+    return {reason: list(names) for reason, names in found.items()}
+
+
+def _short(value: float | None) -> str:
+    return "" if value is None else f"{value:.2g}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any, Final
@@ -10,14 +10,12 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.controls.defect import Defect
+from taylor_verify.controls.defect import BRICK, SCREW, Defect
 from taylor_verify.controls.limit import JustWithin, just_over
 from taylor_verify.models.problem import Problem
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
-_BRICK: Final = "euler/nesc-brick"
-_SCREW: Final = "kirchhoff/whole-motion"
 _CONSERVED: Final = frozenset({"T", "H2", "H_space"})
 
 # Half a millisecond is what separates one simulation of NASA's check case of this brick from others.
@@ -35,9 +33,8 @@ def _early(problem: Problem) -> Problem:
     return replace(problem, times=times)
 
 
-def _one_sample_late(problem: Problem, sound: Trajectory) -> Trajectory:
+def _one_sample_late(_: Problem, sound: Trajectory) -> Trajectory:
     """Row k holds the state of row k - 1."""
-    del problem
     return _mapped(sound, lambda rows: np.concatenate([rows[:1], rows[:-1]]))
 
 
@@ -48,30 +45,25 @@ def _last_interpolated(problem: Problem, sound: Trajectory) -> Trajectory:
     around = replace(problem, times=(rounded(end - half), rounded(end + half)))
     ends = Taylor().solve(around).quantities
     with mp.workprec(problem.rung.bits):
-        means = {name: (rows[0] + rows[1]) / 2 for name, rows in ends.items()}
-    return _with(
-        sound,
-        {name: np.concatenate([rows[:-1], [means[name]]]) for name, rows in _of(sound).items()},
-    )
+        means = {name: (rows[:1] + rows[1:]) / 2 for name, rows in ends.items()}
+    rows = {n: np.concatenate([r[:-1], means[n]]) for n, r in sound.quantities.items()}
+    return replace(sound, quantities=rows)
 
 
 def _padded(problem: Problem, sound: Trajectory) -> Trajectory:
-    """From half the time on, the state that was reached then."""
+    """The state that was reached at half the time stands in every row from then on."""
     half = len(problem.times) // 2
-    return _mapped(
-        sound, lambda rows: np.concatenate([rows[:half], *[rows[half : half + 1]] * (half + 1)])
-    )
+    reached = np.minimum(np.arange(len(problem.times)), half)
+    return _mapped(sound, lambda rows: rows[reached])
 
 
-def _stopped(problem: Problem, sound: Trajectory) -> Trajectory:
-    """The same end, told."""
-    del problem
+def _stopped(_: Problem, sound: Trajectory) -> Trajectory:
+    """The trajectory ends there and says so."""
     return replace(sound, outcome=Outcome.INTERRUPTED, quantities={})
 
 
-def _one_nan(problem: Problem, sound: Trajectory) -> Trajectory:
-    """One number of one sample is not a number, in every quantity."""
-    del problem
+def _one_nan(_: Problem, sound: Trajectory) -> Trajectory:
+    """The first number of the sample in the middle is not a number, in every quantity."""
 
     def spoil(rows: Rows) -> Rows:
         spoiled = rows.copy()
@@ -81,41 +73,34 @@ def _one_nan(problem: Problem, sound: Trajectory) -> Trajectory:
     return _mapped(sound, spoil)
 
 
-def _conjugated(problem: Problem, sound: Trajectory) -> Trajectory:
+def _conjugated(_: Problem, sound: Trajectory) -> Trajectory:
     """q0, -q1, -q2, -q3: the rotation from space to body."""
-    del problem
     signs = np.array([1, -1, -1, -1], dtype=object)
-    return _with(sound, {**_of(sound), "quaternion": _of(sound)["quaternion"] * signs})
+    return _with_quaternion(sound, sound.quantities["quaternion"] * signs)
 
 
 def _scalar_rebuilt(problem: Problem, sound: Trajectory) -> Trajectory:
     """q0 = +sqrt(1 - q1^2 - q2^2 - q3^2)."""
-
-    def rebuilt(row: Rows) -> Rows:
-        square = 1 - sum(component * component for component in row[1:])
-        return [mp.sqrt(max(square, mp.zero)), *row[1:]]
-
+    rows = sound.quantities["quaternion"].copy()
     with mp.workprec(problem.rung.bits):
-        rows = np.array([rebuilt(row) for row in _of(sound)["quaternion"]], dtype=object)
-    return _with(sound, {**_of(sound), "quaternion": rows})
+        for row in rows:
+            row[0] = mp.sqrt(max(1 - sum(q * q for q in row[1:]), mp.zero))
+    return _with_quaternion(sound, rows)
 
 
-def _of(sound: Trajectory) -> Mapping[str, Rows]:
-    return sound.quantities
-
-
-def _with(sound: Trajectory, quantities: Mapping[str, Rows]) -> Trajectory:
-    return replace(sound, quantities=quantities)
+def _with_quaternion(sound: Trajectory, rows: Rows) -> Trajectory:
+    return replace(sound, quantities={**sound.quantities, "quaternion": rows})
 
 
 def _mapped(sound: Trajectory, change: Callable[[Rows], Rows]) -> Trajectory:
-    return _with(sound, {name: change(rows) for name, rows in _of(sound).items()})
+    quantities = {name: change(rows) for name, rows in sound.quantities.items()}
+    return replace(sound, quantities=quantities)
 
 
 ANSWERS: Final = (
     Defect(
         "half-a-millisecond-early",
-        _BRICK,
+        BRICK,
         "omega",
         passes=_CONSERVED,
         what="every sample stamped 0.5 ms early",
@@ -127,7 +112,7 @@ ANSWERS: Final = (
     ),
     Defect(
         "one-sample-late",
-        _BRICK,
+        BRICK,
         "omega",
         passes=_CONSERVED,
         what="the output written one sample late",
@@ -136,7 +121,7 @@ ANSWERS: Final = (
     ),
     Defect(
         "one-sample-late-impulse",
-        _SCREW,
+        SCREW,
         "impulse",
         passes=frozenset({"T", "F2", "FG", "y3", "x_space", "y_space"}),
         what="the same late output, for a solid in a fluid",
@@ -145,7 +130,7 @@ ANSWERS: Final = (
     ),
     Defect(
         "success-after-failure",
-        _BRICK,
+        BRICK,
         "attitude",
         passes=_CONSERVED,
         what="stopped half way, padded with the last state, success reported",
@@ -155,7 +140,7 @@ ANSWERS: Final = (
     ),
     Defect(
         "stopped-and-said-so",
-        _BRICK,
+        BRICK,
         "omega",
         what="stopped half way, and reported as stopped",
         why="what did not finish is not scored: it has the outcome for its error",
@@ -164,7 +149,7 @@ ANSWERS: Final = (
     ),
     Defect(
         "last-point-interpolated",
-        _BRICK,
+        BRICK,
         "omega",
         what="the last point interpolated between two steps of 1 ms",
         why="a chord runs inside the arc by h^2/8 of its curvature: one sample in a hundred is "
@@ -174,7 +159,7 @@ ANSWERS: Final = (
     ),
     Defect(
         "conjugate-quaternion",
-        _BRICK,
+        BRICK,
         "attitude",
         passes=frozenset({"omega", "T", "H2"}),
         what="the quaternion from space to body in place of body to space",
@@ -183,7 +168,7 @@ ANSWERS: Final = (
     ),
     Defect(
         "scalar-part-rebuilt",
-        _BRICK,
+        BRICK,
         "H_space",
         passes=frozenset({"omega", "T", "H2"}),
         what="q0 rebuilt as the positive root after each renormalisation",
@@ -193,7 +178,7 @@ ANSWERS: Final = (
     ),
     Defect(
         "one-nan",
-        _BRICK,
+        BRICK,
         "omega",
         what="one number that is not a number",
         why="NaN is neither smaller nor larger than anything: a gate that asks whether error > bound "

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import final
+from typing import Final, final
 
 from taylor_verify.models.form import Equations
 from taylor_verify.models.problem import Problem
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Trajectory
+
+# The shipped scenes on which most defects show: a free body, and a solid in a fluid.
+BRICK: Final = "euler/nesc-brick"
+SCREW: Final = "kirchhoff/whole-motion"
 
 
 @final

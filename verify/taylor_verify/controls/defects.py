@@ -1,4 +1,4 @@
-"""All defects, in the order in which they are told: equations, stepping, answers."""
+"""The defects in the order of the pages: equations, stepping, answers."""
 
 from __future__ import annotations
 

@@ -15,10 +15,10 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any, Final
 
-from taylor_verify.controls.defect import Defect
+from taylor_verify.controls.defect import BRICK, SCREW, Defect
 from taylor_verify.models.algebra import add, apply, cross, minus
 from taylor_verify.models.euler import angular_velocity, euler_equations
-from taylor_verify.models.form import Named
+from taylor_verify.models.form import Named, labelled
 from taylor_verify.models.general import in_general_form
 from taylor_verify.models.kirchhoff import impulse_rates, kirchhoff_equations, velocities
 from taylor_verify.models.problem import Problem
@@ -28,15 +28,12 @@ from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Trajectory
 
-_BRICK: Final = "euler/nesc-brick"
-_SCREW: Final = "kirchhoff/whole-motion"
-
 # Per unit of time: a thousandth of the damping that game engines give a body by default.
 _DAMPING: Final = Fraction(1, 10**6)
 # Relative: what a coefficient read from a drawing, or stored in single precision, may be off by.
 _UNEVENNESS: Final = 1e-6
 
-# The body of _SCREW alone may have any mass and moments that leave the fluid a positive energy: all
+# The body of SCREW alone may have any mass and moments that leave the fluid a positive energy: all
 # less than the least eigenvalue of J, which is 0.593.
 _MASS_ALONE: Final = Fraction(1, 2)
 
@@ -48,12 +45,12 @@ def _gyroscopic_sign(n: Named) -> Mapping[str, Any]:
     """H' = K H x H + M."""
     H = n.vector("H")
     rate = add(cross(angular_velocity(H, n.symmetric("K")), H), n.vector("M"))
-    return euler_equations(n) | _rates("H", rate)
+    return euler_equations(n) | labelled("H", rate)
 
 
 def _no_gyroscopic_term(n: Named) -> Mapping[str, Any]:
     """H' = M."""
-    return euler_equations(n) | _rates("H", n.vector("M"))
+    return euler_equations(n) | labelled("H", n.vector("M"))
 
 
 def _diagonal_tensor(n: Named) -> Mapping[str, Any]:
@@ -77,7 +74,7 @@ def _damped(problem: Problem) -> Problem:
 
 
 def in_21_coefficients(problem: Problem) -> Problem:
-    """The same body by the general equations, with all of y: Clebsch's have one of it for a constant."""
+    """Return the problem by the general equations, with all of y; in Clebsch's y3 is a constant."""
     if problem.form.equations is kirchhoff_equations:
         return problem
     return in_general_form(problem)
@@ -104,7 +101,7 @@ def _munk_moment_sign(n: Named) -> Mapping[str, Any]:
     U, Omega = _velocities(n)
     turned, couple = cross(n.vector("y"), Omega), cross(n.vector("x"), U)
     rate = add([minus(a, b) for a, b in zip(turned, couple, strict=True)], n.vector("L"))
-    return kirchhoff_equations(n) | _rates("y", rate)
+    return kirchhoff_equations(n) | labelled("y", rate)
 
 
 def _uneven(n: Named) -> Mapping[str, Any]:
@@ -115,7 +112,7 @@ def _uneven(n: Named) -> Mapping[str, Any]:
 def _unturned_path(n: Named) -> Mapping[str, Any]:
     """c' = U in place of R U."""
     U, _ = _velocities(n)
-    return kirchhoff_equations(n) | _rates("c", U)
+    return kirchhoff_equations(n) | labelled("c", U)
 
 
 def _without_added_acceleration(problem: Problem) -> Problem:
@@ -134,19 +131,15 @@ def _without_added_acceleration(problem: Problem) -> Problem:
         U, Omega = _velocities(n)
         x_rate, y_rate = impulse_rates(x, y, U, Omega, n.vector("X"), n.vector("L"))
         rates = apply(weights, [*x_rate, *y_rate])
-        return kirchhoff_equations(n) | _rates("x", rates[:3]) | _rates("y", rates[3:])
+        return kirchhoff_equations(n) | labelled("x", rates[:3]) | labelled("y", rates[3:])
 
     return problem.with_equations(equations)
-
-
-def _rates(letter: str, vector: list[Any]) -> dict[str, Any]:
-    return {f"{letter}{i}": component for i, component in enumerate(vector, start=1)}
 
 
 EQUATIONS: Final = (
     Defect(
         "gyroscopic-sign",
-        _BRICK,
+        BRICK,
         "omega",
         passes=frozenset({"T", "H2"}),
         what="the gyroscopic term with its sign turned",
@@ -157,7 +150,7 @@ EQUATIONS: Final = (
     ),
     Defect(
         "no-gyroscopic-term",
-        _BRICK,
+        BRICK,
         "H_space",
         passes=frozenset({"T", "H2"}),
         what="no gyroscopic term: omega stays as it began",
@@ -179,7 +172,7 @@ EQUATIONS: Final = (
     ),
     Defect(
         "angular-damping",
-        _BRICK,
+        BRICK,
         "H2",
         what="angular damping of 1e-6 per second",
         why="H shrinks by exp(-1e-6 t), and everything made of it shrinks likewise",
@@ -188,7 +181,7 @@ EQUATIONS: Final = (
     ),
     Defect(
         "munk-moment-sign",
-        _SCREW,
+        SCREW,
         "y_space",
         passes=frozenset({"F2", "FG", "x_space"}),
         what="the added-mass couple x x U with its sign turned",
@@ -201,7 +194,7 @@ EQUATIONS: Final = (
     ),
     Defect(
         "no-added-mass-acceleration",
-        _SCREW,
+        SCREW,
         "FG",
         what="added mass in the couples, none in the acceleration",
         why="(U, Omega) answers to the mass of the body alone and conserves an energy made with "
@@ -212,7 +205,7 @@ EQUATIONS: Final = (
     ),
     Defect(
         "uneven-coefficient",
-        _SCREW,
+        SCREW,
         "y3",
         passes=frozenset({"F2", "FG", "x_space", "y_space"}),
         what="one of two equal coefficients larger by 1e-6",
@@ -224,7 +217,7 @@ EQUATIONS: Final = (
     ),
     Defect(
         "unturned-path",
-        _SCREW,
+        SCREW,
         "centre",
         passes=frozenset({"impulse", "attitude", "T", "F2", "FG", "y3", "x_space"}),
         what="the path of the centre summed from velocities in body axes",

@@ -29,7 +29,7 @@ _CONSPICUOUS = 1e-6
 
 
 def just_over(problem: Problem, sound: Trajectory) -> Trajectory:
-    """One sample in the middle with an omega that is wrong by one ulp more than the bound."""
+    """Return the answer with one omega in the middle wrong by one ulp more than the bound."""
     return _moved(problem, sound, nextafter(_bound(problem, sound), inf))
 
 

@@ -7,7 +7,7 @@ sign, a branch) when the balls exclude the other answer; until then the precisio
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import reduce
 from math import ceil, log2
@@ -17,8 +17,9 @@ import numpy as np
 from flint import arb, arb_mat, ctx, fmpq
 from mpmath import libmp, mp, mpf
 
-from taylor_verify.exact.solution import Quantities, Solution, Unsettled
+from taylor_verify.exact.solution import Solution, Unsettled
 from taylor_verify.scenes.motion import Motion
+from taylor_verify.scenes.tensors import Matrix
 
 # Quantity by name; for each time a row of balls, nested as the quantity is shaped.
 Enclosure = Mapping[str, Sequence[Any]]
@@ -51,16 +52,11 @@ class Enclosed(Solution):
         """
 
     @final
-    def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:
+    def motion(self, elapsed: Sequence[Fraction], digits: int, attempts: int = _ATTEMPTS) -> Motion:
         """The midpoints, and the proven relative radius of every row, at most 10^-digits.
 
-        Raises Unsettled when a dozen rises of the precision do not suffice.
+        Raises Unsettled when so many precisions, each higher than the last, do not suffice.
         """
-        return self.motion_within(_ATTEMPTS, elapsed, digits)
-
-    @final
-    def motion_within(self, attempts: int, elapsed: Sequence[Fraction], digits: int) -> Motion:
-        """The same, with no more than so many precisions tried."""
         target = ceil(digits * log2(10))
         bits, last = target + _FIRST_GUARD_BITS, None
         for _ in range(attempts):
@@ -77,11 +73,6 @@ class Enclosed(Solution):
                 break
         because = f"the balls of the exact solution do not shrink to {digits} digits"
         raise Unsettled.beside(because, last, digits)
-
-    @final
-    def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
-        """The midpoints of the motion."""
-        return self.motion(elapsed, digits).quantities
 
     def _attempt(self, elapsed: Sequence[Fraction], bits: int) -> Motion | None:
         """The motion at one precision; None where a branch is open or a number is not finite."""
@@ -163,8 +154,13 @@ def ball(value: Fraction | int) -> arb:
     return arb(fmpq(value.numerator, value.denominator))
 
 
-def balls(vector: Sequence[Fraction]) -> list[arb]:
+def balls(vector: Iterable[Fraction]) -> list[arb]:
     return [ball(entry) for entry in vector]
+
+
+def ball_matrix(matrix: Matrix) -> arb_mat:
+    """Return a matrix of rationals in balls."""
+    return arb_mat([balls(row) for row in matrix])
 
 
 def midpoint(value: arb) -> mpf:

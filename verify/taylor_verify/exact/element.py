@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -28,6 +28,15 @@ class Element:
     meaning: str
     source: str = ""
     size: mpf | int = 0
+
+
+def described(table: str, values: Iterable[mpf]) -> list[Element]:
+    """The values with a row each of ``name :: unit :: meaning :: formula``; no unit for a pure number."""
+    rows = (row.split("::") for row in table.strip().splitlines())
+    return [
+        Element(name.strip(), value, unit.strip(), meaning.strip(), formula.strip())
+        for (name, unit, meaning, formula), value in zip(rows, values, strict=True)
+    ]
 
 
 @dataclass(frozen=True)
@@ -61,11 +70,12 @@ def settled(evaluate: Callable[[int], Sequence[Element]], digits: int) -> tuple[
     when a dozen rises of the precision do not suffice.
     """
     working = digits + _GUARD_DIGITS
-    poorer = _at(evaluate, working)
+    with mp.workdps(working):
+        poorer = evaluate(working)
     for attempt in range(_ATTEMPTS):
         working += SETTLING_STEP_DIGITS << attempt // 2
-        better = _at(evaluate, working)
         with mp.workdps(working):
+            better = evaluate(working)
             agreed = _agree(poorer, better, mpf(10) ** -digits)
         if agreed:
             with mp.workdps(digits):
@@ -74,13 +84,8 @@ def settled(evaluate: Callable[[int], Sequence[Element]], digits: int) -> tuple[
     raise Unsettled(f"the elements of the orbit do not settle to {digits} digits")
 
 
-def _at(evaluate: Callable[[int], Sequence[Element]], working: int) -> Sequence[Element]:
-    with mp.workdps(working):
-        return evaluate(working)
-
-
 def _agree(poorer: Sequence[Element], better: Sequence[Element], tolerance: mpf) -> bool:
-    """Whether the same numbers were found; NaN agrees with nothing."""
+    """Return True if both have the same numbers; NaN agrees with nothing."""
     if [p.name for p in poorer] != [b.name for b in better]:
         return False
     return all(

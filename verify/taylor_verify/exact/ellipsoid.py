@@ -28,8 +28,6 @@ from taylor_verify.scenes.bodies import COEFFICIENT_BITS, Ellipsoid, ImmersedBod
 from taylor_verify.scenes.reading.faults import shown
 from taylor_verify.scenes.scene import Scene
 
-Three = tuple[arb, arb, arb]
-
 _FIRST_GUARD_BITS: Final = 40
 # Beyond the digits asked for: what an orbit may magnify by 10^30 is still below their last place.
 _MORE_DIGITS: Final = 30
@@ -44,9 +42,9 @@ class Inertias:
     """M; I and what the fluid adds to M and to I, each along or about body axes 1, 2, 3."""
 
     mass: arb
-    inertia: Three
-    added_mass: Three
-    added_inertia: Three
+    inertia: list[arb]
+    added_mass: list[arb]
+    added_inertia: list[arb]
 
     def coefficients(self) -> tuple[list[arb], list[arb]]:
         """1/(M + m_i) and 1/(I_i + j_i) at the ambient precision."""
@@ -78,7 +76,8 @@ def inertias(ellipsoid: Ellipsoid, bits: int) -> Inertias:
     for _ in range(_DOUBLINGS):
         with ctx.workprec(bits + guard):
             found = _at_ambient_precision(ellipsoid)
-            if all(_is_narrow(number, bits) for number in _numbers(found)):
+            numbers = [found.mass, *found.inertia, *found.added_mass, *found.added_inertia]
+            if all(number.is_zero() or number.rel_accuracy_bits() >= bits for number in numbers):
                 return found
         guard *= 2
     raise Unsettled(f"the inertia of the ellipsoid does not settle to {bits} bits")
@@ -94,12 +93,9 @@ def deviation(body: ImmersedBody, bits: int) -> mpf:
         raise ValueError("expected a body that was given as an ellipsoid, got coefficients alone")
     found = inertias(body.ellipsoid, bits)
     with ctx.workprec(bits + _FIRST_GUARD_BITS):
-        p, r = found.coefficients()
-        pairs = [
-            *zip((body.linear[i][i] for i in range(3)), p, strict=True),
-            *zip((body.angular[i][i] for i in range(3)), r, strict=True),
-        ]
-        return max(upper(abs(ball(held) / true - 1)) for held, true in pairs)
+        pairs = zip((body.linear, body.angular), found.coefficients(), strict=True)
+        off = (ball(form[i][i]) / true[i] - 1 for form, true in pairs for i in range(3))
+        return max(upper(abs(error)) for error in off)
 
 
 def told(body: ImmersedBody) -> list[str]:
@@ -110,9 +106,11 @@ def told(body: ImmersedBody) -> list[str]:
     found = inertias(shape, COEFFICIENT_BITS)
     off = deviation(body, COEFFICIENT_BITS + _FIRST_GUARD_BITS)
     a = ", ".join(map(shown, shape.semi_axes))
+    is_neutral = shape.density == shape.fluid_density
+    buoyancy = ", as heavy as what it displaces" if is_neutral else ""
     return [
         f"A homogeneous ellipsoid: semi-axes {a}, density {shown(shape.density)}, in a fluid of "
-        f"density {shown(shape.fluid_density)}{_buoyancy(shape)}.",
+        f"density {shown(shape.fluid_density)}{buoyancy}.",
         f"By Lamb's integrals: mass {_text([found.mass])}, added mass {_text(found.added_mass)}; "
         f"inertia {_text(found.inertia)}, added inertia {_text(found.added_inertia)}.",
         f"1/(mass + added mass) and 1/(inertia + added inertia) are rounded to {COEFFICIENT_BITS} "
@@ -120,10 +118,6 @@ def told(body: ImmersedBody) -> list[str]:
         f"2^{mp.mag(off)} of itself, as balls about Lamb's formulas prove.",
         *_symmetry(body),
     ]
-
-
-def _buoyancy(shape: Ellipsoid) -> str:
-    return ", as heavy as what it displaces" if shape.density == shape.fluid_density else ""
 
 
 def _symmetry(body: ImmersedBody) -> list[str]:
@@ -163,7 +157,7 @@ def _at_ambient_precision(ellipsoid: Ellipsoid) -> Inertias:
         difference = alphas[k] - alphas[j]
         resistance = gap * gap * difference / (5 * (2 * gap - total * difference))
         added_inertia.append(displaced * resistance)
-    return Inertias(mass, _three(inertia), _three(added_mass), _three(added_inertia))
+    return Inertias(mass, inertia, added_mass, added_inertia)
 
 
 def _alpha(ellipsoid: Ellipsoid, i: int) -> arb:
@@ -172,16 +166,3 @@ def _alpha(ellipsoid: Ellipsoid, i: int) -> arb:
     y, z = (ellipsoid.semi_axes[(i + n) % 3] / one for n in (1, 2))
     integral = acb.elliptic_rd(ball(y * y), ball(z * z), acb(1)).real
     return 2 * ball(y * z) * integral / 3
-
-
-def _numbers(found: Inertias) -> list[arb]:
-    return [found.mass, *found.inertia, *found.added_mass, *found.added_inertia]
-
-
-def _is_narrow(number: arb, bits: int) -> bool:
-    return bool(number.is_zero() or number.rel_accuracy_bits() >= bits)
-
-
-def _three(numbers: list[arb]) -> Three:
-    one, two, three = numbers
-    return one, two, three

@@ -14,25 +14,6 @@ from mpmath import mp, mpf
 Triple = tuple[mpf, mpf, mpf]
 
 
-def complete_k(m_prime: mpf) -> mpf:
-    """K = pi / (2 agm(1, k')), for m' > 0."""
-    return mp.pi / (2 * mp.agm(1, mp.sqrt(m_prime)))
-
-
-def jacobi(u: mpf, m: mpf, m_prime: mpf) -> Triple:
-    """(sn, cn, dn)(u | m) to the working precision, for real u and 0 <= m < 1.
-
-    Of m and m' the smaller one is taken as it stands and the other formed from it, so that the
-    answer is that of one parameter even where u spans so many periods that m needs more digits than
-    it has. Raises ValueError where m < 0 or m' <= 0.
-    """
-    u = mp.convert(u)
-    # u = 1e12 is some 1e12/4K periods: what is lost in reducing it is its magnitude.
-    with mp.extraprec(10 + mp.mag(1 + abs(u))):
-        values = Landen(*_complementary(m, m_prime)).jacobi(u)
-    return _rounded(values)
-
-
 class Landen:
     """The descending Landen chain of one parameter, at the precision at which it was made.
 
@@ -46,6 +27,8 @@ class Landen:
             raise ValueError(f"expected 0 <= m and 0 < m', got {mp.nstr(m)}, {mp.nstr(m_prime)}")
         a, b, c_squared = mpf(1), mp.sqrt(m_prime), mp.convert(m)
         self._k_prime = b
+        factor = mpf(1) / 2
+        self._share = factor * c_squared  # 1 - E/K = sum 2^(n-1) c_n^2, DLMF 19.8.6
         self._moduli: list[tuple[mpf, mpf]] = []  # of step n: k_{n+1} and (k'_n)^2
         # At the foot of the chain sn, cn are sin, cos up to k_N^2, and a_N is the mean up to k_N^2.
         negligible = mp.ldexp(1, -mp.prec - 4)
@@ -53,7 +36,8 @@ class Landen:
             a_next = (a + b) / 2
             c = c_squared / (4 * a_next)  # not (a - b)/2: no difference of nearly equal numbers
             self._moduli.append((c / a_next, (b / a) ** 2))
-            a, b, c_squared = a_next, mp.sqrt(a * b), c**2
+            a, b, c_squared, factor = a_next, mp.sqrt(a * b), c**2, 2 * factor
+            self._share += factor * c_squared
         self._mean = a
         self.quarter_period = mp.pi / (2 * a)
 
@@ -66,6 +50,23 @@ class Landen:
         if r < 0:
             sn = -sn
         return (-sn, -cn, dn) if half_turns % 2 else (sn, cn, dn)
+
+    def squared_sine(self, u: mpf) -> mpf:
+        """m int_0^u sn^2 du = (1 - E/K) u - Z(u), with Jacobi's zeta function Z of the period 2K.
+
+        Z(u) has the poles of the sum of Z1(v + i K1'/2) and Z1(v - i K1'/2), v = u/(1 + k1), to which
+        the addition theorem gives Z(u) = 2/(1 + k1) [Z1(v) + k1 sn cn dn/(1 + k1 sn^2)] with sn, cn,
+        dn of (v, k1). At the foot of the chain it vanishes.
+        """
+        K = self.quarter_period
+        cn, sn = mp.cos_sin(self._mean * (u - 2 * mp.nint(u / (2 * K)) * K))
+        dn, zeta = mpf(1), mpf(0)
+        for k, m_prime in reversed(self._moduli):
+            denominator = 1 + k * sn * sn
+            zeta = 2 / (1 + k) * (zeta + k * sn * cn * dn / denominator)
+            cn, sn = cn * dn / denominator, (1 + k) * sn / denominator
+            dn = mp.sqrt(cn * cn + m_prime * sn * sn)
+        return self._share * u - zeta
 
     def _beyond(self, v: mpf) -> Triple:
         """The three functions at K - v, for 0 <= v <= K/2."""
@@ -82,14 +83,3 @@ class Landen:
             sn = (sn + k * sn) / denominator
             dn = mp.sqrt(cn * cn + m_prime * sn * sn)  # 1 - m sn^2 would cancel where m' is small
         return sn, cn, dn
-
-
-def _complementary(m: mpf, m_prime: mpf) -> tuple[mpf, mpf]:
-    m, m_prime = mp.convert(m), mp.convert(m_prime)
-    return (m, 1 - m) if m <= m_prime else (1 - m_prime, m_prime)
-
-
-def _rounded(values: Triple) -> Triple:
-    """To the precision of the caller."""
-    sn, cn, dn = values
-    return +sn, +cn, +dn

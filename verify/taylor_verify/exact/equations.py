@@ -1,74 +1,87 @@
-"""The equations of motion as polynomials with exact coefficients.
+"""The equations of motion as quadratic forms with exact coefficients.
 
-Each kind of body writes its own from the texts; they share nothing with models. A polynomial is
-homogeneous of degree two: the coefficient of each product of two variables, which are counted from 0, the
-smaller first.
+Each kind of body writes its own from the texts; they share nothing with models. What cancels in exact
+coefficients is gone: a vector that stays zero for a whole body is disturbed by no rounding.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
 from fractions import Fraction
-from itertools import product
+from typing import Any, NamedTuple
 
-from taylor_verify.exact import clocks
-from taylor_verify.exact.clocks import Polynomial
+import numpy as np
+
+from taylor_verify.exact.clocks import Exact, Floats, swing
 from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.tensors import Matrix, Vector
 
 
-@dataclass(frozen=True)
-class Equations:
-    """z' = constant + linear z + rates, with Omega = spin z and U = velocity z.
+class Scaled(NamedTuple):
+    """Equations in units, as float64."""
 
-    There are no rows of velocity without a U, and none of linear without such terms.
+    constant: Floats
+    hessian: Floats
+    spin: Floats
+    velocity: Floats
+
+
+class Equations(NamedTuple):
+    """z' = ``constant`` + z.``hessian`` z/2, with Omega = ``spin`` z and U = ``velocity`` z.
+
+    The shapes are (n,), (n, n, n), symmetric in the last two places, and (3, n); ``velocity`` has no rows
+    for a rigid body.
     """
 
-    constant: Vector
-    rates: list[Polynomial]
-    spin: Matrix
-    velocity: Matrix = ()
-    linear: Matrix = ()
+    constant: Exact
+    hessian: Exact
+    spin: Exact
+    velocity: Exact
+
+    def minus(self, other: Equations) -> Equations:
+        """The difference, entry by entry."""
+        return Equations(*(one - two for one, two in zip(self, other, strict=True)))
+
+    def driven(self, motion: Manufactured | None) -> Equations:
+        """The equations with the loads of a manufactured motion, if there is one, and of its clock.
+
+        z' = N(z) + z*' - N(z*) with N quadratic, z* = S w and w' = W w for the clock w. Its first variable
+        is 1, which makes a product of what is linear.
+        """
+        if motion is None:
+            return self
+        S, W = swing(motion)
+        d, n = len(self.constant), len(self.constant) + len(W)
+        hessian = np.full((n, n, n), Fraction(0), dtype=object)
+        hessian[:d, :d, :d] = self.hessian
+        hessian[:d, d:, d:] = -(S.T @ self.hessian @ S)
+        linear = np.concatenate([S @ W, W])
+        hessian[:, d, d:] += linear
+        hessian[:, d:, d] += linear
+        more = np.full((3, len(W)), Fraction(0), dtype=object)
+        spin, velocity = (np.hstack([form, more[: len(form)]]) for form in self[2:])
+        return Equations(np.concatenate([self.constant, more[0]]), hessian, spin, velocity)
+
+    def scaled(self, units: Vector, time: Fraction, length: Fraction) -> Scaled:
+        """The same with z in ``units``, one for each component; the centre goes by lengths."""
+        one = np.array(units, dtype=object)
+        rates = time / one
+        return Scaled(
+            (self.constant * rates).astype(float),
+            (self.hessian * np.multiply.outer(rates, np.outer(one, one))).astype(float),
+            (self.spin * one * time).astype(float),
+            (self.velocity * one * (time / length)).astype(float),
+        )
 
 
-def driven(free: list[Polynomial], motion: Manufactured | None, clock: int) -> list[Polynomial]:
-    """The rates with the loads of a manufactured motion, if there is one, and then those of its clock."""
-    if motion is None:
-        return free
-    loads = clocks.loads(free, motion, clock)
-    return [total(p, q) for p, q in zip(free, loads, strict=True)] + clocks.rates(motion, clock)
+def exact(rows: Sequence[Any]) -> Exact:
+    """The array of a vector or a matrix."""
+    return np.array(rows, dtype=object)
 
 
-def cross(left: Matrix, right: Matrix) -> list[Polynomial]:
-    """The product (left z) x (right z) of two linear forms of z, each given by three rows.
-
-    With the forms put in, what cancels in exact coefficients is gone: a vector that stays zero for a whole
-    body is disturbed by no rounding.
-    """
-    one, other = (
-        [[(place, c) for place, c in enumerate(row) if c] for row in form] for form in (left, right)
-    )
-    found: list[Polynomial] = []
-    for j, k in ((1, 2), (2, 0), (0, 1)):
-        rate: dict[tuple[int, int], Fraction] = {}
-        backward = [(place, -c) for place, c in one[k]]
-        for first, second in ((one[j], other[k]), (backward, other[j])):
-            for (a, p), (b, q) in product(first, second):
-                # a b and b a are one product.
-                pair = (min(a, b), max(a, b))
-                rate[pair] = rate[pair] + p * q if pair in rate else p * q
-        found.append({pair: c for pair, c in rate.items() if c})
-    return found
-
-
-def times(factor: Fraction, polynomial: Polynomial) -> Polynomial:
-    return {pair: factor * coefficient for pair, coefficient in polynomial.items()}
-
-
-def total(*polynomials: Polynomial) -> Polynomial:
-    """The sum; what cancels is gone."""
-    found: dict[tuple[int, int], Fraction] = {}
-    for polynomial in polynomials:
-        for pair, coefficient in polynomial.items():
-            found[pair] = found.get(pair, Fraction(0)) + coefficient
-    return {pair: coefficient for pair, coefficient in found.items() if coefficient}
+def cross(left: Matrix, right: Matrix) -> Exact:
+    """The second derivatives of (left z) x (right z), two linear forms of z with three rows each."""
+    one, other = exact(left), exact(right)
+    pairs = ((1, 2), (2, 0), (0, 1))
+    products = [np.outer(one[j], other[k]) - np.outer(one[k], other[j]) for j, k in pairs]
+    return exact([product + product.T for product in products])

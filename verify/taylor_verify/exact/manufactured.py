@@ -2,10 +2,8 @@
 
 z*(t) = constant + sum of cosine cos(nu t) + sine sin(nu t), t since the start: see scenes.manufactured. It
 is the motion only from its own start; from any other state, as the condition of the orbit asks, the same
-loads lead elsewhere, and exact.taylor follows them.
-
-Two routes, which share no function: Arb's cosine and sine of each angle, in balls; and e^(i nu t) by the
-exponential series of a small part of the angle, doubled as often as it was halved.
+loads lead elsewhere, and exact.taylor follows them. Two routes, which share no function: the cosines and
+sines are Arb's, in balls, or mpmath's.
 
 The frame has no closed form here. Its equation R' = R [omega*]x is solved by quadratures where omega*
 keeps its direction, and only there: whoever tracks the attitude is led to exact.taylor.
@@ -19,9 +17,11 @@ from fractions import Fraction
 from typing import Any, Final, final
 
 import numpy as np
-from mpmath import libmp, mp, mpf
+from flint import arb_mat
+from mpmath import mp, mpf
 
-from taylor_verify.exact.balls import Enclosed, Enclosure, ball, balls
+from taylor_verify.exact.balls import Enclosed, Enclosure, balls
+from taylor_verify.exact.clocks import balls_at, swing
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.solution import NoClosedForm, Quantities, Settled
 from taylor_verify.scenes.manufactured import Manufactured
@@ -34,8 +34,7 @@ MANUFACTURED: Final = (
     "Not conserved: the loads change with time, and do work on everything.",
 )
 
-# Every doubling of an angle doubles the error, in one more bit; and some for the sums.
-_GUARD_BITS: Final = 20
+_GUARD_DIGITS: Final = 6
 
 
 def enclosed(scene: Scene) -> EnclosedPolynomial:
@@ -43,9 +42,9 @@ def enclosed(scene: Scene) -> EnclosedPolynomial:
     return EnclosedPolynomial(scene, _motion(scene))
 
 
-def closed_form(scene: Scene) -> DoubledPolynomial:
-    """The motion in mpmath, by doubled angles; raises NoClosedForm likewise."""
-    return DoubledPolynomial(scene, _motion(scene))
+def closed_form(scene: Scene) -> SettledPolynomial:
+    """The motion in mpmath; raises NoClosedForm likewise."""
+    return SettledPolynomial(scene, _motion(scene))
 
 
 def _motion(scene: Scene) -> Manufactured:
@@ -71,22 +70,15 @@ class EnclosedPolynomial(Enclosed):
 
     def enclose(self, elapsed: Sequence[Fraction], bits: int) -> Enclosure:
         del bits  # set already
-        constant = balls(self.polynomial.constant)
-        waves = [(w.frequency, balls(w.cosine), balls(w.sine)) for w in self.polynomial.waves]
-        rows = []
-        for t in elapsed:
-            row = list(constant)
-            for frequency, cosine, sine in waves:
-                s, c = ball(frequency * t).sin_cos()
-                row = [z + a * c + b * s for z, a, b in zip(row, cosine, sine, strict=True)]
-            rows.append(row)
-        return _parts(self.scene, rows)
+        coefficients = arb_mat([balls(row) for row in swing(self.polynomial)[0]])
+        clocks = ([[c] for c in balls_at(self.polynomial, t)] for t in elapsed)
+        return _parts(self.scene, [(coefficients * arb_mat(w)).entries() for w in clocks])
 
 
 @final
 @dataclass(frozen=True)
-class DoubledPolynomial(Settled):
-    """Every cosine and sine from (c, s) -> (c^2 - s^2, 2 c s)."""
+class SettledPolynomial(Settled):
+    """Every cosine and sine by mpmath."""
 
     scene: Scene
     polynomial: Manufactured
@@ -95,43 +87,22 @@ class DoubledPolynomial(Settled):
     regime = REGIME
 
     def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
+        largest = self.polynomial.highest * max(map(abs, elapsed), default=Fraction(0))
+        # The digits of an angle before its point are lost to the ones behind it.
+        with mp.workdps(digits + _GUARD_DIGITS + len(str(int(largest)))):
+            parts = _parts(self.scene, [self._row(t) for t in elapsed])
         with mp.workdps(digits):
-            rows = [self._row(t) for t in elapsed]
-        parts = _parts(self.scene, rows)
-        return {
-            name: np.array(part, dtype=object).reshape(len(rows), 3) for name, part in parts.items()
-        }
+            return {
+                name: +np.array(part, dtype=object).reshape(-1, 3) for name, part in parts.items()
+            }
 
     def _row(self, t: Fraction) -> list[mpf]:
         row = [mp.convert(z) for z in self.polynomial.constant]
         for wave in self.polynomial.waves:
-            c, s = _turned(wave.frequency * t, mp.prec)
+            c, s = mp.cos_sin(mp.convert(wave.frequency * t))
             pairs = zip(row, wave.cosine, wave.sine, strict=True)
             row = [z + mp.convert(a) * c + mp.convert(b) * s for z, a, b in pairs]
         return row
-
-
-def _turned(angle: Fraction, bits: int) -> tuple[mpf, mpf]:
-    """cos and sin of the angle, to about so many bits: integers that count the last of some more."""
-    whole = abs(angle.numerator) // angle.denominator
-    # Halved to below 2^-12: a dozen orders of the series are saved for one doubling each.
-    halvings = whole.bit_length() + 12
-    places = bits + 2 * halvings + _GUARD_BITS
-    one = libmp.MPZ(1) << places
-    x = libmp.MPZ((angle.numerator << places) // (angle.denominator << halvings))
-    c, s, term, order = one, libmp.MPZ(0), one, 0
-    while abs(term) > 1:
-        order += 1
-        term = (term * x >> places) // order
-        # i, -1, -i, 1: the powers of i give the terms to sine and cosine in turn.
-        if order % 2:
-            s += term if order % 4 == 1 else -term
-        else:
-            c += term if order % 4 == 0 else -term
-    for _ in range(halvings):
-        c, s = (c * c - s * s) >> places, (c * s) >> (places - 1)
-    c, s = (mp.make_mpf(libmp.from_man_exp(count, -places)) for count in (c, s))
-    return c, s
 
 
 def _parts(scene: Scene, rows: Sequence[Sequence[Any]]) -> dict[str, list[Sequence[Any]]]:

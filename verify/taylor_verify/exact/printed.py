@@ -124,6 +124,14 @@ def decimal_text(value: Fraction, digits: int, rounding: str = ROUND_HALF_EVEN) 
     return format(padded, "f" if is_plain else "e")
 
 
+def shortest_text(value: Fraction, digits: int) -> str:
+    """Return the number to so many digits, without its last zeros."""
+    mantissa, e, exponent = decimal_text(value, digits).partition("e")
+    if "." in mantissa:
+        mantissa = mantissa.rstrip("0").rstrip(".")
+    return f"{mantissa}{e}{exponent}"
+
+
 def _text(values: np.ndarray[Any, Any], digits: int) -> Any:
     if values.ndim > 1:
         return [_text(row, digits) for row in values]

@@ -1,19 +1,59 @@
-"""The rotation matrix of a quaternion of any length, in exact rationals."""
+"""Vector products, quaternions and their rotations, in whatever numbers they are given.
+
+A quaternion has its scalar first, and turns body axes to space axes: v -> q v q*/|q|^2.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import TypeVar
+
+from flint import arb
 
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.motion import Quaternion
 from taylor_verify.scenes.tensors import Matrix
 
+Number = TypeVar("Number", Fraction, arb)
+
+
+def cross(p: Sequence[Number], q: Sequence[Number]) -> list[Number]:
+    """Return p x q."""
+    return [
+        p[1] * q[2] - p[2] * q[1],
+        p[2] * q[0] - p[0] * q[2],
+        p[0] * q[1] - p[1] * q[0],
+    ]
+
+
+def product(p: Sequence[Number], q: Sequence[Number]) -> list[Number]:
+    """Return the product p q of two quaternions: the rotation q, then p."""
+    a, b, c, d = p
+    w, x, y, z = q
+    return [
+        a * w - b * x - c * y - d * z,
+        a * x + b * w + c * z - d * y,
+        a * y - b * z + c * w + d * x,
+        a * z + b * y - c * x + d * w,
+    ]
+
+
+def conjugate(q: Sequence[Number]) -> list[Number]:
+    return [q[0], -q[1], -q[2], -q[3]]
+
+
+def rotation_rows(q: Sequence[Number]) -> list[list[Number]]:
+    """Return the matrix of v -> q v q*: a rotation times |q|^2."""
+    w, x, y, z = q
+    return [
+        [w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z],
+    ]
+
 
 def rotation_matrix(quaternion: Quaternion) -> Matrix:
-    """R, body to space, of a quaternion (scalar first): rational, being of degree 2 in q/|q|."""
-    s, a, b, c = quaternion
-    norm = s * s + a * a + b * b + c * c
-    rows = (
-        (s * s + a * a - b * b - c * c, 2 * (a * b - s * c), 2 * (a * c + s * b)),
-        (2 * (a * b + s * c), s * s - a * a + b * b - c * c, 2 * (b * c - s * a)),
-        (2 * (a * c - s * b), 2 * (b * c + s * a), s * s - a * a - b * b + c * c),
-    )
-    return tuple(tensors.scaled(1 / norm, row) for row in rows)
+    """Return R of a quaternion of any length: rational, being of degree 2 in q/|q|."""
+    scale = 1 / tensors.dot(quaternion, quaternion)
+    return tuple(tuple(scale * entry for entry in row) for row in rotation_rows(quaternion))

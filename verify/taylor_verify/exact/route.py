@@ -41,7 +41,7 @@ class CheaperSolution(Solution):
     def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:
         """The motion by the closed form at few precisions, else by few steps, else by the closed form."""
         with suppress(Unsettled):
-            found = self._closed.motion_within(_FEW_PRECISIONS, elapsed, digits)
+            found = self._closed.motion(elapsed, digits, _FEW_PRECISIONS)
             self.route = self._closed.route
             return found
         self.route = self._series.route

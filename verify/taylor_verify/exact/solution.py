@@ -8,7 +8,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
-from typing import Any, Final, Protocol, final, runtime_checkable
+from typing import Any, Final, final
 
 import numpy as np
 from mpmath import mp, mpf
@@ -25,15 +25,6 @@ SETTLING_STEP_DIGITS: Final = 12
 # The precision rises by so many of these steps, attempt by attempt, until two evaluations agree: odd
 # numbers, so that what an evaluation does at every other step only, the next one does not.
 _RISES: Final = (1, 1, 3, 3, 9, 9, 27)
-
-
-@runtime_checkable
-class Orbital(Protocol):
-    """A closed form that knows the numbers of its orbit."""
-
-    def elements(self, digits: int) -> dict[str, mpf]:
-        """``period``, ``rate``, ``m`` and ``m_prime``, as far as the orbit has them."""
-        ...
 
 
 class NoClosedForm(Exception):
@@ -88,16 +79,20 @@ class Solution(ABC):
         Raises Unsettled where that cannot be had at every time.
         """
 
-    @abstractmethod
     def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
         """The tracked quantities at these times, to about ``digits`` digits and without a claim.
 
-        Object arrays of mpf shaped as in Motion.
+        Object arrays of mpf shaped as in Motion. Those of the motion, unless stated.
         """
+        return self.motion(elapsed, digits).quantities
 
 
 class Settled(Solution):
     """A solution that is believed when two evaluations at different precisions agree."""
+
+    @abstractmethod
+    def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
+        """The tracked quantities at one precision."""
 
     @final
     def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:

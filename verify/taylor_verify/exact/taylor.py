@@ -24,7 +24,7 @@ from taylor_verify.exact.enclosure.placing import Place
 from taylor_verify.exact.enclosure.system import System, posed
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.rotation import rotation_matrix
-from taylor_verify.exact.solution import NO_CLOSED_FORM, Quantities, Solution, Unsettled
+from taylor_verify.exact.solution import NO_CLOSED_FORM, Solution, Unsettled
 from taylor_verify.scenes.motion import Motion, State
 from taylor_verify.scenes.scene import Scene
 
@@ -73,6 +73,10 @@ class _Enclosing(Solution):
         """The times that may be reached although this one is not; all lie on its side of the start."""
         raise NotImplementedError
 
+    @cached_property
+    def _system(self) -> System:
+        return posed(self.scene)
+
     @final
     def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:
         """The midpoints, and the proven radius of every vector and matrix relative to its norm.
@@ -92,12 +96,8 @@ class _Enclosing(Solution):
                     self._prove(proven, times, target, first, limit)
                 except Unreached as reason:
                     # What is said of a nearer time takes the place of what was said of one behind it.
-                    because = (
-                        f"{reason}; ask for it without the times behind it"
-                        if doubt
-                        else str(reason)
-                    )
-                    limit, doubt = min(limit, 2 * target + _MOST_BITS_BESIDE), because
+                    hint = "; ask for it without the times behind it" if doubt else ""
+                    limit, doubt = min(limit, 2 * target + _MOST_BITS_BESIDE), f"{reason}{hint}"
                     times = self._before(times, reason.time)
                 times = {place: time for place, time in times.items() if place not in proven}
             if doubt is not None:
@@ -107,11 +107,6 @@ class _Enclosing(Solution):
         if doubts:
             raise Unsettled("; ".join(doubts), motion if places else None, places)
         return motion
-
-    @final
-    def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
-        """The midpoints of the motion."""
-        return self.motion(elapsed, digits).quantities
 
     def _prove(
         self, proven: dict[int, _Proven], times: Times, target: int, bits: int, most_bits: int
@@ -152,39 +147,31 @@ class _Enclosing(Solution):
             balls = np.array(vector, dtype=object)
             radii[name], missing = _radius(list(balls.flat), largest, target)
             # Not one digit is known of a vector that may be zero: it is answered as zero.
-            answer = midpoint if mp.isfinite(width(list(balls.flat))) else _zero
-            values[name] = np.frompyfunc(answer, 1, 1)(balls)
+            is_told = mp.isfinite(width(list(balls.flat)))
+            told = np.frompyfunc(midpoint, 1, 1)(balls)
+            values[name] = told if is_told else np.full(balls.shape, mpf(0), dtype=object)
             lacking = max(lacking, missing)
         return _Proven(values, radii, lacking)
 
     def _vectors(self, row: Row) -> dict[str, tuple[Any, float]]:
         """Each tracked quantity as balls, with log2 of its largest size so far."""
-        whole = {
-            "attitude": ([row.turn[i : i + 3] for i in range(0, len(row.turn), 3)], 0.0),
-            "centre": (row.centre, row.largest[-1]),
+        found: dict[str, tuple[Any, float]] = {
+            name: (row.state[3 * k : 3 * k + 3], row.largest[k])
+            for k, name in enumerate(kind_of(self.scene.body).moving)
         }
-        for k, name in enumerate(self._state_names()):
-            whole[name] = row.state[3 * k : 3 * k + 3], row.largest[k]
-        return {name: whole[name] for name in self._names()}
-
-    def _names(self) -> list[str]:
-        """The tracked quantities."""
-        track = self.scene.track
-        return [
-            *self._state_names(),
-            *(["attitude"] if track else []),
-            *(["centre"] if "centre" in track else []),
-        ]
-
-    def _state_names(self) -> tuple[str, ...]:
-        return kind_of(self.scene.body).moving
+        if row.turn:
+            found["attitude"] = [row.turn[i : i + 3] for i in (0, 3, 6)], 0.0
+        if row.centre is not None:
+            found["centre"] = row.centre, row.largest[-1]
+        return found
 
     def _gathered(self, rows: Sequence[_Proven]) -> Motion:
         """The rows as one motion; the radius of a row is that of its widest quantity."""
-        stacked = {
-            n: np.array([row.values[n] for row in rows], dtype=object) for n in self._names()
-        }
-        radii = {n: np.array([row.radii[n] for row in rows], dtype=object) for n in self._names()}
+        track = self.scene.track
+        frame = ["attitude"] * bool(track) + ["centre"] * ("centre" in track)
+        names = [*kind_of(self.scene.body).moving, *frame]
+        stacked = {n: np.array([row.values[n] for row in rows], dtype=object) for n in names}
+        radii = {n: np.array([row.radii[n] for row in rows], dtype=object) for n in names}
         widest = np.array([max(row.radii.values()) for row in rows], dtype=object)
         return Motion(stacked, widest, radii)
 
@@ -212,10 +199,6 @@ class TaylorSolution(_Enclosing):
 
     def _before(self, times: Times, unreached: Fraction) -> Times:
         return {place: t for place, t in times.items() if abs(t) < abs(unreached)}
-
-    @cached_property
-    def _system(self) -> System:
-        return posed(self.scene)
 
 
 def arcs(
@@ -265,10 +248,6 @@ class _Arcs(_Enclosing):
         del times, unreached
         return {}
 
-    @cached_property
-    def _system(self) -> System:
-        return posed(self.scene)
-
 
 def _place(scene: Scene, initial: State) -> Place | None:
     """The frame at the start in balls, at the ambient precision; None where it is not tracked."""
@@ -276,11 +255,6 @@ def _place(scene: Scene, initial: State) -> Place | None:
         return None
     centre = kind_of(scene.body).centre(initial) if "centre" in scene.track else None
     return Place.of(rotation_matrix(initial.attitude), centre)
-
-
-def _zero(ball: arb) -> mpf:
-    del ball
-    return mpf(0)
 
 
 def _radius(vector: Sequence[arb], largest: float, target: int) -> tuple[mpf, int]:

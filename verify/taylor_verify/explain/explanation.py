@@ -1,4 +1,4 @@
-"""What a scene asks and how it is judged: the equations as built, the orbit, each gate's terms."""
+"""The explanation of one run: the equations as built, the orbit, the terms of each gate."""
 
 from __future__ import annotations
 
@@ -12,8 +12,7 @@ from mpmath import mp
 from taylor_verify.exact import ellipsoid
 from taylor_verify.exact.balls import midpoint
 from taylor_verify.exact.elements import Element, Elements, elements
-from taylor_verify.exact.kirchhoff.general import screws_beside
-from taylor_verify.exact.kirchhoff.screws import Screw
+from taylor_verify.exact.kirchhoff.screws import Screw, screws_beside
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.files.partial import partial_judgement
@@ -26,7 +25,7 @@ from taylor_verify.models.problem import NotRepresentable, pose
 from taylor_verify.records.quantities import MAIN, TRACKED
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
-from taylor_verify.scenes.bodies import Body, ImmersedBody
+from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.reading.reader import as_scene
@@ -46,14 +45,14 @@ _FROM_RECORD = (
 
 
 def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]:
-    """Run the scene on that rung and return what its record says; no number is an estimate.
+    """Run the scene on that rung and return the document of ``explain``; no number is an estimate.
 
-    A document as ``explain --json`` prints it: the equations built and their cost, the numbers of the
-    orbit, its conditioning, and each gate with the terms of its bound. A number that the run did not
-    come to is None. Without heyoka the exact motion, rounded to the rung, is judged in place of an
-    answer, and a warning says so. Raises scenes.reading.faults.Refused for a scene that cannot be read.
+    Without heyoka the exact motion, rounded to the rung, is judged in place of an answer, and a warning
+    says so.
     """
     scene = as_scene(scene)
+    body = scene.body
+    shape = ellipsoid.told(body) if isinstance(body, ImmersedBody) else []
     found, lacking = _judged(scene, rung_named(rung))
     record = found.record.document() if found.record is not None else {}
     first = found.verdicts[0]
@@ -69,7 +68,7 @@ def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]
         "bits": rung_named(rung).bits,
         "track": sorted({MAIN[scene.model]} | scene.track),
         "warnings": [*scene.warnings, *lacking],
-        "body": [*_shape(scene.body), *scene.notes],
+        "body": [*shape, *scene.notes],
         **{name: record.get(name) for name in _FROM_RECORD},
         "cost": {
             **_cost(scene, rung),
@@ -83,24 +82,16 @@ def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]
     }
 
 
-def _shape(body: Body) -> list[str]:
-    """Return what body was read, in sentences, where it was given as an ellipsoid."""
-    return ellipsoid.told(body) if isinstance(body, ImmersedBody) else []
-
-
 def _judged(scene: Scene, rung: Rung) -> tuple[Judgement, list[str]]:
     """Return the judgement of heyoka's answer, or, without heyoka, of the exact motion and a warning."""
     found = run(scene, "taylor", rung)
-    (first, *_) = found.verdicts
-    if first.outcome != Outcome.NO_PACKAGE.value:
-        return found, []
-    exact = _judged_exact_motion(scene, rung)
+    first = found.verdicts[0]
+    lacks_heyoka = first.outcome == Outcome.NO_PACKAGE.value
+    exact = _judged_exact_motion(scene, rung) if lacks_heyoka else None
     if exact is None:
         return found, []
-    meaning = (
-        f"the gates are those of the exact motion rounded to {rung.name}, a step for each sample"
-    )
-    return exact, [f"{first.because}; {meaning}"]
+    instead = f"those of the exact motion rounded to {rung.name}, a step for each sample"
+    return exact, [f"{first.because}; the gates are {instead}"]
 
 
 def _judged_exact_motion(scene: Scene, rung: Rung) -> Judgement | None:
@@ -136,14 +127,8 @@ def _orbit(scene: Scene) -> dict[str, Any]:
 
 
 def _element(element: Element) -> dict[str, str]:
-    value = str(mp.nstr(element.value, _DIGITS))
-    return {
-        "name": element.name,
-        "value": value,
-        "unit": element.unit,
-        "meaning": element.meaning,
-        "source": element.source,
-    }
+    words = {name: getattr(element, name) for name in ("unit", "meaning", "source")}
+    return {"name": element.name, "value": _written(element.value), **words}
 
 
 def _screw(screw: Screw) -> dict[str, Any]:
@@ -185,11 +170,11 @@ def _written(value: Any) -> str:
 
 
 def _condition(scene: Scene, rung: Rung, period: float | None) -> dict[str, Any] | None:
-    """How an error at the first sample is carried along the orbit; None where that is not known."""
+    """Growth of an error at the first sample along the orbit; None where that is not known."""
     try:
         found = carrying(scene)
     except Unsettled:
-        return None
+        found = None
     if found is None:
         return None
     worst, pace = found.worst, found.pace
@@ -245,7 +230,7 @@ _COUNTED = ("states", "parameters", "sums", "products", "quotients")
 
 
 def _cost(scene: Scene, rung: str) -> dict[str, Any]:
-    """What an evaluation of the equations takes, why they are these, and what the others would take.
+    """Cost of an evaluation of the equations beside that of others, and why they are these.
 
     ``general`` counts the general equations of all that the model has, ``same`` those of the same
     body for the same quantities, as far as their coefficients are not zero.
@@ -273,7 +258,7 @@ def _counts(form: Form) -> dict[str, Any]:
 
 
 def _left_out(scene: Scene) -> list[str]:
-    """What the scene does not ask for."""
+    """Sentences on what the scene does not ask for."""
     possible = TRACKED[scene.model]
     found = [f"no {name}: it is not tracked" for name in possible if name not in scene.track]
     if scene.body.is_free:

@@ -40,7 +40,6 @@ from taylor_verify.judge.rounding_class import (
     FACTOR,
     LEVEL,
     Departure,
-    departure,
     departures,
     finite,
     has_grown,
@@ -62,7 +61,7 @@ _MOST_BYTES: Final = Limit(2**28, "bytes", "a hundred thousand verdicts")
 
 @dataclass(frozen=True)
 class Held:
-    """A run held against a baseline: how many rows, and what is to be said of which."""
+    """A run compared with a baseline: how many rows, and what is to be said of which."""
 
     compared: int
     regressions: tuple[Departure, ...]
@@ -71,30 +70,35 @@ class Held:
 
     @property
     def status(self) -> int:
-        """As an exit status: 1 for a regression, 3 where something could not be compared."""
+        """Exit status: 1 for a regression, 3 where something could not be compared, else 0."""
         if self.regressions:
             return 1
         return 3 if self.undecided or not self.compared else 0
 
 
 def hold(baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
-    """Hold every row made against the row of the baseline; rungs that a machine lacks are left out.
+    """Compare every row made with the row of the baseline; rungs that a machine lacks are left out.
 
     A row that is gone, a verdict that is worse, a quaternion that is no unit quaternion any more, and an
     error beyond ten times the larger of what it was and half of what is attainable are regressions: below
     that, roundings drawn anew may explain it.
     """
-    rows = paired(_compared(baseline), _compared(made))
-    # This row is there only where it fails: of a sound run neither baseline nor result has one.
-    mended = [verdict for verdict in rows.missing if verdict.quantity == UNIT_QUATERNION]
-    gone = [verdict for verdict in rows.missing if verdict not in mended]
-    regressions = [_row(verdict, "this row", "none") for verdict in gone]
+    # That of the extent of an answer is there or not as its own call has asked.
+    rows = paired(
+        *([v for v in verdicts if v.quantity != COMPLETE] for verdicts in (baseline, made))
+    )
+    # The row of a quaternion is there only where it fails: a sound run has none.
+    gone, mended = _parted(rows.missing)
+    added, spoiled = _parted(rows.extra)
+    regressions = [Departure.of(verdict, "this row", "none") for verdict in gone]
     undecided: list[Departure] = []
-    spoiled = [verdict for verdict in rows.extra if verdict.quantity == UNIT_QUATERNION]
-    other_rows = [verdict for verdict in rows.extra if verdict not in spoiled]
-    changes = [_row(verdict, "a row of the baseline", "a new one") for verdict in other_rows]
-    changes += [_row(verdict, "a row that fails", "none: it is mended") for verdict in mended]
-    changes += _machines(rows.absent)
+    changes = [Departure.of(verdict, "a row of the baseline", "a new one") for verdict in added]
+    changes += [Departure.of(v, "a row that fails", "none: it is mended") for v in mended]
+    changes += [
+        Departure.of(verdict, "the rung on both machines", "it on one: not compared")
+        for verdict in rows.absent
+        if verdict.verdict is Status.UNAVAILABLE
+    ]
     for old, new in rows.shared:
         other = list(_other_question(old, new))
         grown = [] if other else list(_regressions(old, new))
@@ -102,8 +106,15 @@ def hold(baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
         regressions += grown
         # Of a verdict that is worse the other numbers are the consequence.
         changes += [] if other or grown else departures(old, new)
-    regressions += [_row(verdict, "no such row", "one that fails") for verdict in spoiled]
+    regressions += [Departure.of(verdict, "no such row", "one that fails") for verdict in spoiled]
     return Held(len(rows.shared), tuple(regressions), tuple(undecided), tuple(changes))
+
+
+def _parted(rows: Iterable[Verdict]) -> tuple[list[Verdict], list[Verdict]]:
+    """Rows that every run has, and those of the length of quaternions."""
+    every = list(rows)
+    lengths = [verdict for verdict in every if verdict.quantity == UNIT_QUATERNION]
+    return [verdict for verdict in every if verdict not in lengths], lengths
 
 
 def decided_alone(held: Held, baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
@@ -113,19 +124,19 @@ def decided_alone(held: Held, baseline: Iterable[Verdict], made: Iterable[Verdic
     that shows nothing cannot be compared: it is undecided, vacuous or refused, or it fails and is new.
     """
     known = {_name(verdict) for verdict in baseline}
-    told_of = {(d.scene, d.rung, d.quantity) for d in (*held.regressions, *held.undecided)}
+    named = {(d.scene, d.rung, d.quantity) for d in (*held.regressions, *held.undecided)}
     lost, unshown = [], []
     for verdict in made:
         status = exit_status([verdict])
-        if status == 0 or _name(verdict) in told_of:
+        if status == 0 or _name(verdict) in named:
             continue
         if status != 1:
             got = f"{verdict.verdict} ({verdict.because})"
-            unshown.append(departure(verdict, "", "a row that shows something", got))
+            unshown.append(Departure.of(verdict, "a row that shows something", got))
         elif finite(verdict, "max") is None:
-            lost.append(departure(verdict, "max", "a finite error", told(None)))
+            lost.append(Departure.of(verdict, "a finite error", told(None), "max"))
         elif _name(verdict) not in known:
-            unshown.append(_row(verdict, "a row of the baseline", "a new one that fails"))
+            unshown.append(Departure.of(verdict, "a row of the baseline", "a new one that fails"))
     regressions, undecided = (*held.regressions, *lost), (*held.undecided, *unshown)
     return Held(held.compared, regressions, undecided, held.changes)
 
@@ -134,78 +145,51 @@ def _name(verdict: Verdict) -> tuple[str, str, str]:
     return verdict.scene, verdict.rung, verdict.quantity
 
 
-def _compared(verdicts: Iterable[Verdict]) -> Iterator[Verdict]:
-    """All rows but that of the extent of an answer, which its own call has asked for or not."""
-    return (verdict for verdict in verdicts if verdict.quantity != COMPLETE)
-
-
 def _other_question(old: Verdict, new: Verdict) -> Iterator[Departure]:
     if old.provenance.get("scene") != new.provenance.get("scene"):
-        yield departure(new, "scene", "the text that the baseline was made of", "another")
-    if _is_other_span(old, new):
-        yield departure(new, "last time", told(old.until), told(new.until))
+        yield Departure.of(new, "the text that the baseline was made of", "another", "scene")
+    # A longer run has larger errors.
+    if None not in (old.until, new.until) and old.until != new.until:
+        yield Departure.of(new, told(old.until), told(new.until), "last time")
     for name in ("unit", "roundoff"):
         was, now = getattr(old, name), getattr(new, name)
         # A run that came to no comparison has neither.
         if was and now and was != now:
-            yield departure(new, name, str(was), str(now))
-
-
-def _is_other_span(old: Verdict, new: Verdict) -> bool:
-    """Return True where the last time that was judged is another one: a longer run has larger errors."""
-    return old.until is not None and new.until is not None and old.until != new.until
+            yield Departure.of(new, str(was), str(now), name)
 
 
 def _regressions(old: Verdict, new: Verdict) -> Iterator[Departure]:
-    if _grade(new) > _grade(old) and not _have_unlike_tolerances(old, new):
-        yield departure(new, "verdict", old.verdict.value, new.verdict.value)
+    # Of two comparisons by unlike tolerances neither verdict tells of the other.
+    is_alike = old.tolerance == new.tolerance or not (old.is_compared and new.is_compared)
+    grades = [_GRADES.index(exit_status([verdict])) for verdict in (old, new)]
+    if is_alike and grades[1] > grades[0]:
+        yield Departure.of(new, old.verdict.value, new.verdict.value, "verdict")
     grown = [(name, *found) for name in ERRORS if (found := _grown(old, new, name)) is not None]
     if grown:
         # They grow together: the first has the figures, the others are named.
         name, limit, got = grown[0]
         others = ", ".join(other for other, *_ in grown[1:])
-        yield departure(new, f"{name} (and {others})" if others else name, limit, got)
-
-
-def _have_unlike_tolerances(old: Verdict, new: Verdict) -> bool:
-    """Return True for two comparisons by unlike gates, of which neither verdict tells of the other."""
-    return old.is_compared and new.is_compared and old.tolerance != new.tolerance
+        yield Departure.of(new, limit, got, f"{name} (and {others})" if others else name)
 
 
 def _grown(old: Verdict, new: Verdict, name: str) -> tuple[str, str] | None:
-    """What was expected of an error that is beyond it, and what came."""
+    """The limit that an error exceeds, and the error; None where it does not."""
     was, now = finite(old, name), finite(new, name)
     level = LEVEL * (1.0 if name == "ratio" else _attainable(old, new))
-    return (_limit(was, level), told(now)) if has_grown(was, now, level) else None
-
-
-def _grade(verdict: Verdict) -> int:
-    return _GRADES.index(exit_status([verdict]))
+    if not has_grown(was, now, level):
+        return None
+    if was is None:
+        return told(was), told(now)
+    limit = FACTOR * max(was, level)
+    larger = f"the larger of the baseline's {was:.3g} and {LEVEL:g} attainable, {level:.3g}"
+    return f"at most {limit:.3g} ({FACTOR:g} x {larger}: rounding explains no more)", told(now)
 
 
 def _attainable(old: Verdict, new: Verdict) -> float:
-    """What is attainable in the former number of steps."""
+    """The error that is attainable in the former number of steps."""
     before, now = (finite(row, "attainable") or 0.0 for row in (old, new))
     steps = old.steps / new.steps if 0 < old.steps < new.steps else 1.0
     return max(before, math.sqrt(steps) * now)
-
-
-def _limit(was: float | None, level: float) -> str:
-    if was is None:
-        return told(was)
-    limit = FACTOR * max(was, level)
-    larger = f"the larger of the baseline's {was:.3g} and {LEVEL:g} attainable, {level:.3g}"
-    return f"at most {limit:.3g} ({FACTOR:g} x {larger}: rounding explains no more)"
-
-
-def _machines(absent: Iterable[Verdict]) -> Iterator[Departure]:
-    for verdict in absent:
-        if verdict.verdict is Status.UNAVAILABLE:
-            yield _row(verdict, "the rung on both machines", "it on one: not compared")
-
-
-def _row(verdict: Verdict, expected: str, got: str) -> Departure:
-    return departure(verdict, "", expected, got)
 
 
 # Reading.
@@ -223,11 +207,15 @@ def load(file: Path | str) -> tuple[Verdict, ...]:
         placed = dict(_placed(parsed(content, _Rows)))
         for place, verdict in placed.items():
             _check(verdict, place)
-        rows = tuple(placed.values())
-        _check_once(rows)
+        rows = Counter(
+            " ".join(filter(None, (v.scene, v.solver, v.setting, v.rung, v.quantity)))
+            for v in placed.values()
+        )
+        if twice := [row for row, count in rows.items() if count > 1]:
+            raise ValueError(f"expected every row once, got more of {', '.join(twice)}")
     except ValueError as fault:
         raise ValueError(f"{fault} @ {file}") from fault
-    return rows
+    return tuple(placed.values())
 
 
 @dataclass(frozen=True)
@@ -262,10 +250,3 @@ def _check(verdict: Verdict, place: str) -> None:
             raise ValueError(
                 f"expected a number that is not negative, got {value!r} @ {place}.{name}"
             )
-
-
-def _check_once(found: Iterable[Verdict]) -> None:
-    rows = Counter((v.scene, v.solver, v.setting, v.rung, v.quantity) for v in found)
-    twice = [" ".join(filter(None, key)) for key, count in rows.items() if count > 1]
-    if twice:
-        raise ValueError(f"expected every row once, got more of {', '.join(twice)}")

@@ -1,9 +1,10 @@
-"""Where the processor time of a run goes, stage by stage."""
+"""Processor time of a run, stage by stage."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from itertools import chain
 from time import process_time
 
 SOLVING = "solving"
@@ -30,16 +31,15 @@ class Costs:
 
 
 def total(costs: Iterable[Mapping[str, float]]) -> dict[str, float]:
-    """The sum of many runs, the dearest stage first."""
+    """Return the sum of many runs, the dearest stage first."""
     sums: dict[str, float] = {}
-    for one in costs:
-        for stage, seconds in one.items():
-            sums[stage] = sums.get(stage, 0.0) + seconds
+    for stage, seconds in chain.from_iterable(each.items() for each in costs):
+        sums[stage] = sums.get(stage, 0.0) + seconds
     return dict(sorted(sums.items(), key=lambda item: -item[1]))
 
 
 def sentence(sums: Mapping[str, float]) -> str:
-    """What dominates, in words: the whole, and the share of each stage."""
+    """Return the whole and the share of each stage, in words."""
     whole = sum(sums.values())
     shares = ", ".join(f"{stage} {100 * s / whole:.0f} %" for stage, s in sums.items())
     return f"processor time {whole:.1f} s: {shares}"

@@ -122,8 +122,11 @@ def power_of_time(elapsed: Floats, errors: Floats) -> float | None:
         if np.count_nonzero(inside) < _FEWEST_IN_A_PART or not size > 0:
             return None
         points.append((float(np.mean(np.log(elapsed[inside]))), float(np.log(size))))
-    slope, half = _line(np.array(points))
-    return round(slope, 3) if half <= _CLEAR and slope >= _LEAST_POWER else None
+    x, y = np.transpose(points)
+    (slope, _), covariance = np.polyfit(x, y, 1, cov=True)
+    half = _STUDENT * float(covariance[0, 0]) ** 0.5
+    is_clear = isfinite(slope) and half <= _CLEAR
+    return round(slope, 3) if is_clear and slope >= _LEAST_POWER else None
 
 
 def _parts(elapsed: Floats, edges: Floats) -> list[Places]:
@@ -138,10 +141,3 @@ def _mean_square_root(errors: Floats) -> float:
     if not largest > 0:
         return 0.0
     return largest * float(np.sqrt(np.mean((errors / largest) ** 2)))
-
-
-def _line(points: Floats) -> tuple[float, float]:
-    """Return the slope of a straight line through some points, and half of its interval."""
-    (slope, _), covariance = np.polyfit(points[:, 0], points[:, 1], 1, cov=True)
-    half = _STUDENT * float(covariance[0, 0]) ** 0.5
-    return (slope, half) if isfinite(slope) and isfinite(half) else (0.0, float("inf"))

@@ -14,13 +14,6 @@ from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.records.reason import AskedTolerance, Cause, Reason, shown
 from taylor_verify.records.status import Status
 
-# Steps that somebody else claims widen a gate as their square root, WIDENING times at most beyond
-# those of a method that resolves every sample and every hundredth of a radian. So 10^4 steps a radian
-# count: an RK4 of step 1e-4 on an orbit of one radian per unit of time claims no more.
-STEPS_PER_RADIAN = 100
-WIDENING = 10
-# And no more than a processor can do: a step is some dozens of dependent operations.
-STEPS_PER_SECOND = 10**8
 # A truth wider than this share of a bound cannot judge against it.
 TRUTH_SHARE = 16
 # At an error of one the answer zero would do as well: such a bound forbids nothing.
@@ -71,7 +64,12 @@ def judge(
         if status is Status.FAIL and (is_explained or not attainable[worst] <= tolerance):
             reason = reason.with_remark(Cause.FINE_TOLERANCE, _TOO_FINE)
     if status is Status.VACUOUS:
-        reason = reason.with_remark(Cause.VACUOUS, _vacuous(errors, bounds))
+        open_at = f"the bound reaches {float(np.max(bounds)):.2g}, and the answer zero is off by 1"
+        instead = "; only the conserved quantities are gated there" if errors.is_state else ""
+        far = (
+            f"rounding alone may carry {errors.quantity} as far as it is large: {open_at}{instead}"
+        )
+        reason = reason.with_remark(Cause.VACUOUS, far)
     if status is Status.UNDECIDED:
         wide = f"the truth is wider than 1/{TRUTH_SHARE} of the bound"
         reason = reason.with_remark(Cause.WIDE_TRUTH, wide)
@@ -115,21 +113,13 @@ def _asked(bounds: Floats) -> int:
     return int(lost[0]) if len(lost) else len(bounds)
 
 
-def _vacuous(errors: Errors, bounds: Floats) -> str:
-    """Return why the gate forbids nothing, and what is gated in its place."""
-    open_at = f"the bound reaches {float(np.max(bounds)):.2g}, and the answer zero is off by 1"
-    instead = "; only the conserved quantities are gated there" if errors.is_state else ""
-    return f"rounding alone may carry {errors.quantity} as far as it is large: {open_at}{instead}"
-
-
 def _ratios(errors: Floats, attainable: Floats) -> Floats:
     """Error over attainable: 0 for no error, infinite where the floor is zero and the error not."""
     with np.errstate(all="ignore"):
         held = np.where(attainable > 0, errors / attainable, np.inf + 0 * errors)
-    found: Floats = np.where(errors == 0, 0.0, held)
-    return found
+    return np.where(errors == 0, 0.0, held)
 
 
 def index_of_largest(values: Floats) -> int:
-    """The index of the largest value, or of the first NaN."""
+    """Return the index of the largest value, or of the first NaN."""
     return int(np.argmax(values))

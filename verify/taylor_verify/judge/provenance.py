@@ -1,4 +1,4 @@
-"""What a published number can be traced to: versions, processor, command and scene."""
+"""Provenance of a published number: versions, processor, command and scene."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def versions() -> dict[str, str]:
 
 @lru_cache
 def processor() -> str:
-    """The processor's own name where the system tells it, else its architecture."""
+    """Return the processor's own name where the system tells it, else its architecture."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:

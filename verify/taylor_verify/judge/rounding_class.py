@@ -39,7 +39,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
@@ -72,6 +72,12 @@ class Departure:
     solver: str = ""
     setting: str = ""
 
+    @classmethod
+    def of(cls, verdict: Verdict, expected: str, got: str, what: str = "") -> Departure:
+        """Return the departure of a row, or of its number ``what``."""
+        row = verdict.scene, verdict.rung, verdict.quantity
+        return cls(*row, what, expected, got, verdict.solver, verdict.setting)
+
     def __str__(self) -> str:
         place = " ".join(part for part in (self.scene, self.rung, self.quantity, self.what) if part)
         # Several files of one scene have rows that differ in this alone.
@@ -81,23 +87,23 @@ class Departure:
 
 @dataclass(frozen=True)
 class Comparison:
-    """How many rows were held against published ones, and what departed from them."""
+    """The number of rows that were compared with published ones, and the departures from them."""
 
     compared: int
     departures: tuple[Departure, ...]
 
 
 def compare(published: Iterable[Verdict], made: Iterable[Verdict]) -> Comparison:
-    """Hold every row made against its published one.
+    """Compare every row made with its published one.
 
     A row of one side alone is a departure. Only runs on a rung that either machine does not have are
     left out: there is nothing to compare.
     """
     rows = paired(published, made)
-    missing = [_row(verdict, "this row", "none") for verdict in rows.missing]
-    extra = [_row(verdict, "no such row", "one") for verdict in rows.extra]
-    found = [departure for pair in rows.shared for departure in departures(*pair)]
-    return Comparison(len(rows.shared), (*missing, *extra, *found))
+    found = [Departure.of(verdict, "this row", "none") for verdict in rows.missing]
+    found += [Departure.of(verdict, "no such row", "one") for verdict in rows.extra]
+    found += [departure for pair in rows.shared for departure in departures(*pair)]
+    return Comparison(len(rows.shared), tuple(found))
 
 
 @dataclass(frozen=True)
@@ -114,11 +120,13 @@ class Paired:
 
 
 def paired(published: Iterable[Verdict], made: Iterable[Verdict]) -> Paired:
-    """Every row beside the one of the same scene, solver, setting, rung and quantity."""
+    """Return every row beside the one of the same scene, solver, setting, rung and quantity."""
     old, new = list(published), list(made)
     unavailable = {_run(v) for v in (*old, *new) if v.verdict is Status.UNAVAILABLE}
-    before = {_key(v): v for v in old if _run(v) not in unavailable}
-    after = {_key(v): v for v in new if _run(v) not in unavailable}
+    before, after = (
+        {(_run(v), v.quantity): v for v in rows if _run(v) not in unavailable}
+        for rows in (old, new)
+    )
     return Paired(
         missing=tuple(v for key, v in before.items() if key not in after),
         extra=tuple(v for key, v in after.items() if key not in before),
@@ -127,92 +135,59 @@ def paired(published: Iterable[Verdict], made: Iterable[Verdict]) -> Paired:
     )
 
 
+def _run(verdict: Verdict) -> Key:
+    return verdict.scene, verdict.solver, verdict.setting, verdict.rung
+
+
 def departures(old: Verdict, new: Verdict) -> Iterator[Departure]:
-    """Everything by which one row is out of the class of its published one."""
+    """Yield everything by which one row is out of the class of its published one."""
     if old.provenance.get("scene") != new.provenance.get("scene"):
         expected = "the scene as it was published (`make reports` publishes anew)"
-        yield departure(new, "", expected, "another text")
+        yield Departure.of(new, expected, "another text")
     for name in _SAME:
         was, now = getattr(old, name), getattr(new, name)
         if was != now:
-            yield departure(new, name, str(was), str(now))
-    yield from _unlike_costs(old, new)
-    if old.at == new.at:
-        for name in ("attainable", "bound"):
-            yield from _unlike(old, new, name, getattr(old, name), getattr(new, name))
-    for name in ERRORS:
-        yield from _unlike_errors(old, new, name)
-
-
-def _unlike_costs(old: Verdict, new: Verdict) -> Iterator[Departure]:
-    """Steps, and their order as the evaluations of each."""
-    yield from _unlike(old, new, "steps", old.steps, new.steps, FEW_STEPS)
+            yield Departure.of(new, str(was), str(now), name)
+    sizes: list[tuple[str, Any, Any]] = [("steps", old.steps, new.steps)]
     if old.steps and new.steps:
-        each = (old.evaluations / old.steps, new.evaluations / new.steps)
-        yield from _unlike(old, new, "evaluations a step", *each)
+        # Their order.
+        each = old.evaluations / old.steps, new.evaluations / new.steps
+        sizes.append(("evaluations a step", *each))
+    if old.at == new.at:
+        sizes += [(n, getattr(old, n), getattr(new, n)) for n in ("attainable", "bound")]
+    for name, was, now in sizes:
+        if not _is_like(was, now, FEW_STEPS if name == "steps" else 0.0):
+            yield Departure.of(new, f"{told(was)} within {SLACK:.0%}", told(now), name)
+    # The maxima may be of unlike times; the later one, of more steps, has the larger floor.
+    attainable = max(old.attainable or 0.0, new.attainable or 0.0)
+    for name in ERRORS:
+        was, now = finite(old, name), finite(new, name)
+        level = LEVEL * (1.0 if name == "ratio" else attainable)
+        if has_grown(was, now, level) or has_grown(now, was, level):
+            expected = f"{told(was)} within a factor {FACTOR:g} (below {level:.3g} as {level:.3g})"
+            yield Departure.of(new, expected, told(now), name)
 
 
-def _unlike(
-    old: Verdict,
-    new: Verdict,
-    name: str,
-    was: float | None,
-    now: float | None,
-    few: float = 0.0,
-) -> Iterator[Departure]:
-    """A number that is not within a tenth, or ``few``, of what it was."""
+def _is_like(was: float | None, now: float | None, few: float) -> bool:
+    """Return True for a number within a tenth, or ``few``, of what it was."""
     if was is None or now is None:
-        same = was is now
-    else:
-        same = abs(now - was) <= max(few, SLACK * min(abs(now), abs(was)))
-    if not same:
-        expected = f"{told(was)} within {SLACK:.0%}"
-        yield departure(new, name, expected, told(now))
-
-
-def _unlike_errors(old: Verdict, new: Verdict, name: str) -> Iterator[Departure]:
-    was, now = finite(old, name), finite(new, name)
-    level = LEVEL * (1.0 if name == "ratio" else _attainable(old, new))
-    if has_grown(was, now, level) or has_grown(now, was, level):
-        expected = f"{told(was)} within a factor {FACTOR:g} (below {level:.3g} as {level:.3g})"
-        yield departure(new, name, expected, told(now))
+        return was is now
+    return abs(now - was) <= max(few, SLACK * min(abs(now), abs(was)))
 
 
 def finite(verdict: Verdict, name: str) -> float | None:
-    """A number of a verdict as its row has it: None for NaN and the infinities."""
+    """Return a number of a verdict as its row has it: None for NaN and the infinities."""
     value: float | None = getattr(verdict, name)
     return value if value is not None and math.isfinite(value) else None
 
 
 def has_grown(was: float | None, now: float | None, level: float) -> bool:
-    """Whether an error has left its class upwards; to be no finite number is beyond every error."""
+    """Return True if an error left its class upwards; to be no finite number is beyond every error."""
     if was is None or now is None:
         return now is None and was is not None
     return not now <= FACTOR * max(was, level)
 
 
-def _attainable(old: Verdict, new: Verdict) -> float:
-    """The maxima may be of unlike times; the later one, of more steps, has the larger floor."""
-    return max(old.attainable or 0.0, new.attainable or 0.0)
-
-
 def told(value: float | None) -> str:
+    """Return a number in three digits, or that it is none."""
     return "no finite number" if value is None else f"{value:.3g}"
-
-
-def departure(verdict: Verdict, what: str, expected: str, got: str) -> Departure:
-    """Return the departure of a row, or of its number ``what``."""
-    row = verdict.scene, verdict.rung, verdict.quantity
-    return Departure(*row, what, expected, got, verdict.solver, verdict.setting)
-
-
-def _row(verdict: Verdict, expected: str, got: str) -> Departure:
-    return departure(verdict, "", expected, got)
-
-
-def _run(verdict: Verdict) -> Key:
-    return verdict.scene, verdict.solver, verdict.setting, verdict.rung
-
-
-def _key(verdict: Verdict) -> tuple[Key, str]:
-    return _run(verdict), verdict.quantity

@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from fractions import Fraction
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from math import fsum, inf
 from typing import Any
 
 import numpy as np
 
 from taylor_verify.exact.solution import Solution
+from taylor_verify.judge.errors.balances import ClockWork
+from taylor_verify.judge.errors.shift import Shift
 from taylor_verify.judge.errors.state import Errors, Floats
-from taylor_verify.judge.gates import Finding
+from taylor_verify.judge.floor.attainable import Floor
+from taylor_verify.judge.floor.steps import Steps
+from taylor_verify.judge.gates import judge
 from taylor_verify.judge.provenance import provenance
+from taylor_verify.judge.tolerances import Tolerances
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.doubles import Doubles, four_digits
+from taylor_verify.records.reason import Carried, Reason
 from taylor_verify.records.record import GateRecord, Record
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
@@ -22,6 +28,8 @@ from taylor_verify.scenes.precision import Rung, hexadecimal
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
+
+Gated = tuple[Verdict, GateRecord]
 
 
 def verdict_on(
@@ -47,25 +55,125 @@ def verdict_on(
     )
 
 
-def numbers_of(
-    errors: Errors, attainable: Floats, finding: Finding, instants: Sequence[Fraction]
-) -> dict[str, Any]:
-    """Return the numbers of a verdict on a compared quantity, by the names of its fields."""
-    worst = finding.worst
-    return {
-        "max": float(errors.doubles[worst]),
-        "mean": _mean(errors.doubles),
-        "final": float(errors.doubles[-1]),
-        "at": float(instants[worst]),
-        "unit": errors.unit,
-        "bound": finding.bound,
-        "tolerance": finding.tolerance,
-        "reason": finding.reason,
-        "attainable": float(attainable[worst]),
-        "ratio": finding.ratio,
-        "ratio_at": float(instants[finding.ratio_at]),
-        "change": errors.change,
-    }
+@dataclass(frozen=True)
+class Run:
+    """The problem, the solver and its answer: what is the same in every verdict of a run."""
+
+    problem: Problem
+    solver: Solver
+    trajectory: Trajectory
+    tolerances: Tolerances
+
+    def verdict(self, quantity: str, status: Status, **numbers: Any) -> Verdict:
+        """Return the verdict on a quantity, with the costs of the answer."""
+        problem, trajectory = self.problem, self.trajectory
+        return verdict_on(
+            *(problem.scene, self.solver, problem.rung, quantity, status, trajectory.outcome),
+            roundoff=float(problem.rung.unit_roundoff),
+            steps=trajectory.steps,
+            evaluations=trajectory.evaluations,
+            seconds=trajectory.seconds,
+            **numbers,
+        )
+
+    def gated(
+        self,
+        errors: Errors,
+        attainable: Floats,
+        reason: Reason,
+        shift: Shift | None = None,
+        at_samples: bool = True,
+    ) -> Gated:
+        """Return the verdict on errors, and the terms of their gate to the four digits of a picture.
+
+        A ``shift`` that roundings alone have made is another one on every machine: it is no reason.
+        """
+        finding = judge(errors, attainable, reason, self.tolerances.of(errors.quantity))
+        is_told = not (finding.status is Status.PASS and finding.is_rounding)
+        reason, shifts, late = finding.reason, tuple[float, ...](), dict[str, Any]()
+        if shift is not None:
+            late = shift.numbers()
+            reason = replace(reason, shift=shift.terms()) if is_told else reason
+            shifts = shift.at_samples if is_told and at_samples else ()
+        instants, worst = self.problem.given.clock.instants, finding.worst
+        verdict = self.verdict(
+            errors.quantity,
+            finding.status,
+            max=float(errors.doubles[worst]),
+            mean=_mean(errors.doubles),
+            final=float(errors.doubles[-1]),
+            at=float(instants[worst]),
+            unit=errors.unit,
+            bound=finding.bound,
+            tolerance=finding.tolerance,
+            reason=reason,
+            attainable=float(attainable[worst]),
+            ratio=finding.ratio,
+            ratio_at=float(instants[finding.ratio_at]),
+            change=errors.change,
+            **late,
+        )
+        gate = GateRecord(
+            quantity=errors.quantity,
+            unit=errors.unit,
+            errors=four_digits(errors.doubles),
+            attainable=four_digits(attainable),
+            truth_radius=_bound(float(np.max(errors.widths))),
+            shifts=four_digits(shifts),
+        )
+        return verdict, gate
+
+    def gated_in_full(self, errors: Errors, attainable: Floats, reason: Reason) -> Gated:
+        """Return the verdict on errors, and the terms of their gate to the last digit."""
+        verdict, gate = self.gated(errors, attainable, reason)
+        full, width = Doubles(errors.doubles), float(np.max(errors.widths))
+        gate = replace(gate, errors=full, attainable=Doubles(attainable), truth_radius=width)
+        # Of an answer from elsewhere the seconds are not known.
+        return replace(verdict, seconds=None), gate
+
+
+@dataclass(frozen=True)
+class Gates:
+    """The gates of a run: errors beside the roundoff ``floor`` of so many ``steps``."""
+
+    run: Run
+    floor: Floor
+    steps: Steps
+
+    def state(self, errors: Errors, shift: Shift | None, at_samples: bool) -> Gated:
+        """Return the verdict on a state quantity, with the shift of time behind its error."""
+        attainable = self.floor.of_state(errors)
+        reason = self._reason(errors, attainable, Carried.ORBIT)
+        return self.run.gated(errors, attainable, reason, shift, at_samples)
+
+    def conserved(self, errors: Errors, attainable: Floats, work: ClockWork | None) -> Gated:
+        """Return the verdict on a conserved quantity.
+
+        ``attainable`` is what rounding the momenta leaves; under a clock its roundings do ``work`` too.
+        """
+        if work is not None:
+            (scale,) = errors.parts.values()
+            steps, times = max(self.steps.counted, len(self.floor.times)), self.floor.times
+            roundoff = self.run.problem.rung.unit_roundoff
+            attainable = np.hypot(attainable, work.drift(roundoff, steps, times, scale))
+        reason = self._reason(errors, attainable, Carried.GRADIENT, work is not None)
+        return self.run.gated(errors, attainable, reason)
+
+    def unit_quaternion(self, excess: Floats | None) -> list[Gated]:
+        """Return the row of quaternions that are no unit quaternions; none where they are to roundoff.
+
+        ``excess`` (n,) is |q| - 1; a length that is not finite is the attitude's failure.
+        """
+        if excess is None or not np.isfinite(excess).all():
+            return []
+        row = self.run.gated(*self.floor.lengths(excess))
+        return [row] if row[0].verdict is Status.FAIL else []
+
+    def _reason(
+        self, errors: Errors, attainable: Floats, carried: Carried, clock_work: bool = False
+    ) -> Reason:
+        terms = self.floor.terms(attainable, errors, carried)
+        return Reason(floor=replace(terms, clock_work=clock_work), claim=self.steps.claim)
 
 
 def _mean(errors: Floats) -> float:
@@ -76,46 +184,24 @@ def _mean(errors: Floats) -> float:
         return inf
 
 
-def gate_record(errors: Errors, attainable: Floats, shifts: Iterable[float] = ()) -> GateRecord:
-    """Return the terms of a gate at every sample, to the four digits that a picture needs."""
-    return GateRecord(
-        quantity=errors.quantity,
-        unit=errors.unit,
-        errors=four_digits(errors.doubles),
-        attainable=four_digits(attainable),
-        truth_radius=_bound(float(np.max(errors.widths))),
-        shifts=four_digits(shifts),
-    )
-
-
 def _bound(radius: float) -> float:
     """Three digits, and not less: the rest tells how the truth was come by, which may differ by run."""
     return float(f"{1.006 * radius:.3g}")
 
 
-def run_record(
-    problem: Problem,
-    solver: str,
-    trajectory: Trajectory,
-    exact: Solution,
-    digits: int,
-    gates: tuple[GateRecord, ...],
-) -> Record:
+def run_record(run: Run, exact: Solution, digits: int, gates: Iterable[GateRecord]) -> Record:
     """Return the record of a run whose quantities were compared."""
+    problem, trajectory = run.problem, run.trajectory
     scene, units = problem.scene, problem.units
     return Record(
         scene=scene.name,
         title=scene.title,
-        solver=solver,
+        solver=run.solver.name,
         rung=problem.rung.name,
         track=tuple(sorted(scene.track)),
         equations=problem.form.text(),
         parameters={n: hexadecimal(value) for n, value in problem.parameter.items()},
-        units={
-            "time": str(units.time),
-            "momentum": str(units.momentum),
-            "impulse": str(units.impulse),
-        },
+        units={n: str(getattr(units, n)) for n in ("time", "momentum", "impulse")},
         regime=exact.regime,
         route=exact.route,
         truth_digits=digits,
@@ -123,5 +209,5 @@ def run_record(
         steps=trajectory.steps,
         unit_roundoff=float(problem.rung.unit_roundoff),
         times=Doubles(float(t) for t in problem.given.clock.instants),
-        gates=gates,
+        gates=tuple(gates),
     )

@@ -6,8 +6,7 @@ U   velocity of the body's origin, body axes        Omega   angular velocity, bo
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from mpmath import mp
@@ -18,12 +17,9 @@ from taylor_verify.scenes.bodies import Body, ImmersedBody
 from taylor_verify.scenes.tensors import Matrix, transpose
 
 Array = np.ndarray[Any, Any]
-# U or Omega of a body at every sample.
-Velocity = Callable[[Body, Quantities], Any]
 
 
-@dataclass(frozen=True)
-class VelocityForms:
+class VelocityForms(NamedTuple):
     """Each velocity, by its columns, as a sum of matrices times momenta; ``mass_matrix`` leads back."""
 
     forms: Mapping[str, Mapping[str, Matrix]]
@@ -54,19 +50,15 @@ def velocity_forms(body: Body) -> VelocityForms:
     return _FORMS[type(body)](body)
 
 
-def angular_velocity(body: Body, quantities: Quantities) -> Any:
-    """Return Omega at every sample, from the exact coefficients."""
-    return _velocity("omega", body, quantities)
-
-
-def linear_velocity(body: Body, quantities: Quantities) -> Any:
-    """Return U at every sample, from the exact coefficients."""
-    return _velocity("linear_velocity", body, quantities)
+def velocity(group: str, body: Body, quantities: Quantities) -> Any:
+    """Return a velocity at every sample, by the name of its columns, from the exact coefficients."""
+    linear = velocity_forms(body).forms[group].items()
+    return sum(quantities[name] @ exact_matrix(matrix).T for name, matrix in linear)
 
 
 def velocities(body: Body, quantities: Quantities) -> dict[str, Any]:
     """Return every velocity at every sample, by the names of their columns."""
-    return {group: _velocity(group, body, quantities) for group in velocity_forms(body).forms}
+    return {group: velocity(group, body, quantities) for group in VELOCITIES}
 
 
 def momenta(body: Body, quantities: Quantities) -> dict[str, Any]:
@@ -76,11 +68,6 @@ def momenta(body: Body, quantities: Quantities) -> dict[str, Any]:
     return {name: both[:, 3 * k : 3 * k + 3] for k, name in enumerate(body.STATE.MOVING)}
 
 
-def _velocity(group: str, body: Body, quantities: Quantities) -> Any:
-    linear = velocity_forms(body).forms[group].items()
-    return sum(quantities[name] @ exact_matrix(matrix).T for name, matrix in linear)
-
-
 def exact_matrix(matrix: Sequence[Sequence[Any]]) -> Array:
-    """A matrix of rationals in the ambient precision."""
+    """Return a matrix of rationals in the ambient precision."""
     return np.array([[mp.convert(entry) for entry in row] for row in matrix], dtype=object)

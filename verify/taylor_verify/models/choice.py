@@ -1,4 +1,4 @@
-"""Which equations a rounded body needs: the fewest operations that are exactly its own.
+"""Choice of the equations of a rounded body: the fewest operations that are exactly its own.
 
 Every decision is one between rationals, the numbers of the rung themselves: a coefficient is left out
 if it is zero, two are one if they are equal, and a difference is a coefficient if the rung holds it.
@@ -26,21 +26,20 @@ class Choice:
     because: tuple[str, ...]
 
     def form(self, states: tuple[str, ...]) -> Form:
-        """The equations in these states, without what is zero or constant.
+        """Return the equations in these states, without what is zero or constant.
 
         Of the impulses those stay states that something changes; H stays whole.
         """
-        present = tuple(n for n, value in self.numbers.items() if n not in states and value)
-        form = Form(self.equations, states, present)
+        present = [name for name, value in self.numbers.items() if value]
+        form = Form(self.equations, states, tuple(n for n in present if n not in states))
         still = form.constants()
-        moving = tuple(n for n in states if n not in still)
-        kept = tuple(n for n, value in self.numbers.items() if n not in moving and value)
-        form = replace(form, states=moving, parameters=kept)
+        moving = tuple(name for name in states if name not in still)
+        form = replace(form, states=moving, parameters=tuple(n for n in present if n not in moving))
         return replace(form, parameters=form.entering())
 
 
 def constants_told(asked: tuple[str, ...], form: Form) -> tuple[str, ...]:
-    """Which components are no states, as nothing changes them."""
+    """Return a sentence on the components that are no states, as nothing changes them."""
     still = [name for name in asked if name not in form.states]
     verb = "is a constant" if len(still) == 1 else "are constants"
     return (f"{', '.join(still)} {verb}, and no state",) if still else ()

@@ -20,7 +20,7 @@ from taylor_verify.models.form import Named, frame_rates, labelled
 
 
 def angular_velocity(H: Terms, K: Sequence[Terms]) -> list[Any]:
-    """omega = K H, body axes."""
+    """Return omega = K H, body axes."""
     return apply(K, H)
 
 
@@ -36,13 +36,13 @@ def momentum_rate(H: Terms, K: Sequence[Terms], M: Terms) -> list[Any]:
 
 
 def differences(K: Sequence[Terms]) -> list[Any]:
-    """D, in the arithmetic of K."""
+    """Return D, in the arithmetic of K."""
     k1, k2, k3 = (K[i][i] for i in range(3))
     return [minus(k3, k2), minus(k1, k3), minus(k2, k1)]
 
 
 def principal_rate(H: Terms, D: Terms, summed: int | None = None) -> list[Any]:
-    """H x K H in principal axes, where three products of the state serve for six.
+    """Return H x K H in principal axes, where three products of the state serve for six.
 
     The difference at the place ``summed``, if there is one, is minus the sum of the two others.
     """
@@ -55,7 +55,7 @@ def principal_rate(H: Terms, D: Terms, summed: int | None = None) -> list[Any]:
 
 
 def turning(H: Terms, deviation: Sequence[Terms]) -> list[Any]:
-    """H x K H for K = deviation + any sphere."""
+    """Return H x K H for K = deviation + any sphere."""
     return cross(H, apply(deviation, H))
 
 
@@ -80,10 +80,13 @@ def _is_diagonal(K: Sequence[Terms]) -> bool:
 
 
 def euler_equations(n: Named) -> dict[str, Any]:
-    """H' = H x K H + M, and the attitude where it is tracked."""
-    H, K = n.vector("H"), n.symmetric("K")
-    rates = labelled("H", momentum_rate(H, K, n.vector("M")))
-    return rates | frame_rates(n, angular_velocity(H, K), U=None)
+    """Return H' = H x K H + M, and the rate of the attitude where it is tracked."""
+    return _rates(n, momentum_rate(n.vector("H"), n.symmetric("K"), n.vector("M")))
+
+
+def _rates(n: Named, H_rate: list[Any]) -> dict[str, Any]:
+    omega = angular_velocity(n.vector("H"), n.symmetric("K"))
+    return labelled("H", H_rate) | frame_rates(n, omega, U=None)
 
 
 @dataclass(frozen=True)
@@ -101,8 +104,7 @@ class PrincipalEuler:
         for i in self.formed:
             D[i - 1] = differences(K)[i - 1]
         place = None if self.summed is None else self.summed - 1
-        rates = labelled("H", add(principal_rate(H, D, place), n.vector("M")))
-        return rates | frame_rates(n, angular_velocity(H, K), U=None)
+        return _rates(n, add(principal_rate(H, D, place), n.vector("M")))
 
 
 @dataclass(frozen=True)
@@ -118,8 +120,7 @@ class TensorEuler:
         for i in (1, 2):
             kept = minus(K[i - 1][i - 1], K[2][2]) if i in self.formed else n[f"D{i}{i}"]
             deviation[i - 1][i - 1] = kept
-        rates = labelled("H", add(turning(H, deviation), n.vector("M")))
-        return rates | frame_rates(n, angular_velocity(H, K), U=None)
+        return _rates(n, add(turning(H, deviation), n.vector("M")))
 
 
 # The form of the text.

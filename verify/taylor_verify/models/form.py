@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, Protocol, runtime_checkable
+from typing import Any
 
 from taylor_verify.models.algebra import ABSENT, is_absent
 from taylor_verify.models.frame import attitude_rate, centre_rate
@@ -40,15 +40,6 @@ class Named(dict[str, Any]):
 Equations = Callable[[Named], Mapping[str, Any]]
 
 
-@runtime_checkable
-class Abbreviated(Protocol):
-    """Equations that are too long to be read as they are, and have names for parts of themselves."""
-
-    def lines(self, n: Named) -> Mapping[str, Any]:
-        """What to write for each name on a left side, a rate (``H1'``) or a part (``M1``)."""
-        ...
-
-
 @dataclass(frozen=True)
 class Form:
     """Equations together with the names of the states and parameters that enter them.
@@ -62,17 +53,18 @@ class Form:
     parameters: tuple[str, ...]
 
     def rates(self, state: Sequence[Any], parameters: Sequence[Any]) -> list[Any]:
-        """d state/dt, in the arithmetic of the arguments; the int 0 for a rate that is absent."""
+        """Return d state/dt, in the arithmetic of the arguments; the int 0 for a rate that is absent."""
         named = Named(zip(self.states + self.parameters, [*state, *parameters], strict=True))
         rates = self.equations(named)
         return [rates[name] for name in self.states]
 
     def text(self) -> tuple[str, ...]:
-        """The equations as they are built, a line for each state: what is absent is not there.
+        """Return the equations as they are built, a line for each state: what is absent is not there.
 
-        Where they are abbreviated there is a line for each of the parts as well.
+        Equations that are too long to be read as they are have a method ``lines`` with names for parts of
+        themselves: what to write for each rate (``H1'``) and each part (``M1``).
         """
-        if isinstance(self.equations, Abbreviated):
+        if hasattr(self.equations, "lines"):
             names = self.states + self.parameters
             lines = self.equations.lines(Named(zip(names, map(Symbol, names), strict=True)))
             return tuple(f"{name} = {value}" for name, value in lines.items())
@@ -80,44 +72,36 @@ class Form:
         return tuple(f"{name}' = {rate}" for name, rate in rates)
 
     def written(self) -> str:
-        """All rates in full."""
+        """Return all rates in full."""
         return " ".join(map(str, self._symbolic()))
 
     def operations(self) -> dict[str, int]:
-        """The distinct sums, products and quotients of one evaluation of the rates."""
+        """Return the number of distinct sums, products and quotients of one evaluation of the rates."""
         return operations(self._symbolic())
 
     def _symbolic(self) -> list[Any]:
         states, parameters = map(Symbol, self.states), map(Symbol, self.parameters)
         return self.rates(list(states), list(parameters))
 
+    # Forms are few and scenes are many: a family of bodies asks for one and the same.
+    @lru_cache(maxsize=256)  # noqa: B019 (a form is a value, and small)
     def constants(self) -> tuple[str, ...]:
-        """The impulses that no term changes: x1 to y3, as far as their rates are absent.
+        """Return the impulses that no term changes: x1 to y3, as far as their rates are absent.
 
         The momentum of a rigid body stays a state all the same: whoever steps by himself moves it.
         """
-        return _constants(self)
+        rates = zip(self.states, self._symbolic(), strict=True)
+        return tuple(name for name, rate in rates if name[0] in "xy" and is_absent(rate))
 
+    @lru_cache(maxsize=256)  # noqa: B019
     def entering(self) -> tuple[str, ...]:
-        """The parameters that occur in the equations: with y3 = 0, for one, Clebsch's r' does not."""
-        return _entering(self)
-
-
-# Forms are few and scenes are many: a family of bodies asks for one and the same.
-@lru_cache(maxsize=256)
-def _constants(form: Form) -> tuple[str, ...]:
-    rates = zip(form.states, form._symbolic(), strict=True)
-    return tuple(name for name, rate in rates if name[0] in "xy" and is_absent(rate))
-
-
-@lru_cache(maxsize=256)
-def _entering(form: Form) -> tuple[str, ...]:
-    written = set(re.findall(r"[A-Za-z]\d*'?", form.written()))
-    return tuple(name for name in form.parameters if name in written)
+        """Return the parameters that occur: with y3 = 0, for one, Clebsch's r' does not."""
+        written = set(re.findall(r"[A-Za-z]\d*'?", self.written()))
+        return tuple(name for name in self.parameters if name in written)
 
 
 def frame_rates(n: Named, omega: Sequence[Any], U: Sequence[Any] | None) -> dict[str, Any]:
-    """The rates of the attitude and of the centre, as far as these are states."""
+    """Return the rates of the attitude and of the centre, as far as these are states."""
     rates: dict[str, Any] = {}
     if "e0" in n:
         attitude = attitude_rate(n.quaternion(), omega)
@@ -127,6 +111,6 @@ def frame_rates(n: Named, omega: Sequence[Any], U: Sequence[Any] | None) -> dict
     return rates
 
 
-def labelled(letter: str, vector: Sequence[Any]) -> dict[str, Any]:
-    """The components of a vector by name, counted from 1."""
-    return {f"{letter}{i}": component for i, component in enumerate(vector, start=1)}
+def labelled(letter: str, vector: Sequence[Any], mark: str = "") -> dict[str, Any]:
+    """Return the components of a vector by name, counted from 1, with a mark behind the number."""
+    return {f"{letter}{i}{mark}": component for i, component in enumerate(vector, start=1)}

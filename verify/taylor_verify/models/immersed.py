@@ -63,9 +63,8 @@ class Immersed(Mechanics[ImmersedBody, Impulse]):
 
     def units(self, body: ImmersedBody, start: Impulse, span: Fraction) -> Units:
         # x keeps its norm without a force; y may start at zero and take up all the energy.
-        state, motion = start.moving, body.manufactured
-        if motion is not None:
-            state = motion.reach
+        motion = body.manufactured
+        state = start.moving if motion is None else motion.reach
         doubled_energy = tensors.dot(state, tensors.apply(body.energy_matrix, state))
         spun_up = root(doubled_energy / largest(body.angular)) if doubled_energy else Fraction(0)
         impulse = size(state[:3]) or binary(size(body.force) * span)
@@ -81,7 +80,7 @@ class Immersed(Mechanics[ImmersedBody, Impulse]):
 
 
 def chosen_equations(numbers: Numbers) -> Choice:
-    """From x, y, X, L and the 21 coefficients."""
+    """Return the equations of x, y, X, L and the 21 coefficients."""
     axis = axis_of_symmetry(numbers)
     loads_and_state = {n: v for n, v in numbers.items() if n[0] not in "ABC"}
     if axis is None:
@@ -89,12 +88,8 @@ def chosen_equations(numbers: Numbers) -> Choice:
         left_out = (f"{zeros} of 21 coefficients are zero",) if zeros else ()
         return Choice(kirchhoff_equations, {**loads_and_state, **numbers}, {}, left_out)
     across = axis % 3 + 1
-    six = {
-        name: numbers[f"{matrix}{i}{i}"]
-        for name, (matrix, i) in zip(
-            CLEBSCH_NAMES, ((m, i) for m in "ABC" for i in (across, axis)), strict=True
-        )
-    }
+    diagonals = [numbers[f"{matrix}{i}{i}"] for matrix in "ABC" for i in (across, axis)]
+    six = dict(zip(CLEBSCH_NAMES, diagonals, strict=True))
     equal = tuple(n for n in "pqr" if six[n] and six[n] == six[f"{n}'"])
     replaced = {f"{n}'": six[f"{n}'"] for n in equal}
     kept = {n: v for n, v in six.items() if n not in replaced}

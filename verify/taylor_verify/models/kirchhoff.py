@@ -19,8 +19,8 @@ from taylor_verify.models.algebra import (
     add,
     apply,
     cross,
+    dot,
     minus,
-    plus,
     times,
     transpose,
 )
@@ -65,11 +65,9 @@ def clebsch_rates(
     x1y3, x2y3, y1y3, y2y3 = times(x1, y3), times(x2, y3), times(y1, y3), times(y2, y3)
 
     def sum_of(positive: Sequence[Terms], negative: Sequence[Terms]) -> Any:
-        plus_terms, minus_terms = _uncancelled(positive, negative)
-        total: Any = 0
-        for coefficient, term in plus_terms:
-            total = plus(total, times(coefficient, term))
-        for coefficient, term in minus_terms:
+        kept, taken = _uncancelled(positive, negative)
+        total = dot(*zip(*kept, strict=True)) if kept else ABSENT
+        for coefficient, term in taken:
             total = minus(total, times(coefficient, term))
         return total
 
@@ -96,19 +94,12 @@ def _uncancelled(
     positive: Sequence[Terms], negative: Sequence[Terms]
 ) -> tuple[list[Terms], list[Terms]]:
     """The products without those that occur with both signs: the same coefficient, the same term."""
-    left, kept = list(negative), []
-    for one in positive:
-        twin = next((i for i, other in enumerate(left) if _are_one(one, other)), None)
-        if twin is None:
-            kept.append(one)
-        else:
-            del left[twin]
-    return kept, left
-
-
-def _are_one(one: Terms, other: Terms) -> bool:
-    """Identity, not equality: two numbers may be equal by chance, and in one body only."""
-    return one[0] is other[0] and one[1] is other[1]
+    # Identity, not equality: two numbers may be equal by chance, and in one body only.
+    added, taken = ([(id(c), id(term)) for c, term in terms] for terms in (positive, negative))
+    return (
+        [term for key, term in zip(added, positive, strict=True) if key not in taken],
+        [term for key, term in zip(taken, negative, strict=True) if key not in added],
+    )
 
 
 # The equations of a form.
@@ -120,20 +111,6 @@ def kirchhoff_equations(n: Named) -> dict[str, Any]:
     U, Omega = velocities(x, y, n.symmetric("A"), n.matrix("B"), n.symmetric("C"))
     x_rate, y_rate = impulse_rates(x, y, U, Omega, n.vector("X"), n.vector("L"))
     return labelled("x", x_rate) | labelled("y", y_rate) | frame_rates(n, Omega, U)
-
-
-def clebsch_equations(n: Named) -> dict[str, Any]:
-    """Clebsch's T about axis 3; y3 is a state only where a couple turns it."""
-    x, y = n.vector("x"), n.vector("y")
-    six = [n[name] for name in CLEBSCH_NAMES]
-    x_rate, y_rate = clebsch_rates(x, y, six, n.vector("X"), n.vector("L"))
-    p, p_prime, q, q_prime, r, r_prime = six
-    U, Omega = velocities(x, y, _axial(p, p_prime), _axial(q, q_prime), _axial(r, r_prime))
-    return labelled("x", x_rate) | labelled("y", y_rate) | frame_rates(n, Omega, U)
-
-
-def _axial(transverse: Any, axial: Any) -> list[list[Any]]:
-    return [[transverse, 0, 0], [0, transverse, 0], [0, 0, axial]]
 
 
 @dataclass(frozen=True)
@@ -153,7 +130,7 @@ class ClebschAbout:
         ]
         # A cyclic change of names turns the axes and mirrors nothing.
         order = [(self.axis + k) % 3 for k in range(3)]
-        x, y, X, L = ([n.vector(letter)[i] for i in order] for letter in ("x", "y", "X", "L"))
+        x, y, X, L = ([n.vector(letter)[i] for i in order] for letter in "xyXL")
         found = clebsch_rates(x, y, six, X, L)
         x_rate, y_rate = ([rate[order.index(i)] for i in range(3)] for rate in found)
         A, B, C = (self._about(six[k], six[k + 1]) for k in (0, 2, 4))
@@ -163,3 +140,7 @@ class ClebschAbout:
     def _about(self, transverse: Any, axial: Any) -> Sequence[Sequence[Any]]:
         diagonal = [axial if i == self.axis - 1 else transverse for i in range(3)]
         return [[diagonal[i] if i == j else ABSENT for j in range(3)] for i in range(3)]
+
+
+# About axis 3 and with six coefficients; y3 is a state only where a couple turns it.
+clebsch_equations: Final = ClebschAbout()

@@ -14,8 +14,8 @@ A clock that rounding has put off by d, from time s on, does no lasting harm. Fo
 a solution along them, so that the error at t is DH* d, that of the moment, less Phi(t, s) DH* d, which goes
 as any error of H does: with |DH*| the amplitude of the waves, it is of the order of a rounding of H.
 
-The loads are written out by indices and share neither cross product nor tensor form with the equations
-that they load: what is wrong there is not undone here.
+The loads are written out by indices and share no cross product with the equations that they load: what
+is wrong there is not undone here.
 """
 
 from __future__ import annotations
@@ -23,11 +23,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import reduce
+from itertools import product
 from typing import Any, Final
 
-from taylor_verify.models.algebra import ABSENT, Terms, add, is_absent, minus, plus, times
+from taylor_verify.models.algebra import ABSENT, Terms, add, dot, is_absent, minus, plus, times
 from taylor_verify.models.form import Equations, Named, labelled
 from taylor_verify.models.symbol import Symbol
+from taylor_verify.scenes import tensors
 from taylor_verify.scenes.manufactured import Manufactured, Wave
 from taylor_verify.scenes.tensors import Vector
 
@@ -65,16 +68,16 @@ class Loaded:
         return dict(self.free(Named({**n, **loads}))) | self._clock(n)
 
     def _vectors(self) -> Iterator[tuple[str, tuple[str, str, str]]]:
-        """Each momentum with the letters of its motion."""
+        """Return each momentum with the letters of its motion."""
         return zip(self.inverse.momenta, _LETTERS, strict=False)
 
     def lines(self, n: Named) -> dict[str, Any]:
-        """The rates by M, or X and L, these by H*, or x* and y*, and these by the clock."""
+        """Return the rates by M, or X and L, these by H*, or x* and y*, and these by the clock."""
         written: dict[str, Any] = {}
         motion: list[Moved] = []
         for name, letters in self._vectors():
             value, rate = _motion(n, letters, self.waves)
-            parts = [_starred(name, "*", value), _starred(name, "*'", rate)]
+            parts = [labelled(name, value, "*"), labelled(name, rate, "*'")]
             written |= parts[0] | parts[1]
             motion.append((_symbols(parts[0]), _symbols(parts[1])))
         loads = self.inverse.loads(n, *motion)
@@ -91,12 +94,12 @@ class Loaded:
 
 
 def states(motion: Manufactured) -> tuple[str, ...]:
-    """The clock: a cosine and a sine for each wave."""
+    """Return the names of the clock: a cosine and a sine for each wave."""
     return tuple(f"{letter}{k}" for k in range(1, len(motion.waves) + 1) for letter in "uv")
 
 
 def numbers(motion: Manufactured) -> dict[str, Fraction]:
-    """Every parameter of a rounded motion, and the clock at its start.
+    """Return every parameter of a rounded motion, and the clock at its start.
 
     The constant part does not enter: it is what the start, H0 or x0 and y0, leaves of it.
     """
@@ -112,22 +115,19 @@ def numbers(motion: Manufactured) -> dict[str, Fraction]:
     return found
 
 
-def told(motion: Manufactured, inverse: Inverse) -> tuple[str, ...]:
-    """What a reader of the equations should know."""
+def sentences(motion: Manufactured, inverse: Inverse) -> tuple[str, ...]:
+    """Return what a reader of the equations should know."""
     starred = " and ".join(f"{letter}*" for letter in inverse.momenta)
     verb = "is" if len(inverse.momenta) == 1 else "are"
-    told = [f"the loads are those under which {starred} {verb} the motion"]
-    if motion.waves:
-        told.append(f"{', '.join(states(motion))} are states, so that time does not enter")
-    return tuple(told)
+    loads = f"the loads are those under which {starred} {verb} the motion"
+    clock = f"{', '.join(states(motion))} are states, so that time does not enter"
+    return (loads, clock) if motion.waves else (loads,)
 
 
-def begun(waves: Sequence[Wave], start: Vector) -> Manufactured:
-    """The motion of these waves that is exactly there at its start."""
-    constant = start
-    for wave in waves:
-        constant = tuple(c - a for c, a in zip(constant, wave.cosine, strict=True))
-    return Manufactured(constant, tuple(waves))
+def begun(waves: tuple[Wave, ...], start: Vector) -> Manufactured:
+    """Return the motion of these waves that is exactly there at its start."""
+    constant = reduce(tensors.minus, (wave.cosine for wave in waves), start)
+    return Manufactured(constant, waves)
 
 
 # The loads.
@@ -136,7 +136,7 @@ def begun(waves: Sequence[Wave], start: Vector) -> Manufactured:
 def _moment(n: Named, momentum: Moved) -> dict[str, Any]:
     """M_i = H*_i' - e_ijk H*_j K_kl H*_l."""
     (H, H_rate), K = momentum, n.symmetric("K")
-    omega = [_row(K[k], H) for k in range(3)]
+    omega = [dot(K[k], H) for k in range(3)]
     return labelled("M", [minus(H_rate[i], _permuted(i, H, omega)) for i in range(3)])
 
 
@@ -144,8 +144,8 @@ def _force_and_couple(n: Named, linear: Moved, angular: Moved) -> dict[str, Any]
     """X_i = x*_i' - e_ijk x*_j Omega*_k and L_i = y*_i' - e_ijk (y*_j Omega*_k + x*_j U*_k)."""
     (x, x_rate), (y, y_rate) = linear, angular
     A, B, C = n.symmetric("A"), n.matrix("B"), n.symmetric("C")
-    U = [plus(_row(A[k], x), _row(B[k], y)) for k in range(3)]
-    Omega = [plus(_row([B[j][k] for j in range(3)], x), _row(C[k], y)) for k in range(3)]
+    U = [plus(dot(A[k], x), dot(B[k], y)) for k in range(3)]
+    Omega = [plus(dot([B[j][k] for j in range(3)], x), dot(C[k], y)) for k in range(3)]
     X = [minus(x_rate[i], _permuted(i, x, Omega)) for i in range(3)]
     turned = [plus(_permuted(i, y, Omega), _permuted(i, x, U)) for i in range(3)]
     L = [minus(y_rate[i], turned[i]) for i in range(3)]
@@ -156,17 +156,13 @@ EULER_INVERSE: Final = Inverse("H", _moment)
 KIRCHHOFF_INVERSE: Final = Inverse("xy", _force_and_couple)
 
 
-def _starred(letter: str, mark: str, vector: Sequence[Any]) -> dict[str, Any]:
-    return {f"{letter}{i}{mark}": component for i, component in enumerate(vector, start=1)}
-
-
 def _symbols(named: Mapping[str, Any]) -> list[Any]:
-    """Names in place of components, what is absent staying so."""
+    """Return names in place of components, what is absent staying so."""
     return [ABSENT if is_absent(value) else Symbol(name) for name, value in named.items()]
 
 
 def _motion(n: Named, letters: tuple[str, str, str], waves: int) -> tuple[list[Any], list[Any]]:
-    """One vector of the motion, and its rate."""
+    """Return one vector of the motion, and its rate."""
     begin, cosine, sine = letters
     value, rate = n.vector(begin), [ABSENT] * 3
     for k in range(1, waves + 1):
@@ -179,25 +175,11 @@ def _motion(n: Named, letters: tuple[str, str, str], waves: int) -> tuple[list[A
 
 
 def _permuted(i: int, p: Terms, q: Terms) -> Any:
-    """e_ijk p_j q_k, summed over j and k."""
+    """Return e_ijk p_j q_k, summed over j and k."""
     total: Any = ABSENT
-    for sign, j, k in _permutations(i):
-        product = times(p[j], q[k])
-        total = plus(total, product) if sign > 0 else minus(total, product)
-    return total
-
-
-def _permutations(i: int) -> Iterator[tuple[int, int, int]]:
-    """Every (e_ijk, j, k) that is not zero."""
-    for j in range(3):
-        for k in range(3):
-            sign = (i - j) * (j - k) * (k - i) // 2
-            if sign:
-                yield sign, j, k
-
-
-def _row(coefficients: Terms, vector: Terms) -> Any:
-    total: Any = ABSENT
-    for c, component in zip(coefficients, vector, strict=True):
-        total = plus(total, times(c, component))
+    for j, k in product(range(3), repeat=2):
+        sign = (i - j) * (j - k) * (k - i) // 2
+        if sign:
+            term = times(p[j], q[k])
+            total = plus(total, term) if sign > 0 else minus(total, term)
     return total

@@ -7,9 +7,10 @@ so that an error is the solver's and never the data's.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import chain
 from typing import NoReturn
 
 from mpmath import mp
@@ -94,27 +95,26 @@ def pose(scene: Scene, rung: Rung) -> Problem:
     Raises NotRepresentable where the rounded data are no body or the sample times coincide.
     """
     units = natural_units(scene)
-    rounding = _Rounding(rung)
     times = _rounded_times(scene.clock, units, rung)
     start, unit = scene.clock.start, units.time
     clock = Clock(start, Instants(len(times), lambda: (start + t * unit for t in times)))
-    data = _rounded_data(scene, units, rounding)
+    data = _rounded_data(scene, units, _Rounding(rung))
     if scene.body.manufactured is not None:
-        data = _with_clock(data, scene, units, rounding)
-    data = _with_frame(data, scene, rung)
-    form = data.choice.form(data.states)
-    numbers = data.numbers
+        data = _with_clock(data, scene.body, scene.body.manufactured, units, _Rounding(rung))
+    data = _with_frame(data, scene.track, rung)
+    choice = data.choice
+    form = choice.form(data.states)
     return Problem(
         scene=scene,
         rung=rung,
         form=form,
         units=units,
-        parameters=tuple(numbers[name] for name in form.parameters),
-        initial_momenta=tuple(numbers[name] for name in form.states),
+        parameters=tuple(choice.numbers[name] for name in form.parameters),
+        initial_momenta=tuple(choice.numbers[name] for name in form.states),
         times=times,
         given=replace(scene, body=data.body, initial=data.initial, clock=clock),
-        replaced=_not_entering(data.choice.replaced, form),
-        because=data.choice.because + constants_told(data.states, form),
+        replaced=tuple((n, v) for n, v in choice.replaced.items() if n not in form.parameters),
+        because=choice.because + constants_told(data.states, form),
     )
 
 
@@ -129,7 +129,7 @@ def _rounded_times(clock: Clock, units: Units, rung: Rung) -> Sequence[Fraction]
 
 
 def adopt(scene: Scene, rung: Rung, instants: Sequence[Fraction]) -> Problem:
-    """The problem that somebody else's answer solves, at the times it has rows for.
+    """Return the problem that somebody else's answer solves, at the times it has rows for.
 
     Others store I and omega0, and whatever they make of I^-1 is theirs: so I and omega0 are rounded
     to the rung, the 21 coefficients and x, y likewise, and I^-1 is exact. Of a manufactured motion they
@@ -148,23 +148,18 @@ def adopt(scene: Scene, rung: Rung, instants: Sequence[Fraction]) -> Problem:
 
 
 def _stored(scene: Scene, rounded: _Rounding) -> tuple[Body, State]:
-    """Body and initial state, each number of the scene rounded once where it stands."""
-    motion = _stored_motion(scene, rounded)
+    """Return body and initial state, each number of the scene rounded once where it stands."""
+    motion = scene.body.manufactured
+    start = scene.initial.changed(rounded.part)
+    if motion is not None:
+        motion = Manufactured(rounded.each(motion.constant), rounded.waves(motion))
+        start = start.with_moving(motion.start)
     body = scene.body.changed(rounded.part).with_motion(motion)
     if not tensors.is_positive_definite(body.energy_matrix):
         raise NotRepresentable(
             f"rounded to {rounded.rung.name}, {body.ENERGY} is not positive definite"
         )
-    start = scene.initial.changed(rounded.part)
-    return body, start if motion is None else start.with_moving(motion.start)
-
-
-def _stored_motion(scene: Scene, rounded: _Rounding) -> Manufactured | None:
-    """The manufactured motion, each of its numbers rounded once where it stands."""
-    motion = scene.body.manufactured
-    if motion is None:
-        return None
-    return Manufactured(rounded.each(motion.constant), rounded.waves(motion))
+    return body, start
 
 
 @dataclass(frozen=True)
@@ -176,27 +171,20 @@ class _Data:
     body: Body
     initial: State
 
-    @property
-    def numbers(self) -> Mapping[str, Fraction]:
-        return self.choice.numbers
-
-
-def _not_entering(numbers: Mapping[str, Fraction], form: Form) -> tuple[tuple[str, Fraction], ...]:
-    return tuple((name, value) for name, value in numbers.items() if name not in form.parameters)
-
 
 def _rounded_data(scene: Scene, units: Units, rounded: _Rounding) -> _Data:
     """Form coefficients, loads and momenta exactly and round each once; all else follows exactly."""
     body, start = scene.body, scene.initial
     kind = mechanics(body)
-    values = _scaled(kind.body_letters, kind.values(body), units, rounded.each)
-    begin = _split(kind.momenta, kind.change(body).momentum(start.moving))
-    momenta = _scaled(kind.momenta, begin, units, rounded.each)
+    exact = kind.change(body).momentum(start.moving)
+    vectors = {one.name: exact[3 * k : 3 * k + 3] for k, one in enumerate(kind.momenta)}
+    values = _each(kind.body_letters, kind.values(body), units.counted, rounded.each)
+    momenta = _each(kind.momenta, vectors, units.counted, rounded.each)
     try:
-        given = kind.body(_physical(kind.body_letters, values, units))
+        given = kind.body(_each(kind.body_letters, values, units.physical))
     except ValueError as error:
         raise NotRepresentable(f"rounded to {rounded.rung.name}, {error}") from error
-    momentum = _joined(_physical(kind.momenta, momenta, units))
+    momentum = tuple(chain(*_each(kind.momenta, momenta, units.physical).values()))
     place = {
         part.name: _rounded_place(part, start.part(part), units, rounded)
         for part in start.PARTS
@@ -210,16 +198,14 @@ def _rounded_data(scene: Scene, units: Units, rounded: _Rounding) -> _Data:
 def numbers_of(body: Body, units: Units) -> dict[str, Fraction]:
     """Return every coefficient and load of a body by name, in these units."""
     kind = mechanics(body)
-    exact = _scaled(kind.body_letters, kind.values(body), units, lambda value: value)
-    return _named(kind.body_letters, exact)
+    return _named(kind.body_letters, _each(kind.body_letters, kind.values(body), units.counted))
 
 
 def _rounded_place(part: Part, value: Value, units: Units, rounded: _Rounding) -> Value:
-    """A part of the place, rounded in its unit."""
+    """Round a part of the place in its unit."""
     if part.shape is Shape.QUATERNION:
         return rounded.quaternion(value)
-    unit = units.of(part.dimension)
-    return _times(unit, rounded.each(_counted(value, unit)))
+    return units.physical(part, rounded.each(units.counted(part, value)))
 
 
 # Letters of the equations with their values: exact, in units, rounded.
@@ -228,77 +214,58 @@ _Letters = Sequence[Part]
 _Values = Mapping[str, Value]
 
 
-def _scaled(
-    letters: _Letters, values: _Values, units: Units, rounded: Callable[[Value], Value]
+def _each(
+    letters: _Letters,
+    values: _Values,
+    change: Callable[[Part, Value], Value],
+    rounded: Callable[[Value], Value] = lambda value: value,
 ) -> _Values:
-    return {
-        one.name: rounded(_counted(values[one.name], units.of(one.dimension))) for one in letters
-    }
-
-
-def _physical(letters: _Letters, values: _Values, units: Units) -> _Values:
-    """The values in the scene's own units."""
-    return {one.name: _times(units.of(one.dimension), values[one.name]) for one in letters}
+    """Return the value of each letter in other units, and rounded."""
+    return {one.name: rounded(change(one, values[one.name])) for one in letters}
 
 
 def _named(letters: _Letters, values: _Values) -> dict[str, Fraction]:
     return {name: v for one in letters for name, v in components(one, values[one.name]).items()}
 
 
-def _split(letters: _Letters, vector: Vector) -> _Values:
-    return {one.name: vector[3 * k : 3 * k + 3] for k, one in enumerate(letters)}
-
-
-def _joined(values: _Values) -> Vector:
-    return tuple(entry for vector in values.values() for entry in vector)
-
-
-def _counted(value: Value, unit: Fraction) -> Value:
-    return entrywise(lambda entry: entry / unit, value)
-
-
-def _times(unit: Fraction, value: Value) -> Value:
-    return entrywise(lambda entry: unit * entry, value)
-
-
-def _with_clock(data: _Data, scene: Scene, units: Units, rounded: _Rounding) -> _Data:
-    """The same under the loads of its manufactured motion, with the clock of these among the states.
+def _with_clock(
+    data: _Data, body: Body, motion: Manufactured, units: Units, rounded: _Rounding
+) -> _Data:
+    """Return the same under the loads of a manufactured motion, with their clock among the states.
 
     The coefficients of H*, or x* and y*, and the frequencies are formed exactly and rounded once. The
     constant part is what the rounded start leaves of it, so that the motion begins where the state does.
     """
-    body = scene.body
-    assert body.manufactured is not None
     kind = mechanics(body)
-    motion = kind.change(body).motion_of_momenta(body.manufactured)
     sizes: Vector = tuple(units.of(one.dimension) for one in kind.momenta for _ in range(3))
-    scaled = motion.in_units(tuple(1 / size for size in sizes), 1 / units.time)
-    waves = rounded.waves(scaled)
-    held = manufactured.begun(waves, tuple(data.numbers[name] for name in data.states))
+    of_momenta = kind.change(body).motion_of_momenta(motion)
+    scaled = of_momenta.in_units(tuple(1 / size for size in sizes), 1 / units.time)
+    start = tuple(data.choice.numbers[name] for name in data.states)
+    held = manufactured.begun(rounded.waves(scaled), start)
     given = kind.change(data.body).motion_of_state(held.in_units(sizes, units.time))
     # The loads are formed of the general coefficients, whatever shorter equations do without.
-    numbers = {**numbers_of(data.body, units), **data.numbers, **manufactured.numbers(held)}
+    known = numbers_of(data.body, units) | dict(data.choice.numbers)
     choice = replace(
         data.choice,
-        equations=manufactured.Loaded(data.choice.equations, len(waves), kind.inverse),
-        numbers=numbers,
-        because=(*data.choice.because, *manufactured.told(held, kind.inverse)),
+        equations=manufactured.Loaded(data.choice.equations, len(held.waves), kind.inverse),
+        numbers=known | manufactured.numbers(held),
+        because=(*data.choice.because, *manufactured.sentences(held, kind.inverse)),
     )
     states = data.states + manufactured.states(held)
     return _Data(choice, states, data.body.with_motion(given), data.initial)
 
 
-def _with_frame(data: _Data, scene: Scene, rung: Rung) -> _Data:
-    """The same with attitude and centre among the states, as far as they are tracked."""
-    states, numbers = data.states, dict(data.numbers)
-    if "attitude" in scene.track:
-        numbers |= _indexed("e", _unit_quaternion(data.initial.attitude, rung), start=0)
-        states += ("e0", "e1", "e2", "e3")
-    if "centre" in scene.track:
+def _with_frame(data: _Data, track: Collection[str], rung: Rung) -> _Data:
+    """Return the same with attitude and centre among the states, as far as they are tracked."""
+    frame: dict[str, Fraction] = {}
+    if "attitude" in track:
+        quaternion = _unit_quaternion(data.initial.attitude, rung)
+        frame |= {f"e{i}": entry for i, entry in enumerate(quaternion)}
+    if "centre" in track:
         # The centre is integrated from the origin and its start added exactly afterwards.
-        numbers |= _indexed("c", (Fraction(0),) * 3)
-        states += ("c1", "c2", "c3")
-    return replace(data, states=states, choice=replace(data.choice, numbers=numbers))
+        frame |= dict.fromkeys(("c1", "c2", "c3"), Fraction(0))
+    choice = replace(data.choice, numbers={**data.choice.numbers, **frame})
+    return replace(data, states=(*data.states, *frame), choice=choice)
 
 
 @dataclass(frozen=True)
@@ -335,7 +302,7 @@ class _Rounding:
 
 
 def _unit_quaternion(quaternion: Quaternion, rung: Rung) -> Quaternion:
-    """The quaternion over its norm, each component rounded once."""
+    """Return the quaternion over its norm, each component rounded once."""
     # 64 guard bits: the square root's own error cannot show in the rounding but by a tie of
     # probability 2^-64, and then by one unit in the last place.
     with mp.workprec(rung.bits + 64):
@@ -343,7 +310,3 @@ def _unit_quaternion(quaternion: Quaternion, rung: Rung) -> Quaternion:
         quotients = [mp.convert(entry) / norm for entry in quaternion]
         e0, e1, e2, e3 = (rung.round(exact_value(v)) for v in quotients)
     return (e0, e1, e2, e3)
-
-
-def _indexed(letter: str, vector: Sequence[Fraction], start: int = 1) -> dict[str, Fraction]:
-    return {f"{letter}{i}": entry for i, entry in enumerate(vector, start=start)}

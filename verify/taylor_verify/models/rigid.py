@@ -10,7 +10,7 @@ from fractions import Fraction
 from typing import Final, final
 
 from taylor_verify.models.choice import Choice, Numbers, holds
-from taylor_verify.models.euler import PrincipalEuler, TensorEuler, differences, euler_equations
+from taylor_verify.models.euler import PrincipalEuler, TensorEuler, euler_equations
 from taylor_verify.models.form import Equations
 from taylor_verify.models.manufactured import EULER_INVERSE
 from taylor_verify.models.mechanics import Change, Mechanics
@@ -24,6 +24,7 @@ from taylor_verify.scenes.tensors import Matrix, Vector
 
 _AXES: Final = tensors.diagonal((Fraction(1),) * 3)
 _PRODUCTS: Final = ("K12", "K13", "K23")
+_DEVIATIONS: Final = {"D11": "K11 - K33", "D22": "K22 - K33"}
 _DIFFERENCES: Final = {"D1": "K33 - K22", "D2": "K11 - K33", "D3": "K22 - K11"}
 
 
@@ -77,16 +78,14 @@ class Rigid(Mechanics[RigidBody, Spin]):
 
 
 def _nutation(K: Matrix, H: Vector) -> Fraction:
-    """A power of two near the fastest rate of H' = H x K H linearised at H; 0 where nothing changes.
+    """Return a power of two near the fastest rate of H' = H x K H linearised at H; 0 where nothing changes.
 
     The trace of J = [H]x K - [K H]x vanishes, so that its eigenvalues are the roots of
     z^3 + s z - d with s = -tr(J^2)/2, d = det J: not above twice the larger of |s|^(1/2), |d|^(1/3).
     """
     omega = tensors.apply(K, H)
     columns = (
-        tensors.plus(
-            tensors.cross(H, column), tensors.scaled(Fraction(-1), tensors.cross(omega, e))
-        )
+        tensors.minus(tensors.cross(H, column), tensors.cross(omega, e))
         for column, e in zip(K, _AXES, strict=True)
     )
     J = tensors.transpose(tuple(columns))
@@ -99,48 +98,33 @@ def _nutation(K: Matrix, H: Vector) -> Fraction:
 
 
 def chosen_equations(numbers: Numbers, rung: Rung) -> Choice:
-    """From H1..H3, the upper triangle of K and M1..M3."""
-    K = [[numbers[f"K{min(i, j)}{max(i, j)}"] for j in (1, 2, 3)] for i in (1, 2, 3)]
+    """Return the equations of H1..H3, the upper triangle of K and M1..M3.
+
+    A difference of K's diagonal is a coefficient if the rung holds it, and else formed as it goes.
+    """
+    k1, k2, k3 = (numbers[f"K{i}{i}"] for i in (1, 2, 3))
     replaced = {name: value for name, value in numbers.items() if name[0] == "K" and value}
+    equations: PrincipalEuler | TensorEuler
     if any(numbers[name] for name in _PRODUCTS):
-        found = {f"D{i}{i}": K[i - 1][i - 1] - K[2][2] for i in (1, 2)}
-        formed = tuple(i for i in (1, 2) if not holds(rung, found[f"D{i}{i}"]))
-        extra = {n: v for n, v in found.items() if int(n[1]) not in formed}
-        said = ["a sphere is taken away from K: " + _told({n: f"{_K(n)} - K33" for n in extra})]
-        return Choice(
-            TensorEuler(formed), {**numbers, **extra}, replaced, _sentences(said, extra, formed)
-        )
-    found = dict(zip(_DIFFERENCES, differences(K), strict=True))
-    missing = tuple(int(n[1]) for n, value in found.items() if not holds(rung, value))
-    extra = {n: v for n, v in found.items() if int(n[1]) not in missing}
-    said = ["principal axes: " + _told({n: _DIFFERENCES[n] for n in extra if extra[n]})]
-    said += [
-        f"{_DIFFERENCES[n]} = 0: H{n[1]} feels no gyroscopic term" for n in found if not found[n]
-    ]
-    if len(missing) == 1 and all(extra.values()):
-        others = " + ".join(extra)
-        said.append(f"D{missing[0]} is -({others}), as {rung.name} does not hold it")
-        equations = PrincipalEuler(summed=missing[0])
-        return Choice(equations, {**numbers, **extra}, replaced, _sentences(said, extra))
-    return Choice(
-        PrincipalEuler(missing),
-        {**numbers, **extra},
-        replaced,
-        _sentences(said, extra, missing),
-    )
-
-
-def _K(name: str) -> str:
-    return f"K{name[1:]}"
-
-
-def _told(definitions: Mapping[str, str]) -> str:
-    return ", ".join(f"{name} = {text}" for name, text in definitions.items())
-
-
-def _sentences(said: list[str], extra: Numbers, formed: tuple[int, ...] = ()) -> tuple[str, ...]:
-    """What was said, without a list that is empty, and what the rung could not hold."""
-    kept = [sentence for sentence in said if not sentence.endswith(": ")]
+        found = {"D11": k1 - k3, "D22": k2 - k3}
+        definitions, begin = _DEVIATIONS, "a sphere is taken away from K: "
+    else:
+        found = dict(zip(_DIFFERENCES, (k3 - k2, k1 - k3, k2 - k1), strict=True))
+        definitions, begin = _DIFFERENCES, "principal axes: "
+    extra = {name: value for name, value in found.items() if holds(rung, value)}
+    formed = tuple(int(name[1]) for name in found if name not in extra)
+    shown = [name for name in extra if extra[name] or definitions is _DEVIATIONS]
+    said = [begin + ", ".join(f"{name} = {definitions[name]}" for name in shown)] if shown else []
+    if definitions is _DEVIATIONS:
+        equations = TensorEuler(formed)
+    else:
+        said += [
+            f"{definitions[n]} = 0: H{n[1]} feels no gyroscopic term" for n in found if not found[n]
+        ]
+        equations = PrincipalEuler(formed)
+        if len(formed) == 1 and all(extra.values()):
+            said.append(f"D{formed[0]} is -({' + '.join(extra)}), as {rung.name} does not hold it")
+            equations, formed = PrincipalEuler(summed=formed[0]), ()
     if formed:
-        kept.append("differences of K's diagonal that the rung does not hold are formed as it goes")
-    return tuple(kept)
+        said.append("differences of K's diagonal that the rung does not hold are formed as it goes")
+    return Choice(equations, {**numbers, **extra}, replaced, tuple(said))

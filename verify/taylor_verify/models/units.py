@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from taylor_verify.scenes import tensors
-from taylor_verify.scenes.parts import Dimension
+from taylor_verify.scenes.parts import Dimension, Part, Value, entrywise
 from taylor_verify.scenes.precision import floor_log2, power_of_two
 from taylor_verify.scenes.tensors import Vector
 
@@ -41,23 +41,33 @@ class Units:
         """Return the unit of any quantity."""
         return self.mass**dimension.mass * self.length**dimension.length * self.time**dimension.time
 
+    def counted(self, part: Part, value: Value) -> Value:
+        """Return a part of a body or a state, counted in its unit."""
+        unit = self.of(part.dimension)
+        return entrywise(lambda entry: entry / unit, value)
+
+    def physical(self, part: Part, value: Value) -> Value:
+        """Return the part that is so much in its unit."""
+        unit = self.of(part.dimension)
+        return entrywise(lambda entry: entry * unit, value)
+
 
 def largest(matrix: Iterable[Vector]) -> Fraction:
-    """The largest entry."""
+    """Return the largest entry."""
     return max(abs(entry) for row in matrix for entry in row)
 
 
 def size(vector: Vector) -> Fraction:
-    """A power of two within a factor of two of the norm; 0 for the zero vector."""
+    """Return a power of two within a factor of two of the norm; 0 for the zero vector."""
     squared = tensors.dot(vector, vector)
     return root(squared) if squared else Fraction(0)
 
 
 def root(squared: Fraction) -> Fraction:
-    """A power of two within a factor of two of the square root."""
+    """Return a power of two within a factor of two of the square root."""
     return power_of_two(floor_log2(squared) // 2)
 
 
 def binary(value: Fraction) -> Fraction:
-    """The power of two just below the value; 0 for 0."""
+    """Return the power of two just below the value; 0 for 0."""
     return power_of_two(floor_log2(value)) if value else Fraction(0)

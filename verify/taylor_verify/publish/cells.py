@@ -1,8 +1,14 @@
-"""What stands in a cell: a number in three digits, or a word for why there is none."""
+"""Cells of tables: a number in three digits, or a word for why there is none; whole rows of verdicts."""
 
 from __future__ import annotations
 
-from taylor_verify.publish.markdown import bold
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from math import inf
+from typing import Final
+
+from taylor_verify.publish.markdown import bold, code, prose, table
+from taylor_verify.records.quantities import STATES
+from taylor_verify.records.runs import Run, gravest
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 
@@ -11,7 +17,7 @@ INFINITE = "∞"
 
 
 def figure(value: float | None) -> str:
-    """Three significant digits: 0.531, 42.0, 6.67e-6."""
+    """Return a number in three significant digits: 0.531, 42.0, 6.67e-6."""
     if value is None:
         return NOTHING
     if value == 0:
@@ -24,39 +30,40 @@ def figure(value: float | None) -> str:
 
 
 def instant(value: float | None) -> str:
-    """A time of the scene, which has its own number of digits."""
+    """Return a time of the scene, which has its own number of digits."""
     return NOTHING if value is None else f"{value:.6g}"
 
 
 def in_roundoffs(verdict: Verdict, value: float | None) -> float | None:
-    """An error in units of the rung's u; None where u is unknown or too small for a double."""
+    """Return an error in units of the rung's u; None where u is unknown or too small for a double."""
     return value / verdict.roundoff if value is not None and verdict.roundoff else None
 
 
 def word(verdict: Verdict) -> str:
-    """In place of an error that is no number: the verdict, or how a failed run ended."""
+    """Return what stands for an error that is no number: the verdict, or how a failed run ended."""
     unfinished = verdict.verdict is Status.FAIL and not verdict.is_compared
     return verdict.outcome if unfinished else verdict.verdict.value
 
 
 def error(verdict: Verdict) -> str:
+    """Return the largest error, or a word where it is no number."""
     return word(verdict) if verdict.max is None else figure(verdict.max)
 
 
 def ratio(verdict: Verdict) -> str:
-    """Error over attainable: infinite where there is an error and nothing is attainable."""
+    """Return error over attainable: infinite where there is an error and nothing is attainable."""
     if verdict.ratio is None and verdict.is_compared:
         return word(verdict) if verdict.max is None else INFINITE
     return figure(verdict.ratio)
 
 
 def judged(verdict: Status) -> str:
-    """The verdict's word; one that is no pass stands out."""
+    """Return the verdict's word; one that is no pass stands out."""
     return verdict.value if verdict is Status.PASS else bold(verdict.value)
 
 
 def peak(verdict: Verdict) -> str:
-    """Maximum, mean and where, in units of u."""
+    """Return maximum, mean and where, in units of u."""
     largest, mean = (in_roundoffs(verdict, value) for value in (verdict.max, verdict.mean))
     if largest is None:
         return word(verdict)
@@ -78,3 +85,55 @@ def conclusion(verdict: Verdict) -> str:
 def _not_finite(verdict: Verdict) -> str:
     is_number = verdict.max is not None or not verdict.is_compared
     return "" if is_number else "the error is not a finite number"
+
+
+# A column of a table of verdicts, by its heading.
+CELLS: Final[Mapping[str, Callable[[Verdict], str]]] = {
+    "scene": lambda verdict: code(verdict.scene),
+    "rung": lambda verdict: verdict.rung,
+    "quantity": lambda verdict: code(verdict.quantity),
+    "max:": lambda verdict: prose(error(verdict)),
+    "mean:": lambda verdict: figure(verdict.mean),
+    "at t:": lambda verdict: instant(verdict.at),
+    "max, u:": lambda verdict: figure(in_roundoffs(verdict, verdict.max)),
+    "mean, u:": lambda verdict: figure(in_roundoffs(verdict, verdict.mean)),
+    "bound:": lambda verdict: figure(verdict.bound),
+    "attainable:": lambda verdict: figure(verdict.attainable),
+    "over attainable:": ratio,
+    "steps:": lambda verdict: str(verdict.steps or NOTHING),
+    "verdict": lambda verdict: judged(verdict.verdict),
+    "because": lambda verdict: prose(reason(verdict)),
+}
+
+
+def verdict_table(headings: Sequence[str], verdicts: Iterable[Verdict]) -> str:
+    """Return a table with a row for each verdict and the columns of these headings."""
+    return table(headings, [[CELLS[name](verdict) for name in headings] for verdict in verdicts])
+
+
+def over_attainable(verdict: Verdict) -> float:
+    """Return the ratio; one that is no finite number is above every number."""
+    return inf if verdict.ratio is None else verdict.ratio
+
+
+def worst(verdicts: Iterable[Verdict]) -> Verdict | None:
+    """Return the verdict with the largest error over attainable, of those that were compared."""
+    compared = (verdict for verdict in verdicts if verdict.is_compared)
+    return max(compared, key=over_attainable, default=None)
+
+
+def worst_ratio(verdicts: Iterable[Verdict]) -> str:
+    """Return the largest error over attainable with the name of its quantity."""
+    found = worst(verdicts)
+    return f"{ratio(found)} ({code(found.quantity)})" if found else NOTHING
+
+
+def main_error(run: Run | None) -> str:
+    """Return the error of omega or the impulse, and the verdict of the run if that is no pass."""
+    if run is None:
+        return NOTHING
+    status = gravest(run.verdicts)
+    main = min(run.state, key=lambda v: STATES.index(v.quantity), default=None)
+    if main is None or main.max is None:
+        return judged(status)
+    return error(main) if status is Status.PASS else f"{error(main)} {judged(status)}"

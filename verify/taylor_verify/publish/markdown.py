@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 # A bar ends a table's cell even inside a code span.
 _BAR = r"\|"
@@ -12,46 +11,29 @@ _BAR = r"\|"
 _MEANT = re.compile(r"[\\`*\[\]<>|~&$]|(?<!\w)_|_(?!\w)")
 
 
-@dataclass(frozen=True)
-class Column:
-    """A heading; ``to_right`` is for numbers."""
+def table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Return a table whose source lines up too, but for its last column, which may be long.
 
-    heading: str
-    to_right: bool = False
-
-
-def table(asked: Sequence[Column | str], rows: Iterable[Sequence[str]]) -> str:
-    """A table whose source lines up too, but for its last column, which may be long.
-
-    A column is given by its heading, a column of numbers by its heading and a colon.
+    A heading that ends with a colon is that of a column of numbers, which stand to the right.
     """
-    columns = [column if isinstance(column, Column) else _column(column) for column in asked]
-    headings = [column.heading for column in columns]
-    body = [list(row) for row in rows]
-    widths = [max(3, *(len(row[i]) for row in [headings, *body])) for i in range(len(columns))]
-    rules = [
-        "-" * (width - 1) + (":" if column.to_right else "-")
-        for width, column in zip(widths, columns, strict=True)
-    ]
-    rules[-1] = "--:" if columns[-1].to_right else "---"
-    return "\n".join(_line(row, columns, widths) for row in [headings, rules, *body])
+    is_number = [heading.endswith(":") for heading in headings]
+    first, *body = [[heading.removesuffix(":") for heading in headings], *rows]
+    widths = [max(3, *map(len, column)) for column in zip(first, *body, strict=True)]
+    rule = ["-" * (width - 1) + "-:"[right] for width, right in zip(widths, is_number, strict=True)]
+    rule[-1], widths[-1] = rule[-1][-3:], 0
+    return "\n".join(_line(row, widths, is_number) for row in [first, rule, *body])
 
 
-def _column(heading: str) -> Column:
-    return Column(heading.removesuffix(":"), heading.endswith(":"))
-
-
-def _line(row: Sequence[str], columns: Sequence[Column], widths: Sequence[int]) -> str:
+def _line(row: Sequence[str], widths: Sequence[int], is_number: Sequence[bool]) -> str:
     cells = [
-        cell.rjust(width) if column.to_right else cell.ljust(width)
-        for cell, column, width in zip(row, columns, widths, strict=True)
+        cell.rjust(width) if right else cell.ljust(width)
+        for cell, width, right in zip(row, widths, is_number, strict=True)
     ]
-    cells[-1] = row[-1]
     return f"| {' | '.join(cells)} |"
 
 
 def code(text: str) -> str:
-    """A code span; as prose where it holds a backtick or backslash, which no span can escape."""
+    """Return a code span; prose where the text holds a backtick or backslash, which no span can escape."""
     plain = " ".join(text.split())
     if "`" in plain or "\\" in plain:
         return prose(plain)
@@ -59,7 +41,7 @@ def code(text: str) -> str:
 
 
 def prose(text: str) -> str:
-    """Somebody's words on one line, none of them taken for Markdown or HTML."""
+    """Return somebody's words on one line, none of them taken for Markdown or HTML."""
     return _MEANT.sub(r"\\\g<0>", " ".join(text.split()))
 
 

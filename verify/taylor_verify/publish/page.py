@@ -1,4 +1,4 @@
-"""What every published page has: its maker, a summary, a legend, and how to remake it."""
+"""Parts of every published page: its maker, a summary, a legend, and how to remake it."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import groupby
 from typing import Any, Final
 
-from taylor_verify.publish.cells import figure, instant, judged, reason
+from taylor_verify.publish.cells import figure, instant, judged, reason, worst
 from taylor_verify.publish.markdown import bold, bullets, code, prose, table
 from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.provenance import Provenance
@@ -26,20 +26,33 @@ def whole(title: str, *blocks: str) -> str:
 
 def page(title: str, verdicts: Sequence[Verdict], *parts: str) -> str:
     """Return a page of verdicts, which ends with what made them and how to remake them."""
-    return whole(title, *parts, _remake(verdicts))
+    return whole(
+        title,
+        *parts,
+        "## To remake this",
+        "`make verify` runs the standard set and writes a copy of these pages to `reports/local/`; `make "
+        "reports` rewrites the committed ones. `taylor-verify publish --from DIR` rebuilds the tables of a "
+        "folder from its data.",
+        f"{made_with(versions(verdicts))} Processor, Python, command and seconds of each run are in "
+        "[timings.json](../data/timings.json), the SHA-256 of each scene is in "
+        "[verdicts.json](../data/verdicts.json).",
+    )
 
 
 def counts(verdicts: Iterable[Verdict]) -> str:
-    """The number of verdicts of each kind, the largest error over attainable, and what judged them."""
+    """Return the number of verdicts of each kind, the largest error over attainable, and tolerances."""
     found = list(verdicts)
     by_status = summary(found)
-    columns = [f"{status}:" for status in by_status]
-    row = [_standing_out(Status(status), count) for status, count in by_status.items()]
-    return "\n\n".join(filter(None, [table(columns, [row]), _worst(found), _tolerated(found)]))
+    row = [
+        bold(str(count)) if count and status == Status.FAIL else str(count)
+        for status, count in by_status.items()
+    ]
+    counted = table([f"{status}:" for status in by_status], [row])
+    return "\n\n".join(filter(None, [counted, _worst(found), _tolerated(found)]))
 
 
 def _tolerated(verdicts: Sequence[Verdict]) -> str:
-    """The number of rows whose bound is a tolerance; empty where there is none."""
+    """Return how many rows have a tolerance for their bound; empty for none."""
     count = sum(verdict.tolerance is not None for verdict in verdicts)
     if not count:
         return ""
@@ -49,45 +62,38 @@ def _tolerated(verdicts: Sequence[Verdict]) -> str:
     )
 
 
-def _standing_out(status: Status, count: int) -> str:
-    return bold(str(count)) if count and status is Status.FAIL else str(count)
-
-
 def _worst(verdicts: Sequence[Verdict]) -> str:
     lost = sum(verdict.is_compared and verdict.ratio is None for verdict in verdicts)
-    parts = (
-        [bold(f"{lost} of {len(verdicts)} without a finite error over attainable.")] if lost else []
-    )
-    finite = [verdict for verdict in verdicts if verdict.ratio is not None]
-    if finite:
-        worst = max(finite, key=lambda verdict: verdict.ratio or 0.0)
-        parts.append(
-            f"Largest error over attainable: {bold(figure(worst.ratio))}, {code(worst.quantity)} "
-            f"of {code(worst.scene)} on {worst.rung} at t = {instant(worst.ratio_at)}."
-        )
-    return " ".join(parts) or "Nothing was compared."
+    found = worst(verdict for verdict in verdicts if verdict.ratio is not None)
+    parts = [
+        bold(f"{lost} of {len(verdicts)} without a finite error over attainable.") if lost else "",
+        f"Largest error over attainable: {bold(figure(found.ratio))}, {code(found.quantity)} "
+        f"of {code(found.scene)} on {found.rung} at t = {instant(found.ratio_at)}."
+        if found
+        else "",
+    ]
+    return " ".join(filter(None, parts)) or "Nothing was compared."
 
 
 def roundoffs(verdicts: Iterable[Verdict]) -> str:
-    """The legend of u, for the rungs that occur."""
+    """Return the legend of u, for the rungs that occur."""
     found = {verdict.rung: verdict.roundoff for verdict in verdicts if verdict.roundoff}
     each = (f"{rung} {figure(found[rung])}" for rung in sorted(found, key=place_of_rung))
     return f"u is the unit roundoff of the rung: {', '.join(each) or 'none was run'}."
 
 
 def sections(runs: Iterable[Run], lay_out: Callable[[list[Run]], str]) -> str:
-    """One section for each model and solver, as ``lay_out`` writes its runs."""
+    """Return a section for each model and solver, as ``lay_out`` writes its runs."""
+    blocks = []
     groups = groupby(runs, key=lambda run: (run.model, run.solver, run.setting))
-    return "\n\n".join(f"## {_heading(*key)}\n\n{lay_out(list(group))}" for key, group in groups)
-
-
-def _heading(model: str, solver: str, setting: str) -> str:
-    by = " ".join(code(text) for text in (solver, setting) if text)
-    return f"{model or 'Other quantities'}, by {by}"
+    for (model, *solver), group in groups:
+        by = " ".join(map(code, filter(None, solver)))
+        blocks += [f"## {model or 'Other quantities'}, by {by}", lay_out(list(group))]
+    return "\n\n".join(blocks)
 
 
 def unscored(runs: Iterable[Run]) -> str:
-    """Why the runs without a number have none."""
+    """Return why the runs without a number have none."""
     rows = [
         f"{code(run.scene)}, {run.rung}: {judged(verdict.verdict)}, {prose(reason(verdict))}"
         for run in runs
@@ -97,33 +103,25 @@ def unscored(runs: Iterable[Run]) -> str:
     return f"Without a number:\n\n{bullets(rows)}" if rows else ""
 
 
+def packages(versions: Mapping[str, str]) -> str:
+    """Return the packages that made something, with their versions."""
+    return ", ".join(f"{name} {version}" for name, version in versions.items())
+
+
+def made_with(versions: Mapping[str, str]) -> str:
+    """Return what made the numbers, in a sentence."""
+    return f"Made with {packages(versions) or 'unknown versions'}."
+
+
 def traced(provenance: Mapping[str, Any]) -> str:
-    """What made the numbers, in a sentence or two: versions, and processor and command where known."""
-    packages = (f"{name} {found}" for name, found in provenance.get("versions", {}).items())
-    told = f"Made with {', '.join(packages) or 'unknown versions'}."
+    """Return what made the numbers, with the processor and the command where these are known."""
+    made = made_with(provenance.get("versions", {}))
     if "processor" not in provenance or "command" not in provenance:
-        return told
-    return f"{told} Machine: {prose(provenance['processor'])}. By {code(provenance['command'])}."
+        return made
+    return f"{made} Machine: {prose(provenance['processor'])}. By {code(provenance['command'])}."
 
 
-def made_on(provenance: Provenance) -> str:
+def made_on(origin: Provenance) -> str:
     """Return the machine, the packages and the command of a measurement."""
-    packages = ", ".join(f"{name} {found}" for name, found in provenance.versions.items())
-    return (
-        f"Machine: {prose(provenance.processor)}; {packages}. Made by {code(provenance.command)}."
-    )
-
-
-def _remake(verdicts: Sequence[Verdict]) -> str:
-    packages = (f"{package} {version}" for package, version in versions(verdicts).items())
-    return "\n\n".join(
-        [
-            "## To remake this",
-            "`make verify` runs the standard set and writes a copy of these pages to "
-            "`reports/local/`; `make reports` rewrites the committed ones. `taylor-verify "
-            "publish --from DIR` rebuilds the tables of a folder from its data.",
-            f"Made with {', '.join(packages) or 'unknown versions'}. Processor, Python, command "
-            "and seconds of each run are in [timings.json](../data/timings.json), the SHA-256 of "
-            "each scene is in [verdicts.json](../data/verdicts.json).",
-        ]
-    )
+    machine = f"{prose(origin.processor)}; {packages(origin.versions)}"
+    return f"Machine: {machine}. Made by {code(origin.command)}."

@@ -8,7 +8,7 @@ from typing import Annotated
 
 from msgspec import Meta
 
-from taylor_verify.records.json_text import Count, Size
+from taylor_verify.records.json_text import Count, Size, about
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 
@@ -19,18 +19,15 @@ Sentences = tuple[Annotated[str, Meta(min_length=1)], ...]
 class Convention:
     """One convention of a file that is not the scene's."""
 
-    about: Annotated[str, Meta(description="time, body, axes or a group of columns.")]
+    about: Annotated[str, about("time, body, axes or a group of columns.")]
     found: str
-    ambiguous: Annotated[
-        bool, Meta(description="True if this motion cannot tell it from the alternatives.")
-    ]
+    ambiguous: Annotated[bool, about("True if this motion cannot tell it from the alternatives.")]
     corrected: Annotated[
-        bool,
-        Meta(description="True if it was accepted: the verdicts are of the corrected file."),
+        bool, about("True if it was accepted: the verdicts are of the corrected file.")
     ]
     sentence: str
     alternatives: tuple[str, ...] = ()
-    error_without: Annotated[Size | None, Meta(description="Relative, or in radians.")] = None
+    error_without: Annotated[Size | None, about("Relative, or in radians.")] = None
     error_with: Size | None = None
 
 
@@ -91,9 +88,9 @@ class AgainstBaseline:
     notes: Sentences = ()
     gate: Annotated[
         str,
-        Meta(
-            description="bound: the verdicts and the comparison decide the exit status. baseline: the "
-            "comparison alone does."
+        about(
+            "bound: the verdicts and the comparison decide the exit status. baseline: the comparison "
+            "alone does."
         ),
     ] = "bound"
 
@@ -169,9 +166,7 @@ class Answer:
     """The verdicts of `run` or `check`, and what they were compared with."""
 
     verdicts: tuple[Verdict, ...]
-    summary: Annotated[
-        dict[Status, Count], Meta(description="The number of verdicts of each status.")
-    ]
+    summary: Annotated[dict[Status, Count], about("The number of verdicts of each status.")]
     expected: ExpectationsMet | None = None
     left_out: tuple[LeftOut, ...] = ()
     against: Against | None = None
@@ -179,10 +174,8 @@ class Answer:
     conventions: tuple[Convention, ...] = ()
     causes: tuple[LikelyCause, ...] = ()
     file: FileRead | None = None
-    step: Annotated[
-        Size | None, Meta(description="The step that the integrator of the file took.")
-    ] = None
-    step_from: Annotated[str, Meta(description="The source that states the step.")] = ""
+    step: Annotated[Size | None, about("The step that the integrator of the file took.")] = None
+    step_from: Annotated[str, about("The source that states the step.")] = ""
 
 
 @dataclass(frozen=True)

@@ -20,11 +20,8 @@ class Doubles(Sequence[float]):
     __slots__ = ("_values",)
 
     def __init__(self, values: Iterable[float] = ()) -> None:
-        self._values = array("d")
-        if hasattr(values, "tobytes") and hasattr(values, "astype"):
-            self._values.frombytes(values.astype("float64").tobytes())
-        else:
-            self._values.extend(values)
+        # An array of NumPy is faster as a list.
+        self._values = array("d", getattr(values, "tolist", lambda: values)())
 
     def __len__(self) -> int:
         return len(self._values)

@@ -23,6 +23,12 @@ Document = TypeVar("Document")
 Size = Annotated[float, msgspec.Meta(extra_json_schema={"minimum": 0})]
 Count = Annotated[int, msgspec.Meta(ge=0)]
 
+
+def about(description: str) -> msgspec.Meta:
+    """Return the annotation that describes a field in the JSON schema."""
+    return msgspec.Meta(description=description)
+
+
 # What msgspec says of a value that does not fit: the words, and the place behind them.
 _PLACE: Final = re.compile(r" - at `\$\.?(.*)`$")
 _MISSING: Final = re.compile(r"Object missing required field `(.*)`")

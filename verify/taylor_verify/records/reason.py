@@ -94,27 +94,16 @@ class RoundoffFloor:
     def parts(self) -> tuple[str, str]:
         """Return the arithmetic, empty where there is none, and its meaning."""
         value, u = _figure(self.value), _figure(2.0**-self.bits)
-        if self.carried is Carried.START:
-            return "", "one rounding of each component of the start on the rung"
-        if self.carried is Carried.ROW:
-            return "", "a rounding of the input and one of the row"
-        if self.carried is Carried.VELOCITY:
-            return "", (
-                "Omega = B^T x + C y, so that attainable = (|B|^2 x-floor^2 + |C|^2 y-floor^2)^(1/2), "
-                "and one rounding of Omega itself"
-            )
-        if self.carried is Carried.LINEAR_VELOCITY:
-            return "", (
-                "U = A x + B y, so that attainable = (|A|^2 x-floor^2 + |B|^2 y-floor^2)^(1/2), "
-                "and one rounding of U itself"
-            )
+        if self.carried in _MEANINGS:
+            return "", _MEANINGS[self.carried]
         if self.carried is Carried.LENGTH:
             return f"attainable = u N = {u} x {self.steps:.4g} = {value}", (
                 "in each step one rounding of q, all of them one way; the length of q0 q1 q2 q3 is "
                 f"{self.lengths}"
             )
-        is_orbit = self.carried is Carried.ORBIT
-        matrix = "the orbit's transition matrix" if is_orbit else "the gradient"
+        matrix = (
+            "the orbit's transition matrix" if self.carried is Carried.ORBIT else "the gradient"
+        )
         return (
             f"attainable = u sqrt(N) x growth = {u} x sqrt({self.steps}) x "
             f"{_figure(self.growth, 3)} = {value}"
@@ -125,6 +114,19 @@ class RoundoffFloor:
         )
 
 
+# Floors that are not made of steps, or are made of other floors.
+_MEANINGS: Final = {
+    Carried.START: "one rounding of each component of the start on the rung",
+    Carried.ROW: "a rounding of the input and one of the row",
+    Carried.VELOCITY: (
+        "Omega = B^T x + C y, so that attainable = (|B|^2 x-floor^2 + |C|^2 y-floor^2)^(1/2), "
+        "and one rounding of Omega itself"
+    ),
+    Carried.LINEAR_VELOCITY: (
+        "U = A x + B y, so that attainable = (|A|^2 x-floor^2 + |B|^2 y-floor^2)^(1/2), "
+        "and one rounding of U itself"
+    ),
+}
 _INERTIA: Final = (
     "; where one rounding of each component of U and Omega moves (x, y) = M (U, Omega) by more than "
     "u |x_i|, that takes its place, because the file has velocities"
@@ -213,25 +215,24 @@ class TimeShift:
             return "no shift of time explains it"
         left = f"{self.remains:.2g} remains{self.rows_of_it()}"
         if self.at is None:
-            return f"{_late(self.late)}, {self.kind}; {left}"
-        at_worst = f"{_late(self.late)} at t = {self.at:g}"
+            return f"{late(self.late)}, {self.kind}; {left}"
+        at_worst = f"{late(self.late)} at t = {self.at:g}"
         if self.kind is Kind.WANDERING:
             return f"{at_worst}, wandering; {left}"
-        pace = f"{'slow' if self.trend > 0 else 'fast'} by {abs(self.trend):.3g} of the time"
         first = ""
         if self.begins is not None:
-            first = f" and is {_late(self.begins)} at t = {self.begins_at:g}"
-        return f"{at_worst}, drifting: its clock runs {pace}{first}; {left}"
+            first = f" and is {late(self.begins)} at t = {self.begins_at:g}"
+        return f"{at_worst}, drifting: its clock runs {pace(self.trend)}{first}; {left}"
 
     def rows_of_it(self) -> str:
         """Return the number of rows that share the shift, and the times of those that do not."""
         if not self.strays:
             return ""
         count = len(self.strays)
-        named = ", ".join(f"{t:g}" for t in self.strays[:_MOST_NAMED])
-        rest = f" and {count - _MOST_NAMED} more" if count > _MOST_NAMED else ""
+        times = ", ".join(f"{t:g}" for t in self.strays[:_MOST_NAMED])
+        more = f" and {count - _MOST_NAMED} more" if count > _MOST_NAMED else ""
         those = (
-            f"the row at t = {named} does" if count == 1 else f"the rows at t = {named}{rest} do"
+            f"the row at t = {times} does" if count == 1 else f"the rows at t = {times}{more} do"
         )
         return f" in {self.rows - count} of {self.rows} rows; {those} not share it"
 
@@ -309,8 +310,14 @@ def stated(cause: Cause, text: str) -> Reason:
     return Reason((Remark(cause, text),))
 
 
-def _late(shift: float) -> str:
+def late(shift: float) -> str:
+    """Return a shift of time in words."""
     return f"{'late' if shift >= 0 else 'early'} by {abs(shift):.3g}"
+
+
+def pace(trend: float) -> str:
+    """Return the pace of a clock in words, by the shift that it makes in a unit of time."""
+    return f"{'slow' if trend > 0 else 'fast'} by {abs(trend):.3g} of the time"
 
 
 def _exponent(value: float) -> str:

@@ -21,7 +21,9 @@ def replace_files(
     # Inside the folder it is sure to be the same file system, where a move is one step.
     with TemporaryDirectory(dir=folder, prefix=".unfinished-") as staging:
         for name, content in contents.items():
-            _write(Path(staging, name), content)
+            place = Path(staging, name)
+            place.parent.mkdir(parents=True, exist_ok=True)
+            place.write_bytes(content if isinstance(content, bytes) else content.encode())
         for name, place in places.items():
             place.parent.mkdir(parents=True, exist_ok=True)
             os.replace(Path(staging, name), place)
@@ -31,14 +33,6 @@ def replace_files(
 
 
 def first_line(file: Path) -> str:
-    """Where a generated file names its maker."""
+    """Return the line in which a generated file names its maker."""
     with file.open(encoding="utf-8", errors="replace") as lines:
         return lines.readline().rstrip("\n")
-
-
-def _write(file: Path, content: str | bytes) -> None:
-    file.parent.mkdir(parents=True, exist_ok=True)
-    if isinstance(content, bytes):
-        file.write_bytes(content)
-    else:
-        file.write_text(content, encoding="utf-8", newline="\n")

@@ -37,12 +37,12 @@ class Run:
 
     @property
     def conserved(self) -> dict[str, Verdict]:
-        """By quantity; empty for a run that was not compared with anything."""
+        """The verdicts by conserved quantity; empty for a run that was not compared with anything."""
         return {v.quantity: v for v in self.verdicts if v.is_conserved}
 
     @property
     def drifts(self) -> tuple[Verdict, ...]:
-        """Of the conserved quantities; a run that came to none has one verdict for all."""
+        """The verdicts of the conserved quantities; a run that came to none has one verdict for all."""
         return tuple(self.conserved.values()) if self.is_scored else self.verdicts
 
     @property
@@ -51,14 +51,14 @@ class Run:
 
 
 def conserved_quantities(runs: Iterable[Run]) -> tuple[str, ...]:
-    """Those of all these runs, each once."""
+    """Return the conserved quantities of all these runs, each once."""
     found = dict.fromkeys(name for run in runs for name in run.conserved)
     known = [name for name in CONSERVED if name in found]
     return (*known, *(name for name in found if name not in known))
 
 
 def quantities_of_scene(run: Run, among: Sequence[Run]) -> tuple[str, ...]:
-    """What the run's scene conserves: known from other rungs, or else from other scenes."""
+    """Return what the scene of a run conserves, known from other rungs or else from other scenes."""
     same = conserved_quantities(other for other in among if other.scene == run.scene)
     return same or conserved_quantities(other for other in among if other.model == run.model)
 
@@ -69,7 +69,7 @@ def gravest(verdicts: Iterable[Verdict]) -> Status:
 
 
 def runs(verdicts: Iterable[Verdict]) -> tuple[Run, ...]:
-    """The runs in reading order, each with its verdicts in the order in which they came."""
+    """Return the runs in reading order, each with its verdicts in the order in which they came."""
     gathered: dict[tuple[str, str, str, str], list[Verdict]] = {}
     for verdict in verdicts:
         key = (verdict.scene, verdict.solver, verdict.setting, verdict.rung)

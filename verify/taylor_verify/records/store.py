@@ -20,7 +20,7 @@ from typing import Any, Final
 
 from taylor_verify.records import file_names
 from taylor_verify.records.error_kind import ErrorKind
-from taylor_verify.records.json_text import complete
+from taylor_verify.records.json_text import complete, read
 from taylor_verify.records.record import Record
 from taylor_verify.records.replacement import first_line, replace_files
 from taylor_verify.records.runs import Run, runs
@@ -52,14 +52,16 @@ def write(folder: Path, verdicts: Iterable[Verdict], records: Iterable[Record]) 
     """
     found = runs(verdicts)
     data = folder / FOLDER
+    ordered = [verdict for run in found for verdict in run.verdicts]
+    rows = [row(verdict) for verdict in ordered]
+    text = laid_out({**_MADE_BY, "versions": versions(ordered), "verdicts": rows})
     # The verdicts come last: once they are in place, what they speak of is there.
-    texts = _record_texts(records)
-    texts[TIMINGS] = laid_out({**_MADE_BY, **_timings(found)})
-    rows = [row(verdict) for run in found for verdict in run.verdicts]
-    same = versions(verdict for run in found for verdict in run.verdicts)
-    verdicts_text = laid_out({**_MADE_BY, "versions": same, "verdicts": rows})
-    texts[STAMP] = _stamp(verdicts_text.encode())
-    texts[VERDICTS] = verdicts_text
+    texts = {
+        **_record_texts(records),
+        TIMINGS: laid_out({**_MADE_BY, **_timings(found)}),
+        STAMP: _stamp(text.encode()),
+        VERDICTS: text,
+    }
     return replace_files(data, texts, stale=_own_records(data))
 
 
@@ -71,9 +73,8 @@ def add_records(folder: Path, records: Iterable[Record]) -> tuple[Path, ...]:
     """
     data = folder / FOLDER
     stale = [] if has_own_records(folder) else _own_records(data)
-    texts = _record_texts(records)
-    texts[STAMP] = _stamp((data / VERDICTS).read_bytes())
-    return replace_files(data, texts, stale=stale)
+    stamp = {STAMP: _stamp((data / VERDICTS).read_bytes())}
+    return replace_files(data, {**_record_texts(records), **stamp}, stale=stale)
 
 
 def has_own_records(folder: Path) -> bool:
@@ -86,13 +87,13 @@ def has_own_records(folder: Path) -> bool:
 
 
 def record_name(scene: str, solver: str, rung: str) -> str:
-    """The path below ``folder``/data of the record of a run."""
+    """Return the path below ``folder``/data of the record of a run."""
     stem = f"{file_names.of_scene(scene)}.{file_names.of_solver(solver)}"
     return f"{RECORDS}/{stem}.{rung}.json"
 
 
 def load(folder: Path) -> tuple[Verdict, ...]:
-    """The verdicts of ``folder``/data as they were written, in reading order.
+    """Return the verdicts of ``folder``/data as they were written, in reading order.
 
     A number that was not finite is None. Raises OSError for files that cannot be read and
     ValueError for files that hold something else. Timings may be missing.
@@ -106,16 +107,13 @@ def load(folder: Path) -> tuple[Verdict, ...]:
 
 
 def versions(verdicts: Iterable[Verdict]) -> dict[str, str]:
-    """The versions all verdicts were made with; not Python's, on which no number depends."""
-    found = [_numerical(verdict.provenance.get("versions", {})) for verdict in verdicts]
-    unlike = next((other for other in found if other != found[0]), None)
-    if unlike is not None:
-        raise ValueError(f"expected one set of versions, got {found[0]} and {unlike}")
+    """Return the versions all verdicts were made with; not Python's, on which no number depends."""
+    found = [{**verdict.provenance.get("versions", {})} for verdict in verdicts]
+    for each in found:
+        each.pop("python", None)
+        if each != found[0]:
+            raise ValueError(f"expected one set of versions, got {found[0]} and {each}")
     return found[0] if found else {}
-
-
-def _numerical(found: Mapping[str, str]) -> dict[str, str]:
-    return {package: version for package, version in found.items() if package != "python"}
 
 
 # Writing.
@@ -128,7 +126,7 @@ _SELDOM = ("tolerance", "since", "change", "error_kind")
 
 
 def row(verdict: Verdict) -> dict[str, Any]:
-    """A verdict as it is stored: without what is another number every time, or on every machine."""
+    """Return a verdict as it is stored, without what is another number every time, or on every machine."""
     stored = verdict.row()
     del stored["seconds"]
     left_out = {*_DERIVED, *(name for name in _SELDOM if stored[name] is None)}
@@ -145,7 +143,7 @@ def row(verdict: Verdict) -> dict[str, Any]:
 
 
 def _timings(found: Iterable[Run]) -> dict[str, Any]:
-    """The seconds of each run, with the place of its machine in a list of them."""
+    """Return the seconds of each run, with the place of its machine in a list of them."""
     machines: list[dict[str, Any]] = []
     timings = []
     for run in found:
@@ -154,17 +152,14 @@ def _timings(found: Iterable[Run]) -> dict[str, Any]:
         if own not in machines:
             machines.append(own)
         key = {name: getattr(run, name) for name in _RUN}
-        place = machines.index(own)
-        timings.append({**key, "seconds": verdict.seconds, "machine": place})
+        timings.append({**key, "seconds": verdict.seconds, "machine": machines.index(own)})
     return {"machines": machines, "timings": timings}
 
 
 def machine(verdict: Verdict) -> dict[str, Any]:
-    """Where a verdict was made, as far as it says so: Python, processor and command."""
-    given = verdict.provenance
-    python = given.get("versions", {}).get("python")
-    known = {"python": python} if python else {}
-    return {**known, **{name: given[name] for name in _MACHINE if name in given}}
+    """Return the machine of a verdict, as far as it says so: Python, processor and command."""
+    given = {**verdict.provenance.get("versions", {}), **verdict.provenance}
+    return {name: given[name] for name in ("python", *_MACHINE) if name in given}
 
 
 def _record_texts(records: Iterable[Record]) -> dict[str, str]:
@@ -178,18 +173,18 @@ def _record_texts(records: Iterable[Record]) -> dict[str, str]:
 
 
 def _stamp(verdicts: bytes) -> str:
-    """The line that `sha256sum --check` reads beside the records."""
+    """Return the line that `sha256sum --check` reads beside the records."""
     return f"{hashlib.sha256(verdicts).hexdigest()}  ../{VERDICTS}\n"
 
 
 def _own_records(data: Path) -> list[Path]:
-    """The records of an earlier run: files that name their maker, and no others."""
+    """Return the records of an earlier run: files that name their maker, and no others."""
     maker = laid_out(_MADE_BY).removesuffix("}\n") + ","
     return [file for file in (data / RECORDS).glob("*.json") if first_line(file) == maker]
 
 
 def laid_out(document: Mapping[str, Any]) -> str:
-    """JSON with a line for every key and for every row of a list of rows."""
+    """Return JSON with a line for every key and for every row of a list of rows."""
     keys = (f"{_json(key)}: {_value(value)}" for key, value in document.items())
     return "{" + ",\n ".join(keys) + "}\n"
 
@@ -212,18 +207,12 @@ def _json(value: Any, encoder: json.JSONEncoder = _ENCODER) -> str:
 
 
 def read_document(file: Path) -> dict[str, Any]:
-    """The JSON object in a file; ValueError, with the file, for anything else."""
-    try:
-        document = json.loads(file.read_text(encoding="utf-8"))
-    except (ValueError, RecursionError) as fault:
-        raise ValueError(f"expected a JSON document, got a fault: {fault} @ {file}") from fault
-    if not isinstance(document, dict):
-        raise ValueError(f"expected a JSON object, got {type(document).__name__} @ {file}")
-    return document
+    """Return the JSON object in a file; ValueError, with the file, for anything else."""
+    return read(file, dict[str, Any])
 
 
 def _timed(file: Path) -> dict[tuple[str, ...], dict[str, Any]]:
-    """Each run's seconds and machine; nothing where there is no such file."""
+    """Return each run's seconds and machine; nothing where there is no such file."""
     if not file.exists():
         return {}
     stored = read_document(file)
@@ -242,7 +231,7 @@ def _key(row: Mapping[str, Any]) -> tuple[str, ...]:
 def verdict(
     stored: Mapping[str, Any], same: Mapping[str, str], timing: Mapping[str, Any]
 ) -> Verdict:
-    """A stored row as it was, made with the versions ``same``; seconds and machine as timed."""
+    """Return a stored row as it was, made with the versions ``same``; seconds and machine as timed."""
     own = dict(timing.get("machine", {}))
     python = {"python": own.pop("python")} if "python" in own else {}
     found = {**python, **same}
@@ -253,7 +242,7 @@ def verdict(
 
 @contextmanager
 def expecting(what: str, file: Path) -> Iterator[None]:
-    """Whatever goes wrong in reading stored rows is told as a ValueError that names the file."""
+    """Report whatever goes wrong in reading stored rows as a ValueError that names the file."""
     try:
         yield
     except (AttributeError, LookupError, TypeError, ValueError) as fault:

@@ -4,23 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields
+from math import floor, inf, log10
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
-from msgspec import Meta
-
 from taylor_verify.records.error_kind import ErrorKind
-from taylor_verify.records.json_text import Count, Size, converted, finite, plain, read
-from taylor_verify.records.quantities import COMPLETE
+from taylor_verify.records.json_text import Count, Size, about, converted, finite, plain, read
+from taylor_verify.records.quantities import COMPLETE, is_conserved
 from taylor_verify.records.reason import NO_REASON, Cause, Reason, stated
-from taylor_verify.records.sentence import Row
+from taylor_verify.records.sentence import sentence
 from taylor_verify.records.status import Status
 
 Study = TypeVar("Study")
 
 
 @dataclass(frozen=True)
-class Verdict(Row):
+class Verdict:
     """One compared quantity of one run.
 
     A number that does not exist, or is not finite, is None. ``bound`` and ``attainable`` hold at the time
@@ -28,103 +27,114 @@ class Verdict(Row):
     samples before its bound reached the size of the motion).
     """
 
-    scene: Annotated[
-        str, Meta(description="The name of a shipped scene, or the path of a scene file.")
-    ]
+    scene: Annotated[str, about("The name of a shipped scene, or the path of a scene file.")]
     solver: str
-    rung: Annotated[str, Meta(description="f32, f64, f80, f128 or mpN, N the bits.")]
-    setting: Annotated[str, Meta(description="Tells two uses of one solver apart.")]
+    rung: Annotated[str, about("f32, f64, f80, f128 or mpN, N the bits.")]
+    setting: Annotated[str, about("Tells two uses of one solver apart.")]
     quantity: Annotated[
         str,
-        Meta(
-            description="initial state; omega, impulse, attitude, centre; T, H2, F2, FG, y3, H_space and "
-            "so on; complete, where a file lacks a part of what the scene asks."
+        about(
+            "initial state; omega, impulse, attitude, centre; T, H2, F2, FG, y3, H_space and so on; "
+            "complete, where a file lacks a part of what the scene asks."
         ),
     ]
     verdict: Status
-    outcome: Annotated[str, Meta(description="How the solver ended.")]
-    max: Annotated[Size | None, Meta(description="The largest error of all samples, in unit.")] = (
-        None
-    )
-    mean: Annotated[Size | None, Meta(description="The mean error of all samples.")] = None
-    final: Annotated[Size | None, Meta(description="The error of the last sample.")] = None
-    at: Annotated[float | None, Meta(description="The time of the largest error.")] = None
-    unit: Annotated[str, Meta(description="What an error of 1 is.")] = ""
-    bound: Annotated[
-        Size | None, Meta(description="What is allowed at the time of the largest error.")
-    ] = None
+    outcome: Annotated[str, about("How the solver ended.")]
+    max: Annotated[Size | None, about("The largest error of all samples, in unit.")] = None
+    mean: Annotated[Size | None, about("The mean error of all samples.")] = None
+    final: Annotated[Size | None, about("The error of the last sample.")] = None
+    at: Annotated[float | None, about("The time of the largest error.")] = None
+    unit: Annotated[str, about("What an error of 1 is.")] = ""
+    bound: Annotated[Size | None, about("What is allowed at the time of the largest error.")] = None
     tolerance: Annotated[
         Size | None,
-        Meta(
-            description="The tolerance that was asked for: it is the bound, and max decides. Null where "
-            "the bound follows from the arithmetic."
+        about(
+            "The tolerance that was asked for: it is the bound, and max decides. Null where the bound "
+            "follows from the arithmetic."
         ),
     ] = None
     reason: Reason = NO_REASON
     attainable: Annotated[
-        Size | None,
-        Meta(description="What perfect rounding would leave, at the time of the largest error."),
+        Size | None, about("What perfect rounding would leave, at the time of the largest error.")
     ] = None
     ratio: Annotated[
         Size | None,
-        Meta(
-            description="The largest error over attainable, of all samples; it decides "
-            "unless there is a tolerance."
+        about(
+            "The largest error over attainable, of all samples; it decides unless there is a tolerance."
         ),
     ] = None
-    ratio_at: Annotated[float | None, Meta(description="The time of the largest ratio.")] = None
+    ratio_at: Annotated[float | None, about("The time of the largest ratio.")] = None
     time_shift: Annotated[
         float | None,
-        Meta(
-            description="State quantities: c with answer(t) ~ exact(t - c), positive if the answer is late."
-        ),
+        about("State quantities: c with answer(t) ~ exact(t - c), positive if the answer is late."),
     ] = None
     residual: Annotated[
-        Size | None,
-        Meta(description="State quantities: the largest error that the time shift leaves."),
+        Size | None, about("State quantities: the largest error that the time shift leaves.")
     ] = None
     shift: Annotated[
         str | None,
-        Meta(
-            description="State quantities: the course of the shift of time behind the error, constant, "
-            "drifting, wandering, or none where it leaves more than a tenth."
+        about(
+            "State quantities: the course of the shift of time behind the error, constant, drifting, "
+            "wandering, or none where it leaves more than a tenth."
         ),
     ] = None
-    trend: Annotated[
-        float | None, Meta(description="The shift per unit of time, where it is drifting.")
-    ] = None
+    trend: Annotated[float | None, about("The shift per unit of time, where it is drifting.")] = (
+        None
+    )
     remains: Annotated[
-        Size | None,
-        Meta(description="The largest error that the course of the shift leaves, in unit."),
+        Size | None, about("The largest error that the course of the shift leaves, in unit.")
     ] = None
-    roundoff: Annotated[Size | None, Meta(description="u = 2^-bits of the rung.")] = None
+    roundoff: Annotated[Size | None, about("u = 2^-bits of the rung.")] = None
     exponent: Annotated[
-        float | None, Meta(description="Growth of the error as a power of t, where fitted.")
+        float | None, about("Growth of the error as a power of t, where fitted.")
     ] = None
     change: Annotated[
         float | None,
-        Meta(
-            description="Conserved numbers: the error of the last sample with its sign, below zero for a "
-            "loss; null for vectors and states."
+        about(
+            "Conserved numbers: the error of the last sample with its sign, below zero for a loss; null "
+            "for vectors and states."
         ),
     ] = None
     since: Annotated[
         float | None,
-        Meta(
-            description="The time of the first sample whose error exceeds its bound; null if none does."
-        ),
+        about("The time of the first sample whose error exceeds its bound; null if none does."),
     ] = None
-    until: Annotated[float | None, Meta(description="The time of the last sample.")] = None
-    error_kind: Annotated[
-        ErrorKind | None, Meta(description="What the error that is left is made of.")
-    ] = None
+    until: Annotated[float | None, about("The time of the last sample.")] = None
+    error_kind: Annotated[ErrorKind | None, about("What the error that is left is made of.")] = None
     steps: Count = 0
-    evaluations: Annotated[Count, Meta(description="Of the derivative.")] = 0
+    evaluations: Annotated[Count, about("Of the derivative.")] = 0
     seconds: Annotated[
-        Size | None,
-        Meta(description="Of the run, all its quantities together; in files it stands apart."),
+        Size | None, about("Of the run, all its quantities together; in files it stands apart.")
     ] = None
     provenance: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def sentence(self) -> str:
+        """The digits that are right, the kind of error that is left, and since when, in one line."""
+        return sentence(self)
+
+    @property
+    def digits(self) -> int | None:
+        """The decimal digits that are right at every sample, at most those that the rung has.
+
+        None where nothing was compared, where the truth is too wide to tell, and where an error is no
+        finite number. A radian counts as a whole.
+        """
+        if self.verdict is Status.UNDECIDED or self.max is None or not 0 <= self.max < inf:
+            return None
+        # The zeros behind the point, of the error and of the roundoff.
+        found = [max(floor(-log10(size)), 0) for size in (self.max, self.roundoff) if size]
+        return min(found, default=None)
+
+    @property
+    def is_conserved(self) -> bool:
+        """True for the row of a conserved quantity."""
+        return is_conserved(self.quantity)
+
+    @property
+    def is_compared(self) -> bool:
+        """True if a comparison was made: a run that never came to one has no time of an error."""
+        return self.at is not None
 
     @property
     def because(self) -> str:

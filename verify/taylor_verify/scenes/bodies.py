@@ -169,14 +169,6 @@ class ImmersedBody(Body):
             angular=tuple(row[3:] for row in lower),
         )
 
-    def impulses(self, velocity: Vector, angular_velocity: Vector) -> tuple[Vector, Vector]:
-        """Return x and y of the velocity U of the origin and the angular velocity Omega, exactly.
-
-        All four are in body axes. U = A x + B y and Omega = B^T x + C y give the velocities back.
-        """
-        momenta = tensors.apply(self.mass_matrix, velocity + angular_velocity)
-        return momenta[:3], momenta[3:]
-
     @cached_property
     def axis_of_symmetry(self) -> int | None:
         """The body axis about which every turn leaves T as it is; 3 where there is a choice.

@@ -24,7 +24,7 @@ from fractions import Fraction
 from functools import cache
 from typing import Any, Final
 
-from taylor_verify.scenes.precision import exact_value, nearest, power_of_two
+from taylor_verify.scenes.precision import exact_value, rounded
 from taylor_verify.scenes.tensors import Vector
 
 # Each of some bits/4 duplications rounds a few dozen times, and sums of positive terms do not magnify
@@ -36,7 +36,7 @@ _GUARD_BITS: Final = 40
 def inverse_inertias(
     semi_axes: Vector, density: Fraction, fluid_density: Fraction, bits: int
 ) -> tuple[Vector, Vector]:
-    """(p_1, p_2, p_3) and (r_1, r_2, r_3), each rounded once to so many bits.
+    """Return (p_1, p_2, p_3) and (r_1, r_2, r_3), each rounded once to so many bits.
 
     Equal semi-axes give equal coefficients. Raises ZeroDivisionError where M + m_i or I_i + j_i is 0.
     """
@@ -44,13 +44,11 @@ def inverse_inertias(
 
     with mp.workprec(bits + _GUARD_BITS):
         masses, moments = _inertias(semi_axes, density, fluid_density)
-        p, r = ([exact_value(1 / inertia) for inertia in found] for found in (masses, moments))
-    return _rounded(p, bits), _rounded(r, bits)
-
-
-def _rounded(numbers: list[Fraction], bits: int) -> Vector:
-    pairs = (nearest(number.numerator, number.denominator, bits) for number in numbers)
-    return tuple(significand * power_of_two(exponent) for significand, exponent in pairs)
+        p, r = (
+            tuple(rounded(exact_value(1 / inertia), bits) for inertia in inertias)
+            for inertias in (masses, moments)
+        )
+    return p, r
 
 
 def _inertias(semi_axes: Vector, density: Fraction, fluid_density: Fraction) -> tuple[Any, Any]:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import difflib
 import os
+from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Final
 
 from taylor_verify.scenes.reading.faults import Refused, brief
@@ -13,6 +15,21 @@ STANDARD_SET: Final = ("euler", "kirchhoff", "manufactured")
 EXTREMES: Final = "extremes"
 # What a hunt has found; it runs with the extremes.
 WORST: Final = "extremes/worst"
+# The few scenes to begin with, and the purpose of each.
+GUIDE: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "euler/oblique-start": "begin here: axes, signs of products, order and direction of quaternions",
+        "euler/satellite-degrees": "rates in deg/s, a slow satellite",
+        "euler/tennis-racket": "how soon small errors flip a body spun about its middle axis",
+        "euler/constant-moment": "a torque that is constant in body axes",
+        "euler/separatrix": "the hardest orbit of a free body: an infinite period",
+        "manufactured/euler-full-tensor": "a torque that changes with time, and an exact answer still",
+        "kirchhoff/auv-turn": "begin here with a vehicle: mass matrix with added mass, velocities, path",
+        "kirchhoff/whole-motion": "a body of revolution in a fluid: impulses, attitude and path",
+        "kirchhoff/screw": "the coupling of translation and rotation",
+        "extremes": "what breaks integrators: tiny distances, huge spans, extreme scales",
+    }
+)
 
 _MOST_SUGGESTED = 3
 

@@ -12,8 +12,10 @@ every tensor and every T.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import reduce
 
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.tensors import Matrix, Vector
@@ -38,10 +40,7 @@ class Manufactured:
     @property
     def start(self) -> Vector:
         """z*(0), where every cosine is 1 and every sine 0: rational as its coefficients are."""
-        total = self.constant
-        for wave in self.waves:
-            total = tensors.plus(total, wave.cosine)
-        return total
+        return reduce(tensors.plus, (wave.cosine for wave in self.waves), self.constant)
 
     @property
     def reach(self) -> Vector:
@@ -55,25 +54,15 @@ class Manufactured:
         return max((wave.frequency for wave in self.waves), default=Fraction(0))
 
     def mapped(self, matrix: Matrix) -> Manufactured:
-        """The same motion of another vector, matrix z*: of H = I omega, for one."""
-        return Manufactured(
-            tensors.apply(matrix, self.constant),
-            tuple(
-                Wave(w.frequency, tensors.apply(matrix, w.cosine), tensors.apply(matrix, w.sine))
-                for w in self.waves
-            ),
-        )
+        """Return the same motion of another vector, matrix z*: of H = I omega, for one."""
+        return self._changed(lambda z: tensors.apply(matrix, z), Fraction(1))
 
     def in_units(self, sizes: Vector, time: Fraction) -> Manufactured:
-        """Component i times sizes[i], and times to ``time`` times what they were."""
-        return Manufactured(
-            _times(self.constant, sizes),
-            tuple(
-                Wave(w.frequency / time, _times(w.cosine, sizes), _times(w.sine, sizes))
-                for w in self.waves
-            ),
+        """Return component i times sizes[i], and times to ``time`` times what they were."""
+        return self._changed(
+            lambda z: tuple(c * size for c, size in zip(z, sizes, strict=True)), time
         )
 
-
-def _times(vector: Vector, sizes: Vector) -> Vector:
-    return tuple(z * size for z, size in zip(vector, sizes, strict=True))
+    def _changed(self, change: Callable[[Vector], Vector], time: Fraction) -> Manufactured:
+        waves = (Wave(w.frequency / time, change(w.cosine), change(w.sine)) for w in self.waves)
+        return Manufactured(change(self.constant), tuple(waves))

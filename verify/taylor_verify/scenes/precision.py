@@ -99,6 +99,12 @@ def nearest(numerator: int, denominator: int, bits: int) -> tuple[int, int]:
     return (kept if numerator > 0 else -kept), exponent + surplus
 
 
+def rounded(value: Fraction, bits: int) -> Fraction:
+    """Return the number of so many bits nearest to a value, ties to even, whatever its size."""
+    significand, exponent = nearest(value.numerator, value.denominator, bits)
+    return significand * power_of_two(exponent)
+
+
 def power_of_two(exponent: int) -> Fraction:
     return Fraction(2**exponent) if exponent >= 0 else Fraction(1, 2**-exponent)
 
@@ -130,15 +136,19 @@ def shortest_decimal(value: Fraction, bits: int) -> str:
 
     Numbers of usual size are written without an exponent.
     """
-    wide = Rung("", bits)
-    asked = wide.round(value)
+    asked = rounded(value, bits)
     for digits in itertools.count(1):
         context = Context(prec=digits, Emin=MIN_EMIN, Emax=MAX_EMAX)
         found = context.divide(Decimal(asked.numerator), Decimal(asked.denominator))
-        if wide.round(Fraction(found)) == asked:
+        if rounded(Fraction(found), bits) == asked:
             break
-    is_usual = -_USUAL_DIGITS <= found.adjusted() <= _USUAL_DIGITS
-    return format(found, "f") if is_usual else str(found).lower()
+    return decimal_text(found)
+
+
+def decimal_text(number: Decimal) -> str:
+    """Return a decimal as it is; a number of usual size is written without an exponent."""
+    is_usual = -_USUAL_DIGITS <= number.adjusted() <= _USUAL_DIGITS
+    return format(number, "f") if is_usual else str(number).lower()
 
 
 def held_exactly(value: Fraction) -> Any:

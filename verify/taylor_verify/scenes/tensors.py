@@ -5,7 +5,10 @@ A vector is a tuple of Fractions, a matrix a tuple of rows. Nothing here rounds.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from fractions import Fraction
+
+import flint
 
 Vector = tuple[Fraction, ...]
 Matrix = tuple[Vector, ...]
@@ -73,34 +76,25 @@ def blocks(a: Matrix, b: Matrix, c: Matrix) -> Matrix:
     return upper + lower
 
 
+def leading_minors(matrix: Matrix) -> Iterator[Fraction]:
+    """Yield the determinant of the first entry, of the first two rows and columns, and so on."""
+    for size in range(1, len(matrix) + 1):
+        yield _fraction(_flint(tuple(row[:size] for row in matrix[:size])).det())
+
+
 def is_positive_definite(matrix: Matrix) -> bool:
-    """Whether a symmetric matrix is positive definite: every pivot of its elimination is positive."""
-    rows = [list(row) for row in matrix]
-    for k, pivot_row in enumerate(rows):
-        if pivot_row[k] <= 0:
-            return False
-        for row in rows[k + 1 :]:
-            if row[k]:
-                factor = row[k] / pivot_row[k]
-                row[k:] = [p - factor * q for p, q in zip(row[k:], pivot_row[k:], strict=True)]
-    return True
+    """Return True if a symmetric matrix is positive definite: all its leading minors are positive."""
+    return all(minor > 0 for minor in leading_minors(matrix))
 
 
 def inverse(matrix: Matrix) -> Matrix:
-    """The inverse by elimination with row exchanges; ZeroDivisionError if the matrix is singular."""
-    size = len(matrix)
-    if is_diagonal(matrix):
-        return diagonal(tuple(1 / matrix[i][i] for i in range(size)))
-    rows = [
-        list(row) + [Fraction(int(i == j)) for j in range(size)] for i, row in enumerate(matrix)
-    ]
-    for k in range(size):
-        pivot = next((i for i in range(k, size) if rows[i][k] != 0), None)
-        if pivot is None:
-            raise ZeroDivisionError("the matrix is singular")
-        rows[k], rows[pivot] = rows[pivot], rows[k]
-        rows[k] = [entry / rows[k][k] for entry in rows[k]]
-        for i in range(size):
-            if i != k and rows[i][k] != 0:
-                rows[i] = [p - rows[i][k] * q for p, q in zip(rows[i], rows[k], strict=True)]
-    return tuple(tuple(row[size:]) for row in rows)
+    """Return the inverse; ZeroDivisionError if the matrix is singular."""
+    return tuple(tuple(map(_fraction, row)) for row in _flint(matrix).inv().tolist())
+
+
+def _flint(matrix: Matrix) -> flint.fmpq_mat:
+    return flint.fmpq_mat([[flint.fmpq(c.numerator, c.denominator) for c in row] for row in matrix])
+
+
+def _fraction(value: flint.fmpq) -> Fraction:
+    return Fraction(int(value.p), int(value.q))

@@ -20,25 +20,24 @@ middle axis     a body that turns about it has u0 infinite, and the answer is no
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 from importlib import import_module
 from math import atan2, copysign, sqrt
 from time import perf_counter
 from typing import Any, Final, final
 
 import numpy as np
+from flint import fmpq, fmpq_mat
 
 from taylor_verify.models.problem import Problem
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.precision import Rung, exact_value
+from taylor_verify.scenes.precision import Rung
 from taylor_verify.solvers.geometric.fixed_step import Body
 from taylor_verify.solvers.options import options
 from taylor_verify.solvers.scipy import unavailable
-from taylor_verify.solvers.solver import Solver
-from taylor_verify.solvers.trajectory import Outcome, Postponed, Trajectory
+from taylor_verify.solvers.solver import Solver, raised
+from taylor_verify.solvers.trajectory import Outcome, Trajectory, of_rows
 
-PREFIX: Final = "closed-form:"
 METHODS: Final = ("ellipj",)
 
 Floats = np.ndarray[Any, Any]
@@ -59,14 +58,15 @@ class ClosedForm(Solver):
         body = problem.given.body
         if not isinstance(body, RigidBody):
             return f"{self.name} is made for Euler's equations, got {problem.scene.model}"
-        if not body.is_free:
-            return f"{self.name} is made for a body without a moment"
         if "attitude" in problem.scene.track:
             return f"{self.name} gives omega and no attitude"
-        if not any(problem.initial_momenta):
-            return f"{self.name} is made for a body that turns"
-        if not _has_distinct_moments(body.inverse_inertia):
-            return f"{self.name} is made for three distinct principal moments"
+        for fits, made_for in (
+            (body.is_free, "a body without a moment"),
+            (any(problem.initial_momenta), "a body that turns"),
+            (_has_distinct_moments(body.inverse_inertia), "three distinct principal moments"),
+        ):
+            if not fits:
+                return f"{self.name} is made for {made_for}"
         return ""
 
     def solve(self, problem: Problem) -> Trajectory:
@@ -77,25 +77,18 @@ class ClosedForm(Solver):
         began = perf_counter()
         try:
             with np.errstate(all="ignore"):
-                momenta = _momenta(problem)
+                rows = _momenta(problem).tolist()
         except (ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
-            return Trajectory(Outcome.RAISED, detail=f"{type(error).__name__}: {error}")
+            return raised(error)
+        # Each sample is found for itself: no step is taken, and nothing adds up.
         seconds = perf_counter() - began
-        if not np.isfinite(momenta).all():
-            return Trajectory(Outcome.NON_FINITE, seconds=seconds)
-        rows = momenta.tolist()
-        return Trajectory(
-            Outcome.FINISHED,
-            Postponed(problem, lambda: [[exact_value(v) for v in row] for row in rows]),
-            # Each sample is found for itself: no step is taken, and nothing adds up.
-            steps=len(rows),
-            seconds=seconds,
-            compile_seconds=began - asked,
+        return of_rows(
+            problem, rows, steps=len(rows), seconds=seconds, compile_seconds=began - asked
         )
 
 
 def _momenta(problem: Problem) -> Floats:
-    """The momentum in body axes at each of the problem's times, in its units."""
+    """Return the momentum in body axes at each of the problem's times, in its units."""
     from scipy.special import ellipj, ellipkinc
 
     k, axes = _principal(np.array(Body.of(problem).K))
@@ -104,17 +97,16 @@ def _momenta(problem: Problem) -> Floats:
         k, h, axes = k[::-1], h[::-1], axes[:, ::-1]
     if np.linalg.det(axes) < 0:
         h, axes = h * [1, -1, 1], axes * [1, -1, 1]
-    orbit = _Orbit(*(float(value) for value in (*k, *h)))
+    rate, m, amplitudes, angle = _orbit(*(float(value) for value in (*k, *h)))
     times = np.array([float(t) for t in problem.times])
-    phase = ellipkinc(orbit.angle, orbit.m)
-    sn, cn, dn, _ = ellipj(orbit.rate * times + phase, orbit.m)
-    along = np.array(orbit.amplitudes)[:, None] * np.array([dn, sn, cn])
+    sn, cn, dn, _ = ellipj(rate * times + ellipkinc(angle, m), m)
+    along = amplitudes[:, None] * np.array([dn, sn, cn])
     momenta: Floats = (axes @ along).T
     return momenta
 
 
 def _principal(K: Floats) -> tuple[Floats, Floats]:
-    """The principal values in rising order and the axes as columns; exact where K is diagonal."""
+    """Return the principal values in rising order and the axes as columns; exact where K is diagonal."""
     if np.count_nonzero(K - np.diag(np.diag(K))):
         values, vectors = np.linalg.eigh(K)
         return values, vectors
@@ -123,77 +115,37 @@ def _principal(K: Floats) -> tuple[Floats, Floats]:
 
 
 def _encircles_last(k: Floats, h: Floats) -> bool:
-    """Whether the orbit is about the axis of the largest k, the least moment: 2T > k_b |H|^2."""
+    """Return True for an orbit about the axis of the largest k, the least moment: 2T > k_b |H|^2."""
     return bool((k[2] - k[1]) * h[2] ** 2 > (k[1] - k[0]) * h[0] ** 2)
 
 
-@dataclass(frozen=True)
-class _Orbit:
-    """The constants of an orbit about axis a, which is the axis of the least or of the largest k."""
+def _orbit(
+    k_a: float, k_b: float, k_c: float, h_a: float, h_b: float, h_c: float
+) -> tuple[float, float, Floats, float]:
+    """Return lam, m, the amplitudes of h_a, h_b, h_c, and the amplitude of u0.
 
-    k_a: float
-    k_b: float
-    k_c: float
-    h_a: float
-    h_b: float
-    h_c: float
-
-    @property
-    def _A(self) -> float:
-        """| |H|^2 k_c - 2T |, a sum of positive terms."""
-        return abs(self.k_c - self.k_a) * self.h_a**2 + abs(self.k_c - self.k_b) * self.h_b**2
-
-    @property
-    def _C(self) -> float:
-        """| 2T - |H|^2 k_a |, likewise."""
-        return abs(self.k_b - self.k_a) * self.h_b**2 + abs(self.k_c - self.k_a) * self.h_c**2
-
-    @property
-    def rate(self) -> float:
-        return sqrt(abs(self.k_b - self.k_a) * self._A)
-
-    @property
-    def m(self) -> float:
-        # On the separatrix rounding makes it 1 and a little, which ellipj does not take.
-        ratio = abs(self.k_c - self.k_b) * self._C / (abs(self.k_b - self.k_a) * self._A)
-        return min(ratio, 1.0)
-
-    @property
-    def amplitudes(self) -> tuple[float, float, float]:
-        """Of h_a, h_b, h_c: what stands before dn, sn and cn."""
-        side = copysign(1.0, self.h_a)
-        turn = copysign(1.0, self.k_a - self.k_c)
-        across = abs(self.k_c - self.k_a)
-        return (
-            side * sqrt(self._A / across),
-            side * turn * sqrt(self._C / abs(self.k_b - self.k_a)),
-            sqrt(self._C / across),
-        )
-
-    @property
-    def angle(self) -> float:
-        """The amplitude of u0: its sine and cosine are sn and cn at the start."""
-        _, b, c = self.amplitudes
-        return atan2(self.h_b * c * copysign(1.0, b), self.h_c * abs(b))
+    The orbit is about axis a, which is the axis of the least or of the largest k.
+    """
+    ab, bc, ac = abs(k_b - k_a), abs(k_c - k_b), abs(k_c - k_a)
+    # | |H|^2 k_c - 2T | and | 2T - |H|^2 k_a |, sums of positive terms.
+    A, C = ac * h_a**2 + bc * h_b**2, ab * h_b**2 + ac * h_c**2
+    # On the separatrix rounding makes it 1 and a little, which ellipj does not take.
+    m = min(bc * C / (ab * A), 1.0)
+    side, turn = copysign(1.0, h_a), copysign(1.0, k_a - k_c)
+    a, b, c = side * sqrt(A / ac), side * turn * sqrt(C / ab), sqrt(C / ac)
+    # The sine and cosine of the amplitude of u0 are sn and cn at the start.
+    angle = atan2(h_b * c * copysign(1.0, b), h_c * abs(b))
+    return sqrt(ab * A), m, np.array([a, b, c]), angle
 
 
 def _has_distinct_moments(K: tensors.Matrix) -> bool:
-    """Whether the characteristic polynomial has no double root: its discriminant, in rationals."""
-    trace = K[0][0] + K[1][1] + K[2][2]
-    square = tensors.product(K, K)
-    minors = (trace**2 - sum((square[i][i] for i in range(3)), Fraction(0))) / 2
-    a, b, c = K
-    determinant = tensors.dot(a, tensors.cross(b, c))
-    return (
-        trace**2 * minors**2
-        - 4 * minors**3
-        - 4 * trace**3 * determinant
-        + 18 * trace * minors * determinant
-        - 27 * determinant**2
-    ) != 0
+    """Return True if the characteristic polynomial, in rationals, shares no root with its derivative."""
+    entries = [fmpq(entry.numerator, entry.denominator) for row in K for entry in row]
+    polynomial = fmpq_mat(3, 3, entries).charpoly()
+    return bool(polynomial.gcd(polynomial.derivative()).degree() == 0)
 
 
 def named(name: str) -> ClosedForm:
-    """The closed form of that name; ValueError for one that there is not, and for any setting."""
+    """Return the closed form of that name; ValueError for one that there is not, and for any setting."""
     options(name, METHODS, [])
     return ClosedForm(name)

@@ -7,7 +7,7 @@ with heyoka's, and some hundred times slower.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from time import perf_counter
@@ -16,13 +16,12 @@ from typing import Any, Final, final
 from mpmath import mp
 
 from taylor_verify.models.problem import Problem
-from taylor_verify.scenes.precision import Rung, exact_value, held_exactly
+from taylor_verify.scenes.precision import Rung, held_exactly
 from taylor_verify.solvers.options import options
-from taylor_verify.solvers.solver import Solver
-from taylor_verify.solvers.straight_line import straight_line
-from taylor_verify.solvers.trajectory import Outcome, Postponed, Trajectory
+from taylor_verify.solvers.solver import Solver, raised
+from taylor_verify.solvers.straight_line import Counted, Endless
+from taylor_verify.solvers.trajectory import Outcome, Trajectory, of_rows
 
-PREFIX: Final = "mpmath:"
 METHODS: Final = ("odefun",)
 
 # At a tenth of a millisecond to some milliseconds an evaluation these take a few minutes.
@@ -53,75 +52,49 @@ class Odefun(Solver):
     def solve(self, problem: Problem) -> Trajectory:
         if reason := self.unavailable(problem.rung):
             return Trajectory(Outcome.NOT_STARTED, detail=reason)
-        run = _Run(problem)
+        parameters = [held_exactly(value) for value in problem.parameters]
+        rates = Counted(problem.form, parameters, _MOST_EVALUATIONS)
         began = perf_counter()
         try:
             # mpmath works with these bits; a wider exponent than a double's does not show here.
             with mp.workprec(problem.rung.bits):
-                rows = run.rows(self)
-        except _Endless:
-            detail = f"{run.evaluations} evaluations"
-            return Trajectory(Outcome.STEP_LIMIT, detail=detail, seconds=perf_counter() - began)
+                rows = self._rows(problem, rates)
+        except Endless as error:
+            seconds = perf_counter() - began
+            return Trajectory(Outcome.STEP_LIMIT, detail=str(error), seconds=seconds)
         except (ArithmeticError, ValueError) as error:
-            return Trajectory(Outcome.RAISED, detail=f"{type(error).__name__}: {error}")
-        seconds = perf_counter() - began
-        if not all(mp.isfinite(value) for row in rows for value in row):
-            return Trajectory(Outcome.NON_FINITE, seconds=seconds)
-        return Trajectory(
-            Outcome.FINISHED,
-            Postponed(problem, lambda: [[exact_value(v) for v in row] for row in rows]),
+            return raised(error)
+        return of_rows(
+            problem,
+            rows,
+            mp.isfinite,
             # A series takes as many evaluations as it has terms but the first.
-            steps=run.evaluations // (self.degree or _own_degree(problem.rung)),
-            evaluations=run.evaluations,
-            seconds=seconds,
+            steps=rates.evaluations // (self.degree or _own_degree(problem.rung)),
+            evaluations=rates.evaluations,
+            seconds=perf_counter() - began,
         )
 
-
-class _Endless(Exception):
-    """More evaluations than a run may take."""
-
-
-class _Run:
-    """One call of odefun, its evaluations counted."""
-
-    def __init__(self, problem: Problem) -> None:
-        self.problem = problem
+    def _rows(self, problem: Problem, rates: Counted) -> list[Sequence[Any]]:
         # odefun knows no time before its start: a motion backward is that of the opposite rates.
-        self.direction = -1 if problem.times[-1] < 0 else 1
-        self.evaluations = 0
-
-    def rows(self, asked: Odefun) -> list[Sequence[Any]]:
-        problem = self.problem
+        direction = -1 if problem.times[-1] < 0 else 1
         state = mp.odefun(
-            self._rates(),
+            lambda t, state: [direction * rate for rate in rates(t, state)],
             mp.zero,
             [held_exactly(value) for value in problem.initial_momenta],
-            tol=None if asked.tol is None else mp.mpf(asked.tol.numerator) / asked.tol.denominator,
-            degree=asked.degree,
+            tol=None if self.tol is None else mp.mpf(self.tol.numerator) / self.tol.denominator,
+            degree=self.degree,
         )
         return [state(held_exactly(abs(t))) for t in problem.times]
 
-    def _rates(self) -> Callable[[Any, Sequence[Any]], list[Any]]:
-        problem = self.problem
-        forward = straight_line(problem.form, [held_exactly(v) for v in problem.parameters])
-
-        def rates(t: Any, state: Sequence[Any]) -> list[Any]:
-            self.evaluations += 1
-            if not self.evaluations <= _MOST_EVALUATIONS:
-                raise _Endless
-            return [self.direction * rate for rate in forward(t, state)]
-
-        return rates
-
 
 def _own_degree(rung: Rung) -> int:
-    """The degree that odefun takes at this precision if it is told none."""
+    """Return the degree that odefun takes at this precision if it is told none."""
     with mp.workprec(rung.bits):
         return 3 + int(3 * mp.dps / 2.0)
 
 
 def named(name: str) -> Odefun:
-    """The integrator at its tolerance and degree.
+    """Return the integrator at its tolerance and degree.
 
     Raises ValueError for a method that there is not, a tolerance outside 0 to 1, and a degree
     that is no whole number from 2 to a thousand.

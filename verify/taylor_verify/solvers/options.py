@@ -1,4 +1,4 @@
-"""How a solver is named: `FAMILY:METHOD?KEY=VALUE&KEY=VALUE`, or `METHOD?KEY=VALUE` without a family."""
+"""The name of a solver: `FAMILY:METHOD?KEY=VALUE&KEY=VALUE`, or `METHOD?KEY=VALUE` without a family."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Options:
         return key in self.values
 
     def positive(self, key: str, default: str) -> Fraction:
-        """The positive number of that key, exactly as written; an empty ``default`` is no number.
+        """Return the positive number of that key, exactly as written; an empty ``default`` is no number.
 
         Raises ValueError for what is no number, is not positive, or is missing.
         """

@@ -34,38 +34,24 @@ class Family(NamedTuple):
     extra: str = ""
 
 
-def _each(form: str, methods: str) -> tuple[str, ...]:
-    return tuple(form.format(method) for method in methods.split())
-
+_GEOMETRIC = "implicit-midpoint splitting moser-veselov preprocessed-moser-veselov lie-rk4"
+_SCIPY = "RK45 DOP853 Radau BDF LSODA"
+_TAYLOR = (TAYLOR, "taylor?tol=NUMBER")
+_STEPPED = tuple(f"geometric:{method}?step=NUMBER" for method in _GEOMETRIC.split())
+_TOLERANT = tuple(f"scipy:{method}?rtol=NUMBER&atol=NUMBER" for method in _SCIPY.split())
+_ODEFUN = ("mpmath:odefun?tol=NUMBER&degree=NUMBER",)
+_ELLIPJ = ("closed-form:ellipj",)
+_FMU = ("fmu:FILE?step=NUMBER",)
 
 FAMILIES = (
-    Family(
-        *("taylor?", "taylor.driver", TAYLOR, (TAYLOR, "taylor?tol=NUMBER")),
-        *("heyoka", "taylor"),
-    ),
-    Family(
-        *("geometric:", "geometric.methods", "geometric:METHOD?step=NUMBER"),
-        _each(
-            "geometric:{}?step=NUMBER",
-            "implicit-midpoint splitting moser-veselov preprocessed-moser-veselov lie-rk4",
-        ),
-    ),
-    Family(
-        *("scipy:", "scipy", "scipy:METHOD"),
-        _each("scipy:{}?rtol=NUMBER&atol=NUMBER", "RK45 DOP853 Radau BDF LSODA"),
-        *("scipy", "scipy"),
-    ),
-    Family("mpmath:", "odefun", "mpmath:odefun", ("mpmath:odefun?tol=NUMBER&degree=NUMBER",)),
-    Family(
-        *(CLOSED_FORM, "closed_form", "closed-form:ellipj", ("closed-form:ellipj",)),
-        *("scipy", "scipy"),
-    ),
+    Family("taylor?", "taylor.driver", TAYLOR, _TAYLOR, "heyoka", "taylor"),
+    Family("geometric:", "geometric.methods", "geometric:METHOD?step=NUMBER", _STEPPED),
+    Family("scipy:", "scipy", "scipy:METHOD", _TOLERANT, "scipy", "scipy"),
+    Family("mpmath:", "odefun", "mpmath:odefun", _ODEFUN),
+    Family(CLOSED_FORM, "closed_form", _ELLIPJ[0], _ELLIPJ, "scipy", "scipy"),
     Family(OUTSIDE, "engines.engine", "outside:LIBRARY-METHOD", None),
     Family(PROCESS, "process.process", "process:COMMAND"),
-    Family(
-        *("fmu:", "fmu.fmu", "fmu:FILE?step=NUMBER", ("fmu:FILE?step=NUMBER",)),
-        *("fmpy", "fmu"),
-    ),
+    Family("fmu:", "fmu.fmu", _FMU[0], _FMU, "fmpy", "fmu"),
 )
 
 
@@ -78,7 +64,7 @@ def solver_names() -> tuple[str, ...]:
 
 
 def remarks() -> dict[str, str]:
-    """Return for a name what it is, and why it is unavailable here; nothing heavy is imported for it."""
+    """Return remarks on names: a title, or why it is unavailable; nothing heavy is imported for it."""
     found: dict[str, str] = {}
     for family in FAMILIES:
         if family.names is None:
@@ -90,11 +76,14 @@ def remarks() -> dict[str, str]:
 
 
 def solver_named(name: str) -> Solver:
-    """The solver of that name; ValueError lists the names there are."""
+    """Return the solver of that name; ValueError lists the names there are."""
     for family in FAMILIES:
         if f"{name}?".startswith(family.prefix):
             return cast("Solver", _module(family).named(name))
-    raise ValueError(unknown_solver(name))
+    forms = ", ".join(family.form for family in FAMILIES)
+    near = get_close_matches(name, solver_names(), n=1)
+    hint = f"; did you mean {near[0]}?" if near else ""
+    raise ValueError(f"expected a solver ({forms}), got {name!r}{hint}")
 
 
 def _module(family: Family) -> Any:
@@ -113,11 +102,3 @@ def as_solver(solver: Solver | str) -> Solver:
         return solver
     mend = " (a callable is judged by taylor_verify.check)" if callable(solver) else ""
     raise ValueError(f"expected a Solver or the name of one, got {brief(solver)}{mend}")
-
-
-def unknown_solver(name: str) -> str:
-    """What to say about a name that is no solver."""
-    forms = ", ".join(family.form for family in FAMILIES)
-    near = get_close_matches(name, solver_names(), n=1)
-    hint = f"; did you mean {near[0]}?" if near else ""
-    return f"expected a solver ({forms}), got {name!r}{hint}"

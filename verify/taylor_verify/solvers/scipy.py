@@ -7,7 +7,6 @@ method's own interpolation, as `t_eval` does for any user of it.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from importlib import import_module
@@ -19,14 +18,13 @@ from typing import Any, Final, final
 import numpy as np
 
 from taylor_verify.models.problem import Problem
-from taylor_verify.scenes.precision import Rung, exact_value
+from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.reading.positive import positive
 from taylor_verify.solvers.options import options
-from taylor_verify.solvers.solver import Lack, Solver
-from taylor_verify.solvers.straight_line import straight_line
-from taylor_verify.solvers.trajectory import Outcome, Postponed, Trajectory
+from taylor_verify.solvers.solver import Lack, Solver, float64_alone, raised
+from taylor_verify.solvers.straight_line import Counted, Endless
+from taylor_verify.solvers.trajectory import Outcome, Trajectory, of_rows
 
-PREFIX: Final = "scipy:"
 METHODS: Final = ("RK45", "DOP853", "Radau", "BDF", "LSODA")
 
 _INSTALL: Final = "pip install 'taylor-verify[scipy]'"
@@ -39,9 +37,9 @@ _MOST_EVALUATIONS: Final = 10**7
 
 
 def unavailable(name: str, rung: Rung) -> str:
-    """Why a solver made of SciPy cannot run on that rung here; empty where it can."""
-    if rung.name != "f64":
-        return f"{name} is made in float64: f64 alone"
+    """Return the reason why a solver made of SciPy cannot run on that rung here; empty where it can."""
+    if reason := float64_alone(name, rung):
+        return reason
     if find_spec("scipy") is None:
         return Lack(f"SciPy is not installed: {_INSTALL}", Outcome.NO_PACKAGE)
     try:
@@ -54,7 +52,7 @@ def unavailable(name: str, rung: Rung) -> str:
 @final
 @dataclass(frozen=True)
 class SciPy(Solver):
-    """One method of `solve_ivp` at one pair of tolerances; atol counts in the problem's units."""
+    """A method of `solve_ivp` at one pair of tolerances; atol counts in the problem's units."""
 
     method: str
     name: str
@@ -77,38 +75,29 @@ class SciPy(Solver):
         if reason := self.unavailable(problem.rung):
             return Trajectory(Outcome.NOT_STARTED, detail=reason)
         asked = perf_counter()
+        import_module("scipy.integrate")
         run = _Run(problem)
         began = perf_counter()
         try:
             found = run.solve(self)
-        except _Endless:
-            detail = f"{run.evaluations} evaluations"
-            return Trajectory(Outcome.STEP_LIMIT, detail=detail, seconds=perf_counter() - began)
+        except Endless as error:
+            seconds = perf_counter() - began
+            return Trajectory(Outcome.STEP_LIMIT, detail=str(error), seconds=seconds)
         except _NotFinite:
             return Trajectory(Outcome.NON_FINITE, seconds=perf_counter() - began)
         except (ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
-            return Trajectory(Outcome.RAISED, detail=f"{type(error).__name__}: {error}")
-        seconds = perf_counter() - began
+            return raised(error)
+        work: dict[str, Any] = {
+            "steps": run.steps,
+            "evaluations": run.rates.evaluations,
+            "seconds": perf_counter() - began,
+            "compile_seconds": began - asked,
+        }
         rows = found.y.T.tolist()
-        outcome, detail = Outcome.FINISHED, ""
         if found.status != 0 or len(rows) != len(problem.times):
-            outcome, detail = Outcome.INTERRUPTED, f"solve_ivp: {found.message}"
-        elif not all(isfinite(value) for row in rows for value in row):
-            outcome = Outcome.NON_FINITE
-        quantities = Postponed(problem, lambda: [[exact_value(v) for v in row] for row in rows])
-        return Trajectory(
-            outcome,
-            quantities if outcome is Outcome.FINISHED else {},
-            detail,
-            steps=run.steps,
-            evaluations=run.evaluations,
-            seconds=seconds,
-            compile_seconds=began - asked,
-        )
-
-
-class _Endless(Exception):
-    """More evaluations than a run may take."""
+            detail = f"solve_ivp: {found.message}"
+            return Trajectory(Outcome.INTERRUPTED, detail=detail, **work)
+        return of_rows(problem, rows, **work)
 
 
 class _NotFinite(Exception):
@@ -116,50 +105,39 @@ class _NotFinite(Exception):
 
 
 class _Run:
-    """One call of solve_ivp, its steps and evaluations counted; SciPy is loaded before it."""
+    """A call of solve_ivp, its steps and evaluations counted."""
 
     def __init__(self, problem: Problem) -> None:
-        import_module("scipy.integrate")
-        self.problem = problem
-        self.steps = self.evaluations = 0
+        self.problem, self.steps = problem, 0
+        # On Python's own floats: those of a NumPy array take five times as long each.
+        self.rates = Counted(problem.form, list(map(float, problem.parameters)), _MOST_EVALUATIONS)
 
     def solve(self, asked: SciPy) -> Any:
         from scipy import integrate
 
         times = [float(t) for t in self.problem.times]
-        start = [float(value) for value in self.problem.initial_momenta]
         with warnings.catch_warnings():
             # LSODA tells of a failure in a warning too; the outcome has it.
             warnings.simplefilter("ignore")
             return integrate.solve_ivp(
-                self._rates(),
+                self._finite_rates,
                 (0.0, times[-1]),
-                start,
+                [float(value) for value in self.problem.initial_momenta],
                 method=self._counted(getattr(integrate, asked.method)),
                 t_eval=times,
                 rtol=asked.rtol,
                 atol=asked.atol,
             )
 
-    def _rates(self) -> Callable[[float, Any], list[float]]:
-        form, parameters = self.problem.form, self.problem.parameters
-        # On Python's own floats: those of a NumPy array take five times as long each.
-        plain = straight_line(form, [float(value) for value in parameters])
-
-        def rates(t: float, state: Any) -> list[float]:
-            self.evaluations += 1
-            if not self.evaluations <= _MOST_EVALUATIONS:
-                raise _Endless
-            found = plain(t, state.tolist())
-            if not all(map(isfinite, found)):
-                # With a step of NaN the explicit methods would try for ever.
-                raise _NotFinite
-            return found
-
+    def _finite_rates(self, t: float, state: Any) -> list[float]:
+        rates = self.rates(t, state.tolist())
+        if not all(map(isfinite, rates)):
+            # With a step of NaN the explicit methods would try for ever.
+            raise _NotFinite
         return rates
 
     def _counted(self, method: Any) -> Any:
-        """The same method; solve_ivp says how often it evaluated, not how many steps it took."""
+        """Return the same method; solve_ivp says how often it evaluated, not how many steps it took."""
 
         def step(solver: Any) -> Any:
             self.steps += 1
@@ -169,7 +147,7 @@ class _Run:
 
 
 def named(name: str) -> SciPy:
-    """The method of that name at its tolerances.
+    """Return the method of that name at its tolerances.
 
     Raises ValueError for a method that there is not, and for tolerances that are not positive or
     smaller than SciPy can take.

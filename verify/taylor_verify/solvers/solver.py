@@ -16,8 +16,9 @@ from mpmath import mp
 
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.quantities import COLUMNS, state_groups
-from taylor_verify.scenes.precision import Rung, held_exactly
+from taylor_verify.scenes.precision import Rung
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
+from taylor_verify.solvers.values import Value, exact, held
 
 _RATIONAL_BITS = 4000
 
@@ -53,10 +54,10 @@ class Solver(ABC):
 
     @abstractmethod
     def solve(self, problem: Problem) -> Trajectory:
-        """The states at the problem's times, or the outcome that prevented them."""
+        """Return the states at the problem's times, or the outcome that prevented them."""
 
     def unavailable(self, rung: Rung) -> str:
-        """Why this machine cannot run the solver on that rung; empty where it can.
+        """Return the reason why this machine cannot run the solver on that rung; empty where it can.
 
         A sentence that is no Lack says that the solver is not made for the rung.
         """
@@ -64,7 +65,7 @@ class Solver(ABC):
         return ""
 
     def unsuited(self, problem: Problem) -> str:
-        """Why the solver is not made for such a problem, known before it runs; empty where it is."""
+        """Return the reason, known before, why the solver is not made for a problem; empty where it is."""
         del problem
         return ""
 
@@ -100,39 +101,44 @@ class Callback(Solver):
             detail = f"expected states of shape {expected}, got {states.shape}"
             return Trajectory(Outcome.MISSHAPEN, detail=detail, seconds=seconds)
         try:
-            held = np.array([[_held(v) for v in row] for row in states], dtype=object)
+            numbers = np.array([[_held(v) for v in row] for row in states], dtype=object)
         except TypeError as error:
             return Trajectory(Outcome.MISSHAPEN, detail=str(error), seconds=seconds)
         ends = list(accumulate((width for _, width in layout), initial=0))
         quantities = {
-            name: held[:, left:right]
+            name: numbers[:, left:right]
             for (name, _), (left, right) in zip(layout, pairwise(ends), strict=True)
         }
         return Trajectory(Outcome.FINISHED, quantities, seconds=seconds)
 
 
+def float64_alone(name: str, rung: Rung) -> str:
+    """Return the reason why a solver made in float64 cannot run on that rung; empty where it can."""
+    return "" if rung.name == "f64" else f"{name} is made in float64: f64 alone"
+
+
+def not_started(reason: str) -> Trajectory:
+    """Return the trajectory of a solver that is not started, with the outcome of what it lacks."""
+    outcome = reason.outcome if isinstance(reason, Lack) else Outcome.NOT_STARTED
+    return Trajectory(outcome, detail=str(reason))
+
+
 def raised(error: BaseException) -> Trajectory:
-    """The trajectory of a solver that ended with an error, a `sys.exit` included."""
+    """Return the trajectory of a solver that ended with an error, a `sys.exit` included."""
     detail = f"{type(error).__name__}: {error}".removesuffix(": ")
     return Trajectory(Outcome.RAISED, detail=detail)
 
 
 def _no_array(answered: Any) -> str:
-    """Why what would become an array of numbers is none; empty where it is one.
+    """Return the reason why an answer is no array of numbers; empty where it is one.
 
     NumPy drops a mask, and a table's columns have names that say more than their order.
     """
+    mend = "hand over its columns in the order of a state, as an array"
     if isinstance(answered, Mapping):
-        return (
-            "expected an array of states, got a dict (hand over its columns in the order of a state, as "
-            "an array, or check(scene, the_dict))"
-        )
+        return f"expected an array of states, got a dict ({mend}, or check(scene, the_dict))"
     if hasattr(answered, "columns"):
-        kind = type(answered).__name__
-        return (
-            f"expected an array of states, got a {kind} (hand over its columns in the order of a "
-            "state, as an array)"
-        )
+        return f"expected an array of states, got a {type(answered).__name__} ({mend})"
     rows = answered if isinstance(answered, list | tuple) else [answered]
     masks = [np.ma.getmaskarray(row) for row in rows if isinstance(row, np.ma.MaskedArray)]
     masked = sum(int(np.sum(mask)) for mask in masks)
@@ -140,7 +146,7 @@ def _no_array(answered: Any) -> str:
 
 
 def columns(problem: Problem) -> list[tuple[str, int]]:
-    """The quantities of a state row in their order, each with its number of columns.
+    """Return the quantities of a state row in their order, each with its number of columns.
 
     ``omega`` 3, or ``linear_impulse`` 3 and ``angular_impulse`` 3 (body axes); then ``quaternion`` 4
     (scalar first, body to space) and ``centre`` 3 (space axes), as far as they are tracked.
@@ -150,22 +156,17 @@ def columns(problem: Problem) -> list[tuple[str, int]]:
 
 
 def _held(value: Any) -> Any:
-    """The mpf equal to a number; NaN and infinity stay what they are, and fail every gate.
+    """Return the mpf equal to a number; NaN and infinity stay what they are, and fail every gate.
 
     A rational that is no binary fraction is rounded to 4000 bits. Raises TypeError for what is no
     real number.
     """
     if isinstance(value, mp.mpf):
         return value
-    if isinstance(value, np.floating | float) and not np.isfinite(value):
-        return mp.mpf(float(value))
     if isinstance(value, Rational) and not isinstance(value, bool):
-        numerator, denominator = int(value.numerator), int(value.denominator)
+        number: Value = Fraction(int(value.numerator), int(value.denominator))
     elif isinstance(value, np.floating | float):
-        numerator, denominator = value.as_integer_ratio()
+        number = exact(value)
     else:
         raise TypeError(f"expected real numbers, got {value!r} of type {type(value).__name__}")
-    if denominator & (denominator - 1):
-        with mp.workprec(_RATIONAL_BITS):
-            return mp.mpf(numerator) / denominator
-    return held_exactly(Fraction(numerator, denominator))
+    return held(number, _RATIONAL_BITS)

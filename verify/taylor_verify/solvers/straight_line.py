@@ -18,7 +18,7 @@ Rates = Callable[[Any, Sequence[Any]], list[Any]]
 
 
 def straight_line(form: Form, parameters: Sequence[Any]) -> Rates:
-    """``rates(t, state)``, in the arithmetic of the parameters and the state; t is not looked at."""
+    """Return ``rates(t, state)`` in the arithmetic of the parameters and the state; t is not looked at."""
     code = _Code()
     states = [Symbol(f"s{k}") for k in range(len(form.states))]
     names = [Symbol(f"p{k}") for k in range(len(form.parameters))]
@@ -38,6 +38,25 @@ def straight_line(form: Form, parameters: Sequence[Any]) -> Rates:
     return rates
 
 
+class Endless(Exception):
+    """More evaluations than a run may take; the text is their number."""
+
+
+class Counted:
+    """The rates of a form, counted; Endless is raised beyond ``most`` evaluations."""
+
+    def __init__(self, form: Form, parameters: Sequence[Any], most: int) -> None:
+        self._rates = straight_line(form, parameters)
+        self._most = most
+        self.evaluations = 0
+
+    def __call__(self, t: Any, state: Sequence[Any]) -> list[Any]:
+        self.evaluations += 1
+        if self.evaluations > self._most:
+            raise Endless(f"{self.evaluations} evaluations")
+        return self._rates(t, state)
+
+
 def _listed(symbols: Sequence[Symbol]) -> str:
     return "".join(f"{symbol.name}, " for symbol in symbols)
 
@@ -51,7 +70,7 @@ class _Code:
         self._words: dict[Symbol, str] = {}
 
     def word(self, expression: Any) -> str:
-        """The name under which the value of an expression is to be had."""
+        """Return the name under which the value of an expression is to be had."""
         if not isinstance(expression, Symbol):
             name = f"c{len(self.constants)}"
             self.constants[name] = expression

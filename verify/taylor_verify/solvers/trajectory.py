@@ -1,7 +1,8 @@
-"""What a solver answers: how it ended, and where it put the body, in exactly held numbers."""
+"""The answer of a solver: how it ended, and where it put the body, in exactly held numbers."""
 
 from __future__ import annotations
 
+import math
 from abc import abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -20,11 +21,11 @@ from taylor_verify.models.registry import mechanics
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.mpfr import precision, to_mpf, to_mpfr
-from taylor_verify.scenes.precision import held_exactly
+from taylor_verify.scenes.precision import exact_value, held_exactly
 
 
 class Outcome(Enum):
-    """How a solver ended; the value is the sentence that is shown."""
+    """The end of a run; the value is the sentence that is shown."""
 
     FINISHED = "reached the last sample"
     NON_FINITE = "stopped: a state or derivative was not finite"
@@ -43,7 +44,7 @@ class Outcome(Enum):
 
     @property
     def is_unavailable(self) -> bool:
-        """Whether nothing was run, by no fault of the solver."""
+        """True if nothing was run, by no fault of the solver."""
         return self in (Outcome.NO_PACKAGE, Outcome.NO_FORMAT, Outcome.UNSUITED)
 
 
@@ -54,12 +55,11 @@ class Postponed(Mapping[str, np.ndarray[Any, Any]]):
         self._problem, self._rows = problem, rows
 
     @cached_property
-    def _formed(self) -> dict[str, Any]:
+    def _formed(self) -> dict[str, np.ndarray[Any, Any]]:
         return from_scaled(self._problem, self._rows())
 
     def __getitem__(self, quantity: str) -> np.ndarray[Any, Any]:
-        found: np.ndarray[Any, Any] = self._formed[quantity]
-        return found
+        return self._formed[quantity]
 
     def __iter__(self) -> Iterator[str]:
         return iter(_names(self._problem))
@@ -78,7 +78,7 @@ class ByRows(Mapping[str, np.ndarray[Any, Any]]):
 
     @abstractmethod
     def rows(self, places: Sequence[int]) -> dict[str, np.ndarray[Any, Any]]:
-        """The quantities in some rows."""
+        """Return the quantities in some rows."""
 
     def __getitem__(self, quantity: str) -> np.ndarray[Any, Any]:
         return self.rows(range(self.count))[quantity]
@@ -93,14 +93,14 @@ class ByRows(Mapping[str, np.ndarray[Any, Any]]):
 def rows_at(
     quantities: Mapping[str, np.ndarray[Any, Any]], places: Sequence[int]
 ) -> dict[str, np.ndarray[Any, Any]]:
-    """Quantities of an answer in some rows."""
+    """Return the quantities of an answer in some rows."""
     if isinstance(quantities, ByRows):
         return quantities.rows(places)
     return {name: rows[list(places)] for name, rows in quantities.items()}
 
 
 def motion_of(quantities: Mapping[str, np.ndarray[Any, Any]], bits: int) -> Motion:
-    """Quantities of an answer as a Motion: attitude matrices are formed with ``bits`` of precision."""
+    """Return the quantities of an answer as a Motion; ``bits`` is the precision of attitude matrices."""
     found = {k: v for k, v in quantities.items() if k != "quaternion"}
     if "quaternion" in quantities:
         with mp.workprec(bits):
@@ -131,12 +131,28 @@ class Trajectory:
     inner_seconds: float | None = None
 
     def motion(self, bits: int) -> Motion:
-        """The same as a Motion: attitude matrices are formed with ``bits`` of precision."""
+        """Return the answer as a Motion; ``bits`` is the precision of attitude matrices."""
         return motion_of(self.quantities, bits)
 
 
+def of_rows(
+    problem: Problem,
+    rows: Sequence[Sequence[Any]],
+    is_finite: Callable[[Any], bool] = math.isfinite,
+    **work: Any,
+) -> Trajectory:
+    """Return the trajectory of states in the problem's own form and units, a row for each sample.
+
+    NON_FINITE where a number of them is none. ``work`` are the counts and times of Trajectory.
+    """
+    if not all(is_finite(value) for row in rows for value in row):
+        return Trajectory(Outcome.NON_FINITE, **work)
+    exact = Postponed(problem, lambda: [[exact_value(v) for v in row] for row in rows])
+    return Trajectory(Outcome.FINISHED, exact, **work)
+
+
 def _rotations(quaternions: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
-    """The rotation matrices (n, 3, 3) of quaternions (n, 4) of any length, in the ambient precision.
+    """Return the rotation matrices (n, 3, 3) of quaternions (n, 4) of any length, in the ambient precision.
 
     One of length zero is no attitude at all: 0/0, and NaN fails every gate that looks at it.
     """
@@ -147,14 +163,16 @@ def _rotations(quaternions: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
 
 
 def _names(problem: Problem) -> tuple[str, ...]:
-    """The quantities that the states of a problem hold."""
+    """Return the quantities that the states of a problem hold."""
     frame = (("e0", "quaternion"), ("c1", "centre"))
     moving = problem.given.initial.MOVING
     return (*moving, *(name for state, name in frame if state in problem.form.states))
 
 
-def from_scaled(problem: Problem, rows: Sequence[Sequence[Fraction]]) -> dict[str, Any]:
-    """The quantities of states in the problem's own form and units, formed exactly.
+def from_scaled(
+    problem: Problem, rows: Sequence[Sequence[Fraction]]
+) -> dict[str, np.ndarray[Any, Any]]:
+    """Return the quantities of states in the problem's own form and units, formed exactly.
 
     ``rows`` (n, states) stand in the order of ``problem.form.states``, a row for each sample.
 

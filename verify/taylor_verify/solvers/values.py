@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections import Counter
 from collections.abc import Sequence
 from datetime import datetime
 from decimal import Decimal
@@ -14,9 +15,10 @@ from fractions import Fraction
 from typing import Any, Final
 
 import numpy as np
-from mpmath import mp
+from mpmath import libmp, mp
 
 from taylor_verify.scenes.precision import held_exactly
+from taylor_verify.scenes.reading.faults import cut
 from taylor_verify.scenes.reading.table import LARGEST_EXPONENT, exact_number
 
 # A rational, or the NaN or infinity that the file has in its place.
@@ -75,15 +77,20 @@ def is_number(text: str) -> bool:
     return True
 
 
-def held(rows: Sequence[Sequence[Value]], bits: int) -> np.ndarray[Any, Any]:
-    """Rows of values as an array of mpf: exact where a number has at most so many bits."""
-    with mp.workprec(bits):
-        return np.array([[_held(value) for value in row] for row in rows], dtype=object)
+def named_once(pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:
+    """Return the object of a JSON document; ValueError for a key that it has twice."""
+    document = dict(pairs)
+    if len(document) < len(pairs):
+        (twice, _), *_ = Counter(name for name, _ in pairs).most_common(1)
+        raise ValueError(f"the key {cut(repr(twice))} twice")
+    return document
 
 
-def _held(value: Value) -> Any:
+def held(value: Value, bits: int) -> Any:
+    """Return a value as an mpf: exact where it has at most so many bits."""
     if not isinstance(value, Fraction):
         return mp.mpf(value)
     if value.denominator & (value.denominator - 1):
-        return mp.mpf(value.numerator) / value.denominator
+        ratio = (value.numerator, value.denominator)
+        return mp.make_mpf(libmp.from_rational(*ratio, bits, libmp.round_nearest))
     return held_exactly(value)

@@ -6,6 +6,7 @@ import gzip
 import hashlib
 import io
 import tarfile
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
 
@@ -24,14 +25,15 @@ def pack(folder: Path, target: Path, name: str) -> list[Path]:
     """
     contents = {path: (folder / path).read_bytes() for path in _paths(folder)}
     sums = "".join(f"{_digest(content)}  {path}\n" for path, content in contents.items())
-    packed = _packed(name, {**contents, SUMS: sums.encode()})
+    files = {**contents, SUMS: sums.encode()}
+    packed = gzip.compress(tar({f"{name}/{path}": file for path, file in files.items()}), mtime=0)
     file = f"{name}.tar.gz"
     texts: dict[str, str | bytes] = {file: packed, f"{file}.sha256": f"{_digest(packed)}  {file}\n"}
     return list(replace_files(target, texts))
 
 
 def _paths(folder: Path) -> list[str]:
-    """Every file by its path below the folder; no hidden one, none that is local, no compiled Python."""
+    """Return the path of every file; of none that is hidden, local or compiled Python."""
     paths = [file.relative_to(folder) for file in folder.rglob("*") if file.is_file()]
     return sorted(
         path.as_posix()
@@ -41,14 +43,12 @@ def _paths(folder: Path) -> list[str]:
     )
 
 
-def _packed(name: str, contents: dict[str, bytes]) -> bytes:
+def tar(contents: Mapping[str, bytes]) -> bytes:
+    """Return an archive of files by their names, the same bytes every time."""
     stream = io.BytesIO()
-    with (
-        gzip.GzipFile(filename="", fileobj=stream, mode="wb", mtime=0) as pressed,
-        tarfile.open(fileobj=pressed, mode="w", format=tarfile.USTAR_FORMAT) as archive,
-    ):
+    with tarfile.open(fileobj=stream, mode="w", format=tarfile.USTAR_FORMAT) as archive:
         for path, content in contents.items():
-            member = tarfile.TarInfo(f"{name}/{path}")
+            member = tarfile.TarInfo(path)
             member.size = len(content)
             archive.addfile(member, io.BytesIO(content))
     return stream.getvalue()

@@ -22,14 +22,14 @@ _RENDERINGS: Final = (f"{figures.FOLDER}/*.pdf", "tables/*.html", "tables/*.tex"
 
 
 def patterns() -> tuple[str, ...]:
-    """Return what .gitignore has, below the folder."""
+    """Return the patterns that .gitignore has, below the folder."""
     own = (pattern for study in STUDIES for bulk in study.bulk for pattern in bulk.patterns)
     return (*own, *_RENDERINGS)
 
 
 @dataclass(frozen=True)
 class Missing:
-    """What a report folder lacks of its bulk: of each kind what is to be made, and rendered files."""
+    """Bulk that a report folder lacks: of each kind what is to be made, and rendered files."""
 
     folder: Path
     lacking: tuple[tuple[Bulk, Sequence[Any]], ...]
@@ -54,18 +54,15 @@ def missing(folder: Path, digests: Mapping[str, str] | None = None) -> Missing:
     """
     known = {name: load(name).digest for name in names()} if digests is None else digests
     report = Published(folder, store.load(folder), known)
-    found = ((bulk, bulk.lacking(report)) for study in STUDIES for bulk in study.bulk)
+    found = [(bulk, bulk.lacking(report)) for study in STUDIES for bulk in study.bulk]
+    pages = [Path(page).stem for page in PAGES if (folder / page).exists()]
+    drawings = sorted((folder / figures.FOLDER).glob("*.svg"))
+    renderings = (
+        *(f"tables/{page}{ending}" for page in pages for ending in (".tex", ".html")),
+        *(f"{figures.FOLDER}/{drawing.stem}.pdf" for drawing in drawings),
+    )
     return Missing(
         folder,
         tuple((bulk, lacking) for bulk, lacking in found if lacking),
-        tuple(name for name in _renderings(folder) if not (folder / name).exists()),
+        tuple(name for name in renderings if not (folder / name).exists()),
     )
-
-
-def _renderings(folder: Path) -> list[str]:
-    drawings = sorted((folder / figures.FOLDER).glob("*.svg"))
-    pages = [Path(page).stem for page in PAGES if (folder / page).exists()]
-    return [
-        *(f"tables/{page}{ending}" for page in pages for ending in (".tex", ".html")),
-        *(f"{figures.FOLDER}/{drawing.stem}.pdf" for drawing in drawings),
-    ]

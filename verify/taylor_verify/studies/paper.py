@@ -28,7 +28,7 @@ PAGES: Final = (
 )
 
 
-def write(folder: Path | str) -> list[Path]:
+def write(folder: Path) -> list[Path]:
     """Render every page of ``folder`` that is there, and draw the pictures that are there as PDF.
 
     Renderings of pages that are gone are removed.
@@ -36,25 +36,23 @@ def write(folder: Path | str) -> list[Path]:
     Raises OSError for files that cannot be read or written, ValueError for a page that is none, and
     ImportError without pypandoc or, where there are pictures, matplotlib.
     """
-    place = Path(folder)
-    texts = renderings(place)
-    drawn = _drawn(place)
-    return [*replace_files(place, texts, stale=_own(place / FOLDER)), *drawn]
-
-
-def _drawn(place: Path) -> list[Path]:
-    """The PDF of every picture that is there as SVG."""
-    target = place / figures.FOLDER
-    there = {file.stem for file in target.glob("*.svg")}
-    pictures = (
-        [picture for picture in registry.pictures(place) if picture.stem in there] if there else []
-    )
-    return save(pictures, target, ("pdf",)) if pictures else []
+    texts = renderings(folder)
+    drawn: list[Path] = []
+    if there := {file.stem for file in (folder / figures.FOLDER).glob("*.svg")}:
+        pictures = [picture for picture in registry.pictures(folder) if picture.stem in there]
+        drawn = save(pictures, folder / figures.FOLDER, ("pdf",))
+    earlier = [file for suffix in MAKERS for file in (folder / FOLDER).glob(f"*{suffix}")]
+    own = [file for file in earlier if first_line(file) == MAKERS[file.suffix]]
+    return [*replace_files(folder, texts, stale=own), *drawn]
 
 
 def renderings(folder: Path) -> dict[str, str]:
-    """Every file by its path below ``folder``; nothing for a folder without pages."""
-    pages = [Page(path, _text(folder / path)) for path in PAGES if (folder / path).exists()]
+    """Return every file by its path below ``folder``; nothing for a folder without pages."""
+    pages = [
+        Page(path, (folder / path).read_text(encoding="utf-8"))
+        for path in PAGES
+        if (folder / path).exists()
+    ]
     paths = [page.path for page in pages]
     texts: dict[str, str] = {}
     for page in pages:
@@ -63,13 +61,3 @@ def renderings(folder: Path) -> dict[str, str]:
     if pages:
         texts[f"{FOLDER}/{PAPER}"] = paper(_TITLE, [page.stem for page in pages])
     return texts
-
-
-def _text(file: Path) -> str:
-    return file.read_text(encoding="utf-8")
-
-
-def _own(target: Path) -> list[Path]:
-    """The files that name us as their maker."""
-    found = [file for suffix in MAKERS for file in target.glob(f"*{suffix}")]
-    return [file for file in found if first_line(file) == MAKERS[file.suffix]]

@@ -1,12 +1,14 @@
-"""A report folder: ``data`` written after a run; tables and front page made from ``data`` alone."""
+"""Report folder: ``data`` written after a run; tables and front page made from ``data`` alone."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from os import PathLike, fspath
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from taylor_verify.publish.entry import Page
 from taylor_verify.publish.page import MADE_BY
 from taylor_verify.records import store
 from taylor_verify.records.record import Record
@@ -14,14 +16,18 @@ from taylor_verify.records.replacement import first_line, replace_files
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.studies.accuracy import page, quoted
 from taylor_verify.studies.accuracy.front import front
-from taylor_verify.studies.contents import others
-from taylor_verify.studies.registry import STUDIES
+from taylor_verify.studies.registry import STUDIES, others
 
 if TYPE_CHECKING:
     from taylor_verify.batch.judgements import Judgements
 
 TABLES = "tables"
 FRONT = "README.md"
+# Pages that no study makes.
+_BESIDES = (
+    Page("tables/traps.md", "a plain heyoka call against the driver of this suite"),
+    Page("upstream/README.md", "what to report to heyoka's authors, each in a few lines that run"),
+)
 
 
 def write(folder: Path | str, verdicts: Iterable[Verdict], records: Iterable[Record]) -> list[Path]:
@@ -33,7 +39,7 @@ def write(folder: Path | str, verdicts: Iterable[Verdict], records: Iterable[Rec
 
 
 def load(folder: Path | str) -> tuple[Verdict, ...]:
-    """The verdicts of ``folder``/data, in reading order."""
+    """Return the verdicts of ``folder``/data, in reading order."""
     return store.load(Path(folder))
 
 
@@ -73,7 +79,14 @@ def _index(
     place: Path, verdicts: Sequence[Verdict], made: Mapping[str, str] | None = None
 ) -> dict[str, str]:
     """Return the pages that name all others: those that are there, and those about to be ``made``."""
-    besides = others(place, made or {})
+
+    def is_there(path: str) -> bool:
+        return path in (made or {}) or (place / path).exists()
+
+    pages = (*(Page(study.path, study.title) for study in others()), *_BESIDES)
+    besides = [
+        replace(page, has_sheet=is_there(page.sheet)) for page in pages if is_there(page.path)
+    ]
     texts = {f"{TABLES}/README.md": page.readme(verdicts, besides)}
     return texts | ({FRONT: front(verdicts, besides)} if _is_ours_or_new(place / FRONT) else {})
 
@@ -87,6 +100,6 @@ def _is_ours_or_new(file: Path) -> bool:
 
 
 def _own_tables(target: Path) -> list[Path]:
-    """The Markdown files that name us as their maker, each with its CSV twin."""
+    """Return the Markdown files that name us as their maker, each with its CSV twin."""
     own = [file for file in target.glob("*.md") if first_line(file) == MADE_BY]
     return own + [file.with_suffix(".csv") for file in own]

@@ -1,15 +1,17 @@
-"""A document of a report folder: written by the one who measured it, read by whoever tells of it."""
+"""Documents of a report folder: written by the one who measured them, read by whoever tells of them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import json
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 from taylor_verify.records import store
+from taylor_verify.records.file_names import of_scene
 from taylor_verify.records.json_text import complete, read
-from taylor_verify.records.replacement import replace_files
+from taylor_verify.records.replacement import first_line, replace_files
 
 Document = TypeVar("Document")
 
@@ -52,3 +54,57 @@ class Stored(Generic[Document]):
     def find(self, folder: Path) -> Document | None:
         """Return the document that is stored below ``folder``; None where there is none."""
         return self.load(folder) if (folder / self.name).exists() else None
+
+
+@dataclass(frozen=True)
+class SceneDocuments:
+    """JSON files below ``folder``, one a scene; ``maker`` stands in their first line.
+
+    ``separators`` are those of json.dumps.
+    """
+
+    folder: str
+    maker: str
+    separators: tuple[str, str] = (", ", ": ")
+
+    def name(self, scene: str) -> str:
+        """Return the path of a scene's document below the report."""
+        return f"{self.folder}/{of_scene(scene)}.json"
+
+    def texts(self, documents: Iterable[Mapping[str, Any]]) -> dict[str, str]:
+        """Return the files of documents by their paths: a line for every key."""
+        return {self.name(str(document["scene"])): self._text(document) for document in documents}
+
+    def _text(self, document: Mapping[str, Any]) -> str:
+        encoder = json.JSONEncoder(ensure_ascii=False, allow_nan=False, separators=self.separators)
+        keys = {"made_by": self.maker, **document}
+        return (
+            "{"
+            + ",\n ".join(f"{json.dumps(k)}: {encoder.encode(v)}" for k, v in keys.items())
+            + "}\n"
+        )
+
+    def write(self, report: Path, documents: Iterable[Mapping[str, Any]]) -> list[Path]:
+        """Write documents in place of earlier ones, and return the files written.
+
+        Those of scenes that are no longer there are removed, other people's files are left alone. Raises
+        OSError; what the folder held then stays as it was.
+        """
+        return list(replace_files(report, self.texts(documents), stale=self.own(report)))
+
+    def add(self, report: Path, documents: Iterable[Mapping[str, Any]]) -> list[Path]:
+        """Write documents beside those that are there, and return the files written. Raises OSError."""
+        return list(replace_files(report, self.texts(documents)))
+
+    def find(self, report: Path, scene: str) -> dict[str, Any] | None:
+        """Return the document of a scene; None where there is none.
+
+        Raises OSError for a file that cannot be read and ValueError for one that holds something else.
+        """
+        file = report / self.name(scene)
+        return store.read_document(file) if file.exists() else None
+
+    def own(self, report: Path) -> list[Path]:
+        """Return the files that name us as their maker."""
+        first = f'{{"made_by": {json.dumps(self.maker)},'
+        return [file for file in (report / self.folder).glob("*.json") if first_line(file) == first]

@@ -1,4 +1,4 @@
-"""Rows that somebody's test demands of a judgement, and the words for those that are no pass."""
+"""Rows that a test demands of a judgement, and the words for those that are no pass."""
 
 from __future__ import annotations
 
@@ -64,41 +64,30 @@ def is_met(verdict: Verdict) -> bool:
 
 def report(judgement: Judgement, demanded: Sequence[Verdict]) -> str:
     """Return the demanded rows as text, quantity by quantity, those that are no pass first."""
-    some = judgement.verdicts[0]
-    ordered = sorted(demanded, key=is_met)
-    unmet = [verdict for verdict in ordered if not is_met(verdict)]
+    some, record = judgement.verdicts[0], judgement.record
+    unmet = [verdict for verdict in demanded if not is_met(verdict)]
     lines = [
         f"{some.solver} on {some.scene}, {some.rung}: "
-        f"{len(unmet)} of {len(ordered)} judged quantities are no pass"
+        f"{len(unmet)} of {len(demanded)} judged quantities are no pass"
     ]
     against = ""
-    if judgement.record is not None:
-        route, regime = judgement.record.route, judgement.record.regime
-        against = f"the exact motion of the same rounded data (route {route}; {regime})"
-    for verdict in ordered:
-        lines += _passed(verdict) if is_met(verdict) else _failed(verdict, against)
-    return "\n".join([*lines, *_hints(ordered)])
-
-
-def _passed(verdict: Verdict) -> list[str]:
-    sizes = f"{_short(verdict.max)} <= {_short(verdict.bound)}{_unit(verdict)}"
-    return [f"{verdict.quantity}: pass, {sizes}"]
-
-
-def _failed(verdict: Verdict, against: str) -> list[str]:
-    outcome = f", {verdict.outcome}" if verdict.max is None else ""
-    lines = [f"{verdict.quantity}: {verdict.verdict}{outcome}; {_said(verdict)}"]
-    lines += [f"    {name:<8} {text}" for name, text in _reasons(verdict, against) if text]
-    return lines
-
-
-def _said(verdict: Verdict) -> str:
-    """Return the sentence of a verdict without its quantity."""
-    return verdict.sentence.removeprefix(f"{verdict.quantity}: ")
+    if record is not None:
+        against = (
+            f"the exact motion of the same rounded data (route {record.route}; {record.regime})"
+        )
+    for verdict in unmet:
+        outcome = f", {verdict.outcome}" if verdict.max is None else ""
+        sentence = verdict.sentence.removeprefix(f"{verdict.quantity}: ")
+        lines.append(f"{verdict.quantity}: {verdict.verdict}{outcome}; {sentence}")
+        lines += [f"    {name:<8} {text}" for name, text in _reasons(verdict, against) if text]
+    for verdict in filter(is_met, demanded):
+        sizes = f"{_short(verdict.max)} <= {_short(verdict.bound)}{_unit(verdict)}"
+        lines.append(f"{verdict.quantity}: pass, {sizes}")
+    return "\n".join([*lines, *_hints(demanded)])
 
 
 def _reasons(verdict: Verdict, against: str) -> Iterator[tuple[str, str]]:
-    """The rest of what a person needs to act: each a word and what it says."""
+    """Yield the rest of what a person needs to act: each a word and its text."""
     if against:
         yield "against", f"its value on {against}" if verdict.is_conserved else against
     if verdict.bound is not None:
@@ -116,7 +105,7 @@ def _times_attainable(verdict: Verdict) -> str:
 
 
 def _hints(demanded: Sequence[Verdict]) -> list[str]:
-    """What the pattern of passes and fails points at."""
+    """Return the advice that the pattern of passes and fails gives."""
     states = [verdict for verdict in demanded if verdict.quantity in STATES]
     conserved = [verdict for verdict in demanded if verdict.is_conserved]
     all_conserved = bool(conserved) and all(map(is_met, conserved))

@@ -88,15 +88,15 @@ class SolverGate:
         if is_blind:
             self.notes.append((_NOTE, f"{judgement.verdicts[0].scene} on {rung}: {_BLIND}"))
         if not demanded or not all(is_met(verdict) for verdict in demanded):
-            told = report(judgement, demanded)
-            raise pytest.fail.Exception(f"{told}\n{_BLIND}" if is_blind else told) from raised
+            text = report(judgement, demanded)
+            raise pytest.fail.Exception(f"{text}\n{_BLIND}" if is_blind else text) from raised
         return judgement
 
 
 @final
 @dataclass
 class SceneGate:
-    """The fixture ``verify_scene``: the same with the scene, the rung and the rest of the marker."""
+    """The fixture ``verify_scene``: judges a solver on the scene and rung of the marker."""
 
     case: Case
     gate: SolverGate
@@ -123,7 +123,7 @@ class SceneGate:
 
 
 class Case(NamedTuple):
-    """One of the runs that a marker asks for."""
+    """A run that a marker asks for."""
 
     scene: str
     rung: str
@@ -153,14 +153,14 @@ def verify_scene(request: pytest.FixtureRequest) -> SceneGate:
 def _judgement(
     scene: Scene | Path | str, solve: Solve, rung: str, tolerance: Tolerance
 ) -> tuple[Judgement, BaseException | None]:
-    """The judgement, and what a callable raised if it did: its traceback is worth more than a row."""
+    """Return the judgement, and the error of a callable: its traceback is worth more than a row."""
     __tracebackhide__ = True
     from taylor_verify.judge.tolerances import tolerances
     from taylor_verify.run import run
     from taylor_verify.scenes.precision import rung as rung_named
     from taylor_verify.scenes.reading.faults import Refused
-    from taylor_verify.scenes.reading.reader import load
-    from taylor_verify.solvers.registry import solver_named
+    from taylor_verify.scenes.reading.reader import as_scene
+    from taylor_verify.solvers.registry import as_solver
     from taylor_verify.solvers.solver import Callback, Solver
 
     raised: list[BaseException] = []
@@ -174,15 +174,11 @@ def _judgement(
             raise
 
     try:
-        if isinstance(scene, str | Path):
-            scene = load(scene)
-        if isinstance(solve, str):
-            solver = solver_named(solve)
-        elif isinstance(solve, Solver):
-            solver = solve
+        scene = as_scene(scene)
+        if isinstance(solve, str | Solver):
+            solver = as_solver(solve)
         elif callable(solve):
-            name = getattr(solve, "__qualname__", type(solve).__name__)
-            solver = Callback(answer, name=name)
+            solver = Callback(answer, getattr(solve, "__qualname__", type(solve).__name__))
         else:
             raise ValueError(f"expected a callable, a Solver or a name of one, got {solve!r}")
         exact_rung, asked = rung_named(rung), tolerances(tolerance, [scene])
@@ -200,7 +196,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """One test for each scene and rung of its markers; a marker that would judge nothing fails."""
+    """Make a test for each scene and rung of its markers; a marker that would judge nothing fails."""
     marks = list(metafunc.definition.iter_markers(_MARKER))
     if marks and "verify_scene" in metafunc.fixturenames:
         cases = [case for mark in marks for case in _cases(mark)]
@@ -253,7 +249,7 @@ def _wrong_mark(why: str) -> None:
 
 @pytest.hookimpl(trylast=True)
 def pytest_runtest_call(item: pytest.Item) -> None:
-    """After a test that ran to its end: one that judged nothing is no pass.
+    """Fail a test that ran to its end and judged nothing.
 
     pytest's own implementation runs the test; this one is behind it, and not reached if it raises.
     """
@@ -268,7 +264,7 @@ def pytest_runtest_call(item: pytest.Item) -> None:
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """What a green test did not say: where conserved quantities alone were judged."""
+    """Name the green tests that judged conserved quantities alone."""
     notes = [
         f"{report.nodeid}: {text}"
         for report in terminalreporter.getreports("passed")

@@ -1,4 +1,4 @@
-"""Euler's equations with constant moments in complex time: poles, and what a loop round one leaves.
+"""Euler's equations with constant moments in complex time: poles, and the change after a loop round one.
 
 J   principal moments      w   angular velocity, J_i w_i' = (J_j - J_k) w_j w_k + M_i
 t*  a singularity, s = t - t*;  w = c/s + d s log s + (powers of s), with -J_i c_i = (J_j - J_k) c_j c_k
@@ -8,9 +8,10 @@ d   d_i = c_i x_i, sum x = 0, sum J c^2 x = c.M, sum J^2 c^2 x = J c.M: the seco
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any, Final
+from functools import cache
+from itertools import accumulate, repeat
+from operator import mul
+from typing import Any, Final, NamedTuple
 
 from mpmath import mp, mpc, mpf
 
@@ -24,12 +25,11 @@ _CYCLES: Final = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
 Vector = list[Any]
 
 
-@dataclass(frozen=True)
-class Loop:
-    """What a loop round a singularity leaves: relative to |w| there, and to 2 pi i d s.
+class Loop(NamedTuple):
+    """The change of w after a loop round a singularity.
 
-    ``relative`` is |change of w| / |w|; ``predicted`` its distance from 2 pi i d s relative to that, NaN
-    without moment; ``distance`` is |s|.
+    ``relative`` is the size of the change over |w|; ``predicted`` its distance from 2 pi i d s, relative to
+    that and NaN without moment; ``distance`` is |s|.
     """
 
     relative: float
@@ -37,7 +37,8 @@ class Loop:
     distance: float
 
 
-def loop(J: Sequence[int], w: Sequence[int], M: Sequence[str]) -> Loop:
+@cache
+def loop(J: tuple[int, ...], w: tuple[int, ...], M: tuple[str, ...]) -> Loop:
     """Continue from t = 0 to the next singularity upwards in complex time, and once round it."""
     with mp.workdps(_DIGITS + 10):
         body = [mpf(entry) for entry in J]
@@ -55,14 +56,12 @@ def loop(J: Sequence[int], w: Sequence[int], M: Sequence[str]) -> Loop:
         for k in range(_PARTS):
             here, there = (s * mp.expjpi(mpf(2 * n) / _PARTS) for n in (k, k + 1))
             around = _moved(body, moment, around, there - here)
-        change = [after - before for after, before in zip(around, state, strict=True)]
-        size = mp.norm(change)
-        found = Loop(float(size / mp.norm(state)), float("nan"), float(abs(s)))
-        if not any(moment):
-            return found
-        expected = [2j * mp.pi * s * d for d in _logarithm(body, moment, [s * v for v in state])]
-        miss = mp.norm([a - b for a, b in zip(change, expected, strict=True)])
-        return Loop(found.relative, float(miss / mp.norm(expected)), found.distance)
+        change = mp.matrix(around) - mp.matrix(state)
+        predicted = mp.nan
+        if any(moment):
+            logarithm = 2j * mp.pi * s * _logarithm(body, moment, [s * v for v in state])
+            predicted = mp.norm(change - logarithm) / mp.norm(logarithm)
+        return Loop(float(mp.norm(change) / mp.norm(state)), float(predicted), float(abs(s)))
 
 
 def _rates(J: Vector, M: Vector, w: Vector) -> Vector:
@@ -84,27 +83,14 @@ def _moved(J: Vector, M: Vector, w: Vector, step: Any) -> Vector:
             fresh.append(((J[j] - J[k]) * product + (M[i] if n == 0 else 0)) / (J[i] * (n + 1)))
         for coefficients, value in zip(series, fresh, strict=True):
             coefficients.append(value)
-    powers = [mpc(1)]
-    for _ in range(_ORDER):
-        powers.append(powers[-1] * step)
+    powers = list(accumulate(repeat(step, _ORDER), mul, initial=mpc(1)))
     return [mp.fdot(coefficients, powers) for coefficients in series]
 
 
-def _logarithm(J: Vector, M: Vector, c: Vector) -> Vector:
+def _logarithm(J: Vector, M: Vector, c: Vector) -> Any:
     """d from the sums for x; c is taken from the motion, with an error of second order in s."""
-    rows = mp.matrix(
-        [
-            [1, 1, 1],
-            [J[i] * c[i] ** 2 for i in range(3)],
-            [J[i] ** 2 * c[i] ** 2 for i in range(3)],
-        ]
-    )
-    right = mp.matrix(
-        [
-            0,
-            sum((c[i] * M[i] for i in range(3)), start=mpf(0)),
-            sum((J[i] * c[i] * M[i] for i in range(3)), start=mpf(0)),
-        ]
-    )
-    x = mp.lu_solve(rows, right)
-    return [c[i] * x[i] for i in range(3)]
+    Jc = [moment * entry for moment, entry in zip(J, c, strict=True)]
+    squares = [J[i] * c[i] ** 2 for i in range(3)]
+    rows = mp.matrix([[1, 1, 1], squares, [v**2 for v in Jc]])
+    x = mp.lu_solve(rows, mp.matrix([0, mp.fdot(c, M), mp.fdot(Jc, M)]))
+    return mp.diag(c) * x

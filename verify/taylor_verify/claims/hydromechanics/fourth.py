@@ -2,22 +2,27 @@
 
 A polynomial integral splits into homogeneous ones, because the right sides of 48 (3), (4) are
 homogeneous quadratic: those of one degree are the null space of a matrix of rationals.
-
-z = (x, y)   v(z)   the right side, z' = v(z)
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from functools import partial
 from itertools import combinations_with_replacement
+from math import prod
 from typing import Any, Final
 
-from taylor_verify.claims.claim import Check, Claim, Residual, Verdict, worse
-from taylor_verify.claims.field import Element, Field, apply, cross, dot, identity, plus, symbols_of
+import numpy as np
+from flint import fmpq, fmpq_mat
+
+from taylor_verify.claims.check import All, Residual
+from taylor_verify.claims.claim import Claim
+from taylor_verify.claims.field import Field
+from taylor_verify.claims.hydromechanics.clebsch import clebsch
 from taylor_verify.claims.hydromechanics.poles import branching
-from taylor_verify.claims.hydromechanics.solid import Solid, unloaded
+from taylor_verify.claims.hydromechanics.solid import unloaded
+from taylor_verify.claims.setting import Exact
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody
 
@@ -55,141 +60,87 @@ STEKLOV: Final = ImmersedBody(
 
 
 def integrals(body: ImmersedBody, degree: int) -> int:
-    """The dimension of the homogeneous polynomials of this degree that every free motion conserves."""
-    from flint import fmpq_mat
-
+    """Return the number of homogeneous polynomials of this degree that every free motion conserves."""
     field = Field(dict.fromkeys(_NAMES, 1))
-    x, y = field.vector("x"), field.vector("y")
-    U = plus(apply(body.linear, x), apply(body.coupling, y))
-    Omega = plus(apply(tensors.transpose(body.coupling), x), apply(body.angular, y))
-    rates = cross(x, Omega) + plus(cross(y, Omega), cross(x, U))
-    field.turn(dict(zip(_NAMES, rates, strict=True)))
-    monomials = [_product(field, names) for names in combinations_with_replacement(_NAMES, degree)]
-    columns = [field.rate(monomial).num.to_dict() for monomial in monomials]
-    rows = sorted({exponents for column in columns for exponents in column})
-    entries = [[column.get(exponents, 0) for column in columns] for exponents in rows]
-    return len(monomials) - (int(fmpq_mat(entries).rank()) if entries else 0)
+    x, y = field["x"], field["y"]
+    linear, coupling, angular = map(np.array, (body.linear, body.coupling, body.angular))
+    U, Omega = linear @ x + coupling @ y, coupling.T @ x + angular @ y
+    field.turn(x=np.cross(x, Omega), y=np.cross(y, Omega) + np.cross(x, U))
+    products = combinations_with_replacement([field[name] for name in _NAMES], degree)
+    return _relations([field.rate(prod(factors)) for factors in products])
 
 
-def _product(field: Field, names: tuple[str, ...]) -> Element:
-    result = field.element(1)
-    for name in names:
-        result = result * field[name]
-    return result
+def _relations(polynomials: Sequence[Any]) -> int:
+    """The number of linear relations between polynomials."""
+    terms = [polynomial.num.to_dict() for polynomial in polynomials]
+    rows = sorted(set().union(*terms))
+    return len(terms) - _rank([term.get(row, 0) for term in terms] for row in rows)
+
+
+def _rank(rows: Iterable[Sequence[Any]]) -> int:
+    entries = list(rows)
+    return int(fmpq_mat(entries).rank()) if entries else 0
 
 
 # T, F^2 and FG, of degree 2, and their products make these many and no more.
 _OF_THREE: Final = {1: 0, 2: 3, 3: 0, 4: 6}
 
 
-def no_further(body: ImmersedBody) -> Check:
-    """How many polynomial integrals of degree up to 4 there are besides T, F^2, FG and their products."""
-
-    def check() -> Residual:
-        extra = sum(abs(integrals(body, d) - known) for d, known in _OF_THREE.items())
-        return Residual(float(extra), 0.0, f"integrals beyond those of T, F^2 and FG; {_COUNTED}")
-
-    return check
+def no_further(body: ImmersedBody) -> Residual:
+    """The number of polynomial integrals of degree up to 4 besides T, F^2, FG and their products."""
+    extra = sum(abs(integrals(body, d) - known) for d, known in _OF_THREE.items())
+    return Residual(float(extra), 0.0, f"integrals beyond those of T, F^2 and FG; {_COUNTED}")
 
 
 def known_families() -> Residual:
-    """That the bodies named have exactly one more: of degree 1, 2 and 2."""
+    """The bodies named have exactly one more: of degree 1, 2 and 2."""
     found = (integrals(SYMMETRIC, 1), integrals(SECOND_CASE, 2), integrals(STEKLOV, 2))
     missed = sum(abs(a - b) for a, b in zip(found, (1, 4, 4), strict=True))
     return Residual(float(missed), 0.0, f"integrals of the known families; {_COUNTED}")
 
 
-# Jacobi's last multiplier.
+# div v = 0 for every T: Jacobi's last multiplier is constant.
+_divergence: Final = unloaded(
+    "trace(grad(cross(x, Omega), 'x')) = -trace(grad(cross(y, Omega) + cross(x, vel), 'y'))"
+)
 
 
-def divergence(s: Solid, transposed: bool = True) -> Iterator[Element]:
-    """div v = 0 for every T: the last multiplier is constant.
-
-    ``transposed`` False takes B for B^T in Omega, which is no derivative of T.
-    """
-    dx, dy = s.dx, s.dy
-    if not transposed:
-        Omega = plus(apply(s.coupling, s.x), apply(s.angular, s.y))
-        dx, dy = cross(s.x, Omega), plus(cross(s.y, Omega), cross(s.x, s.U))
-    partials = [
-        s.field.partial(dx[k], f"x{k + 1}") + s.field.partial(dy[k], f"y{k + 1}") for k in range(3)
-    ]
-    yield sum(partials, start=s.field.element(0))
-
-
-def independent(fourth: str) -> Check:
-    """How many of four gradients depend on the others, at a point: T, F^2, FG and a fourth integral."""
-
-    def check() -> Residual:
-        from flint import fmpq, fmpq_mat
-
-        from taylor_verify.claims.hydromechanics.clebsch import ClebschBody
-
-        b = symbols_of(ClebschBody)
-        four = [b.T, dot(b.x, b.x), b.FG, b.y[2] if fourth == "y3" else dot(b.x, b.x) ** 2]
-        rows = []
-        for integral in four:
-            slopes = [b.field.partial(b.field.element(integral), name) for name in _NAMES]
-            values = [b.field.value(slope) for slope in slopes]
-            rows.append([fmpq(v.numerator, v.denominator) for v in values])
-        missing = 4 - int(fmpq_mat(rows).rank())
-        return Residual(
-            float(missing), 0.0, "4 less the rank of four gradients at a rational point"
-        )
-
-    return check
-
-
-# The energy with a linear integral.
+def independent(fourth: str) -> Residual:
+    """4 less the number of independent gradients, at a point: of T, F^2, FG and a fourth integral."""
+    rows = []
+    for integral in (clebsch["T"], clebsch["F"] ** 2, clebsch["FG"], clebsch[fourth]):
+        slopes = [clebsch.field.partial(integral, name) for name in _NAMES]
+        values = [clebsch.field.value(slope) for slope in slopes]
+        rows.append([fmpq(v.numerator, v.denominator) for v in values])
+    missing = 4 - _rank(rows)
+    return Residual(float(missing), 0.0, "4 less the rank of four gradients at a rational point")
 
 
 def coefficients_left(kept: int = 7) -> Residual:
     """The number of coefficients of T that y3' = 0 leaves free, less those of (1) and of s."""
-    from flint import fmpq_mat
-
-    s = unloaded()
-    rate = plus(cross(s.y, s.Omega), cross(s.x, s.U))[2]
-    names = [n for n in s.field.names if n[0] in "ABC"]
-    columns = [s.field.partial(rate, name).num.to_dict() for name in names]
-    rows = sorted({exponents for column in columns for exponents in column})
-    entries = [[column.get(exponents, 0) for column in columns] for exponents in rows]
-    left = len(names) - int(fmpq_mat(entries).rank())
+    names = [name for name in unloaded.field.names if name[0] in "ABC"]
+    left = _relations([unloaded.field.partial(unloaded["dy"][2], name) for name in names])
     return Residual(
         float(abs(left - kept)), 0.0, f"free coefficients of T beyond seven; {_COUNTED}"
     )
 
 
-class Planar:
-    """Three planes of symmetry, p1 != p2, moving with x3 = y1 = y2 = 0: y3 is not constant."""
-
-    def __init__(self) -> None:
-        point = {"x1": 2, "x2": 3, "y3": 4, "p1": 2, "p2": 3, "r3": 1}
-        self.field = field = Field(point)
-        zero = field.element(0)
-        x1, x2, y3, p1, p2, self.r = (field[name] for name in point)
-        x, y = [x1, x2, zero], [zero, zero, y3]
-        U, Omega = [p1 * x1, p2 * x2, zero], [zero, zero, self.r * y3]
-        self.dx, self.dy = cross(x, Omega), plus(cross(y, Omega), cross(x, U))
-        field.turn({"x1": self.dx[0], "x2": self.dx[1], "y3": self.dy[2]})
-        self.p1, self.p2, self.y3 = p1, p2, y3
-        self.F2 = x1**2 + x2**2
-        self.twice_T = p1 * x1**2 + p2 * x2**2 + self.r * y3**2
-
-
-def swing(s: Planar, factor: int = 1) -> Iterator[Element]:
-    """The plane is kept, and y3'^2 is a quartic in y3 with constant coefficients."""
-    yield from (s.dx[2], s.dy[0], s.dy[1])
-    yield from (s.field.rate(s.twice_T), s.field.rate(s.F2))
-    level = s.twice_T - factor * s.r * s.y3**2
-    yield s.field.rate(s.y3) ** 2 - (level - s.p1 * s.F2) * (s.p2 * s.F2 - level)
-
-
-def swing_rate(s: Planar) -> Iterator[Element]:
-    yield s.field.rate(s.y3)
-
-
-def _both(*checks: Any) -> Check:
-    return lambda: worse(*(check() for check in checks))
+# Three planes of symmetry, p1 != p2, moving with x3 = y1 = y2 = 0: y3 is not constant.
+_planar: Final = Exact(
+    {"x1": 2, "x2": 3, "y3": 4, "p1": 2, "p2": 3, "r": 1},
+    """
+    x, y = array([x1, x2, 0 * x1]), array([0 * y3, 0 * y3, y3])
+    U, Omega = array([p1, p2, 0]) * x, r * y
+    dx, dy = cross(x, Omega), cross(y, Omega) + cross(x, U)
+    turn(x1=dx[0], x2=dx[1], y3=dy[2])
+    F2, twice_T = x @ x, x @ U + y @ Omega
+    """,
+)
+# The plane is kept, and y3'^2 is a quartic in y3 with constant coefficients.
+_swing: Final = _planar(
+    "[dx[2], dy[0], dy[1], d(twice_T), d(F2)] = 0",
+    "d(y3)**2 = (twice_T - r*y3**2 - p1*F2) * (p2*F2 - (twice_T - r*y3**2))",
+)
 
 
 CLAIMS: Final = (
@@ -199,15 +150,14 @@ CLAIMS: Final = (
         domain="no external force; x and y, on regular levels of the integrals",
         method="the divergence of the right sides of (3), (4) vanishes for every T (exact expansion), so "
         "that Jacobi's last multiplier is 1; the gradients of T, F^2, FG and y3 at a point",
-        verdict=Verdict.ONLY_IF,
         condition="the fourth integral is independent of T, F^2 and FG",
         correction=r"\text{with a fourth integral independent of } T, F^2, FG",
         counterexample="F^4 is an integral too, and adds nothing",
-        check=_both(identity(unloaded, divergence), independent("y3")),
-        transcribed=independent("F^4"),
+        check=All(_divergence, partial(independent, "y3")),
+        transcribed=partial(independent, "F4"),
         mutants={
-            "B for its transpose in Omega": identity(unloaded, divergence, transposed=False),
-            "F^4 as the fourth": independent("F^4"),
+            "B for its transpose in Omega": ("Omega", "(B @ x + C @ y)"),
+            "F^4 as the fourth": partial(independent, "F4"),
         },
         remark="Attitude and centre take further quadratures.",
     ),
@@ -217,15 +167,14 @@ CLAIMS: Final = (
         domain="no external force; which integrals are meant is not said",
         method="polynomial integrals of degree up to 4 of a body with 21 coefficients without relation, "
         f"and of the known families (Clebsch, both cases, and Steklov); {_COUNTED}",
-        verdict=Verdict.UNDECIDED,
         gap="for one body there is no further polynomial integral of degree 4 or less, so that some "
         "condition on T is needed; integrals of higher degree, and integrals that are no "
         "polynomials, are not excluded here, nor is the series of cases shown to be complete",
-        check=_both(no_further(GENERIC), known_families),
+        check=All(partial(no_further, GENERIC), known_families),
         mutants={
-            "Clebsch's first case as the general body": no_further(SYMMETRIC),
-            "Clebsch's second case as the general body": no_further(SECOND_CASE),
-            "Steklov's case as the general body": no_further(STEKLOV),
+            "Clebsch's first case as the general body": partial(no_further, SYMMETRIC),
+            "Clebsch's second case as the general body": partial(no_further, SECOND_CASE),
+            "Steklov's case as the general body": partial(no_further, STEKLOV),
         },
     ),
     Claim(
@@ -235,11 +184,10 @@ CLAIMS: Final = (
         method="a quotient of theta functions of linear functions of t is single-valued; at a pole of a "
         "general solution the Kowalevski exponents must then be integers: they are in Clebsch's "
         "second case, and are not for a body with 21 coefficients without relation",
-        verdict=Verdict.UNDECIDED,
         gap="for a body without a fourth integral no theta function of t serves, so that only the "
         "integrable cases can be meant; that these need genus two and no less is not shown here",
-        check=branching(SECOND_CASE),
-        mutants={"a body without a fourth integral": branching(GENERIC)},
+        check=partial(branching, SECOND_CASE),
+        mutants={"a body without a fourth integral": partial(branching, GENERIC)},
     ),
     Claim(
         id="hydromechanics 49 most general energy",
@@ -248,17 +196,16 @@ CLAIMS: Final = (
         domain="free motions of a solid",
         method="of 21 coefficients y3' = 0 leaves seven, those of (1) and s (x1 y2 - x2 y1), which is that "
         f"of another origin; {_COUNTED}. A planar motion of another body, by exact expansion",
-        verdict=Verdict.ONLY_IF,
         condition="it is meant of bodies for all of whose motions y3 is constant; single motions of "
         "other bodies are elliptic as well",
         correction=r"\text{the most general } T \text{ with } y_3 = \text{constant for every motion}",
         counterexample="2T = 2 x1^2 + 3 x2^2 + p3 x3^2 + r1 y1^2 + r2 y2^2 + y3^2 in the plane x3 = y1 = "
         "y2 = 0: y3 is not constant, but (dy3/dt)^2 = (2T - y3^2 - 2 F^2)(3 F^2 - 2T + y3^2)",
-        check=_both(coefficients_left, identity(Planar, swing)),
-        transcribed=identity(Planar, swing_rate),
+        check=All(coefficients_left, _swing),
+        transcribed=_planar("d(y3) = 0"),
         mutants={
             "six coefficients": partial(coefficients_left, kept=6),
-            "the planar motion without r y3^2": identity(Planar, swing, factor=0),
+            "the planar motion without r y3^2": (" - r*y3**2", ""),
         },
     ),
 )

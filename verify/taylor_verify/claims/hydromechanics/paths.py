@@ -1,17 +1,20 @@
-"""49 (18), (19), (22) and (27) along trajectories that carry attitude and origin.
+"""Trajectories with attitude and origin, and along them 49 (8), (17), (18), (19), (22) and (27).
 
-Both start with Z along F. The trajectories come from R' = R [Omega]x and c' = R U alone, apart from what
+All start with Z along F. The trajectories come from R' = R [Omega]x and c' = R U alone, apart from what
 keeps R x constant; Euler's angles are read off the elements of R.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from dataclasses import astuple
 from fractions import Fraction
 from typing import Any, Final
 
-from mpmath import mp, mpf
+from mpmath import mp
 
-from taylor_verify.claims.claim import Residual
+from taylor_verify.claims.hydromechanics.clebsch import COEFFICIENTS, QUARTIC
+from taylor_verify.claims.setting import Equations, Numeric
 from taylor_verify.claims.trajectory import DIGITS, trajectory
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.scenes import tensors
@@ -19,7 +22,6 @@ from taylor_verify.scenes.bodies import Clebsch
 from taylor_verify.scenes.motion import Impulse, Quaternion
 from taylor_verify.scenes.tensors import Vector
 
-_BOUND: Final = 1e-50
 _WHY: Final = (
     "along a trajectory settled to 60 digits, relative; ten are granted for what the quotients lose"
 )
@@ -30,48 +32,92 @@ def _vector(*entries: Fraction | int | str) -> Vector:
     return tuple(Fraction(entry) for entry in entries)
 
 
-# The third row of R that this quaternion makes is x/F = (12, 20, 9)/25.
+_IMPULSES: Final = ("linear_impulse", "angular_impulse")
+
+
+def _rows(body: Clebsch, start: Impulse, *track: str) -> Iterator[dict[str, Any]]:
+    """Yield the components of x and y, and what else is tracked, R among it, at each time."""
+    motion = trajectory(body.body(), start, _TIMES, track=frozenset(track))
+    for x, y, R, *centre in zip(*(motion[name] for name in (*_IMPULSES, *track)), strict=True):
+        components = dict(zip(("x1", "x2", "x3", "y1", "y2", "y3"), (*x, *y), strict=True))
+        yield components | {"i": 1j, "R": R, "centre": centre, "exponential": _exponential(R)}
+
+
+def _exponential(R: Any) -> Any:
+    """sin(theta) e^(i psi): R13 + i R23 is -i times it."""
+    return 1j * (R[0, 2] + 1j * R[1, 2])
+
+
+# The third row of R that this quaternion makes is x/F = (12, 20, 9)/25. T > 0: q^2 < p r.
 _TURN: Final[Quaternion] = (Fraction(1), Fraction(2), Fraction(2), Fraction(4))
 _BODY: Final = Clebsch(*_vector("3/100", "1/50", "1/30", "1/20", "2/5", "1/4"))
 _LINEAR, _ANGULAR = _vector(12, 20, 9), _vector(3, 9, -4)
 _F: Final = Fraction(25)
 
 
-def _central_start() -> Impulse:
-    """The origin of space on the central axis: X and Y by (18) and the corrected (19) at the start."""
+def _central() -> Iterator[dict[str, Any]]:
+    """Yield the rows where X and Y are by (18) and the corrected (19) at the start."""
     first, second, _ = rotation_matrix(_TURN)
     centre = (tensors.dot(second, _ANGULAR) / _F, -tensors.dot(first, _ANGULAR) / _F, Fraction(0))
-    return Impulse(_LINEAR, _ANGULAR, _TURN, centre)
+    start = Impulse(_LINEAR, _ANGULAR, _TURN, centre)
+    F, y3 = mp.convert(_F), mp.convert(_ANGULAR[2])
+    constants = {"F": F, "y3": y3, "G": mp.fdot(_LINEAR, _ANGULAR) / F}
+    for row in _rows(_BODY, start, "attitude", "centre"):
+        ((X, Y, _),) = row["centre"]
+        across = mp.sqrt(F**2 - row["x3"] ** 2)
+        yield row | constants | {"X": X, "Y": Y, "across": across, "size": F * mp.hypot(X, Y)}
 
 
-def place(sign: int = -1, whole: bool = True) -> Residual:
-    """(18), (19) and (22): ``sign`` is that of F y3 - G x3, ``whole`` the minus before all of (19)."""
-    start = _central_start()
-    tracked = frozenset({"attitude", "centre"})
-    motion = trajectory(_BODY.body(), start, _TIMES, track=tracked)
-    with mp.workdps(DIGITS + 10):
-        F, y3 = mp.convert(_F), mp.convert(_ANGULAR[2])
-        G = mp.fdot(_LINEAR, _ANGULAR) / F
-        misses: list[Any] = []
-        rows = zip(*(motion[name] for name in _NAMES), strict=True)
-        for x, y, R, c in rows:
-            across = mp.sqrt(F**2 - x[2] ** 2)
-            # R13 + i R23 = -i sin(theta) e^(i psi)
-            exponential = 1j * (R[0, 2] + 1j * R[1, 2]) * F / across
-            root = x[0] * y[1] - x[1] * y[0]
-            found = (sign * (F * y3 - G * x[2]) + 1j * root) / across * exponential
-            tail = R[0, 1] * y[1] + R[0, 2] * y[2]
-            second = -R[0, 0] * y[0] - (tail if whole else -tail)
-            size = F * mp.hypot(c[0], c[1])
-            misses += [abs(F * (c[0] + 1j * c[1]) - found) / size, abs(F * c[1] - second) / size]
-        return Residual(float(max(misses)), _BOUND, _WHY)
+# (22); (18) is its real part. Then (19).
+place: Final = Numeric(_central, DIGITS + 10, 1e-50, _WHY)(
+    "(F*(X + i*Y) - ((G*x3 - F*y3) + i*(x1*y2 - x2*y1)) / across * (exponential*F/across)) / size = 0",
+    "(F*Y - (-R[0, 0]*y1 - (R[0, 1]*y2 + R[0, 2]*y3))) / size = 0",
+)
+
+_DIGITS: Final = 40
 
 
-_NAMES: Final = ("linear_impulse", "angular_impulse", "attitude", "centre")
+def _stretch() -> Iterator[dict[str, Any]]:
+    """Yield the constants of the motion, and of a stretch between two times the length and the angle psi.
+
+    Between these times x3 only rises, and sqrt(X3) stays positive; ``integral`` is that of a function of x3
+    over sqrt(X3).
+    """
+    times = (Fraction(1), Fraction(7, 5))
+    start = Impulse(_LINEAR, _ANGULAR, _TURN)
+    motion = trajectory(_BODY.body(), start, times, _DIGITS, frozenset({"attitude"}))
+    x, y = ([mp.convert(v) for v in vector] for vector in (_LINEAR, _ANGULAR))
+    six = {name: mp.convert(c) for name, c in zip(COEFFICIENTS, astuple(_BODY), strict=True)}
+    p, pp, q, qq, r, _ = six.values()
+    F, y3 = mp.sqrt(mp.fdot(x, x)), y[2]
+    G = mp.fdot(x, y) / F
+    # (6) at the start, in which nothing cancels.
+    m1 = r * (y[0] ** 2 + y[1] ** 2) - (p - pp) * x[2] ** 2 - 2 * (q - qq) * x[2] * y3
+    quartic = eval(QUARTIC, dict(six))
+    ends = [row[2] for row in motion["linear_impulse"]]
+    first, last = map(_exponential, motion["attitude"])
+
+    def integral(function: Callable[[Any], Any]) -> Any:
+        return mp.quad(lambda z: function(z) / mp.sqrt(quartic(z, F, G, y3, m1)), ends)
+
+    stretch = {"turned": mp.arg(last / first), "elapsed": mp.convert(times[1] - times[0])}
+    yield six | stretch | {"F": F, "G": G, "y3": y3, "integral": integral}
+
+
+_SUMS: Final = (
+    "quadrature of forty digits of a smooth integrand against a trajectory settled to forty; five digits "
+    "are granted for what the sums lose"
+)
+# (8), and (17).
+elapsed_time: Final = Numeric(_stretch, _DIGITS + 5, 1e-35, f"relative; {_SUMS}")(
+    "integral(lambda z: 1 / r) / elapsed = 1"
+)
+angle_advance: Final = Numeric(_stretch, _DIGITS + 5, 1e-35, f"radians; {_SUMS}")(
+    "turned - q*F*elapsed = integral(lambda z: (F*G - z*y3) / (F**2 - z**2) * F)"
+)
 
 # a = 17, b = -44, for which x = tan(theta/2) = 2 is a root of the corrected X2; F = 1, G = (a + b)/2
 # and y3 = (a - b)/2.
-_a, _b = 17, -44
 _R: Final = Fraction(1, 100)
 _SWINGING: Final = Clebsch(
     p=1 + _R * (Fraction(27, 2) ** 2 + Fraction(61, 2) ** 2),
@@ -88,37 +134,30 @@ _SWING_START: Final = Impulse(
 )
 
 
-def algebraic_path(sign: int = 1) -> Residual:
+def _swinging() -> Iterator[dict[str, Any]]:
+    """Yield x, X1 and X2 now and at the start, the product of their roots, and e^(i psi) over its start."""
+    a, b = 17, -44
+    for row in _rows(_SWINGING, _SWING_START, "attitude"):
+        sine = mp.hypot(row["x1"], row["x2"])
+        x = sine / (1 + row["x3"])
+        symbols = {"x": x, "i": 1j, "turned": row["exponential"] / sine / -1j}
+        for z, end in ((x, ""), (mp.mpf(2), "_start")):
+            even, odd = a * z**4 + 3 * (a + b) * z**2 + b, 2 * a * z**3 + 2 * b * z
+            symbols |= {f"X1{end}": odd - even, f"X2{end}": odd + even}
+        # x3 = (1 - x^2)/(1 + x^2), so that 4 x x'/r = -(1 + x^2)^2 (dx3/dt)/r.
+        across = row["x1"] * row["y2"] - row["x2"] * row["y1"]
+        yield symbols | {
+            "product": -((1 + x**2) ** 2) * across,
+            "relative": lambda a, b: (a - b) / b,
+        }
+
+
+def algebraic_path(X1: str = "X1", X2: str = "X2") -> Equations:
     """The square of (27), in which the product of the roots is 4 F x x'/r, at each time over the start.
 
-    sqrt(X1) sqrt(X2) has the sign of dx/dt. ``sign`` -1 takes X1 for X2, as transcribed.
+    sqrt(X1) sqrt(X2) has the sign of dx/dt. The names are interchanged in what is transcribed.
     """
-    motion = trajectory(_SWINGING.body(), _SWING_START, _TIMES, track=frozenset({"attitude"}))
-    with mp.workdps(DIGITS + 10):
-        start = _squared(mpf(2), mpf(0), sign)
-        misses: list[Any] = []
-        rows = zip(*(motion[name] for name in _NAMES[:3]), strict=True)
-        for v, y, R in rows:
-            sine = mp.hypot(v[0], v[1])
-            x = sine / (1 + v[2])
-            # x3 = (1 - x^2)/(1 + x^2), so that 4 x x'/r = -(1 + x^2)^2 (dx3/dt)/r.
-            product = -((1 + x**2) ** 2) * (v[0] * y[1] - v[1] * y[0])
-            turn = 1j * (R[0, 2] + 1j * R[1, 2]) / sine
-            right = _squared(x, product, sign)
-            # At the start x = 2, and psi is that of the quaternion.
-            left = start * (x / 2) ** 3 * (turn / _first_turn()) ** 3
-            misses.append(abs(left - right) / abs(right))
-        return Residual(float(max(misses)), _BOUND, _WHY)
-
-
-def _first_turn() -> Any:
-    """e^(i psi) at the start: R13 + i R23 of the quaternion (1, 0, -2, 0) over -i sin(theta)."""
-    return 1j * mp.convert(Fraction(-4, 5)) / mp.convert(Fraction(4, 5))
-
-
-def _squared(x: mpf, product: Any, sign: int) -> Any:
-    """((x + 1) sqrt(X1) + i (x - 1) sqrt(X2))^2."""
-    even = sign * (_a * x**4 + 3 * (_a + _b) * x**2 + _b)
-    odd = 2 * _a * x**3 + 2 * _b * x
-    X1, X2 = odd - even, odd + even
-    return (x + 1) ** 2 * X1 - (x - 1) ** 2 * X2 + 2j * (x**2 - 1) * product
+    return Numeric(_swinging, DIGITS + 10, 1e-50, _WHY)(
+        f"relative((9*{X1}_start - {X2}_start) * (x/2)**3 * turned**3,"
+        f" (x + 1)**2 * {X1} - (x - 1)**2 * {X2} + 2*i*(x**2 - 1)*product) = 0"
+    )

@@ -11,7 +11,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.claims.claim import Check, Residual
+from taylor_verify.claims.check import Residual
 from taylor_verify.scenes.bodies import ImmersedBody
 
 Complex = np.ndarray[Any, np.dtype[np.complex128]]
@@ -23,20 +23,22 @@ _FOUND: Final = 1e-13
 _BOUND: Final = 1e-10
 
 
-def branching(body: ImmersedBody) -> Check:
+def branching(body: ImmersedBody) -> Residual:
     """The largest distance of an exponent from the integers, over the poles that are found."""
+    distances = []
+    for c in leading_coefficients(body):
+        exponents = np.linalg.eigvals(jacobian(_energy(body), c) + np.eye(6))
+        distances.append(float(np.max(np.abs(exponents - np.round(exponents.real)))))
+    return Residual(
+        max(distances, default=float("nan")),
+        _BOUND,
+        "distance of Kowalevski's exponents from the integers, as eigenvalues in doubles; a million "
+        "roundoffs are granted",
+    )
 
-    def check() -> Residual:
-        distances = [_distance(body, c) for c in leading_coefficients(body)]
-        size = max(distances) if distances else float("nan")
-        return Residual(
-            size,
-            _BOUND,
-            "distance of Kowalevski's exponents from the integers, as eigenvalues in doubles; a million "
-            "roundoffs are granted",
-        )
 
-    return check
+def _energy(body: ImmersedBody) -> Any:
+    return np.array(body.energy_matrix, dtype=float)
 
 
 def leading_coefficients(body: ImmersedBody) -> list[Complex]:
@@ -45,7 +47,7 @@ def leading_coefficients(body: ImmersedBody) -> list[Complex]:
     The rule stops where the matrix is singular, as it is at members of a family; what it has reached
     is kept if it solves the equations.
     """
-    energy = np.array([[float(entry) for entry in row] for row in body.energy_matrix])
+    energy = _energy(body)
     random = np.random.default_rng(1)
     found: list[Complex] = []
     for _ in range(_STARTS):
@@ -59,17 +61,11 @@ def leading_coefficients(body: ImmersedBody) -> list[Complex]:
 
 def _newton(energy: Any, c: Complex) -> Complex:
     for _ in range(_STEPS):
-        slope = _jacobian(energy, c) + np.eye(6)
+        slope = jacobian(energy, c) + np.eye(6)
         if not np.all(np.isfinite(slope)) or np.linalg.cond(slope) > _SINGULAR:
             break
         c = c - np.linalg.solve(slope, _rates(energy, c) + c)
     return c
-
-
-def _distance(body: ImmersedBody, c: Complex) -> float:
-    energy = np.array([[float(entry) for entry in row] for row in body.energy_matrix])
-    exponents = np.linalg.eigvals(_jacobian(energy, c) + np.eye(6))
-    return float(np.max(np.abs(exponents - np.round(exponents.real))))
 
 
 def _rates(energy: Any, z: Complex) -> Complex:
@@ -79,7 +75,7 @@ def _rates(energy: Any, z: Complex) -> Complex:
     return np.concatenate([np.cross(x, Omega), np.cross(y, Omega) + np.cross(x, U)])
 
 
-def _jacobian(energy: Any, z: Complex) -> Complex:
+def jacobian(energy: Any, z: Complex) -> Complex:
     """Dv(z): v is quadratic, so that v(z + d) - v(z - d) = 2 Dv(z) d without error."""
     columns = [(_rates(energy, z + d) - _rates(energy, z - d)) / 2 for d in np.eye(6)]
     return np.stack(columns, axis=1)

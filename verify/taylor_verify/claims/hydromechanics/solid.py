@@ -1,88 +1,47 @@
 """The solid of section 48 in exact symbols: all 21 coefficients of T, loads, attitude and origin.
 
-x, y    impulses, body axes            U = dT/dx, Omega = dT/dy    (P, Q, R are Omega's components)
-X, L    force and couple, body axes    A, B, C    T = x.A x/2 + x.B y + y.C y/2
-R       body to space, v_space = R v_body, from the quaternion e of norm 1; R' = R [Omega]x
-c       the origin in space, c' = R U   n    a direction fixed in space; l = R^T n in body axes
+x, y    impulses, body axes            vel = (U, V, W) = dT/dx, Omega = (P, Q, R) = dT/dy
+force   (X, Y, Z), body axes           couple = (L, M, N), body axes
+A, B, C T = x.A x/2 + x.B y + y.C y/2  c   the origin in space, c' = rot vel; r in body axes
+rot     body to space, from the quaternion e of norm 1; rot' = rot [Omega]x
+u       a direction fixed in space     line = (l, m, n) = rot^T u, in body axes
 """
 
 from __future__ import annotations
 
-from fractions import Fraction
-from functools import cache
 from typing import Final
 
-from taylor_verify.claims.field import (
-    QUATERNION,
-    Element,
-    Field,
-    apply,
-    cross,
-    dot,
-    named,
-    plus,
-    quaternion_rates,
-    rotation,
-    transposed,
-    unit_root,
-    values,
+from taylor_verify.claims.field import values
+from taylor_verify.claims.setting import QUATERNION, UNIT, Exact
+
+_PLAIN: Final = tuple(f"{letter}{k}" for letter in ("x", "y", "c", "u") for k in "123")
+_RATES: Final = tuple(f"{letter}{k}" for letter in ("dx", "dy") for k in "123")
+_LOADS: Final = ("X", "Y", "Z", "L", "M", "N")
+_COEFFICIENTS: Final = tuple(
+    f"{matrix}{j}{k}" for matrix in "ABC" for j in "123" for k in "123" if matrix == "B" or j <= k
 )
 
-_PAIRS: Final = ("11", "12", "13", "22", "23", "33")
-_ALL: Final = tuple(f"{j}{k}" for j in "123" for k in "123")
+_KINEMATICS: Final = """
+vel, Omega = A @ x + B @ y, B.T @ x + C @ y
+(U, V, W), (P, Q, R) = vel, Omega
+T = (x @ vel + y @ Omega) / 2
+rot = rotation(e0, e1, e2, e3)
+line, r = rot.T @ u, rot.T @ c
+l, m, n = line
+"""
+_LOADED: Final = "force, couple = array([X, Y, Z]), array([L, M, N])"
+_LAWS: Final = "dx, dy = cross(x, Omega) + force, cross(y, Omega) + cross(x, vel) + couple"
+_TURN: Final = "turn(**quaternion_rates(e0, e1, e2, e3, Omega), x=dx, y=dy, c=rot @ vel)"
 
 
-class Solid:
-    """The symbols of a solid; ``dx`` and ``dy`` are its rates, free symbols unless it obeys (3), (4)."""
-
-    def __init__(self, obeys: bool, loaded: bool) -> None:
-        plain = [f"{v}{k}" for v in ("x", "y", "c", "n") for k in (1, 2, 3)]
-        if not obeys:
-            plain += [f"{v}{k}" for v in ("dx", "dy") for k in (1, 2, 3)]
-        if loaded:
-            plain += [f"{v}{k}" for v in ("X", "L") for k in (1, 2, 3)]
-        plain += [f"A{pair}" for pair in _PAIRS] + [f"B{pair}" for pair in _ALL]
-        plain += [f"C{pair}" for pair in _PAIRS]
-        self.field = field = Field({**QUATERNION, **values(plain)}, {"e0": unit_root})
-        self.x, self.y, self.c, self.n = map(field.vector, ("x", "y", "c", "n"))
-        nothing = [field.element(0)] * 3
-        self.X, self.L = map(field.vector, ("X", "L")) if loaded else (nothing, nothing)
-        A, B, C = field.symmetric("A"), field.matrix("B"), field.symmetric("C")
-        self.U = plus(apply(A, self.x), apply(B, self.y))
-        self.Omega = plus(apply(transposed(B), self.x), apply(C, self.y))
-        self.coupling, self.angular = B, C
-        self.T = Fraction(1, 2) * (dot(self.x, self.U) + dot(self.y, self.Omega))
-        self.R = rotation([field[f"e{k}"] for k in range(4)])
-        self.l = apply(transposed(self.R), self.n)
-        if obeys:
-            self.dx = plus(cross(self.x, self.Omega), self.X)
-            self.dy = plus(cross(self.y, self.Omega), cross(self.x, self.U), self.L)
-        else:
-            self.dx, self.dy = field.vector("dx"), field.vector("dy")
-        field.turn(
-            quaternion_rates(field, self.Omega)
-            | named("x", self.dx)
-            | named("y", self.dy)
-            | named("c", apply(self.R, self.U))
-        )
-
-    def rates(self, vector: list[Element]) -> list[Element]:
-        return self.field.rates(vector)
+def _solid(extra: tuple[str, ...], *lines: str) -> Exact:
+    point = {**QUATERNION, **values((*_PLAIN, *extra, *_COEFFICIENTS))}
+    return Exact(point, "\n".join((_KINEMATICS, *lines, _TURN)), UNIT)
 
 
-@cache
-def unposed() -> Solid:
-    """Any motion at all: x' and y' are free symbols, so that laws can be compared before they hold."""
-    return Solid(obeys=False, loaded=True)
-
-
-@cache
-def loaded() -> Solid:
-    """A motion under force and couple, by (3) and (4)."""
-    return Solid(obeys=True, loaded=True)
-
-
-@cache
-def unloaded() -> Solid:
-    """A motion without external force, by (3) and (4)."""
-    return Solid(obeys=True, loaded=False)
+# Any motion at all: x' and y' are free symbols, so that laws can be compared before they hold.
+unposed: Final = _solid((*_RATES, *_LOADS), _LOADED)
+# A motion under force and couple, by (3) and (4).
+loaded: Final = _solid(_LOADS, _LOADED, _LAWS)
+# A motion without external force, by (3) and (4).
+unloaded: Final = _solid((), "force = couple = 0 * x", _LAWS)

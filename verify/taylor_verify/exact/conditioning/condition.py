@@ -17,13 +17,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from math import ceil, inf, log10
 from typing import Final
 
 import numpy as np
 
+from taylor_verify.exact.clocks import Floats
 from taylor_verify.exact.conditioning.differences import settled
-from taylor_verify.exact.conditioning.flow import Floats, Flow, Steps, products
+from taylor_verify.exact.conditioning.flow import Flow, Steps, products
 from taylor_verify.exact.conditioning.inputs import momentum
 from taylor_verify.exact.conditioning.variation import integrated
 from taylor_verify.exact.registry import kind_of
@@ -59,22 +61,20 @@ class Path:
 
     ``momentum`` (n, d) and ``centre`` (n, 3; from its start; no rows if it is not tracked) are the
     motion there, in ``units``: powers of two by name, of the blocks of the state and of ``omega``.
-    ``blocks`` are those of the state, each of three components, in their order. Where the derivative
-    comes from differences, they are of 10^-``exponent`` units.
+    Where the derivative comes from differences, they are of 10^-``exponent`` units.
     """
 
-    elapsed: tuple[Fraction, ...]
-    blocks: tuple[str, ...]
+    scene: Scene
     flow: Flow
+    elapsed: Sequence[Fraction]
     carried: Steps
     exponent: int = 0
 
-    @classmethod
-    def of(
-        cls, scene: Scene, flow: Flow, points: Sequence[Fraction], carried: Steps, exponent: int = 0
-    ) -> Path:
-        tracked = tuple(name for name in ("attitude", "centre") if name in scene.track)
-        return cls(tuple(points), (*flow.momenta, *tracked), flow, carried, exponent)
+    @cached_property
+    def blocks(self) -> tuple[str, ...]:
+        """The blocks of the state, of three components each."""
+        tracked = (name for name in ("attitude", "centre") if name in self.scene.track)
+        return (*self.flow.momenta, *tracked)
 
     @property
     def units(self) -> dict[str, Fraction]:
@@ -111,12 +111,16 @@ class Path:
         body. What the scene does not track raises KeyError. A norm outside the range of float64 is inf.
         """
         places = {name: self._place(name) for name in self.blocks}
-        columns = self._since(since)[:, :, places[into]]
+        steps = self.carried
+        reached = steps.since_first if since == 0 else products(steps.steps[since:])
+        columns = reached[:, :, places[into]]
         if out == "omega" and "momentum" in places:
-            rows = self.flow.omega @ columns[:, places["momentum"]]
+            rows = self.flow.equations.spin @ columns[:, places["momentum"]]
         else:
             rows = columns[:, places[out]]
-        return _ldexp(_spectral_norms(rows), self.units[out] / self.units[into])
+        unit = floor_log2(self.units[out] / self.units[into])
+        with np.errstate(over="ignore", under="ignore"):
+            return np.ldexp(_spectral_norms(rows), unit)
 
     @property
     def growth(self) -> Floats:
@@ -135,12 +139,6 @@ class Path:
         times = np.array([abs(float(t)) for t in self.elapsed])
         return bool((self.growth <= _REGULAR * (1 + self.rate * times)).all())
 
-    def _since(self, first: int) -> Floats:
-        """The derivative of the state at each time from this one on by the state there."""
-        if first == 0:
-            return self.carried.since_first
-        return products(self.carried.steps[first:])
-
     def _place(self, block: str) -> slice:
         first = 3 * self.blocks.index(block)
         return slice(first, first + 3)
@@ -148,7 +146,7 @@ class Path:
     def _sizes(self, factor: Floats) -> dict[str, float]:
         names = {name: factor[self._place(name)] for name in self.blocks}
         if "momentum" in names:
-            names["omega"] = self.flow.omega @ names["momentum"]
+            names["omega"] = self.flow.equations.spin @ names["momentum"]
         sizes = {name: float(np.linalg.norm(rows)) for name, rows in names.items()}
         return {name: size if size == size else np.inf for name, size in sizes.items()}
 
@@ -170,12 +168,6 @@ def _spectral_norms(matrices: Floats) -> Floats:
     return found
 
 
-def _ldexp(values: Floats, unit: Fraction) -> Floats:
-    """The values times a power of two; beyond float64 that is inf, and no warning."""
-    with np.errstate(over="ignore", under="ignore"):
-        return np.ldexp(values, floor_log2(unit))
-
-
 # Which way leads to the derivative.
 
 
@@ -188,9 +180,9 @@ def transition(scene: Scene, elapsed: Sequence[Fraction]) -> Path:
     if differs_dearly(scene):
         found = integrated(scene, flow, elapsed)
         if found is not None:
-            return Path.of(scene, flow, elapsed, found)
+            return Path(scene, flow, elapsed, found)
     differences = next(settled(scene, elapsed))
-    return Path.of(scene, flow, elapsed, differences.steps(flow)[0], differences.exponent)
+    return Path(scene, flow, elapsed, differences.steps(flow)[0], differences.exponent)
 
 
 def path(scene: Scene) -> Path:
@@ -209,7 +201,7 @@ def path(scene: Scene) -> Path:
         # So many more digits of the truth as the growth may magnify its last one by.
         steps = integrated(scene, flow, points, ceil(log10(growth)))
         if steps is not None:
-            return Path.of(scene, flow, points, steps)
+            return Path(scene, flow, points, steps)
     return sharp(scene, flow, points, found.exponent)
 
 
@@ -237,7 +229,7 @@ def sharp(
     """
     for found in settled(scene, points, least):
         steps, shrinkage = found.steps(flow)
-        path = Path.of(scene, flow, points, steps, found.exponent)
+        path = Path(scene, flow, points, steps, found.exponent)
         growth, sharpness = path.growth, 10.0**found.exponent
         if (growth**2 * shrinkage <= _SHARP * sharpness).all():
             break
@@ -251,7 +243,7 @@ def _along(scene: Scene, flow: Flow, points: Sequence[Fraction]) -> Path:
     if _is_short(scene, flow) or differs_dearly(scene):
         found = integrated(scene, flow, points)
         if found is not None:
-            return Path.of(scene, flow, points, found)
+            return Path(scene, flow, points, found)
     return sharp(scene, flow, points, to_tell=True)
 
 

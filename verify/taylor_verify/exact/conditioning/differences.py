@@ -5,7 +5,7 @@ It shares nothing with the equations that a solver is given.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Final
@@ -15,7 +15,8 @@ from flint import arb, arb_mat, ctx
 from mpmath import mp, mpf
 
 from taylor_verify.exact.balls import midpoint
-from taylor_verify.exact.conditioning.flow import Floats, Flow, Steps
+from taylor_verify.exact.clocks import Floats
+from taylor_verify.exact.conditioning.flow import Flow, Steps
 from taylor_verify.exact.conditioning.inputs import momentum
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
@@ -23,7 +24,7 @@ from taylor_verify.exact.rows import cross_matrices
 from taylor_verify.exact.solution import Quantities, Unsettled
 from taylor_verify.scenes.mpfr import precision, to_mpf, to_mpfr
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix, Vector
+from taylor_verify.scenes.tensors import Vector
 
 Array = np.ndarray[Any, Any]
 
@@ -175,7 +176,7 @@ def difference(before: Quantities, after: Quantities, step: Any) -> dict[str, Ar
     return {name: change[name] / step for name in before}
 
 
-def real(matrix: Matrix) -> Array:
+def real(matrix: Iterable[Iterable[Any]]) -> Array:
     """The matrix as mpf, rounded at the ambient precision."""
     return np.array([[mp.convert(entry) for entry in row] for row in matrix], dtype=object)
 

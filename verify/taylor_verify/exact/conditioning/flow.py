@@ -7,7 +7,7 @@ axes, and moves the centre c,
     theta' = R dOmega,        dc' = theta x R U + R dU,
 
 with Omega and U linear in z. Of a manufactured motion z* = S w, with w the clock of exact.clocks and
-w' = N w, the loads are S w' - J(z*) z*/2; they do not depend on z, and so are no part of J.
+w' = W w, the loads are S w' - J(z*) z*/2; they do not depend on z, and so are no part of J.
 """
 
 from __future__ import annotations
@@ -15,18 +15,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from taylor_verify.exact import clocks
+from taylor_verify.exact.clocks import Floats, swing
 from taylor_verify.exact.conditioning.inputs import momentum
+from taylor_verify.exact.equations import Scaled, exact
 from taylor_verify.exact.registry import kind_of
+from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.precision import floor_log2, power_of_two
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix, Vector
-
-Floats = np.ndarray[Any, np.dtype[np.float64]]
+from taylor_verify.scenes.tensors import Vector
 
 
 class Steps(NamedTuple):
@@ -55,18 +55,14 @@ def products(steps: Floats) -> Floats:
 class Flow:
     """The equations in units of their size: d = 3 or 6 components of momentum.
 
-    ``twice`` (d, d, d) and ``linear`` L (d, d) give J = twice @ z + L; ``omega`` and ``velocity`` (3, d)
-    give Omega and, for a solid in a fluid, U. ``momenta`` are the units of each block of the momentum by
-    name; time is measured in ``time``, lengths in ``length``: powers of two. ``swing`` is S and N.
+    J is hessian @ z. ``momenta`` are the units of each block of the momentum by name; time is
+    measured in ``time``, lengths in ``length``: powers of two. ``waves`` is S and ``turning`` W.
     """
 
     momenta: Mapping[str, Fraction]
-    constant: Floats
-    swing: clocks.Swing
-    twice: Floats
-    linear: Floats
-    omega: Floats
-    velocity: Floats | None
+    equations: Scaled
+    waves: Floats
+    turning: Floats
     time: Fraction
     length: Fraction
 
@@ -75,31 +71,19 @@ class Flow:
         """Return the equations of a scene's body, in units of its start."""
         kind, units = kind_of(scene.body), momentum(scene).units
         equations = kind.momentum_equations(scene.body)
-        constant, omega, velocity = equations.constant, equations.spin, equations.velocity
-        products = {(i, *pair): c for i, p in enumerate(equations.rates) for pair, c in p.items()}
-        d = len(units)
-        scaled = {
-            (i, j, k): c * units[j] * units[k] / units[i] for (i, j, k), c in products.items()
-        }
-        rates = [abs(c) for c in scaled.values() if c]
-        rates += [abs(c / unit) for c, unit in zip(constant, units, strict=True) if c]
+        one = exact(units)
+        scaled = equations.hessian * np.multiply.outer(1 / one, np.outer(one, one))
+        rates = [abs(rate) for rate in (*scaled.flat, *(equations.constant / one)) if rate]
         time = 1 / power_of_two(floor_log2(max(rates))) if rates else Fraction(1)
-        twice = np.zeros((d, d, d))
-        for (i, j, k), c in scaled.items():
-            # Both orders of a product, so that J is the Jacobian; a square counts twice so.
-            twice[i, j, k] += float(c * time)
-            twice[i, k, j] += float(c * time)
-        speeds = [c * u for row in velocity for c, u in zip(row, units, strict=True) if c]
-        fastest = max((abs(s) for s in speeds), default=Fraction(0))
+        fastest = max((abs(s) for s in (equations.velocity * one).flat), default=Fraction(0))
         length = power_of_two(floor_log2(fastest * time)) if fastest else Fraction(1)
+        motion = kind.manufactured_momentum(scene.body)
+        waves, turning = swing(motion or Manufactured((Fraction(0),) * len(one), ()))
         return cls(
             momenta=dict(zip(kind.momenta, units[::3], strict=True)),
-            constant=np.array([float(c * time / u) for c, u in zip(constant, units, strict=True)]),
-            swing=clocks.swing(kind.manufactured_momentum(scene.body), units, time),
-            twice=twice,
-            linear=_linear(equations.linear, units, time),
-            omega=_floats(omega, units, time),
-            velocity=_floats(velocity, units, time / length) if velocity else None,
+            equations=equations.scaled(units, time, length),
+            waves=(waves / one[:, None]).astype(float),
+            turning=(turning * time).astype(float),
             time=time,
             length=length,
         )
@@ -118,13 +102,14 @@ class Flow:
     def jacobian(self, z: Floats) -> Floats:
         """J (..., d, d) at z (..., d)."""
         d = z.shape[-1]
-        found: Floats = z @ self.twice.reshape(d * d, d).T
-        return found.reshape(*z.shape, d) + self.linear
+        found: Floats = z @ self.equations.hessian.reshape(d * d, d).T
+        return found.reshape(*z.shape, d)
 
     def load(self, clock: Floats) -> Floats:
         """The constant load, and the one that a manufactured motion takes."""
-        there, rate = self.swing.at(clock)
-        found: Floats = self.constant + rate - applied(self.jacobian(there), there) / 2
+        there, rate = clock @ self.waves.T, clock @ self.turning.T @ self.waves.T
+        constant = self.equations.constant
+        found: Floats = constant + rate - applied(self.jacobian(there), there) / 2
         return found
 
     def rate(self, z: Floats) -> Floats:
@@ -136,8 +121,8 @@ class Flow:
         jacobian = self.jacobian(z)
         square = jacobian @ jacobian
         fifth = _norm(square @ square @ jacobian) ** 0.2
-        spin = np.linalg.norm(z @ self.omega.T, axis=-1)
-        own = np.maximum(np.maximum(fifth, spin), self.swing.fastest)
+        spin = np.linalg.norm(z @ self.equations.spin.T, axis=-1)
+        own = np.maximum(np.maximum(fifth, spin), np.abs(self.turning).max())
         found: Floats = np.maximum(own, (_norm(jacobian) * own**4) ** 0.2)
         return found
 
@@ -155,16 +140,3 @@ def applied(matrices: Floats, vectors: Floats) -> Floats:
 def _norm(matrices: Floats) -> Floats:
     found: Floats = np.linalg.norm(matrices, axis=(-2, -1))
     return found
-
-
-def _linear(rows: Matrix, units: Vector, time: Fraction) -> Floats:
-    """L in units; zero where there are no such terms."""
-    if not rows:
-        return np.zeros((len(units), len(units)))
-    found: Floats = _floats(rows, units, time) / np.array([[float(unit)] for unit in units])
-    return found
-
-
-def _floats(matrix: Matrix, units: Vector, factor: Fraction) -> Floats:
-    scaled = np.array([[c * u * factor for c, u in zip(row, units, strict=True)] for row in matrix])
-    return scaled.astype(float)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 
 from taylor_verify.exact.parameters import raised
 from taylor_verify.exact.registry import kind_of
@@ -50,15 +51,12 @@ def start_inputs(scene: Scene) -> list[Input]:
     z = kind.state(scene.initial)
     units = _block_units(z, kind.energy(scene.body))
 
-    def moving(first: int) -> Callable[[int, Fraction], Scene]:
-        def moved(j: int, amount: Fraction) -> Scene:
-            there = kind.with_state(scene.initial, raised(z, first + j, amount))
-            return replace(scene, initial=there)
-
-        return moved
+    def moved(first: int, j: int, amount: Fraction) -> Scene:
+        there = kind.with_state(scene.initial, raised(z, first + j, amount))
+        return replace(scene, initial=there)
 
     return [
-        Input(name, components, units[3 * k : 3 * k + 3], moving(3 * k))
+        Input(name, components, units[3 * k : 3 * k + 3], partial(moved, 3 * k))
         for k, (name, components) in enumerate(kind.components.items())
     ]
 

@@ -14,9 +14,10 @@ Omega = B^T x + C y; M, X, L the loads; theta a small turn in space axes, R -> e
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cache, partial
 from math import ceil
 from typing import Any, Final
 
@@ -101,7 +102,8 @@ def sensitivity(scene: Scene, times_elapsed: Sequence[Fraction], digits: int = 1
     working, scene = digits + _GUARD_DIGITS, _from_origin(scene)
     motion = solution(scene).motion(elapsed, working)
     with mp.workdps(working):
-        base = _Base(scene, elapsed, _sizes(motion.quantities), {})
+        evaluate = cache(partial(solution(scene).evaluate, elapsed))
+        base = _Base(scene.name, elapsed, _sizes(motion.quantities), evaluate)
         found = dict(_by_place(motion.quantities, working))
         flow = _flow(scene, motion.quantities)
     inputs = [*start_inputs(scene), body_input(scene)]
@@ -130,15 +132,10 @@ def sensitivity(scene: Scene, times_elapsed: Sequence[Fraction], digits: int = 1
 class _Base:
     """The scene as it is: its motion at any precision, and the sizes that errors are measured by."""
 
-    scene: Scene
+    name: str
     elapsed: tuple[Fraction, ...]
     sizes: Mapping[str, Array]
-    kept: dict[int, Quantities]
-
-    def at(self, working: int) -> Quantities:
-        if working not in self.kept:
-            self.kept[working] = solution(self.scene).evaluate(self.elapsed, working)
-        return self.kept[working]
+    at: Callable[[int], Quantities]
 
 
 Column = dict[str, tuple[Array, Array]]
@@ -157,14 +154,15 @@ def _column(base: _Base, by: Input, j: int, digits: int) -> Column:
                 return column
         exponent *= 2
     raise Unsettled(
-        f"differences of the exact solution do not agree to {digits} digits on how {base.scene.name} "
+        f"differences of the exact solution do not agree to {digits} digits on how {base.name} "
         f"depends on {by.name} {by.components[j]}: ask for earlier times or fewer digits"
     )
 
 
 def _attempt(base: _Base, by: Input, j: int, exponent: int, working: int) -> Column:
     """The difference with a step of 10^-exponent units, and the estimate of its error."""
-    step = _nearby_power_of_two(exponent) * by.units[j]
+    # A power of two, so that perturbed data stay short.
+    step = power_of_two(floor_log2(Fraction(1, 10**exponent))) * by.units[j]
     h, here = mp.convert(step), base.at(working)
     # Each is a smooth function of the step, zero at zero; so is a small turn away from here.
     behind, ahead, wide = (
@@ -182,13 +180,8 @@ def _attempt(base: _Base, by: Input, j: int, exponent: int, working: int) -> Col
     return column
 
 
-def _nearby_power_of_two(exponent: int) -> Fraction:
-    """The largest power of two below 10^-exponent: perturbed data stay short."""
-    return power_of_two(floor_log2(Fraction(1, 10**exponent)))
-
-
 def _is_settled(column: Array, error: Array, floor: Array, digits: int) -> bool:
-    """Whether the error at every time is small beside the column or the floor; NaN never is."""
+    """Return True if every error is small beside the column or the floor; NaN never is."""
     tolerance = mpf(10) ** -digits
     return all(
         e <= tolerance * max(length, f)
@@ -198,16 +191,14 @@ def _is_settled(column: Array, error: Array, floor: Array, digits: int) -> bool:
 
 def _lengths(vectors: Array) -> Array:
     """The Euclidean length of every row, shape (n,)."""
-    lengths = np.empty(len(vectors), dtype=object)
-    lengths[:] = [mp.norm(list(row.flat)) for row in vectors]
-    return lengths
+    return np.array([mp.norm(list(row.flat)) for row in vectors], dtype=object)
 
 
 def _sizes(motion: Quantities) -> dict[str, Array]:
     """What an error of each quantity is measured against at each time, shape (n,)."""
     sizes = {name: _lengths(rows) for name, rows in motion.items()}
     if "attitude" in sizes:
-        sizes["attitude"] = np.array([mpf(1)] * len(sizes["attitude"]), dtype=object)
+        sizes["attitude"] = np.full(len(sizes["attitude"]), mpf(1), dtype=object)
     return sizes
 
 
@@ -243,13 +234,14 @@ def _places(motion: Quantities) -> list[str]:
 
 def _flow(scene: Scene, motion: Quantities) -> dict[str, Array]:
     """The right-hand sides of the equations of motion, R omega for the turning, and R U."""
-    system = posed_exactly(scene)
+    equations = posed_exactly(scene).equations
     moving = [name for name in motion if name not in ("attitude", "centre")]
     z = np.concatenate([motion[name] for name in moving], axis=1)
     products = (z[:, :, None] * z[:, None, :]).reshape(len(z), -1)
-    rate = real((system.constant,)) + products @ real(system.forms.hessian).T / 2
+    hessian = equations.hessian.reshape(len(equations.hessian), -1)
+    rate = real([equations.constant]) + products @ real(hessian).T / 2
     found = {name: rate[:, 3 * k : 3 * k + 3] for k, name in enumerate(moving)}
-    for name, form in (("attitude", system.forms.spin), ("centre", system.forms.velocity)):
+    for name, form in (("attitude", equations.spin), ("centre", equations.velocity)):
         if name in motion:
             found[name] = turned(motion["attitude"], z @ real(form).T)
     return found

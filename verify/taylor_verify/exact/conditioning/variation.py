@@ -8,18 +8,17 @@ leads from any time to any later one; nothing is inverted.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
 from itertools import pairwise
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from mpmath import mp
 
 from taylor_verify.exact import clocks
+from taylor_verify.exact.clocks import Floats
 from taylor_verify.exact.conditioning.flow import (
-    Floats,
     Flow,
     Steps,
     applied,
@@ -54,69 +53,48 @@ def integrated(
     times, and where it misses it so, between them too.
     """
     for parts in (1, _PARTS):
-        points = _refined(elapsed, parts)
+        points = [elapsed[0]]
+        for begin, end in pairwise(elapsed):
+            points += [begin + (end - begin) * Fraction(k, parts) for k in range(1, parts + 1)]
         truth = solution(scene).motion(points, _TRUTH_DIGITS + more_digits)
         with np.errstate(all="ignore"):  # what overflows is not finite, and then there is no answer
-            samples = _samples(scene, flow, points, truth)
-            short = _steps(flow, samples, np.array([float(t / flow.time) for t in points]))
-            if short is not None:
+            found = _steps(scene, flow, points, truth)
+            if found is not None:
+                short, momentum, centre = found
                 # Products of so many steps each.
                 steps = reduce(
                     lambda done, part: part @ done, (short[k::parts] for k in range(parts))
                 )
-                there = samples.momentum[::parts], samples.centre[::parts]
-                return Steps(steps, products(steps), *there)
+                return Steps(steps, products(steps), momentum[::parts], centre[::parts])
     return None
 
 
-def _refined(elapsed: Sequence[Fraction], parts: int) -> list[Fraction]:
-    """The times, and between two of them the points that make so many parts of the time."""
-    found = [elapsed[0]]
-    for begin, end in pairwise(elapsed):
-        found += [begin + (end - begin) * Fraction(part, parts) for part in range(1, parts + 1)]
-    return found
+def _steps(
+    scene: Scene, flow: Flow, points: Sequence[Fraction], truth: Motion
+) -> tuple[Floats, Floats, Floats] | None:
+    """The steps on (z, theta, c) from point to point, and z and c there, counted in the flow's units.
 
-
-@dataclass(frozen=True)
-class _Samples:
-    """The truth at the points: momentum in units (n, d), R (n, 3, 3) and the centre in lengths (n, 3).
-
-    What is not tracked has no rows. ``clock`` (n, m) is w.
+    A turn of the body moves its later path too. The centre counts from its start, and has no rows where
+    it is not tracked.
     """
-
-    clock: Floats
-    momentum: Floats
-    attitude: Floats
-    centre: Floats
-
-
-def _samples(scene: Scene, flow: Flow, points: Sequence[Fraction], truth: Motion) -> _Samples:
     with mp.workdps(_FLOAT_DIGITS):
-        z = kind_of(scene.body).momentum_rows(scene.body, truth)
-        nothing = np.empty((0, 3), dtype=object)
-        path = truth.quantities.get("centre", nothing) / mp.convert(flow.length)
-        return _Samples(
-            clocks.floats(scene.body.manufactured, points),
-            (z / np.array([mp.convert(unit) for unit in flow.components])).astype(float),
-            truth.quantities.get("attitude", np.empty((0, 3, 3))).astype(float),
-            (path - path[:1]).astype(float),
-        )
-
-
-def _steps(flow: Flow, samples: _Samples, times: Floats) -> Floats | None:
-    """The steps on (z, theta, c) from point to point: a turn of the body moves its later path too."""
-    R = samples.attitude if len(samples.attitude) else np.tile(np.eye(3), (len(times), 1, 1))
-    arcs = _Arcs.begun(samples.clock[:-1], samples.momentum[:-1], R[:-1])
-    reached = _followed(flow, arcs, np.diff(times))
-    if reached is None or not _arrive(reached, samples.momentum[1:]):
+        units = np.array([mp.convert(unit) for unit in flow.components])
+        z = (kind_of(scene.body).momentum_rows(scene.body, truth) / units).astype(float)
+        path = truth.quantities.get("centre", np.empty((0, 3), dtype=object))
+        centre = ((path - path[:1]) / mp.convert(flow.length)).astype(float)
+    n, d = z.shape
+    R = truth.quantities.get("attitude", np.tile(np.eye(3), (n, 1, 1))).astype(float)
+    clock = clocks.floats(scene.body.manufactured, points)
+    nothing, one = np.zeros((n - 1, 3, d)), np.tile(np.eye(d), (n - 1, 1, 1))
+    arcs = _Arcs(clock[:-1], z[:-1], R[:-1], one, nothing, nothing)
+    reached = _followed(flow, arcs, np.diff([float(t / flow.time) for t in points]))
+    if reached is None or not _arrive(reached, z[1:]):
         return None
-    d = len(flow.constant)
-    steps = np.tile(np.eye(d + 6), (len(times) - 1, 1, 1))
-    parts = (reached.by_momentum, reached.turn, reached.shift)
-    steps[:, :, :d] = np.concatenate(parts, axis=1)
-    if len(samples.centre):
-        steps[:, d + 3 :, d : d + 3] = -cross_matrices(np.diff(samples.centre, axis=0))
-    return steps
+    steps = np.tile(np.eye(d + 6), (n - 1, 1, 1))
+    steps[:, :, :d] = np.concatenate([reached.by_momentum, reached.turn, reached.shift], axis=1)
+    if len(centre):
+        steps[:, d + 3 :, d : d + 3] = -cross_matrices(np.diff(centre, axis=0))
+    return steps, z, centre
 
 
 def _arrive(reached: _Arcs, truth: Floats) -> bool:
@@ -130,8 +108,7 @@ def _arrive(reached: _Arcs, truth: Floats) -> bool:
 # Many arcs of one body at once, each in its own steps.
 
 
-@dataclass(frozen=True)
-class _Arcs:
+class _Arcs(NamedTuple):
     """Where n arcs are: w (n, m), z (n, d), R (n, 3, 3), and what errors of z at their starts became.
 
     ``by_momentum`` (n, d, d) are the derivatives of z, ``turn`` and ``shift`` (n, 3, d) those of theta
@@ -145,27 +122,14 @@ class _Arcs:
     turn: Floats
     shift: Floats
 
-    @classmethod
-    def begun(cls, clock: Floats, momentum: Floats, attitude: Floats) -> _Arcs:
-        n, d = momentum.shape
-        nothing = np.zeros((n, 3, d))
-        return cls(clock, momentum, attitude, np.tile(np.eye(d), (n, 1, 1)), nothing, nothing)
-
     def only(self, places: Any) -> _Arcs:
         """The arcs at these places, an array of indices: always a copy."""
-        return _Arcs(*(part[places] for part in self.parts()))
+        return _Arcs(*(part[places] for part in self))
 
     def moved(self, rates: _Arcs, h: Floats) -> _Arcs:
         """Each arc by its own h times its rates."""
-        pairs = zip(self.parts(), rates.parts(), strict=True)
+        pairs = zip(self, rates, strict=True)
         return _Arcs(*(part + h.reshape(-1, *[1] * (part.ndim - 1)) * rate for part, rate in pairs))
-
-    def put(self, places: Any, others: _Arcs) -> None:
-        for part, other in zip(self.parts(), others.parts(), strict=True):
-            part[places] = other
-
-    def parts(self) -> tuple[Floats, ...]:
-        return tuple(vars(self).values())
 
 
 def _followed(flow: Flow, arcs: _Arcs, spans: Floats) -> _Arcs | None:
@@ -183,7 +147,8 @@ def _followed(flow: Flow, arcs: _Arcs, spans: Floats) -> _Arcs | None:
             return None
         whole = abs(left[active]) * rate <= _STEP
         h = np.where(whole, left[active], np.copysign(_STEP / rate, left[active]))
-        reached.put(active, _step(flow, here, h))
+        for part, moved in zip(reached, _step(flow, here, h), strict=True):
+            part[active] = moved
         left[active] -= h
         active = active[~whole]
         if not active.size:
@@ -196,22 +161,22 @@ def _step(flow: Flow, at: _Arcs, h: Floats) -> _Arcs:
     second = _rates(flow, at.moved(first, h / 2))
     third = _rates(flow, at.moved(second, h / 2))
     fourth = _rates(flow, at.moved(third, h))
-    slopes = zip(*(rates.parts() for rates in (first, second, third, fourth)), strict=True)
+    slopes = zip(first, second, third, fourth, strict=True)
     return at.moved(_Arcs(*((a + 2 * b + 2 * c + d) / 6 for a, b, c, d in slopes)), h)
 
 
 def _rates(flow: Flow, at: _Arcs) -> _Arcs:
     jacobian, R = flow.jacobian(at.momentum), at.attitude
-    turn = R @ (flow.omega @ at.by_momentum)
-    if flow.velocity is None:
+    turn = R @ (flow.equations.spin @ at.by_momentum)
+    if not len(flow.equations.velocity):
         shift = np.zeros_like(turn)
     else:
-        speed = applied(R, at.momentum @ flow.velocity.T)
-        shift = R @ (flow.velocity @ at.by_momentum) - cross_matrices(speed) @ at.turn
+        speed = applied(R, at.momentum @ flow.equations.velocity.T)
+        shift = R @ (flow.equations.velocity @ at.by_momentum) - cross_matrices(speed) @ at.turn
     return _Arcs(
-        clock=at.clock @ flow.swing.turning.T,
-        momentum=flow.load(at.clock) + applied(jacobian + flow.linear, at.momentum) / 2,
-        attitude=R @ cross_matrices(at.momentum @ flow.omega.T),
+        clock=at.clock @ flow.turning.T,
+        momentum=flow.load(at.clock) + applied(jacobian, at.momentum) / 2,
+        attitude=R @ cross_matrices(at.momentum @ flow.equations.spin.T),
         by_momentum=jacobian @ at.by_momentum,
         turn=turn,
         shift=shift,

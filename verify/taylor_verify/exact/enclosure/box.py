@@ -14,7 +14,7 @@ from typing import Final
 from flint import arb, arb_mat, ctx
 
 from taylor_verify.exact.enclosure.series import Series, value
-from taylor_verify.exact.enclosure.system import Balls, Bounds, column, magnitudes
+from taylor_verify.exact.enclosure.system import Balls, column, magnitudes
 from taylor_verify.exact.enclosure.tube import (
     BOUND_BITS,
     Tube,
@@ -80,7 +80,7 @@ class Flow:
 
 
 def flow(
-    system: Balls, bounds: Bounds, box: Box, state: Series, sizes: Series, h: arb, tube: Tube
+    system: Balls, bounds: Balls, box: Box, state: Series, sizes: Series, h: arb, tube: Tube
 ) -> Flow:
     """The derivative of the state by the one at the beginning, for every path within the tube.
 
@@ -88,12 +88,27 @@ def flow(
 
         sum_j |h| Lin(tail_(m - j)) |V_j| + |h| Lin(width of the tube) sum_j |V_j|.
     """
-    terms, spread = _flow_terms(system, box, state, h)
+    n = len(state[0])
+    second = system.second * h
+    jacobians: list[arb_mat] = []
+    terms, spread = [identity(n)], [box.apart]
+    moved = box.apart
+    for k, z in enumerate(state[:-1]):
+        jacobians.append(arb_mat(n, n, (second * column(z)).entries()))
+        total = jacobians[k] * terms[0]
+        for j in range(1, k + 1):
+            total = total + jacobians[k - j] * terms[j]
+        terms.append(total * (1 / arb(k + 1)))
+        spread.append(magnitudes(magnitudes(terms[-1] * box.axes) * box.radius))
+        # Up to a term that hardly moves the box.
+        if k >= _LEAST_ORDER and is_within(spread[-1], moved * _LITTLE):
+            break
+        moved = moved + spread[-1]
     return Flow(terms, spread, flow_defect(bounds, terms, sizes, h, tube))
 
 
 def flow_defect(
-    bounds: Bounds, terms: Sequence[arb_mat], sizes: Series, h: arb, tube: Tube
+    bounds: Balls, terms: Sequence[arb_mat], sizes: Series, h: arb, tube: Tube
 ) -> arb_mat:
     """A bound of how far V may be from its polynomial: what that leaves out, accumulated in the tube."""
     order = len(terms) - 1
@@ -107,28 +122,6 @@ def flow_defect(
         left = left + rates_of_change(bounds, column(tails[order - j])) * magnitude[j]
     left = (left + rates_of_change(bounds, tube.width) * everything) * abs(h).upper()
     return accumulated(tube.growth, magnitudes(left), 1)
-
-
-def _flow_terms(
-    system: Balls, box: Box, state: Series, h: arb
-) -> tuple[list[arb_mat], list[arb_mat]]:
-    """The terms of V up to one that hardly moves the box, and how far each moves it."""
-    n = len(state[0])
-    second = system.second * h
-    jacobians: list[arb_mat] = []
-    terms, spread = [identity(n)], [box.apart]
-    moved = box.apart
-    for k, z in enumerate(state[:-1]):
-        jacobians.append(arb_mat(n, n, (second * column(z)).entries()))
-        total = jacobians[k] * terms[0]
-        for j in range(1, k + 1):
-            total = total + jacobians[k - j] * terms[j]
-        terms.append(total * (1 / arb(k + 1)))
-        spread.append(magnitudes(magnitudes(terms[-1] * box.axes) * box.radius))
-        if k >= _LEAST_ORDER and is_within(spread[-1], moved * _LITTLE):
-            break
-        moved = moved + spread[-1]
-    return terms, spread
 
 
 def carried(box: Box, state: Series, tube: Tube, flow: Flow | None, spans: list[range]) -> Box:

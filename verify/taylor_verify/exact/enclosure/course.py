@@ -23,7 +23,7 @@ from taylor_verify.exact.enclosure.series import (
     state_series,
     value,
 )
-from taylor_verify.exact.enclosure.system import Balls, Bounds, System, column, magnitudes
+from taylor_verify.exact.enclosure.system import Balls, System, column, magnitudes
 from taylor_verify.exact.enclosure.tube import (
     BOUND_BITS,
     StepTooLong,
@@ -111,7 +111,7 @@ class Course:
 
     system: System
     balls: Balls
-    bounds: Bounds
+    bounds: Balls
     start: Sequence[arb]
     place: Place | None
     bits: int
@@ -126,7 +126,7 @@ class Course:
         """The course of a system, at the ambient precision of ``bits`` bits."""
         held = Balls.of(system)
         with ctx.workprec(BOUND_BITS):
-            bounds = Bounds.of(held)
+            bounds = held.magnitudes()
         return cls(system, held, bounds, start, place, bits, most_bits)
 
     @property
@@ -163,7 +163,10 @@ class Course:
             while pending and abs(pending[-1] - now) <= abs(step.length):
                 time = pending.pop()
                 share = ball((time - now) / step.length)
-                yield time, self._row(box, place, step, share, largest)
+                state = within(box, step.state, step.tube, step.flow, share)
+                there = None if place is None or step.leg is None else step.leg.place(place, share)
+                turn, centre = ([], None) if there is None else there.balls()
+                yield time, Row(state, turn, centre, largest)
             box = carried(box, step.state, step.tube, step.flow, self.system.spans)
             place = None if place is None or step.leg is None else step.leg.carried(place)
             largest = tuple(map(max, zip(largest, self._largest(box, place), strict=True)))
@@ -182,15 +185,6 @@ class Course:
             terms = self.bounds.hessian * column((point * point.transpose()).entries())
             added = (terms * ball(step.length)).entries()
         return (*(_size(added, span) for span in self.system.spans), float("-inf"))
-
-    def _row(
-        self, box: Box, place: Place | None, step: _Step, s: arb, largest: tuple[float, ...]
-    ) -> Row:
-        state = within(box, step.state, step.tube, step.flow, s)
-        if place is None or step.leg is None:
-            return Row(state, [], None, largest)
-        turn, centre = step.leg.within(place, s)
-        return Row(state, turn, centre, largest)
 
     # One step.
 
@@ -254,7 +248,8 @@ class Course:
         """The length at which the last coefficients fall below the last bit."""
         both = [z + turn for z, turn in zip(state, frame, strict=True)] if frame else state
         factor = min(self._root_test(both), _log2(left) - _log2(length))
-        if not (box.is_point and _is_constant(state)):
+        is_constant = all(entry.is_zero() for row in state[1:] for entry in row)
+        if not (box.is_point and is_constant):
             with ctx.workprec(BOUND_BITS):
                 factor = self._bounded(state, length, factor)
         fitted = _cut(length, factor)
@@ -278,7 +273,9 @@ class Course:
         """
         factor, n = float("inf"), self.system.size
         for span in (*self.system.spans, range(n, min(n + 4, len(series[0])))):
-            size = _first_size(series, span)
+            # Of the block, or of what it first becomes.
+            sizes = (_size(row, span) for row in series[:3])
+            size = next((size for size in sizes if size > float("-inf")), float("-inf"))
             for k in range(max(1, self.order - 2), self.order + 1):
                 last = _size(series[k], span)
                 if last > float("-inf"):
@@ -358,19 +355,6 @@ def _cut(length: Fraction, log2_factor: float) -> Fraction:
     wide = length * power_of_two(whole) * Fraction(2.0 ** (log2_factor - whole))
     unit = power_of_two(floor_log2(abs(wide)) - _STEP_BITS + 1)
     return int(wide / unit) * unit
-
-
-def _is_constant(series: Series) -> bool:
-    return all(entry.is_zero() for row in series[1:] for entry in row)
-
-
-def _first_size(state: Series, span: range) -> float:
-    """log2 of a block, or of what it first becomes; -inf where it stays zero."""
-    for row in state[:3]:
-        size = _size(row, span)
-        if size > float("-inf"):
-            return size
-    return float("-inf")
 
 
 def _size(entries: Sequence[arb], span: range) -> float:

@@ -33,19 +33,17 @@ def without_coefficients(body: ImmersedBody) -> ImmersedBody:
 def units(body: ImmersedBody, shape: Ellipsoid) -> list[ImmersedBody]:
     """The bodies in which one coefficient, and those equal to it, are 1, and all others 0."""
     bare = without_coefficients(body)
+    masses, axes = _equal(shape)
     return [
-        *(replace(bare, linear=_ones(places)) for places in _equal_masses(shape)),
-        *(replace(bare, angular=_ones(places)) for places in _equal_axes(shape)),
+        *(replace(bare, linear=_ones(places)) for places in masses),
+        *(replace(bare, angular=_ones(places)) for places in axes),
     ]
 
 
 def factors(shape: Ellipsoid) -> list[arb]:
     """The coefficients themselves, in the order of the units, to the ambient precision."""
-    p, r = inertias(shape, ctx.prec).coefficients()
-    return [
-        *(p[places[0]] for places in _equal_masses(shape)),
-        *(r[places[0]] for places in _equal_axes(shape)),
-    ]
+    pairs = zip(inertias(shape, ctx.prec).coefficients(), _equal(shape), strict=True)
+    return [values[places[0]] for values, groups in pairs for places in groups]
 
 
 def cancelled_bits(shape: Ellipsoid) -> int:
@@ -55,16 +53,14 @@ def cancelled_bits(shape: Ellipsoid) -> int:
     return _SPARE_BITS - floor_log2(min(gaps, default=Fraction(1)))
 
 
-def _equal_axes(shape: Ellipsoid) -> list[list[int]]:
+def _equal(shape: Ellipsoid) -> tuple[list[list[int]], list[list[int]]]:
+    """The axes along which the body has the same mass, and those about which it has the same inertia."""
     groups: dict[Fraction, list[int]] = {}
     for place, axis in enumerate(shape.semi_axes):
         groups.setdefault(axis, []).append(place)
-    return list(groups.values())
-
-
-def _equal_masses(shape: Ellipsoid) -> list[list[int]]:
-    """The axes along which the body has the same mass: in a vacuum along all of them."""
-    return _equal_axes(shape) if shape.fluid_density else [[0, 1, 2]]
+    alike = list(groups.values())
+    # In a vacuum the mass is the same along all of them.
+    return (alike if shape.fluid_density else [[0, 1, 2]]), alike
 
 
 def _ones(places: list[int]) -> Matrix:

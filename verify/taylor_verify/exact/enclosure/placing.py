@@ -35,8 +35,9 @@ from flint import arb, arb_mat, ctx
 from taylor_verify.exact.balls import balls
 from taylor_verify.exact.enclosure.box import Box, Flow
 from taylor_verify.exact.enclosure.series import Series, value
-from taylor_verify.exact.enclosure.system import Balls, Bounds, column, magnitudes
+from taylor_verify.exact.enclosure.system import Balls, column, magnitudes
 from taylor_verify.exact.enclosure.tube import BOUND_BITS, Tube
+from taylor_verify.exact.rotation import product, rotation_rows
 from taylor_verify.scenes.tensors import Matrix, Vector
 
 
@@ -44,11 +45,11 @@ from taylor_verify.scenes.tensors import Matrix, Vector
 class Place:
     """The frame of the body: R is ``start`` R(q), with q within ``turn_error`` of ``turn``.
 
-    ``start`` are nine balls about the attitude at the start. ``centre`` is within ``centre_error`` of the
+    ``start`` are balls about the attitude at the start. ``centre`` is within ``centre_error`` of the
     centre, by length; None where it is not asked. Between steps ``turn`` and ``centre`` are exact.
     """
 
-    start: list[arb]
+    start: arb_mat
     turn: list[arb]
     turn_error: arb
     centre: list[arb] | None
@@ -59,7 +60,7 @@ class Place:
         """The place at the start, at the ambient precision."""
         point = None if centre is None else balls(centre)
         return cls(
-            start=balls([entry for row in attitude for entry in row]),
+            start=arb_mat([balls(row) for row in attitude]),
             turn=[arb(1), arb(0), arb(0), arb(0)],
             turn_error=arb(0),
             centre=None if point is None else [b.mid() for b in point],
@@ -70,13 +71,10 @@ class Place:
         """Attitude (nine entries) and centre, each entry with the whole bound as its radius."""
         with ctx.workprec(BOUND_BITS):
             error = (arb(3).sqrt() * _turning(self.turn_error)).abs_upper()
-        return _about(self.attitude(), error), (
+        attitude = self.start * arb_mat(rotation_rows(self.turn))
+        return _about(attitude.entries(), error), (
             None if self.centre is None else _about(self.centre, self.centre_error)
         )
-
-    def attitude(self) -> list[arb]:
-        """``start`` R(turn), nine entries row by row."""
-        return product(self.start, rotation(self.turn))
 
 
 @dataclass(frozen=True)
@@ -90,13 +88,13 @@ class Leg:
     def place(self, begin: Place, s: arb) -> Place:
         """The place at s; its entries are balls, and its bounds are of their further errors."""
         frame = value(self.frame, s)
-        turn, way = multiplied(begin.turn, frame[:4]), frame[4:]
+        turn, way = product(begin.turn, frame[:4]), frame[4:]
         with ctx.workprec(BOUND_BITS):
             error = begin.turn_error * (1 + self.turn_error) + self.turn_error
         if begin.centre is None:
             return Place(begin.start, turn, error.abs_upper(), None, arb(0))
-        moved = product(begin.start, product(rotation(turn), way))
-        centre = [c + m for c, m in zip(begin.centre, moved, strict=True)]
+        moved = begin.start * (arb_mat(rotation_rows(turn)) * column(way))
+        centre = [c + m for c, m in zip(begin.centre, moved.entries(), strict=True)]
         with ctx.workprec(BOUND_BITS):
             missed = begin.centre_error + self.path_error + _turning(error) * norm(way)
         return Place(begin.start, turn, error.abs_upper(), centre, missed.abs_upper())
@@ -114,14 +112,10 @@ class Leg:
                 centre_error=(end.centre_error + moved).abs_upper(),
             )
 
-    def within(self, begin: Place, s: arb) -> tuple[list[arb], list[arb] | None]:
-        """Attitude (nine entries) and centre at s, each entry with the whole bound as its radius."""
-        return self.place(begin, s).balls()
-
 
 def leg(
     system: Balls,
-    bounds: Bounds,
+    bounds: Balls,
     state: Series,
     frame: Series,
     h: arb,
@@ -138,8 +132,7 @@ def leg(
         left_out = _left_out([norm(row[:4]) for row in frame], spins) * size
         turn_error = ((left_out + turned) / 2).abs_upper()
         path_error = arb(0)
-        if system.velocity is not None and len(frame[0]) > 4:
-            assert bounds.velocity is not None
+        if len(frame[0]) > 4:
             ways = [norm(row[4:]) for row in frame]
             path_error = _left_out(ways, spins) * size + turned * sum(ways, arb(0))
             path_error += norm((system.velocity * column(state[-1])).entries()) * size
@@ -187,36 +180,6 @@ def _turning(error: arb) -> arb:
 
 def _about(entries: Sequence[arb], error: arb) -> list[arb]:
     return [entry + arb(0, error) for entry in entries]
-
-
-def multiplied(p: Sequence[arb], q: Sequence[arb]) -> list[arb]:
-    """The product of two quaternions, scalar first."""
-    a, b, c, d = p
-    s, x, y, z = q
-    return [
-        a * s - b * x - c * y - d * z,
-        a * x + b * s + c * z - d * y,
-        a * y - b * z + c * s + d * x,
-        a * z + b * y - c * x + d * s,
-    ]
-
-
-def rotation(q: Sequence[arb]) -> list[arb]:
-    """The matrix of v -> q v q*, row by row: a rotation times the square of |q|."""
-    s, a, b, c = q
-    return [
-        *(s * s + a * a - b * b - c * c, 2 * (a * b - s * c), 2 * (a * c + s * b)),
-        *(2 * (a * b + s * c), s * s - a * a + b * b - c * c, 2 * (b * c - s * a)),
-        *(2 * (a * c - s * b), 2 * (b * c + s * a), s * s - a * a - b * b + c * c),
-    ]
-
-
-def product(matrix: Sequence[arb], other: Sequence[arb]) -> list[arb]:
-    """A 3 x 3 matrix times a matrix or a column, all as flat lists."""
-    entries: list[arb] = (
-        arb_mat(3, 3, list(matrix)) * arb_mat(3, len(other) // 3, list(other))
-    ).entries()
-    return entries
 
 
 def norm(entries: Sequence[arb]) -> arb:

@@ -54,7 +54,7 @@ def state_series(system: Balls, point: Sequence[arb], h: arb, order: int) -> Ser
             others += [_ZERO] * (known * n - len(others))
             fresh = [rate / (k + 1) for rate in (jacobians * column(others)).entries()]
             if k == 0:
-                fresh = [z + h * c for z, c in zip(fresh, system.constant, strict=True)]
+                fresh = [z + h * c for z, c in zip(fresh, system.constant.entries(), strict=True)]
             rows.append(fresh)
             backward[:0] = fresh
     return rows
@@ -70,7 +70,6 @@ def frame_series(system: Balls, state: Series, h: arb, with_centre: bool) -> Ser
     spins = _linear(system.spin * h, state)
     size = 7 if with_centre else 4
     if with_centre:
-        assert system.velocity is not None
         speeds = _linear(system.velocity * h, state)
     rows = [[arb(1)] + [_ZERO] * (size - 1)]
     # One column for each order of q and d that is known; the spins stand in reverse.

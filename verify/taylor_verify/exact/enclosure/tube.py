@@ -25,7 +25,7 @@ from typing import Final
 from flint import arb, arb_mat
 
 from taylor_verify.exact.enclosure.series import Series
-from taylor_verify.exact.enclosure.system import Bounds, column, magnitudes
+from taylor_verify.exact.enclosure.system import Balls, column, magnitudes
 
 BOUND_BITS: Final = 64
 
@@ -52,7 +52,7 @@ class Tube:
     growth: arb_mat
 
 
-def tube(bounds: Bounds, sizes: Series, h: arb, apart: arb_mat) -> Tube:
+def tube(bounds: Balls, sizes: Series, h: arb, apart: arb_mat) -> Tube:
     """The tube about a polynomial whose coefficients have these ``sizes``, from ``apart`` of it.
 
     Raises StepTooLong where no tube closes.
@@ -76,7 +76,7 @@ def reached(polynomial: arb_mat, around: arb_mat) -> arb_mat:
     return polynomial + around
 
 
-def truncation(bounds: Bounds, sizes: Series, h: arb) -> arb_mat:
+def truncation(bounds: Balls, sizes: Series, h: arb) -> arb_mat:
     """D: every product of two coefficients whose orders reach that of the polynomial.
 
     Below that order the polynomial obeys the equations exactly.
@@ -97,7 +97,7 @@ def partial_tails(sizes: Series) -> Series:
     return rows[::-1]
 
 
-def rates_of_change(bounds: Bounds, reach: arb_mat) -> arb_mat:
+def rates_of_change(bounds: Balls, reach: arb_mat) -> arb_mat:
     """A bound of |dF/dz|, for all states whose components stay within ``reach``."""
     n = reach.nrows()
     return arb_mat(n, n, (bounds.second * reach).entries())

@@ -13,47 +13,20 @@ B(t) the rotation that takes h to axis 3 and c into the plane of axes 2 and 3,
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from fractions import Fraction
 
 from mpmath import mp, mpf
 
-from taylor_verify.exact.euler.orbit import Orbit, Precession, converted
-from taylor_verify.exact.euler.regime import FreeSpin, Regime
-from taylor_verify.exact.frames import Frame, product, start_frame, transposed, turn
-from taylor_verify.scenes import tensors
-from taylor_verify.scenes.motion import Quaternion
-
-FrameLaw = Callable[[mpf], Frame]  # time since the start -> R
+from taylor_verify.exact.elliptic import Triple
+from taylor_verify.exact.euler.orbit import Orbit
+from taylor_verify.exact.euler.regime import FreeSpin
+from taylor_verify.exact.frames import Frame, product, transposed
 
 
-def frame_law(spin: FreeSpin, attitude: Quaternion) -> FrameLaw:
-    """R as a function of time, at the ambient precision; it holds only at that precision."""
-    start = start_frame(attitude)
-    if spin.regime in (Regime.REST, Regime.SPHERICAL, Regime.STEADY):
-        omega = converted(spin.omega)
-        return lambda t: product(start, turn(omega, mp.norm(omega) * t))
-    if spin.regime is Regime.AXISYMMETRIC:
-        return _precession_law(spin, start)
-    return _TriaxialFrame(spin, start).at
+class Triaxial:
+    """omega and R of a body with three different moments, the separatrix included."""
 
-
-def _precession_law(spin: FreeSpin, start: Frame) -> FrameLaw:
-    """R = R0 Rot(H0, |H| t/J_d) Rot(e, -Om t): a turn about the constant H, and one about the axis."""
-    precession = Precession(spin)
-    momentum = converted(tensors.apply(spin.inertia, spin.omega))
-    rate = mp.sqrt(mp.convert(spin.momentum_squared)) / mp.convert(spin.double_moment)
-
-    def at(t: mpf) -> Frame:
-        about_momentum = product(start, turn(momentum, rate * t))
-        return product(about_momentum, turn(precession.axis, -precession.rate * t))
-
-    return at
-
-
-class _TriaxialFrame:
-    """R(t) of a body with three different moments, the separatrix included."""
-
-    def __init__(self, spin: FreeSpin, start: Frame) -> None:
+    def __init__(self, spin: FreeSpin) -> None:
         self._orbit = orbit = Orbit(spin)
         J_a, _, J_c = orbit.moments
         a_a, _, a_c = orbit.amplitudes
@@ -64,21 +37,27 @@ class _TriaxialFrame:
         self._axes = [list(axis) for axis in orbit.axes]
         if not orbit.on_separatrix:
             self._complete = mp.elliprj(0, orbit.m_prime, 1, 1 + self._nu) / 3
-        self._at_start = self._integral(mpf(0))
-        to_space = product(start, transposed(self._axes))
-        self._to_space = product(to_space, transposed(self._tilt(mpf(0))))
+        start = orbit.functions(mpf(0))
+        self._at_start = self._integral(mpf(0), start)
+        self._tilted_back = product(transposed(self._axes), transposed(self._tilt(start)))
 
-    def at(self, t: mpf) -> Frame:
-        psi = self._steady * t + self._bend * (self._integral(t) - self._at_start)
-        cos, sin = mp.cos_sin(psi)
+    def at(self, t: Fraction, turned: bool) -> tuple[list[mpf], Frame]:
+        """omega in body axes, and the rotation since the start, at the precision of the set-up."""
+        time = mp.convert(t)
+        functions = self._orbit.functions(time)
+        omega = self._orbit.omega(functions)
+        if not turned:
+            return omega, []
+        grown = self._integral(time, functions) - self._at_start
+        cos, sin = mp.cos_sin(self._steady * time + self._bend * grown)
         about_momentum = [[cos, -sin, mpf(0)], [sin, cos, mpf(0)], [mpf(0), mpf(0), mpf(1)]]
-        body = product(self._tilt(t), self._axes)
-        return product(product(self._to_space, about_momentum), body)
+        body = product(self._tilt(functions), self._axes)
+        return omega, product(product(self._tilted_back, about_momentum), body)
 
-    def _integral(self, t: mpf) -> mpf:
+    def _integral(self, t: mpf, functions: Triple) -> mpf:
         """int_0^u sn^2/(1 + nu sn^2) du at u = lam t + u_0, by Carlson's R_J (DLMF 19.25.14)."""
         nu, orbit = self._nu, self._orbit
-        sn, cn, dn = orbit.functions(t)
+        sn, cn, dn = functions
         u = orbit.rate * t + orbit.phase
         if orbit.on_separatrix:
             root = mp.sqrt(nu)
@@ -88,9 +67,9 @@ class _TriaxialFrame:
         part = reduced**3 * mp.elliprj(cn**2, dn**2, 1, 1 + nu * sn**2) / 3 if sn else mpf(0)
         return 2 * halves * self._complete + part
 
-    def _tilt(self, t: mpf) -> Frame:
+    def _tilt(self, functions: Triple) -> Frame:
         """B: rows are unit vectors, the last one h, the first one normal to h and to axis c."""
-        sn, cn, dn = self._orbit.functions(t)
+        sn, cn, dn = functions
         parts = zip(self._orbit.moments, self._orbit.amplitudes, (dn, sn, cn), strict=True)
         h_a, h_b, h_c = (J * size * f / self._momentum for J, size, f in parts)
         rho = mp.hypot(h_a, h_b)

@@ -7,17 +7,19 @@ lam the rate of the elliptic argument u, K the quarter period.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from typing import Final
 
 from mpmath import mp, mpf
 
-from taylor_verify.exact.element import Element, Elements, settled
+from taylor_verify.exact.element import Element, Elements, described, settled
+from taylor_verify.exact.euler.closed import top
 from taylor_verify.exact.euler.moments.regime import LoadedSpin, MomentRegime
-from taylor_verify.exact.euler.orbit import Orbit, Precession, principal_frame
+from taylor_verify.exact.euler.moments.washboard.board import Washboard
+from taylor_verify.exact.euler.moments.washboard.elements import elements as washboard
+from taylor_verify.exact.euler.orbit import Orbit, principal_frame
 from taylor_verify.exact.euler.regime import FreeSpin, Regime
-from taylor_verify.exact.euler.top import top
 from taylor_verify.exact.manufactured import MANUFACTURED, REGIME
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
 from taylor_verify.scenes import tensors
@@ -27,7 +29,6 @@ from taylor_verify.scenes.scene import Scene
 # Up to here the leading law of the flip is off by (1 - 1/L) m'/4 of itself, less than 2 %.
 _NEAR: Final = Fraction(1, 16)
 
-_SOURCE: Final = "Heinbockel (2.2.72), M = 0"
 _CONSERVED: Final = (
     "Conserved: the kinetic energy T and |H|^2; in space axes the whole vector H = I omega."
 )
@@ -83,7 +84,7 @@ def _loaded(body: RigidBody, omega: tensors.Vector, digits: int) -> Elements:
     """Under a constant moment T' = M.omega and nothing of the free orbit is left."""
     try:
         if FreeSpin(body.inertia, omega).discriminant:
-            return _washboard(body, omega, digits)
+            return washboard(Washboard(body.inertia, body.moment, omega), digits)
         spin = LoadedSpin(body.inertia, body.moment, omega)
     except NoClosedForm:
         story = (
@@ -95,28 +96,29 @@ def _loaded(body: RigidBody, omega: tensors.Vector, digits: int) -> Elements:
     return Elements(spin.regime.value, found, (_LOADED_STORY[spin.regime], _WORK))
 
 
-def _washboard(body: RigidBody, omega: tensors.Vector, digits: int) -> Elements:
-    """Three different moments; raises NoClosedForm where M is along none of their axes."""
-    from taylor_verify.exact.euler.moments.washboard.board import Washboard
-    from taylor_verify.exact.euler.moments.washboard.elements import elements
+# The numbers of each regime, at the ambient precision.
 
-    return elements(Washboard(body.inertia, body.moment, omega), digits)
+_CIRCLE: Final = """
+    period :: time :: omega recurs in body axes :: (Js - Jd)(e.omega)/Jd
+    rate :: radians/time :: the transverse omega turns, in body axes :: (Js - Jd)(e.omega)/Jd
+"""
 
 
 def _circle(spin: LoadedSpin) -> list[Element]:
-    """Of the one motion under a moment that recurs: the spin is constant, the rest turns evenly."""
-    if spin.regime is not MomentRegime.TRANSVERSE or not spin.turning:
+    """The numbers of the one motion under a moment that recurs, at a constant spin."""
+    if spin.regime is not MomentRegime.TRANSVERSE or not spin.free.turning:
         return []
-    rate = mp.convert(abs(spin.turning)) / mp.sqrt(mp.convert(spin.axis_squared))
-    body = "(Js - Jd)(e.omega)/Jd"
-    return [
-        Element("period", 2 * mp.pi / rate, "time", "omega recurs in body axes", body),
-        Element("rate", rate, "radians/time", "the transverse omega turns, in body axes", body),
-    ]
+    rate = mp.convert(abs(spin.free.turning)) / mp.sqrt(mp.convert(spin.free.axis_squared))
+    return described(_CIRCLE, (2 * mp.pi / rate, rate))
+
+
+_KEPT: Final = """
+    T :: energy :: kinetic energy, conserved :: omega.I omega/2
+    H2 :: angular momentum^2 :: |H|^2, conserved :: |I omega|^2
+"""
 
 
 def _numbers(spin: FreeSpin) -> list[Element]:
-    """At the ambient precision."""
     own: Mapping[Regime, Callable[[FreeSpin], list[Element]]] = {
         Regime.SPHERICAL: _turn,
         Regime.STEADY: _steady,
@@ -126,24 +128,16 @@ def _numbers(spin: FreeSpin) -> list[Element]:
         Regime.MIN_AXIS: _triaxial,
     }
     found = own[spin.regime](spin) if spin.regime in own else []
-    return [*found, *_conserved(spin)]
+    kept = spin.twice_energy / 2, spin.momentum_squared
+    return [*found, *described(_KEPT, map(mp.convert, kept))]
 
 
-def _conserved(spin: FreeSpin) -> list[Element]:
-    T, H2 = mp.convert(spin.twice_energy / 2), mp.convert(spin.momentum_squared)
-    return [
-        Element("T", T, "energy", "kinetic energy, conserved", "omega.I omega/2"),
-        Element("H2", H2, "angular momentum^2", "|H|^2, conserved", "|I omega|^2"),
-    ]
-
-
-# One turn of a constant omega, and what a small disturbance of it does.
+_TURN: Final = "turn_period :: time :: one turn about the constant omega ::"
 
 
 def _turn(spin: FreeSpin) -> list[Element]:
-    squared = sum((w * w for w in spin.omega), Fraction(0))
-    turn = 2 * mp.pi / mp.sqrt(mp.convert(squared))
-    return [Element("turn_period", turn, "time", "one turn about the constant omega")]
+    size = mp.sqrt(mp.convert(tensors.dot(spin.omega, spin.omega)))
+    return described(_TURN, [2 * mp.pi / size])
 
 
 def disturbance(spin: FreeSpin) -> Fraction:
@@ -157,19 +151,24 @@ def disturbance(spin: FreeSpin) -> Fraction:
     return -spin.twice_energy * slope / spin.determinant
 
 
+_LINEAR: Final = "equations (2.2.72) linearised about the spin"
+_GROWTH: Final = f"""
+    growth_rate :: 1/time :: rate s at which a disturbance of the spin grows, as e^{{s t}} :: {_LINEAR}
+"""
+_WOBBLE: Final = f"""
+    wobble_rate :: radians/time :: angular frequency at which a disturbance of the spin \
+goes round its axis :: {_LINEAR}
+    wobble_period :: time :: 2 pi/wobble_rate :: {_LINEAR}
+"""
+
+
 def _steady(spin: FreeSpin) -> list[Element]:
-    s2, source = disturbance(spin), "equations (2.2.72) linearised about the spin"
-    found = _turn(spin)
+    s2, found = disturbance(spin), _turn(spin)
     size = mp.sqrt(mp.convert(abs(s2)))
     if s2 > 0:
-        meaning = "rate s at which a disturbance of the spin grows, as e^{s t}"
-        found.append(Element("growth_rate", size, "1/time", meaning, source))
+        found += described(_GROWTH, [size])
     elif s2 < 0:
-        meaning = "angular frequency at which a disturbance of the spin goes round its axis"
-        found += [
-            Element("wobble_rate", size, "radians/time", meaning, source),
-            Element("wobble_period", 2 * mp.pi / size, "time", "2 pi/wobble_rate", source),
-        ]
+        found += described(_WOBBLE, [size, 2 * mp.pi / size])
     return found
 
 
@@ -185,122 +184,92 @@ def _steady_story(spin: FreeSpin) -> str:
     )
 
 
+_PRECESSION: Final = """
+    period :: time :: omega recurs in body axes :: Om = (Js - Jd)(e.omega)/Jd
+    rate :: radians/time :: omega goes round the axis, in body axes :: Om = (Js - Jd)(e.omega)/Jd
+    precession_rate :: radians/time :: the axis goes round H, in space axes :: |H|/Jd
+    precession_period :: time :: 2 pi/precession_rate :: |H|/Jd
+    precession_angle :: radians :: between the axis and H :: |H|/Jd
+"""
+
+
 def _axisymmetric(spin: FreeSpin) -> list[Element]:
-    precession = Precession(spin)
-    rate = abs(precession.rate)
-    H = mp.sqrt(mp.convert(spin.momentum_squared))
-    about = H / mp.convert(spin.double_moment)
-    along = mp.convert(spin.simple_moment) * abs(mp.fdot(precession.axis, _real(spin.omega)))
-    across = mp.convert(spin.double_moment) * _distance_from_axis(spin, precession)
-    body, space = "Om = (Js - Jd)(e.omega)/Jd", "|H|/Jd"
-    return [
-        Element("period", 2 * mp.pi / rate, "time", "omega recurs in body axes", body),
-        Element("rate", rate, "radians/time", "omega goes round the axis, in body axes", body),
-        Element(
-            "precession_rate", about, "radians/time", "the axis goes round H, in space axes", space
-        ),
-        Element("precession_period", 2 * mp.pi / about, "time", "2 pi/precession_rate", space),
-        Element(
-            "precession_angle", mp.atan2(across, along), "radians", "between the axis and H", space
-        ),
-    ]
-
-
-def _distance_from_axis(spin: FreeSpin, precession: Precession) -> mpf:
-    """|omega - (e.omega) e|."""
-    omega = _real(spin.omega)
-    along = mp.fdot(precession.axis, omega)
-    return mp.norm([w - along * e for w, e in zip(omega, precession.axis, strict=True)])
+    rate = mp.convert(abs(spin.turning)) / mp.sqrt(mp.convert(spin.axis_squared))
+    about = mp.sqrt(mp.convert(spin.momentum_squared)) / mp.convert(spin.double_moment)
+    along, across = (
+        mp.sqrt(mp.convert(tensors.dot(part, part)))
+        for part in (spin.along(spin.momentum), spin.across(spin.momentum))
+    )
+    angle = mp.atan2(across, along)
+    return described(_PRECESSION, (2 * mp.pi / rate, rate, about, 2 * mp.pi / about, angle))
 
 
 # Three different moments.
 
+_MODULUS: Final = """
+    k :: :: modulus of the elliptic functions :: Heinbockel (2.2.72), M = 0
+    m :: :: parameter k^2; 0 at a steady spin, 1 on the separatrix :: Heinbockel (2.2.72), M = 0
+    m_prime :: :: 1 - m, one measure of the separatrix's distance :: Heinbockel (2.2.72), M = 0
+    separation :: :: distance to the separatrix, relative to H^2 :: |H^2 - 2T J2|/H^2
+"""
+_TRIAXIAL: Final = f"""
+    period :: time :: omega recurs in body axes :: 4K/lam
+    rate :: radians/time :: lam, of the elliptic argument :: Heinbockel (2.2.72), M = 0
+    {_MODULUS.strip()}
+    flip_time :: time :: from one turn-over to the next: omega's middle component is zero \
+this often :: 2K/lam
+    nutation_frequency :: radians/time :: frequency at which the encircled axis nods to H, \
+in space axes :: pi lam/K
+"""
+_FLIPS: Final = """
+    flip_law :: time :: flip_time by its leading law near the separatrix :: ln(16/m')/lam
+    flip_law_2 :: time :: the same with the next term :: (2/lam)(L + (L - 1) m'/4), L = ln(16/m')/2
+"""
+
 
 def _triaxial(spin: FreeSpin) -> list[Element]:
     orbit = Orbit(spin)
-    m, m_prime = orbit.m, orbit.m_prime
-    found = [
-        Element("period", orbit.period, "time", "omega recurs in body axes", "4K/lam"),
-        Element("rate", orbit.rate, "radians/time", "lam, of the elliptic argument", _SOURCE),
-        Element("k", mp.sqrt(m), "", "modulus of the elliptic functions", _SOURCE),
-        Element("m", m, "", "parameter k^2; 0 at a steady spin, 1 on the separatrix", _SOURCE),
-        Element("m_prime", m_prime, "", "1 - m, one measure of the separatrix's distance", _SOURCE),
-        _separation(spin, orbit),
-        Element(
-            "flip_time",
-            orbit.period / 2,
-            "time",
-            "from one turn-over to the next: omega's middle component is zero this often",
-            "2K/lam",
-        ),
-        Element(
-            "nutation_frequency",
-            4 * mp.pi / orbit.period,
-            "radians/time",
-            "frequency at which the encircled axis nods to H, in space axes",
-            "pi lam/K",
-        ),
-    ]
-    if m_prime * _NEAR.denominator <= _NEAR.numerator:
-        found += _flip_laws(orbit)
-    return [*found, _saddle(spin)]
+    period = orbit.period
+    values = (period, orbit.rate, *_modulus(spin, orbit), period / 2, 4 * mp.pi / period)
+    found = described(_TRIAXIAL, values)
+    if orbit.m_prime * _NEAR.denominator <= _NEAR.numerator:
+        # K = L + (L - 1) m'/4 + O(m'^2 L) with L = ln(4/sqrt m') (DLMF 19.12.1).
+        L = mp.log(16 / orbit.m_prime) / 2
+        laws = L, L + (L - 1) * orbit.m_prime / 4
+        found += described(_FLIPS, (2 * law / orbit.rate for law in laws))
+    return [*found, *_saddle(spin)]
+
+
+_SEPARATRIX: Final = """
+    rate :: 1/time :: lam, of the hyperbolic argument :: Heinbockel (2.2.72), M = 0
+    k :: :: modulus: the elliptic functions are hyperbolic :: Heinbockel (2.2.72), M = 0
+    m :: :: parameter k^2 :: Heinbockel (2.2.72), M = 0
+    m_prime :: :: 1 - m: on the separatrix itself :: Heinbockel (2.2.72), M = 0
+    separation :: :: distance to the separatrix, relative to H^2 :: |H^2 - 2T J2|/H^2
+"""
 
 
 def _separatrix(spin: FreeSpin) -> list[Element]:
     orbit = Orbit(spin)
-    return [
-        Element("rate", orbit.rate, "1/time", "lam, of the hyperbolic argument", _SOURCE),
-        Element("k", mpf(1), "", "modulus: the elliptic functions are hyperbolic", _SOURCE),
-        Element("m", orbit.m, "", "parameter k^2", _SOURCE),
-        Element("m_prime", orbit.m_prime, "", "1 - m: on the separatrix itself", _SOURCE),
-        _separation(spin, orbit),
-        _saddle(spin),
-    ]
+    return [*described(_SEPARATRIX, (orbit.rate, *_modulus(spin, orbit))), *_saddle(spin)]
 
 
-def _separation(spin: FreeSpin, orbit: Orbit) -> Element:
-    """|H^2 - 2T J2|/H^2, by m' = |J_a - J_c| D/(|J_a - J_b| A): nothing cancels."""
+def _modulus(spin: FreeSpin, orbit: Orbit) -> tuple[mpf, ...]:
+    """k, m, m' and |H^2 - 2T J2|/H^2 by m' = |J_a - J_c| D/(|J_a - J_b| A): nothing cancels."""
     D = orbit.m_prime * orbit.rate**2 * mp.convert(spin.determinant) / abs(orbit.gap)
-    relative = D / mp.convert(spin.momentum_squared)
-    meaning = "distance to the separatrix, relative to H^2"
-    return Element("separation", relative, "", meaning, "|H^2 - 2T J2|/H^2")
+    separation = D / mp.convert(spin.momentum_squared)
+    return mp.sqrt(orbit.m), orbit.m, orbit.m_prime, separation
 
 
-def _flip_laws(orbit: Orbit) -> Sequence[Element]:
-    """K = L + (L - 1) m'/4 + O(m'^2 L) with L = ln(4/sqrt m') (DLMF 19.12.1)."""
-    L = mp.log(16 / orbit.m_prime) / 2
-    next_term = L + (L - 1) * orbit.m_prime / 4
-    return [
-        Element(
-            "flip_law",
-            2 * L / orbit.rate,
-            "time",
-            "flip_time by its leading law near the separatrix",
-            "ln(16/m')/lam",
-        ),
-        Element(
-            "flip_law_2",
-            2 * next_term / orbit.rate,
-            "time",
-            "the same with the next term",
-            "(2/lam)(L + (L - 1) m'/4), L = ln(16/m')/2",
-        ),
-    ]
+_SADDLE: Final = """
+    saddle_rate :: 1/time :: growth rate of the spin about the middle axis with this energy \
+:: lam^2 = 2T (J1 - J2)(J2 - J3)/(J1 J2 J3)
+"""
 
 
-def _saddle(spin: FreeSpin) -> Element:
+def _saddle(spin: FreeSpin) -> list[Element]:
     """The growth rate of the unstable spin with the same energy, where w_b^2 = 2T/J2."""
     frame = principal_frame(spin)
     product = frame.upper_gap * frame.lower_gap
     square = mp.convert(spin.twice_energy / spin.determinant) * product
-    return Element(
-        "saddle_rate",
-        mp.sqrt(square),
-        "1/time",
-        "growth rate of the spin about the middle axis with this energy",
-        "lam^2 = 2T (J1 - J2)(J2 - J3)/(J1 J2 J3)",
-    )
-
-
-def _real(vector: Sequence[Fraction]) -> list[mpf]:
-    return [mp.convert(entry) for entry in vector]
+    return described(_SADDLE, [mp.sqrt(square)])

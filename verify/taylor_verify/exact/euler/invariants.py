@@ -15,7 +15,7 @@ def energy(body: RigidBody) -> Invariant:
     """T = omega . I omega / 2, so that dT/dH = omega."""
 
     def value(motion: Motion) -> Array:
-        return dot(motion["omega"], applied(body.inertia, motion["omega"])) / 2
+        return dot(motion["omega"], _momentum(body, motion)) / 2
 
     return Invariant(
         "T",
@@ -29,28 +29,28 @@ def momentum(body: RigidBody) -> Invariant:
     """H2 = |I omega|^2."""
 
     def value(motion: Motion) -> Array:
-        return squares(applied(body.inertia, motion["omega"]))
+        return squares(_momentum(body, motion))
 
     return Invariant(
         "H2",
         value,
         lambda motion: largest(value(motion)),
-        lambda motion: {"momentum": 2 * applied(body.inertia, motion["omega"])},
+        lambda motion: {"momentum": 2 * _momentum(body, motion)},
     )
 
 
 def space_momentum(body: RigidBody) -> Invariant:
     """R I omega; a small rotation d of the attitude adds d x (R I omega)."""
-
-    def momentum(motion: Motion) -> Array:
-        return applied(body.inertia, motion["omega"])
-
     return Invariant(
         "H_space",
-        lambda motion: turned(motion["attitude"], momentum(motion)),
-        lambda motion: largest(norms(momentum(motion))),
+        lambda motion: turned(motion["attitude"], _momentum(body, motion)),
+        lambda motion: largest(norms(_momentum(body, motion))),
         lambda motion: {
             "momentum": ones(motion["omega"]),
-            "attitude": norms(momentum(motion)),
+            "attitude": norms(_momentum(body, motion)),
         },
     )
+
+
+def _momentum(body: RigidBody, motion: Motion) -> Array:
+    return applied(body.inertia, motion["omega"])

@@ -16,6 +16,7 @@ from flint import arb
 from taylor_verify.exact.balls import ball, balls, sign
 from taylor_verify.exact.euler.principal import Axis, principal_balls
 from taylor_verify.exact.euler.regime import FreeSpin, Regime
+from taylor_verify.exact.rotation import cross
 
 Triple = tuple[arb, arb, arb]
 
@@ -79,11 +80,3 @@ def _turned_along(axis: Axis, omega: list[arb]) -> Axis:
 
 def dot(p: list[arb], q: list[arb]) -> arb:
     return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
-
-
-def cross(p: list[arb], q: list[arb]) -> list[arb]:
-    return [
-        p[1] * q[2] - p[2] * q[1],
-        p[2] * q[0] - p[0] * q[2],
-        p[0] * q[1] - p[1] * q[0],
-    ]

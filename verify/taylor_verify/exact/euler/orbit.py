@@ -10,13 +10,15 @@ the motion is w_a : w_b : w_c = dn u : sn u : cn u, u = lam t + u_0, each times 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
+from typing import NamedTuple
 
 from mpmath import mp, mpf
 
 from taylor_verify.exact.elliptic import Landen, Triple
 from taylor_verify.exact.euler.regime import FreeSpin, Regime
+from taylor_verify.exact.frames import Frame, product, turn
+from taylor_verify.exact.rotation import cross
 from taylor_verify.scenes import tensors
 
 
@@ -24,44 +26,38 @@ class Precession:
     """An axisymmetric body: omega turns about the axis of symmetry e at the rate Om.
 
     w(t) = w_par + cos(Om t) w_perp + sin(Om t) e x w_perp, Om = (J_s - J_d)(e.w)/J_d, where J_d is
-    the double moment and J_s the simple one. (I - J_d)/(J_s - J_d) = e e^T is rational: the only
-    irrational number is the length of one of its columns.
+    the double moment and J_s the simple one; R = R0 Rot(H0, |H| t/J_d) Rot(e, -Om t).
     """
 
     def __init__(self, spin: FreeSpin) -> None:
-        double, simple = spin.double_moment, spin.simple_moment
-        projector = tuple(
-            tuple(
-                (entry - (double if i == j else 0)) / (simple - double)
-                for j, entry in enumerate(row)
-            )
-            for i, row in enumerate(spin.inertia)
-        )
-        largest = max(range(3), key=lambda i: projector[i][i])
-        column, squared_length = projector[largest], projector[largest][largest]
-        along = tensors.apply(projector, spin.omega)
-        across = tensors.plus(spin.omega, tensors.scaled(Fraction(-1), along))
-        length = mp.sqrt(mp.convert(squared_length))
-        rate = (simple - double) * tensors.dot(column, spin.omega) / double
-        self.rate = mp.convert(rate) / length
-        self.axis = [entry / length for entry in converted(column)]
-        self._along = converted(along)
-        self._across = converted(across)
-        self._ahead = [entry / length for entry in converted(tensors.cross(column, across))]
+        length = mp.sqrt(mp.convert(spin.axis_squared))
+        self.rate = mp.convert(spin.turning) / length
+        self.axis = [entry / length for entry in converted(spin.axis)]
+        across = spin.across(spin.omega)
+        self._along, self._across = converted(spin.along(spin.omega)), converted(across)
+        ahead = tensors.cross(spin.axis, across)
+        self._ahead = [entry / length for entry in converted(ahead)]
+        self._momentum = converted(spin.momentum)
+        momentum = mp.sqrt(mp.convert(spin.momentum_squared))
+        self._momentum_rate = momentum / mp.convert(spin.double_moment)
 
-    def omega(self, t: mpf) -> list[mpf]:
-        """In body axes, at the precision at which this was made."""
-        cos, sin = mp.cos_sin(self.rate * t)
+    def at(self, t: Fraction, turned: bool) -> tuple[list[mpf], Frame]:
+        """omega in body axes, and the rotation since the start, at the precision of the set-up."""
+        time = mp.convert(t)
+        cos, sin = mp.cos_sin(self.rate * time)
         parts = zip(self._along, self._across, self._ahead, strict=True)
-        return [along + cos * across + sin * ahead for along, across, ahead in parts]
+        omega = [along + cos * across + sin * ahead for along, across, ahead in parts]
+        if not turned:
+            return omega, []
+        about_momentum = turn(self._momentum, self._momentum_rate * time)
+        return omega, product(about_momentum, turn(self.axis, -self.rate * time))
 
 
-@dataclass(frozen=True)
-class PrincipalFrame:
+class PrincipalFrame(NamedTuple):
     """Moments J1 > J2 > J3, their axes (unit vectors of either sign), and J1 - J2, J2 - J3."""
 
-    moments: tuple[mpf, mpf, mpf]
-    axes: tuple[list[mpf], list[mpf], list[mpf]]
+    moments: list[mpf]
+    axes: list[list[mpf]]
     upper_gap: mpf
     lower_gap: mpf
 
@@ -130,9 +126,9 @@ class Orbit:
             return mp.tanh(u), sech, sech
         return self._landen.jacobi(u)
 
-    def omega(self, t: mpf) -> list[mpf]:
-        """In body axes, at the precision at which this was made."""
-        sn, cn, dn = self.functions(t)
+    def omega(self, functions: Triple) -> list[mpf]:
+        """omega in body axes, at (sn, cn, dn)."""
+        sn, cn, dn = functions
         w_a, w_b, w_c = (p * q for p, q in zip(self.amplitudes, (dn, sn, cn), strict=True))
         return [w_a * a + w_b * b + w_c * c for a, b, c in zip(*self.axes, strict=True)]
 
@@ -156,28 +152,17 @@ def principal_frame(spin: FreeSpin) -> PrincipalFrame:
     mean, radius = mp.convert(spin.trace / 3), mp.sqrt(mp.convert(spin.spread))
     turns = (third, third - 2 * mp.pi / 3, third + 2 * mp.pi / 3)
     moments = [mean + radius * mp.cos(turn) * 2 / 3 for turn in turns]
-    return PrincipalFrame(
-        moments=(moments[0], moments[1], moments[2]),
-        axes=(
-            _eigenvector(spin.inertia, moments[0]),
-            _eigenvector(spin.inertia, moments[1]),
-            _eigenvector(spin.inertia, moments[2]),
-        ),
-        upper_gap=radius * mp.sin(rest) * 2 / mp.sqrt(3),
-        lower_gap=radius * mp.sin(third) * 2 / mp.sqrt(3),
-    )
+    upper, lower = (radius * mp.sin(angle) * 2 / mp.sqrt(3) for angle in (rest, third))
+    axes = [_eigenvector(spin.inertia, moment) for moment in moments]
+    return PrincipalFrame(moments, axes, upper, lower)
 
 
 def _sorted_frame(diagonal: tensors.Vector) -> PrincipalFrame:
     """The axes of a diagonal tensor, which are exact."""
-    i, j, k = sorted(range(3), key=lambda n: diagonal[n], reverse=True)
-    unit = [[mpf(int(row == column)) for column in range(3)] for row in range(3)]
-    return PrincipalFrame(
-        moments=(mp.convert(diagonal[i]), mp.convert(diagonal[j]), mp.convert(diagonal[k])),
-        axes=(unit[i], unit[j], unit[k]),
-        upper_gap=mp.convert(diagonal[i] - diagonal[j]),
-        lower_gap=mp.convert(diagonal[j] - diagonal[k]),
-    )
+    order = sorted(range(3), key=lambda n: diagonal[n], reverse=True)
+    J1, J2, J3 = (diagonal[n] for n in order)
+    axes = [[mpf(int(row == column)) for column in range(3)] for row in order]
+    return PrincipalFrame(converted((J1, J2, J3)), axes, *converted((J1 - J2, J2 - J3)))
 
 
 def _eigenvector(matrix: tensors.Matrix, eigenvalue: mpf) -> list[mpf]:
@@ -190,14 +175,6 @@ def _eigenvector(matrix: tensors.Matrix, eigenvalue: mpf) -> list[mpf]:
     longest = max(columns, key=lambda column: mp.fdot(column, column))
     length = mp.sqrt(mp.fdot(longest, longest))
     return [entry / length for entry in longest]
-
-
-def cross(p: list[mpf], q: list[mpf]) -> list[mpf]:
-    return [
-        p[1] * q[2] - p[2] * q[1],
-        p[2] * q[0] - p[0] * q[2],
-        p[0] * q[1] - p[1] * q[0],
-    ]
 
 
 def converted(vector: tensors.Vector) -> list[mpf]:

@@ -9,9 +9,7 @@ and is linear in t but for the argument of a theta quotient (Jacobi, Sur la rota
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
 
 from flint import acb, arb
 
@@ -19,24 +17,13 @@ from taylor_verify.exact.balls import Undecidable, sign
 from taylor_verify.exact.euler.moduli import Moduli, Triple
 
 
-class Turning(Protocol):
-    """The functions of time that an orbit is made of."""
-
-    def functions(self, t: arb) -> Triple:
-        """(dn, sn, cn) of lam t + u_0."""
-        ...
-
-    def phase(self, t: arb, functions: Triple) -> tuple[arb, arb]:
-        """(cos psi, sin psi), where psi(0) = 0."""
-        ...
-
-    def half_phase(self, t: arb, functions: Triple) -> tuple[arb, arb]:
-        """(cos psi/2, sin psi/2), where psi runs on without a jump."""
-        ...
-
-
 class Periodic:
-    """Orbits about an axis: elliptic functions from theta functions, the start by addition."""
+    """Orbits about an axis: elliptic functions from theta functions, the start by addition.
+
+    The addition theorem is that of theta functions, without a quotient:
+    sn(u + v) (cn^2 u + sn^2 u dn^2 v) = sn u cn v dn v + sn v cn u dn u and so on (DLMF 22.8), times
+    theta_4(v)^2; the bracket is a sum of squares.
+    """
 
     def __init__(self, moduli: Moduli) -> None:
         self._moduli = moduli
@@ -46,33 +33,43 @@ class Periodic:
         self._tau = acb(0, mean / mean_prime)
         self._speed = moduli.rate / (2 * self._K)
         # sn, cn, dn are these multiples of theta_1, theta_2, theta_3 over theta_4.
-        scales = (1 / k.sqrt(), (k_prime / k).sqrt(), k_prime.sqrt())
-        self._addition = _Addition.of(moduli, scales)
+        S, C, N = 1 / k.sqrt(), (k_prime / k).sqrt(), k_prime.sqrt()
+        dn, sn, cn = moduli.functions
+        self._squares = cn * cn, (sn * N) * (sn * N)  # of theta_4^2 and theta_3^2
+        self._dn = dn * N, -moduli.m * sn * cn * S * C  # of theta_3 theta_4 and theta_1 theta_2
+        self._sn = sn * C * N, S * cn * dn  # of theta_2 theta_3 and theta_1 theta_4
+        self._cn = cn * C, -sn * dn * S * N  # of theta_2 theta_4 and theta_1 theta_3
 
-    def functions(self, t: arb) -> Triple:
-        return self._addition.functions(*self._thetas(acb(self._turns(t))))
-
-    def phase(self, t: arb, functions: Triple) -> tuple[arb, arb]:
-        """e^{i psi} = e^{i Om t} theta_1(z)/theta_1(z_0) over its modulus, conjugate for sig < 0."""
-        quotient = self._thetas(self._drift.start + self._turns(t))[0] * self._drift.unwound
-        return _on_circle(quotient, self._moduli.sense, self._drift.rate * t)
+    def at(self, t: arb) -> Triple:
+        """(dn, sn, cn) of lam t + u_0."""
+        p, q, r, s = (theta.real for theta in self._thetas(acb(self._turns(t))))
+        cn2, sn2 = self._squares
+        whole = 1 / (cn2 * (s * s) + sn2 * (r * r))
+        return (
+            (self._dn[0] * (r * s) + self._dn[1] * (p * q)) * whole,
+            (self._sn[0] * (q * r) + self._sn[1] * (p * s)) * whole,
+            (self._cn[0] * (q * s) + self._cn[1] * (p * r)) * whole,
+        )
 
     def half_phase(self, t: arb, functions: Triple) -> tuple[arb, arb]:
-        """The argument of theta_1(z) is pi/2 - pi Re z, plus less than a right angle either way.
+        """(cos psi/2, sin psi/2) by e^{i psi} = e^{i Om t} theta_1(z)/theta_1(z_0) over its modulus.
 
-        For its slope, a fraction linear in sn^2, is negative at sn^2 = 0 and 1 (|theta_1| and
-        |theta_2| grow along the imaginary axis), so it falls without a stop, and it is a multiple
-        of pi/2 wherever Re z is one of 1/2. So -i e^{i pi Re z} theta_1(z) has a positive real part.
+        Where sig < 0, psi is the negative of that argument. The argument of theta_1(z) is pi/2 - pi Re z,
+        plus less than a right angle either way. For its slope, a fraction linear in sn^2, is negative at
+        sn^2 = 0 and 1 (|theta_1| and |theta_2| grow along the imaginary axis), so it falls without a stop,
+        and it is a multiple of pi/2 wherever Re z is one of 1/2. So -i e^{i pi Re z} theta_1(z) has a
+        positive real part.
         """
-        half = _half_argument(self._bounded(t)) * self._half_unwound
-        return _on_circle(half, self._moduli.sense, self._drift.mean_rate * t / 2)
+        mean_rate, _ = self._drift
+        half = _half_argument(self._bounded(t)) * self._unwound
+        return _on_circle(half, self._moduli.sense, mean_rate * t / 2)
 
     def _bounded(self, t: arb) -> acb:
-        z = self._drift.start + self._turns(t)
+        z = self._drift[1] + self._turns(t)
         return self._thetas(z)[0] * acb(z.real - arb(0.5)).exp_pi_i()
 
     @cached_property
-    def _half_unwound(self) -> acb:
+    def _unwound(self) -> acb:
         return _half_argument(self._bounded(arb(0))).conjugate()
 
     def _turns(self, t: arb) -> arb:
@@ -84,21 +81,16 @@ class Periodic:
         return acb.modular_theta(z, self._tau)
 
     @cached_property
-    def _drift(self) -> _Drift:
-        """Om and z_0 = (u_0 + i beta)/2K with sc(beta | m') = nu^(-1/2)."""
+    def _drift(self) -> tuple[arb, acb]:
+        """The mean rate of psi, and z_0 = (u_0 + i beta)/2K with sc(beta | m') = nu^(-1/2)."""
         moduli, nu = self._moduli, self._moduli.nu
         beta = _carlson(nu, nu + moduli.m, nu + 1)
         y = acb(0, beta / (2 * self._K))
         slope = acb.modular_theta(y, self._tau, 1)[0] / self._thetas(y)[0]
         bend = (acb(0, 1) * slope).real * self._speed * moduli.sense
         rate = moduli.momentum / moduli.moments[0] + bend
-        start = acb(self._start() / (2 * self._K)) + y
-        return _Drift(
-            rate=rate,
-            mean_rate=rate - moduli.sense * arb.pi() * self._speed,
-            start=start,
-            unwound=1 / self._thetas(start)[0],
-        )
+        mean_rate = rate - moduli.sense * arb.pi() * self._speed
+        return mean_rate, acb(self._start() / (2 * self._K)) + y
 
     def _start(self) -> arb:
         """u_0 up to whole periods 4K, by the inverse of sn, or of sn at half the argument."""
@@ -113,53 +105,6 @@ class Periodic:
         return 2 * sine * _carlson(both / (1 + dn), both / (1 + cn), arb(1))
 
 
-@dataclass(frozen=True)
-class _Drift:
-    """The linear part of psi: Om, the mean rate of psi, and z_0 with 1/theta_1(z_0)."""
-
-    rate: arb
-    mean_rate: arb
-    start: acb
-    unwound: acb
-
-
-@dataclass(frozen=True)
-class _Addition:
-    """The addition theorem with one argument fixed, on theta functions without a quotient.
-
-    sn(u + v) (cn^2 u + sn^2 u dn^2 v) = sn u cn v dn v + sn v cn u dn u and so on (DLMF 22.8), times
-    theta_4(v)^2; the denominator is a sum of squares.
-    """
-
-    cn2: arb  # of theta_4^2
-    sn2: arb  # of theta_3^2
-    sn: tuple[arb, arb]  # of theta_2 theta_3 and theta_1 theta_4
-    cn: tuple[arb, arb]  # of theta_2 theta_4 and theta_1 theta_3
-    dn: tuple[arb, arb]  # of theta_3 theta_4 and theta_1 theta_2
-
-    @classmethod
-    def of(cls, moduli: Moduli, scales: Triple) -> _Addition:
-        dn, sn, cn = moduli.functions
-        S, C, N = scales
-        return cls(
-            cn2=cn * cn,
-            sn2=(sn * N) * (sn * N),
-            sn=(sn * C * N, S * cn * dn),
-            cn=(cn * C, -sn * dn * S * N),
-            dn=(dn * N, -moduli.m * sn * cn * S * C),
-        )
-
-    def functions(self, first: acb, second: acb, third: acb, fourth: acb) -> Triple:
-        """(dn, sn, cn) of the sum, from the theta functions of a real argument."""
-        p, q, r, s = first.real, second.real, third.real, fourth.real
-        whole = 1 / (self.cn2 * (s * s) + self.sn2 * (r * r))
-        return (
-            (self.dn[0] * (r * s) + self.dn[1] * (p * q)) * whole,
-            (self.sn[0] * (q * r) + self.sn[1] * (p * s)) * whole,
-            (self.cn[0] * (q * s) + self.cn[1] * (p * r)) * whole,
-        )
-
-
 class Separatrix:
     """The orbits between: m = 1, hyperbolic functions, and a phase that is algebraic in sn."""
 
@@ -168,11 +113,10 @@ class Separatrix:
         self._root = moduli.nu.sqrt()
         # psi' tends to the rate about axis b, for there 2T J_b = H^2.
         self._rate = moduli.momentum / moduli.moments[1]
-        start = self._bounded(moduli.functions)
-        self._unwound = start.conjugate()
-        self._half_unwound = _half_argument(start).conjugate()
+        self._unwound = _half_argument(self._bounded(moduli.functions)).conjugate()
 
-    def functions(self, t: arb) -> Triple:
+    def at(self, t: arb) -> Triple:
+        """(dn, sn, cn) of lam t + u_0."""
         _, sn, cn = self._moduli.functions
         u = self._moduli.rate * t
         S, C = u.tanh(), u.sech()
@@ -181,14 +125,12 @@ class Separatrix:
         falling = cn * C * (1 - sn * S) * whole
         return falling, (sn * C2 + S * cn2) * whole, falling
 
-    def phase(self, t: arb, functions: Triple) -> tuple[arb, arb]:
-        """psi = |H| t/J_b - sig [atan(nu^(1/2) sn)], the bracket taken from the start to t."""
-        factor = self._bounded(functions) * self._unwound
-        return _on_circle(factor, self._moduli.sense, self._rate * t)
-
     def half_phase(self, t: arb, functions: Triple) -> tuple[arb, arb]:
-        """Each arctangent is less than a right angle."""
-        half = _half_argument(self._bounded(functions)) * self._half_unwound
+        """(cos psi/2, sin psi/2); psi = |H| t/J_b - sig [atan(nu^(1/2) sn)] from the start to t.
+
+        Each arctangent is less than a right angle.
+        """
+        half = _half_argument(self._bounded(functions)) * self._unwound
         return _on_circle(half, self._moduli.sense, self._rate * t / 2)
 
     def _bounded(self, functions: Triple) -> acb:

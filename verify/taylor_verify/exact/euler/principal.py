@@ -9,26 +9,24 @@ of disc^(1/2), which is exact: the mean moment never cancels, nor do two nearly 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from math import lcm
-from typing import Any
+from typing import Any, NamedTuple
 
 from flint import acb, arb, ctx, fmpz_poly
 
-from taylor_verify.exact.balls import Undecidable, ball
+from taylor_verify.exact.balls import Undecidable, ball, balls
 from taylor_verify.exact.euler.regime import FreeSpin
 from taylor_verify.scenes import tensors
 
 Axis = list[arb]  # three components in body axes
 
 
-@dataclass(frozen=True)
-class PrincipalBalls:
+class PrincipalBalls(NamedTuple):
     """Balls about J1 > J2 > J3, their unit axes (of either sign), and J1 - J2, J2 - J3, J1 - J3."""
 
-    moments: tuple[arb, arb, arb]
-    axes: tuple[Axis, Axis, Axis]
+    moments: list[arb]
+    axes: list[Axis]
     upper_gap: arb
     lower_gap: arb
     whole_gap: arb
@@ -56,30 +54,17 @@ def principal_balls(spin: FreeSpin) -> PrincipalBalls:
         for i, row in enumerate(spin.inertia)
     )
     squared = tensors.product(traceless, traceless)
-    return PrincipalBalls(
-        moments=(J1, J2, J3),
-        axes=(
-            _eigenvector(traceless, squared, high, upper * whole, square),
-            _eigenvector(traceless, squared, middle, -upper * lower, square),
-            _eigenvector(traceless, squared, low, lower * whole, square),
-        ),
-        upper_gap=upper,
-        lower_gap=lower,
-        whole_gap=whole,
-    )
+    slopes = (high, upper * whole), (middle, -upper * lower), (low, lower * whole)
+    axes = [_eigenvector(traceless, squared, y, slope, square) for y, slope in slopes]
+    return PrincipalBalls([J1, J2, J3], axes, upper, lower, whole)
 
 
 def _sorted_frame(diagonal: tensors.Vector) -> PrincipalBalls:
     """The axes of a diagonal tensor, which are exact."""
-    i, j, k = sorted(range(3), key=lambda n: diagonal[n], reverse=True)
-    unit = [[arb(int(row == column)) for column in range(3)] for row in range(3)]
-    return PrincipalBalls(
-        moments=(ball(diagonal[i]), ball(diagonal[j]), ball(diagonal[k])),
-        axes=(unit[i], unit[j], unit[k]),
-        upper_gap=ball(diagonal[i] - diagonal[j]),
-        lower_gap=ball(diagonal[j] - diagonal[k]),
-        whole_gap=ball(diagonal[i] - diagonal[k]),
-    )
+    order = sorted(range(3), key=lambda n: diagonal[n], reverse=True)
+    J1, J2, J3 = (diagonal[n] for n in order)
+    axes = [[arb(int(row == column)) for column in range(3)] for row in order]
+    return PrincipalBalls(balls((J1, J2, J3)), axes, *balls((J1 - J2, J2 - J3, J1 - J3)))
 
 
 def _real_roots(coefficients: tuple[Fraction, ...]) -> list[arb]:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
 from functools import cached_property
+from typing import Final
 
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.tensors import Matrix, Vector
@@ -26,6 +27,9 @@ class Regime(StrEnum):
     SEPARATRIX = "separatrix"  # H^2 = 2T J2: hyperbolic functions
     MAX_AXIS = "max-axis"  # H^2 > 2T J2: the orbit encircles the axis of J1
     MIN_AXIS = "min-axis"  # H^2 < 2T J2: the orbit encircles the axis of J3
+
+
+CONSTANT: Final = (Regime.REST, Regime.SPHERICAL, Regime.STEADY)
 
 
 @dataclass(frozen=True)
@@ -90,19 +94,57 @@ class FreeSpin:
         h, t = self.momentum_squared, self.twice_energy
         return h**3 - self.trace * h**2 * t + self.minors * h * t**2 - self.determinant * t**3
 
+    # Two equal moments: an axis of symmetry e. Of three equal ones every axis is one.
+
     @cached_property
     def double_moment(self) -> Fraction:
-        """The repeated principal moment of an axisymmetric body, which is always rational."""
+        """J_d, the repeated principal moment, which is always rational."""
+        if self.spread == 0:
+            return self.trace / 3
         return (9 * self.determinant - self.trace * self.minors) / (-2 * self.spread)
 
     @property
     def simple_moment(self) -> Fraction:
-        """The moment about the axis of an axisymmetric body."""
+        """J_s, the moment about the axis of symmetry."""
         return self.trace - 2 * self.double_moment
+
+    @property
+    def ratio(self) -> Fraction:
+        """(J_s - J_d)/J_d."""
+        return (self.simple_moment - self.double_moment) / self.double_moment
+
+    @cached_property
+    def axis(self) -> Vector:
+        """n, a rational vector along e: the longest column of (I - J_d)/(J_s - J_d) = e e^T."""
+        if self.spread == 0:
+            return (Fraction(1), Fraction(0), Fraction(0))
+        double, gap = self.double_moment, self.simple_moment - self.double_moment
+        # Of e e^T, the diagonal entry is the square of the column's length.
+        longest = max(range(3), key=lambda i: (self.inertia[i][i] - double) / gap)
+        column = enumerate(self.inertia[longest])
+        return tuple((entry - double * (i == longest)) / gap for i, entry in column)
+
+    @cached_property
+    def axis_squared(self) -> Fraction:
+        """|n|^2."""
+        return tensors.dot(self.axis, self.axis)
+
+    @property
+    def turning(self) -> Fraction:
+        """|n| Om, with Om = (e.w) (J_s - J_d)/J_d the rate at which w goes round e."""
+        return self.ratio * tensors.dot(self.axis, self.omega)
+
+    def along(self, vector: Vector) -> Vector:
+        """(e.v) e, rational."""
+        return tensors.scaled(tensors.dot(self.axis, vector) / self.axis_squared, self.axis)
+
+    def across(self, vector: Vector) -> Vector:
+        """v - (e.v) e, rational."""
+        return tensors.minus(vector, self.along(vector))
 
     @cached_property
     def regime(self) -> Regime:
-        """The kind of orbit. The order matters: each question assumes the earlier ones denied."""
+        """The kind of orbit. Each question assumes that the earlier ones were denied."""
         if not any(self.omega):
             return Regime.REST
         if self.spread == 0:

@@ -7,8 +7,10 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Final, final
 
+import numpy as np
+
 from taylor_verify.exact import clocks
-from taylor_verify.exact.equations import Equations, cross, times, total
+from taylor_verify.exact.equations import Equations, cross, exact
 from taylor_verify.exact.euler.invariants import energy, momentum, space_momentum
 from taylor_verify.exact.invariant import Array, Invariant
 from taylor_verify.exact.kind import Kind
@@ -23,6 +25,7 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix, Vector
 
 _ONE: Final = tensors.diagonal((Fraction(1),) * 3)
+_NO_VELOCITY: Final = exact(_ONE)[:0]
 
 
 @final
@@ -48,9 +51,9 @@ class Rigid(Kind[RigidBody, Spin]):
 
     def equations(self, body: RigidBody) -> Equations:
         """omega' = K M + K((I omega) x omega)."""
-        K, torque = body.inverse_inertia, cross(body.inertia, _ONE)
-        rates = [total(*(times(c, p) for c, p in zip(row, torque, strict=True))) for row in K]
-        return Equations(tensors.apply(K, body.moment), rates, _ONE)
+        K = exact(body.inverse_inertia)
+        turned = np.tensordot(K, cross(body.inertia, _ONE), 1)
+        return Equations(K @ exact(body.moment), turned, exact(_ONE), _NO_VELOCITY)
 
     def units(self, body: RigidBody, z: Vector) -> Units:
         """omega by its size, or what the moment makes of it; time by omega, or its fastest wave."""
@@ -77,7 +80,7 @@ class Rigid(Kind[RigidBody, Spin]):
     def momentum_equations(self, body: RigidBody) -> Equations:
         """H' = M + H x K H."""
         K = body.inverse_inertia
-        return Equations(body.moment, cross(_ONE, K), K)
+        return Equations(exact(body.moment), cross(_ONE, K), exact(K), _NO_VELOCITY)
 
     def manufactured_momentum(self, body: RigidBody) -> Manufactured | None:
         return None if body.manufactured is None else body.manufactured.mapped(body.inertia)

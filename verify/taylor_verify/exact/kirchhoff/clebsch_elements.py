@@ -1,4 +1,4 @@
-"""The elements of the orbit of a solid in a fluid: for Clebsch's body all that x3 tells.
+"""The elements of the orbit of Clebsch's free body: the swing of x3, and the spin beside it.
 
 Legend, Hydromechanics 49: z = x3, z'^2 = f(z); F = |x|, FG = x.y, so that G is y along F;
 kappa = (p' - p)/r, lambda = (q' - q)/r. The axial spin is x = (0, 0, F), y = (0, 0, G), and
@@ -12,28 +12,23 @@ G F = FG is rational, so A and B F are, and every sign is final.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from typing import Final
 
 from mpmath import mp, mpf
 
 from taylor_verify.exact.element import Element, Elements, settled
-from taylor_verify.exact.kirchhoff.conserved import conserved
-from taylor_verify.exact.kirchhoff.general import elements_of
-from taylor_verify.exact.kirchhoff.jacobi import closed_form
+from taylor_verify.exact.kirchhoff.degenerate import Carrier
+from taylor_verify.exact.kirchhoff.general import Words, conserved, recurring
+from taylor_verify.exact.kirchhoff.jacobi import NutatingBody
 from taylor_verify.exact.kirchhoff.quartic import (
     Nutation,
-    Polynomial,
     derivative,
-    repeated_root,
+    invariants,
     value,
 )
-from taylor_verify.exact.kirchhoff.regime import regime, turning_points
-from taylor_verify.exact.kirchhoff.solid import solid
-from taylor_verify.exact.manufactured import MANUFACTURED, REGIME
-from taylor_verify.exact.solution import NO_CLOSED_FORM, Orbital
+from taylor_verify.exact.kirchhoff.regime import nutation_of, regime, turning_points
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.scene import Scene
@@ -45,6 +40,14 @@ _CONSERVED: Final = (
     "Conserved: the kinetic energy T, F^2 = x.x, FG = x.y and, for Clebsch's body, y3; in space "
     "axes the linear impulse and the moment of the impulses."
 )
+_WAVE: Final[Words] = {
+    "period": ("time", "period of nutation: x3 and the shape of (x, y) recur"),
+    "nutation_frequency": ("radians/time", "frequency of nutation"),
+    "rate": ("radians/time", "of the elliptic argument"),
+    "k": ("", "modulus of the elliptic functions"),
+    "m": ("", "parameter k^2; 0 for sines, 1 on the separatrix"),
+    "m_prime": ("", "1 - m, one measure of the separatrix's distance"),
+}
 _STORY: Final[Mapping[str, str]] = {
     "rest": "Both impulses are zero: the body is at rest.",
     "euler-top": (
@@ -69,108 +72,82 @@ _STORY: Final[Mapping[str, str]] = {
 
 
 def elements(scene: Scene, digits: int) -> Elements:
-    """Of Clebsch's free body every element; of any other solid what is exact without a solution."""
-    body, start = solid(scene)
-    if body.manufactured is not None:
-        return Elements(REGIME, (), MANUFACTURED)
-    if not body.is_free:
-        return Elements(
-            NO_CLOSED_FORM,
-            (),
-            (
-                "A force or a couple in body axes acts: no closed form is built, and the motion "
-                "has neither a period nor a modulus that could be named.",
-                "Not conserved: T, F^2 and FG change by the work and the impulse of the loads.",
-            ),
-        )
-    if body.clebsch is None:
-        return elements_of(scene, digits)
-    nutation = Nutation.of(body.clebsch, start)
-    kind = regime(nutation)
-    alone = replace(scene, track=frozenset())
-    found = settled(
-        lambda working: [
-            *_of_regime(kind, nutation, alone, start, working),
-            *conserved(body, start),
-            *_axial(nutation),
-        ],
-        digits,
-    )
-    story = [_STORY[kind], *_steady_story(kind, nutation), _CONSERVED]
-    return Elements(kind, found, (*story, *_axial_story(nutation)))
+    """The elements of a free body of Clebsch's form."""
+    nutation, start = nutation_of(scene)
+    body, kind = nutation.body.body(), regime(nutation)
+
+    def numbers(working: int) -> list[Element]:
+        own = _orbit(kind, nutation, start, working)
+        return [*own, *conserved(body, start), *_axial(nutation)]
+
+    story = [_STORY[kind], *_steady_story(kind, nutation), _CONSERVED, *_axial_story(nutation)]
+    return Elements(kind, settled(numbers, digits), tuple(story))
 
 
-def _of_regime(
-    kind: str, nutation: Nutation, alone: Scene, start: Impulse, working: int
-) -> list[Element]:
-    if kind == "rest":
-        return []
+def _orbit(kind: str, nutation: Nutation, start: Impulse, working: int) -> Iterator[Element]:
+    """Yield the elements of the motion itself."""
+    if kind in ("euler-top", "steady"):
+        yield from _turning(nutation)
     if kind == "euler-top":
-        return _top(nutation, start)
-    if kind == "steady":
-        return _steady(nutation)
-    found = _recurring(alone, working)
-    if kind in ("hyperbolic", "heteroclinic"):
-        found.append(_approach(kind, nutation))
-    found += _range(kind, nutation, working)
-    return [*found, _separation(nutation)] if kind in _ELLIPTIC else found
+        rate = mp.convert(nutation.body.r) * mp.sqrt(
+            mp.convert(tensors.dot(start.angular, start.angular))
+        )
+        meaning = "the axis goes round y, in space axes"
+        yield Element("precession_rate", rate, "radians/time", meaning, "r|y|")
+    elif kind == "steady":
+        yield from _disturbance(nutation)
+    elif kind != "rest":
+        known = NutatingBody(kind, nutation, start).elements(working)
+        yield from recurring(known, _WAVE, _SOURCE)
+        if kind in ("hyperbolic", "heteroclinic"):
+            yield _approach(kind, nutation)
+        yield from _range(kind, nutation, working)
+        if kind in _ELLIPTIC:
+            meaning = "of f, exact, between -1 and 1: 0 where two roots agree, as on the separatrix"
+            formula = "(g2^3 - 27 g3^2)/(|g2|^3 + 27 g3^2)"
+            number = mp.convert(discriminant(nutation))
+            yield Element("discriminant", number, "", meaning, formula)
 
 
 # Motions with x3 constant.
 
 
-def _top(nutation: Nutation, start: Impulse) -> list[Element]:
-    """x = 0: y goes round axis 3 at (r - r') y3, and the axis goes round y at r |y|."""
-    body = nutation.body
-    size = mp.sqrt(mp.convert(tensors.dot(start.angular, start.angular)))
-    about = mp.convert(body.r) * size
-    found = _turning(nutation)
-    found.append(
-        Element(
-            "precession_rate", about, "radians/time", "the axis goes round y, in space axes", "r|y|"
-        )
-    )
-    return found
-
-
-def _turning(nutation: Nutation) -> list[Element]:
+def _turning(nutation: Nutation) -> Iterator[Element]:
+    """Yield period and rate of x and y about axis 3."""
     rate = abs(mp.convert(nutation.turn_rate))
-    if not rate:
-        return []
-    meaning = "x and y recur in body axes: one turn about axis 3"
-    return [
-        Element("period", 2 * mp.pi / rate, "time", meaning, "2 pi/rate"),
-        Element(
-            "rate", rate, "radians/time", "x and y turn about axis 3", "Hydromechanics 48 (3), (4)"
-        ),
-    ]
+    if rate:
+        meaning = "x and y recur in body axes: one turn about axis 3"
+        yield Element("period", 2 * mp.pi / rate, "time", meaning, "2 pi/rate")
+        source = "Hydromechanics 48 (3), (4)"
+        yield Element("rate", rate, "radians/time", "x and y turn about axis 3", source)
 
 
-def curvature(nutation: Nutation) -> Fraction:
-    """f''(z)/2 at the start: in a steady motion a disturbance of x3 obeys s^2 = f''(z)/2."""
+def _curvature(nutation: Nutation) -> Fraction:
+    """f''(z)/2 at the start: in a steady motion a disturbance of x3 obeys s^2 = f''(z)/2.
+
+    Zero for the axial spin, of which A says more.
+    """
+    if nutation.F2 == nutation.z**2:
+        return Fraction(0)
     return value(derivative(derivative(nutation.f)), nutation.z) / 2
 
 
-def _steady(nutation: Nutation) -> list[Element]:
-    found, s2 = _turning(nutation), curvature(nutation)
-    if nutation.F2 == nutation.z**2:
-        return found  # the axial spin, of which A says more
-    size, source = mp.sqrt(mp.convert(abs(s2))), "s^2 = f''(x3)/2"
+def _disturbance(nutation: Nutation) -> Iterator[Element]:
+    s2, source = _curvature(nutation), "s^2 = f''(x3)/2"
+    size = mp.sqrt(mp.convert(abs(s2)))
     if s2 > 0:
         meaning = "rate at which a disturbance of x3 grows, as e^{s t}"
-        found.append(Element("growth_rate", size, "1/time", meaning, source))
+        yield Element("growth_rate", size, "1/time", meaning, source)
     elif s2 < 0:
-        period = 2 * mp.pi / size
         meaning = "period of small nutations about this motion"
-        found.append(Element("nutation_period", period, "time", meaning, source))
-    return found
+        yield Element("nutation_period", 2 * mp.pi / size, "time", meaning, source)
 
 
 def _steady_story(kind: str, nutation: Nutation) -> list[str]:
-    """Of a steady motion: by the curvature, or on the axis itself by A, B and C."""
+    """The stability of a steady motion off the axis."""
     if kind != "steady" or nutation.F2 == nutation.z**2:
         return []
-    s2 = curvature(nutation)
+    s2 = _curvature(nutation)
     if s2 > 0:
         return ["This steady motion is unstable: a disturbance of x3 grows exponentially."]
     if s2 < 0:
@@ -181,45 +158,17 @@ def _steady_story(kind: str, nutation: Nutation) -> list[str]:
 # Motions with x3 variable.
 
 
-def _recurring(alone: Scene, working: int) -> list[Element]:
-    """Period, rate and parameters of the closed form, with the modulus."""
-    exact = closed_form(alone)
-    known = exact.elements(working) if isinstance(exact, Orbital) else {}
-    words = {
-        "period": ("time", "period of nutation: x3 and the shape of (x, y) recur"),
-        "rate": ("radians/time", "of the elliptic argument"),
-        "m": ("", "parameter k^2; 0 for sines, 1 on the separatrix"),
-        "m_prime": ("", "1 - m, one measure of the separatrix's distance"),
-    }
-    found = []
-    for name, (unit, meaning) in words.items():
-        if name in known:
-            found.append(Element(name, known[name], unit, meaning, _SOURCE))
-        if name == "period" and "period" in known:
-            frequency, meaning = 2 * mp.pi / known["period"], "frequency of nutation"
-            found.append(
-                Element("nutation_frequency", frequency, "radians/time", meaning, "2 pi/period")
-            )
-        if name == "rate" and "m" in known:
-            meaning = "modulus of the elliptic functions"
-            found.append(Element("k", mp.sqrt(known["m"]), "", meaning, _SOURCE))
-    return found
-
-
 def _approach(kind: str, nutation: Nutation) -> Element:
     """sqrt(f''(d)/2) at the repeated root d, where f = c^2 (F^2 - z^2)^2 at d = +-F."""
-    if kind == "heteroclinic":
-        rate = 2 * mp.sqrt(mp.convert(nutation.F2 * nutation.f[0]))
-    else:
-        d = repeated_root(nutation.f)
-        assert d is not None
-        rate = mp.sqrt(mp.convert(value(derivative(derivative(nutation.f)), d) / 2))
+    front = kind == "heteroclinic"
+    square = 4 * nutation.F2 * nutation.f[0] if front else Carrier.of(nutation).A
     meaning = "x3 leaves and approaches its steady value as e^{-s t}"
+    rate = mp.sqrt(mp.convert(square))
     return Element("approach_rate", rate, "1/time", meaning, "s^2 = f''(d)/2")
 
 
-def _range(kind: str, nutation: Nutation, working: int) -> list[Element]:
-    """The values between which x3 moves."""
+def _range(kind: str, nutation: Nutation, working: int) -> Iterator[Element]:
+    """Yield the values between which x3 moves."""
     F = mp.sqrt(mp.convert(nutation.F2))
     if kind == "heteroclinic":
         ends = [-F, F]
@@ -227,12 +176,10 @@ def _range(kind: str, nutation: Nutation, working: int) -> list[Element]:
         points = turning_points(nutation, working)
         ends = [mp.convert(points.z1), mp.convert(points.z2)]
     else:
-        ends = _between_elementary(nutation)
+        ends = _elementary_ends(Carrier.of(nutation))
     low, high = (_exact_zero(nutation, F, end) for end in sorted(ends))
-    return [
-        Element("x3_low", low, "impulse", "x3 is never less", "root of f", F),
-        Element("x3_high", high, "impulse", "x3 is never more", "root of f", F),
-    ]
+    yield Element("x3_low", low, "impulse", "x3 is never less", "root of f", F)
+    yield Element("x3_high", high, "impulse", "x3 is never more", "root of f", F)
 
 
 def _exact_zero(nutation: Nutation, F: mpf, end: mpf) -> mpf:
@@ -241,44 +188,25 @@ def _exact_zero(nutation: Nutation, F: mpf, end: mpf) -> mpf:
     return mpf(0) if is_root and abs(end) <= F * mp.ldexp(1, -mp.prec // 2) else end
 
 
-def _between_elementary(nutation: Nutation) -> list[mpf]:
-    """The ends of x3 where f is a quadratic, or has the repeated root d: f = (z - d)^2 q(z).
+def _elementary_ends(carrier: Carrier) -> list[mpf]:
+    """The ends of x3 = v, or x3 = d + 1/v, where v'^2 = A v^2 + 2 B v + C.
 
-    On one side of an isolated d both ends are roots of q; on the way from d to d one is d itself,
-    and the other the first root of q beyond the start.
+    For A < 0, v swings between two roots. Else x3 leaves d, where v is infinite, and v turns at the
+    first root that it meets.
     """
-    f = nutation.f
-    if len(f) == 3:
-        return _quadratic_roots(f)
-    d = repeated_root(f)
-    assert d is not None
-    roots = _quadratic_roots(_divided(_divided(f, d), d))
-    if value(derivative(derivative(f)), d) < 0:
+    A, B, C = carrier.A, carrier.B, carrier.C
+    middle, spread = mp.convert(-B), mp.sqrt(mp.convert(B**2 - A * C))
+    larger = middle + (spread if B <= 0 else -spread)
+    # The smaller root from the product of both.
+    roots = [mp.convert(C) / larger]
+    if A:
+        roots.append(larger / mp.convert(A))
+    if carrier.d is None:
         return roots
-    centre, side = mp.convert(d), 1 if nutation.z > d else -1
-    beyond = [root for root in roots if side * (root - centre) > 0]
-    return [centre, min(beyond, key=lambda root: abs(root - centre))]
-
-
-def _divided(polynomial: Polynomial, root: Fraction) -> Polynomial:
-    """By z - root, the remainder left out (Horner)."""
-    quotient, carried = [], Fraction(0)
-    for coefficient in polynomial[:-1]:
-        carried = carried * root + coefficient
-        quotient.append(carried)
-    return tuple(quotient)
-
-
-def _quadratic_roots(polynomial: Polynomial) -> list[mpf]:
-    """The real roots of degree one or two; the smaller of two from their product."""
-    if len(polynomial) == 2:
-        return [mp.convert(-polynomial[1] / polynomial[0])]
-    a, half, c = polynomial[0], polynomial[1] / 2, polynomial[2]
-    root = mp.sqrt(mp.convert(half**2 - a * c))
-    larger = -mp.convert(half) - (root if half >= 0 else -root)
-    if larger == 0:
-        return [mpf(0), mpf(0)]
-    return [larger / mp.convert(a), mp.convert(c) / larger]
+    d = mp.convert(carrier.d)
+    if A < 0:
+        return [d + 1 / v for v in roots]
+    return [d, d + 1 / max((v for v in roots if v * carrier.v > 0), key=abs)]
 
 
 def discriminant(nutation: Nutation) -> Fraction:
@@ -287,21 +215,8 @@ def discriminant(nutation: Nutation) -> Fraction:
     Between -1 and 1, unchanged by scaling z or t; above zero four roots of f are real (or three of
     a cubic), below zero two.
     """
-    a0, a1, a2, a3, a4 = (Fraction(0),) * (5 - len(nutation.f)) + nutation.f
-    a1, a2, a3 = a1 / 4, a2 / 6, a3 / 4
-    g2 = a0 * a4 - 4 * a1 * a3 + 3 * a2**2
-    g3 = a0 * a2 * a4 + 2 * a1 * a2 * a3 - a2**3 - a0 * a3**2 - a1**2 * a4
+    g2, g3 = invariants(nutation.f)
     return (g2**3 - 27 * g3**2) / (abs(g2) ** 3 + 27 * g3**2)
-
-
-def _separation(nutation: Nutation) -> Element:
-    return Element(
-        "discriminant",
-        mp.convert(discriminant(nutation)),
-        "",
-        "of f, exact, between -1 and 1: 0 where two roots agree, as on the separatrix",
-        "(g2^3 - 27 g3^2)/(|g2|^3 + 27 g3^2)",
-    )
 
 
 # The spin along the axis with the same F and G.
@@ -318,39 +233,25 @@ def stability(nutation: Nutation) -> tuple[Fraction, Fraction, Fraction]:
     return 4 * kappa * F2 + 4 * lam * FG - FG**2 / F2, 2 * kappa * F2 + lam * FG, kappa
 
 
-def _axial(nutation: Nutation) -> list[Element]:
+def _axial(nutation: Nutation) -> Iterator[Element]:
+    """Yield A, and what a small tilt of that spin does."""
     if nutation.F2 == 0:
-        return []
+        return
     A, BF, _ = stability(nutation)
     size = mp.convert(nutation.body.r) * mp.sqrt(mp.convert(abs(A)))
-    found = [
-        Element(
-            "A",
-            mp.convert(A),
-            "angular impulse^2",
-            "stability number of the axial spin with these F and G: stable below 0",
-            _AXIAL,
-        )
-    ]
+    meaning = "stability number of the axial spin with these F and G: stable below 0"
+    yield Element("A", mp.convert(A), "angular impulse^2", meaning, _AXIAL)
     if A < 0:
-        found.append(
-            Element(
-                "axial_nutations",
-                size / (2 * mp.pi),
-                "1/time",
-                "its small nutations in a unit of time, whole ones (49 counts half-swings)",
-                "r sqrt(-A)/(2 pi); the text's r sqrt(-A)/pi counts half-swings",
-            )
-        )
+        meaning = "its small nutations in a unit of time, whole ones (49 counts half-swings)"
+        source = "r sqrt(-A)/(2 pi); the text's r sqrt(-A)/pi counts half-swings"
+        yield Element("axial_nutations", size / (2 * mp.pi), "1/time", meaning, source)
     elif A > 0:
         meaning = "rate at which a small tilt of that spin grows"
-        found.append(Element("axial_growth", size / 2, "1/time", meaning, "r sqrt(A)/2"))
+        yield Element("axial_growth", size / 2, "1/time", meaning, "r sqrt(A)/2")
     else:
         meaning = "B F of that spin, which decides where A = 0: stable above 0"
-        found.append(
-            Element("BF", mp.convert(BF), "angular impulse^2", meaning, "2 kappa F^2 + lambda FG")
-        )
-    return found
+        number, source = mp.convert(BF), "2 kappa F^2 + lambda FG"
+        yield Element("BF", number, "angular impulse^2", meaning, source)
 
 
 def _axial_story(nutation: Nutation) -> list[str]:

@@ -11,15 +11,19 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import Final, final
+from typing import final
 
 from flint import acb, arb
 
 from taylor_verify.exact.balls import ball
 from taylor_verify.exact.kirchhoff.lattice import Lattice, lattice
-from taylor_verify.exact.kirchhoff.quartic import Nutation
-
-_I: Final = acb(0, 1)
+from taylor_verify.exact.kirchhoff.quartic import (
+    Nutation,
+    Polynomial,
+    derivative,
+    invariants,
+    value,
+)
 
 
 class Course(ABC):
@@ -31,37 +35,37 @@ class Course(ABC):
 
     poles: tuple[acb, ...]
     order: int = 1
-    _front: Front | None = None
+    front: Front | None = None
     are_conjugate: bool = False
 
     def __init__(self, nutation: Nutation) -> None:
-        self._about_start = _about(nutation.f, nutation.z)
-        self.z, self.speed = ball(nutation.z), ball(nutation.speed)
-        a0, b1, b2, b3, b4 = self._about_start
-        g2 = a0 * b4 - 4 * b1 * b3 + 3 * b2**2
-        g3 = a0 * b2 * b4 + 2 * b1 * b2 * b3 - b2**3 - a0 * b3**2 - b1**2 * b4
+        b = _about(nutation.f, nutation.z)
+        self._b = [ball(entry) for entry in b]
+        # Products of rationals, so that what is zero is zero exactly.
+        self._half_b4_a0, self._b4_b1 = ball(b[4] * b[0] / 2), ball(b[4] * b[1])
+        g2, g3 = invariants(nutation.f)
         self.lattice: Lattice = lattice(g2, g3)
-        self._half_b2, self._twice_b3, self._half_g2 = ball(b2 / 2), ball(2 * b3), ball(g2 / 2)
-        self._b4_b1, self._half_b4_a0 = ball(b4 * b1), ball(b4 * a0 / 2)
+        self._half_g2 = ball(g2 / 2)
+        self.z, self.speed = ball(nutation.z), ball(nutation.speed)
 
     @final
     def at(self, u: arb) -> tuple[arb, arb]:
         """(z, z') at the time u, by Weierstrass's formula (Whittaker and Watson 20.6)."""
         if u.is_zero():
             return self.z, self.speed
-        if self._front is not None:
-            return self._front.at(u)
+        if self.front is not None:
+            return self.front.at(u)
         p, slope = (value.real for value in self.lattice.p(acb(u)))
-        rise = p - self._half_b2
+        rise, twice_b3 = p - self._b[2] / 2, 2 * self._b[3]
         below = 2 * rise * rise - self._half_b4_a0
-        step = (self._twice_b3 * rise + self._b4_b1 - self.speed * slope) / below
-        change = self._twice_b3 * slope - self.speed * (6 * p * p - self._half_g2)
+        step = (twice_b3 * rise + self._b4_b1 - self.speed * slope) / below
+        change = twice_b3 * slope - self.speed * (6 * p * p - self._half_g2)
         return self.z + step, (change - 4 * step * rise * slope) / below
 
     @final
     def argument(self, h: arb, s: acb) -> acb:
         """The u where (z, z') = (h, s), a point of the curve that is neither the start nor double."""
-        a0, b1, b2, b3, b4 = (ball(b) for b in self._about_start)
+        a0, b1, b2, b3, b4 = self._b
         X, both = h - self.z, s * self.speed
         slope = 2 * a0 * X**3 + 6 * b1 * X**2 + 6 * b2 * X + 2 * b3
         return self.lattice.argument(
@@ -117,11 +121,11 @@ class QuarticCourse(Course):
         super().__init__(nutation)
         a0, a1 = nutation.f[0], nutation.f[1] / 4
         self._a0, self._slant = ball(a0), ball(2 * a1 / a0)
-        self._root = ball(abs(a0)).sqrt()
-        self._is_growing = a0 > 0  # sqrt(a0) is real, and the residues of z are
+        self._size = ball(abs(a0)).sqrt()
+        self._root = acb(self._size) if a0 > 0 else acb(0, self._size)
         self._signs: tuple[int, ...] = (1, -1)
         if heteroclinic:
-            self._front = Front(nutation)
+            self.front = Front(nutation)
             self._signs = (-1,) if nutation.speed > 0 else (1,)
         upper = [self._pole(sign) for sign in self._signs]
         if a0 < 0:
@@ -132,17 +136,18 @@ class QuarticCourse(Course):
         slopes = [s1 / s0 for s0, s1, _ in jets]
         bends = [s2 / s0 - (s1 / s0) ** 2 for s0, s1, s2 in jets]
         self._start_slopes = sum(slopes, acb(0)).real
-        self._pace = self.z + self._residues(slopes)
+        change = sum((sign * Z for sign, Z in zip(self._signs, slopes, strict=True)), acb(0))
+        self._pace = self.z + (change / self._root).real
         self._square_pace = self.z**2 + sum(bends, acb(0)).real / self._a0 + self._slant * self.z
 
     def integral(self, u: arb, speed: arb, poles: Sequence[Sequence[acb]]) -> arb:
-        """From the logarithms of N, whose arguments are followed continuously."""
-        if self._is_growing:
+        """Found from the logarithms of N, whose arguments are followed continuously."""
+        if not self.are_conjugate:
             logs = (abs(value).log() for value, *_ in poles)
             grown = sum((sign * log for sign, log in zip(self._signs, logs, strict=True)), arb(0))
-        else:  # the two are conjugates
+        else:
             grown = 2 * self.lattice.turn(u, self.poles[0], poles[0][0])
-        return self._pace * u - grown / self._root
+        return self._pace * u - grown / self._size
 
     def integral_of_square(self, u: arb, poles: Sequence[Sequence[acb]], integral: arb) -> arb:
         """int_0^u z^2 du from N and N', where ``integral`` is int_0^u z du.
@@ -154,15 +159,9 @@ class QuarticCourse(Course):
         return self._square_pace * u - change / self._a0 - tilted
 
     def _pole(self, sign: int) -> acb:
-        _, b1, b2, b3, _ = (ball(b) for b in self._about_start)
-        root = sign * (acb(self._root) if self._is_growing else _I * self._root)
+        _, b1, b2, b3, _ = self._b
+        root = sign * self._root
         return self.lattice.argument(root * self.speed / 2 + b2 / 2, -self.speed * b1 - b3 * root)
-
-    def _residues(self, slopes: Sequence[acb]) -> arb:
-        """(Z(-w+) - Z(-w-))/sqrt(a0)."""
-        change = sum((sign * Z for sign, Z in zip(self._signs, slopes, strict=True)), acb(0))
-        root = acb(self._root) if self._is_growing else _I * self._root
-        return (change / root).real
 
 
 @final
@@ -173,7 +172,7 @@ class CubicCourse(Course):
         super().__init__(nutation)
         self.order = 2
         self._a1 = ball(nutation.f[0] / 4)
-        _, b1, b2, _, _ = (ball(b) for b in self._about_start)
+        _, b1, b2, _, _ = self._b
         self.poles = (self.lattice.argument(acb(b2 / 2), acb(-self.speed * b1)),)
         s0, s1, s2 = self.lattice.jet(-self.poles[0], 2)
         self._start_slope = (s1 / s0).real
@@ -198,13 +197,10 @@ class QuadraticCourse(Course):
         return (speed - self.speed - self._half_c1 * u) / self._c2
 
 
-def _about(f: Sequence[Fraction], z: Fraction) -> tuple[Fraction, ...]:
-    """(a0, b1, b2, b3, b4) of f about z, by Horner's scheme."""
-    left = [Fraction(0)] * (5 - len(f)) + list(f)
-    taylor: list[Fraction] = []
-    while left:
-        for k in range(1, len(left)):
-            left[k] += z * left[k - 1]
-        taylor.append(left.pop())
-    b4, b3, b2, b1, a0 = taylor
-    return a0, b1 / 4, b2 / 6, b3 / 4, b4
+def _about(f: Polynomial, z: Fraction) -> tuple[Fraction, ...]:
+    """(a0, b1, b2, b3, b4) of f about z, by Taylor's formula."""
+    found: list[Fraction] = []
+    for divisor in (1, 4, 12, 24, 24):
+        found.append(value(f, z) / divisor)
+        f = derivative(f)
+    return tuple(reversed(found))

@@ -7,7 +7,7 @@ the cosh of sqrt(A) t/2 and its sinh over sqrt(A), and v = a where z is at a pol
     n = ch + (v0' + i delta) sh/(v0 - a),    delta^2 = -Q(a),    |n|^2 = (v - a)/(v0 - a),
     arg n = delta/2 int dt/(v - a),
 
-which turns the phases U and -D of attitude.py into one factor n for each pole: that of the upper
+which turns the phases U and -D of space.py into one factor n for each pole: that of the upper
 pole is in b, the conjugate of that of the lower one in a, and xi has both. Where a pole is passed,
 its delta is zero, and n is real and changes its sign. Z needs no integral: if d is a repeated root,
 r F Z' is its value at x3 = d less (v'/v)'; if f is a quadratic, Z' is constant.
@@ -17,14 +17,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Protocol, final
+from typing import final
 
 from mpmath import mp, mpc, mpf
 
-from taylor_verify.exact.kirchhoff.attitude import CayleyKlein
-from taylor_verify.exact.kirchhoff.centre import drift
-from taylor_verify.exact.kirchhoff.orbit import Pose, distances, pulls, transverse
+from taylor_verify.exact.kirchhoff.orbit import Orbit, distances, pulls
 from taylor_verify.exact.kirchhoff.quartic import Nutation, derivative, repeated_root, value
+from taylor_verify.exact.kirchhoff.space import CayleyKlein, Pose, transverse
 from taylor_verify.scenes.motion import Impulse
 
 
@@ -64,57 +63,28 @@ class Beat:
     half_turns: int
 
 
-class Factor(Protocol):
-    """What one pole contributes to xi, up to a constant."""
-
-    def at(self, beat: Beat) -> mpc: ...
-
-    def slope(self, beat: Beat) -> mpc:
-        """Its derivative in time."""
-
-
-@final
 @dataclass(frozen=True)
-class FactorFromAfar:
-    """n = ch + slant sh, for a start away from the pole."""
+class Factor:
+    """The part of one pole in xi, up to a constant: one + ch times cosh + sh times sinh."""
 
-    A: mpf
-    slant: mpc
+    one: mpc
+    ch: mpc
+    sh: mpc
 
     def at(self, beat: Beat) -> mpc:
-        return beat.ch + self.slant * beat.sh
+        return self.one + self.ch * beat.ch + self.sh * beat.sh
 
-    def slope(self, beat: Beat) -> mpc:
-        return (self.A * beat.sh + self.slant * beat.ch) / 2
+    def slope(self, beat: Beat, A: mpf) -> mpc:
+        """Its derivative in time."""
+        return (self.ch * A * beat.sh + self.sh * beat.ch) / 2
 
 
 @final
-class NoFactor:
-    """1, for the pole that is d itself."""
-
-    def at(self, beat: Beat) -> mpc:
-        return mpc(1)
-
-    def slope(self, beat: Beat) -> mpc:
-        return mpc(0)
-
-
-@final
-class FactorFromPole:
-    """2 sh, for a start at the pole: v - a is a multiple of sh^2 then."""
-
-    def at(self, beat: Beat) -> mpc:
-        return mpc(2 * beat.sh)
-
-    def slope(self, beat: Beat) -> mpc:
-        return mpc(beat.ch)
-
-
-@final
-class ElementaryOrbit:
+class ElementaryOrbit(Orbit):
     """v in hyperbolic, trigonometric or algebraic functions; to be used at one precision."""
 
     def __init__(self, nutation: Nutation, start: Impulse, digits: int) -> None:
+        super().__init__(start)
         carrier, body = Carrier.of(nutation), nutation.body
         self._d = None if carrier.d is None else mp.convert(carrier.d)
         self._A, self._B, self._C = (mp.convert(c) for c in (carrier.A, carrier.B, carrier.C))
@@ -125,17 +95,16 @@ class ElementaryOrbit:
         self._y3 = mp.convert(nutation.y3)
         self._linear = mp.convert((body.r - body.r_prime) * nutation.y3)
         self._glide = mp.convert(body.q) * self._F
-        self._drift = mp.convert(drift(nutation, nutation.z if carrier.d is None else carrier.d))
+        self._drift = mp.convert(nutation.drift(nutation.z if carrier.d is None else carrier.d))
         self._origin = transverse(start.linear)
         if self._origin == 0:
-            # xi' = i r x3 eta on the axis, and FactorFromPole has the slope 1.
+            # xi' = i r x3 eta on the axis, and the factor 2 sh has the slope 1.
             self._origin = 1j * self._r * mp.convert(nutation.z) * transverse(start.angular)
         self._face_poles(nutation, carrier)
         self._spin = self._r * self._y3 + self._up_rate - self._down_rate
         self._a, self._b = self._first_parameters(nutation)
 
     def pose(self, t: mpf) -> Pose:
-        """x, y, the attitude and Z at the time t since the start."""
         beat = self._beat(t)
         v, v_slope = self._carried(beat)
         L = self._linear * t + self._screw * self._integral_of_z(beat)
@@ -164,12 +133,10 @@ class ElementaryOrbit:
         return Pose((xi, z), (eta, self._y3), turned, rise / (self._r * self._F))
 
     @property
-    def period(self) -> mpf:
-        """The period of nutation, infinite where x3 does not recur."""
-        return 2 * mp.pi / self._rate if self._A < 0 else mp.inf
+    def elements(self) -> dict[str, mpf]:
+        return {"period": 2 * mp.pi / self._rate} if self._A < 0 else {}
 
-    def lost_digits(self, t: mpf) -> int:
-        """An estimate of the digits lost by the time t >= 0; two precisions decide."""
+    def losses(self, t: mpf) -> list[mpf]:
         pace = abs(self._linear) + abs(self._up_rate) + abs(self._down_rate)
         pace += abs(self._screw) * self._F + abs(self._glide)
         losses = [1 + self._rate * t, 1 + pace * t]
@@ -177,7 +144,7 @@ class ElementaryOrbit:
             # Falling away from near d, v is a small difference on the way, and grows from another,
             # smaller in proportion to 1/v0^2, when it returns.
             losses.append(1 + (self._F * self._v0) ** 2)
-        return sum(int(mp.ceil(mp.log10(loss))) for loss in losses)
+        return losses
 
     def _face_poles(self, nutation: Nutation, carrier: Carrier) -> None:
         """The factor of each pole, the upper first, and the linear parts of U and D."""
@@ -192,13 +159,14 @@ class ElementaryOrbit:
                 away = left[k] * self._v0 / gaps[k]
                 delta = self._r * pull / gaps[k] ** 2
                 rates[k] = self._r / 2 * pull / gaps[k]
-            else:
-                factors.append(NoFactor())
+            else:  # the pole is d itself
+                factors.append(Factor(mpc(1), mpc(0), mpc(0)))
                 continue
-            if left[k] == 0:
-                factors.append(FactorFromPole())
+            if left[k] == 0:  # a start at the pole: v - a is a multiple of sh^2
+                factors.append(Factor(mpc(0), mpc(0), mpc(2)))
             else:
-                factors.append(FactorFromAfar(self._A, mpc(self._v0_slope, delta) / away))
+                slant = mpc(self._v0_slope, delta) / away
+                factors.append(Factor(mpc(0), mpc(1), slant))
         self._factors = factors
         self._up_rate, self._down_rate = rates
 
@@ -231,7 +199,7 @@ class ElementaryOrbit:
         product, slope = mpc(1), mpc(0)
         for factor in self._factors:
             here = factor.at(beat)
-            product, slope = product * here, slope * here + product * factor.slope(beat)
+            product, slope = product * here, slope * here + product * factor.slope(beat, self._A)
         return product, slope
 
     def _integral_of_z(self, beat: Beat) -> mpf:
@@ -263,7 +231,7 @@ class ElementaryOrbit:
 
 
 @final
-class Front:
+class Front(Orbit):
     """f = c^2 (F^2 - z^2)^2: x3 goes from one pole to the other, z' = c (F^2 - z^2), xi' ~ xi.
 
     F + z and F - z are as p e^{lambda t} and m e^{-lambda t}, with lambda = c F, whose sum over 2F is
@@ -271,6 +239,7 @@ class Front:
     """
 
     def __init__(self, nutation: Nutation, start: Impulse, digits: int) -> None:
+        super().__init__(start)
         body = nutation.body
         self._minus, self._plus = distances(nutation.F2, nutation.z)
         self._F = mp.sqrt(mp.convert(nutation.F2))
@@ -280,12 +249,11 @@ class Front:
         self._glide = mp.convert(body.q) * self._F
         # r F Z' = drift + c^2 (z^2 - F^2), and z' = c (F^2 - z^2).
         self._drift = mp.convert(
-            drift(nutation, nutation.z) + nutation.f[0] * (nutation.F2 - nutation.z**2)
+            nutation.drift(nutation.z) + nutation.f[0] * (nutation.F2 - nutation.z**2)
         )
         self._z0 = self._z(self._plus, self._minus)  # as at t = 0, so that Z is zero there
 
     def pose(self, t: mpf) -> Pose:
-        """x, y, the attitude and Z at the time t since the start."""
         growth = mp.exp(self._c * self._F * t)
         up, down = self._plus * growth, self._minus / growth
         spread = (up + down) / (2 * self._F)
@@ -303,12 +271,9 @@ class Front:
         return self._F * (up - down) / (up + down)
 
     @property
-    def period(self) -> mpf:
-        """Infinite: x3 does not recur."""
-        return mp.inf
+    def elements(self) -> dict[str, mpf]:
+        return {}
 
-    def lost_digits(self, t: mpf) -> int:
-        """An estimate of the digits lost by the time t >= 0; two precisions decide."""
+    def losses(self, t: mpf) -> list[mpf]:
         turned = abs(self._screw) * self._F + abs(self._glide)
-        losses = [1 + abs(self._c) * self._F * t, 1 + turned * t]
-        return sum(int(mp.ceil(mp.log10(loss))) for loss in losses)
+        return [1 + abs(self._c) * self._F * t, 1 + turned * t]

@@ -10,24 +10,19 @@ and Kirchhoff's equations, the attitude, T, F^2, FG and y3 are what they were.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any, final
+from typing import Any
 
-import numpy as np
-from mpmath import mp
-
-from taylor_verify.exact.balls import Enclosed, Enclosure, ball, balls
+from taylor_verify.exact.kirchhoff.carried import Back, Number
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.rotation import rotation_matrix
-from taylor_verify.exact.solution import Quantities, Settled, Solution
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.scene import Scene
-
-_GUARD_DIGITS = 6
+from taylor_verify.scenes.tensors import Vector
 
 
 def centred(scene: Scene) -> tuple[Scene, Fraction]:
@@ -61,73 +56,24 @@ def centred(scene: Scene) -> tuple[Scene, Fraction]:
     ), distance
 
 
-def displaced(inner: Solution, distance: Fraction, scene: Scene) -> Solution:
-    """The motion of the scene itself, from that of the scene about the other origin."""
-    _, start = solid(scene)
-    if isinstance(inner, Enclosed):
-        return DisplacedBalls(inner, distance, start)
-    return Displaced(inner, distance, start)
+def moved_back(distance: Fraction, start: Impulse) -> Back:
+    """Return the way back from ``centred`` to the scene's own origin."""
+
+    def back(rows: dict[str, Any], elapsed: Sequence[Fraction], number: Number) -> None:
+        far = number(distance)
+        x, y = rows["linear_impulse"], rows["angular_impulse"].copy()
+        y[:, 0], y[:, 1] = y[:, 0] - far * x[:, 1], y[:, 1] + far * x[:, 0]
+        rows["angular_impulse"] = _as_given(y, start.angular, elapsed, number)
+        if "centre" in rows:
+            centre = rows["centre"] - far * rows["attitude"][:, :, 2]
+            rows["centre"] = _as_given(centre, start.centre, elapsed, number)
+
+    return back
 
 
-@final
-class DisplacedBalls(Enclosed):
-    """In balls: what cancels in y or in the centre widens them, and the precision rises."""
-
-    def __init__(self, inner: Enclosed, distance: Fraction, start: Impulse) -> None:
-        self.regime = inner.regime
-        self._inner, self._distance, self._start = inner, distance, start
-
-    def enclose(self, elapsed: Sequence[Fraction], bits: int) -> Enclosure:
-        return _moved_back(
-            self._inner.enclose(elapsed, bits),
-            ball(self._distance),
-            _at_start(elapsed, (balls(self._start.angular), balls(self._start.centre))),
-        )
-
-
-@final
-class Displaced(Settled):
-    """In mpmath, believed when two evaluations agree after the move."""
-
-    route = "mpmath"
-
-    def __init__(self, inner: Solution, distance: Fraction, start: Impulse) -> None:
-        self.regime = inner.regime
-        self._inner, self._distance, self._start = inner, distance, start
-
-    def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
-        found = self._inner.evaluate(elapsed, digits)
-        with mp.workdps(digits + _GUARD_DIGITS):
-            start = self._start
-            told = [[mp.convert(c) for c in part] for part in (start.angular, start.centre)]
-            moved = _moved_back(found, mp.convert(self._distance), _at_start(elapsed, told))
-        return {name: np.array(rows, dtype=object) for name, rows in moved.items()}
-
-
-def _at_start(elapsed: Sequence[Fraction], told: Sequence[Any]) -> list[Sequence[Any] | None]:
-    """y and the centre as they are told, where no time has gone; None elsewhere.
-
-    A y, or a centre, that starts from zero has no digits but exact ones.
-    """
-    return [None if t else told for t in elapsed]
-
-
-def _moved_back(
-    found: Mapping[str, Any], distance: Any, told: Sequence[Sequence[Any] | None]
-) -> dict[str, Any]:
-    """The quantities about the scene's own origin; y and the centre as ``told`` where they are."""
-    impulses = zip(found["linear_impulse"], found["angular_impulse"], told, strict=True)
-    moved = dict(found)
-    moved["angular_impulse"] = [
-        [y[0] - distance * x[1], y[1] + distance * x[0], y[2]] if start is None else start[0]
-        for x, y, start in impulses
-    ]
-    if "centre" in found:
-        places = zip(found["centre"], found["attitude"], told, strict=True)
-        moved["centre"] = [
-            [c - distance * row[2] for c, row in zip(centre, frame, strict=True)]
-            if start is None
-            else start[1]
-            for centre, frame, start in places
-        ]
-    return moved
+def _as_given(rows: Any, start: Vector, elapsed: Sequence[Fraction], number: Number) -> Any:
+    """The rows with the start itself where no time has gone: a zero there has no digits but exact ones."""
+    for row, t in zip(rows, elapsed, strict=True):
+        if not t:
+            row[:] = [number(entry) for entry in start]
+    return rows

@@ -1,4 +1,4 @@
-"""What is told of the orbit of a free solid without an axis of symmetry.
+"""The elements of the orbit of a free solid without an axis of symmetry, and those of every free solid.
 
 Three numbers at least, T, F and G; a fourth integral where the body is of an integrable family; a
 period where the motion stays in a plane of the body, two rates in Weber's case; and of the steady
@@ -7,17 +7,17 @@ screws beside it, which of them are stable.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from mpmath import mp, mpf
 
 from taylor_verify.exact.element import Element, Elements, settled
-from taylor_verify.exact.kirchhoff.conserved import conserved
 from taylor_verify.exact.kirchhoff.integrable import fourth_integral
 from taylor_verify.exact.kirchhoff.pendulum import Pendulum
-from taylor_verify.exact.kirchhoff.plane import Plane, plane, regime
+from taylor_verify.exact.kirchhoff.plane import plane, regime
+from taylor_verify.exact.kirchhoff.screws import Screw, Stability, is_steady, screws_beside
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.kirchhoff.weber.curve import REGIME as WEBER
 from taylor_verify.exact.kirchhoff.weber.curve import Curve, curve
@@ -28,8 +28,8 @@ from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.precision import float_text
 from taylor_verify.scenes.scene import Scene
 
-if TYPE_CHECKING:
-    from taylor_verify.exact.kirchhoff.screws import Screw
+Words = Mapping[str, tuple[str, str]]
+"""Unit and meaning of elements, by name and in their order."""
 
 _PENDULUM: Final = "(2 alpha)'' = -omega0^2 sin 2 alpha"
 _CURVE: Final = "H. Weber, Math. Ann. 14 (1878) 173"
@@ -49,6 +49,18 @@ _NOT_THREE: Final = (
     "Of the steady screws that turn as the start does two have the same mu: every axis of a plane "
     "is one."
 )
+_UNBUILT: Final = "The energy is not of Clebsch's form about a body axis: no closed form is built."
+_UNSOLVED: Final = (
+    "The energy is not of Clebsch's form about a body axis: no closed form is built, and for a body "
+    "with three invariants alone none is known."
+)
+_SWING: Final[Words] = {
+    "period": ("time", "x and y recur in body axes"),
+    "rate": ("radians/time", "of the elliptic argument"),
+    "m": ("", "parameter k^2; 0 for sines, 1 on the separatrix"),
+    "k": ("", "modulus of the elliptic functions"),
+    "m_prime": ("", "1 - m, one measure of the separatrix's distance"),
+}
 _STORY: Final[Mapping[str, str]] = {
     "planar-steady": "x and y are constant: the body moves straight on, or not at all.",
     "planar-uniform": "The body turns in a plane at a constant rate.",
@@ -65,117 +77,84 @@ _STORY: Final[Mapping[str, str]] = {
 }
 
 
-def elements_of(scene: Scene, digits: int) -> Elements:
+def elements(scene: Scene, digits: int) -> Elements:
     """The elements of a free body without an axis of symmetry."""
     body, start = solid(scene)
-    found = plane(scene)
-    alone = replace(scene, track=frozenset())
-    kind, weber = NO_CLOSED_FORM if found is None else regime(found), _of_genus_two(alone)
+    place, weber, fourth = plane(scene), _weber_curve(scene), fourth_integral(scene)
+    kind = NO_CLOSED_FORM if place is None else regime(place)
     if weber is not None and not scene.track:
         kind = WEBER
-    numbers = settled(
-        lambda working: [
-            *_of_plane(found, alone, working),
-            *_of_curve(weber, working),
-            *conserved(body, start),
-        ],
-        digits,
-    )
-    fourth = fourth_integral(scene)
-    if kind in _STORY:
-        story = _STORY[kind]
-    elif fourth is not None:
-        story = "The energy is not of Clebsch's form about a body axis: no closed form is built."
-    else:
-        story = (
-            "The energy is not of Clebsch's form about a body axis: no closed form is built, and "
-            "for a body with three invariants alone none is known."
-        )
-    told = [story, _THREE]
+
+    def numbers(working: int) -> list[Element]:
+        swing = {} if place is None else Pendulum(kind, place, scene).elements(working)
+        rates = [] if weber is None else _weber_rates(weber, working)
+        return [*recurring(swing, _SWING, _PENDULUM), *rates, *conserved(body, start)]
+
+    told = [_STORY.get(kind, _UNSOLVED if fourth is None else _UNBUILT), _THREE]
     if fourth is not None:
         told.append(
             f"Conserved too: {fourth.name}, the fourth integral of {_FAMILIES[fourth.name]}."
         )
-    return Elements(kind, numbers, (*told, *_told_of_screws(body, start)))
+    return Elements(kind, settled(numbers, digits), (*told, *_screw_story(scene)))
 
 
-def _of_plane(found: Plane | None, alone: Scene, working: int) -> list[Element]:
-    """Period, rate and parameters of the pendulum, as far as it has them."""
-    if found is None:
-        return []
-    known = Pendulum(regime(found), found, alone).elements(working)
-    words = {
-        "period": ("time", "x and y recur in body axes"),
-        "rate": ("radians/time", "of the elliptic argument"),
-        "m": ("", "parameter k^2; 0 for sines, 1 on the separatrix"),
-        "k": ("", "modulus of the elliptic functions"),
-        "m_prime": ("", "1 - m, one measure of the separatrix's distance"),
-    }
-    values: dict[str, mpf] = dict(known)
+def recurring(known: Mapping[str, mpf], words: Words, source: str) -> Iterator[Element]:
+    """Yield period, rate and parameters of a closed form, as far as it has them."""
+    values = dict(known)
+    if "period" in known:
+        values["nutation_frequency"] = 2 * mp.pi / known["period"]
     if "m" in known:
         values["k"] = mp.sqrt(known["m"])
-    return [
-        Element(name, values[name], unit, meaning, _PENDULUM)
-        for name, (unit, meaning) in words.items()
-        if name in values
-    ]
+    for name, (unit, meaning) in words.items():
+        if name in values:
+            by = "2 pi/period" if name == "nutation_frequency" else source
+            yield Element(name, values[name], unit, meaning, by)
 
 
-def _of_genus_two(alone: Scene) -> Curve | None:
+def conserved(body: ImmersedBody, start: Impulse) -> Iterator[Element]:
+    """Yield T, F and G, which every free motion keeps; G only where there is an F."""
+    x, y = start.linear, start.angular
+    T = mp.convert(tensors.dot(x + y, tensors.apply(body.energy_matrix, x + y)) / 2)
+    yield Element("T", T, "energy", "kinetic energy, conserved", "Hydromechanics 48 (i)")
+    F = mp.sqrt(mp.convert(tensors.dot(x, x)))
+    yield Element("F", F, "impulse", "linear impulse |x|, conserved", "Hydromechanics 48 (ii)")
+    if F:
+        G = mp.convert(tensors.dot(x, y)) / F
+        meaning = "angular impulse along F, x.y/F, conserved"
+        yield Element("G", G, "angular impulse", meaning, "Hydromechanics 48 (iii)")
+
+
+def _weber_curve(scene: Scene) -> Curve | None:
     """Weber's curve of the motion of x and y, where it has one that is not degenerate."""
     try:
-        return curve(alone)
+        return curve(replace(scene, track=frozenset()))
     except NoClosedForm:
         return None
 
 
-def _of_curve(found: Curve | None, working: int) -> list[Element]:
+def _weber_rates(found: Curve, working: int) -> list[Element]:
     """The rates of the two angles."""
-    if found is None:
-        return []
     from taylor_verify.exact.kirchhoff.weber.enclosure import rates
 
     meaning = "of the {} of two angles of which x and y are functions, of period 2 pi in each"
-    words = ("first_rate", "second_rate"), ("first", "second")
     return [
-        Element(name, rate, "radians/time", meaning.format(which), _CURVE)
-        for name, which, rate in zip(*words, rates(found, working), strict=True)
+        Element(f"{which}_rate", rate, "radians/time", meaning.format(which), _CURVE)
+        for which, rate in zip(("first", "second"), rates(found, working), strict=True)
     ]
 
 
-# The steady screws beside the motion.
-
-
-def screws_beside(scene: Scene) -> tuple[Screw, ...]:
-    """The steady screws with the F of the scene that turn about it as fast as its start does.
-
-    None for a body of revolution, under loads, without linear impulse, and where they are not
-    three.
-    """
-    from taylor_verify.exact.kirchhoff.screws import screws, turn_of
-
-    body, start = scene.body, scene.initial
-    if not (isinstance(body, ImmersedBody) and isinstance(start, Impulse)):
-        return ()
-    if not body.is_free or body.axis_of_symmetry is not None or not any(start.linear):
-        return ()
-    return screws(body, tensors.dot(start.linear, start.linear), turn_of(body, start))
-
-
-def _told_of_screws(body: ImmersedBody, start: Impulse) -> list[str]:
-    """Which of the three are stable, and whether the start is one of them."""
-    from taylor_verify.exact.kirchhoff.screws import is_steady, screws, turn_of
-
+def _screw_story(scene: Scene) -> list[str]:
+    """The stability of the three screws beside the motion, and whether the start is one of them."""
+    body, start = solid(scene)
     if not any(start.linear):
         return []
-    turn = turn_of(body, start)
-    found = screws(body, tensors.dot(start.linear, start.linear), turn)
     told = ["The start is itself a steady screw."] if is_steady(body, start) else []
+    found = screws_beside(scene)
     if not found:
         return [*told, _NOT_THREE]
     told.append(
         "Steady screws with this F that turn about it as the start does, lambda = Omega.x/F^2 = "
-        f"{float_text(turn)}: three, by rising mu."
+        f"{float_text(found[0].turn)}: three, by rising mu."
     )
     for number, screw in enumerate(found, 1):
         axis = ", ".join(f"{float(entry.mid()):.3g}" for entry in screw.axis())
@@ -188,8 +167,6 @@ def _told_of_screws(body: ImmersedBody, start: Impulse) -> list[str]:
 
 def _pace(screw: Screw) -> str:
     """The rates that go with the statement."""
-    from taylor_verify.exact.kirchhoff.screws import Stability
-
     if screw.stability is Stability.UNDECIDED:
         return ""
     if screw.stability is Stability.UNSTABLE:

@@ -9,12 +9,14 @@ from dataclasses import fields, replace
 from fractions import Fraction
 from typing import Final, final
 
+import numpy as np
+
 from taylor_verify.exact import clocks
-from taylor_verify.exact.equations import Equations, cross, total
+from taylor_verify.exact.equations import Equations, cross, exact
 from taylor_verify.exact.invariant import Array, Invariant
 from taylor_verify.exact.kind import Kind
 from taylor_verify.exact.kirchhoff.integrable import fourth_integral
-from taylor_verify.exact.kirchhoff.invariants import F2, FG, X_SPACE, Y_SPACE, axial, energy, fourth
+from taylor_verify.exact.kirchhoff.invariants import F2, FG, X_SPACE, Y_SPACE, axial, energy
 from taylor_verify.exact.parameters import Block, Parameters, entries
 from taylor_verify.exact.rows import norms
 from taylor_verify.exact.units import Units, exponent, halved, largest, later
@@ -51,9 +53,8 @@ class Immersed(Kind[ImmersedBody, Impulse]):
 
     def equations(self, body: ImmersedBody) -> Equations:
         U, Omega = body.energy_matrix[:3], body.energy_matrix[3:]
-        turned = zip(cross(_Y, Omega), cross(_X, U), strict=True)
-        rates = cross(_X, Omega) + [total(p, q) for p, q in turned]
-        return Equations(body.force + body.couple, rates, Omega, U)
+        hessian = np.concatenate([cross(_X, Omega), cross(_Y, Omega) + cross(_X, U)])
+        return Equations(exact(body.force + body.couple), hessian, exact(Omega), exact(U))
 
     def units(self, body: ImmersedBody, z: Vector) -> Units:
         """Each block by its size, or by what the loads, and x x U, make of it in the unit of time."""
@@ -89,9 +90,9 @@ class Immersed(Kind[ImmersedBody, Impulse]):
         found = [energy(body), F2, FG]
         if body.axis_of_symmetry is not None:
             found.append(axial(body.axis_of_symmetry))
-        integral = fourth_integral(scene)
-        if integral is not None:
-            found.append(fourth(integral))
+        fourth = fourth_integral(scene)
+        if fourth is not None:
+            found.append(Invariant(fourth.name, fourth.value, fourth.scale, fourth.sensitivity))
         if "attitude" in scene.track:
             found.append(X_SPACE)
         if "centre" in scene.track:

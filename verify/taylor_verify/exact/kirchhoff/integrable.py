@@ -20,20 +20,24 @@ from fractions import Fraction
 from typing import Any, Final
 
 import numpy as np
+from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
+from taylor_verify.exact.kirchhoff.solid import solid
+from taylor_verify.exact.rows import Array, norms
 from taylor_verify.records.quantities import IMPULSES
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse, Motion
-from taylor_verify.scenes.mpfr import real, sqrt
+from taylor_verify.scenes.mpfr import real
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix
 
-Array = np.ndarray[Any, Any]
 # Coefficients of monomials, by the exponents of x1 x2 x3 y1 y2 y3.
 Terms = Mapping[tuple[int, ...], Fraction]
-# A formula of x and y, in whatever numbers these are.
-Formula = Callable[[Sequence[Any], Sequence[Any]], Any]
+# A vector of numbers of whatever kind.
+Numbers = Sequence[Any]
+# A family's word, and the coefficients of its integral.
+Family = tuple[str, tuple[Any, ...]]
 
 _CYCLIC: Final = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
 
@@ -41,83 +45,66 @@ _CYCLIC: Final = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
 # The integrals.
 
 
-def clebsch2(r: Sequence[Any], theta: Any) -> Formula:
+def clebsch2(x: Numbers, y: Numbers, r: Numbers, theta: Any) -> Any:
     """Clebsch's second case, p_i = p0 + theta r_j r_k, with b_1 = b_2 = b_3."""
-    return lambda x, y: sum(y[i] * y[i] - theta * r[i] * x[i] * x[i] for i in range(3))
+    return sum(y[i] * y[i] - theta * r[i] * x[i] * x[i] for i in range(3))
 
 
-def neumann(r: Any, p: Sequence[Any]) -> Formula:
+def neumann(x: Numbers, y: Numbers, r: Any, p: Numbers) -> Any:
     """r_1 = r_2 = r_3 with any p and b_1 = b_2 = b_3; where FG = 0, Neumann's point on a sphere."""
-    return lambda x, y: sum(
-        r * p[i] * y[i] * y[i] - p[j] * p[k] * x[i] * x[i] for i, j, k in _CYCLIC
+    return sum(r * p[i] * y[i] * y[i] - p[j] * p[k] * x[i] * x[i] for i, j, k in _CYCLIC)
+
+
+def steklov(x: Numbers, y: Numbers, r: Numbers, mu: Any) -> Any:
+    """Steklov's body, b_i = mu r_j r_k + b0 and p_i = mu^2 r_i (r_j - r_k)^2 + p0."""
+    return sum(
+        y[i] * y[i]
+        - 2 * mu * r[i] * x[i] * y[i]
+        + mu * mu * (r[j] - r[k]) * (r[j] - r[k]) * x[i] * x[i]
+        for i, j, k in _CYCLIC
     )
 
 
-def steklov(r: Sequence[Any], mu: Any) -> Formula:
-    """Steklov's body, b_i = mu r_j r_k + b0 and p_i = mu^2 r_i (r_j - r_k)^2 + p0."""
-
-    def formula(x: Sequence[Any], y: Sequence[Any]) -> Any:
-        return sum(
-            y[i] * y[i]
-            - 2 * mu * r[i] * x[i] * y[i]
-            + mu * mu * (r[j] - r[k]) * (r[j] - r[k]) * x[i] * x[i]
-            for i, j, k in _CYCLIC
-        )
-
-    return formula
-
-
-def lyapunov(r: Any, b: Sequence[Any]) -> Formula:
+def lyapunov(x: Numbers, y: Numbers, r: Any, b: Numbers) -> Any:
     """Lyapunov's body (Kolosov's), r_1 = r_2 = r_3 = r, any b and r p_i = (b_j - b_k)^2 + p0."""
-
-    def formula(x: Sequence[Any], y: Sequence[Any]) -> Any:
-        return sum(
-            r * r * b[i] * y[i] * y[i]
-            - 2 * r * b[j] * b[k] * x[i] * y[i]
-            + b[i] * (b[j] - b[k]) * (b[j] - b[k]) * x[i] * x[i]
-            for i, j, k in _CYCLIC
-        )
-
-    return formula
+    return sum(
+        r * r * b[i] * y[i] * y[i]
+        - 2 * r * b[j] * b[k] * x[i] * y[i]
+        + b[i] * (b[j] - b[k]) * (b[j] - b[k]) * x[i] * x[i]
+        for i, j, k in _CYCLIC
+    )
 
 
-def chaplygin(a: Any, c: Any, d: Any) -> Formula:
+def chaplygin(x: Numbers, y: Numbers, a: Any, c: Any, d: Any) -> Any:
     """Chaplygin's body, where FG = 0 alone.
 
     T = a (y1^2 + y2^2 + 2 y3^2)/2 + c (x1^2 - x2^2)/2 + d x1 x2.
     """
-
-    def formula(x: Sequence[Any], y: Sequence[Any]) -> Any:
-        even = a * (y[0] * y[0] - y[1] * y[1]) + c * x[2] * x[2]
-        odd = 2 * a * y[0] * y[1] + d * x[2] * x[2]
-        return even * even + odd * odd
-
-    return formula
+    even = a * (y[0] * y[0] - y[1] * y[1]) + c * x[2] * x[2]
+    odd = 2 * a * y[0] * y[1] + d * x[2] * x[2]
+    return even * even + odd * odd
 
 
-def chaplygin_leak(a: Any, c: Any, d: Any) -> Formula:
-    """What FG does to Chaplygin's integral K where it is not zero: K' = leak FG."""
-
-    def formula(x: Sequence[Any], y: Sequence[Any]) -> Any:
-        across = 2 * c * y[0] * y[1] - d * (y[0] * y[0] - y[1] * y[1])
-        return 4 * a * a * x[2] * across
-
-    return formula
+def chaplygin_leak(x: Numbers, y: Numbers, a: Any, c: Any, d: Any) -> Any:
+    """The effect of FG on Chaplygin's integral K where FG is not zero: K' = leak FG."""
+    return 4 * a * a * x[2] * (2 * c * y[0] * y[1] - d * (y[0] * y[0] - y[1] * y[1]))
 
 
-def sokolov(a: Any, c: Any, d: Any) -> Formula:
+def sokolov(x: Numbers, y: Numbers, a: Any, c: Any, d: Any) -> Any:
     """Sokolov's body, T = a (y1^2 + y2^2 + 2 y3^2)/2 + (c x1 + d x2) y3 - (c^2 + d^2) x3^2/(2 a)."""
+    along_x, along_y = c * x[0] + d * x[1], c * y[0] + d * y[1]
+    level = x[0] * y[0] + x[1] * y[1]
+    size = c * c + d * d
+    squares = y[0] * y[0] + y[1] * y[1] + y[2] * y[2]
+    once = along_y * level + along_x * y[2] * y[2]
+    twice = (along_x * along_x - size * x[2] * x[2]) * y[2] - 2 * size * x[2] * level
+    return y[2] * (a * a * y[2] * squares + 2 * a * once + twice)
 
-    def formula(x: Sequence[Any], y: Sequence[Any]) -> Any:
-        along_x, along_y = c * x[0] + d * x[1], c * y[0] + d * y[1]
-        level = x[0] * y[0] + x[1] * y[1]
-        size = c * c + d * d
-        squares = y[0] * y[0] + y[1] * y[1] + y[2] * y[2]
-        once = along_y * level + along_x * y[2] * y[2]
-        twice = (along_x * along_x - size * x[2] * x[2]) * y[2] - 2 * size * x[2] * level
-        return y[2] * (a * a * y[2] * squares + 2 * a * once + twice)
 
-    return formula
+FORMULAS: Final[dict[str, Callable[..., Any]]] = {
+    formula.__name__: formula
+    for formula in (clebsch2, neumann, steklov, lyapunov, chaplygin, sokolov)
+}
 
 
 # Who has one.
@@ -148,7 +135,7 @@ class Fourth:
         for it.
         """
         x, y = motion["linear_impulse"], motion["angular_impulse"]
-        X, Y = max(_norms(x)), max(_norms(y))
+        X, Y = max(norms(x)), max(norms(y))
         sizes = real([abs(c) for c in self.terms.values()], x)
         degrees = [(sum(powers[:3]), sum(powers[3:])) for powers in self.terms]
         total = sum(c * X**m * Y**n for c, (m, n) in zip(sizes, degrees, strict=True))
@@ -162,12 +149,12 @@ class Fourth:
         """
         columns = _columns(motion)
         gradient = [_evaluated(_derivative(self.terms, n), columns) for n in range(6)]
-        by_x, by_y = _norms(np.stack(gradient[:3], axis=1)), _norms(np.stack(gradient[3:], axis=1))
+        by_x, by_y = norms(np.stack(gradient[:3], axis=1)), norms(np.stack(gradient[3:], axis=1))
         if self.leak:
             sizes = abs(_evaluated(self.leak, columns))
             lost = sum(sizes) / len(sizes) * real([abs(self.span)], by_x)[0]
-            by_x = by_x + lost * _norms(motion["angular_impulse"])
-            by_y = by_y + lost * _norms(motion["linear_impulse"])
+            by_x = by_x + lost * norms(motion["angular_impulse"])
+            by_y = by_y + lost * norms(motion["linear_impulse"])
         return {"linear_impulse": by_x, "angular_impulse": by_y}
 
 
@@ -177,47 +164,42 @@ def fourth_integral(scene: Scene) -> Fourth | None:
     Decided in the scene's own rationals, so that of a scene rounded to a rung what is left of a
     relation between its coefficients decides.
     """
-    body, start = scene.body, scene.initial
-    if not (isinstance(body, ImmersedBody) and isinstance(start, Impulse)):
-        return None
+    body, start = solid(scene)
     if not body.is_free or body.axis_of_symmetry is not None:
         return None
-    found = _of_diagonal(body) or _of_kovalevskaya(body, start)
+    found = diagonal_family(body) or _kovalevskaya_family(body, start)
     if found is None:
         return None
-    name, formula, leak = found
+    name, coefficients = found
+    leak = _terms(chaplygin_leak, coefficients) if name == "chaplygin" else {}
     elapsed = scene.clock.elapsed
-    return Fourth(name, terms(formula), terms(leak), elapsed[-1] if elapsed else Fraction(0))
+    span = elapsed[-1] if elapsed else Fraction(0)
+    return Fourth(name, _terms(FORMULAS[name], coefficients), leak, span)
 
 
-_Found = tuple[str, Formula, Formula]
-
-
-def _nothing(x: Sequence[Any], y: Sequence[Any]) -> Any:
-    return 0 * x[0]
-
-
-def _of_diagonal(body: ImmersedBody) -> _Found | None:
-    """Clebsch's second case, r_i = r, Steklov's and Lyapunov's."""
+def diagonal_family(body: ImmersedBody) -> Family | None:
+    """Clebsch's second case, r_i = r, Steklov's or Lyapunov's family, where the energy is diagonal."""
     if not all(tensors.is_diagonal(m) for m in (body.linear, body.coupling, body.angular)):
         return None
-    p, b, r = (_entries(matrix) for matrix in (body.linear, body.coupling, body.angular))
+    p, b, r = (
+        [matrix[i][i] for i in range(3)] for matrix in (body.linear, body.coupling, body.angular)
+    )
     if _equal(r):
         if _equal(b):
-            return "neumann", neumann(r[0], _centred(p)), _nothing
+            return "neumann", (r[0], _centred(p))
         rest = [r[0] * p[i] - (b[j] - b[k]) ** 2 for i, j, k in _CYCLIC]
-        return ("lyapunov", lyapunov(r[0], _centred(b)), _nothing) if _equal(rest) else None
+        return ("lyapunov", (r[0], _centred(b))) if _equal(rest) else None
     if _equal(b):
         theta = _slope(p, r)
         fits = _equal([p[i] - theta * r[j] * r[k] for i, j, k in _CYCLIC])
-        return ("clebsch2", clebsch2(r, theta), _nothing) if fits else None
+        return ("clebsch2", (r, theta)) if fits else None
     mu = _slope(b, r)
     of_b = [b[i] - mu * r[j] * r[k] for i, j, k in _CYCLIC]
     of_p = [p[i] - mu**2 * r[i] * (r[j] - r[k]) ** 2 for i, j, k in _CYCLIC]
-    return ("steklov", steklov(r, mu), _nothing) if _equal(of_b) and _equal(of_p) else None
+    return ("steklov", (r, mu)) if _equal(of_b) and _equal(of_p) else None
 
 
-def _of_kovalevskaya(body: ImmersedBody, start: Impulse) -> _Found | None:
+def _kovalevskaya_family(body: ImmersedBody, start: Impulse) -> Family | None:
     """Chaplygin's and Sokolov's: r_1 = r_2 = r_3/2, as in Kovalevskaya's top."""
     A, B, C = body.linear, body.coupling, body.angular
     a = C[0][0]
@@ -228,17 +210,13 @@ def _of_kovalevskaya(body: ImmersedBody, start: Impulse) -> _Found | None:
     if (c or d) and _with((shared,) * 3, {(0, 2): c, (1, 2): d}) == B:
         p0 = A[0][0]
         of_sokolov = A == tensors.diagonal((p0, p0, p0 - (c**2 + d**2) / a))
-        return ("sokolov", sokolov(a, c, d), _nothing) if of_sokolov else None
+        return ("sokolov", (a, c, d)) if of_sokolov else None
     c, d, p0 = (A[0][0] - A[1][1]) / 2, A[0][1], A[2][2]
     is_orthogonal = tensors.dot(start.linear, start.angular) == 0
     of_chaplygin = _with((p0 + c, p0 - c, p0), {(0, 1): d, (1, 0): d}) == A
     if is_orthogonal and of_chaplygin and tensors.diagonal((shared,) * 3) == B:
-        return "chaplygin", chaplygin(a, c, d), chaplygin_leak(a, c, d)
+        return "chaplygin", (a, c, d)
     return None
-
-
-def _entries(matrix: Matrix) -> list[Fraction]:
-    return [matrix[i][i] for i in range(3)]
 
 
 def _with(diagonal: tuple[Fraction, ...], beside: Mapping[tuple[int, int], Fraction]) -> Matrix:
@@ -251,7 +229,7 @@ def _with(diagonal: tuple[Fraction, ...], beside: Mapping[tuple[int, int], Fract
 
 
 def _equal(values: Sequence[Fraction]) -> bool:
-    return all(value == values[0] for value in values)
+    return len(set(values)) == 1
 
 
 def _centred(values: Sequence[Fraction]) -> list[Fraction]:
@@ -269,46 +247,21 @@ def _slope(values: Sequence[Fraction], r: Sequence[Fraction]) -> Fraction:
 # Polynomials.
 
 
-def terms(formula: Formula) -> Terms:
+def _terms(formula: Callable[..., Any], coefficients: Sequence[Any]) -> Terms:
     """The formula multiplied out, its coefficients being rational."""
-    from flint import Ordering, fmpq_mpoly, fmpq_mpoly_ctx
-
-    context = fmpq_mpoly_ctx.get(IMPULSES, Ordering.lex)
-    state = [_Exact(generator) for generator in context.gens()]
-    found = formula(state[:3], state[3:]).polynomial
-    assert isinstance(found, fmpq_mpoly)
+    state = fmpq_mpoly_ctx.get(IMPULSES, Ordering.lex).gens()
+    found = formula(state[:3], state[3:], *map(_rational, coefficients))
     return {
         tuple(int(power) for power in powers): Fraction(int(c.p), int(c.q))
         for powers, c in found.to_dict().items()
     }
 
 
-class _Exact:
-    """A polynomial that takes Fractions for its coefficients."""
-
-    def __init__(self, polynomial: Any) -> None:
-        self.polynomial = polynomial
-
-    def __add__(self, other: Any) -> _Exact:
-        return _Exact(self.polynomial + _plain(other))
-
-    def __sub__(self, other: Any) -> _Exact:
-        return _Exact(self.polynomial - _plain(other))
-
-    def __mul__(self, other: Any) -> _Exact:
-        return _Exact(self.polynomial * _plain(other))
-
-    __radd__, __rmul__ = __add__, __mul__
-
-
-def _plain(number: Any) -> Any:
-    """What flint multiplies a polynomial by."""
-    from flint import fmpq
-
-    if isinstance(number, _Exact):
-        return number.polynomial
-    number = Fraction(number)
-    return fmpq(number.numerator, number.denominator)
+def _rational(value: Any) -> Any:
+    """A number, or a list of some, as flint multiplies a polynomial by it."""
+    if isinstance(value, list):
+        return [_rational(entry) for entry in value]
+    return fmpq(value.numerator, value.denominator)
 
 
 def _derivative(polynomial: Terms, place: int) -> Terms:
@@ -335,7 +288,3 @@ def _evaluated(polynomial: Terms, columns: Sequence[Array]) -> Array:
                 term = term * column
         total = total + term
     return total
-
-
-def _norms(rows: Array) -> Array:
-    return sqrt(np.sum(rows * rows, axis=1))

@@ -12,7 +12,6 @@ from typing import Any, Final
 import numpy as np
 
 from taylor_verify.exact.invariant import Array, Invariant
-from taylor_verify.exact.kirchhoff.integrable import Fourth
 from taylor_verify.exact.rows import (
     applied,
     cross,
@@ -74,10 +73,6 @@ def axial(axis: int) -> Invariant:
         lambda motion: nonzero(size(motion["angular_impulse"])),
         lambda motion: {"angular_impulse": ones(motion["angular_impulse"])},
     )
-
-
-def fourth(found: Fourth) -> Invariant:
-    return Invariant(found.name, found.value, found.scale, found.sensitivity)
 
 
 X_SPACE: Final = Invariant(

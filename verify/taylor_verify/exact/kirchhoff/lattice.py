@@ -2,7 +2,7 @@
 
 Legend: (X, Y) = (p(u), p'(u)) is Weierstrass's p; e_i are the roots of the cubic and Delta = g2^3 -
 27 g3^2 its discriminant; L is the real period, L tau the other one. s(u) is an odd function with a
-simple zero at every period: theta_1(u/L), sin(kappa u), sinh(kappa u) or u itself. A quotient of
+simple zero at every period: theta_1(u/L), a sine, a hyperbolic sine or u itself. A quotient of
 products of s is one of sigma functions up to the exponential of a linear function of u, and the rate
 of that one is found by whoever makes the quotient anyway.
 """
@@ -25,7 +25,12 @@ _ROUGH_TAIL: Final = 0.25
 
 
 class Lattice(ABC):
-    """The periods of p, with numbers of one precision, and to be used at that precision."""
+    """The periods of p, with numbers of one precision, and to be used at that precision.
+
+    ``period`` is the real one; None where p has none.
+    """
+
+    period: arb | None
 
     @abstractmethod
     def jet(self, u: acb, order: int) -> list[acb]:
@@ -43,11 +48,6 @@ class Lattice(ABC):
     def turn(self, u: arb, w: acb, quotient: acb) -> arb:
         """The argument of the quotient s(u - w)/s(-w), continuous in the real u; w is not real."""
 
-    @property
-    @abstractmethod
-    def period(self) -> arb | None:
-        """The real period of p; None where it has none."""
-
 
 def lattice(g2: Fraction, g3: Fraction) -> Lattice:
     """The lattice with these invariants; its kind is decided in rationals."""
@@ -57,9 +57,7 @@ def lattice(g2: Fraction, g3: Fraction) -> Lattice:
     if discriminant < 0:
         return _rhombic(g2, g3, discriminant)
     double_root = -3 * g3 / (2 * g2) if g2 != 0 else Fraction(0)
-    if double_root == 0:
-        return Rational()
-    return Circular(double_root) if double_root < 0 else Hyperbolic(double_root)
+    return Elementary(double_root)
 
 
 def _rectangular(g2: Fraction, g3: Fraction, discriminant: Fraction) -> Periods:
@@ -104,6 +102,7 @@ class Periods(Lattice):
 
     def __init__(self, roots: Sequence[acb], length: arb, tau: acb) -> None:
         self._roots, self._length, self._tau = roots, length, tau
+        self.period = length
         _, th2, th3, th4 = acb.modular_theta(acb(0), tau)
         scale = arb.pi() / length
         # p - e_1 = (pi/L)^2 (th3 th4 theta_2/theta_1)^2, DLMF 23.6.5
@@ -134,10 +133,6 @@ class Periods(Lattice):
     def turn(self, u: arb, w: acb, quotient: acb) -> arb:
         there, start = (u - w) / self._length, -w / self._length
         return nearest_turn(quotient, self._rough_turn(there) - self._rough_turn(start))
-
-    @property
-    def period(self) -> arb:
-        return self._length
 
     def _half_period(self, X: acb) -> acb:
         """The half period whose root X is, the other two being excluded."""
@@ -185,97 +180,47 @@ class Periods(Lattice):
 
 
 @final
-class Circular(Lattice):
-    """A double root e < 0: p = e + kappa^2/sin^2(kappa u) with kappa^2 = -3 e, s(u) = sin(kappa u)."""
+class Elementary(Lattice):
+    """A double root e: p = e + 1/s^2 with s'' = rho^2 s, rho^2 = 3 e, s'(0) = 1.
+
+    So s(u) is sinh(rho u)/rho, a multiple of a sine where e < 0, and u itself for the triple root 0.
+    """
 
     def __init__(self, double_root: Fraction) -> None:
-        self._e = ball(double_root)
-        self._kappa = ball(-3 * double_root).sqrt()
+        self._e, self._square = ball(double_root), ball(3 * double_root)
+        size = abs(self._square).sqrt()
+        self._rho = acb(size) if double_root >= 0 else acb(0, size)
+        self.period = arb.pi() / size if double_root < 0 else None
 
     def jet(self, u: acb, order: int) -> list[acb]:
-        kappa = self._kappa
-        sin, cos = (kappa * u).sin_cos()
-        return [sin, kappa * cos, -(kappa**2) * sin][: order + 1]
+        if self._rho.is_zero():
+            return [u, acb(1), acb(0)][: order + 1]
+        sinh, cosh = (self._rho * u).sinh_cosh()
+        return [sinh / self._rho, cosh, self._rho * sinh][: order + 1]
 
     def p(self, u: acb) -> tuple[acb, acb]:
-        sin, cos = (self._kappa * u).sin_cos()
-        rise = (self._kappa / sin) ** 2
-        return self._e + rise, -2 * self._kappa * rise * cos / sin
+        s, slope = self.jet(u, 1)
+        rise = 1 / s**2
+        return self._e + rise, -2 * rise * slope / s
 
     def argument(self, X: acb, Y: acb) -> acb:
-        """From e^{2 i kappa u} = (cot + i)/(cot - i), with p'/(p - e) = -2 kappa cot."""
-        slant = 2 * _I * self._kappa * (X - self._e)
-        return _logarithm((Y - slant) / (Y + slant)) / (2 * _I * self._kappa)
+        """From e^{2 rho u} = (coth + 1)/(coth - 1), with p'/(p - e) = -2 rho coth = -2 s'/s."""
+        if self._rho.is_zero():
+            return -2 * X / Y
+        slant = 2 * self._rho * (X - self._e)
+        return _logarithm((Y - slant) / (Y + slant)) / (2 * self._rho)
 
     def turn(self, u: arb, w: acb, quotient: acb) -> arb:
-        """sin v is a constant times e^{-i v}(1 - e^{2 i v}) for Im v > 0; below, the conjugate."""
-        side = sign((-w).imag)
-        there, start = (
-            v if side > 0 else v.conjugate() for v in (self._kappa * (u - w), self._kappa * -w)
-        )
+        if self.period is None:
+            # Im sinh(a + i b) = cosh a sin b, and Im (a + i b), have one sign along the line.
+            start = self.jet(-w, 0)[0]
+            across = -sign(start.imag) * _I * start
+            return (across * quotient).arg() - across.arg()
+        # sin v is a constant times e^{-i v}(1 - e^{2 i v}) for Im v > 0; below, the conjugate.
+        kappa, side = self._rho.imag, sign((-w).imag)
+        there, start = (v if side > 0 else v.conjugate() for v in (kappa * (u - w), kappa * -w))
         bend = (1 - (2 * _I * there).exp()).arg() - (1 - (2 * _I * start).exp()).arg()
-        return side * (bend - self._kappa * u)
-
-    @property
-    def period(self) -> arb:
-        return arb.pi() / self._kappa
-
-
-@final
-class Hyperbolic(Lattice):
-    """A double root e > 0: p = e + kappa^2/sinh^2(kappa u), kappa^2 = 3 e, s(u) = sinh(kappa u)."""
-
-    def __init__(self, double_root: Fraction) -> None:
-        self._e = ball(double_root)
-        self._kappa = ball(3 * double_root).sqrt()
-
-    def jet(self, u: acb, order: int) -> list[acb]:
-        kappa = self._kappa
-        sinh, cosh = (kappa * u).sinh_cosh()
-        return [sinh, kappa * cosh, kappa**2 * sinh][: order + 1]
-
-    def p(self, u: acb) -> tuple[acb, acb]:
-        sinh, cosh = (self._kappa * u).sinh_cosh()
-        rise = (self._kappa / sinh) ** 2
-        return self._e + rise, -2 * self._kappa * rise * cosh / sinh
-
-    def argument(self, X: acb, Y: acb) -> acb:
-        """From e^{2 kappa u} = (coth + 1)/(coth - 1), with p'/(p - e) = -2 kappa coth."""
-        slant = 2 * self._kappa * (X - self._e)
-        return _logarithm((Y - slant) / (Y + slant)) / (2 * self._kappa)
-
-    def turn(self, u: arb, w: acb, quotient: acb) -> arb:
-        """Im sinh(a + i b) = cosh a sin b has one sign along the line."""
-        start = (self._kappa * -w).sinh()
-        across = -sign(start.imag) * _I * start
-        return (across * quotient).arg() - across.arg()
-
-    @property
-    def period(self) -> None:
-        return None
-
-
-@final
-class Rational(Lattice):
-    """A triple root, which is zero: p = 1/u^2 and s(u) = u."""
-
-    def jet(self, u: acb, order: int) -> list[acb]:
-        return [u, acb(1), acb(0)][: order + 1]
-
-    def p(self, u: acb) -> tuple[acb, acb]:
-        return 1 / u**2, -2 / u**3
-
-    def argument(self, X: acb, Y: acb) -> acb:
-        return -2 * X / Y
-
-    def turn(self, u: arb, w: acb, quotient: acb) -> arb:
-        """u - w stays on one side of the real line."""
-        across = sign(w.imag) * _I * -w
-        return (across * quotient).arg() - across.arg()
-
-    @property
-    def period(self) -> None:
-        return None
+        return side * (bend - kappa * u)
 
 
 def nearest_turn(quotient: acb, rough: arb) -> arb:

@@ -7,69 +7,56 @@ x1 + i x2 = A e^{i chi}. Derived from x' = x x Omega alone:
     y1 + i y2 = e^{i chi} (FG - y3 z + i z'/r)/A
 
 A has a sign, which it changes where the orbit passes a pole x3 = +-F; chi is smooth there. With
-L, U and D of attitude.py, chi = L + U - D: the attitude takes no other integrals than x and y do.
+L, U and D of space.py, chi = L + U - D: the attitude takes no other integrals than x and y do.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from typing import Final, final
 
 from mpmath import mp, mpc, mpf
 
-from taylor_verify.exact.kirchhoff.attitude import CayleyKlein
-from taylor_verify.exact.kirchhoff.centre import Rise
 from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.kirchhoff.regime import TurningPoints, turning_points
-from taylor_verify.exact.kirchhoff.wave import CosineWave, Place, SquareWave, Swing, Wave
+from taylor_verify.exact.kirchhoff.space import CayleyKlein, Pose, SpaceAxes, transverse
+from taylor_verify.exact.kirchhoff.wave import CosineWave, Place, Rise, SquareWave, Wave
 from taylor_verify.scenes.motion import Impulse
 
 # Of a root that goes from -1 to 1 or so: whatever the precision, beyond this its sign is no rounding.
 _NEAR_POLE: Final = 2.0**-3
 
-Axial = tuple[mpc, mpf]  # (v1 + i v2, v3) of a vector v in body axes
 
+class Orbit(ABC):
+    """One nutating motion, with numbers of one precision; to be used at that precision."""
 
-def transverse(vector: Sequence[Fraction]) -> mpc:
-    """v1 + i v2."""
-    return mpc(mp.convert(vector[0]), mp.convert(vector[1]))
+    def __init__(self, start: Impulse) -> None:
+        self._start = start
 
-
-@dataclass(frozen=True)
-class Pose:
-    """Everything about one instant, in body axes and in space axes with Z along F.
-
-    ``turned`` is the attitude, and ``rise`` is Z, the way of the centre along F since the start.
-    """
-
-    x: Axial
-    y: Axial
-    turned: CayleyKlein
-    rise: mpf
+    @abstractmethod
+    def pose(self, t: mpf) -> Pose:
+        """x, y, the attitude and Z at the time t since the start."""
 
     @property
-    def moment(self) -> mpc:
-        """y_X + i y_Y."""
-        return self.turned.across(*self.y)
+    @abstractmethod
+    def elements(self) -> dict[str, mpf]:
+        """The period of nutation where x3 recurs; for elliptic motion also rate, m and m_prime."""
 
+    @abstractmethod
+    def losses(self, t: mpf) -> list[mpf]:
+        """Estimates of the factors by which errors have grown by the time t >= 0.
 
-@dataclass(frozen=True)
-class Shape:
-    """x and y turned back about axis 3 by chi: x3, (y1 + i y2) e^{-i chi}, and the two factors of A.
+        They save repetitions; whether they were enough is decided by two precisions.
+        """
 
-    They are sqrt(F - x3) and sqrt(F + x3), with the signs of Pole.root.
-    """
-
-    up: mpf
-    down: mpf
-    z: mpf
-    partner: mpc
-
-    @property
-    def amplitude(self) -> mpf:
-        return self.up * self.down
+    @final
+    @cached_property
+    def axes(self) -> SpaceAxes:
+        """The scene's space axes."""
+        return SpaceAxes(self._start, self.pose(mpf(0)))
 
 
 @dataclass(frozen=True)
@@ -85,17 +72,17 @@ class Pole:
     pull: mpf
     reached: bool
 
-    def root(self, swing: Swing, weight: mpf) -> tuple[mpf, mpf]:
+    def root(self, place: Place, weight: mpf) -> tuple[mpf, mpf]:
         """sqrt(F - side x3), signed if the pole is reached, and root_b (side -1: root_a) over it.
 
         The quotient is finite also where both vanish, at the pole itself.
         """
-        size = swing.b + weight * swing.a
-        vanishing = swing.root_b if self.side > 0 else swing.root_a
+        size = place.b + weight * place.a
+        vanishing = place.root_b if self.side > 0 else place.root_a
         if self.reached:
             scale = mp.sqrt((self.from_1 if self.side > 0 else weight * self.from_2) / size)
             return scale * vanishing, 1 / scale
-        root = mp.sqrt((self.from_1 * swing.b + weight * self.from_2 * swing.a) / size)
+        root = mp.sqrt((self.from_1 * place.b + weight * self.from_2 * place.a) / size)
         return root, vanishing / root
 
     def pull_on(self, root: mpf) -> mpf:
@@ -136,36 +123,28 @@ def distances(F2: Fraction, z: Fraction) -> tuple[mpf, mpf]:
 
 
 @final
-class Advance:
-    """What a phase has beyond its linear term: bend times int a/(b + beta a) du."""
-
-    def __init__(self, bend: mpf, beta: mpf, wave: Wave) -> None:
-        self.beta = beta
-        self._bend = bend
-        self._integral = wave.integral(beta)
-        self._at_start = self._integral.at(wave.place(wave.start))
-
-    def at(self, place: Place) -> mpf:
-        return self._bend * (self._integral.at(place) - self._at_start)
-
-
-@final
-@dataclass(frozen=True)
 class Phase:
-    """One of L, U and D: zero at the start, and without an integral where its bend is zero."""
+    """One of L, U and D: linear but for bend times int a/(b + beta a) du, and zero at the start."""
 
-    rate: mpf
-    advance: Advance | None = None
+    def __init__(self, rate: mpf, wave: Wave, bend: mpf | int = 0, beta: mpf | int = 1) -> None:
+        self.rate, self.bend, self.beta = rate, bend, beta
+        if bend:
+            self._integral = wave.integral(beta)
+            self._at_start = self._integral.at(wave.place(wave.start))
 
     def at(self, t: mpf, place: Place) -> mpf:
         linear = self.rate * t
-        return linear if self.advance is None else linear + self.advance.at(place)
+        if not self.bend:
+            return linear
+        return linear + self.bend * (self._integral.at(place) - self._at_start)
 
 
-class Orbit:
-    """One nutating motion, with numbers of one precision; to be used at that precision."""
+@final
+class EllipticOrbit(Orbit):
+    """A motion whose x3 swings between two simple roots of f."""
 
     def __init__(self, nutation: Nutation, start: Impulse, digits: int) -> None:
+        super().__init__(start)
         points = turning_points(nutation, digits)
         self._wave: Wave = (SquareWave if points.pair is None else CosineWave)(nutation, points)
         self._r, self._y3 = mp.convert(nutation.body.r), mp.convert(nutation.y3)
@@ -173,96 +152,78 @@ class Orbit:
         self._poles = _poles(nutation, points)
         self._F = mp.sqrt(mp.convert(nutation.F2))
         self._glide = mp.convert(nutation.body.q) * self._F
-        self._spin = self._spin_phase(nutation)
-        self._up, self._down = (self._pole_phase(pole) for pole in self._poles)
+        self._phases = self._spin_phase(nutation), *map(self._pole_phase, self._poles)
         self._rise = Rise(nutation, points.z1, self._wave)
         self._turn = self._first_turn(start)
 
     def pose(self, t: mpf) -> Pose:
-        """x, y, the attitude and Z at the time t since the start."""
         place = self._wave.place(self._wave.start + self._wave.rate * t)
-        swing = self._wave.swing(place)
-        shape = self._shape(swing)
-        L, U, D = (phase.at(t, place) for phase in (self._spin, self._up, self._down))
+        up, down, z, partner = self._shape(place)
+        L, U, D = (phase.at(t, place) for phase in self._phases)
         turn = self._turn * mp.expj(L + U - D)
         half = mp.expj((self._glide * t - L) / 2 + D) / mp.sqrt(2 * self._F)
         return Pose(
-            x=(turn * shape.amplitude, shape.z),
-            y=(turn * shape.partner, self._y3),
-            turned=CayleyKlein(half * shape.down, half * turn * shape.up),
-            rise=self._rise.at(t, place, swing),
+            x=(turn * up * down, z),
+            y=(turn * partner, self._y3),
+            turned=CayleyKlein(half * down, half * turn * up),
+            rise=self._rise.at(t, place),
         )
 
     @property
-    def period(self) -> mpf:
-        """The period of nutation, after which x3 and the shape of (x, y) recur."""
-        return self._wave.period
-
-    @property
-    def moduli(self) -> dict[str, mpf]:
-        """The rate of the elliptic argument, and the parameters m = k^2 and m_prime = 1 - k^2."""
+    def elements(self) -> dict[str, mpf]:
         wave = self._wave
-        return {"rate": wave.rate, "m": wave.m, "m_prime": wave.m_prime}
+        return {"period": wave.period, "rate": wave.rate, "m": wave.m, "m_prime": wave.m_prime}
 
-    def lost_digits(self, t: mpf) -> int:
-        """An estimate of the digits lost by the time t >= 0.
-
-        It saves repetitions; whether it was enough is what two precisions decide.
-        """
-        phases = (self._spin, self._up, self._down)
-        linear = abs(self._glide) + sum(abs(phase.rate) for phase in phases)
-        losses = [1 + self._wave.rate * t, 1 / self._wave.m_prime, 1 + linear * t]
-        bent = [phase.advance.beta for phase in phases if phase.advance is not None]
-        losses += [beta + 1 / beta for beta in bent]
-        return sum(max(0, int(mp.ceil(mp.log10(loss)))) for loss in losses)
+    def losses(self, t: mpf) -> list[mpf]:
+        linear = abs(self._glide) + sum(abs(phase.rate) for phase in self._phases)
+        betas = [phase.beta + 1 / phase.beta for phase in self._phases if phase.bend]
+        return [1 + self._wave.rate * t, 1 / self._wave.m_prime, 1 + linear * t, *betas]
 
     def _spin_phase(self, nutation: Nutation) -> Phase:
         """L, by x3 = z1 + width w a/(b + w a)."""
         body, wave = nutation.body, self._wave
-        rate = mp.convert((body.r - body.r_prime) * nutation.y3)
-        if body.q_prime == body.q:
-            return Phase(rate)
         pace = mp.convert(body.q - body.q_prime)
-        bend = pace * self._width * wave.weight / wave.rate
-        return Phase(rate + pace * self._z1, Advance(bend, wave.weight, wave))
+        rate = mp.convert((body.r - body.r_prime) * nutation.y3) + pace * self._z1
+        return Phase(rate, wave, pace * self._width * wave.weight / wave.rate, wave.weight)
 
     def _pole_phase(self, pole: Pole) -> Phase:
         """U or D: 1/(F -+ x3) has the form of x3 with the pole's own weight."""
-        if pole.pull == 0:
-            return Phase(mpf(0))
         wave = self._wave
+        if pole.pull == 0:
+            return Phase(mpf(0), wave)
         rate = self._r / 2 * pole.pull / pole.from_1
         bend = rate * pole.side * self._width * wave.weight / (wave.rate * pole.from_1)
-        return Phase(rate, Advance(bend, wave.weight * pole.from_2 / pole.from_1, wave))
+        return Phase(rate, wave, bend, wave.weight * pole.from_2 / pole.from_1)
 
-    def _shape(self, swing: Swing) -> Shape:
-        """The motion without its turning about axis 3."""
+    def _shape(self, place: Place) -> tuple[mpf, mpf, mpf, mpc]:
+        """The motion turned back about axis 3 by chi: the factors of A, x3, (y1 + i y2) e^{-i chi}.
+
+        The factors are sqrt(F - x3) and sqrt(F + x3), with the signs of Pole.root.
+        """
         top, bottom = self._poles
         w = self._wave.weight
-        size = swing.b + w * swing.a
-        z = self._z1 + self._width * w * swing.a / size
-        up, up_slope = top.root(swing, w)
-        down, down_slope = bottom.root(swing, w)
+        size = place.b + w * place.a
+        z = self._z1 + self._width * w * place.a / size
+        up, up_slope = top.root(place, w)
+        down, down_slope = bottom.root(place, w)
         # dx3/dt = slope root_a root_b, and the roots stand in the two quotients already.
-        slope = 2 * self._wave.rate * self._width * w * swing.dn / size**2
+        slope = 2 * self._wave.rate * self._width * w * place.dn / size**2
         if z >= 0:
             radial = (top.pull_on(up) + self._y3 * up) / down
         else:
             radial = (bottom.pull_on(down) - self._y3 * down) / up
-        return Shape(up, down, z, mpc(radial, slope * up_slope * down_slope / self._r))
+        return up, down, z, mpc(radial, slope * up_slope * down_slope / self._r)
 
     def _first_turn(self, start: Impulse) -> mpc:
         """e^{i chi} at the start: from x, or from y near a pole that the orbit passes.
 
         There the sign of A is that of a number that vanishes on the way, and y does not vanish.
         """
-        swing = self._wave.swing(self._wave.place(self._wave.start))
-        shape = self._shape(swing)
+        place = self._wave.place(self._wave.start)
+        up, down, _, partner = self._shape(place)
         x = transverse(start.linear)
-        vanishing = zip(self._poles, (swing.root_b, swing.root_a), strict=True)
+        vanishing = zip(self._poles, (place.root_b, place.root_a), strict=True)
         is_near = any(pole.reached and abs(root) < _NEAR_POLE for pole, root in vanishing)
-        if x == 0 or is_near:
-            turn = transverse(start.angular) / shape.partner
-        else:
-            turn = x * mp.sign(shape.amplitude)
+        from_y = x == 0 or is_near
+        turn = transverse(start.angular) / partner if from_y else x * mp.sign(up * down)
         return turn / abs(turn)

@@ -16,16 +16,15 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, Final, final
+from typing import Final, final
 
 import numpy as np
-from mpmath import mp, mpf
+from mpmath import mp, mpc, mpf
 
 from taylor_verify.exact.elliptic import Landen
 from taylor_verify.exact.frames import start_frame
 from taylor_verify.exact.kirchhoff.plane import Plane
 from taylor_verify.exact.kirchhoff.solid import solid
-from taylor_verify.exact.kirchhoff.zeta import SquaredSine
 from taylor_verify.exact.solution import Quantities, Settled
 from taylor_verify.scenes.scene import Scene
 
@@ -34,10 +33,9 @@ _GUARD_DIGITS: Final = 12
 
 @dataclass(frozen=True)
 class Swept:
-    """The pendulum at one instant: cos alpha, sin alpha, alpha', and int sin^2 alpha dt."""
+    """The pendulum at one instant: e^{i alpha}, alpha', and int sin^2 alpha dt."""
 
-    cosine: mpf
-    sine: mpf
+    direction: mpc
     rate: mpf
     squares: mpf
 
@@ -59,8 +57,7 @@ class Pendulum(Settled):
         swept = math.isqrt(math.ceil(fastest * longest**2))
         with mp.workdps(digits + _GUARD_DIGITS + len(str(swept))):
             course = _course(self.regime, self._plane)
-            rows = [course.at(t) for t in elapsed]
-            return self._quantities(rows, elapsed)
+            return self._quantities([course.at(t) for t in elapsed], elapsed)
 
     def elements(self, digits: int) -> dict[str, mpf]:
         """The period after which x and y recur, where they do, and the rate and parameters."""
@@ -70,81 +67,64 @@ class Pendulum(Settled):
     def _quantities(self, rows: Sequence[Swept], elapsed: Sequence[Fraction]) -> Quantities:
         place = self._plane
         F, r = mp.sqrt(mp.convert(place.F2)), mp.convert(place.r)
-        x, y = _rows(len(rows)), _rows(len(rows))
-        for n, row in enumerate(rows):
-            x[n, place.a], x[n, place.b] = F * row.cosine, -F * row.sine
-            y[n, place.k] = place.side * row.rate / r
+        x, y, path = (np.full((len(rows), 3), mpf(0), dtype=object) for _ in range(3))
+        frames = np.full((len(rows), 3, 3), mpf(0), dtype=object)
+        i, j, k = (place.k + 1) % 3, (place.k + 2) % 3, place.k
+        back = mp.conj(_direction(place))
+        for n, (row, t) in enumerate(zip(rows, elapsed, strict=True)):
+            x[n, place.a], x[n, place.b] = F * row.direction.real, -F * row.direction.imag
+            y[n, k] = place.side * row.rate / r
+            # From the body's axes to those of the start, in the components of the body.
+            turn = row.direction * back
+            frames[n, i, i], frames[n, j, j], frames[n, k, k] = turn.real, turn.real, mpf(1)
+            frames[n, j, i], frames[n, i, j] = place.side * turn.imag, -place.side * turn.imag
+            # (a, b, side k) is a right-handed frame: k x F stands at side times (-b, a).
+            way = self._way(row, t) * back
+            path[n, place.a], path[n, place.b] = way.real, way.imag
+        first = np.array(start_frame(self._start.attitude))
+        centre = np.array([mp.convert(c) for c in self._start.centre])
         found = {"linear_impulse": x, "angular_impulse": y}
         if self._track:
-            frames = [self._frame(row) for row in rows]
-            first = np.array(start_frame(self._start.attitude))
-            found["attitude"] = np.array([first @ frame for frame in frames]).reshape(-1, 3, 3)
-            if "centre" in self._track:
-                moved = [self._moved(row, t) for row, t in zip(rows, elapsed, strict=True)]
-                centre = np.array([mp.convert(c) for c in self._start.centre])
-                found["centre"] = np.array([centre + first @ way for way in moved]).reshape(-1, 3)
+            found["attitude"] = first @ frames
+        if "centre" in self._track:
+            found["centre"] = centre + path @ first.T
         return found
 
-    def _frame(self, row: Swept) -> Any:
-        """The rotation from the body's axes to those of the start, in the components of the body."""
-        place = self._plane
-        cosine, sine = self._at_start()
-        i, j = (place.k + 1) % 3, (place.k + 2) % 3
-        cos = row.cosine * cosine + row.sine * sine
-        sin = place.side * (row.sine * cosine - row.cosine * sine)
-        frame = np.full((3, 3), mpf(0), dtype=object)
-        frame[i, i], frame[j, j], frame[k := place.k, k] = cos, cos, mpf(1)
-        frame[j, i], frame[i, j] = sin, -sin
-        return frame
-
-    def _at_start(self) -> tuple[mpf, mpf]:
-        """cos alpha and sin alpha at the start; where F = 0 the angle is counted from there."""
-        x_a, x_b = (mp.convert(c) for c in self._plane.x)
-        F = mp.sqrt(mp.convert(self._plane.F2))
-        return (x_a / F, -x_b / F) if F else (mpf(1), mpf(0))
-
-    def _moved(self, row: Swept, t: Fraction) -> Any:
-        """The way of the centre since the start, in the body's axes of the start."""
+    def _way(self, row: Swept, t: Fraction) -> mpc:
+        """The way of the centre since the start, along F and across it."""
         place = self._plane
         F = mp.sqrt(mp.convert(place.F2))
-        way = np.full(3, mpf(0), dtype=object)
         if not F:
-            return way
+            return mpc(0)
         p_a, spread = mp.convert(place.p[0]), mp.convert(place.p[1] - place.p[0])
-        along = F * (p_a * mp.convert(t) + spread * row.squares)
         across = (row.rate - mp.convert(place.rate)) / (mp.convert(place.r) * F)
-        cosine, sine = self._at_start()
-        # (a, b, side k) is a right-handed frame: k x F stands at side times (-b, a).
-        way[place.a] = along * cosine + across * sine
-        way[place.b] = -along * sine + across * cosine
-        return way
+        return mpc(F * (p_a * mp.convert(t) + spread * row.squares), across)
 
 
-def _rows(count: int) -> Any:
-    return np.full((count, 3), mpf(0), dtype=object)
+def _direction(place: Plane) -> mpc:
+    """e^{i alpha} at the start; where F = 0 the angle is counted from there."""
+    F = mp.sqrt(mp.convert(place.F2))
+    x_a, x_b = (mp.convert(c) for c in place.x)
+    return mpc(x_a / F, -x_b / F) if F else mpc(1)
 
 
 # The pendulum's angle.
 
 
-@dataclass(frozen=True)
 class Even:
     """alpha grows evenly, or not at all."""
 
-    cosine: mpf
-    sine: mpf
-    speed: mpf
+    def __init__(self, place: Plane) -> None:
+        self._start, self._speed = _direction(place), mp.convert(place.rate)
 
     def at(self, t: Fraction) -> Swept:
         time = mp.convert(t)
-        cos, sin = mp.cos_sin(self.speed * time)
-        cosine = self.cosine * cos - self.sine * sin
-        sine = self.sine * cos + self.cosine * sin
-        # Used where p_a = p_b, or where alpha is constant.
-        return Swept(cosine, sine, self.speed, self.sine**2 * time)
+        # The integral enters where p_a = p_b, with no weight, or where alpha is constant.
+        squares = self._start.imag**2 * time
+        return Swept(self._start * mp.expj(self._speed * time), self._speed, squares)
 
     def elements(self) -> dict[str, mpf]:
-        return {"period": 2 * mp.pi / abs(self.speed)} if self.speed else {}
+        return {"period": 2 * mp.pi / abs(self._speed)} if self._speed else {}
 
 
 class Front:
@@ -162,7 +142,7 @@ class Front:
         u = self._u0 + self._speed * mp.convert(t)
         tanh, sech = mp.tanh(u), mp.sech(u)
         squares = mp.convert(t) - (tanh - mp.tanh(self._u0)) / self._speed
-        return Swept(self._sign * sech, tanh, self._sign * self._speed * sech, squares)
+        return Swept(mpc(self._sign * sech, tanh), self._sign * self._speed * sech, squares)
 
     def elements(self) -> dict[str, mpf]:
         return {}
@@ -179,7 +159,6 @@ class Elliptic:
         )
         self._m, self._m_prime = (mp.convert(ratio) for ratio in ratios)
         self._landen = Landen(self._m, self._m_prime)
-        self._sine = SquaredSine(self._m, self._m_prime)
         # Squares of sn, cn and dn at the start, rational; alpha' says which way.
         sine2, cosine2, rate2 = place.x[1] ** 2, place.x[0] ** 2, place.rate**2
         if self._swings:
@@ -196,17 +175,17 @@ class Elliptic:
         u0 = sn * mp.elliprf(mp.convert(cn2), mp.convert(dn2), 1)
         K = self._landen.quarter_period
         self._u0 = u0 if onward else 2 * K - u0
-        self._first = self._squares(self._u0)
+        self._first = self._landen.squared_sine(self._u0)
 
     def at(self, t: Fraction) -> Swept:
         u = self._u0 + self._speed * mp.convert(t)
         sn, cn, dn = self._landen.jacobi(u)
-        squares = (self._squares(u) - self._first) / self._speed
+        squares = (self._landen.squared_sine(u) - self._first) / self._speed
         if self._swings:
             k = mp.sqrt(self._m)
             rate = self._sign * k * self._speed * cn
-            return Swept(self._sign * dn, k * sn, rate, squares)
-        return Swept(cn, sn, self._speed * dn, squares / self._m)
+            return Swept(mpc(self._sign * dn, k * sn), rate, squares)
+        return Swept(mpc(cn, sn), self._speed * dn, squares / self._m)
 
     def elements(self) -> dict[str, mpf]:
         """A turn takes 4 K of its argument to bring x back, as a swing does."""
@@ -214,18 +193,8 @@ class Elliptic:
         period = 4 * self._landen.quarter_period / rate
         return {"period": period, "rate": rate, "m": self._m, "m_prime": self._m_prime}
 
-    def _squares(self, u: mpf) -> mpf:
-        """m int_0^u sn^2 du."""
-        K = self._landen.quarter_period
-        return self._sine.at(u, u - 2 * mp.nint(u / (2 * K)) * K)
-
 
 def _course(kind: str, place: Plane) -> Even | Front | Elliptic:
     if kind == "planar-front":
         return Front(place)
-    if kind in ("planar-swing", "planar-turn"):
-        return Elliptic(place)
-    F = mp.sqrt(mp.convert(place.F2))
-    x_a, x_b = (mp.convert(c) for c in place.x)
-    cosine, sine = (x_a / F, -x_b / F) if F else (mpf(1), mpf(0))
-    return Even(cosine, sine, mp.convert(place.rate))
+    return Elliptic(place) if kind in ("planar-swing", "planar-turn") else Even(place)

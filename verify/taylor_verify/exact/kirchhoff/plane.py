@@ -12,10 +12,14 @@ the angle 2 alpha is a pendulum's, broadside on (x along a) its lower and end on
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import Any
 
+from taylor_verify.exact.kirchhoff.carried import Back, Number
 from taylor_verify.exact.kirchhoff.solid import solid
+from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.scene import Scene
@@ -119,3 +123,27 @@ def regime(found: Plane) -> str:
     if found.lack == 0:
         return "planar-front"
     return "planar-swing" if found.lack > 0 else "planar-turn"
+
+
+# The body of revolution that moves alike: the route in balls. The other one has the pendulum's formulas.
+
+
+def of_revolution(scene: Scene, found: Plane) -> Scene:
+    """The scene with the body of revolution about the axis a whose T has the same p_i, p_j and r."""
+    along, across = found.p
+    body = ImmersedBody(
+        linear=tensors.diagonal(tuple(along if n == found.a else across for n in range(3))),
+        coupling=tensors.ZERO_MATRIX,
+        angular=tensors.diagonal((found.r,) * 3),
+    )
+    return replace(scene, body=body)
+
+
+def in_plane(found: Plane) -> Back:
+    """Return the way back from ``of_revolution``, by the zeros that the plane makes, exactly."""
+
+    def back(rows: dict[str, Any], elapsed: Sequence[Fraction], number: Number) -> None:
+        rows["linear_impulse"][:, found.k] = number(Fraction(0))
+        rows["angular_impulse"][:, [found.a, found.b]] = number(Fraction(0))
+
+    return back

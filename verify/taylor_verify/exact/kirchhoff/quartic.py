@@ -80,6 +80,13 @@ class Nutation:
         pull = body.r * (self.FG * z - self.F2 * self.y3) / (self.F2 - z**2)
         return (body.r - body.r_prime) * self.y3 - (body.q_prime - body.q) * z + pull
 
+    def drift(self, z: Fraction) -> Fraction:
+        """r F Z' where x3 = z, with Z the way of the centre along F: Hydromechanics 49 (20)."""
+        body = self.body
+        steady = body.p * self.F2 + body.q * self.FG
+        screw = (body.q_prime - body.q) * self.y3
+        return body.r * (steady + (body.p_prime - body.p) * z**2 + screw * z)
+
     def touches_pole(self, side: int) -> bool:
         """Whether f vanishes at x3 = F (side 1) or x3 = -F (side -1), that is G = side y3."""
         same_size = self.F2 * self.y3**2 == self.FG**2
@@ -104,6 +111,15 @@ def value(polynomial: Polynomial, z: Fraction) -> Fraction:
 def derivative(polynomial: Polynomial) -> Polynomial:
     degree = len(polynomial) - 1
     return tuple((degree - k) * c for k, c in enumerate(polynomial[:-1]))
+
+
+def invariants(polynomial: Polynomial) -> tuple[Fraction, Fraction]:
+    """g2 and g3 of a quartic, or of a polynomial of lower degree as one; a translation leaves them."""
+    a0, a1, a2, a3, a4 = (Fraction(0),) * (5 - len(polynomial)) + polynomial
+    a1, a2, a3 = a1 / 4, a2 / 6, a3 / 4
+    g2 = a0 * a4 - 4 * a1 * a3 + 3 * a2**2
+    g3 = a0 * a2 * a4 + 2 * a1 * a2 * a3 - a2**3 - a0 * a3**2 - a1**2 * a4
+    return g2, g3
 
 
 def remainder(a: Polynomial, b: Polynomial) -> Polynomial:

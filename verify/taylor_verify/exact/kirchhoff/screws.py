@@ -14,8 +14,8 @@ translations of a solid. The body turns about the impulse at lambda F and keeps 
 given F^2 and FG, with lambda and mu/2 the multipliers.
 
 A small disturbance obeys the linearised equations, whose exponents s are 0 twice (F and FG may
-change) and the roots of s^4 + c2 s^2 + c0 = 0, with J their matrix: c2 = -tr J^2/2 and
-c0 = (2 c2^2 - tr J^4)/4. Everything is in balls, every statement a sign that they prove.
+change) and the roots of s^4 + c2 s^2 + c0 = 0. Everything is in balls, every statement a sign that
+they prove.
 """
 
 from __future__ import annotations
@@ -28,11 +28,13 @@ from typing import Any, Final
 
 from flint import arb, arb_mat, ctx, fmpq, fmpq_mat
 
-from taylor_verify.exact.balls import ball, balls
+from taylor_verify.exact.balls import ball, ball_matrix
+from taylor_verify.exact.kirchhoff.solid import velocities
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
-from taylor_verify.scenes.tensors import Matrix, Vector
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Matrix
 
 _FIRST_BITS: Final = 128
 # Beyond it a sign that is still open is taken for an equality.
@@ -67,7 +69,7 @@ class Screw:
 
     def axis(self) -> list[arb]:
         """The direction of x in body axes; its sense is of no account."""
-        F = _dot(self.x, self.x).sqrt()
+        F = _length(self.x)
         return [entry / F for entry in self.x]
 
     def growth(self) -> arb:
@@ -86,29 +88,30 @@ class Screw:
 
 def turn_of(body: ImmersedBody, start: Impulse) -> Fraction:
     """lambda of the start, Omega.x/F^2: its turning about the impulse, over F; F is not zero."""
-    Omega = tensors.apply(body.energy_matrix, start.linear + start.angular)[3:]
+    _, Omega = velocities(body, start)
     return tensors.dot(Omega, start.linear) / tensors.dot(start.linear, start.linear)
 
 
 def is_steady(body: ImmersedBody, start: Impulse) -> bool:
-    """Whether x and y stay as they are at the start, exactly."""
+    """Return True if x and y stay as they are at the start, exactly."""
     x, y = start.linear, start.angular
-    both = tensors.apply(body.energy_matrix, x + y)
-    U, Omega = both[:3], both[3:]
+    U, Omega = velocities(body, start)
     torque = tensors.plus(tensors.cross(y, Omega), tensors.cross(x, U))
     return not any(tensors.cross(x, Omega) + torque)
 
 
-def stiffness(body: ImmersedBody, turn: Fraction) -> Matrix:
-    """S(lambda)."""
-    less = _less(body.coupling, turn)
-    bent = tensors.product(
-        tensors.product(less, tensors.inverse(body.angular)), tensors.transpose(less)
-    )
-    return tuple(
-        tuple(a - b for a, b in zip(row, other, strict=True))
-        for row, other in zip(body.linear, bent, strict=True)
-    )
+def screws_beside(scene: Scene) -> tuple[Screw, ...]:
+    """The steady screws with the F of the scene that turn about it as fast as its start does.
+
+    None for a body of revolution, under loads, without linear impulse, and where they are not
+    three.
+    """
+    body, start = scene.body, scene.initial
+    if not (isinstance(body, ImmersedBody) and isinstance(start, Impulse)):
+        return ()
+    if not body.is_free or body.axis_of_symmetry is not None or not any(start.linear):
+        return ()
+    return screws(body, tensors.dot(start.linear, start.linear), turn_of(body, start))
 
 
 def screws(body: ImmersedBody, F2: Fraction, turn: Fraction) -> tuple[Screw, ...]:
@@ -116,8 +119,11 @@ def screws(body: ImmersedBody, F2: Fraction, turn: Fraction) -> tuple[Screw, ...
 
     None at all where two mu are equal: every axis across the third one is a screw then.
     """
-    S = stiffness(body, turn)
-    polynomial = fmpq_mat([[_rational(entry) for entry in row] for row in S]).charpoly()
+    A, B, C = (_rational(block) for block in (body.linear, body.coupling, body.angular))
+    less = B - _rational(tensors.diagonal((turn,) * 3))
+    to_y = -C.inv() * less.transpose()
+    S = A + less * to_y
+    polynomial = S.charpoly()
     if polynomial.gcd(polynomial.derivative()).degree() > 0:
         return ()
     bits = _FIRST_BITS
@@ -125,31 +131,37 @@ def screws(body: ImmersedBody, F2: Fraction, turn: Fraction) -> tuple[Screw, ...
         with ctx.workprec(bits):
             enclosed: list[Any] = polynomial.complex_roots()
             roots = sorted((root.real for root, _ in enclosed), key=_middle)
-            found = [_screw(body, S, F2, turn, mu, n == 0) for n, mu in enumerate(roots)]
+            axes = [_axis(arb_mat(S), roots[n - 1], roots[n - 2]) for n in range(3)]
+            energy = ball_matrix(body.energy_matrix)
+            found = [
+                _screw(energy, n * ball(F2).sqrt(), arb_mat(to_y), turn, mu, mu is roots[0])
+                for mu, n in zip(roots, axes, strict=True)
+            ]
         if bits >= _MOST_BITS or Stability.UNDECIDED not in (s.stability for s in found):
             return tuple(found)
         bits *= 2
 
 
+def _axis(S: arb_mat, other: arb, third: arb) -> arb_mat:
+    """The unit eigenvector of S beside two others, whose mu are these: (S - mu_2)(S - mu_3) ~ n n^T."""
+    columns = ((S - arb_mat(3, 3, other)) * (S - arb_mat(3, 3, third))).transpose().tolist()
+    longest = max(columns, key=lambda column: max(_middle(abs(entry)) for entry in column))
+    return arb_mat(3, 1, longest) / _length(longest)
+
+
 def _screw(
-    body: ImmersedBody, S: Matrix, F2: Fraction, turn: Fraction, mu: arb, is_least: bool
+    energy: arb_mat, x: arb_mat, to_y: arb_mat, turn: Fraction, mu: arb, is_least: bool
 ) -> Screw:
-    F = ball(F2).sqrt()
-    n = _axis(S, mu)
-    x = [F * entry for entry in n]
-    to_y = tensors.product(
-        tensors.inverse(body.angular), _scaled(_less(tensors.transpose(body.coupling), turn), -1)
-    )
-    y = _times(to_y, x)
-    U = [ball(turn) * b + mu * a for a, b in zip(x, y, strict=True)]
-    Omega = [ball(turn) * entry for entry in x]
-    J = _linearised(body, x, y, U, Omega)
-    square = J * J
-    c2 = -_trace(square) / 2
-    c0 = (2 * c2**2 - _trace(square * square)) / 4
-    speed = sum((u * a for u, a in zip(U, n, strict=True)), arb(0))
+    y = to_y * x
+    U, Omega = y * ball(turn) + x * mu, x * ball(turn)
+    # Of (dx, dy) in the linearised equations 48 (3), (4): s^6 + c2 s^4 + c0 s^2.
+    none = arb_mat(3, 3)
+    given, turned, pushed = _blocks(none, _cross(x), _cross(x), _cross(y)), _cross(Omega), _cross(U)
+    spectrum = (given * energy - _blocks(turned, none, pushed, turned)).charpoly()
+    c2, c0 = spectrum[4], spectrum[2]
+    speed = (U.transpose() * x)[0, 0] / _length(x.entries())
     stability = Stability.STABLE if is_least else _stability(c2, c0)
-    return Screw(turn, mu, tuple(x), tuple(y), speed, c2, c0, stability)
+    return Screw(turn, mu, tuple(x.entries()), tuple(y.entries()), speed, c2, c0, stability)
 
 
 def _stability(c2: arb, c0: arb) -> Stability:
@@ -162,68 +174,29 @@ def _stability(c2: arb, c0: arb) -> Stability:
     return Stability.UNDECIDED
 
 
-def _axis(S: Matrix, mu: arb) -> list[arb]:
-    """The unit vector n with S n = mu n for a simple mu: adj(S - mu) is a multiple of n n^T."""
-    M = [[ball(e) - (mu if i == j else 0) for j, e in enumerate(row)] for i, row in enumerate(S)]
-    adjugate = [_cross(M[(i + 1) % 3], M[(i + 2) % 3]) for i in range(3)]
-    column = max(adjugate, key=lambda row: _middle(_dot(row, row)))
-    size = _dot(column, column).sqrt()
-    return [entry / size for entry in column]
-
-
-def _linearised(
-    body: ImmersedBody, x: Sequence[arb], y: Sequence[arb], U: Sequence[arb], Omega: Sequence[arb]
-) -> arb_mat:
-    """The matrix of (dx, dy) in the linearised equations 48 (3), (4)."""
-    columns = []
-    for n in range(6):
-        move = [arb(int(n == m)) for m in range(6)]
-        dx, dy = move[:3], move[3:]
-        both = [balls(row)[n] for row in body.energy_matrix]
-        dU, dOmega = both[:3], both[3:]
-        first = _plus(_cross(dx, Omega), _cross(x, dOmega))
-        second = _plus(_cross(dy, Omega), _cross(y, dOmega), _cross(dx, U), _cross(x, dU))
-        columns.append(first + second)
-    return arb_mat(columns).transpose()
-
-
 # Small algebra, on rationals and on balls.
 
 
-def _rational(entry: Fraction) -> fmpq:
-    return fmpq(entry.numerator, entry.denominator)
+def _rational(matrix: Matrix) -> fmpq_mat:
+    return fmpq_mat([[fmpq(entry.numerator, entry.denominator) for entry in row] for row in matrix])
 
 
-def _less(matrix: Matrix, value: Fraction) -> Matrix:
-    """The matrix less a multiple of the unit matrix."""
-    return tuple(
-        tuple(entry - value if i == j else entry for j, entry in enumerate(row))
-        for i, row in enumerate(matrix)
+def _cross(v: arb_mat) -> arb_mat:
+    """[v]x, so that [v]x w = v x w."""
+    a, b, c = v.entries()
+    return arb_mat([[0, -c, b], [c, 0, -a], [-b, a, 0]])
+
+
+def _blocks(a: arb_mat, b: arb_mat, c: arb_mat, d: arb_mat) -> arb_mat:
+    """The matrix [[a, b], [c, d]]."""
+    pairs = ((a, b), (c, d))
+    return arb_mat(
+        [p + q for left, right in pairs for p, q in zip(left.tolist(), right.tolist(), strict=True)]
     )
 
 
-def _scaled(matrix: Matrix, factor: int) -> Matrix:
-    return tuple(tensors.scaled(Fraction(factor), row) for row in matrix)
-
-
-def _times(matrix: Sequence[Vector], vector: Sequence[arb]) -> list[arb]:
-    return [_dot(balls(row), vector) for row in matrix]
-
-
-def _dot(a: Sequence[Any], b: Sequence[Any]) -> arb:
-    return sum((p * q for p, q in zip(a, b, strict=True)), arb(0))
-
-
-def _cross(a: Sequence[Any], b: Sequence[Any]) -> list[arb]:
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def _plus(*vectors: Sequence[arb]) -> list[arb]:
-    return [sum(entries, arb(0)) for entries in zip(*vectors, strict=True)]
-
-
-def _trace(matrix: arb_mat) -> arb:
-    return sum((matrix[i, i] for i in range(6)), arb(0))
+def _length(v: Sequence[arb]) -> arb:
+    return sum((entry * entry for entry in v), arb(0)).sqrt()
 
 
 def _middle(value: arb) -> float:

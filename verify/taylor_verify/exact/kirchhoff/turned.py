@@ -10,18 +10,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
-from typing import final
+from typing import Any, Final
 
 import numpy as np
 
+from taylor_verify.exact.kirchhoff.carried import Back, Number
 from taylor_verify.exact.kirchhoff.solid import solid
-from taylor_verify.exact.solution import Quantities, Solution
 from taylor_verify.scenes.bodies import ImmersedBody
-from taylor_verify.scenes.motion import Impulse, Motion, Quaternion
+from taylor_verify.scenes.motion import Impulse, Quaternion
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix, Vector
 
-_BODY_AXES = ("linear_impulse", "angular_impulse", "attitude")
+_BODY_AXES: Final = {"linear_impulse", "angular_impulse", "attitude"}
 
 
 def upright(scene: Scene) -> tuple[Scene, int]:
@@ -51,30 +51,16 @@ def upright(scene: Scene) -> tuple[Scene, int]:
     ), axis
 
 
-@final
-class Turned(Solution):
-    """The solution of the body in the other axes, its components put back into their places."""
+def put_back(axis: int) -> Back:
+    """Return the way back from ``upright``, which changes no norm."""
+    # Where the component i of the body's own axes stands in the other ones.
+    places = [_order(axis).index(i) for i in range(3)]
 
-    def __init__(self, inner: Solution, axis: int) -> None:
-        self.regime, self.route = inner.regime, inner.route
-        self._inner = inner
-        # Where the component i of the body's own axes stands in the other ones.
-        order = _order(axis)
-        self._places = [order.index(i) for i in range(3)]
+    def back(rows: dict[str, Any], elapsed: Sequence[Fraction], number: Number) -> None:
+        for name in _BODY_AXES & rows.keys():
+            rows[name] = np.take(rows[name], places, axis=-1)
 
-    def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:
-        """A change of places leaves every norm, and so every radius, as it is."""
-        found = self._inner.motion(elapsed, digits)
-        return Motion(self._put_back(found.quantities), found.radius, found.radii)
-
-    def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
-        return self._put_back(self._inner.evaluate(elapsed, digits))
-
-    def _put_back(self, quantities: Quantities) -> Quantities:
-        return {
-            name: np.take(rows, self._places, axis=-1) if name in _BODY_AXES else rows
-            for name, rows in quantities.items()
-        }
+    return back
 
 
 def _order(axis: int) -> tuple[int, int, int]:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Protocol, final
+from typing import final
 
 from mpmath import mp, mpf
 
@@ -22,25 +22,19 @@ from taylor_verify.exact.kirchhoff.regime import TurningPoints
 
 @dataclass(frozen=True)
 class Place:
-    """A point of the wave: (sn, cn, dn) at the remainder u - 2 K turns, |remainder| <= K."""
+    """A point of the wave: (sn, cn, dn) at the remainder u - 2 K turns, |remainder| <= K.
+
+    ``root_a`` and ``root_b`` are signed square roots of a and b. They change sign where they vanish,
+    and so stay smooth in time: dx3/dt is proportional to root_a root_b dn.
+    """
 
     u: mpf
     turns: int
     sn: mpf
     cn: mpf
     dn: mpf
-
-
-@dataclass(frozen=True)
-class Swing:
-    """Signed square roots of a and b, and the slope: dx3/dt is proportional to root_a root_b dn.
-
-    They change sign where they vanish, and so stay smooth in time.
-    """
-
     root_a: mpf
     root_b: mpf
-    dn: mpf
 
     @property
     def a(self) -> mpf:
@@ -49,12 +43,6 @@ class Swing:
     @property
     def b(self) -> mpf:
         return self.root_b**2
-
-
-class Integral(Protocol):
-    """u -> int_0^u a/(b + beta a) du."""
-
-    def at(self, place: Place) -> mpf: ...
 
 
 class Wave(ABC):
@@ -71,8 +59,8 @@ class Wave(ABC):
     def __init__(self, m: mpf, m_prime: mpf) -> None:
         self.m = m
         self.m_prime = m_prime
-        self._landen = Landen(m, m_prime)
-        self.quarter_period: mpf = self._landen.quarter_period
+        self.landen = Landen(m, m_prime)
+        self.quarter_period: mpf = self.landen.quarter_period
 
     @final
     @property
@@ -83,15 +71,26 @@ class Wave(ABC):
     @final
     def place(self, u: mpf) -> Place:
         turns = int(mp.nint(u / (2 * self.quarter_period)))
-        return Place(u, turns, *self._landen.jacobi(u - 2 * turns * self.quarter_period))
+        sn, cn, dn = self.landen.jacobi(u - 2 * turns * self.quarter_period)
+        return Place(u, turns, sn, cn, dn, *self._roots(turns, sn, cn))
+
+    @final
+    def _begin(self, nutation: Nutation, points: TurningPoints) -> mpf:
+        """The argument of the start."""
+        risen, left = mp.convert(nutation.z - points.z1), mp.convert(points.z2 - nutation.z)
+        return self._argument(risen, self.weight * left, nutation.speed)
 
     @abstractmethod
-    def swing(self, place: Place) -> Swing:
-        """Where between its turning points x3 is."""
+    def _argument(self, risen: mpf, left: mpf, speed: Fraction) -> mpf:
+        """The u with a : b = risen : left, positive where x3 rises."""
 
     @abstractmethod
-    def integral(self, beta: mpf) -> Integral:
-        """int a/(b + beta a) du, for beta > 0."""
+    def _roots(self, turns: int, sn: mpf, cn: mpf) -> tuple[mpf, mpf]:
+        """root_a and root_b, from sn and cn at the remainder."""
+
+    @abstractmethod
+    def integral(self, beta: mpf) -> SquareIntegral | CosineIntegral:
+        """int_0^u a/(b + beta a) du, for beta > 0."""
 
 
 @final
@@ -122,16 +121,13 @@ class SquareWave(Wave):
 
     def __init__(self, nutation: Nutation, points: TurningPoints) -> None:
         z1, z2, z3, z4 = points.z1, points.z2, points.z3, points.z4
-        # A root at infinity leaves the factors in which it stands.
-        from_3 = Fraction(1) if z3 is None else (z1 - z3) / (z2 - z3)
-        from_4 = Fraction(1) if z4 is None else (z4 - z2) / (z4 - z1)
-        lengths = (1 if z3 is None else z2 - z3) * (1 if z4 is None else z4 - z1)
-        super().__init__(mp.convert(_parameter(points)), mp.convert(from_3 * from_4))
+        lengths = _gap(z2, z3) * _gap(z4, z1)
+        from_3, from_4 = _gap(z1, z3) / _gap(z2, z3), _gap(z4, z2) / _gap(z4, z1)
+        m = (z2 - z1) * _gap(z4, z3) / lengths
+        super().__init__(mp.convert(m), mp.convert(from_3 * from_4))
         self.weight = mp.convert(from_3)
         self.rate = mp.sqrt(mp.convert(abs(nutation.f[0] * lengths))) / 2
-        self.start = self._argument(
-            mp.convert(nutation.z - z1), self.weight * mp.convert(z2 - nutation.z), nutation.speed
-        )
+        self.start = self._begin(nutation, points)
 
     def _argument(self, risen: mpf, left: mpf, speed: Fraction) -> mpf:
         """u in [-K, K] with sn^2 : cn^2 = risen : left, positive where x3 rises."""
@@ -140,23 +136,16 @@ class SquareWave(Wave):
         dn_squared = (left + self.m_prime * risen) / total
         return sn * mp.elliprf(left / total, dn_squared, 1)
 
-    def swing(self, place: Place) -> Swing:
-        sign = -1 if place.turns % 2 else 1
-        return Swing(sign * place.sn, sign * place.cn, place.dn)
+    def _roots(self, turns: int, sn: mpf, cn: mpf) -> tuple[mpf, mpf]:
+        return (-sn, -cn) if turns % 2 else (sn, cn)
 
-    def integral(self, beta: mpf) -> Integral:
+    def integral(self, beta: mpf) -> SquareIntegral:
         return SquareIntegral(beta, self.m_prime)
 
 
-def _parameter(points: TurningPoints) -> Fraction:
-    """m = (z2-z1)(z4-z3)/[(z2-z3)(z4-z1)], a root at infinity left out."""
-    z1, z2, z3, z4 = points.z1, points.z2, points.z3, points.z4
-    if z3 is None:
-        assert z4 is not None
-        return (z2 - z1) / (z4 - z1)
-    if z4 is None:
-        return (z2 - z1) / (z2 - z3)
-    return (z2 - z1) * (z4 - z3) / ((z2 - z3) * (z4 - z1))
+def _gap(a: Fraction | None, b: Fraction | None) -> Fraction:
+    """a - b; 1 where a root is infinite, for it stands above and below the line alike."""
+    return Fraction(1) if a is None or b is None else a - b
 
 
 @final
@@ -183,9 +172,7 @@ class CosineWave(Wave):
         super().__init__(*(parameters if inner >= 0 else parameters[::-1]))
         self.weight = from_1 / from_2
         self.rate = mp.sqrt(abs(mp.convert(nutation.f[0])) * area)
-        self.start = self._argument(
-            mp.convert(nutation.z - z1), self.weight * mp.convert(z2 - nutation.z), nutation.speed
-        )
+        self.start = self._begin(nutation, points)
 
     def _argument(self, risen: mpf, left: mpf, speed: Fraction) -> mpf:
         """u in [-2K, 2K] with 1 - cn : 1 + cn = risen : left, positive where x3 rises."""
@@ -195,17 +182,14 @@ class CosineWave(Wave):
         acute = sn * mp.elliprf(cn**2, cn**2 + self.m_prime * sn**2, 1)
         return sign * (acute if cn >= 0 else 2 * self.quarter_period - acute)
 
-    def swing(self, place: Place) -> Swing:
+    def _roots(self, turns: int, sn: mpf, cn: mpf) -> tuple[mpf, mpf]:
         # Like the sine and the cosine of half an angle, sqrt(1 - cn) and sqrt(1 + cn) change sign
         # where they vanish and exchange their roles from one multiple of 2K to the next.
-        near, far = mp.sqrt(1 + place.cn), abs(place.sn) / mp.sqrt(1 + place.cn)
-        if place.sn < 0:
-            far = -far
-        quarter = place.turns % 4
-        root_a, root_b = ((far, near), (near, -far), (-far, -near), (-near, far))[quarter]
-        return Swing(root_a, root_b, place.dn)
+        near = mp.sqrt(1 + cn)
+        far = sn / near
+        return ((far, near), (near, -far), (-far, -near), (-near, far))[turns % 4]
 
-    def integral(self, beta: mpf) -> Integral:
+    def integral(self, beta: mpf) -> CosineIntegral:
         return CosineIntegral(beta, self.m, self.m_prime)
 
 
@@ -229,3 +213,32 @@ class CosineIntegral:
         sn = -place.sn if place.turns % 2 else place.sn
         odd = mp.atan(self._root * sn / place.dn) / self._root
         return (even - odd) / (2 * beta)
+
+
+@final
+class Rise:
+    """Z of space.py along a wave; to be used at one precision.
+
+    Its rate has no residue at the poles of z, whatever the body is: Z is an integral of the second
+    kind. With n = 1 - w, j = 4/quarters, a0 = r (p' - p) and 4 a1 = 2 r (q' - q) y3,
+
+        a0 z^2 + 2 a1 z = a0 z1^2 + 2 a1 z1 - (j rate)^2 n/2
+                          + j rate d/dt [n root_a root_b dn/(b + w a) + m int sn^2 du].
+    """
+
+    def __init__(self, nutation: Nutation, z1: Fraction, wave: Wave) -> None:
+        self._wave, self._bend = wave, 1 - wave.weight
+        pace = 4 * wave.rate / wave.quarters
+        scale = mp.convert(nutation.body.r) * mp.sqrt(mp.convert(nutation.F2))
+        self._linear = (mp.convert(nutation.drift(z1)) - pace**2 * self._bend / 2) / scale
+        self._pace = pace / scale
+        self._at_start = self._swung(wave.place(wave.start))
+
+    def at(self, t: mpf, place: Place) -> mpf:
+        """Z at the time t, when the wave is there."""
+        return self._linear * t + self._pace * (self._swung(place) - self._at_start)
+
+    def _swung(self, place: Place) -> mpf:
+        size = place.b + self._wave.weight * place.a
+        periodic = self._bend * place.root_a * place.root_b * place.dn / size
+        return periodic + self._wave.landen.squared_sine(place.u)

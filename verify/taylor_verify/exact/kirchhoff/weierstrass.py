@@ -18,37 +18,22 @@ exponential of a linear function of u and of i (q' - q) int z.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from fractions import Fraction
+from math import prod
 from typing import Any, Final, final
 
-from flint import acb, arb
+from flint import acb, arb, arb_mat
 
-from taylor_verify.exact.balls import Enclosed, Enclosure, ball, balls
-from taylor_verify.exact.kirchhoff.course import Front, QuarticCourse, course
+from taylor_verify.exact.balls import Enclosed, Enclosure, ball, ball_matrix, balls
+from taylor_verify.exact.kirchhoff.course import QuarticCourse, course
 from taylor_verify.exact.kirchhoff.lattice import Lattice
 from taylor_verify.exact.kirchhoff.quartic import Nutation, repeated_root
-from taylor_verify.exact.kirchhoff.regime import nutation_of, regime
-from taylor_verify.exact.kirchhoff.turning import TurningBody
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.scenes.motion import Impulse
-from taylor_verify.scenes.scene import Scene
 
 _I: Final = acb(0, 1)
 # Where |xi|^2 is a smaller part of F^2, eta is not found by a division by it.
 _NEAR_POLE: Final = 2.0**-6
-
-
-def enclosed(scene: Scene) -> Enclosed:
-    """The closed form of a scene with Clebsch's energy and no loads.
-
-    Raises NoClosedForm, with the reason, for every other scene.
-    """
-    nutation, start = nutation_of(scene)
-    kind = regime(nutation)
-    if kind in ("rest", "steady", "euler-top"):
-        return TurningBody(kind, nutation, start, scene.track)
-    return NutatingBody(kind, nutation, start, scene.track)
 
 
 @final
@@ -60,6 +45,7 @@ class NutatingBody(Enclosed):
     ) -> None:
         self.regime = kind
         self._nutation, self._start, self._track = nutation, start, track
+        self._names = ("linear_impulse", "angular_impulse", *sorted(track))
         self._orbits: dict[int, Orbit] = {}
 
     def enclose(self, elapsed: Sequence[Fraction], bits: int) -> Enclosure:
@@ -68,36 +54,28 @@ class NutatingBody(Enclosed):
             self._orbits[bits] = Orbit(self._nutation, self._start, self._track, heteroclinic)
         orbit = self._orbits[bits]
         rows = [orbit.at(ball(t)) for t in elapsed]
-        return {name: [row[name] for row in rows] for name in orbit.names}
+        return {name: [row[name] for row in rows] for name in self._names}
 
 
-@dataclass(frozen=True)
+@final
 class Factor:
     """N(u; a) = s(u - a)/s(-a); s(u)/s'(0) for the argument 0, and 1 for one at a double point."""
 
-    lattice: Lattice
-    argument: acb | None
-    scale: acb
-
-    @classmethod
-    def of(cls, lattice: Lattice, argument: acb | None) -> Factor:
-        if argument is None:
-            return cls(lattice, None, acb(1))
-        order = int(argument.is_zero())
-        return cls(lattice, argument, lattice.jet(-argument, order)[order])
-
-    def at(self, u: arb) -> acb:
-        return self.jet(u, 0)[0]
+    def __init__(self, lattice: Lattice, argument: acb | None) -> None:
+        self._lattice, self._argument = lattice, argument
+        if argument is not None:
+            order = int(argument.is_zero())
+            self._scale = lattice.jet(-argument, order)[order]
 
     def jet(self, u: arb, order: int) -> list[acb]:
         """N and, for order 1, its derivative."""
-        if self.argument is None:
+        if self._argument is None:
             return [acb(1), acb(0)][: order + 1]
-        return [value / self.scale for value in self.lattice.jet(u - self.argument, order)]
+        return [value / self._scale for value in self._lattice.jet(u - self._argument, order)]
 
     def start_rate(self) -> acb:
         """N'/N at the start, or its constant term, zero, for a factor that vanishes there."""
-        if self.argument is None or self.argument.is_zero():
+        if self._argument is None or self._argument.is_zero():
             return acb(0)
         value, slope = self.jet(arb(0), 1)
         return slope / value
@@ -110,36 +88,42 @@ class Orbit:
     def __init__(
         self, nutation: Nutation, start: Impulse, track: frozenset[str], heteroclinic: bool
     ) -> None:
-        self.names = ("linear_impulse", "angular_impulse", *sorted(track))
         self._nutation, self._track = nutation, track
         body = nutation.body
         self._F, self._y3, self._r = ball(nutation.F2).sqrt(), ball(nutation.y3), ball(body.r)
         self._FG, self._screw = ball(nutation.FG), ball(body.q_prime - body.q)
         self._spin = ball(body.r_prime * nutation.y3)
         self._course = course(nutation, heteroclinic)
-        self._front = self._front_ratio() if heteroclinic else None
-        self._find_factors(heteroclinic)
+        self._find_factors()
         self._find_rates()
         self._find_amplitudes(start)
-        # Told exactly: a centre or a y that is zero has no other narrow ball.
-        self._at_start = _as_told(start, track)
+        # The start as given: a centre or a y that is zero has no other narrow ball.
+        attitude = ball_matrix(rotation_matrix(start.attitude))
+        self._at_start: dict[str, Any] = {
+            "linear_impulse": balls(start.linear),
+            "angular_impulse": balls(start.angular),
+            "attitude": attitude.tolist(),
+            "centre": balls(start.centre),
+        }
         if track:
-            self._find_space(start)
+            self._find_space(attitude)
 
     def at(self, u: arb) -> dict[str, Any]:
-        """Every tracked quantity at the time u since the start."""
+        """At least every tracked quantity, at the time u since the start."""
         if u.is_zero():
             return self._at_start
         z, speed = self._course.at(u)
         poles = self._pole_jets(u, self._pole_order)
         along = self._course.integral(u, speed, poles) if self._needs_integral else arb(0)
         screw = (_I * self._screw * along).exp()
-        above = self._alpha.at(u), self._beta.at(u)
-        below = _product([value for value, *_ in poles]) ** self._course.order
+        above = self._alpha.jet(u, 0)[0], self._beta.jet(u, 0)[0]
+        below = prod((value for value, *_ in poles), start=acb(1)) ** self._course.order
         turn = self._xi * (self._xi_rate * u).exp() / (below * screw)
         xi = turn * above[0].conjugate() * above[1]
-        if self._front is not None:
-            eta = self._front * xi
+        front = self._course.front
+        if front is not None:
+            # G = y3 = 0, and y keeps its digits where z' = c (F^2 - z^2) has none left.
+            eta = _I * front.c / self._r * xi
         elif abs(xi).mid() < _NEAR_POLE * self._F.mid():
             eta = self._eta_near_pole(u, z, xi, turn, above)
         else:
@@ -152,41 +136,34 @@ class Orbit:
             one = self._one * above[0] ** 2 * (self._one_rate * u).exp() * screw / below
             two = self._two * above[1] ** 2 * (self._two_rate * u).exp() / (screw * below)
             frame = self._frame(one, two, xi, z)
-            found["attitude"] = _matrix_product(self._to_space, frame)
+            found["attitude"] = (self._to_space * frame).tolist()
             if "centre" in self._track:
                 path = self._path(u, self._sideways(frame, eta), poles, along)
-                moved = _applied(self._to_space, path)
-                found["centre"] = [c + v for c, v in zip(self._centre, moved, strict=True)]
+                moved = (self._to_space * arb_mat(3, 1, path)).entries()
+                start = self._at_start["centre"]
+                found["centre"] = [c + v for c, v in zip(start, moved, strict=True)]
         return found
 
     # What is found once.
 
-    def _front_ratio(self) -> acb:
-        """eta/xi where f is a square: G = y3 = 0 then, and eta = i (c/r) xi with z' = c (F^2 - z^2).
-
-        So y keeps its digits where both fall off as e^{-|c| F t}, and z' has none left.
-        """
-        return _I * Front(self._nutation).c / self._r
-
-    def _find_factors(self, heteroclinic: bool) -> None:
+    def _find_factors(self) -> None:
         """alpha where (z, z') = (-F, s-), beta where it is (F, -s+), and the poles of z."""
         lattice, F = self._course.lattice, self._F
         pull = self._r * (self._FG + F * self._y3), self._r * (self._FG - F * self._y3)
         # Where a pole is a root of f the pull is zero, which no ball can say.
         self._s_minus = acb(0, arb(0) if self._nutation.touches_pole(-1) else pull[0])
         self._s_plus = acb(0, arb(0) if self._nutation.touches_pole(1) else pull[1])
-        self._alpha = Factor.of(lattice, self._zero(-1, self._s_minus, heteroclinic))
-        self._beta = Factor.of(lattice, self._zero(1, -self._s_plus, heteroclinic))
-        self._poles = [Factor.of(lattice, w) for w in self._course.poles]
+        self._alpha = Factor(lattice, self._zero(-1, self._s_minus))
+        self._beta = Factor(lattice, self._zero(1, -self._s_plus))
+        self._poles = [Factor(lattice, w) for w in self._course.poles]
 
-    def _zero(self, side: int, s: acb, heteroclinic: bool) -> acb | None:
+    def _zero(self, side: int, s: acb) -> acb | None:
         """The argument of (side F, s): 0 for a start there, None if f has a double root there."""
-        nutation = self._nutation
         if self._starts_on_axis(side):
             return acb(0)
-        double = repeated_root(nutation.f)
-        is_double = double is not None and double**2 == nutation.F2 and side * double > 0
-        if heteroclinic or is_double:
+        double = repeated_root(self._nutation.f)
+        is_double = double is not None and double**2 == self._nutation.F2 and side * double > 0
+        if self._course.front is not None or is_double:
             return None
         return self._course.argument(side * self._F, s)
 
@@ -225,16 +202,13 @@ class Orbit:
             self._one = -(self._xi.conjugate() ** 2) / (F * (F - z))
             self._two = acb((F - z) / F)
 
-    def _find_space(self, start: Impulse) -> None:
+    def _find_space(self, attitude: arb_mat) -> None:
         """The scene's space axes, in which R and the centre begin as it says."""
-        nothing = acb(0)
-        one = nothing if self._starts_on_axis(-1) else self._one
-        two = nothing if self._starts_on_axis(1) else self._two
+        one = acb(0) if self._starts_on_axis(-1) else self._one
+        two = acb(0) if self._starts_on_axis(1) else self._two
         frame = self._frame(one, two, self._start_xi, self._course.z)
-        attitude = [balls(row) for row in rotation_matrix(start.attitude)]
-        self._to_space = _matrix_product(attitude, [list(row) for row in zip(*frame, strict=True)])
+        self._to_space = attitude * frame.transpose()
         self._start_sideways = self._sideways(frame, self._start_eta)
-        self._centre = balls(start.centre)
         body, F2 = self._nutation.body, self._nutation.F2
         self._ahead = ball(body.p * F2 + body.q * self._nutation.FG)
         self._ahead_by_square = ball(body.p_prime - body.p)
@@ -267,23 +241,24 @@ class Orbit:
         change = turn * growth + pull * xi
         return (change / _I + (self._spin + self._screw * z) * xi) / (self._r * z)
 
-    def _frame(self, one: acb, two: acb, xi: acb, z: arb) -> list[list[arb]]:
+    def _frame(self, one: acb, two: acb, xi: acb, z: arb) -> arb_mat:
         """R with the space axis Z along the impulse, row by row, from D1, D2, xi and z."""
         F = self._F
         # sin(theta) e^{i psi} by the larger of 1 + cos theta and 1 - cos theta
         lean = one * xi / (_I * (F + z)) if z.mid() >= 0 else two * xi.conjugate() / (_I * (z - F))
         total, rest = (one + two) / 2, (one - two) / 2
-        return [
-            [total.real, -rest.imag, lean.imag],
-            [total.imag, rest.real, -lean.real],
-            [xi.real / F, xi.imag / F, z / F],
-        ]
+        return arb_mat(
+            [
+                [total.real, -rest.imag, lean.imag],
+                [total.imag, rest.real, -lean.real],
+                [xi.real / F, xi.imag / F, z / F],
+            ]
+        )
 
-    def _sideways(self, frame: list[list[arb]], eta: acb) -> tuple[arb, arb]:
+    def _sideways(self, frame: arb_mat, eta: acb) -> tuple[arb, arb]:
         """(X, Y) of R y."""
-        y = [eta.real, eta.imag, self._y3]
-        across, up, _ = _applied(frame, y)
-        return across, up
+        y = frame * arb_mat(3, 1, [eta.real, eta.imag, self._y3])
+        return y[0, 0], y[1, 0]
 
     def _path(
         self, u: arb, sideways: tuple[arb, arb], poles: list[list[acb]], along: arb
@@ -299,31 +274,3 @@ class Orbit:
         X, Y = sideways
         X0, Y0 = self._start_sideways
         return [(Y - Y0) / self._F, (X0 - X) / self._F, advance / self._F]
-
-
-def _as_told(start: Impulse, track: frozenset[str]) -> dict[str, Any]:
-    """The tracked quantities of the initial state."""
-    found: dict[str, Any] = {
-        "linear_impulse": balls(start.linear),
-        "angular_impulse": balls(start.angular),
-        "attitude": [balls(row) for row in rotation_matrix(start.attitude)],
-        "centre": balls(start.centre),
-    }
-    return {name: found[name] for name in ("linear_impulse", "angular_impulse", *sorted(track))}
-
-
-def _product(factors: Sequence[acb]) -> acb:
-    found = acb(1)
-    for factor in factors:
-        found *= factor
-    return found
-
-
-def _matrix_product(p: list[list[arb]], q: list[list[arb]]) -> list[list[arb]]:
-    columns = list(zip(*q, strict=True))
-    return [[a * x + b * y + c * z for x, y, z in columns] for a, b, c in p]
-
-
-def _applied(matrix: list[list[arb]], v: Sequence[arb]) -> list[arb]:
-    x, y, z = v
-    return [a * x + b * y + c * z for a, b, c in matrix]

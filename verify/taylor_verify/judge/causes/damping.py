@@ -21,39 +21,36 @@ from taylor_verify.judge.causes.material import Material, Pairs
 
 # Where the parameter is counted in units of a rate of turn, a decay by more than this is no damping.
 _FAST: Final = 1e3
+# For a rigid body, and for a solid in a fluid.
+_RIGID: Final = {
+    "damping": "omega decays as exp(-c t) besides its motion (a moment -c I omega), with c = {:.6g}",
+    "drag": "a moment -d omega acts besides, with d = {:.6g}",
+}
+_FLUID: Final = {
+    "damping": "both impulses decay as exp(-c t) besides their motion (loads -c x and -c y), "
+    "with c = {:.6g}",
+    "drag": "a force -d U and a couple -d W act besides, with d = {:.6g}",
+}
 
 
 def damping(material: Material) -> Iterator[Candidate]:
     """Yield damping in proportion to the momentum and to the velocity, each with its best number."""
     right, pairs = material.equations, material.pairs
     rate = _decay(right, pairs)
-    if not 0 < abs(rate) < _FAST * _pace(pairs):
+    if not 0 < abs(rate) < _FAST / float(np.min(np.abs(pairs.spans))):
         return
-    for name, equations in _equations(right):
-        for key, unit, words in (
-            ("damping", rate, _ISOTROPIC[right.is_rigid]),
-            ("drag", rate * _scale(right), _DRAG[right.is_rigid]),
-        ):
+    # A moment of inertia, or a mass, makes a coefficient of drag of a rate.
+    sizes = np.linalg.eigvalsh(right.tensor)
+    inertia = float(np.mean(sizes if right.is_rigid else 1 / sizes))
+    tried = [("damping left on", right)]
+    if right.is_rigid:
+        tried += [("no gyroscopic term and damping left on", replace(right, gyroscopic=0.0))]
+    for name, equations in tried:
+        for key, words in (_RIGID if right.is_rigid else _FLUID).items():
+            unit = rate * inertia if key == "drag" else rate
             number, states = _fit(equations, key, unit, pairs)
             if number > 0:
-                why = words.format(c=f"{number:.6g}")
-                yield Candidate(name, material.quantity, pairs.left(states), why, fitted=1)
-
-
-_ISOTROPIC: Final = {
-    True: "omega decays as exp(-c t) besides its motion (a moment -c I omega), with c = {c}",
-    False: "both impulses decay as exp(-c t) besides their motion (loads -c x and -c y), with c = {c}",
-}
-_DRAG: Final = {
-    True: "a moment -d omega acts besides, with d = {c}",
-    False: "a force -d U and a couple -d W act besides, with d = {c}",
-}
-
-
-def _equations(right: Equations) -> Iterator[tuple[str, Equations]]:
-    yield "damping left on", right
-    if right.is_rigid:
-        yield "no gyroscopic term and damping left on", replace(right, gyroscopic=0.0)
+                yield material.candidate(name, words.format(number), states, fitted=1)
 
 
 def _decay(right: Equations, pairs: Pairs) -> float:
@@ -64,16 +61,6 @@ def _decay(right: Equations, pairs: Pairs) -> float:
     )
     rates = -np.log(after / before) / pairs.spans
     return float(np.median(rates)) if np.all(np.isfinite(rates)) else 0.0
-
-
-def _pace(pairs: Pairs) -> float:
-    return 1 / float(np.min(np.abs(pairs.spans)))
-
-
-def _scale(right: Equations) -> float:
-    """A moment of inertia, or a mass, that makes a coefficient of drag of a rate."""
-    values = np.linalg.eigvalsh(right.tensor)
-    return float(np.mean(values) if right.is_rigid else np.mean(1 / values))
 
 
 def _fit(equations: Equations, key: str, unit: float, pairs: Pairs) -> tuple[float, Floats]:

@@ -7,15 +7,14 @@ with the attitude: q' = q W / 2 besides, q a quaternion, scalar first.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
 from taylor_verify.judge.causes.flow import Floats, bilinear
 from taylor_verify.scenes.bodies import Body, ImmersedBody, RigidBody
-from taylor_verify.scenes.tensors import Matrix, Vector
 
 _KNOWN: Final = (RigidBody, ImmersedBody)
 
@@ -39,15 +38,15 @@ class Equations:
 
     @staticmethod
     def are_known(body: Body) -> bool:
-        """Return True if this kind of body has equations here."""
-        return type(body) in _KNOWN
+        """Return True if this kind of body has equations here, and its loads are constant."""
+        return type(body) in _KNOWN and body.manufactured is None
 
     @classmethod
     def of(cls, body: Body) -> Equations:
         """Return the right equations of a body whose loads are constant."""
         values = body.parts()
         loads = [entry for name in body.load_names() for entry in values[name]]
-        return cls(doubles(body.energy_matrix), doubles(tuple(loads)))
+        return cls(np.array(body.energy_matrix, dtype=float), np.array(loads, dtype=float))
 
     @property
     def is_rigid(self) -> bool:
@@ -77,11 +76,6 @@ class Equations:
         return z[:, :3] if self.is_rigid else z[:, :6] @ self.tensor[:, 3:]
 
     @property
-    def free(self) -> Equations:
-        """The same body without its loads."""
-        return replace(self, load=np.zeros_like(self.load))
-
-    @property
     def map(self) -> Floats:
         """Q of the rates."""
         return bilinear(self.rates, self.moving + 1)
@@ -90,8 +84,7 @@ class Equations:
         omega, one = z[:, :3], z[:, 3:]
         torque = self.gyroscopic * np.cross(omega @ self.tensor, omega) + one**2 * self.load
         driven = (torque - self.drag * one * omega) @ self.inverse
-        found: Floats = driven - self.damping * one * omega
-        return found
+        return driven - self.damping * one * omega
 
     def _immersed(self, z: Floats) -> Floats:
         state, one = z[:, :6], z[:, 6:]
@@ -102,14 +95,3 @@ class Equations:
         y_rate = self.gyroscopic * np.cross(y, W) + self.munk * np.cross(x, U)
         found: Floats = np.column_stack([x_rate, y_rate]) + one**2 * self.load
         return found - one * (self.damping * state + self.drag * velocities)
-
-
-def with_tensor(equations: Equations, tensor: Floats) -> Equations:
-    """Return the same equations of another body."""
-    return replace(equations, tensor=tensor)
-
-
-def doubles(numbers: Vector | Matrix) -> Any:
-    """Return exact numbers as an array of float64."""
-    rows = [[float(e) for e in n] if isinstance(n, tuple) else float(n) for n in numbers]
-    return np.array(rows)

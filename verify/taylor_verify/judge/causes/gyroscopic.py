@@ -1,4 +1,4 @@
-"""Treatments of the gyroscopic term omega x I omega: left out, turned round, explicit, implicit.
+"""Steps of first order for the gyroscopic term omega x I omega: explicit and implicit.
 
 An explicit step is forward Euler on the term, an implicit one a step of Newton's method for backward
 Euler. Each is a map of one step, and its result is computed from every row to the next one. Rows need
@@ -9,7 +9,6 @@ order is nearly proportional to h.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -31,27 +30,6 @@ _MOST_STEPS: Final = 5_000
 _Step = Callable[[Equations, Floats, Floats], Floats]
 
 
-def gyroscopic_term(material: Material) -> Iterator[Candidate]:
-    """Yield the term left out and the term with the other sign, which have no number to fit."""
-    right, pairs = material.equations, material.pairs
-    if not right.is_rigid:
-        return
-    for weight, name, why in (
-        (
-            0.0,
-            "no gyroscopic term",
-            "from row to row omega changes by I^-1 M alone, without omega x I omega",
-        ),
-        (
-            -1.0,
-            "gyroscopic term with the other sign",
-            "from row to row omega changes by I^-1 (M + omega x I omega)",
-        ),
-    ):
-        (states,) = pairs.moved([replace(right, gyroscopic=weight)])
-        yield Candidate(name, "omega", pairs.left(states), why)
-
-
 def gyroscopic_step(material: Material) -> Iterator[Candidate]:
     """Yield the methods of first order for the term, each with its best step."""
     right, pairs = material.equations, material.pairs
@@ -64,39 +42,31 @@ def gyroscopic_step(material: Material) -> Iterator[Candidate]:
 
 def _torque(body: Equations, omega: Floats) -> Floats:
     """M - omega x I omega for every row."""
-    found: Floats = body.load - np.cross(omega, omega @ body.tensor)
-    return found
+    return body.load - np.cross(omega, omega @ body.tensor)
 
 
 def _explicit(body: Equations, omega: Floats, h: Floats) -> Floats:
-    found: Floats = omega + h * (_torque(body, omega) @ body.inverse)
-    return found
+    return omega + h * (_torque(body, omega) @ body.inverse)
 
 
 def _explicit_of_fixed_size(body: Equations, omega: Floats, h: Floats) -> Floats:
     before = omega @ body.tensor
     after = before + h * _torque(body, omega)
     old, new = (np.linalg.norm(rows, axis=1, keepdims=True) for rows in (before, after))
-    found: Floats = (
-        after * np.divide(old, new, out=np.ones_like(old), where=new > 0)
-    ) @ body.inverse
-    return found
+    found: Floats = after * np.divide(old, new, out=np.ones_like(old), where=new > 0)
+    return found @ body.inverse
 
 
 def _implicit(body: Equations, omega: Floats, h: Floats) -> Floats:
     """(I + h ([omega]x I - [I omega]x)) (omega' - omega) = h (M - omega x I omega)."""
     slope = _cross(omega) @ body.tensor - _cross(omega @ body.tensor)
     right = (h * _torque(body, omega))[:, :, None]
-    found: Floats = omega + np.linalg.solve(body.tensor + h[:, :, None] * slope, right)[:, :, 0]
-    return found
+    return omega + np.linalg.solve(body.tensor + h[:, :, None] * slope, right)[:, :, 0]
 
 
 def _cross(vectors: Floats) -> Floats:
     """The matrices [v]x with [v]x u = v x u."""
-    matrices = np.zeros((len(vectors), 3, 3))
-    for i, k, m in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        matrices[:, m, k], matrices[:, k, m] = vectors[:, i], -vectors[:, i]
-    return matrices
+    return np.cross(np.eye(3), vectors[:, None])
 
 
 _STEPS: Final[tuple[tuple[str, str, _Step], ...]] = (
@@ -119,7 +89,7 @@ _STEPS: Final[tuple[tuple[str, str, _Step], ...]] = (
 
 
 def _best_step(step: _Step, body: Equations, pairs: Pairs) -> tuple[float, float]:
-    """What the best step leaves, and this step; the search ends where a step repeats itself."""
+    """The part that the best step leaves, and this step; the search ends where a step repeats itself."""
     longest = float(np.max(np.abs(pairs.spans)))
     h, best = min(longest, _FIRST_STEP / (_pace(body, pairs.begin) or 1.0)), (np.inf, 0.0)
     for _ in range(_SEARCHES):

@@ -8,7 +8,6 @@ kinematics.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -21,53 +20,46 @@ from taylor_verify.judge.causes.material import FEWEST_PAIRS, Material
 _NOISE: Final = 1e-13
 
 
-@dataclass(frozen=True)
-class _Kinematics:
-    """q' = (before W q + after q W) / 2, W the angular velocity in body axes."""
-
-    before: float
-    after: float
-
-
-_RIGHT: Final = _Kinematics(0, 1)
+# The weights (b, a) of q' = (b W q + a q W) / 2, W the angular velocity in body axes.
+_RIGHT: Final = (0.0, 1.0)
 _WRONG: Final = (
     (
         "attitude kinematics in the wrong axes",
         "R' = [omega]x R is integrated with omega in body axes, where R' = R [omega]x",
-        _Kinematics(1, 0),
+        (1.0, 0.0),
     ),
     (
         "attitude turned backwards",
         "R' = -R [omega]x is integrated, where R' = R [omega]x",
-        _Kinematics(0, -1),
+        (0.0, -1.0),
     ),
     (
         "transposed attitude",
         "it turns by R' = -[omega]x R with omega in body axes, as the transposed one does",
-        _Kinematics(-1, 0),
+        (-1.0, 0.0),
     ),
-    ("attitude stands still", "R' = 0, though the body turns", _Kinematics(0, 0)),
+    ("attitude stands still", "R' = 0, though the body turns", (0.0, 0.0)),
     (
         "attitude turns twice as fast",
         "q' = q omega is integrated, where q' = q omega / 2",
-        _Kinematics(0, 2),
+        (0.0, 2.0),
     ),
     (
         "attitude turns half as fast",
         "q' = q omega / 4 is integrated, where q' = q omega / 2",
-        _Kinematics(0, 0.5),
+        (0.0, 0.5),
     ),
 )
 
 
 def kinematics(material: Material) -> Iterator[Candidate]:
     """Yield each wrong kinematics of the attitude beside what it leaves of the attitude's defects."""
-    if material.quaternions is None or len(material.places) < FEWEST_PAIRS:
+    if len(material.places) < FEWEST_PAIRS:
         return
     pairs = material.pairs
-    assert pairs.turned is not None
-    assert pairs.turned_end is not None
-    maps = [_map(pairs.equations, known) for known in (_RIGHT, *(k for *_, k in _WRONG))]
+    if pairs.turned is None or pairs.turned_end is None:
+        return
+    maps = [_map(pairs.equations, *weights) for weights in (_RIGHT, *(w for *_, w in _WRONG))]
     drift = pairs.defect / pairs.spans[:, None]
     begin = np.column_stack([pairs.begin, drift, np.ones(len(drift)), pairs.turned])
     sizes = np.concatenate([pairs.sizes, np.full(len(drift[0]) + 1, np.inf), np.ones(4)])
@@ -79,16 +71,16 @@ def kinematics(material: Material) -> Iterator[Candidate]:
         yield Candidate(name, "attitude", left / right, why)
 
 
-def _map(equations: Equations, known: _Kinematics) -> Floats:
+def _map(equations: Equations, before: float, after: float) -> Floats:
     """Q of z = (states, their constant drift, 1, q)."""
     count = equations.moving
 
     def rate(z: Floats) -> Floats:
-        state, drift = z[:, :count], z[:, count : 2 * count]
-        one, q = z[:, 2 * count : 2 * count + 1], z[:, -4:]
-        states = equations.rates(np.column_stack([state, one]))[:, :-1] + one * drift
-        omega = equations.omega(np.column_stack([state, one]))
-        turned = (known.before * _times(omega, q, 1) + known.after * _times(omega, q, -1)) / 2
+        drift, one, q = z[:, count : 2 * count], z[:, 2 * count : 2 * count + 1], z[:, -4:]
+        state = np.column_stack([z[:, :count], one])
+        states = equations.rates(state)[:, :-1] + one * drift
+        omega = equations.omega(state)
+        turned = (before * _times(omega, q, 1) + after * _times(omega, q, -1)) / 2
         return np.column_stack([states, np.zeros((len(z), count + 1)), turned])
 
     return bilinear(rate, 2 * count + 5)
@@ -97,10 +89,9 @@ def _map(equations: Equations, known: _Kinematics) -> Floats:
 def _times(omega: Floats, q: Floats, sign: int) -> Floats:
     """omega q for the sign +1, q omega for -1: products of quaternions."""
     scalar, vector = q[:, :1], q[:, 1:]
-    found: Floats = np.column_stack(
+    return np.column_stack(
         [-np.sum(omega * vector, axis=1), scalar * omega + sign * np.cross(omega, vector)]
     )
-    return found
 
 
 def _angle(q: Floats, other: Floats) -> float:

@@ -8,13 +8,14 @@ for all. All is float64, so that defects near its roundoff have no cause here.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
 
+from taylor_verify.judge.causes.candidate import Candidate
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.flow import Floats, flow
 from taylor_verify.records.verdict import Verdict
@@ -59,7 +60,7 @@ class Material:
 
     @cached_property
     def places(self) -> Places:
-        """The first rows of the pairs that are looked at."""
+        """The first rows of the pairs that are compared."""
         known = (
             self.states if self.quaternions is None else np.hstack([self.states, self.quaternions])
         )
@@ -69,14 +70,10 @@ class Material:
 
     def at(self, first: Places) -> Pairs:
         """Return the pairs of rows that begin at these places."""
-        return Pairs(
-            self.equations,
-            self.states[first],
-            self.states[first + 1],
-            self.elapsed[first + 1] - self.elapsed[first],
-            None if self.quaternions is None else self.quaternions[first],
-            None if self.quaternions is None else self.quaternions[first + 1],
-        )
+        second, q = first + 1, self.quaternions
+        turned = () if q is None else (q[first], q[second])
+        spans = self.elapsed[second] - self.elapsed[first]
+        return Pairs(self.equations, self.states[first], self.states[second], spans, *turned)
 
     @cached_property
     def pairs(self) -> Pairs:
@@ -85,24 +82,35 @@ class Material:
     @cached_property
     def is_telling(self) -> bool:
         """Return True if the defects of the states are far above what float64 and printing leave."""
-        pairs = self.pairs
-        if len(self.places) < FEWEST_PAIRS or not pairs.largest < np.inf:
+        if len(self.places) < FEWEST_PAIRS:
             return False
         printed = 0.0 if self.digits is None else 10.0 ** (1 - self.digits)
-        return pairs.largest > _NOISE + printed
+        return _NOISE + printed < self.pairs.largest < np.inf
+
+    @property
+    def start_row(self) -> int | None:
+        """The row at the start, if there is one."""
+        rows = np.flatnonzero(self.elapsed == 0)
+        return int(rows[0]) if len(rows) else None
 
     @property
     def start_error(self) -> float | None:
         """The error of the row at the start, relative to the scene's state; None without such a row."""
-        rows = np.flatnonzero(self.elapsed == 0)
-        size = float(np.linalg.norm(self.start))
-        if not len(rows) or not size > 0:
+        row, size = self.start_row, float(np.linalg.norm(self.start))
+        if row is None or not size > 0:
             return None
-        return float(np.linalg.norm(self.states[rows[0]] - self.start)) / size
+        return float(np.linalg.norm(self.states[row] - self.start)) / size
 
-    def with_states(self, states: Floats) -> Material:
-        """Return the same answer with other states."""
-        return replace(self, states=states)
+    def candidate(self, name: str, why: str, states: Floats, fitted: int = 0) -> Candidate:
+        """Return a hypothesis by which the pairs of rows end in these ``states``."""
+        return Candidate(name, self.quantity, self.pairs.left(states), why, fitted)
+
+    def tried(self, hypotheses: Sequence[tuple[str, str, Equations]]) -> Iterator[Candidate]:
+        """Yield a candidate for each hypothesis: its name, the reason in words, its equations."""
+        if hypotheses:
+            moved = self.pairs.moved([equations for *_, equations in hypotheses])
+            for (name, why, _), states in zip(hypotheses, moved, strict=True):
+                yield self.candidate(name, why, states)
 
 
 @dataclass(frozen=True)
@@ -121,19 +129,17 @@ class Pairs:
         """The size of every component: the largest |omega|, or |x| and |y| apart."""
         vectors = np.stack([self.begin, self.end]).reshape(-1, len(self.begin[0]) // 3, 3)
         largest = np.max(np.linalg.norm(vectors, axis=2), axis=0)
-        found: Floats = np.repeat(np.where(largest > 0, largest, 1.0), 3)
-        return found
+        return np.repeat(np.where(largest > 0, largest, 1.0), 3)
 
     @cached_property
     def flow(self) -> Floats:
         """The exact states at the second row of every pair."""
-        found: Floats = self.moved([self.equations])[0]
-        return found
+        exact: Floats = self.moved([self.equations])[0]
+        return exact
 
     @cached_property
     def defect(self) -> Floats:
-        found: Floats = self.end - self.flow
-        return found
+        return self.end - self.flow
 
     @cached_property
     def largest(self) -> float:
@@ -144,9 +150,7 @@ class Pairs:
         """Return the states (m, n, d) after the spans by each of these equations."""
         begin = np.column_stack([self.begin, np.ones(len(self.begin))])
         maps = np.stack([one.map for one in equations])
-        states = flow(maps, begin, self.spans, np.append(self.sizes, np.inf))
-        found: Floats = states[:, :, :-1]
-        return found
+        return flow(maps, begin, self.spans, np.append(self.sizes, np.inf))[:, :, :-1]
 
     def size(self, rows: Floats) -> float:
         """Return the largest vector of rows, relative to its usual size; infinite if it is no number."""

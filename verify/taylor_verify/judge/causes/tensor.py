@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import permutations
+from dataclasses import replace
+from itertools import permutations, product
 from typing import Final
 
 import numpy as np
 
 from taylor_verify.judge.causes.candidate import Candidate
-from taylor_verify.judge.causes.equations import Equations, with_tensor
+from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.fit import fitted
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.material import Material, Pairs
-from taylor_verify.judge.causes.terms import tried_equations
 from taylor_verify.judge.errors.shift import LEAVES
 
 # Two tensors nearer than this are one.
@@ -26,8 +26,8 @@ _ACROSS: Final = 1e-3
 _LEAVES: Final = LEAVES**2
 # The axes of two tensors are compared where the principal moments are so many differences apart.
 _APART: Final = 10.0
-
-_AXES: Final = ("1", "2", "3")
+# The signs of the axes by which turns differ.
+_TURNS: Final = ((1, 1, 1), (1, 1, -1), (1, -1, 1), (-1, 1, 1))
 
 
 def other_tensors(material: Material) -> Iterator[Candidate]:
@@ -37,8 +37,8 @@ def other_tensors(material: Material) -> Iterator[Candidate]:
     for name, why, tensor in _misread(right):
         known = [right.tensor, *(other.tensor for *_, other in tried)]
         if all(_distance(tensor, other) > _SAME for other in known):
-            tried.append((name, why, with_tensor(right, tensor)))
-    yield from tried_equations(material, [one for one in tried if one[2].is_possible])
+            tried.append((name, why, replace(right, tensor=tensor)))
+    yield from material.tried([one for one in tried if one[2].is_possible])
 
 
 def _distance(tensor: Floats, other: Floats) -> float:
@@ -60,22 +60,24 @@ def _misread(right: Equations) -> Iterator[tuple[str, str, Floats]]:
     if not right.is_rigid:
         return
     moments, axes = np.linalg.eigh(tensor)
-    if np.array_equal(tensor, np.diag(diagonal)):
-        for order in permutations(range(3)):
-            listed = ", ".join(f"{diagonal[i]:.6g}" for i in order)
-            why = f"the body moves as if its principal moments about axes 1 2 3 were {listed}"
-            yield "principal moments in another order", why, np.diag(diagonal[list(order)])
+    orders = [list(order) for order in permutations(range(3))]
+    is_diagonal = np.array_equal(tensor, np.diag(diagonal))
+    if is_diagonal:
+        name, why = (
+            "principal moments in another order",
+            "its principal moments about axes 1 2 3 were",
+        )
+        moments = diagonal
     else:
-        for order in permutations(range(3)):
-            listed = ", ".join(f"{moments[i]:.6g}" for i in order)
-            why = f"the body moves as if its axes were principal, with the moments {listed}"
-            yield "principal axes dropped", why, np.diag(moments[list(order)])
-        for order in permutations(range(3)):
-            for signs in ((1, 1, 1), (1, 1, -1), (1, -1, 1), (-1, 1, 1)):
-                turned = axes[:, list(order)] * np.array(signs)
-                why = "the body moves as if the turn to its principal axes were taken backwards"
-                back = turned.T @ np.diag(moments[list(order)]) @ turned
-                yield "principal axes turned the wrong way", why, back
+        name, why = "principal axes dropped", "its axes were principal, with the moments"
+    for order in orders:
+        listed = ", ".join(f"{moment:.6g}" for moment in moments[order])
+        yield name, f"the body moves as if {why} {listed}", np.diag(moments[order])
+    for order, signs in () if is_diagonal else product(orders, _TURNS):
+        turned = axes[:, order] * np.array(signs)
+        why = "the body moves as if the turn to its principal axes were taken backwards"
+        back = turned.T @ np.diag(moments[order]) @ turned
+        yield "principal axes turned the wrong way", why, back
     single = tensor.astype(np.float32).astype(float)
     yield "inertia in float32", "the body's moments were rounded to 24 bits", single
     rounded = right.inverse.astype(np.float32).astype(float)
@@ -103,11 +105,10 @@ def another_body(material: Material) -> Iterator[Candidate]:
     def tensor(parameters: Floats) -> Floats:
         change = np.zeros_like(right.tensor)
         change[rows, columns] = change[columns, rows] = parameters
-        found: Floats = right.tensor + scale * change
-        return found
+        return right.tensor + scale * change
 
     def model(parameters: Floats) -> Floats:
-        bodies = [with_tensor(right, tensor(p)) for p in parameters]
+        bodies = [replace(right, tensor=tensor(p)) for p in parameters]
         if not all(body.is_possible for body in bodies):
             return np.full((len(bodies), *pairs.end.shape), np.nan)
         return pairs.moved(bodies)

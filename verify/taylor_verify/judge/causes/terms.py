@@ -1,4 +1,4 @@
-"""Terms of the equations that are left out or have the other sign: loads, Munk's moment, turns of axes."""
+"""Terms of the equations that are left out, have the other sign, or stand still in space."""
 
 from __future__ import annotations
 
@@ -9,39 +9,57 @@ from typing import Any, Final
 import numpy as np
 
 from taylor_verify.judge.causes.candidate import Candidate
-from taylor_verify.judge.causes.equations import Equations, with_tensor
+from taylor_verify.judge.causes.equations import Equations
+from taylor_verify.judge.causes.flow import Floats, bilinear, flow
 from taylor_verify.judge.causes.material import Material
+from taylor_verify.judge.causes.readings import to_body
 
-# Words, the term and its weight, and the equation that is left.
-_FLUID: Final[tuple[tuple[str, dict[str, Any], str], ...]] = (
-    ("no Munk moment", {"munk": 0.0}, "y' lacks x x U, the moment of the added mass"),
-    ("Munk moment with the other sign", {"munk": -1.0}, "y' has -x x U for x x U"),
-    ("no gyroscopic term", {"gyroscopic": 0.0}, "y' lacks y x W, the turn of the body's axes"),
-    ("gyroscopic term with the other sign", {"gyroscopic": -1.0}, "y' has -y x W for y x W"),
-    ("linear impulse not turned", {"turning": 0.0}, "x' lacks x x W, the turn of the body's axes"),
+_Terms = tuple[tuple[str, str, dict[str, Any]], ...]
+
+# Words, the equation that is left, and the weights of its terms.
+_RIGID: Final[_Terms] = (
     (
-        "turn of the linear impulse with the other sign",
-        {"turning": -1.0},
-        "x' has -x x W for x x W",
+        "no gyroscopic term",
+        "from row to row omega changes by I^-1 M alone, without omega x I omega",
+        {"gyroscopic": 0},
+    ),
+    (
+        "gyroscopic term with the other sign",
+        "from row to row omega changes by I^-1 (M + omega x I omega)",
+        {"gyroscopic": -1},
     ),
 )
-_BACK: Final[dict[str, Any]] = {"gyroscopic": -1.0, "munk": -1.0, "turning": -1.0}
+_FLUID: Final[_Terms] = (
+    ("no Munk moment", "y' lacks x x U, the moment of the added mass", {"munk": 0}),
+    ("Munk moment with the other sign", "y' has -x x U for x x U", {"munk": -1}),
+    ("no gyroscopic term", "y' lacks y x W, the turn of the body's axes", {"gyroscopic": 0}),
+    ("gyroscopic term with the other sign", "y' has -y x W for y x W", {"gyroscopic": -1}),
+    ("linear impulse not turned", "x' lacks x x W, the turn of the body's axes", {"turning": 0}),
+    (
+        "turn of the linear impulse with the other sign",
+        "x' has -x x W for x x W",
+        {"turning": -1},
+    ),
+    (
+        "motion back in time",
+        "x' and y' have the other sign",
+        {"gyroscopic": -1, "munk": -1, "turning": -1},
+    ),
+)
 
 
-def fluid_terms(material: Material) -> Iterator[Candidate]:
-    """Yield Kirchhoff's equations without one of their terms, or with the other sign of it."""
+def wrong_terms(material: Material) -> Iterator[Candidate]:
+    """Yield the equations without one of their terms, or with the other sign of it."""
     right = material.equations
-    if right.is_rigid:
-        return
-    tried = [(name, why, replace(right, **weights)) for name, weights, why in _FLUID]
-    back = "motion back in time"
-    tried.append((back, "x' and y' have the other sign", replace(right, **_BACK)))
-    coupling = right.tensor.copy()
-    coupling[:3, 3:] = coupling[3:, :3] = 0
-    if np.any(right.tensor != coupling):
-        why = "the body has no coupling B of impulses and velocities"
-        tried.append(("coupling left out", why, with_tensor(right, coupling)))
-    yield from tried_equations(material, tried)
+    terms = _RIGID if right.is_rigid else _FLUID
+    tried = [(name, why, replace(right, **weights)) for name, why, weights in terms]
+    if not right.is_rigid:
+        uncoupled = right.tensor.copy()
+        uncoupled[:3, 3:] = uncoupled[3:, :3] = 0
+        if np.any(right.tensor != uncoupled):
+            why = "the body has no coupling B of impulses and velocities"
+            tried.append(("coupling left out", why, replace(right, tensor=uncoupled)))
+    yield from material.tried(tried)
 
 
 def loads(material: Material) -> Iterator[Candidate]:
@@ -53,21 +71,45 @@ def loads(material: Material) -> Iterator[Candidate]:
     for noun, rows in parts.items():
         if not all(np.any(vectors[row]) for row in rows):
             continue
-        for weight, words in ((0.0, "left out"), (-1.0, "with the other sign")):
+        for weight, words, be in (
+            (0.0, "left out", "zero"),
+            (-1.0, "with the other sign", "of the other sign"),
+        ):
             load = vectors.copy()
             load[rows] *= weight
-            be = "zero" if weight == 0 else "of the other sign"
             why = f"from row to row the {material.quantity} changes as if the {noun} were {be}"
             tried.append((f"{noun} {words}", why, replace(right, load=load.ravel())))
-    yield from tried_equations(material, tried)
+    yield from material.tried(tried)
 
 
-def tried_equations(
-    material: Material, tried: list[tuple[str, str, Equations]]
-) -> Iterator[Candidate]:
-    """Yield a candidate for each of these equations: a name, the reason in words, the equations."""
-    if not tried:
+def space_loads(material: Material) -> Iterator[Candidate]:
+    """Yield the equations whose loads keep their components in space, by the answer's own attitude."""
+    right, pairs = material.equations, material.pairs
+    if pairs.turned is None or not np.any(right.load):
         return
-    pairs = material.pairs
-    for (name, why, _), states in zip(tried, pairs.moved([e for *_, e in tried]), strict=True):
-        yield Candidate(name, material.quantity, pairs.left(states), why)
+    count = len(pairs.begin)
+    vectors = [
+        to_body(pairs.turned, np.broadcast_to(load, (count, 3)))
+        for load in right.load.reshape(-1, 3)
+    ]
+    begin = np.column_stack([pairs.begin, *vectors, np.ones(count)])
+    sizes = np.concatenate([pairs.sizes, np.full(right.moving + 1, np.linalg.norm(right.load))])
+    (moved,) = flow(_map(right)[None], begin, pairs.spans, sizes)
+    noun = "moment" if right.is_rigid else "load"
+    why = f"from row to row the {material.quantity} changes as if the {noun} stood still in space"
+    yield material.candidate(f"{noun} in space axes", why, moved[:, : right.moving])
+
+
+def _map(right: Equations) -> Floats:
+    """Q of z = (states, their loads, 1), where loads turn backwards in body axes: v' = v x W."""
+    count, free = right.moving, replace(right, load=np.zeros_like(right.load))
+
+    def rate(z: Floats) -> Floats:
+        load, one = z[:, count:-1], z[:, -1:]
+        state = np.column_stack([z[:, :count], one])
+        omega = right.omega(state)
+        driven = one * (load @ right.inverse if right.is_rigid else load)
+        turned = [np.cross(load[:, i : i + 3], omega) for i in range(0, count, 3)]
+        return np.column_stack([free.rates(state)[:, :-1] + driven, *turned, np.zeros(len(z))])
+
+    return bilinear(rate, 2 * count + 1)

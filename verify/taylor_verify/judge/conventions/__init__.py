@@ -1,1 +1,1 @@
-"""What somebody else's columns mean: conventions found by trying them on the exact motion."""
+"""Conventions of somebody else's columns, found by trying them on the exact motion."""

@@ -30,7 +30,7 @@ class Axes:
     signs: tuple[int, ...]
 
     def names(self, columns: Sequence[str]) -> str:
-        """The file's column, with its sign, of every axis that is not in its place."""
+        """Return the file's column, with its sign, of every axis that is not in its place."""
         return ", ".join(
             f"axis {i + 1} is {'-' if self.signs[i] < 0 else ''}{columns[self.order[i]]}"
             for i in self.moved
@@ -43,41 +43,33 @@ class Axes:
     @property
     def is_proper(self) -> bool:
         """Return True for a rotation, False for a reflection."""
-        inversions = sum(self.order[i] > self.order[k] for i in range(3) for k in range(i + 1, 3))
-        return bool((-1) ** inversions * np.prod(self.signs) > 0)
+        return bool(np.linalg.det(self.vectors(np.eye(3))) > 0)
 
     def effect(self, active: Collection[int]) -> tuple[tuple[int, int] | None, ...]:
-        """The part of the permutation that shows if the file's other columns are zero."""
+        """Return the part of the permutation that shows if the file's other columns are zero."""
         pairs = zip(self.order, self.signs, strict=True)
         return tuple((k, sign) if k in active else None for k, sign in pairs)
 
     def vectors(self, rows: Array) -> Array:
-        """P v for every row v."""
-        turned: Array = rows[:, self.order] * np.array(self.signs)
-        return turned
+        """Return P v for every row v."""
+        found: Array = rows[:, self.order] * np.array(self.signs)
+        return found
 
     def left(self, matrices: Array) -> Array:
-        """P R for every matrix R."""
-        turned: Array = matrices[:, self.order, :] * np.array(self.signs)[:, None]
-        return turned
+        """Return P R for every matrix R."""
+        found: Array = matrices[:, self.order, :] * np.array(self.signs)[:, None]
+        return found
 
     def right(self, matrices: Array) -> Array:
-        """R P^T for every matrix R."""
-        turned: Array = matrices[:, :, self.order] * np.array(self.signs)
-        return turned
+        """Return R P^T for every matrix R."""
+        found: Array = matrices[:, :, self.order] * np.array(self.signs)
+        return found
 
     @cached_property
     def quaternion(self) -> tuple[int, ...]:
-        """A quaternion of P in integers, scalar first, of any length: a column of 4 q q^T."""
-        P = self.vectors(np.eye(3, dtype=int)).T
-        trace = int(np.trace(P))
-        squares = [1 + trace, *(1 - trace + 2 * int(P[i, i]) for i in range(3))]
-        k = int(np.argmax(squares))
-        odd = [int(P[2, 1] - P[1, 2]), int(P[0, 2] - P[2, 0]), int(P[1, 0] - P[0, 1])]
-        if k == 0:
-            return (squares[0], *odd)
-        even = [squares[k] if i == k - 1 else int(P[i, k - 1] + P[k - 1, i]) for i in range(3)]
-        return (odd[k - 1], *even)
+        """A quaternion of P in integers, scalar first, of any length."""
+        (column,) = quaternion_columns(self.vectors(np.eye(3, dtype=int)).T[None])
+        return tuple(column.tolist())
 
 
 # The 24 rotations of a cube, the simplest first.
@@ -107,7 +99,7 @@ class Frames:
         return _COST * bool(self.body.moved or self.space.moved)
 
     def words(self, columns: Sequence[str]) -> str:
-        """The renaming in words; ``columns`` are the three of a file that has no other vector."""
+        """Return the renaming in words; ``columns`` are the three of a file that has no other vector."""
         if not self.cost:
             return ""
         axes = self.body if self.body.moved else self.space
@@ -119,11 +111,11 @@ class Frames:
         return f"{'the body' if self.body.moved else 'space'} has other axes: {names}"
 
     def attitudes(self, matrices: Array) -> Array:
-        """R of the scene, Q R P^T, for every R of the file; Q renames space's axes."""
+        """Return R of the scene, Q R P^T, for every R of the file; Q renames space's axes."""
         return self.space.left(self.body.right(matrices))
 
     def quaternions(self, rows: Array) -> Array:
-        """The quaternions of ``attitudes``, of the length that they have in the file."""
+        """Return the quaternions of ``attitudes``, of the length that they have in the file."""
         if not self.cost:
             return rows
         s, *vector = self.body.quaternion
@@ -136,7 +128,7 @@ class Frames:
 
 
 def renamings(body: Collection[int], space: Collection[int], joined: bool) -> Iterator[Frames]:
-    """Every renaming of one frame, and of both alike, that shows in a file; none at all first.
+    """Yield every renaming of one frame, and of both alike, that shows in a file; none at all first.
 
     ``body`` and ``space`` are the file's components along these axes that are not always zero.
     Both frames are renamed at once only where quantities of the file have them ``joined``.
@@ -149,6 +141,20 @@ def renamings(body: Collection[int], space: Collection[int], joined: bool) -> It
         if effect not in shown:
             shown.add(effect)
             yield frames
+
+
+def quaternion_columns(matrices: Array) -> Array:
+    """Return quaternions of rotation matrices (n, 3, 3), of any length: the largest column of 4 q q^T."""
+    transposed, trace = matrices.transpose(0, 2, 1), np.trace(matrices, axis1=1, axis2=2)
+    odd = matrices - transposed
+    squares = np.empty((len(matrices), 4, 4), matrices.dtype)
+    squares[:, 0, 0] = 1 + trace
+    squares[:, 0, 1:] = squares[:, 1:, 0] = odd[:, (2, 0, 1), (1, 2, 0)]
+    squares[:, 1:, 1:] = matrices + transposed
+    squares[:, range(1, 4), range(1, 4)] += (1 - trace)[:, None]
+    largest = np.argmax(np.einsum("nii->ni", np.nan_to_num(squares)), axis=1)
+    found: Array = squares[np.arange(len(squares)), largest]
+    return found
 
 
 def _product(a: Sequence[Any], b: Sequence[Any]) -> tuple[Any, ...]:

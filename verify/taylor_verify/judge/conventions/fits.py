@@ -20,7 +20,7 @@ FLOAT64: Final = 2.0**-53
 
 @dataclass(frozen=True)
 class Finding:
-    """One convention of the file that is not the scene's.
+    """A convention of the file that is not the scene's.
 
     ``subject`` is ``time``, ``body``, ``axes`` or a group of columns; ``before`` and ``after`` are
     relative errors (radians for an attitude) without and with it. With ``alternatives`` it is ambiguous.
@@ -91,11 +91,11 @@ class Fit:
         return self.world.cost + sum(read.reading.cost for read in self.groups.values())
 
     def size(self, noise: float) -> float:
-        """The sum of the orders of magnitude of all groups' errors."""
+        """Return the sum of the orders of magnitude of all groups' errors."""
         return sum(log10(max(read.error, noise)) for read in self.groups.values())
 
     def gain(self, plain: Fit) -> str:
-        """The group that the world explains best."""
+        """Return the group that the world explains best."""
         return max(
             self.groups, key=lambda g: plain.groups[g].error / (self.groups[g].error or FLOAT64)
         )
@@ -107,18 +107,17 @@ class Fit:
         of time explains a motion only where there is one.
         """
         best = self.gain(plain)
-        gained, before = self.groups[best], plain.groups[best].error
-        if not gained.error <= EXPLAINS * before:
-            return False
-        if self.world.moves_time and not gained.error <= EXPLAINS * gained.motion:
-            return False
-        return all(
-            read.is_explained(plain.groups[group], noise) for group, read in self.groups.items()
+        gained, worst = self.groups[best], plain.groups[best].error
+        if self.world.moves_time:
+            worst = min(worst, gained.motion)
+        groups = self.groups.items()
+        return gained.error <= EXPLAINS * worst and all(
+            read.is_explained(plain.groups[group], noise) for group, read in groups
         )
 
 
 def simplest(fits: Sequence[Fit], noise: float) -> tuple[Fit, list[Fit]]:
-    """The world of least cost among those as good as the best; and others, as good and as simple."""
+    """Return the world of least cost among those as good as the best; and others, as good and as simple."""
     best = min(fit.size(noise) for fit in fits)
     good = [fit for fit in fits if fit.size(noise) <= best + log10(AS_WELL)]
     cost = min(fit.cost for fit in good)
@@ -127,6 +126,7 @@ def simplest(fits: Sequence[Fit], noise: float) -> tuple[Fit, list[Fit]]:
 
 
 def findings_of(plain: Fit, best: Fit, others: Sequence[Fit]) -> Conventions:
+    """Return the departures of the best fit from the plain one; ``others`` are as good and as simple."""
     gained = best.gain(plain)
     before, after = plain.groups[gained].error, best.groups[gained].error
     alternatives = tuple(o.world.words or "the scene's own" for o in others)

@@ -10,14 +10,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
+from functools import lru_cache, partial
 from itertools import product
 from typing import Any, Final
 
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.judge.conventions.axes import Frames
+from taylor_verify.judge.conventions.axes import Axes, Frames
 from taylor_verify.judge.errors.state import norms
 from taylor_verify.records.quantities import GROUPS
 
@@ -28,16 +28,19 @@ Read = Callable[[Array, Array], Array]
 
 @dataclass(frozen=True)
 class Reading:
-    """One way to read a group; ``words`` say how it departs from the scene's conventions.
+    """A way to read a group; ``words`` say how it departs from the scene's conventions.
 
-    ``cost`` counts the departures: of two readings that explain a file alike, the one with fewer is
-    the explanation. ``read`` returns the group in the scene's conventions: vectors (n, 3),
-    quaternions (n, 4) or matrices (n, 3, 3).
+    Of two readings that explain a file alike, the one with fewer departures is the explanation. ``read``
+    returns the group in the scene's conventions: vectors (n, 3), quaternions (n, 4) or matrices (n, 3, 3).
     """
 
     words: tuple[str, ...]
-    cost: int
     read: Read
+
+    @property
+    def cost(self) -> int:
+        """The number of departures."""
+        return len(self.words)
 
     @property
     def sentence(self) -> str:
@@ -55,14 +58,10 @@ _UNITS: Final = (
 
 @lru_cache
 def readings(group: str, frames: Frames = Frames()) -> tuple[Reading, ...]:  # noqa: B008 (frozen)
-    """All readings of a group of columns under a renaming of axes, the scene's own first."""
-    if group == "quaternion":
-        every = _quaternions(frames)
-    elif group == "attitude":
-        every = _matrices(frames)
-    else:
-        every = _vectors(group, frames)
-    return tuple(sorted(every, key=lambda reading: reading.cost))
+    """Return all readings of a group of columns under a renaming of axes, the scene's own first."""
+    families = {"quaternion": _quaternions, "attitude": _matrices}
+    family = families.get(group, partial(_vectors, group))
+    return tuple(sorted(family(frames), key=lambda reading: reading.cost))
 
 
 def _vectors(group: str, frames: Frames) -> Iterator[Reading]:
@@ -70,73 +69,51 @@ def _vectors(group: str, frames: Frames) -> Iterator[Reading]:
     together, is_placed = " ".join(about.columns), about.moves_with == "space"
     units = _UNITS if about.dimension == "rate" else _UNITS[:1]
     for unit, rational, power in units:
-        for space in (False,) if is_placed else (False, True):
-            words = (
-                *([f"{together} are {unit}"] if unit else []),
-                *([f"{together} are in space axes"] if space else []),
-            )
-            axes = frames.space if space or is_placed else frames.body
-            read = _vector_map(rational, power, space, axes.vectors)
-            yield Reading(words, bool(unit) + space, read)
+        for in_space in (False,) if is_placed else (False, True):
+            words = [f"{together} are {unit}"] * bool(unit)
+            words += [f"{together} are in space axes"] * in_space
+            axes = frames.space if in_space or is_placed else frames.body
+            yield Reading(tuple(words), partial(_read_vectors, axes, rational, power, in_space))
 
 
-def _vector_map(
-    rational: Fraction, power: int, space: bool, renamed: Callable[[Array], Array]
-) -> Read:
-    def read(rows: Array, R: Array) -> Array:
-        vectors = renamed(rows)
-        if rational != 1:
-            vectors = vectors * _number(rational, power, rows)
-        # Components in space axes, taken to body axes by the exact attitude: R^T is a rotation, so
-        # that the error keeps its size.
-        return np.matmul(R.transpose(0, 2, 1), vectors[:, :, None])[:, :, 0] if space else vectors
-
-    return read
-
-
-def _number(rational: Fraction, power: int, like: Array) -> Any:
-    if like.dtype == object:
-        return mp.convert(rational) * mp.pi**power
-    return float(rational) * np.pi**power
+def _read_vectors(
+    axes: Axes, rational: Fraction, power: int, in_space: bool, rows: Array, R: Array
+) -> Array:
+    vectors = axes.vectors(rows)
+    if rational != 1 and rows.dtype == object:
+        vectors = vectors * (mp.convert(rational) * mp.pi**power)
+    elif rational != 1:
+        vectors = vectors * (float(rational) * np.pi**power)
+    # Components in space axes, taken to body axes by the exact attitude: R^T is a rotation, so
+    # that the error keeps its size.
+    return np.matmul(R.transpose(0, 2, 1), vectors[:, :, None])[:, :, 0] if in_space else vectors
 
 
 def _quaternions(frames: Frames) -> Iterator[Reading]:
     columns = "q0 q1 q2 q3"
     for last, conjugate in product((False, True), repeat=2):
-        words = (
-            *([f"{columns} have the scalar last: the quaternion is scalar last"] if last else []),
-            *([f"{columns} are the conjugate: they take space to body axes"] if conjugate else []),
-        )
-        yield Reading(words, last + conjugate, _quaternion_map(last, conjugate, frames))
+        words = [f"{columns} have the scalar last: the quaternion is scalar last"] * last
+        words += [f"{columns} are the conjugate: they take space to body axes"] * conjugate
+        yield Reading(tuple(words), partial(_read_quaternions, frames, last, conjugate))
 
 
-def _quaternion_map(last: bool, conjugate: bool, frames: Frames) -> Read:
-    def read(rows: Array, R: Array) -> Array:
-        del R
-        ordered = np.roll(rows, 1, axis=1) if last else rows
-        signs = np.array([1, -1, -1, -1] if conjugate else [1, 1, 1, 1])
-        return frames.quaternions(ordered * signs)
-
-    return read
+def _read_quaternions(frames: Frames, last: bool, conjugate: bool, rows: Array, _: Array) -> Array:
+    ordered = np.roll(rows, 1, axis=1) if last else rows
+    return frames.quaternions(ordered * np.array([1, -1, -1, -1] if conjugate else [1, 1, 1, 1]))
 
 
 def _matrices(frames: Frames) -> Iterator[Reading]:
-    for transposed in (False, True):
-        words = ("r11 ... r33 are transposed: they take space to body axes",) * transposed
-        yield Reading(words, int(transposed), _matrix_map(transposed, frames))
+    yield Reading((), partial(_read_matrices, frames, (0, 1, 2)))
+    words = "r11 ... r33 are transposed: they take space to body axes"
+    yield Reading((words,), partial(_read_matrices, frames, (0, 2, 1)))
 
 
-def _matrix_map(transposed: bool, frames: Frames) -> Read:
-    def read(rows: Array, R: Array) -> Array:
-        del R
-        matrices = rows.reshape(-1, 3, 3)
-        return frames.attitudes(matrices.transpose(0, 2, 1) if transposed else matrices)
-
-    return read
+def _read_matrices(frames: Frames, order: tuple[int, int, int], rows: Array, _: Array) -> Array:
+    return frames.attitudes(rows.reshape(-1, 3, 3).transpose(order))
 
 
 def rotations(quaternions: Array) -> Array:
-    """R(q/|q|) for every row; NaN where q is zero."""
+    """Return R(q/|q|) for every row; NaN where q is zero."""
     if quaternions.dtype == object:
         lengths = norms(quaternions)
         lengths = np.array([length if length else mp.nan for length in lengths], dtype=object)

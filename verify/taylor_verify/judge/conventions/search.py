@@ -24,7 +24,7 @@ import numpy as np
 from mpmath import mp
 
 from taylor_verify.exact.route import solution
-from taylor_verify.exact.solution import Quantities, Solution, Unsettled
+from taylor_verify.exact.solution import Solution, Unsettled
 from taylor_verify.judge.conventions.axes import Frames, renamings
 from taylor_verify.judge.conventions.fits import (
     AS_WELL,
@@ -41,6 +41,7 @@ from taylor_verify.judge.conventions.worlds import World, worlds
 from taylor_verify.judge.velocities import has_velocities, velocities
 from taylor_verify.models.problem import NotRepresentable, adopt
 from taylor_verify.records.quantities import COLUMNS, GROUPS, TRACKED
+from taylor_verify.scenes.instants import evenly
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import TrajectoryFile
@@ -65,13 +66,13 @@ _MOST_SPANS: Final = 10
 
 @np.errstate(over="ignore", invalid="ignore")  # an answer may run away
 def conventions(file: TrajectoryFile, scene: Scene, rung: Rung) -> Conventions:
-    """The conventions of a file of groups that the scene can be compared with.
+    """Return the conventions of a file of groups that the scene can be compared with.
 
     Raises Unsettled where there is no exact motion, and NotRepresentable where the rung cannot hold
     the scene.
     """
     searches = [_Search(file, scene, rung, rows) for rows in _beginnings(file)]
-    if not searches or searches[-1].plain.worst <= searches[-1].noise / EXPLAINS:
+    if not searches or searches[-1].is_explained:
         return Conventions((), World(scene), {})
     # Of two beginnings that tell as much the shorter one comes first, and max takes the first.
     return max((search.conventions() for search in searches), key=lambda found: found.rank)
@@ -85,12 +86,8 @@ def _beginnings(file: TrajectoryFile) -> list[tuple[int, ...]]:
     while length < longest:
         lengths.append(length)
         length *= _LONGER
-    return [_evenly(finite[:count]) for count in (*lengths, longest) if count]
-
-
-def _evenly(rows: Sequence[int]) -> tuple[int, ...]:
-    chosen = np.linspace(0, len(rows) - 1, min(len(rows), _MOST_ROWS))
-    return tuple(sorted({rows[round(k)] for k in chosen}))
+    counts = [count for count in (*lengths, longest) if count]
+    return [tuple(finite[k] for k in evenly(count, _MOST_ROWS)) for count in counts]
 
 
 @dataclass(frozen=True)
@@ -103,17 +100,23 @@ class _Search:
     rows: tuple[int, ...]
 
     def conventions(self) -> Conventions:
-        """The conventions that these rows tell."""
-        noise = self.noise
-        if self.plain.worst <= noise / EXPLAINS:
+        """Return the conventions that these rows tell."""
+        if self.is_explained:
             return Conventions((), World(self.scene), {})
-        tried = (fit for world in self.worlds() for fit in self.fits(world))
-        fits = [self.plain, *(fit for fit in tried if fit.explains(self.plain, noise))]
-        return findings_of(self.plain, *simplest(fits, noise))
+        # Every body and clock that can be tried here, the scene's own first.
+        others = [w for w in worlds(self.scene, self.file.times) if self._is_possible(w)]
+        tried = (fit for world in (World(self.scene), *others) for fit in self.fits(world))
+        fits = [self.plain, *(fit for fit in tried if fit.explains(self.plain, self.noise))]
+        return findings_of(self.plain, *simplest(fits, self.noise))
 
     @property
     def noise(self) -> float:
         return _NOISE_ROUNDOFFS * max(float(self.rung.unit_roundoff), FLOAT64)
+
+    @property
+    def is_explained(self) -> bool:
+        """True if the scene's own conventions leave no error that another could explain."""
+        return self.plain.worst <= self.noise / EXPLAINS
 
     @cached_property
     def plain(self) -> Fit:
@@ -121,12 +124,8 @@ class _Search:
         return self.fits(World(self.scene), (Frames(),))[0]
 
     @cached_property
-    def instants(self) -> tuple[Fraction, ...]:
-        return tuple(self.file.times[k] for k in self.rows)
-
-    @cached_property
     def values(self) -> dict[str, Floats]:
-        return {group: rows.doubles(self.rows) for group, rows in self.file.rows.items()}
+        return {group: rows.doubles(self.rows) for group, rows in self.file.groups.items()}
 
     @cached_property
     def frames(self) -> tuple[Frames, ...]:
@@ -145,33 +144,28 @@ class _Search:
         return tuple(renamings(active["body"], active["space"], joined))
 
     def solution(self, world: World) -> tuple[Scene, Solution]:
-        """The rounded scene of a world at the file's rows, with the attitude for space axes."""
+        """Return the rounded scene of a world at the file's rows, with the attitude for space axes."""
         track = {"attitude", *(GROUPS[group].quantity for group in self.file.groups)}
         track &= set(TRACKED[self.scene.model])
-        given = adopt(world.scene, self.rung, world.times(self.instants)).given
+        given = adopt(
+            world.scene, self.rung, world.times(self.file.times[k] for k in self.rows)
+        ).given
         tracked = replace(given, track=frozenset(track))
         return tracked, solution(tracked)
 
     def fits(self, world: World, frames: Sequence[Frames] = ()) -> list[Fit]:
-        """The best readings in a world under each renaming of axes.
+        """Return the best readings in a world under each renaming of axes.
 
         Without ``frames``, under those that leave no group unexplained: no other one is the finding.
         """
-        given, exact = self.solution(world)
-        reach = _MOST_SPANS * max(abs(t) for t in self.scene.clock.elapsed)
-        elapsed = given.clock.elapsed
-        near = [k for k, t in enumerate(elapsed) if exact.route != "taylor" or abs(t) <= reach]
-        try:
-            truth = exact.evaluate([elapsed[k] for k in near], _DIGITS) if near else {}
-        except Unsettled:
-            near, truth = [], {}
-        floats = _as_floats(_with_velocities(given, truth)) if near else {}
-        columns = COLUMNS[next(iter(self.values))] if self._is_one_vector else ()
+        near, truth = self._truth(world)
+        only = [group for group in self.values if not GROUPS[group].is_frame]
+        columns = COLUMNS[only[0]] if len(only) == len(self.values) == 1 else ()
         fits = []
         for renamed in frames or self.frames:
             groups: dict[str, BestReading] = {}
             for group in self.values:
-                groups[group] = read = self._best(group, floats, near, renamed)
+                groups[group] = read = self._best(group, truth, near, renamed)
                 if not frames and not read.is_explained(self.plain.groups[group], self.noise):
                     break
             else:
@@ -179,9 +173,20 @@ class _Search:
                 fits.append(Fit(replace(world, frames=renamed, axes_words=words), groups))
         return fits
 
-    @property
-    def _is_one_vector(self) -> bool:
-        return len(self.values) == 1 and not any(GROUPS[group].is_frame for group in self.values)
+    def _truth(self, world: World) -> tuple[list[int], dict[str, Floats]]:
+        """The rows that are within reach in a world, and the exact motion there."""
+        given, exact = self.solution(world)
+        reach = _MOST_SPANS * max(abs(t) for t in self.scene.clock.elapsed)
+        elapsed = given.clock.elapsed
+        near = [k for k, t in enumerate(elapsed) if exact.route != "taylor" or abs(t) <= reach]
+        try:
+            truth = exact.evaluate([elapsed[k] for k in near], _DIGITS) if near else {}
+        except Unsettled:
+            return [], {}
+        if near and has_velocities(given.body):
+            with mp.workdps(_DIGITS):
+                truth = {**truth, **velocities(given.body, truth)}
+        return near, {name: rows.astype(float) for name, rows in truth.items()}
 
     def _best(
         self, group: str, truth: Mapping[str, Floats], near: Sequence[int], frames: Frames
@@ -192,24 +197,17 @@ class _Search:
         columns = self.values[group][list(near)]
         right = truth["attitude" if GROUPS[group].is_frame else group]
         # A row out of reach of this world is not known to be right.
-        beyond = 1.0 if len(near) < len(self.rows) else 0.0
-        errors = [
-            max(_error(group, reading.read(columns, truth["attitude"]), right), beyond)
-            for reading in known
-        ]
+        beyond, errors = 1.0 if len(near) < len(self.rows) else 0.0, []
+        for reading in known:
+            got = reading.read(columns, truth["attitude"])
+            got = rotations(got) if group == "quaternion" else got
+            errors.append(max(_distance(group, got, right), beyond))
         enough = AS_WELL * max(min(errors), self.noise)
         good = [(r, e) for r, e in zip(known, errors, strict=True) if e <= enough]
         cost = good[0][0].cost
         alike = [reading for reading, _ in good if reading.cost == cost]
         motion = _distance(group, np.broadcast_to(right[0], right.shape), right)
         return BestReading(alike[0], good[0][1], errors[0], motion, tuple(alike[1:]))
-
-    # Worlds.
-
-    def worlds(self) -> list[World]:
-        """Every body and clock that can be tried here, the scene's own first."""
-        others = [w for w in worlds(self.scene, self.file.times) if self._is_possible(w)]
-        return [World(self.scene), *others]
 
     def _is_possible(self, world: World) -> bool:
         try:
@@ -231,22 +229,6 @@ def is_far(scene: Scene, times: Sequence[Fraction], spans: int = _MOST_SPANS) ->
 # The errors of the groups.
 
 
-def _with_velocities(given: Scene, truth: Quantities) -> Quantities:
-    if has_velocities(given.body):
-        with mp.workdps(_DIGITS):
-            return {**truth, **velocities(given.body, truth)}
-    return truth
-
-
-def _as_floats(truth: Quantities) -> dict[str, Floats]:
-    return {name: rows.astype(float) for name, rows in truth.items()}
-
-
-def _error(group: str, got: Floats, right: Floats) -> float:
-    """The largest error of columns in the scene's conventions."""
-    return _distance(group, rotations(got) if group == "quaternion" else got, right)
-
-
 def _distance(group: str, got: Floats, right: Floats) -> float:
     """The largest distance over the rows, relative to the largest vector (absolute where all are zero).
 
@@ -261,6 +243,6 @@ def _distance(group: str, got: Floats, right: Floats) -> float:
 
 
 def _largest(rows: Floats) -> float:
-    """The largest norm of all rows."""
+    """The largest norm of a row."""
     flat = rows.reshape(len(rows), -1)
     return float(np.sqrt(np.einsum("ij,ij->i", flat, flat).max()))

@@ -8,7 +8,7 @@ with it the one row that says whether the file begins at the scene's initial sta
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Final
@@ -64,31 +64,28 @@ class World:
 
 
 def worlds(scene: Scene, times: Sequence[Fraction]) -> list[World]:
-    """Every body, unit and origin of time but the scene's own, for a file with rows at these times."""
+    """Return every body and clock but the scene's own, for a file with rows at these times."""
     every = [
-        World(other, scale, shift, time_words, body_words)
-        for other, body_words in [(scene, ""), *_other_bodies(scene)]
-        for scale, shift, time_words in _clocks(scene, times)
+        replace(clock, scene=other, body_words=words)
+        for other, words in [(scene, ""), *_other_bodies(scene)]
+        for clock in _clocks(scene, times)
     ]
     return every[1:]
 
 
-def _clocks(
-    scene: Scene, times: Sequence[Fraction]
-) -> list[tuple[Fraction, Fraction, tuple[str, ...]]]:
+def _clocks(scene: Scene, times: Sequence[Fraction]) -> Iterator[World]:
     """Units of time, each with the file's origin and with its first row at the scene's own."""
     start, instants = scene.clock.start, scene.clock.instants
     first = min(times[0], times[-1]) if instants[-1] > start else max(times[0], times[-1])
-    clocks: list[tuple[Fraction, Fraction, tuple[str, ...]]] = []
     for scale, unit in ((Fraction(1), ""), *_SCALES):
         words = (f"t counts {unit}",) if unit else ()
-        clocks.append((scale, Fraction(0), words))
+        yield World(scene, scale, time_words=words)
         if _is_among(start / scale, times):
             continue
         for origin in dict.fromkeys((start, instants[0])):
             if shift := scale * first - origin:
-                clocks.append((scale, shift, (*words, _late(shift))))
-    return clocks
+                late = f"t is {'late' if shift > 0 else 'early'} by {float(abs(shift)):.15g}"
+                yield World(scene, scale, shift, (*words, late))
 
 
 def _is_among(time: Fraction, times: Sequence[Fraction]) -> bool:
@@ -99,14 +96,14 @@ def _is_among(time: Fraction, times: Sequence[Fraction]) -> bool:
 
 
 def _other_bodies(scene: Scene) -> list[tuple[Scene, str]]:
-    """The same numbers by the other convention, where a part of the body has one."""
+    """The scene with a part of its body read by the other convention, where there is one."""
     body, found = scene.body, []
-    for name, value in body.parts().items():
-        if name not in _MISREAD:
+    parts = body.parts()
+    for name, (misread, words) in _MISREAD.items():
+        if name not in parts or misread(parts[name]) == parts[name]:
             continue
-        misread, words = _MISREAD[name]
-        other = body.with_parts({name: misread(value)})
-        if misread(value) != value and tensors.is_positive_definite(other.energy_matrix):
+        other = body.with_parts({name: misread(parts[name])})
+        if tensors.is_positive_definite(other.energy_matrix):
             found.append((replace(scene, body=other), words))
     return found
 
@@ -130,7 +127,3 @@ _MISREAD: Final = {
         "the body has its coupling B transposed (a scene's T has x.B y: its rows go with x)",
     ),
 }
-
-
-def _late(shift: Fraction) -> str:
-    return f"t is {'late' if shift > 0 else 'early'} by {float(abs(shift)):.15g}"

@@ -18,7 +18,7 @@ from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution
 from taylor_verify.judge.errors.shift import LEAVES, strays_from
 from taylor_verify.judge.errors.state import largest, norms
-from taylor_verify.judge.velocities import Velocity, angular_velocity
+from taylor_verify.judge.velocities import velocity
 from taylor_verify.records.reason import Kind
 from taylor_verify.scenes.precision import exact_value, power_of_two
 from taylor_verify.scenes.scene import Scene
@@ -62,18 +62,13 @@ class _Fit:
     def largest(self) -> Any:
         return largest(norms(self.error))
 
-    @property
-    def reach(self) -> Any:
-        """How far the answer goes from its first sample."""
-        return largest(norms(self.answer - self.answer[:1]))
-
     def step(self) -> Any:
-        """The further shift that leaves least, to first order."""
+        """Return the further shift that leaves least, to first order."""
         weight = np.sum(self.velocity**2)
         return -np.sum(self.velocity * self.error) / weight if weight else mp.zero
 
     def strays(self) -> tuple[int, ...]:
-        """The samples that do not share the median of all shifts; none where they are many."""
+        """Return the samples that do not share the median of all shifts; none where they are many."""
         error, velocity = self.error.astype(float), self.velocity.astype(float)
         speed = np.linalg.norm(velocity, axis=1)
         if not np.all(speed > 0):
@@ -85,20 +80,18 @@ class _Fit:
 
 
 def angular_shift(
-    given: Scene, answer: Array, digits: int, of: Velocity = angular_velocity
+    given: Scene, answer: Array, digits: int, group: str = "omega"
 ) -> AngularShift | None:
     """Return the constant shift, at the ambient precision; None where the answer is not finite.
 
-    ``answer`` holds Omega, or whatever velocity ``of`` makes of the impulses, at the instants of ``given``.
+    ``answer`` holds Omega, or the velocity of another ``group`` of columns, at the instants of ``given``.
     """
     if not all(mp.isfinite(value) for value in answer.flat):
         return None
-    compared, every = _Compared(given, solution(given), answer, digits, of), range(len(answer))
-    best = compared.best(every)
-    whole = compared.shift(every, best)
+    compared = _Compared(given, solution(given), answer, digits, group)
+    whole, best = compared.shift(range(len(answer)))
     if whole.kind is Kind.NONE and (strays := best.strays()):
-        sharing = [k for k in every if k not in strays]
-        shared = compared.shift(sharing, compared.best(sharing))
+        shared, _ = compared.shift([k for k in range(len(answer)) if k not in strays])
         return whole if shared.kind is Kind.NONE else shared
     return whole
 
@@ -109,17 +102,11 @@ class _Compared:
     exact: Solution
     answer: Array
     digits: int
-    of: Velocity
+    group: str
 
-    def shift(self, rows: Sequence[int], best: _Fit) -> AngularShift:
-        first = self.fit(Fraction(0), rows)
-        explains = best.shift != 0 and best.largest <= LEAVES * min(first.largest, first.reach)
-        kind = Kind.CONSTANT if explains else Kind.NONE
-        return AngularShift(best.shift, float(best.largest), kind)
-
-    def best(self, rows: Sequence[int]) -> _Fit:
-        """The least squares over some samples."""
-        fit = self.fit(Fraction(0), rows)
+    def shift(self, rows: Sequence[int]) -> tuple[AngularShift, _Fit]:
+        """Return the shift of some samples, and their fit by least squares."""
+        fit = first = self.fit(Fraction(0), rows)
         for _ in range(_EVALUATIONS):
             step = fit.step()
             further = self.fit(fit.shift + exact_value(step), rows)
@@ -128,14 +115,18 @@ class _Compared:
             fit = further
             if abs(step) * mp.sqrt(np.sum(fit.velocity**2)) <= _NEGLIGIBLE * fit.left:
                 break
-        return fit
+        # An answer that stands still has no clock.
+        reach = largest(norms(first.answer - first.answer[:1]))
+        explains = fit.shift != 0 and fit.largest <= LEAVES * min(first.largest, reach)
+        kind = Kind.CONSTANT if explains else Kind.NONE
+        return AngularShift(fit.shift, float(fit.largest), kind), fit
 
     def fit(self, shift: Fraction, samples: Sequence[int]) -> _Fit:
+        """Return the answer at some samples beside the exact motion at t - shift."""
         elapsed = [self.given.clock.elapsed[k] - shift for k in samples]
         h = _DIFFERENCE * (max(abs(t) for t in elapsed) or 1)
-        later = [t + h for t in elapsed]
-        both = self.exact.evaluate([*elapsed, *later], self.digits + _MORE_DIGITS)
-        rows = self.of(self.given.body, both)
-        here, ahead = rows[: len(elapsed)], rows[len(elapsed) :]
+        both = [*elapsed, *(t + h for t in elapsed)]
+        motion = self.exact.evaluate(both, self.digits + _MORE_DIGITS)
+        here, ahead = np.split(velocity(self.group, self.given.body, motion), 2)
         own = self.answer[list(samples)]
         return _Fit(shift, own, own - here, (ahead - here) / mp.convert(h))

@@ -1,4 +1,4 @@
-"""What a clock that rounds does to the balances of a manufactured motion: its errors do work, for ever.
+"""The work that the errors of a rounding clock do on the balances of a manufactured motion, for ever.
 
 z*, N  the motion that the loads are made for, and the rates of the free body: the load is z*' - N(z*)
 a      by how much the clock, cosine and sine of a wave of frequency nu, is off, in axes that turn with it
@@ -64,7 +64,7 @@ class ClockWork:
     done: Floats
 
     def drift(self, unit_roundoff: Fraction, steps: int, times: Floats, scale: Any) -> Floats:
-        """What the roundings of the clock leave at these times, over ``scale``."""
+        """Return what the roundings of the clock leave at these times, over ``scale``."""
         parts, count = len(self.done) - 1, max(steps, 1)
         rounding = (1 + np.minimum(self.turns / count, 1.0)) ** 2 / 2
         P = self.done
@@ -83,7 +83,7 @@ class ClockWork:
 
 @lru_cache(maxsize=16)
 def clock_work(scene: Scene) -> Mapping[str, ClockWork]:
-    """By the name of every quantity that has a balance; empty without waves.
+    """Return the work on every quantity that has a balance, by its name; empty without waves.
 
     Raises Unsettled where the motion cannot be had.
     """
@@ -137,8 +137,7 @@ def _work(
 
 def _displaced(scene: Scene, motion: Motion, by: Column) -> Motion:
     """The motion with its momenta moved, the frame as it is."""
-    parts = _parts(scene, by)
-    moved = {name: motion[name] + parts[name] for name in parts}
+    moved = {name: motion[name] + part for name, part in _parts(scene, by).items()}
     return Motion({**motion.quantities, **moved}, motion.radius)
 
 
@@ -146,7 +145,7 @@ def _displaced(scene: Scene, motion: Motion, by: Column) -> Motion:
 
 
 def _pushes(scene: Scene, motion: Manufactured, times: Sequence[Fraction]) -> list[Any]:
-    """For either axis of every wave, the wave and zeta' - J(z*) zeta at every time, (n, d)."""
+    """The wave, for either of its axes, and zeta' - J(z*) zeta at every time, (n, d)."""
     angles = [[mp.cos_sin(mp.convert(w.frequency * t)) for t in times] for w in motion.waves]
     there = np.array([[mp.convert(z) for z in motion.constant]] * len(times), dtype=object)
     offsets = []
@@ -176,8 +175,7 @@ def _free(scene: Scene, rows: Column) -> Column:
         found.velocity[name] * np.array([mp.ldexp(1, found.units[name] - found.time)], dtype=object)
         for name in MOMENTA[scene.model]
     ]
-    joined: Column = np.concatenate(columns, axis=1)
-    return joined
+    return np.concatenate(columns, axis=1)
 
 
 def _parts(scene: Scene, rows: Column) -> dict[str, Column]:

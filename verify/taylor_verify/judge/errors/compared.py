@@ -22,6 +22,7 @@ from taylor_verify.exact.rates import Rates, rates
 from taylor_verify.exact.solution import Solution, Unsettled
 from taylor_verify.judge.errors.state import Errors, largest
 from taylor_verify.records.quantities import QUANTITIES, Measure
+from taylor_verify.scenes.instants import evenly
 from taylor_verify.scenes.motion import Clock, Motion
 from taylor_verify.scenes.mpfr import precision, to_mpf, to_mpfr
 from taylor_verify.scenes.precision import power_of_two
@@ -32,8 +33,6 @@ Shifts = tuple[Fraction, ...]
 
 # A sum of a dozen products of float64 cannot tell less than this part of its terms.
 _FLOAT_NOISE: Final = 2.0**-48
-# Beyond this error (relative, or radians) first order may not even know the direction.
-_FAR: Final = 0.1
 # Many shifts are tried on a few samples, to a few digits.
 _SEARCH_SAMPLES: Final = 16
 _SEARCH_DIGITS: Final = 15
@@ -63,12 +62,11 @@ class Shifted:
     def shift(self) -> Floats:
         """The whole shift of every sample, in the scene's unit of time."""
         begun = np.array([float(c) for c in self.shifts]) if any(self.shifts) else 0.0
-        found: Floats = begun + self.more * (float(self.unit) * self.size)
-        return found
+        return begun + self.more * (float(self.unit) * self.size)
 
     @property
     def is_finite(self) -> bool:
-        """Whether float64 holds all of it."""
+        """True if float64 holds all of it."""
         with np.errstate(all="ignore"):
             total = np.sum(self.error**2) + np.sum(self.velocity**2) + np.sum(self.acceleration**2)
         return bool(np.isfinite(total))
@@ -98,26 +96,27 @@ class Shifted:
         return bend / fastest if fastest else 0.0
 
     def neglects(self, step: Floats) -> float:
-        """What first order does not see of a further shift, in ``size``."""
+        """Return what first order does not see of a further shift, in ``size``."""
         bend = np.linalg.norm(self.acceleration, axis=1) * step**2 * self.size / 2
         noise = _FLOAT_NOISE * np.linalg.norm(self.velocity, axis=1) * np.abs(step)
         return float(np.max(bend + noise))
 
     def moved(self, step: Floats) -> Shifts:
-        """The shifts with a further one, exactly."""
+        """Return the shifts with a further one, exactly."""
         unit = self.unit * Fraction(self.size)
         return tuple(
             c + Fraction(s) * unit for c, s in zip(self.shifts, step.tolist(), strict=True)
         )
 
     def with_first_order(self, step: Floats) -> Shifted:
+        """Return what first order makes of a further shift."""
         error = self.error + step[:, None] * self.velocity
         return replace(self, error=error, more=self.more + step)
 
 
 @dataclass(frozen=True)
 class Run:
-    """What all quantities of one answer are held against."""
+    """An answer beside the exact motion, for all quantities of a scene."""
 
     scene: Scene
     exact: Solution
@@ -153,7 +152,7 @@ class Run:
         return (Fraction(0),) * len(self.elapsed)
 
     def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion | None:
-        """The exact motion; None where it cannot be had."""
+        """Return the exact motion; None where it cannot be had."""
         try:
             return self.exact.motion(elapsed, digits)
         except Unsettled:
@@ -162,13 +161,13 @@ class Run:
 
 @dataclass(frozen=True)
 class Compared:
-    """One quantity of an answer, and how to hold it against the exact motion at any shifts."""
+    """A quantity of an answer beside the exact motion at any shifts."""
 
     run: Run
     errors: Errors
 
     def without(self, strays: Collection[int]) -> Compared:
-        """The comparison of all samples but these."""
+        """Return the comparison of all samples but these."""
         run = self.run
         kept = [k for k in range(len(run.elapsed)) if k not in strays]
         clock = Clock(run.scene.clock.start, tuple(run.scene.clock.instants[k] for k in kept))
@@ -178,7 +177,7 @@ class Compared:
 
     @cached_property
     def reach(self) -> float:
-        """How far the answer goes from its first sample, in the unit of the error."""
+        """The distance that the answer goes from its first sample, in the unit of the error."""
         parts = []
         for part, scale in self._scales.items():
             rows = to_mpfr(self.run.answer[part].reshape(len(self.run.elapsed), -1))
@@ -189,11 +188,11 @@ class Compared:
 
     @cached_property
     def doubt(self) -> float:
-        """How wide the truth is: less than this cannot be said to be left."""
+        """The width of the truth: less than this cannot be said to be left."""
         return float(max(self.errors.truth_radius))
 
     def evaluated(self, shifts: Shifts) -> Shifted | None:
-        """The exact motion at t - shifts beside the answer; None where it cannot be had."""
+        """Return the exact motion at t - shifts beside the answer; None where it cannot be had."""
         run = self.run
         elapsed = [t - c for t, c in zip(run.elapsed, shifts, strict=True)]
         motion = run.motion(elapsed, run.digits)
@@ -225,27 +224,22 @@ class Compared:
             more=np.zeros(len(shifts)),
         )
 
-    def is_far(self, fit: Shifted) -> bool:
-        return bool(np.max(np.abs(fit.error)) * fit.size > _FAR)
-
     def left_by(self, tried: Sequence[Shifts]) -> list[float] | None:
-        """The mean square error that each of these shifts leaves, on a few samples."""
+        """Return the mean square error that each of these shifts leaves, on a few samples."""
         run, count = self.run, len(self.run.elapsed)
-        rows = sorted({round(k) for k in np.linspace(0, count - 1, min(count, _SEARCH_SAMPLES))})
+        rows = evenly(count, _SEARCH_SAMPLES)
         elapsed = [run.elapsed[k] - shifts[k] for shifts in tried for k in rows]
         motion = run.motion(elapsed, _SEARCH_DIGITS)
         if motion is None:
             return None
         left = []
-        for i in range(len(tried)):
-            part = slice(i * len(rows), (i + 1) * len(rows))
-            quantities = {name: motion[name][part] for name in self._scales}
-            error, size = self._relative(Motion(quantities, motion.radius[part]), rows)
+        for first in range(0, len(elapsed), len(rows)):
+            error, size = self._relative(motion.at(range(first, first + len(rows))), rows)
             left.append(float(np.mean(np.sum(error**2, axis=1))) * size**2)
         return left
 
     def largest(self, fit: Shifted) -> float:
-        """The largest error that is left, in the unit of the error."""
+        """Return the largest error that is left, in the unit of the error."""
         ends = accumulate((self.run.answer[part][0].size for part in self._scales), initial=0)
         parts = [fit.error[:, left:right] for left, right in pairwise(ends)]
         left = float(max(np.max(np.linalg.norm(part, axis=1)) for part in parts)) * fit.size

@@ -25,6 +25,8 @@ _EVALUATIONS: Final = 10
 _HALVINGS: Final = 3
 # An evaluation that leaves more than this part of the error before it is worth no further one.
 _PROGRESS: Final = 0.9
+# Beyond this error (relative, or radians) first order may not even know the direction.
+_FAR: Final = 0.1
 # The search: this many steps of half a radian of the fastest turn, each way.
 _SEARCH_STEPS: Final = 16
 _SEARCH_STEP: Final = 0.5
@@ -33,36 +35,33 @@ Course = Callable[[Shifted, Floats], Floats]
 
 
 def constant(fit: Shifted, times: Floats) -> Floats:
-    """One shift for all samples."""
+    """Return one shift for all samples."""
     return _along(np.ones((len(times), 1)), fit)
 
 
 def linear(fit: Shifted, times: Floats) -> Floats:
-    """A shift that is linear in t; ``times`` run over the span from 0 to 1."""
+    """Return a shift that is linear in t; ``times`` run over the span from 0 to 1."""
     return _along(np.stack([np.ones(len(times)), times], axis=1), fit)
 
 
 def _along(basis: Floats, fit: Shifted) -> Floats:
     root = np.sqrt(fit.weight)
     asked = np.divide(fit.wanted, root, out=np.zeros(len(root)), where=root > 0)
-    parameters = np.linalg.lstsq(root[:, None] * basis, asked, rcond=None)[0]
-    found: Floats = basis @ parameters
-    return found
+    return basis @ np.linalg.lstsq(root[:, None] * basis, asked, rcond=None)[0]
 
 
 def single(fit: Shifted, times: Floats) -> Floats:
-    """Every sample by itself; none where the motion rests, for there it tells no time."""
+    """Return a shift for every sample by itself; none where the motion rests and tells no time."""
     return np.divide(fit.wanted, fit.weight, out=np.zeros(len(times)), where=moving(fit))
 
 
 def moving(fit: Shifted) -> np.ndarray[Any, np.dtype[np.bool_]]:
-    """The samples at which the motion is fast enough to tell the time."""
-    found: np.ndarray[Any, np.dtype[np.bool_]] = fit.weight > _AT_REST**2 * np.max(fit.weight)
-    return found
+    """Return the samples at which the motion is fast enough to tell the time."""
+    return fit.weight > _AT_REST**2 * np.max(fit.weight)
 
 
 def fitted(compared: Compared, fit: Shifted, course: Course) -> Shifted:
-    """The least squares along a course that begins where ``fit`` stands."""
+    """Return the least squares along a course that begins where ``fit`` stands."""
     for _ in range(_EVALUATIONS):
         step = course(fit, compared.run.times)
         better = fit.with_first_order(step)
@@ -88,22 +87,24 @@ def _closer(compared: Compared, fit: Shifted, step: Floats) -> Shifted | None:
 
 
 def best_start(compared: Compared, fit: Shifted, course: Course) -> Shifted:
-    """Where to begin: at ``fit``, or at one of many shifts if the error is that large.
+    """Return the fit to begin with: ``fit``, or that at one of many shifts if the error is large.
 
     A motion that comes back has many shifts that are equally good: the smallest is taken of those
     that leave the least but for what the distance between two of them may add.
     """
-    if not compared.is_far(fit) or not fit.rate:
+    is_far = np.max(np.abs(fit.error)) * fit.size > _FAR
+    if not is_far or not fit.rate:
         return fit
     times = compared.run.times
     shape = np.ones(len(times)) if course is constant else times
     pace = _SEARCH_STEP / fit.rate
-    tried = sorted(range(-_SEARCH_STEPS, _SEARCH_STEPS + 1), key=abs)
-    steps = [Fraction(k * pace) * fit.unit for k in tried]
-    left = compared.left_by([tuple(c * Fraction(s) for s in shape.tolist()) for c in steps])
+    counts = sorted(range(-_SEARCH_STEPS, _SEARCH_STEPS + 1), key=abs)
+    steps = [Fraction(k * pace) * fit.unit for k in counts]
+    tried = [tuple(step * Fraction(s) for s in shape.tolist()) for step in steps]
+    left = compared.left_by(tried)
     if left is None:
         return fit
     between = (pace / 2) ** 2 * float(np.mean(fit.weight))
     best = next(k for k, one in enumerate(left) if one <= min(left) + between)
-    found = compared.evaluated(tuple(steps[best] * Fraction(s) for s in shape.tolist()))
+    found = compared.evaluated(tried[best])
     return fit if found is None or not found.left < fit.left else found

@@ -44,7 +44,7 @@ def drifts(
     held: Mapping[str, Column],
     digits: int,
 ) -> list[tuple[Invariant, Errors]]:
-    """The drift of every conserved quantity, at the ambient precision of mpmath and in its numbers.
+    """Return the drift of every conserved quantity, at the ambient precision of mpmath and in its numbers.
 
     ``start`` is the exact initial state as a Motion of one row. The exact motion ``truth`` has the scales,
     so that an answer that runs away does not hide its own drift. ``held`` are the answer's own exact
@@ -90,28 +90,31 @@ class Drifts:
             assert self._largest is not None
             for invariant in self._found:
                 if is_free:
-                    change = _conserved(invariant, self._begin, quick)
+                    change = invariant.value(quick) - invariant.value(self._begin)[0]
                 elif ends is None:
                     change = to_mpfr(np.array([mp.nan] * len(elapsed), dtype=object))
                 else:
                     change = self._balance(invariant, quick, ends)
-                scale = invariant.scale(self._largest)
-                self._series[invariant.name].add(_sizes(change), scale)
-                if change.ndim == 1:
+                scale, is_vector = invariant.scale(self._largest), change.ndim > 1
+                sizes = sqrt(np.sum(change * change, axis=1)) if is_vector else abs(change)
+                self._series[invariant.name].add(sizes, scale)
+                if not is_vector:
                     self._changes[invariant.name] = float(change[-1] / scale)
 
     def errors(self) -> list[tuple[Invariant, Errors]]:
-        """The drifts of all rows; if one is not finite under loads, NaN for all."""
-        return [(invariant, self._errors(invariant)) for invariant in self._found]
-
-    def _errors(self, invariant: Invariant) -> Errors:
-        with precision():
-            values, scale = self._series[invariant.name].joined()
-        if self._is_lost:
-            values = np.full(len(values), np.nan)
-        name, (in_mpf,) = invariant.name, to_mpf(np.array([scale], dtype=object))
-        widths, change = np.zeros(len(values)), self._changes.get(name)
-        return Errors(name, f"scale of {name}", values, widths, {name: in_mpf}, change=change)
+        """Return the drifts of all rows; if one is not finite under loads, NaN for all."""
+        found = []
+        for invariant in self._found:
+            name = invariant.name
+            with precision():
+                values, scale = self._series[name].joined()
+            if self._is_lost:
+                values = np.full(len(values), np.nan)
+            parts = {name: to_mpf(np.array([scale], dtype=object))[0]}
+            widths, change = np.zeros(len(values)), self._changes.get(name)
+            errors = Errors(name, f"scale of {name}", values, widths, parts, change=change)
+            found.append((invariant, errors))
+        return found
 
     def _widen(self, truth: Motion) -> None:
         rows = truth.at(decisive(self._scene, truth))
@@ -128,7 +131,7 @@ class Drifts:
         return sums
 
     def _arc_ends(self, elapsed: Sequence[Fraction], held: Mapping[str, Column]) -> Motion:
-        """Where the exact motion leads from each sample (the first from the start) to the next one."""
+        """The exact motion at each sample that sets out from the sample before, or from the start."""
         states = _states(self._scene, held)
         time, state = self._before
         begins = (time, *elapsed[:-1])
@@ -137,33 +140,17 @@ class Drifts:
         return arcs(self._scene, [state, *states[:-1]], spans, self._digits, begins)
 
 
-# What follows is in MPFR's numbers.
-
-
-def _conserved(invariant: Invariant, start: Motion, answer: Motion) -> Column:
-    change: Column = invariant.value(answer) - invariant.value(start)[0]
-    return change
-
-
-def _sizes(values: Column) -> Column:
-    if values.ndim > 1:
-        return sqrt(np.sum(values * values, axis=1))
-    sizes: Column = abs(values)
-    return sizes
-
-
 # The arcs.
 
 
 def _states(scene: Scene, held: Mapping[str, Column]) -> list[State]:
     """The answer's samples as exact initial states."""
-    columns = {GROUPS[name].start: [_exact(row) for row in rows] for name, rows in held.items()}
+    columns = {
+        GROUPS[name].start: [tuple(exact_value(value) for value in row) for row in rows]
+        for name, rows in held.items()
+    }
     samples = zip(*columns.values(), strict=True)
     return [replace(scene.initial, **dict(zip(columns, row, strict=True))) for row in samples]
-
-
-def _exact(row: Sequence[Any]) -> tuple[Fraction, ...]:
-    return tuple(exact_value(value) for value in row)
 
 
 def _is_finite(motion: Motion) -> bool:

@@ -19,13 +19,11 @@ from mpmath import mp
 from taylor_verify.exact.invariants import Invariant
 from taylor_verify.exact.solution import Solution
 from taylor_verify.judge.costs import CONSERVED, ERRORS, TRUTH, Costs
-from taylor_verify.judge.errors import accumulated as series
 from taylor_verify.judge.errors.accumulated import States, joined
 from taylor_verify.judge.errors.drifts import Drifts
 from taylor_verify.judge.errors.shift import Shift, time_shifts
 from taylor_verify.judge.errors.state import (
     Arc,
-    Distances,
     Errors,
     Floats,
     in_doubles,
@@ -42,6 +40,10 @@ from taylor_verify.solvers.trajectory import motion_of, rows_at
 Quantities = Mapping[str, np.ndarray[Any, Any]]
 
 _PROGRESS: Final = logging.getLogger("taylor_verify.progress")
+# So many rows are compared at once. A row takes some kB in numbers of mpmath.
+BLOCK: Final = 4096
+# Taylor series begin at the start again for every block.
+BLOCK_OF_SERIES: Final = 32768
 # Shifts of time are sought on so many rows at most, evenly chosen, and on the worst.
 MOST_SHIFTED: Final = 4096
 
@@ -72,8 +74,10 @@ class Block:
     own: Quantities
     answer: Motion
 
-    def distances(self, arc: Arc) -> list[Distances]:
-        return state_distances(self.scene, self.truth, self.answer, arc)
+    def add_to(self, states: States, arc: Arc) -> None:
+        """Give the distances of these rows to the ``states`` of all, whose path so far is ``arc``."""
+        for found in state_distances(self.scene, self.truth, self.answer, arc):
+            states.add(found)
 
 
 @dataclass(frozen=True)
@@ -95,12 +99,11 @@ class Comparison:
         with costs.of(TRUTH):
             start = self.exact.motion([Fraction(0)], self.digits + MORE_DIGITS)
         drifts = Drifts(self.scene, start, self.digits)
-        wanted, at_nodes, blocks = set(nodes), list[Motion](), list[Block]()
+        wanted, at_nodes, last = set(nodes), list[Motion](), None
         for block in self.blocks(costs):
             with mp.workprec(self.bits):
                 with costs.of(ERRORS):
-                    for found in block.distances(arc):
-                        states.add(found)
+                    block.add_to(states, arc)
                 with costs.of(CONSERVED):
                     moved = [elapsed[k] for k in block.places]
                     drifts.add(moved, block.truth, block.answer, block.own)
@@ -108,16 +111,17 @@ class Comparison:
                         excess.append(in_doubles(norms(block.own["quaternion"]) - 1))
             first = block.places[0]
             at_nodes.append(block.truth.at([k - first for k in block.places if k in wanted]))
-            blocks = [block]
-        errors = states.errors()
+            last = block
+        assert last is not None
+        errors, digits = states.errors(), self.digits
         with costs.of(ERRORS):
-            block, is_whole = self._shifted(errors, blocks[0])
+            block = self._shifted(errors, last)
             with mp.workprec(self.bits):
                 shifts = time_shifts(
-                    block.scene, self.exact, block.truth, block.answer, self.digits, errors
+                    block.scene, self.exact, block.truth, block.answer, digits, errors
                 )
         lengths = np.concatenate(excess) if excess else None
-        truth = reduce(joined, at_nodes)
+        truth, is_whole = reduce(joined, at_nodes), len(block.places) == len(elapsed)
         return Measured(errors, drifts.errors(), lengths, truth, shifts, is_whole)
 
     def states(self) -> list[Errors]:
@@ -125,17 +129,19 @@ class Comparison:
         states, arc = States(), Arc()
         for block in self.blocks(Costs()):
             with mp.workprec(self.bits):
-                for found in block.distances(arc):
-                    states.add(found)
+                block.add_to(states, arc)
         return states.errors()
 
     def blocks(self, costs: Costs) -> Iterator[Block]:
         """Yield all rows, some thousands at once, and say how far this has come."""
         count = len(self.scene.clock.instants)
-        size = series.BLOCK_OF_SERIES if self.exact.route == "taylor" else series.BLOCK
-        for places in series.blocks(count, size):
-            yield self._block(places, costs)
-            tell_share(places[-1] + 1, count)
+        size = BLOCK_OF_SERIES if self.exact.route == "taylor" else BLOCK
+        for begin in range(0, count, size):
+            end = min(begin + size, count)
+            yield self._block(range(begin, end), costs)
+            if count > BLOCK:
+                words = f"{100 * end // count} % of {count} rows"
+                _PROGRESS.info(words, extra={"share": end / count})
 
     def _block(self, places: Sequence[int], costs: Costs) -> Block:
         clock = self.scene.clock
@@ -146,18 +152,10 @@ class Comparison:
         own = rows_at(self.quantities, places)
         return Block(places, scene, truth, own, motion_of(own, self.bits))
 
-    def _shifted(self, errors: Sequence[Errors], last: Block) -> tuple[Block, bool]:
-        """The rows on which shifts are sought, and whether they are all."""
+    def _shifted(self, errors: Sequence[Errors], last: Block) -> Block:
+        """The rows on which shifts are sought."""
         count = len(self.scene.clock.instants)
         if count == len(last.places):
-            return last, True
+            return last
         worst = {index_of_largest(each.doubles) for each in errors}
-        places = sorted(worst.union(evenly(count, MOST_SHIFTED)))
-        return self._block(places, Costs()), len(places) == count
-
-
-def tell_share(done: int, count: int) -> None:
-    """Tell whoever waits how many of the rows are judged, where there are many."""
-    if count > series.BLOCK:
-        words = f"{100 * done // count} % of {count} rows"
-        _PROGRESS.info(words, extra={"share": done / count})
+        return self._block(sorted(worst.union(evenly(count, MOST_SHIFTED))), Costs())

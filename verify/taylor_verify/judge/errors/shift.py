@@ -1,4 +1,4 @@
-"""What an error of the state means: an answer that is right but late, and what is left of the error.
+"""The shift of time behind an error of the state: an answer that is right but late, and what is left.
 
 With answer(t) ~ exact(t - c), c is positive if the answer is late. The shift is constant, or linear in t,
 or another one for every sample (judge.courses).
@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
@@ -65,27 +66,29 @@ class Shift:
     course: tuple[float, ...]
     strays: tuple[float, ...] = ()
 
+    def numbers(self) -> dict[str, Any]:
+        """Return the numbers of a verdict on the quantity, by the names of its fields."""
+        return {
+            "time_shift": self.time_shift,
+            "residual": self.residual,
+            "shift": self.kind.value,
+            "trend": self.trend if self.kind is Kind.DRIFTING else None,
+            "remains": None if self.kind is Kind.NONE else self.remains,
+        }
+
     def terms(self) -> TimeShift:
         """Return the shift as a reason has it, at the sample where it is largest."""
         if self.kind is Kind.NONE:
             return TimeShift(self.kind)
-        rows = len(self.times)
-        if self.kind is Kind.CONSTANT:
-            return TimeShift(
-                self.kind, self.time_shift, self.remains, rows=rows, strays=self.strays
-            )
-        worst = max(range(rows), key=lambda k: abs(self.course[k]))
         found = TimeShift(
-            self.kind,
-            self.course[worst],
-            self.remains,
-            self.times[worst],
-            self.trend,
-            rows=rows,
-            strays=self.strays,
+            self.kind, self.time_shift, self.remains, rows=len(self.times), strays=self.strays
         )
-        first = self.course[0]
-        if abs(first) <= LEAVES * max(map(abs, self.course)):
+        if self.kind is Kind.CONSTANT:
+            return found
+        worst = int(np.argmax(np.abs(self.course)))
+        first, largest = self.course[0], self.course[worst]
+        found = replace(found, late=largest, at=self.times[worst], trend=self.trend)
+        if abs(first) <= LEAVES * abs(largest):
             return found
         return replace(found, begins=first, begins_at=self.times[0])
 
@@ -93,36 +96,42 @@ class Shift:
 def time_shifts(
     scene: Scene, exact: Solution, truth: Motion, answer: Motion, digits: int, of: Sequence[Errors]
 ) -> list[Shift | None]:
-    """The shift behind the errors of each state quantity, at the ambient precision of mpmath.
+    """Return the shift behind the errors of each state quantity, at the ambient precision of mpmath.
 
-    ``truth`` is the exact motion of ``scene`` at its own instants to ``digits`` digits. None for a
-    conserved quantity, and where an error is not finite or a rate is beyond float64. Where the motion
-    rests no shift explains anything.
+    ``truth`` is the exact motion of ``scene`` at its own instants to ``digits`` digits. None where an
+    error is not finite or a rate is beyond float64. Where the motion rests no shift explains anything.
     """
     run = Run(scene, exact, truth, answer, digits)
-    return [_shift(Compared(run, errors)) if errors.is_state else None for errors in of]
+    return [_shift(Compared(run, errors)) for errors in of]
 
 
 def _shift(compared: Compared) -> Shift | None:
-    run, errors = compared.run, compared.errors
-    if not all(error <= _LARGEST_ERROR for error in errors.values):
+    run = compared.run
+    if not all(error <= _LARGEST_ERROR for error in compared.errors.values):
         return None
     start = compared.fit(run.truth, run.rates, run.unshifted)
     if not start.is_finite:
         return None
-    fits = _Fits.of(compared, start)
-    single = courses.fitted(compared, min(fits.constant, fits.linear, key=_left), courses.single)
-    candidates = [fits, *_without_strays(compared, single)] if fits.kind is Kind.NONE else [fits]
-    best = next((one for one in candidates if one.kind is not Kind.NONE), fits)
-    if best.kind is Kind.NONE and best.explains(single):
-        shift = best.shift(run, Kind.WANDERING, compared.largest(single), single.shift)
-    else:
-        shift = best.shift(run, best.kind, best.remains, best.course(run))
-    return replace(shift, at_samples=tuple(single.shift.tolist()))
-
-
-def _left(fit: Shifted) -> float:
-    return fit.left
+    fits = best = _Fits.of(compared, start)
+    nearest = min(fits.constant, fits.linear, key=lambda fit: fit.left)
+    single = courses.fitted(compared, nearest, courses.single)
+    if fits.kind is Kind.NONE:
+        others = _without_strays(compared, single)
+        best = next((other for other in others if other.kind is not Kind.NONE), fits)
+    kind, remains, course = best.kind, best.remains, best.course(run)
+    if kind is Kind.NONE and best.explains(single):
+        kind, remains, course = Kind.WANDERING, compared.largest(single), single.shift
+    return Shift(
+        time_shift=float(best.constant.shift[0]),
+        residual=best.compared.largest(best.constant),
+        kind=kind,
+        remains=remains,
+        trend=best.trend,
+        times=run.instants,
+        at_samples=tuple(single.shift.tolist()),
+        course=tuple(course.tolist()),
+        strays=tuple(run.instants[k] for k in best.strays),
+    )
 
 
 @dataclass(frozen=True)
@@ -143,16 +152,15 @@ class _Fits:
         line: Shifted | None = None,
         strays: tuple[int, ...] = (),
     ) -> _Fits:
-        """The least squares; ``start`` is without a shift, and the drifting fit begins at ``line``.
+        """Return the least squares from ``start`` without a shift; a drifting fit begins at ``line``.
 
         The constant fit begins at a constant: what a fit begins with stays part of it.
         """
         begin = courses.best_start(compared, start, courses.constant)
         constant = courses.fitted(compared, begin, courses.constant)
         onward = line or courses.best_start(compared, constant, courses.linear)
-        return cls(
-            compared, start, constant, courses.fitted(compared, onward, courses.linear), strays
-        )
+        linear = courses.fitted(compared, onward, courses.linear)
+        return cls(compared, start, constant, linear, strays)
 
     def explains(self, fit: Shifted) -> bool:
         """Return True if the shift leaves next to nothing of the error, and of the answer's motion.
@@ -162,7 +170,7 @@ class _Fits:
         some = min(self.compared.largest(self.start), self.compared.reach)
         return bool(some > 0 and self.compared.largest(fit) <= LEAVES * some)
 
-    @property
+    @cached_property
     def kind(self) -> Kind:
         if self.explains(self.constant):
             return Kind.CONSTANT
@@ -179,26 +187,12 @@ class _Fits:
         return float(line[-1] - line[0]) / span if span else 0.0
 
     def course(self, run: Run) -> Floats:
-        """The shift of all samples of a run, strays among them."""
+        """Return the shift of all samples of a run, strays among them."""
         if self.kind is not Kind.DRIFTING:
             return np.full(len(run.instants), float(self.constant.shift[0]))
-        found: Floats = self.linear.shift[0] + self.trend * (
-            np.array(run.instants) - self.compared.run.instants[0]
-        )
+        since: Floats = np.array(run.instants) - self.compared.run.instants[0]
+        found: Floats = self.linear.shift[0] + self.trend * since
         return found
-
-    def shift(self, run: Run, kind: Kind, remains: float, course: Floats) -> Shift:
-        return Shift(
-            time_shift=float(self.constant.shift[0]),
-            residual=self.compared.largest(self.constant),
-            kind=kind,
-            remains=remains,
-            trend=self.trend,
-            times=run.instants,
-            at_samples=(),
-            course=tuple(course.tolist()),
-            strays=tuple(run.instants[k] for k in self.strays),
-        )
 
 
 # The samples that do not share the course of the others.
@@ -225,7 +219,7 @@ def _without_strays(compared: Compared, single: Shifted) -> Iterator[_Fits]:
 
 
 def strays_from(course: Floats, shifts: Floats, speed: Floats, across: Floats) -> tuple[int, ...]:
-    """The samples that are off a course by an unusual part of the shift; none where they are many.
+    """Return the samples that are off a course by an unusual part of the shift; none where they are many.
 
     ``shifts`` are those of single samples, which leave ``across`` of the error, and ``speed`` is the
     error that a shift of one makes.
@@ -252,5 +246,4 @@ def _theil_sen(shifts: Floats, moving: Places, times: Floats) -> Floats:
         # Beside a large start, instants may be one number in float64: there is no slope to tell.
         return _median(shifts, moving, times)
     slope = float(np.median((c[second] - c[first]) / gaps))
-    found: Floats = np.median(c - slope * t) + slope * times
-    return found
+    return np.median(c - slope * t) + slope * times

@@ -43,17 +43,17 @@ class Errors:
 
     @cached_property
     def doubles(self) -> Floats:
-        """The values as bounds are: of float64."""
+        """The values in float64, as bounds are."""
         return in_doubles(self.values)
 
     @cached_property
     def widths(self) -> Floats:
-        """The truth's radii likewise."""
+        """The truth's radii in float64."""
         return in_doubles(self.truth_radius)
 
 
 def in_doubles(values: Column) -> Floats:
-    """The values as float64. What is not zero does not become it."""
+    """Return the values as float64. What is not zero does not become it."""
     if values.dtype != object:
         return values
     return np.array([float(value) or (_LEAST if value else 0.0) for value in values])
@@ -61,7 +61,7 @@ def in_doubles(values: Column) -> Floats:
 
 @dataclass(frozen=True)
 class Distances:
-    """How far one quantity is off at some samples, part by part, before it is divided by a scale.
+    """The distances of one quantity from the truth at some samples, part by part, without a scale.
 
     ``widths`` are those of the truth, in the unit of the distances. ``sizes`` are what the scales are made
     of: the scale of a part is its size, or 1 where that is zero.
@@ -74,7 +74,7 @@ class Distances:
     sizes: Mapping[str, Any]
 
     def errors(self) -> Errors:
-        """The errors over the scales of these samples; the larger part counts."""
+        """Return the errors over the scales of these samples; the larger part counts."""
         scales = {part: or_one(size) for part, size in self.sizes.items()}
         values = _larger([rows / scales[part] for part, rows in self.distances.items()])
         radius = _larger([rows / scales[part] for part, rows in self.widths.items()])
@@ -82,27 +82,26 @@ class Distances:
 
 
 def state_errors(scene: Scene, truth: Motion, answer: Motion) -> list[Errors]:
-    """The errors of everything tracked, evaluated at the ambient precision of mpmath."""
+    """Return the errors of everything tracked, evaluated at the ambient precision of mpmath."""
     return [found.errors() for found in state_distances(scene, truth, answer)]
 
 
 def state_distances(
     scene: Scene, truth: Motion, answer: Motion, arc: Arc | None = None
 ) -> list[Distances]:
-    """The distances of everything tracked, likewise; ``arc`` is the path before these samples."""
+    """Return the distances of everything tracked; ``arc`` is the path before these samples."""
     found = []
     for quantity in state_quantities(scene.model, scene.track):
         if quantity.measure is Measure.ANGLE:
             found.append(_angles(quantity, truth, answer))
-        elif quantity.measure is Measure.PATH:
-            length = (arc or Arc()).through(scene, truth)
-            found.append(_vectors(quantity, truth, answer, length))
-        else:
-            found.append(_vectors(quantity, truth, answer))
+            continue
+        is_path = quantity.measure is Measure.PATH
+        length = (arc or Arc()).through(scene, truth) if is_path else None
+        found.append(_vectors(quantity, truth, answer, length))
     return found
 
 
-def _vectors(quantity: Quantity, truth: Motion, answer: Motion, size: Any = None) -> Distances:
+def _vectors(quantity: Quantity, truth: Motion, answer: Motion, size: Any) -> Distances:
     """Return the distances of vectors; without a ``size`` that of each part is its largest norm."""
     parts = quantity.groups
     sizes = {part: norms(truth[part]) for part in parts}
@@ -110,7 +109,7 @@ def _vectors(quantity: Quantity, truth: Motion, answer: Motion, size: Any = None
         quantity.name,
         quantity.unit,
         {part: norms(answer[part] - truth[part]) for part in parts},
-        {part: _width(truth, part, sizes[part]) for part in parts},
+        {part: truth.radius_of(part) * np.array([*map(or_one, sizes[part])]) for part in parts},
         {part: largest(sizes[part]) if size is None else size for part in parts},
     )
 
@@ -122,41 +121,29 @@ def _larger(by_part: Sequence[Column]) -> Column:
     return np.array([largest(row) for row in zip(*by_part, strict=True)], dtype=object)
 
 
-def _width(truth: Motion, quantity: str, sizes: Column) -> Column:
-    """How wrong each vector of the truth may be, in its own unit; ``sizes`` are those of the vectors."""
-    whole = np.array([or_one(size) for size in sizes], dtype=object)
-    width: Column = truth.radius_of(quantity) * whole
-    return width
-
-
 def _angles(quantity: Quantity, truth: Motion, answer: Motion) -> Distances:
     """Return the angle of R_exact^T R: |R - R_exact| in the Frobenius norm is 2 sqrt 2 sin(angle/2)."""
     name = quantity.name
     chords = norms(answer[name] - truth[name]) / (2 * mp.sqrt(2))
-    angles = np.array([_angle(chord) for chord in chords], dtype=object)
+    angles = [2 * mp.asin(chord) if chord <= 1 else mp.pi + 0 * chord for chord in chords]
     # |R|_F is sqrt 3, so a relative radius is less than this many radians.
     widths = 2 * truth.radius_of(name)
-    return Distances(name, quantity.unit, {name: angles}, {name: widths}, {name: mpf(1)})
-
-
-def _angle(half_chord: Any) -> Any:
-    return 2 * mp.asin(half_chord) if half_chord <= 1 else mp.pi + 0 * half_chord
-
-
-def arc_length(scene: Scene, truth: Motion) -> Any:
-    """The length of the centre's path, from the speed |U| at the samples by the trapezium rule."""
-    return Arc().through(scene, truth)
+    distances = np.array(angles, dtype=object)
+    return Distances(name, quantity.unit, {name: distances}, {name: widths}, {name: mpf(1)})
 
 
 @dataclass
 class Arc:
-    """The length of a path so far, up to a time with a speed."""
+    """The length of the centre's path, by the trapezium rule from the speed |U| at the samples.
+
+    ``length`` is that so far, up to the time and the speed of ``end``.
+    """
 
     length: Any = 0
     end: tuple[Any, Any] | None = None
 
     def through(self, scene: Scene, truth: Motion) -> Any:
-        """Take in further samples, at the instants of the scene, and return the whole length."""
+        """Take in further samples, at the instants of the scene, and return the length so far."""
         forms = velocity_forms(scene.body).forms["linear_velocity"]
         terms = [(to_mpfr(truth[name]), to_mpfr(exact_matrix(m))) for name, m in forms.items()]
         with precision():
@@ -172,18 +159,19 @@ class Arc:
 
 
 def norms(rows: Column) -> Column:
-    """The Frobenius norm of every row (vectors or matrices) of numbers of mpmath."""
+    """Return the Frobenius norm of every row (vectors or matrices) of numbers of mpmath."""
     flat = to_mpfr(rows.reshape(len(rows), -1))
     with precision():
         return to_mpf(sqrt(np.sum(flat * flat, axis=1)))
 
 
 def largest(values: Any) -> Any:
-    """The largest value, or NaN if any is NaN (Python's max would lose it)."""
+    """Return the largest value, or NaN if any is NaN (Python's max would lose it)."""
     values = list(values)
     nan = next((value for value in values if value != value), None)
     return max(values) if nan is None else nan
 
 
 def or_one(scale: Any) -> Any:
+    """Return the scale, or 1 for one that is zero or no number."""
     return scale if scale > 0 else mpf(1)

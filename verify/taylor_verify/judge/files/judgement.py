@@ -6,7 +6,6 @@ Rows before the scene's start and rows after it are two runs that begin at the s
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
@@ -17,15 +16,14 @@ from taylor_verify.judge.causes.answers import causes_of_file
 from taylor_verify.judge.conventions.fits import Conventions, Finding
 from taylor_verify.judge.conventions.search import conventions, is_far
 from taylor_verify.judge.conventions.worlds import World
-from taylor_verify.judge.files.extent import Extent, complete_verdict, not_judged
-from taylor_verify.judge.files.notes import (
+from taylor_verify.judge.files.coverage import (
+    Extent,
     comparable,
+    complete_verdict,
     coverage_notes,
     missing_groups,
-    no_end,
-    no_start,
-    noun,
-    tracked,
+    not_judged,
+    span_notes,
 )
 from taylor_verify.judge.files.partial import partial_judgement
 from taylor_verify.judge.files.rows import FileRows, first_flaw
@@ -38,17 +36,15 @@ from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.models.problem import NotRepresentable, adopt
 from taylor_verify.records.answers import Convention, FileRead, LikelyCause
 from taylor_verify.records.json_text import complete
-from taylor_verify.records.quantities import COLUMNS
+from taylor_verify.records.quantities import COLUMNS, GROUPS, with_needs
 from taylor_verify.records.reason import Cause
 from taylor_verify.records.status import Status
-from taylor_verify.records.verdict import Verdict, summary
+from taylor_verify.records.verdict import summary
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import Recorded, TrajectoryFile
 
-Array = np.ndarray[Any, Any]
-
-# How far the Taylor route is sent for a file.
+# The Taylor route goes no further than so many times the scene's span for a file.
 _MOST_SPANS: Final = 100
 
 
@@ -67,32 +63,28 @@ class FileJudgement(Judgement):
 
     def document(self) -> dict[str, Any]:
         """Return the document that `check --json` prints."""
-        groups = self.file.groups
-        file = FileRead(
-            self.file.name,
-            len(self.file.times),
-            ("t", *(column for group in groups for column in COLUMNS[group])),
-            self.notes,
-        )
+        columns = (column for group in self.file.groups for column in COLUMNS[group])
+        file = FileRead(self.file.name, len(self.file.times), ("t", *columns), self.notes)
+        conventions = [
+            Convention(
+                about=found.subject,
+                found=found.words,
+                ambiguous=not found.is_certain,
+                corrected=self.accepted and found.is_certain,
+                sentence=found.sentence,
+                alternatives=found.alternatives,
+                error_without=found.before,
+                error_with=found.after,
+            )
+            for found in self.conventions
+        ]
         return {
             "verdicts": [verdict.row() for verdict in self.verdicts],
             "summary": summary(self.verdicts),
-            "conventions": [complete(self._convention(finding)) for finding in self.conventions],
-            "causes": [complete(cause) for cause in self.causes],
+            "conventions": complete(conventions),
+            "causes": complete(self.causes),
             "file": complete(file),
         }
-
-    def _convention(self, found: Finding) -> Convention:
-        return Convention(
-            about=found.subject,
-            found=found.words,
-            ambiguous=not found.is_certain,
-            corrected=self.accepted and found.is_certain,
-            sentence=found.sentence,
-            alternatives=found.alternatives,
-            error_without=found.before,
-            error_with=found.after,
-        )
 
 
 def judge_file(
@@ -114,47 +106,38 @@ def judge_file(
     groups = comparable(file, scene)
     asked, notes = scene, (*file.notes, *coverage_notes(file, groups, scene))
     compared = replace(file, groups={name: file.groups[name] for name in groups})
-    scene = replace(scene, track=scene.track & tracked(groups))
+    tracked = with_needs({GROUPS[name].quantity for name in groups})
+    scene = replace(scene, track=scene.track & tracked)
     found = Conventions((), World(scene), {})
     try:
         found = conventions(compared, scene, rung)
         answer = FileRows.of(compared, scene, rung, found if accept_conventions else None)
         judged = _judged(answer, compared, rung, found, tolerances)
         extent = Extent.of(answer.scene, answer.times, rung)
-        notes += (
-            *no_start(answer.scene, answer.times),
-            *no_end(answer.scene, answer.times, extent),
-        )
-        lack = list(not_judged(extent, [noun(name) for name in missing_groups(groups, asked)]))
+        notes += tuple(span_notes(answer.scene, answer.times, extent))
+        lack = list(not_judged(extent, missing_groups(groups, asked)))
         if lack and judged.record is not None:
-            complete = complete_verdict(scene, file.name, rung, lack, partial)
-            judged = replace(judged, verdicts=(*judged.verdicts, complete))
+            row = complete_verdict(scene, file.name, rung, lack, partial)
+            judged = replace(judged, verdicts=(*judged.verdicts, row))
     except NotRepresentable as reason:
         judged = _alone(scene, file, rung, Status.REFUSED, str(reason), Cause.NOT_POSED)
     except Unsettled as doubt:
         judged = _alone(scene, file, rung, Status.UNDECIDED, str(doubt), Cause.NO_TRUTH)
-    failed = {v.quantity for v in judged.verdicts if v.verdict is Status.FAIL}
     causes: tuple[LikelyCause, ...] = ()
-    if failed:
+    if any(verdict.verdict is Status.FAIL for verdict in judged.verdicts):
         causes = causes_of_file(compared, rung, found, judged)
         stored = storing(file, rung)
         notes += () if stored is None else (stored.note,)
-    left = [finding for finding in found.findings if not accept_conventions]
+    left = () if accept_conventions else found.findings
     verdicts = with_file_kinds(judged.verdicts, file, rung, left)
-    return FileJudgement(
-        verdicts,
-        judged.record,
-        file,
-        found.findings,
-        accept_conventions,
-        notes,
-        causes=causes,
-    )
+    of_file = (file, found.findings, accept_conventions, notes)
+    return FileJudgement(verdicts, judged.record, *of_file, causes=causes)
 
 
 def _judged(
     answer: FileRows, file: TrajectoryFile, rung: Rung, found: Conventions, tolerances: Tolerances
 ) -> Judgement:
+    """The judgement of either side of the start, and of both together."""
     scene = answer.scene
     if found.world.scale != 1 and is_far(scene, answer.times):
         why = (
@@ -168,11 +151,24 @@ def _judged(
             "form: its exact motion is not computed up to there"
         )
         return _alone(scene, file, rung, Status.UNDECIDED, why, Cause.TOO_FAR)
-    sides = [_side(part, rung, file.name, tolerances) for part in answer.sides()]
-    unfinished = next((side.judgement for side in sides if side.judgement.record is None), None)
-    if unfinished is not None:
-        return unfinished
-    return _united(sides, file, float(scene.clock.start))
+    gates: dict[str, list[Graded]] = {}
+    records, start = [], float(scene.clock.start)
+    for side in answer.sides():
+        problem = adopt(side.scene, rung, side.instants)
+        solver = Recorded(side, setting=file.name, carries_velocities=side.has_velocities)
+        judged = partial_judgement(problem, solver, tolerances)
+        if judged.record is None:
+            return judged
+        records.append(judged.record)
+        inputs = input_rounding(problem.given, rung, problem.scene)
+        for gate in graded(judged.verdicts, judged.record, inputs, float(rung.unit_roundoff)):
+            gates.setdefault(gate.verdict.quantity, []).append(gate)
+    verdicts = []
+    for quantity, both in gates.items():
+        is_sound = all(np.all(np.isfinite(side.errors)) for side in both)
+        verdicts.append(verdict_of(both, "" if is_sound else first_flaw(file, quantity), start))
+    every = [gate for both in gates.values() for gate in both]
+    return Judgement((*initial_verdict(every, start), *verdicts), merged(records, every))
 
 
 def _alone(
@@ -180,40 +176,3 @@ def _alone(
 ) -> Judgement:
     """Return one row for a file that was not compared."""
     return unjudged(scene, Recorded({}, setting=file.name), rung, status, why, cause)
-
-
-# The judgement of either side of the start, and of both.
-
-
-@dataclass(frozen=True)
-class _Side:
-    judgement: Judgement
-    gates: list[Graded]
-
-
-def _side(answer: FileRows, rung: Rung, name: str, tolerances: Tolerances) -> _Side:
-    problem = adopt(answer.scene, rung, answer.instants)
-    solver = Recorded(answer, setting=name, carries_velocities=answer.has_velocities)
-    judged = partial_judgement(problem, solver, tolerances)
-    if judged.record is None:
-        return _Side(judged, [])
-    inputs = input_rounding(problem.given, rung, problem.scene)
-    return _Side(judged, graded(judged, inputs, float(rung.unit_roundoff)))
-
-
-def _united(sides: Sequence[_Side], file: TrajectoryFile, start: float) -> Judgement:
-    gates = [gate for side in sides for gate in side.gates]
-    names = list(dict.fromkeys(gate.verdict.quantity for gate in gates))
-    verdicts = [
-        _verdict([g for g in gates if g.verdict.quantity == name], file, start) for name in names
-    ]
-    initial = initial_verdict(gates, start)
-    records = [side.judgement.record for side in sides if side.judgement.record is not None]
-    first = (initial,) if initial is not None else ()
-    return Judgement((*first, *verdicts), merged(records, gates))
-
-
-def _verdict(sides: Sequence[Graded], file: TrajectoryFile, start: float) -> Verdict:
-    is_sound = all(np.all(np.isfinite(side.errors)) for side in sides)
-    flaw = "" if is_sound else first_flaw(file, sides[0].verdict.quantity)
-    return verdict_of(sides, flaw, start)

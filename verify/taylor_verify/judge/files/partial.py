@@ -22,30 +22,26 @@ from taylor_verify.judge.errors.angular_shift import angular_shift
 from taylor_verify.judge.errors.measured import MOST_SHIFTED, Comparison
 from taylor_verify.judge.errors.state import Distances, Errors, largest, norms
 from taylor_verify.judge.floor.arithmetic import truth_digits, working_bits
-from taylor_verify.judge.floor.attainable import Floats, floor
-from taylor_verify.judge.gates import index_of_largest, judge
+from taylor_verify.judge.floor.attainable import Floats, Floor, floor
 from taylor_verify.judge.judgement import Judgement, judgement
-from taylor_verify.judge.rows import numbers_of, verdict_on
+from taylor_verify.judge.rows import Gated, Run
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
-from taylor_verify.judge.velocities import (
-    Velocity,
-    angular_velocity,
-    linear_velocity,
-    velocity_forms,
-)
+from taylor_verify.judge.velocities import velocity, velocity_forms
 from taylor_verify.models.problem import Problem
-from taylor_verify.records.doubles import Doubles
-from taylor_verify.records.quantities import GROUPS, TRACKED, UNIT_QUATERNION, VELOCITIES
+from taylor_verify.records.quantities import (
+    GROUPS,
+    QUANTITIES,
+    TRACKED,
+    UNIT_QUATERNION,
+    VELOCITIES,
+)
 from taylor_verify.records.reason import Carried, Kind, Reason, RoundoffFloor
-from taylor_verify.records.record import GateRecord
-from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.scenes.motion import Clock, Motion
 from taylor_verify.solvers.files.file import Recorded
-from taylor_verify.solvers.trajectory import ByRows, Outcome, rows_at
+from taylor_verify.solvers.trajectory import ByRows, rows_at
 
 Quantities = Mapping[str, np.ndarray[Any, Any]]
-Gated = tuple[Verdict, GateRecord]
 
 _GUARD_DIGITS: Final = 6
 # The names that a sensitivity has for the quantities of a state.
@@ -55,7 +51,7 @@ _BLOCKS: Final = {"momentum": "omega"}
 def partial_judgement(
     problem: Problem, solver: Recorded, tolerances: Tolerances = NO_TOLERANCES
 ) -> Judgement:
-    """The verdicts on what the answer has. Raises Unsettled where there is no truth.
+    """Return the verdicts on what the answer has. Raises Unsettled where there is no truth.
 
     The problem's scenes track what the answer has of attitude and centre, and no more.
     """
@@ -71,14 +67,16 @@ def partial_judgement(
         lambda places: exact.motion([given.clock.elapsed[k] for k in places], digits),
         len(given.clock.instants),
     )
-    apart: list[Gated] = []
-    for group, kind in _VELOCITIES.items():
-        if group in own and group not in one_row.quantities:
-            apart.append(_velocity(problem, solver, exact, kind, tolerances))
+    run = Run(problem, solver, solver.solve(problem), tolerances)
+    apart = [
+        _velocity(run, exact, group)
+        for group in _CARRIED
+        if group in own and group not in one_row.quantities
+    ]
     if "attitude" in filled and not given.body.is_free:
         # The balances of a loaded body start an arc of the exact motion from every row, for which a
         # matrix that is no rotation to the last digit will not do. States alone are compared.
-        apart += _states_apart(problem, solver, exact, filled, tolerances)
+        apart += _states_apart(run, exact, filled)
         filled = filled.without("attitude", "centre")
         problem = replace(problem, given=replace(given, track=frozenset()))
     answer = replace(solver, quantities=filled).solve(problem)
@@ -94,7 +92,7 @@ def partial_judgement(
 
 @dataclass(frozen=True)
 class Filled(ByRows):
-    """What an answer has, and the truth in place of what it lacks.
+    """The quantities that an answer has, and the truth in place of those that it lacks.
 
     ``exact`` is the truth in some rows, and ``count`` the number of all.
     """
@@ -133,63 +131,49 @@ def _rows_resting_on(problem: Problem, truth: Motion, has: set[str]) -> set[str]
     return found
 
 
-def _states_apart(
-    problem: Problem, solver: Recorded, exact: Solution, filled: Quantities, tolerances: Tolerances
-) -> list[Gated]:
+def _comparison(run: Run, exact: Solution, quantities: Quantities) -> Comparison:
+    bits = run.problem.rung.bits
+    digits = truth_digits(bits, _GUARD_DIGITS)
+    return Comparison(run.problem.given, exact, quantities, digits, working_bits(bits))
+
+
+def _floor(run: Run) -> Floor:
+    problem, by_velocities = run.problem, run.solver.carries_velocities
+    roundoff = problem.rung.unit_roundoff
+    return floor(problem.given, problem.scene, roundoff, 0, by_velocities)
+
+
+def _states_apart(run: Run, exact: Solution, filled: Quantities) -> list[Gated]:
     """Attitude and centre against the truth, and nothing that is conserved."""
-    given, rung, bits = problem.given, problem.rung, working_bits(problem.rung.bits)
-    states = Comparison(given, exact, filled, truth_digits(rung.bits, _GUARD_DIGITS), bits).states()
-    with mp.workprec(bits):
-        base = floor(given, problem.scene, rung.unit_roundoff, 0, solver.carries_velocities)
-        rows = []
+    compared = _comparison(run, exact, filled)
+    tracked, rows = TRACKED[compared.scene.model], []
+    states = [errors for errors in compared.states() if errors.quantity in tracked]
+    with mp.workprec(compared.bits):
+        base = _floor(run)
         for errors in states:
-            if errors.quantity in TRACKED[given.model]:
-                attainable = base.of_state(errors)
-                worst = index_of_largest(errors.doubles)
-                terms = Reason(floor=base.terms(attainable, worst, Carried.ORBIT))
-                rows.append(_row(problem, solver, errors, attainable, terms, tolerances))
+            attainable = base.of_state(errors)
+            terms = base.terms(attainable, errors, Carried.ORBIT)
+            rows.append(run.gated_in_full(errors, attainable, Reason(floor=terms)))
     return rows
 
 
 # The velocities of a solid in a fluid: U = A x + B y, Omega = B^T x + C y.
 
-
-@dataclass(frozen=True)
-class _Kind:
-    """One of the two velocities: its quantity, its unit, and the blocks of the energy it is made with."""
-
-    quantity: str
-    unit: str
-    group: str
-    of: Velocity
-    carried: Carried
+_CARRIED: Final = {"omega": Carried.VELOCITY, "linear_velocity": Carried.LINEAR_VELOCITY}
 
 
-_VELOCITIES: Final = {
-    kind.group: kind
-    for kind in (
-        _Kind("omega", "max|omega|", "omega", angular_velocity, Carried.VELOCITY),
-        _Kind("velocity", "max|U|", "linear_velocity", linear_velocity, Carried.LINEAR_VELOCITY),
-    )
-}
-
-
-def _velocity(
-    problem: Problem, solver: Recorded, exact: Solution, kind: _Kind, tolerances: Tolerances
-) -> Gated:
-    given, rung, bits = problem.given, problem.rung, working_bits(problem.rung.bits)
-    digits = truth_digits(rung.bits, _GUARD_DIGITS)
-    compared = Comparison(given, exact, solver.quantities, digits, bits)
-    errors, sizes = _velocity_errors(compared, kind)
-    with mp.workprec(bits):
-        scale = errors.parts[kind.group]
-        attainable = _velocity_attainable(problem, solver, kind, sizes, scale)
-        terms = Reason(floor=RoundoffFloor(kind.carried))
-        row, gate = _row(problem, solver, errors, attainable, terms, tolerances)
+def _velocity(run: Run, exact: Solution, group: str) -> Gated:
+    compared, given = _comparison(run, exact, run.trajectory.quantities), run.problem.given
+    errors, sizes = _velocity_errors(compared, group)
+    with mp.workprec(compared.bits):
+        scale = errors.parts[group]
+        attainable = _velocity_attainable(run, group, sizes, scale)
+        reason = Reason(floor=RoundoffFloor(_CARRIED[group]))
+        row, gate = run.gated_in_full(errors, attainable, reason)
         places = evenly(len(sizes), MOST_SHIFTED)
         clock = Clock(given.clock.start, tuple(given.clock.instants[k] for k in places))
-        own = rows_at(solver.quantities, places)[kind.group]
-        shift = angular_shift(replace(given, clock=clock), own, digits, kind.of)
+        own = rows_at(compared.quantities, places)[group]
+        shift = angular_shift(replace(given, clock=clock), own, compared.digits, group)
         if shift is None:
             return row, gate
         late, left = float(shift.time_shift), shift.residual / float(scale)
@@ -198,17 +182,17 @@ def _velocity(
         return replace(row, remains=remains), gate
 
 
-def _velocity_errors(compared: Comparison, kind: _Kind) -> tuple[Errors, Floats]:
+def _velocity_errors(compared: Comparison, group: str) -> tuple[Errors, Floats]:
     """The errors of a velocity, and its own size at every sample over the largest."""
-    body = compared.scene.body
+    body, quantity = compared.scene.body, QUANTITIES[GROUPS[group].quantity]
     states, sizes, radii = States(), Series(), Series()
     for block in compared.blocks(Costs()):
         with mp.workprec(compared.bits):
-            rows = kind.of(body, block.truth.quantities)
-            size, distances = norms(rows), norms(block.own[kind.group] - rows)
-            zeros, most = {kind.group: 0 * block.truth.radius}, {kind.group: largest(size)}
-            found = Distances(kind.quantity, kind.unit, {kind.group: distances}, zeros, most)
-            scale = states.add(found)[kind.group]
+            rows = velocity(group, body, block.truth.quantities)
+            size, distances = norms(rows), norms(block.own[group] - rows)
+            zeros, most = {group: 0 * block.truth.radius}, {group: largest(size)}
+            found = Distances(quantity.name, quantity.unit, {group: distances}, zeros, most)
+            scale = states.add(found)[group]
             sizes.add(size, scale)
             radii.add(block.truth.radius, mpf(1))
     (errors,) = states.errors()
@@ -216,41 +200,13 @@ def _velocity_errors(compared: Comparison, kind: _Kind) -> tuple[Errors, Floats]
     return errors, sizes.joined()[0]
 
 
-def _velocity_attainable(
-    problem: Problem, solver: Recorded, kind: _Kind, sizes: Floats, scale: Any
-) -> Floats:
-    """What a rounding of x and y, and of the velocity itself, leaves."""
-    roundoff, by_velocities = problem.rung.unit_roundoff, solver.carries_velocities
-    base = floor(problem.given, problem.scene, roundoff, 0, by_velocities)
+def _velocity_attainable(run: Run, group: str, sizes: Floats, scale: Any) -> Floats:
+    """The error that a rounding of x and y, and of the velocity itself, leaves."""
+    base = _floor(run)
     squares = (base.unit_roundoff * sizes) ** 2
-    for part, matrix in velocity_forms(problem.given.body).forms[kind.group].items():
-        norm = np.linalg.norm(np.array([[float(v) for v in row] for row in matrix]), 2)
+    for part, matrix in velocity_forms(run.problem.given.body).forms[group].items():
+        norm = np.linalg.norm(np.array(matrix, dtype=float), 2)
         alone = Errors(part, "", sizes, sizes, {part: scale})
         squares = squares + (norm * base.of_state(alone)) ** 2
     attainable: Floats = np.sqrt(squares)
     return attainable
-
-
-def _row(
-    problem: Problem,
-    solver: Recorded,
-    errors: Errors,
-    attainable: Floats,
-    terms: Reason,
-    tolerances: Tolerances,
-) -> Gated:
-    finding = judge(errors, attainable, terms, tolerances.of(errors.quantity))
-    quantity, rung = errors.quantity, problem.rung
-    verdict = verdict_on(
-        *(problem.scene, solver, rung, quantity, finding.status, Outcome.FINISHED),
-        roundoff=float(rung.unit_roundoff),
-        **numbers_of(errors, attainable, finding, problem.given.clock.instants),
-    )
-    gate = GateRecord(
-        quantity=errors.quantity,
-        unit=errors.unit,
-        errors=Doubles(errors.doubles),
-        attainable=Doubles(attainable),
-        truth_radius=float(np.max(errors.widths)),
-    )
-    return verdict, gate

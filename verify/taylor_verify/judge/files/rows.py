@@ -69,11 +69,14 @@ class FileRows(ByRows):
 
     def rows(self, places: Sequence[int]) -> dict[str, Array]:
         asked, bits = _within(self.places, places), self.rung.bits + _SPARE_BITS
-        found = {name: rows.held(asked, bits) for name, rows in self.file.rows.items()}
+        found = {name: rows.held(asked, bits) for name, rows in self.file.groups.items()}
         if "attitude" in found:
             found["attitude"] = found["attitude"].reshape(-1, 3, 3)
         if self.readings:
-            R = _attitudes(self.scene, self.rung, tuple(self.times[k] for k in asked), bits)
+            # The exact attitude, for vectors that are in space axes.
+            given = adopt(self.scene, self.rung, tuple(self.times[k] for k in asked)).given
+            tracked, digits = replace(given, track=frozenset({"attitude"})), truth_digits(bits, 0)
+            R = solution(tracked).motion(given.clock.elapsed, digits)["attitude"]
             with mp.workprec(bits):
                 for name, reading in self.readings.items():
                     found[name] = reading.read(found[name], R)
@@ -114,13 +117,6 @@ def _within(rows: range, places: Sequence[int]) -> Sequence[int]:
     return [rows[k] for k in places]
 
 
-def _attitudes(scene: Scene, rung: Rung, times: tuple[Fraction, ...], bits: int) -> Array:
-    """The exact R at these times, for vectors that are in space axes."""
-    given = replace(adopt(scene, rung, times).given, track=frozenset({"attitude"}))
-    digits = truth_digits(bits, 0)
-    return solution(given).motion(given.clock.elapsed, digits)["attitude"]
-
-
 def first_flaw(file: TrajectoryFile, quantity: str) -> str:
     """The place of the first value of a quantity that is no finite number; empty if there is none."""
     made_of = [name for name, group in GROUPS.items() if group.quantity == quantity]
@@ -128,7 +124,7 @@ def first_flaw(file: TrajectoryFile, quantity: str) -> str:
         made_of += VELOCITIES
     # What is conserved may need any of them.
     groups = [name for name in made_of or GROUPS if name in file.groups]
-    lost = {name: np.flatnonzero(~file.rows[name].finite) for name in groups}
+    lost = {name: np.flatnonzero(~file.groups[name].finite) for name in groups}
     first = {name: int(rows[0]) for name, rows in lost.items() if len(rows)}
     if not first:
         return ""

@@ -43,37 +43,7 @@ _CHANGED: Final = {
 }
 # A shift that leaves no more than so many times as much is the clock that was found.
 _AS_WELL: Final = 1e6
-# An error that its samples explain needs no other cause.
-_EXPLAINED: Final = (ErrorKind.ROUNDOFF, ErrorKind.TIME_SHIFT, ErrorKind.PHASE_DRIFT)
-
-
-def with_file_kinds(
-    verdicts: Iterable[Verdict], file: TrajectoryFile, rung: Rung, findings: Sequence[Finding]
-) -> tuple[Verdict, ...]:
-    """Return the verdicts, the error of each as the file explains it where it does.
-
-    ``findings`` are those conventions that were not corrected.
-    """
-    verdicts = tuple(verdicts)
-    if not any(_is_open(verdict) for verdict in verdicts):
-        return verdicts
-    stored = storing(file, rung)
-    changed = {name for found in findings if found.is_certain for name in _CHANGED[found.subject]}
-    left = [found.after for found in findings if found.is_certain and found.subject == "time"]
-    return tuple(
-        _with_clock(_with_kind(verdict, stored, changed), *left[:1]) for verdict in verdicts
-    )
-
-
-def _with_clock(verdict: Verdict, left: float = inf) -> Verdict:
-    """Return the verdict with the clock that was found as its kind, where no shift explains as much.
-
-    ``left`` is the error that this clock leaves; infinite where none was found.
-    """
-    is_shifted = verdict.error_kind in (ErrorKind.TIME_SHIFT, ErrorKind.PHASE_DRIFT)
-    if not is_shifted or verdict.remains is None or verdict.remains <= _AS_WELL * left:
-        return verdict
-    return replace(verdict, error_kind=ErrorKind.CONVENTION)
+_SHIFTED: Final = (ErrorKind.TIME_SHIFT, ErrorKind.PHASE_DRIFT)
 
 
 @dataclass(frozen=True)
@@ -104,20 +74,46 @@ def storing(file: TrajectoryFile, rung: Rung) -> Storing | None:
     return Storing(ErrorKind.PRINTED, 0.5 * 10.0 ** (1 - digits), note)
 
 
+def with_file_kinds(
+    verdicts: Iterable[Verdict], file: TrajectoryFile, rung: Rung, findings: Sequence[Finding]
+) -> tuple[Verdict, ...]:
+    """Return the verdicts, the error of each as the file explains it where it does.
+
+    ``findings`` are those conventions that were not corrected.
+    """
+    verdicts = tuple(verdicts)
+    if not any(_is_open(verdict) for verdict in verdicts):
+        return verdicts
+    stored, certain = storing(file, rung), [found for found in findings if found.is_certain]
+    changed = {name for found in certain for name in _CHANGED[found.subject]}
+    # The error that a map of time leaves.
+    left = next((found.after for found in certain if found.subject == "time"), inf)
+    made = []
+    for verdict in verdicts:
+        kind = _kind(verdict, stored, changed, left)
+        is_own = kind is verdict.error_kind
+        made.append(verdict if is_own else replace(verdict, error_kind=kind, exponent=None))
+    return tuple(made)
+
+
 def _is_open(verdict: Verdict) -> bool:
     """Return True for an error that roundoff does not explain."""
     return verdict.is_compared and verdict.error_kind is not ErrorKind.ROUNDOFF
 
 
-def _with_kind(verdict: Verdict, stored: Storing | None, changed: set[str]) -> Verdict:
+def _kind(
+    verdict: Verdict, stored: Storing | None, changed: set[str], left: float
+) -> ErrorKind | None:
+    kind = verdict.error_kind
     if not _is_open(verdict):
-        return verdict
+        return kind
     largest = inf if verdict.max is None else verdict.max
     if stored is not None and largest <= _left_by_storing(verdict) * stored.u:
-        return replace(verdict, error_kind=stored.kind, exponent=None)
-    if verdict.quantity in changed and verdict.error_kind not in _EXPLAINED:
-        return replace(verdict, error_kind=ErrorKind.CONVENTION, exponent=None)
-    return verdict
+        return stored.kind
+    if kind not in _SHIFTED:
+        return ErrorKind.CONVENTION if verdict.quantity in changed else kind
+    is_explained = verdict.remains is None or verdict.remains <= _AS_WELL * left
+    return kind if is_explained else ErrorKind.CONVENTION
 
 
 def _left_by_storing(verdict: Verdict) -> float:

@@ -1,4 +1,4 @@
-"""What perfect rounding would leave: the floor under every solver that works on a rung.
+"""The error that perfect rounding would leave: the floor under every solver that works on a rung.
 
 A solver that rounds each component on its own commits in every step, at time s, an error of about
 u r_i(s) in component i, up or down, with r_i = |x_i| + h S_i(x): the state itself and what a step of
@@ -27,7 +27,8 @@ from taylor_verify.exact.conditioning.condition import Path, path, transition
 from taylor_verify.exact.invariants import Invariant
 from taylor_verify.judge.errors.state import Errors
 from taylor_verify.judge.floor.magnitude import roundings
-from taylor_verify.records.reason import Carried, RoundoffFloor, shown
+from taylor_verify.records.quantities import UNIT_QUATERNION
+from taylor_verify.records.reason import Carried, Reason, RoundoffFloor, shown
 from taylor_verify.scenes.instants import chosen, evenly
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.mpfr import precision, to_mpfr
@@ -40,11 +41,13 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 _MOST_NODES = 41
 # Below this floor, rounding the scene's data moves the orbit too little to change its condition.
 _SAME_ORBIT = 1e-3
+# A length is written out where six digits show that it is not 1.
+_SHOWN = 1e-4
 
 
 @dataclass(frozen=True)
 class Floor:
-    """Everything needed to say what is attainable on one run.
+    """The terms of what is attainable on one run.
 
     The roundings of the steps between two times of the path count at the later one: ``steps_at[k]`` of
     size u ``rounded[k]``, component by component, in the path's units. ``carried`` is what they have
@@ -61,17 +64,13 @@ class Floor:
     velocities: bool = False
 
     def of_state(self, errors: Errors) -> Floats:
-        """The attainable error at every sample, in the unit of the errors; the larger part counts."""
+        """Return the attainable error at every sample, in the unit of the errors, of the larger part."""
         parts = [
             self.carried[part] * float(mp.convert(self.orbit.units[part]) / scale)
             for part, scale in errors.parts.items()
         ]
         found: Floats = self.unit_roundoff * np.max(parts, axis=0)
-        return self._at_samples(found, self._path_times())
-
-    def of_invariant(self, invariant: Invariant, motion: Motion, scale: Any) -> Floats:
-        """The attainable drift at every sample, over the invariant's scale; of a motion in MPFR."""
-        return self.of_gradients(invariant, _rows(motion, self.nodes), scale)
+        return larger_neighbour(found, self._path_times(), self.times)
 
     @property
     def nodes(self) -> list[int]:
@@ -79,7 +78,10 @@ class Floor:
         return evenly(len(self.times), _MOST_NODES)
 
     def of_gradients(self, invariant: Invariant, at_nodes: Motion, scale: Any) -> Floats:
-        """The same, of a motion at the nodes alone."""
+        """Return the attainable drift at every sample, over the ``scale`` of the invariant.
+
+        The motion ``at_nodes`` is in numbers of MPFR.
+        """
         nodes = self.nodes
         ends = np.searchsorted(self._path_times(), self.times[nodes], side="right")
         injected = np.zeros(len(nodes))
@@ -94,21 +96,39 @@ class Floor:
                 shares = np.broadcast_to(relative.reshape(len(nodes), -1) ** 2, rounded.shape)
                 injected += np.sum(shares * rounded, axis=1)
         drift: Floats = self.unit_roundoff * np.sqrt(np.cumsum(injected))
-        return self._at_samples(drift, self.times[nodes])
+        return larger_neighbour(drift, self.times[nodes], self.times)
 
-    def terms(self, attainable: Floats, sample: int, carried: Carried) -> RoundoffFloor:
-        """Return the terms of the floor at one sample."""
-        reached = self._path_times() <= self.times[sample]
+    def terms(self, attainable: Floats, errors: Errors, carried: Carried) -> RoundoffFloor:
+        """Return the terms of the floor at the sample of the largest error."""
+        worst = int(np.argmax(errors.doubles))
+        reached = self._path_times() <= self.times[worst]
         steps = max(1, round(float(np.sum(self.steps_at[reached]))))
-        floor_there = float(attainable[sample])
-        growth = floor_there / (self.unit_roundoff * steps**0.5)
+        value = float(attainable[worst])
+        growth = shown(value / (self.unit_roundoff * steps**0.5))
         bits = round(-log2(self.unit_roundoff))
-        growth = shown(growth)
-        value, by_velocities = shown(floor_there), self.velocities
-        return RoundoffFloor(carried, value, bits, steps, growth, velocities=by_velocities)
+        return RoundoffFloor(carried, shown(value), bits, steps, growth, velocities=self.velocities)
+
+    def lengths(self, excess: Floats) -> tuple[Errors, Floats, Reason]:
+        """Return the errors of the length of quaternions, what is attainable, and its terms.
+
+        ``excess`` (n,) is |q| - 1. An attitude is read from a quaternion of any length, so that no other
+        gate sees the length. A solver that rounds q in every step and takes none of it back leaves, all
+        roundings going one way, | |q| - 1 | <= u N after N steps.
+        """
+        errors = Errors(UNIT_QUATERNION, "1", np.abs(excess), np.zeros(len(excess)), {})
+        elapsed = self.times / (np.max(self.times) or 1.0)
+        steps = 1 + float(np.sum(self.steps_at)) * elapsed
+        attainable = self.unit_roundoff * steps
+        worst = int(np.argmax(errors.doubles))
+        value, count = float(attainable[worst]), round(steps[worst])
+        ends = (float(np.min(excess)), float(np.max(excess)))
+        extent = " to ".join(dict.fromkeys(_length(end, value) for end in ends))
+        bits = round(-log2(self.unit_roundoff))
+        terms = RoundoffFloor(Carried.LENGTH, shown(value), bits, count, lengths=extent)
+        return errors, attainable, Reason(floor=terms)
 
     def worst(self) -> float:
-        """The largest attainable error of a momentum, relative to its own size."""
+        """Return the largest attainable error of a momentum, relative to its own size."""
         shares = []
         for k, block in enumerate(self.orbit.blocks):
             if block not in ("attitude", "centre"):
@@ -121,19 +141,25 @@ class Floor:
         """The sums over the steps so far of squared roundings of a block, component by component."""
         first = 3 * self.orbit.blocks.index(block)
         rows = self.rounded[:, first : first + 3]
-        found: Floats = np.cumsum(self.steps_at[:, None] * rows**2, axis=0)
-        return found
+        return np.cumsum(self.steps_at[:, None] * rows**2, axis=0)
 
     def _path_times(self) -> Floats:
         return np.array([abs(float(t)) for t in self.orbit.elapsed])
 
-    def _at_samples(self, values: Floats, times: Floats) -> Floats:
-        """Between two of the times the larger of both."""
-        later = np.searchsorted(times, self.times)
-        earlier = np.searchsorted(times, self.times, side="right") - 1
-        last = len(times) - 1
-        found: Floats = np.maximum(values[np.minimum(later, last)], values[np.maximum(earlier, 0)])
-        return found
+
+def _length(excess: float, roundings: float) -> str:
+    """The length 1 + excess, with the digits that tell it from 1."""
+    if abs(excess) <= roundings:
+        return "1"
+    return f"{1 + excess:.6g}" if abs(excess) > _SHOWN else f"1{excess:+.2g}"
+
+
+def larger_neighbour(values: Floats, nodes: Floats, places: Floats) -> Floats:
+    """Return a value for each of the places: between two nodes the larger of both."""
+    later = np.searchsorted(nodes, places)
+    earlier = np.searchsorted(nodes, places, side="right") - 1
+    last = len(nodes) - 1
+    return np.maximum(values[np.minimum(later, last)], values[np.maximum(earlier, 0)])
 
 
 def floor(
@@ -146,30 +172,25 @@ def floor(
     The condition of the orbit is that of the scene as asked, computed once for all rungs, unless the
     rounding of the data moves the orbit so much that the rounded one needs a condition of its own.
     """
-    shared = _floor(given, asked, unit_roundoff, steps, velocities)
-    if shared.worst() <= _SAME_ORBIT:
-        return shared
-    return _floor(given, given, unit_roundoff, steps, velocities)
-
-
-def _floor(
-    given: Scene, conditioned: Scene, unit_roundoff: Fraction, steps: int, velocities: bool
-) -> Floor:
-    orbit = _orbit(conditioned)
     # A row is at least one rounding.
     count = max(steps, len(given.clock.instants))
-    steps_at = _steps_at(orbit.elapsed, count)
     bits = unit_roundoff.denominator.bit_length() - 1
-    rounded = roundings(given, orbit, bits, count, velocities)
-    return Floor(
-        unit_roundoff=float(unit_roundoff),
-        times=np.array([abs(float(t)) for t in conditioned.clock.elapsed]),
-        orbit=orbit,
-        steps_at=steps_at,
-        rounded=rounded,
-        carried=orbit.gathered(rounded * np.sqrt(steps_at)[:, None]),
-        velocities=velocities,
-    )
+    for conditioned in (asked, given):
+        orbit = _orbit(conditioned)
+        steps_at = _steps_at(orbit.elapsed, count)
+        rounded = roundings(given, orbit, bits, count, velocities)
+        found = Floor(
+            unit_roundoff=float(unit_roundoff),
+            times=np.array([abs(float(t)) for t in conditioned.clock.elapsed]),
+            orbit=orbit,
+            steps_at=steps_at,
+            rounded=rounded,
+            carried=orbit.gathered(rounded * np.sqrt(steps_at)[:, None]),
+            velocities=velocities,
+        )
+        if found.worst() <= _SAME_ORBIT:
+            break
+    return found
 
 
 @lru_cache(maxsize=32)
@@ -178,7 +199,7 @@ def _orbit(scene: Scene) -> Path:
 
 
 def radians(scene: Scene) -> float:
-    """The angle that the fastest of an orbit's rates turns through by its end."""
+    """Return the angle that the fastest of an orbit's rates turns through by its end."""
     orbit = _orbit(scene)
     rates = orbit.flow.rate(orbit.momentum) / float(orbit.flow.time)
     times = np.array([abs(float(t)) for t in orbit.elapsed])
@@ -186,20 +207,15 @@ def radians(scene: Scene) -> float:
 
 
 def looked_at(scene: Scene) -> list[int]:
-    """The samples at which the floor looks at the orbit: all or many where passages are short."""
+    """Return the samples at which the floor is computed: all or many where passages are short."""
     points = set(_orbit(scene).elapsed)
     return [k for k, t in enumerate(scene.clock.elapsed) if t in points]
 
 
 @lru_cache(maxsize=8)
 def condition(scene: Scene) -> Path:
-    """How errors travel along the scene's own orbit, between evenly chosen samples."""
+    """Return how errors travel along the scene's own orbit, between evenly chosen samples."""
     return transition(scene, chosen(scene.clock.elapsed, _MOST_NODES))
-
-
-def _rows(motion: Motion, nodes: Sequence[int]) -> Motion:
-    rows = list(nodes)
-    return Motion({n: values[rows] for n, values in motion.quantities.items()}, motion.radius[rows])
 
 
 def _steps_at(elapsed: Sequence[Fraction], steps: int) -> Floats:

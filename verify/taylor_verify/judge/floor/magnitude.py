@@ -113,12 +113,10 @@ def roundings(given: Scene, path: Path, bits: int, steps: int, velocities: bool 
 
 def _through_velocities(body: Body, path: Path) -> Floats:
     """m at every time, shape (n, 6), in the path's units."""
-    units = [path.units[block] for block in path.blocks[:2] for _ in range(3)]
-    energy, M = body.energy_matrix, tensors.inverse(body.energy_matrix)
-    to_velocity = [[float(e * d) for e, d in zip(row, units, strict=True)] for row in energy]
-    to_impulse = [[float(m / d) for m in row] for row, d in zip(M, units, strict=True)]
-    velocity = path.momentum @ np.array(to_velocity).T
-    terms = velocity[:, None, :] * np.array(to_impulse)[None, :, :]
+    units = np.array([path.units[block] for block in path.blocks[:2] for _ in range(3)])
+    energy, M = np.array(body.energy_matrix), np.array(tensors.inverse(body.energy_matrix))
+    velocity = path.momentum @ (energy * units).astype(float).T
+    terms = velocity[:, None, :] * (M / units[:, None]).astype(float)
     found: Floats = np.sqrt(np.sum(terms**2, axis=2))
     return found
 

@@ -5,18 +5,25 @@ judge knows the samples, the radians of the orbit and the seconds that the answe
 
     min(claim, WIDENING^2 (samples + STEPS_PER_RADIAN radians), STEPS_PER_SECOND seconds).
 
-The constants are those of judge.gates.
+The first limit is that of a method that resolves every sample and every hundredth of a radian, whose gate
+is widened by WIDENING. So 10^4 steps a radian count: an RK4 of step 1e-4 on an orbit of one radian per unit
+of time claims no more. The second is what a processor can do: a step is some dozens of
+dependent operations.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 from taylor_verify.judge.floor.attainable import radians
-from taylor_verify.judge.gates import STEPS_PER_RADIAN, STEPS_PER_SECOND, WIDENING
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.reason import ClaimedSteps
 from taylor_verify.solvers.solver import Solver
+
+STEPS_PER_RADIAN: Final = 100
+WIDENING: Final = 10
+STEPS_PER_SECOND: Final = 10**8
 
 
 @dataclass(frozen=True)

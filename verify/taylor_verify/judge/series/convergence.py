@@ -9,7 +9,7 @@ is read between the two: on the longest run of steps over which the local order 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import ceil, isfinite, log, sqrt
@@ -49,7 +49,7 @@ _STUDENT: Final = (12.71, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306)
 
 @dataclass(frozen=True)
 class Convergence:
-    """What a sweep shows.
+    """The order that a sweep of steps shows.
 
     ``order`` is the observed one and ``spread`` half of its 95 % interval, from the scatter about a
     straight line in log-log; None where no range of steps has an order. ``steps`` are those used,
@@ -69,7 +69,7 @@ class Convergence:
 
     @property
     def is_expected(self) -> bool:
-        """Whether there is an order, and it is the expected one if one was named."""
+        """True if there is an order, and it is the expected one if one was named."""
         if self.order is None or self.spread is None:
             return False
         return self.expected is None or _agree(self.order, self.spread, self.expected)
@@ -81,72 +81,63 @@ def convergence(
     roundoff_floor: float | Sequence[float] = 0.0,
     expected: float | None = None,
 ) -> Convergence:
-    """The order seen in errors over steps, given in any order of their own.
+    """Return the order seen in errors over steps, given in any order of their own.
 
     ``errors`` that are None or not finite belong to runs that broke. ``roundoff_floor`` is what
     perfect rounding would leave, for all steps or for each, and ``expected`` the order that the method
     ought to have. Raises ValueError for unlike lengths and
     for steps that are not positive or not distinct.
     """
-    points = _points(steps, errors, roundoff_floor)
-    finite = [point for point in points if point.error is not None]
-    stop = _stop(finite)
-    usable = [point for point in finite[:stop] if point.is_clear]
+    points, broken = _points(steps, errors, roundoff_floor)
+    stop = _stop(points)
+    usable = [point for point in points[:stop] if point.is_clear]
     chosen = _straight(usable)
-    least = min(finite[stop:], key=lambda point: point.size, default=None)
-    remarks = [_broken(points), _rounding(finite, least)]
-    found = Convergence(
-        None,
-        None,
-        (),
-        least.size if least else None,
-        _joined([f"no order: {_lacking(usable)}", *remarks]),
-        expected,
-        finite[stop].step if least else None,
-        least is not None and least.is_rounding,
+    least = min(points[stop:], key=lambda point: point.error, default=None)
+    order, spread = (None, None) if chosen is None else _slope(chosen)
+    words = [
+        *_order_words(usable, chosen, order, spread, expected),
+        *([f"no answer with step {', '.join(f'{s:.3g}' for s in broken)}"] if broken else []),
+        *_floor_words(points, least),
+    ]
+    return Convergence(
+        order=order,
+        spread=spread,
+        steps=tuple(point.step for point in chosen or ()),
+        level=least.error if least else None,
+        reason="; ".join(words),
+        expected=expected,
+        stalls_at=points[stop].step if least else None,
+        by_rounding=least is not None and least.is_rounding,
     )
-    if chosen is None:
-        return found
-    order, spread = _slope(chosen)
-    words = [_compared(order, spread, expected), _used(chosen, usable), *remarks]
-    used = tuple(point.step for point in chosen)
-    return replace(found, order=order, spread=spread, steps=used, reason=_joined(words))
 
 
 def local_orders(steps: Sequence[float], errors: Sequence[float]) -> tuple[float, ...]:
     """Return the order between neighbouring steps, of positive errors; the steps fall."""
     points = [_Point(step, error, 0.0) for step, error in zip(steps, errors, strict=True)]
-    return tuple(_local(a, b) for a, b in pairwise(points))
+    return tuple(_locals(points))
 
 
 @dataclass(frozen=True)
 class _Point:
     step: float
-    error: float | None
+    error: float
     floor: float
 
     @property
-    def size(self) -> float:
-        assert self.error is not None
-        return self.error
-
-    @property
     def is_clear(self) -> bool:
-        """Whether the error is one of the method: zero, and what roundings may make, is not."""
-        return self.size > CLEAR * self.floor
+        """True if the error is one of the method: zero, and what roundings may make, is not."""
+        return self.error > CLEAR * self.floor
 
     @property
     def is_rounding(self) -> bool:
         """True if rounding on this rung explains the error, whatever an answer rounds besides."""
-        return self.floor > 0 and self.size <= _FAR * self.floor
+        return self.floor > 0 and self.error <= _FAR * self.floor
 
 
 def _points(
-    steps: Sequence[float],
-    errors: Sequence[float | None],
-    floors: float | Sequence[float],
-) -> list[_Point]:
-    """From the largest step to the smallest."""
+    steps: Sequence[float], errors: Sequence[float | None], floors: float | Sequence[float]
+) -> tuple[list[_Point], list[float]]:
+    """The points from the largest step to the smallest, and the steps whose runs broke."""
     each = [floors] * len(steps) if isinstance(floors, int | float) else list(floors)
     if not len(steps) == len(errors) == len(each):
         raise ValueError(
@@ -155,32 +146,34 @@ def _points(
         )
     if not all(step > 0 for step in steps) or len(set(steps)) < len(steps):
         raise ValueError(f"expected positive steps, no two the same, got {list(steps)}")
-    found = [
-        _Point(float(step), _finite(error), float(floor))
-        for step, error, floor in zip(steps, errors, each, strict=True)
-    ]
-    return sorted(found, key=lambda point: -point.step)
-
-
-def _finite(error: float | None) -> float | None:
-    return float(error) if error is not None and isfinite(error) else None
+    points, broken = [], []
+    for step, error, floor in sorted(zip(steps, errors, each, strict=True), key=lambda p: -p[0]):
+        if error is not None and isfinite(error):
+            points.append(_Point(float(step), float(error), float(floor)))
+        else:
+            broken.append(float(step))
+    return points, broken
 
 
 def _local(a: _Point, b: _Point) -> float:
     """The order between two neighbours, of which the second has the smaller step."""
-    if not b.size > 0:
+    if not b.error > 0:
         return float("inf")
-    return log(a.size / b.size) / log(a.step / b.step) if a.size > 0 else 0.0
+    return log(a.error / b.error) / log(a.step / b.step) if a.error > 0 else 0.0
+
+
+def _locals(points: Sequence[_Point]) -> list[float]:
+    return [_local(a, b) for a, b in pairwise(points)]
 
 
 def _stop(points: Sequence[_Point]) -> int:
-    """Where errors stop falling for good: the first point that no smaller step improves on.
+    """The place where errors stop falling for good: the first point that no smaller step improves on.
 
     No improvement is one that is slower, from there to the end, than an order of a half: a step that
     happens to do well stops nothing, nor does a start that is not falling yet, or slowly.
     """
     for i, point in enumerate(points[:-1]):
-        later = min(points[i + 1 :], key=lambda p: p.size)
+        later = min(points[i + 1 :], key=lambda p: p.error)
         slow = _local(point, replace(later, step=points[-1].step)) < _STALLED
         if slow and not _is_gaining(points[i:]):
             return i
@@ -189,7 +182,7 @@ def _stop(points: Sequence[_Point]) -> int:
 
 def _is_gaining(points: Sequence[_Point]) -> bool:
     """Return True for errors that fall faster from step to step: their steps were too large at first."""
-    orders = [_local(a, b) for a, b in pairwise(points)]
+    orders = _locals(points)
     rises = all(before < after for before, after in pairwise(orders))
     return len(orders) >= 2 and orders[0] > 0 and rises and orders[-1] >= _STALLED
 
@@ -200,7 +193,7 @@ def _straight(points: Sequence[_Point]) -> Sequence[_Point] | None:
     for first in range(len(points)):
         for last in range(first + _FEWEST, len(points) + 1):
             run = points[first:last]
-            orders = [_local(a, b) for a, b in pairwise(run)]
+            orders = _locals(run)
             if max(orders) - min(orders) <= SAME and (best is None or len(run) >= len(best)):
                 best = run
     return best
@@ -209,7 +202,7 @@ def _straight(points: Sequence[_Point]) -> Sequence[_Point] | None:
 def _slope(points: Sequence[_Point]) -> tuple[float, float]:
     """The least-squares slope of log e over log h, and half of its 95 % interval."""
     x = np.log([p.step for p in points])
-    y = np.log([p.size for p in points])
+    y = np.log([p.error for p in points])
     x, y = x - x.mean(), y - y.mean()
     slope = float(x @ y / (x @ x))
     freedom = len(points) - 2
@@ -218,59 +211,51 @@ def _slope(points: Sequence[_Point]) -> tuple[float, float]:
     return slope, student * sqrt(scatter / float(x @ x))
 
 
-# The words.
-
-
-def _joined(parts: Iterable[str]) -> str:
-    return "; ".join(part for part in parts if part)
-
-
-def _compared(order: float, spread: float, expected: float | None) -> str:
-    """The order, and the expected one if it is another."""
-    told = f"order {order:.2f}"
-    if expected is not None and not _agree(order, spread, expected):
-        return f"{told}, expected {expected:g}"
-    return told
-
-
 def _agree(order: float, spread: float, expected: float) -> bool:
-    """Whether an order is the expected one, as far as a sweep can tell.
+    """Return True if an order is the expected one, as far as a sweep can tell.
 
     Scatter excuses nothing beyond half of the way to the next order.
     """
     return abs(order - expected) <= min(max(spread, SAME), 2 * SAME)
 
 
-def _used(chosen: Sequence[_Point], usable: Sequence[_Point]) -> str:
-    told = f"steps {chosen[0].step:.3g} to {chosen[-1].step:.3g}"
-    before = [point for point in usable if point.step > chosen[0].step]
-    return f"{told}; larger ones are not asymptotic yet" if before else told
+# The words.
 
 
-def _broken(points: Sequence[_Point]) -> str:
-    broken = [point.step for point in points if point.error is None]
-    return f"no answer with step {', '.join(f'{step:.3g}' for step in broken)}" if broken else ""
+def _order_words(
+    usable: Sequence[_Point],
+    chosen: Sequence[_Point] | None,
+    order: float | None,
+    spread: float | None,
+    expected: float | None,
+) -> Iterator[str]:
+    """Yield the order, with the expected one if it is another, and the steps that show it."""
+    if chosen is None or order is None or spread is None:
+        lacking = f"{len(usable)} steps show an error of the method, and it takes {_FEWEST}"
+        if len(usable) >= _FEWEST:
+            listed = ", ".join(f"{local:.2f}" for local in _locals(usable))
+            lacking = f"from step to step it is {listed}, nowhere twice the same"
+        yield f"no order: {lacking}"
+        return
+    is_other = expected is not None and not _agree(order, spread, expected)
+    yield f"order {order:.2f}{f', expected {expected:g}' if is_other else ''}"
+    yield f"steps {chosen[0].step:.3g} to {chosen[-1].step:.3g}"
+    if any(point.step > chosen[0].step for point in usable):
+        yield "larger ones are not asymptotic yet"
 
 
-def _rounding(points: Sequence[_Point], level: _Point | None) -> str:
-    """Say that errors stop falling, at ``level``, and if it is rounding that stops them."""
-    if level is None:
-        near = [point for point in points if not point.is_clear]
-        return f"errors reach rounding at {near[0].size:.1g}" if near else ""
-    told = f"errors stop falling at {level.size:.1g}"
-    if not level.floor > 0:
-        return told
-    if level.is_rounding:
-        return f"{told}: rounding"
-    return f"{told}: {level.size / level.floor:.1g} times what rounding leaves, so not by rounding"
-
-
-def _lacking(usable: Sequence[_Point]) -> str:
-    if len(usable) < _FEWEST:
-        return f"{len(usable)} steps show an error of the method, and it takes {_FEWEST}"
-    orders = [_local(a, b) for a, b in pairwise(usable)]
-    told = ", ".join(f"{order:.2f}" for order in orders)
-    return f"from step to step it is {told}, nowhere twice the same"
+def _floor_words(points: Sequence[_Point], level: _Point | None) -> Iterator[str]:
+    """Yield the ``level`` at which errors stop falling, and whether it is rounding that stops them."""
+    if level is not None:
+        why = ""
+        if level.is_rounding:
+            why = ": rounding"
+        elif level.floor > 0:
+            times = f"{level.error / level.floor:.1g} times"
+            why = f": {times} what rounding leaves, so not by rounding"
+        yield f"errors stop falling at {level.error:.1g}{why}"
+    elif near := [point for point in points if not point.is_clear]:
+        yield f"errors reach rounding at {near[0].error:.1g}"
 
 
 # A solver at many steps.
@@ -285,15 +270,15 @@ class Sweep:
 
     @property
     def reason(self) -> str:
-        """All in one line: `omega is 4th order, attitude 2nd`."""
+        """The orders in one line: `omega is 4th order, attitude 2nd`."""
         orders = {name: found.order for name, found in self.quantities.items()}
         known = [(name, _ordinal(order)) for name, order in orders.items() if order is not None]
-        told = [f"{n} {o}" if i else f"{n} is {o} order" for i, (n, o) in enumerate(known)]
-        told += [f"{name} has none" for name, order in orders.items() if order is None]
-        return ", ".join(told)
+        words = [f"{n} {o}" if i else f"{n} is {o} order" for i, (n, o) in enumerate(known)]
+        words += [f"{name} has none" for name, order in orders.items() if order is None]
+        return ", ".join(words)
 
     def __str__(self) -> str:
-        """That line, and under it the reason of every quantity."""
+        """Return that line, and under it the reason of every quantity."""
         wide = max(map(len, self.quantities), default=0)
         rows = [f"  {name:{wide}}  {found.reason}" for name, found in self.quantities.items()]
         return "\n".join([self.reason, *rows])
@@ -318,27 +303,18 @@ def sweep(
         problem = pose(scene, rung)
     except NotRepresentable as reason:
         raise ValueError(f"expected a scene that {rung.name} can hold, got: {reason}") from reason
-    by_step = [_judged(problem, solve_with_step, step) for step in steps]
-    names = dict.fromkeys(v.quantity for found in by_step for v in found if v.at is not None)
+    solvers = [_AtStep(solve_with_step, step, f"step {step:g}") for step in steps]
+    judged = [judgement(problem, each, each.solve(problem)).verdicts for each in solvers]
+    by_step = [{verdict.quantity: verdict for verdict in verdicts} for verdicts in judged]
+    verdicts = tuple(verdict for each in judged for verdict in each)
     quantities = {}
-    for name in names:
-        rows = [next((v for v in found if v.quantity == name), None) for found in by_step]
-        errors = [row.max if row is not None and _is_measured(row) else None for row in rows]
-        floors = [(row.attainable or 0.0) if row is not None else 0.0 for row in rows]
+    for name in dict.fromkeys(v.quantity for v in verdicts if v.at is not None):
+        rows = [each.get(name) for each in by_step]
+        # A truth that is wider than a gate allows measures no error either.
+        errors = [r.max if r and r.verdict is not Status.UNDECIDED else None for r in rows]
+        floors = [(row.attainable or 0.0) if row else 0.0 for row in rows]
         quantities[name] = convergence(steps, errors, floors, expected)
-    return Sweep(quantities, tuple(v for found in by_step for v in found))
-
-
-def _judged(
-    problem: Problem, solve_with_step: Callable[[Problem, float], Any], step: float
-) -> tuple[Verdict, ...]:
-    solver = _AtStep(solve_with_step, step, f"step {step:g}")
-    return judgement(problem, solver, solver.solve(problem)).verdicts
-
-
-def _is_measured(verdict: Verdict) -> bool:
-    """A truth that is wider than a gate allows measures no error either."""
-    return verdict.verdict is not Status.UNDECIDED
+    return Sweep(quantities, verdicts)
 
 
 @final

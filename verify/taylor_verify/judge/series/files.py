@@ -52,29 +52,29 @@ class FilesJudgement(Judgement):
 
     def document(self) -> dict[str, Any]:
         """Return the document that `check --json` prints of several files."""
+        files = []
+        for judged, step in zip(self.files, self.steps, strict=True):
+            known = {} if step is None else {"step": step.value, "step_from": step.source.value}
+            files.append({**judged.document(), **known})
         return {
-            "files": [
-                {**judged.document(), **_step(step)}
-                for judged, step in zip(self.files, self.steps, strict=True)
-            ],
-            "order": [complete(order) for order in self.order],
+            "files": files,
+            "order": complete(self.order),
             "notes": list(self.notes),
             "summary": summary(self.verdicts),
         }
 
     def __repr__(self) -> str:
         first, word = self.verdicts[0], "passed" if self.passed else "not passed"
-        return (
-            f"<FilesJudgement of {len(self.files)} files on {first.scene} {first.rung}: {word}; "
-            f"{counts(self.verdicts)}>"
-        )
+        run = f"{len(self.files)} files on {first.scene} {first.rung}"
+        return f"<FilesJudgement of {run}: {word}; {counts(self.verdicts)}>"
 
     def _repr_html_(self) -> str:
         headings = ("quantity", "order", "best step", "in words")
-        rows = (
-            (o.quantity, _short(o.order, ".2f"), _short(o.best_step, "g"), o.sentence)
-            for o in self.order
-        )
+        rows = []
+        for o in self.order:
+            order = "" if o.order is None else f"{o.order:.2f}"
+            best = "" if o.best_step is None else f"{o.best_step:g}"
+            rows.append((o.quantity, order, best, o.sentence))
         return html_table(repr(self)[1:-1], headings, rows)
 
 
@@ -105,6 +105,21 @@ def files_judgement(
     )
     verdicts = tuple(verdict for judgement in judged for verdict in judgement.verdicts)
     return FilesJudgement(verdicts, None, tuple(judged), known, order, notes)
+
+
+def judge_files(
+    files: Sequence[Any], steps: Iterable[Any] | None, judge: Callable[[Any], Judgement]
+) -> FilesJudgement:
+    """Return the judgement of a list of files, each judged by itself by ``judge(file)``.
+
+    Raises ValueError for an empty list, a file that is there twice, and what `checked_steps` refuses.
+    """
+    if not files:
+        raise ValueError("expected at least one trajectory file, got an empty list")
+    if faults := repeated([file for file in files if isinstance(file, str | PathLike)]):
+        raise ValueError("\n".join(faults))
+    known = None if steps is None else checked_steps(steps, len(files))
+    return files_judgement(judge_each(files, judge), known)
 
 
 def judge_each(files: Iterable[Asked], judge: Callable[[Asked], Judgement]) -> list[FileJudgement]:
@@ -181,14 +196,6 @@ def _is_same(one: str, other: str) -> bool:
         return False
 
 
-def _step(step: FileStep | None) -> dict[str, Any]:
-    return {} if step is None else {"step": step.value, "step_from": step.source.value}
-
-
-def _short(value: float | None, form: str) -> str:
-    return "" if value is None else format(value, form)
-
-
 # What has a part in the order.
 
 
@@ -253,12 +260,8 @@ def _lower_orders(order: Sequence[Order]) -> list[str]:
 def _other_starts(judged: Sequence[FileJudgement]) -> list[str]:
     """Return a sentence for each file, of some and not all, that does not start as the scene does."""
     wrong = [
-        judgement.file.name
+        f"{judgement.file.name} does not start as the scene does: is it a file of another scene?"
         for judgement in judged
         if any(v.quantity == INITIAL and v.verdict is Status.FAIL for v in judgement.verdicts)
     ]
-    if len(wrong) == len(judged):
-        return []
-    return [
-        f"{name} does not start as the scene does: is it a file of another scene?" for name in wrong
-    ]
+    return wrong if len(wrong) < len(judged) else []

@@ -39,7 +39,7 @@ _OF_DIGITS: Final = 30.0
 
 @dataclass(frozen=True)
 class Sample:
-    """One file and the step of the integrator that wrote it."""
+    """A file and the step of the integrator that wrote it."""
 
     judged: FileJudgement
     step: float
@@ -83,8 +83,21 @@ def _order(quantity: str, samples: Sequence[Sample]) -> Order:
         [point.error for point in points],
         [point.attainable or 0.0 for point in points],
     )
-    clear = _clear(points, found)
-    order = _with_stall(Order(quantity, unit, points, ""), found, samples)
+    # Errors of the method: far above roundoff, and above the level where errors stall.
+    clear = [
+        point
+        for point in points
+        if point.error
+        and point.error > CLEAR * max(point.attainable or 0.0, found.level or 0.0)
+        and (found.stalls_at is None or point.step > found.stalls_at)
+    ]
+    order = Order(quantity, unit, points, "")
+    measured = [point for point in points if point.error is not None]
+    if measured:
+        best = min(measured, key=lambda point: point.error or 0.0)
+        order = replace(order, best_step=best.step, best_error=best.error)
+    if found.level is not None:
+        order = replace(order, stalls_at=found.stalls_at, stall=_stall(found, samples))
     order = _with_order(order, found, clear)
     return replace(order, sentence="; ".join(_sentences(order, clear)))
 
@@ -100,17 +113,6 @@ def _points(samples: Sequence[Sample], rows: Sequence[Verdict | None]) -> Iterat
             (local,) = local_orders((before[0], sample.step), (before[1], error))
         before = (sample.step, error) if error else None
         yield OrderPoint(sample.judged.file.name, sample.step, error, floor, local)
-
-
-def _clear(points: Sequence[OrderPoint], found: Convergence) -> list[OrderPoint]:
-    """The points whose error is one of the method: far above roundoff and above where errors stall."""
-    return [
-        point
-        for point in points
-        if point.error
-        and point.error > CLEAR * max(point.attainable or 0.0, found.level or 0.0)
-        and (found.stalls_at is None or point.step > found.stalls_at)
-    ]
 
 
 # The order, and the file that does not fit.
@@ -162,31 +164,20 @@ def _suspect(points: Sequence[OrderPoint]) -> tuple[str, float] | None:
     return None
 
 
-# The best step, and what takes over below it.
-
-
-def _with_stall(order: Order, found: Convergence, samples: Sequence[Sample]) -> Order:
-    measured = [point for point in order.points if point.error is not None]
-    if not measured:
-        return order
-    best = min(measured, key=lambda point: point.error or 0.0)
-    order = replace(order, best_step=best.step, best_error=best.error)
-    if found.level is None:
-        return order
-    return replace(order, stalls_at=found.stalls_at, stall=_stall(found, samples))
+def _locals(points: Sequence[OrderPoint]) -> tuple[float, ...]:
+    return local_orders([p.step for p in points], [p.error or 0.0 for p in points])
 
 
 def _stall(found: Convergence, samples: Sequence[Sample]) -> Stall:
+    """The reason why errors stop falling below the best step."""
     if found.by_rounding:
         return Stall.ROUNDOFF
-    digits = [
-        sample.judged.file.digits for sample in samples if sample.step <= (found.stalls_at or 0)
-    ]
+    stalled = [sample for sample in samples if sample.step <= (found.stalls_at or 0)]
+    digits = [sample.judged.file.digits for sample in stalled]
     known = [number for number in digits if number is not None]
-    level = found.level or 0.0
     if known and len(known) == len(digits):
         printed = 10.0 ** -max(known)
-        if printed / _OF_DIGITS <= level <= printed * _OF_DIGITS:
+        if printed / _OF_DIGITS <= (found.level or 0.0) <= printed * _OF_DIGITS:
             return Stall.DIGITS
     return Stall.OTHER
 
@@ -199,85 +190,66 @@ def _sentences(order: Order, clear: Sequence[OrderPoint]) -> Iterator[str]:
         yield f"{order.quantity}: no order shows, because the error is near roundoff at every step"
         return
     yield f"{order.quantity}: {_order_words(order, clear)}"
-    yield from _best_words(order)
-
-
-def _order_words(order: Order, clear: Sequence[OrderPoint]) -> str:
-    if order.order is not None:
-        return f"{_order_range(order)}{_left_out(order, clear)}"
-    seen = [f"{local:.1f}" for local in _locals(clear)]
-    if order.suspect is not None and order.suspect_step is not None:
-        labelled = next(p.step for p in order.points if p.file == order.suspect)
-        return (
-            f"no one order fits: from step to step it is {', '.join(seen)}; the others agree without "
-            f"{order.suspect}, whose error is that of h = {order.suspect_step:g} and not of "
-            f"{labelled:g}"
-        )
-    if len(seen) >= 2:
-        return f"no one order fits: from step to step it is {', '.join(seen)}"
-    if seen:
-        large, small = clear[0].step, clear[-1].step
-        return f"order {seen[0]} between h = {large:g} and {small:g}, which no third step confirms"
-    level = "roundoff" if order.stall is None else "the level at which errors stop falling"
-    return f"no order shows, because fewer than two steps have an error well above {level}"
-
-
-def _order_range(order: Order) -> str:
-    assert order.order is not None
-    assert order.high is not None
-    spread = order.high - order.order
-    uncertain = f" ± {spread:.1f}" if spread >= 0.05 else ""
-    return f"order {order.order:.1f}{uncertain} from h = {order.largest:g} to {order.smallest:g}"
-
-
-def _left_out(order: Order, clear: Sequence[OrderPoint]) -> str:
-    """Return the local orders of larger steps, which are not asymptotic or hide a lower order."""
-    seen = _locals([point for point in clear if point.step >= (order.largest or 0.0)])
-    return f" ({', '.join(f'{local:.1f}' for local in seen)} at larger steps)" if seen else ""
-
-
-def _locals(points: Sequence[OrderPoint]) -> tuple[float, ...]:
-    return local_orders([p.step for p in points], [p.error or 0.0 for p in points])
-
-
-def _best_words(order: Order) -> Iterator[str]:
-    if order.best_step is None or order.best_error is None:
-        return
-    smallest = order.points[-1].step
-    best = f"best h = {order.best_step:g} with {_accuracy(order)}"
-    if order.stall is None or order.stalls_at is None:
-        falls = "near roundoff" if _is_at_the_floor(order.points[-1]) else "the error still falls"
-        yield f"{best}, the smallest: {falls}" if order.best_step == smallest else best
-        return
-    if order.stalls_at == order.best_step:
-        yield f"{best}; below it {_takes_over(order)}"
-    else:
-        yield f"{best}; from h = {order.stalls_at:g} down {_takes_over(order)}"
+    if order.best_step is not None and order.best_error is not None:
+        best = f"best h = {order.best_step:g} with {_accuracy(order, order.best_error)}"
+        yield f"{best}{_below_the_best(order, order.best_step, order.best_error)}"
 
 
 def _is_at_the_floor(point: OrderPoint) -> bool:
     return point.error is not None and point.error <= CLEAR * (point.attainable or 0.0)
 
 
-def _takes_over(order: Order) -> str:
-    if order.stall is Stall.ROUNDOFF:
-        return "roundoff takes over"
-    if order.stall is Stall.DIGITS:
-        return "the error is that of the printed digits"
-    floors = [p.attainable for p in order.points if p.attainable and p.step == order.best_step]
-    above = ""
-    if floors and order.best_error:
-        above = f" {order.best_error / floors[0]:.0e} times what roundoff leaves"
-    return (
-        f"the error falls no longer, at{above}: a lower precision inside, or an error that no step "
-        "removes"
-    )
+def _order_words(order: Order, clear: Sequence[OrderPoint]) -> str:
+    if order.order is not None and order.high is not None and order.largest is not None:
+        spread = order.high - order.order
+        uncertain = f" ± {spread:.1f}" if spread >= 0.05 else ""
+        steps = f"from h = {order.largest:g} to {order.smallest:g}"
+        # Larger steps are not asymptotic or hide a lower order.
+        larger = _locals([point for point in clear if point.step >= order.largest])
+        seen = ", ".join(f"{local:.1f}" for local in larger)
+        left_out = f" ({seen} at larger steps)" if seen else ""
+        return f"order {order.order:.1f}{uncertain} {steps}{left_out}"
+    between = [f"{local:.1f}" for local in _locals(clear)]
+    no_fit = f"no one order fits: from step to step it is {', '.join(between)}"
+    if order.suspect is not None and order.suspect_step is not None:
+        labelled = next(p.step for p in order.points if p.file == order.suspect)
+        return (
+            f"{no_fit}; the others agree without {order.suspect}, whose error is that of "
+            f"h = {order.suspect_step:g} and not of {labelled:g}"
+        )
+    if len(between) >= 2:
+        return no_fit
+    if between:
+        large, small = clear[0].step, clear[-1].step
+        return (
+            f"order {between[0]} between h = {large:g} and {small:g}, which no third step confirms"
+        )
+    level = "roundoff" if order.stall is None else "the level at which errors stop falling"
+    return f"no order shows, because fewer than two steps have an error well above {level}"
 
 
-def _accuracy(order: Order) -> str:
-    error = order.best_error or 0.0
+def _accuracy(order: Order, error: float) -> str:
     if order.unit == "rad":
         return f"an error of {error:.1e} rad"
     if not error > 0 or not isfinite(error):
         return "no error"
     return f"{max(0.0, -log10(error)):.1f} digits"
+
+
+def _below_the_best(order: Order, step: float, error: float) -> str:
+    """The course of the error at smaller steps than the best one, in words."""
+    if order.stall is None or order.stalls_at is None:
+        last = order.points[-1]
+        falls = "near roundoff" if _is_at_the_floor(last) else "the error still falls"
+        return f", the smallest: {falls}" if step == last.step else ""
+    place = "below it" if order.stalls_at == step else f"from h = {order.stalls_at:g} down"
+    if order.stall is Stall.ROUNDOFF:
+        return f"; {place} roundoff takes over"
+    if order.stall is Stall.DIGITS:
+        return f"; {place} the error is that of the printed digits"
+    floors = [p.attainable for p in order.points if p.attainable and p.step == step]
+    above = f" {error / floors[0]:.0e} times what roundoff leaves" if floors and error else ""
+    return (
+        f"; {place} the error falls no longer, at{above}: a lower precision inside, or an error that no "
+        "step removes"
+    )

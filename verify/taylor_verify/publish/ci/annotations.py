@@ -30,31 +30,22 @@ _MOST: Final = 10
 def annotation_lines(
     verdicts: Iterable[Verdict], remarks: Iterable[Remark] = (), by_remarks: bool = False
 ) -> list[str]:
-    """The lines, errors first; none where every row counts as a pass. ``by_remarks`` as in `cases`."""
-    found = cases(verdicts, remarks, by_remarks)
-    shown = [case for case in found if case.counted is not Status.PASS]
-    lines: list[str] = []
-    for level in (*dict.fromkeys(_LEVELS.values()), _HARMLESS):
-        lines += _of_level(level, [case for case in shown if _level(case) == level])
-    return lines
-
-
-def _level(case: Case) -> str:
-    return _HARMLESS if case.is_harmless else _LEVELS[case.counted]
+    """Return the lines, errors first; none where every row is a pass. ``by_remarks`` as in `cases`."""
+    levels: dict[str, list[Case]] = {level: [] for level in (*_LEVELS.values(), _HARMLESS)}
+    for case in cases(verdicts, remarks, by_remarks):
+        if case.counted is not Status.PASS:
+            levels[_HARMLESS if case.is_harmless else _LEVELS[case.counted]].append(case)
+    return [line for level, found in levels.items() for line in _of_level(level, found)]
 
 
 def _of_level(level: str, found: list[Case]) -> Iterator[str]:
-    told = found if len(found) <= _MOST else found[: _MOST - 1]
-    for case in told:
-        yield _line(level, {**_place(case), "title": case.title}, case.text)
-    rest = len(found) - len(told)
-    if rest:
+    shown = found if len(found) <= _MOST else found[: _MOST - 1]
+    for case in shown:
+        place = {"file": case.scene, "line": "1"} if case.scene.endswith(".toml") else {}
+        yield _line(level, {**place, "title": case.title}, case.text)
+    if rest := len(found) - len(shown):
         text = "GitHub shows ten of a kind; the step summary and the JUnit file have all"
         yield _line(level, {"title": f"and {rest} more"}, text)
-
-
-def _place(case: Case) -> dict[str, str]:
-    return {"file": case.scene, "line": "1"} if case.scene.endswith(".toml") else {}
 
 
 def _line(level: str, properties: dict[str, str], text: str) -> str:
@@ -63,7 +54,7 @@ def _line(level: str, properties: dict[str, str], text: str) -> str:
 
 
 def _data(text: str) -> str:
-    """Escaped as the runner undoes it: a line of somebody's stderr must not be a command of its own."""
+    """Return an escaped text: a line of somebody's stderr must not be a command of its own."""
     return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
 
 

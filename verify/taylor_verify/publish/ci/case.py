@@ -8,7 +8,7 @@ the command.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -60,18 +60,20 @@ class Case:
 
     @property
     def title(self) -> str:
-        run = f"{self.scene} on {self.rung}{f', {self.mark}' if self.mark else ''}"
-        return f"{run}: {self.quantity} {self.counted}"
+        """The row and the status that colours it."""
+        mark = f", {self.mark}" if self.mark else ""
+        return f"{self.scene} on {self.rung}{mark}: {self.quantity} {self.counted}"
 
     @property
     def text(self) -> str:
+        """The reasons, a line each."""
         return "\n".join(self.sentences)
 
 
 def cases(
     verdicts: Iterable[Verdict], remarks: Iterable[Remark] = (), by_remarks: bool = False
 ) -> tuple[Case, ...]:
-    """A case for every row, in the order of the verdicts; then those that only remarks speak of.
+    """Return a case for every row, in the order of the verdicts; then those of remarks alone.
 
     ``by_remarks`` tells that the remarks alone decide, as with `--gate baseline`.
     """
@@ -98,15 +100,9 @@ def _case(key: Key, verdict: Verdict | None, remarks: list[Remark], by_remarks: 
     counted = own
     if by_remarks and verdict is not None and exit_status([verdict]):
         counted = [Status.PASS]
-    sentences = tuple(_sentences(verdict, remarks))
+    faults = [] if verdict is None or verdict.verdict is Status.PASS else [sentence(verdict)]
+    sentences = (*faults, *(remark.text for remark in remarks))
     return Case(*key, gravest((*own, *said)), gravest((*counted, *said)), sentences, verdict)
-
-
-def _sentences(verdict: Verdict | None, remarks: list[Remark]) -> Iterator[str]:
-    if verdict is not None and verdict.verdict is not Status.PASS:
-        yield sentence(verdict)
-    for remark in remarks:
-        yield remark.text
 
 
 def sentence(verdict: Verdict) -> str:

@@ -20,7 +20,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from itertools import groupby
 from typing import Final
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
@@ -46,62 +45,41 @@ _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 def junit(
     verdicts: Iterable[Verdict], remarks: Iterable[Remark] = (), by_remarks: bool = False
 ) -> str:
-    """The document, which ends with a newline; ``by_remarks`` as in `cases`."""
+    """Return the document, which ends with a newline; ``by_remarks`` as in `cases`."""
     # A row that vanished has its place in the suite of its run.
-    found = sorted(cases(verdicts, remarks, by_remarks), key=_Runs().place)
+    runs: dict[tuple[str, ...], list[Case]] = {}
+    for case in cases(verdicts, remarks, by_remarks):
+        runs.setdefault((case.scene, case.solver, case.setting, case.rung), []).append(case)
     root = Element("testsuites", name="taylor-verify")
-    for _, group in groupby(found, key=_run):
-        root.append(_suite(list(group)))
+    root.extend([_suite(group) for group in runs.values()])
     for name in ("tests", "failures", "errors"):
         root.set(name, str(sum(int(suite.get(name, "0")) for suite in root)))
     ElementTree.indent(root)
     return f"{_HEAD}\n{ElementTree.tostring(root, encoding='unicode')}\n"
 
 
-class _Runs:
-    """The places of runs, in the order in which they are met."""
-
-    def __init__(self) -> None:
-        self._places: dict[tuple[str, ...], int] = {}
-
-    def place(self, case: Case) -> int:
-        return self._places.setdefault(_run(case), len(self._places))
-
-
-def _run(case: Case) -> tuple[str, ...]:
-    return case.scene, case.solver, case.setting, case.rung
-
-
 def _suite(group: Sequence[Case]) -> Element:
     some = group[0]
-    suite = Element(
-        "testsuite",
-        name=_xml(" ".join(filter(None, (some.scene, some.rung, some.mark)))),
-        tests=str(len(group)),
-    )
+    name = " ".join(filter(None, (some.scene, some.rung, some.mark)))
+    suite = Element("testsuite", name=_xml(name), tests=str(len(group)))
     found = [_element(case) for case in group]
     for attribute, element in _COUNTED.items():
         suite.set(attribute, str(found.count(element)))
-    suite.set("time", _time(_seconds(group)))
+    seconds = max((case.verdict.seconds or 0.0 for case in group if case.verdict), default=0.0)
+    suite.set("time", _time(seconds))
     properties = SubElement(suite, "properties")
     for name, value in (("solver", some.solver), ("setting", some.setting), ("rung", some.rung)):
         SubElement(properties, "property", name=name, value=_xml(value))
-    for i, case in enumerate(group):
+    for case in group:
         # The solver ran once for all: readers that add up the cases find its time once.
-        suite.append(_testcase(case, _seconds(group) if i == 0 else 0.0))
+        suite.append(_testcase(case, seconds if case is some else 0.0))
     return suite
 
 
-def _seconds(group: Sequence[Case]) -> float:
-    return max((case.verdict.seconds or 0.0 for case in group if case.verdict), default=0.0)
-
-
 def _testcase(case: Case, seconds: float) -> Element:
-    name = _element(case)
-    found = Element(
-        "testcase", name=_xml(case.quantity), classname=_xml(_classname(case)), time=_time(seconds)
-    )
-    if name:
+    named = {"name": _xml(case.quantity), "classname": _xml(_classname(case))}
+    found = Element("testcase", {**named, "time": _time(seconds)})
+    if name := _element(case):
         inside = SubElement(found, name, message=_xml(case.text))
         if name != "skipped":  # Surefire's has no type
             inside.set("type", case.counted.value)
@@ -114,16 +92,16 @@ def _element(case: Case) -> str:
 
 
 def _classname(case: Case) -> str:
-    """Scene, rung and what tells runs apart as a dotted name, whose parts readers fold into a tree."""
+    """Return scene, rung and mark as a dotted name, whose parts readers fold into a tree."""
     parts = (*case.scene.removesuffix(".toml").split("/"), case.rung, *case.mark.split("/"))
     return ".".join(part.replace(".", "_") for part in parts if part.strip("."))
 
 
 def _time(seconds: float) -> str:
-    """To the millisecond, as the schema of Surefire has it; 0 for what is no finite number."""
+    """Return a time to the millisecond, as the schema of Surefire has it; 0 for no finite number."""
     return f"{seconds:.3f}" if 0 <= seconds < float("inf") else "0.000"
 
 
 def _xml(text: str) -> str:
-    """The text with an escape in place of what XML cannot hold."""
+    """Return the text with an escape in place of what XML cannot hold."""
     return _NOT_XML.sub(lambda found: f"\\x{ord(found[0]):02x}", text)

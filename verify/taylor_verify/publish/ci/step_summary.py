@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Final
 
-from taylor_verify.publish.cells import NOTHING, error, figure, instant, judged, ratio
+from taylor_verify.publish.cells import CELLS, NOTHING, judged
 from taylor_verify.publish.ci.case import Case, Remark, cases
-from taylor_verify.publish.markdown import Column, bold, code, prose, table
+from taylor_verify.publish.markdown import bold, code, prose, table
 from taylor_verify.publish.page import counts
 from taylor_verify.records.verdict import Verdict
 
@@ -17,13 +17,13 @@ _LEGEND: Final = (
     "*Over attainable* is the largest error over what perfect rounding would leave on this orbit. "
     "Only **pass** is green."
 )
-_NUMBERS: Final = ("max", "at t", "bound", "over attainable")
+_NUMBERS: Final = ("max:", "at t:", "bound:", "over attainable:")
 
 
 def step_summary(
     verdicts: Iterable[Verdict], remarks: Iterable[Remark] = (), decision: str = ""
 ) -> str:
-    """The page, never longer than GitHub takes; ``decision`` says what decided if not the verdicts."""
+    """Return the page, never longer than GitHub takes; ``decision`` names what decided if not verdicts."""
     rows = list(verdicts)
     found = cases(rows, remarks)
     notable = [case for case in found if case.sentences]
@@ -43,61 +43,42 @@ def _page(
 ) -> str:
     # A row of the second table is short; it is the reasons that are long.
     folded = found if most == len(found) else ()
+    beyond = sum(case.verdict is None or case.status != case.verdict.verdict for case in found)
     blocks = [
         "## taylor-verify",
         bold(prose(decision)) if decision else "",
         counts(verdicts),
-        _beyond_verdicts(found),
+        bold(
+            f"{beyond} more of the rows regressed from the baseline, or cannot be held against it."
+        )
+        if beyond
+        else "",
         _table("What is no pass, or not what it was", notable[:most], reasons=True),
-        _left_out(len(notable) - most),
-        _folded(f"All rows: {len(found)}", _table("", folded))
+        f"And {len(notable) - most} more." if len(notable) > most else "",
+        f"<details><summary>All rows: {len(found)}</summary>\n\n{_table('', folded)}\n\n</details>"
         if folded
         else f"The table of all {len(found)} rows is left out: a summary has no room for it.",
         _LEGEND,
     ]
-    return "\n\n".join(block for block in blocks if block) + "\n"
-
-
-def _beyond_verdicts(found: Sequence[Case]) -> str:
-    """What the counts of verdicts do not say."""
-    rows = [case for case in found if case.verdict is None or case.status != case.verdict.verdict]
-    text = (
-        f"{len(rows)} more of the rows regressed from the baseline, or cannot be held against it."
-    )
-    return bold(text) if rows else ""
-
-
-def _left_out(count: int) -> str:
-    return f"And {count} more." if count > 0 else ""
-
-
-def _folded(heading: str, text: str) -> str:
-    return f"<details><summary>{heading}</summary>\n\n{text}\n\n</details>"
+    return "\n\n".join(filter(None, blocks)) + "\n"
 
 
 def _table(heading: str, found: Sequence[Case], reasons: bool = False) -> str:
     if not found:
         return ""
-    columns = [Column("scene"), Column("rung"), Column("quantity")]
-    columns += [Column(name, to_right=True) for name in _NUMBERS]
-    columns += [Column("verdict"), *([Column("because")] if reasons else [])]
-    text = table(columns, [_row(case, reasons) for case in found])
+    columns = ["scene", "rung", "quantity", *_NUMBERS, "verdict"]
+    rows = [_row(case) for case in found]
+    if reasons:
+        columns.append("because")
+        rows = [
+            [*row, prose("; ".join(case.sentences))] for row, case in zip(rows, found, strict=True)
+        ]
+    text = table(columns, rows)
     return f"### {heading}\n\n{text}" if heading else text
 
 
-def _row(case: Case, reasons: bool) -> list[str]:
-    because = [prose("; ".join(case.sentences))] if reasons else []
+def _row(case: Case) -> list[str]:
     run = " ".join(code(word) for word in (case.scene, case.mark) if word)
-    head = [run, case.rung, code(case.quantity)]
-    return [*head, *_figures(case.verdict), judged(case.status), *because]
-
-
-def _figures(verdict: Verdict | None) -> list[str]:
-    if verdict is None:
-        return [NOTHING] * len(_NUMBERS)
-    return [
-        prose(error(verdict)),
-        instant(verdict.at),
-        figure(verdict.bound),
-        ratio(verdict),
-    ]
+    verdict = case.verdict
+    numbers = [CELLS[name](verdict) if verdict else NOTHING for name in _NUMBERS]
+    return [run, case.rung, code(case.quantity), *numbers, judged(case.status)]

@@ -1,4 +1,4 @@
-"""The SVG of a picture in a third of matplotlib's bytes, and the same to the eye.
+"""SVG of a picture in a third of matplotlib's bytes, and the same to the eye.
 
 Coordinates have two digits after the point, a hundredth of a point of print. A style that many marks
 share is written once, as a class. Groups and names that nothing refers to are left out. scour writes a
@@ -46,7 +46,9 @@ def compact(svg: str) -> str:
     _unwrap_plain_groups(root)
     _share_styles(root)
     for element in root.iter():
-        _lay_out(element)
+        element.tail = "\n"
+        if len(element):
+            element.text = "\n"
     return _HEADING + ElementTree.tostring(root, encoding="unicode")
 
 
@@ -65,7 +67,7 @@ def _two_digits(number: re.Match[str]) -> str:
 
 
 def _path(text: str) -> str:
-    """The commands without blanks; the letter of a line that follows a line is left out."""
+    """Return the commands without blanks, and without the letter of a line that follows a line."""
     parts, before = [], ""
     for letter, numbers in _PATH.findall(text):
         continues = letter == "L" and before in ("M", "L")
@@ -106,10 +108,3 @@ def _share_styles(root: Element) -> None:
             del element.attrib["style"]
             element.set("class", name)
     sheet.text = (sheet.text or "") + "".join(f"\n.{n}{{{style}}}" for style, n in names.items())
-
-
-def _lay_out(element: Element) -> None:
-    """One line for each element."""
-    if len(element):
-        element.text = "\n"
-    element.tail = "\n"

@@ -1,4 +1,4 @@
-"""The errors of several files against their steps: a line for each quantity, and its roundoff floor."""
+"""Errors of several files against their steps: a line for each quantity, and its roundoff floor."""
 
 from __future__ import annotations
 
@@ -50,7 +50,11 @@ def picture(title: str, orders: Sequence[Order]) -> Picture:
 
 
 def _figure(orders: Sequence[Order]) -> Figure:
-    panels = [group for group in _panels(orders) if group[1]]
+    groups = {
+        "state": [order for order in orders if order.quantity in STATES],
+        "conserved quantities": [order for order in orders if order.quantity not in STATES],
+    }
+    panels = [(heading, group) for heading, group in groups.items() if group]
     entries = [
         ({"color": QUIET, "linewidth": 1.8}, "order read here"),
         ({"color": QUIET, **_DOTTED}, "roundoff floor"),
@@ -62,17 +66,11 @@ def _figure(orders: Sequence[Order]) -> Figure:
     return figure
 
 
-def _panels(orders: Sequence[Order]) -> list[tuple[str, list[Order]]]:
-    states = [order for order in orders if order.quantity in STATES]
-    others = [order for order in orders if order.quantity not in STATES]
-    return [("state", states), ("conserved quantities", others)]
-
-
 def _draw(axes: Axes, orders: Sequence[Order]) -> None:
     from taylor_verify.publish.pictures.labels import write_names
 
     errors = [_errors(order) for order in orders]
-    floors = [_floors(order) for order in orders]
+    floors = [[(p.step, p.attainable) for p in o.points if p.attainable] for o in orders]
     everything = [point for points in (*errors, *floors) for point in points]
     axes.set(xscale="log", yscale="log", xlabel="step h", ylabel="largest error")
     axes.set(xlim=widened([h for h, _ in everything], 0.08, 0.08))
@@ -81,7 +79,8 @@ def _draw(axes: Axes, orders: Sequence[Order]) -> None:
     for i, order in enumerate(orders):
         look = look_of_line(i).line
         axes.plot(*zip(*errors[i], strict=True), gid=order.quantity, zorder=3, **look)
-        read = [p for p in errors[i] if order.order is not None and _is_read(order, p[0])]
+        least, most = order.smallest or 0.0, order.largest or 0.0
+        read = [p for p in errors[i] if order.order is not None and least <= p[0] <= most]
         if read:
             heavy = {**look, "linewidth": 1.8 * look["linewidth"]}
             axes.plot(*zip(*read, strict=True), zorder=3, gid="order", **heavy)
@@ -98,13 +97,5 @@ def _name(order: Order) -> str:
     return order.quantity + unit + ("" if order.order is None else f", order {order.order:.1f}")
 
 
-def _is_read(order: Order, step: float) -> bool:
-    return (order.smallest or 0.0) <= step <= (order.largest or 0.0)
-
-
 def _errors(order: Order) -> Points:
     return [(p.step, p.error) for p in order.points if p.error]
-
-
-def _floors(order: Order) -> Points:
-    return [(p.step, p.attainable) for p in order.points if p.attainable]

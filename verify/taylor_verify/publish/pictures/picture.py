@@ -31,7 +31,7 @@ _RESOLUTION: Final = 200
 
 @dataclass(frozen=True)
 class Picture:
-    """``stem`` is the file's name without its ending; ``alt`` says what is seen to who cannot.
+    """A picture by the name of its file, its title, and a text for who cannot see it.
 
     ``figure`` draws it, inside `plotting` only. The alt text asks for no matplotlib.
     """
@@ -52,9 +52,7 @@ def save(
     written.
     """
     with plotting():
-        contents = {
-            name: content for picture in pictures for name, content in _files(picture, formats)
-        }
+        contents = {name: file for picture in pictures for name, file in _files(picture, formats)}
     return list(replace_files(Path(folder), contents))
 
 
@@ -63,14 +61,18 @@ def save_as(picture: Picture, file: Path) -> None:
 
     Raises ImportError without matplotlib, OSError for a file that cannot be written.
     """
+    replace_files(file.parent, {file.name: content(picture, file.suffix.lower().lstrip("."))})
+
+
+def content(picture: Picture, ending: str) -> bytes:
+    """Return the file of a picture in one format. Raises ImportError without matplotlib."""
     with plotting():
-        ((_, content),) = _files(picture, [file.suffix.lower().lstrip(".")])
-    replace_files(file.parent, {file.name: content})
+        return dict(_files(picture, [ending]))[f"{picture.stem}.{ending}"]
 
 
 @contextmanager
 def plotting() -> Iterator[None]:
-    """matplotlib with the settings of `style` and its own defaults, whatever the user's file says."""
+    """Have matplotlib draw with the settings of `style`, whatever the user's file says."""
     try:
         from matplotlib import style
     except ImportError as fault:
@@ -82,17 +84,17 @@ def plotting() -> Iterator[None]:
 
 
 def _files(picture: Picture, formats: Collection[str]) -> Iterator[tuple[str, bytes]]:
-    """Name and content for each format."""
+    """Yield name and content for each format."""
     figure = picture.figure()
     for ending in formats:
-        own = _METADATA[ending]
-        metadata = {"Title": picture.title, **own}
+        metadata = {"Title": picture.title, **_METADATA[ending]}
         if ending == "svg":
             metadata["Description"] = picture.alt
         file = BytesIO()
         resolution = _RESOLUTION if ending == "png" else "figure"
         figure.savefig(file, format=ending, metadata=metadata, dpi=resolution)
-        content = file.getvalue()
-        if ending == "svg":
-            content = compact(content.decode()).encode()
-        yield f"{picture.stem}.{ending}", content
+        drawn = file.getvalue()
+        yield (
+            f"{picture.stem}.{ending}",
+            compact(drawn.decode()).encode() if ending == "svg" else drawn,
+        )

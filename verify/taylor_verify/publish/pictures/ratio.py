@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import isfinite
+from math import inf
 
 
 @dataclass(frozen=True)
@@ -35,22 +35,24 @@ def check(ratios: Sequence[Ratio]) -> None:
     """
     if not ratios:
         raise ValueError("expected ratios, got none @ ratios")
-    faults = [fault for i, one in enumerate(ratios) for fault in _faults(one, f"ratios[{i}]")]
+    faults = [
+        f"expected {expected}, got {value} @ ratios[{i}].{name}"
+        for i, ratio in enumerate(ratios)
+        for name, expected, value in _faults(ratio)
+    ]
     if faults:
         raise ValueError("\n".join(faults))
 
 
-def _faults(one: Ratio, place: str) -> Iterator[str]:
-    for name, text in (("label", one.label), ("rung", one.rung)):
+def _faults(ratio: Ratio) -> Iterator[tuple[str, str, str]]:
+    """Yield the name of what is wrong, what was expected, and the value."""
+    for name, text in (("label", ratio.label), ("rung", ratio.rung)):
         if not text:
-            yield f"expected a text, got {text!r} @ {place}.{name}"
-    numbers = {"ratio": one.ratio, "low": one.low, "high": one.high}
-    given = {name: value for name, value in numbers.items() if value is not None}
-    bad = [name for name, value in given.items() if not (isfinite(value) and value > 0)]
-    for name in bad:
-        yield f"expected a positive number, got {given[name]} @ {place}.{name}"
-    if not bad and not one.least <= one.ratio <= one.greatest:
-        yield (
-            f"expected a ratio between {one.least:g} and {one.greatest:g}, got {one.ratio:g} "
-            f"@ {place}.ratio"
-        )
+            yield name, "a text", repr(text)
+    numbers = {"ratio": ratio.ratio, "low": ratio.low, "high": ratio.high}
+    bad = {n: v for n, v in numbers.items() if v is not None and not 0 < v < inf}
+    for name, value in bad.items():
+        yield name, "a positive number", str(value)
+    if not bad and not ratio.least <= ratio.ratio <= ratio.greatest:
+        between = f"a ratio between {ratio.least:g} and {ratio.greatest:g}"
+        yield "ratio", between, f"{ratio.ratio:g}"

@@ -1,4 +1,4 @@
-"""The look of every solver and rung, the same in every picture, and what all pictures share.
+"""Looks of every solver and rung, the same in every picture, and what all pictures share.
 
 A look is a colour, a marker and a line: each pair of colour and marker belongs to one family, the
 line tells the kind of solver, and neighbours of one kind differ in lightness, so that a family is
@@ -32,7 +32,7 @@ SMALL: Final = 7.5
 
 @dataclass(frozen=True)
 class Look:
-    """How one family is drawn; ``dashes`` are on and off lengths in line widths, none is solid.
+    """The look of one family; ``dashes`` are on and off lengths in line widths, none is solid.
 
     ``marker`` is matplotlib's name of it, or (corners, 1, angle) for a star.
     """
@@ -45,7 +45,7 @@ class Look:
 
     @property
     def line(self) -> dict[str, Any]:
-        """How matplotlib draws its line and marks."""
+        """The line and its marks as matplotlib draws them."""
         return {
             "color": self.colour,
             "marker": self.marker,
@@ -136,23 +136,22 @@ _LINE_MARKERS: Final = ("o", "s", "^", "D", "v", "p", "h")
 
 
 def kind_of(family: str) -> str:
-    """The name of the family's kind: ``taylor``, one of `KINDS`, or ``others`` for the unknown."""
+    """Return the name of the family's kind: ``taylor``, one of `KINDS`, or ``others`` for the unknown."""
     words = _words(family)
     if words[:1] == [TAYLOR]:
         return TAYLOR
-    named = _named(words)
-    if named is not None:
+    if named := _named(words):
         return named[0].name
     return next((kind.name for kind in KINDS if kind.name in words[:1]), OTHERS)
 
 
 def heading_of(kind: str) -> str:
-    """What stands above the solvers of a kind."""
+    """Return what stands above the solvers of a kind."""
     return next((one.heading for one in KINDS if one.name == kind), "taylor, by rung")
 
 
 def look_of(family: str, rung: str) -> Look:
-    """The look of a family on a rung; a rung changes that of taylor alone."""
+    """Return the look of a family on a rung; a rung changes that of taylor alone."""
     words = _words(family)
     if words in ([TAYLOR], [TAYLOR, rung]):
         return look_of_rung(rung)
@@ -164,7 +163,7 @@ def look_of(family: str, rung: str) -> Look:
 
 
 def look_of_rung(rung: str) -> Look:
-    """The look of taylor on a rung, which is also that of the rung where nothing else is compared."""
+    """Return the look of taylor on a rung, or of the rung where nothing else is compared."""
     if rung in FORMATS:
         format = FORMATS[rung]
         return Look(format.colour, format.marker, width=format.width, size=format.size)
@@ -173,25 +172,23 @@ def look_of_rung(rung: str) -> Look:
 
 
 def look_of_line(number: int) -> Look:
-    """The look of the n-th of some lines that are no solvers, such as scenes; neighbours differ."""
+    """Return the look of the n-th of some lines that are no solvers; neighbours differ."""
     colour = _UNKNOWN_COLOURS[number % len(_UNKNOWN_COLOURS)]
     return Look(colour, _LINE_MARKERS[number % len(_LINE_MARKERS)])
 
 
 def place(family: str, rung: str) -> tuple[int, int, int, str]:
     """Return a key to sort families by: taylor first by rung, then kinds and names as above."""
-    kind = kind_of(family)
+    kind, named = kind_of(family), _named(_words(family))
     if kind == TAYLOR:
         return (0, *place_of_rung(rung)[:2], family)
-    names = [name for one in KINDS for name, _, _ in one.looks]
-    named = _named(_words(family))
-    kinds = [one.name for one in KINDS]
-    number = names.index(named[1][0]) if named else len(names)
-    return (1 + kinds.index(kind), number, 0, family)
+    looks = [look for one in KINDS for look in one.looks]
+    number = looks.index(named[1]) if named else len(looks)
+    return (1 + [one.name for one in KINDS].index(kind), number, 0, family)
 
 
 def settings() -> dict[str, Any]:
-    """matplotlib's rcParams of every picture; all others are at its defaults."""
+    """Return matplotlib's rcParams of every picture; all others are at its defaults."""
     return {
         "font.family": ["DejaVu Sans", "sans-serif"],
         "font.size": FONT_SIZE,
@@ -225,7 +222,7 @@ def settings() -> dict[str, Any]:
 
 
 def _named(words: list[str]) -> tuple[Kind, tuple[str, str, str]] | None:
-    """The entry of `KINDS` whose words are all in the name, the most of them where several are."""
+    """Return the entry of `KINDS` whose words are all in the name, the longest of several."""
     if words[:1] == [PROCESS]:
         # What follows is somebody's command, and means none of ours.
         return None
@@ -236,7 +233,7 @@ def _named(words: list[str]) -> tuple[Kind, tuple[str, str, str]] | None:
 
 
 def _words(name: str) -> list[str]:
-    """The words of ``scipy:RK45?rtol=1e-3`` or ``scipy RK45``: scipy and rk45."""
+    """Return the words of ``scipy:RK45?rtol=1e-3`` or ``scipy RK45``: scipy and rk45."""
     return re.findall(r"[a-z0-9]+", name.lower().partition("?")[0])
 
 

@@ -52,14 +52,15 @@ def import_scene(path: Path, link: str | None = None) -> Imported:
     form = _format(root, path)
     reading = Reading(path.name, Faults())
     chosen = _chosen(form.candidates(root), link, form, path)
-    found = form.link(root, chosen, reading)
+    assert chosen.inertial is not None
+    found = form.link(root, chosen.name, chosen.inertial, reading)
     if found is None or reading.faults.lines:
         raise Refused(reading.faults.lines)
     return Imported(scene_text(found, form.name, path.name), found.name, form.name)
 
 
 def _format(root: Node, path: Path) -> Format:
-    """The format of the file by its root element."""
+    """Return the format of the file by its root element."""
     if root.name == urdf.FORMAT.root and any(node.name.startswith("xacro:") for node in root.all()):
         line = f"expected a URDF file, got one that xacro has yet to expand @ {path}"
         raise Refused([f"{line} (write `xacro {path.name} > robot.urdf`, and name that file)"])
@@ -72,37 +73,32 @@ def _format(root: Node, path: Path) -> Format:
 
 
 def _chosen(candidates: list[Candidate], link: str | None, form: Format, path: Path) -> Candidate:
-    """The one link that is meant; Refused, with the names of all, where there is none or several."""
+    """Return the one link that is meant.
+
+    Raises Refused, with the names of all, where there is none or several.
+    """
     with_inertia = [candidate for candidate in candidates if candidate.inertial is not None]
-    if link is not None:
-        return _named(candidates, with_inertia, link, form, path)
-    if len(with_inertia) == 1:
-        return with_inertia[0]
-    if not with_inertia:
+    if link is None:
+        meant, place = with_inertia, str(path)
+    else:
+        meant = [candidate for candidate in candidates if candidate.is_called(link)]
+        place = f"--link of {path}"
+    if len(meant) == 1 and meant[0].inertial is not None:
+        return meant[0]
+    expected, mend = f"a {form.link_word} with <inertial>", form.without_inertial
+    if link is None and meant:
+        expected, got, mend = f"--link with the name of one {form.link_word}", "none", _names(meant)
+    elif link is None:
         got = f"{len(candidates)} without" if candidates else "none"
-        line = f"expected a {form.link_word} with <inertial>, got {got} @ {path}"
-        raise Refused([f"{line} ({form.without_inertial})"])
-    expected = f"--link with the name of one {form.link_word}"
-    raise Refused([f"expected {expected}, got none @ {path} ({_names(with_inertia)})"])
-
-
-def _named(
-    candidates: list[Candidate],
-    with_inertia: list[Candidate],
-    link: str,
-    form: Format,
-    path: Path,
-) -> Candidate:
-    alike = [candidate for candidate in candidates if candidate.is_called(link)]
-    if len(alike) == 1 and alike[0].inertial is not None:
-        return alike[0]
-    place = f"@ --link of {path}"
-    if len(alike) == 1:
-        line = f"expected a {form.link_word} with <inertial>, got {cut(link)} without {place}"
-        raise Refused([f"{line} ({form.without_inertial})"])
-    got = f"{cut(link)}, which is the name of {len(alike)}" if alike else cut(link)
-    line = f"expected the name of one {form.link_word}, got {got} {place}"
-    raise Refused([f"{line} (known: {_names(alike or with_inertia)})"])
+    elif len(meant) == 1:
+        got = f"{cut(link)} without"
+    else:
+        expected, mend = (
+            f"the name of one {form.link_word}",
+            f"known: {_names(meant or with_inertia)}",
+        )
+        got = f"{cut(link)}, which is the name of {len(meant)}" if meant else cut(link)
+    raise Refused([f"expected {expected}, got {got} @ {place} ({mend})"])
 
 
 def _names(candidates: list[Candidate]) -> str:

@@ -23,13 +23,18 @@ DEEPEST: Final = Limit(200, "elements inside each other", "the longest chain of 
 
 @dataclass
 class Node:
-    """An element: its name with prefix, attributes, text, children, and the line where it begins."""
+    """An element: its name with prefix, attributes, the line where it begins, children, text in pieces."""
 
     name: str
     attributes: dict[str, str]
     line: int
-    text: str = ""
     children: list[Node] = field(default_factory=list)
+    # To add to one text takes the square of its length.
+    pieces: list[str] = field(default_factory=list)
+
+    @property
+    def text(self) -> str:
+        return "".join(self.pieces)
 
     def all(self) -> Iterator[Node]:
         """Yield this node and everything below it, in the order of the file."""
@@ -57,17 +62,15 @@ class _Builder:
 
     def __init__(self, path: Path) -> None:
         self._path = path
-        self._open: list[Node] = []
-        # Of each open node the pieces of its text: to add to one text takes the square of its length.
-        self._pieces: list[list[str]] = []
+        # The open nodes, below a node that holds the root.
+        self._open = [Node("", {}, 0)]
         self._elements = 0
-        self._root: Node | None = None
         self._parser = expat.ParserCreate()
         self._parser.buffer_text = True
         self._parser.StartDoctypeDeclHandler = self._refuse_doctype
         self._parser.StartElementHandler = self._begin
-        self._parser.EndElementHandler = self._end
-        self._parser.CharacterDataHandler = self._add_text
+        self._parser.EndElementHandler = lambda name: self._open.pop()
+        self._parser.CharacterDataHandler = lambda text: self._open[-1].pieces.append(text)
 
     def built(self, content: bytes) -> Node:
         try:
@@ -75,8 +78,8 @@ class _Builder:
         except (expat.ExpatError, LookupError, ValueError) as error:
             line = f"expected an XML document, got a fault in it: {error} @ {self._path}"
             raise Refused([line]) from None
-        assert self._root is not None, "expat refuses a document without an element"
-        return self._root
+        # expat refuses a document without an element.
+        return self._open[0].children[0]
 
     def _refuse_doctype(self, name: str, *rest: object) -> None:
         line = self._parser.CurrentLineNumber
@@ -87,19 +90,9 @@ class _Builder:
 
     def _begin(self, name: str, attributes: dict[str, str]) -> None:
         self._elements += 1
-        place = f"{self._path}:{self._parser.CurrentLineNumber}"
-        DEEPEST.check(len(self._open) + 1, place)
-        MOST_ELEMENTS.check(self._elements, place)
-        node = Node(name, attributes, self._parser.CurrentLineNumber)
-        if self._open:
-            self._open[-1].children.append(node)
-        else:
-            self._root = node
+        line = self._parser.CurrentLineNumber
+        DEEPEST.check(len(self._open), f"{self._path}:{line}")
+        MOST_ELEMENTS.check(self._elements, f"{self._path}:{line}")
+        node = Node(name, attributes, line)
+        self._open[-1].children.append(node)
         self._open.append(node)
-        self._pieces.append([])
-
-    def _end(self, name: str) -> None:
-        self._open.pop().text = "".join(self._pieces.pop())
-
-    def _add_text(self, text: str) -> None:
-        self._pieces[-1].append(text)

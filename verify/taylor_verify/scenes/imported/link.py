@@ -17,7 +17,6 @@ class Candidate(NamedTuple):
     """A link of a file by its name, with its inertial element if it has one."""
 
     name: str
-    node: Node
     inertial: Node | None
 
     def is_called(self, name: str) -> bool:
@@ -53,12 +52,9 @@ class Link:
     @property
     def mass_matrix(self) -> Matrix:
         """The inertia of link and fluid together."""
-        added = self.added_mass
-        return (
-            self.rigid_matrix
-            if added is None
-            else tuple(map(tensors.plus, self.rigid_matrix, added))
-        )
+        if self.added_mass is None:
+            return self.rigid_matrix
+        return tuple(map(tensors.plus, self.rigid_matrix, self.added_mass))
 
 
 def cross_matrix(c: Vector) -> Matrix:
@@ -70,7 +66,8 @@ def cross_matrix(c: Vector) -> Matrix:
 class Format(NamedTuple):
     """A format of files: its name, its root element, its word for a link, and how to read it.
 
-    ``without_inertial`` says what to do about a link without an inertial element.
+    ``link`` is given the root, the name and the inertial element; ``without_inertial`` says what to do
+    about a link without such an element.
     """
 
     name: str
@@ -78,4 +75,4 @@ class Format(NamedTuple):
     link_word: str
     without_inertial: str
     candidates: Callable[[Node], list[Candidate]]
-    link: Callable[[Node, Candidate, Reading], Link | None]
+    link: Callable[[Node, str, Node, Reading], Link | None]

@@ -9,22 +9,26 @@ reference.)
 
 from __future__ import annotations
 
+from collections import ChainMap
 from collections.abc import Iterator
-from fractions import Fraction
 from typing import Final
 
 from taylor_verify.scenes.imported import rotation
-from taylor_verify.scenes.imported.angles import remarks_on
 from taylor_verify.scenes.imported.document import Node
 from taylor_verify.scenes.imported.link import Candidate, Format, Link
 from taylor_verify.scenes.imported.reading import Reading
 from taylor_verify.scenes.motion import IDENTITY, Quaternion
 from taylor_verify.scenes.reading.faults import shown
-from taylor_verify.scenes.tensors import Matrix, Vector
+from taylor_verify.scenes.tensors import ZERO_VECTOR, Matrix, Vector
 
 # Elements that hold bodies without being one.
 _AROUND: Final = ("worldbody", "frame", "replicate")
 _TURNS: Final = ("quat", "euler", "axisangle", "xyaxes", "zaxis")
+# How many numbers each of those has that are read.
+_LENGTHS: Final = {"quat": 4, "euler": 3, "axisangle": 4}
+_BY_QUATERNION: Final = (
+    "The tensor was turned by quat, exactly: MuJoCo divides it by its length, and so does this."
+)
 _AXES: Final = dict(zip("xyz", rotation.AXES, strict=True))
 _ORDER: Final = ("M(1,1)", "M(2,2)", "M(3,3)", "M(1,2)", "M(1,3)", "M(2,3)")
 
@@ -35,7 +39,7 @@ def candidates(root: Node) -> list[Candidate]:
     """Return every body, in the order of the file; one without a name is ``#`` and its number."""
     bodies = [body for part in root.named("worldbody") for body in _below(part)]
     return [
-        Candidate(body.attributes.get("name", f"#{number}"), body, body.child("inertial"))
+        Candidate(body.attributes.get("name", f"#{number}"), body.child("inertial"))
         for number, body in enumerate(bodies, 1)
     ]
 
@@ -47,10 +51,8 @@ def _below(part: Node) -> Iterator[Node]:
         yield from _below(node)
 
 
-def link(root: Node, chosen: Candidate, reading: Reading) -> Link | None:
+def link(root: Node, name: str, inertial: Node, reading: Reading) -> Link | None:
     """Return the inertia of one body; None beside a fault."""
-    inertial = chosen.inertial
-    assert inertial is not None
     settings = _settings(root)
     is_taken = _takes_inertial(root, settings, reading)
     mass = reading.positive(inertial, inertial.attributes.get("mass"), "mass")
@@ -59,19 +61,16 @@ def link(root: Node, chosen: Candidate, reading: Reading) -> Link | None:
     turn = _turn(inertial, settings, reading)
     if not is_taken or mass is None or centre is None or tensor is None or turn is None:
         return None
-    return Link(chosen.name, mass, centre, rotation.turned(tensor, turn[0]), remarks=turn[1])
+    return Link(name, mass, centre, rotation.turned(tensor, turn[0]), remarks=turn[1])
 
 
 def _settings(root: Node) -> dict[str, str]:
-    """The attributes of <compiler>; of several the last one counts."""
-    found: dict[str, str] = {}
-    for node in root.named("compiler"):
-        found |= node.attributes
-    return found
+    """Return the attributes of <compiler>; of several the last one counts."""
+    return dict(ChainMap(*(node.attributes for node in reversed(root.named("compiler")))))
 
 
 def _takes_inertial(root: Node, settings: dict[str, str], reading: Reading) -> bool:
-    """Whether MuJoCo takes the element as it is written."""
+    """Return True if MuJoCo takes the element as it is written."""
     ignored = {
         "inertiafromgeom": settings.get("inertiafromgeom", "auto") == "true",
         "settotalmass": not settings.get("settotalmass", "-1").strip().startswith("-"),
@@ -91,13 +90,11 @@ def _tensor(inertial: Node, reading: Reading) -> Matrix | None:
         got = "none of them" if full is None else "both"
         reading.fault("one of diaginertia and fullinertia", got, inertial)
         return None
-    if diagonal is not None:
-        moments = reading.vector(inertial, diagonal, "diaginertia")
-        if moments is None:
-            return None
-        zero = Fraction(0)
-        return reading.tensor(inertial, [moments[0], zero, zero, moments[1], zero, moments[2]])
-    six = reading.vector(inertial, full, f"fullinertia ({' '.join(_ORDER)})", 6)
+    if full is None:
+        three = reading.vector(inertial, diagonal, "diaginertia")
+        six = None if three is None else (*three, *ZERO_VECTOR)
+    else:
+        six = reading.vector(inertial, full, f"fullinertia ({' '.join(_ORDER)})", 6)
     if six is None:
         return None
     xx, yy, zz, xy, xz, yz = six
@@ -105,7 +102,7 @@ def _tensor(inertial: Node, reading: Reading) -> Matrix | None:
 
 
 def _turn(inertial: Node, settings: dict[str, str], reading: Reading) -> _Turn | None:
-    """The turn of the inertial frame, and remarks on it."""
+    """Return the turn of the inertial frame, and remarks on it."""
     written = [key for key in _TURNS if key in inertial.attributes]
     if not written:
         return IDENTITY, ()
@@ -116,33 +113,30 @@ def _turn(inertial: Node, settings: dict[str, str], reading: Reading) -> _Turn |
     if len(written) > 1:
         reading.fault("one orientation", got, inertial)
         return None
-    key, text = written[0], inertial.attributes[written[0]]
+    (key,) = written
+    if key not in _LENGTHS:
+        mend = "write the same orientation as quat"
+        reading.fault("quat, euler or axisangle", key, inertial, mend)
+        return None
+    numbers = reading.vector(inertial, inertial.attributes[key], key, _LENGTHS[key])
+    if numbers is None:
+        return None
     degrees = settings.get("angle", "degree") == "degree"
-    if key == "quat":
-        return _quaternion(inertial, text, reading)
     if key == "euler":
-        three = reading.vector(inertial, text, key)
-        sequence = settings.get("eulerseq", "xyz")
-        return _euler(inertial, three, sequence, degrees, reading) if three else None
-    if key == "axisangle":
-        four = reading.vector(inertial, text, key, 4)
-        return _axis_and_angle(inertial, four, degrees, reading) if four else None
-    reading.fault("quat, euler or axisangle", key, inertial, "write the same orientation as quat")
-    return None
-
-
-def _quaternion(inertial: Node, text: str, reading: Reading) -> _Turn | None:
-    four = reading.vector(inertial, text, "quat", 4)
-    if four is None:
+        return _euler(inertial, numbers, settings.get("eulerseq", "xyz"), degrees, reading)
+    if key == "quat":
+        if not any(numbers):
+            text = inertial.attributes[key]
+            reading.fault("a quaternion that is not zero", shown(text), inertial)
+            return None
+        w, x, y, z = numbers
+        return (w, x, y, z), (_BY_QUATERNION,)
+    axis, angle = numbers[:3], numbers[3]
+    if not any(axis):
+        reading.fault("an axis that is not zero", "0 0 0", inertial)
         return None
-    if not any(four):
-        reading.fault("a quaternion that is not zero", shown(text), inertial)
-        return None
-    w, x, y, z = four
-    remark = (
-        "The tensor was turned by quat, exactly: MuJoCo divides it by its length, and so does this."
-    )
-    return (w, x, y, z), (remark,)
+    turn = rotation.Turn(axis, angle, degrees)
+    return rotation.combined([turn]), rotation.remarks_on("axisangle, by", (angle,), degrees)
 
 
 def _euler(
@@ -155,16 +149,8 @@ def _euler(
     for letter, angle in zip(sequence, angles, strict=True):
         turn = rotation.Turn(_AXES[letter.lower()], angle, degrees)
         turns.insert(len(turns) if letter.islower() else 0, turn)
-    return rotation.combined(turns), remarks_on(f"euler (eulerseq {sequence})", angles, degrees)
-
-
-def _axis_and_angle(inertial: Node, four: Vector, degrees: bool, reading: Reading) -> _Turn | None:
-    axis, angle = four[:3], four[3]
-    if not any(axis):
-        reading.fault("an axis that is not zero", "0 0 0", inertial)
-        return None
-    turn = rotation.Turn(axis, angle, degrees)
-    return rotation.combined([turn]), remarks_on("axisangle, by", (angle,), degrees)
+    name = f"euler (eulerseq {sequence})"
+    return rotation.combined(turns), rotation.remarks_on(name, angles, degrees)
 
 
 FORMAT: Final = Format(

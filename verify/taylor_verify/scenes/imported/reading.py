@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Final
@@ -10,6 +11,7 @@ from typing import Final
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.imported.document import Node
 from taylor_verify.scenes.reading.faults import Faults, shown
+from taylor_verify.scenes.reading.table import complete
 from taylor_verify.scenes.tensors import Matrix, Vector
 
 _DECIMAL: Final = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
@@ -46,9 +48,7 @@ class Reading:
             numbers = "a number" if length == 1 else f"{length} numbers"
             self.fault(f"{numbers} for {what}", got, node, _mend(text))
             return None
-        exact = [self._number(node, word, what) for word in words]
-        known = tuple(number for number in exact if number is not None)
-        return known if len(known) == length else None
+        return complete([self._number(node, word, what) for word in words])
 
     def number(
         self, node: Node, text: str | None, what: str, default: Fraction | None = None
@@ -65,10 +65,10 @@ class Reading:
             return None
         return number
 
-    def tensor(self, node: Node, six: list[Fraction | None]) -> Matrix | None:
+    def tensor(self, node: Node, six: Sequence[Fraction | None]) -> Matrix | None:
         """Return the positive definite tensor of ixx, ixy, ixz, iyy, iyz, izz; None beside a fault."""
-        known = [entry for entry in six if entry is not None]
-        if len(known) < len(six):
+        known = complete(six)
+        if known is None:
             return None
         xx, xy, xz, yy, yz, zz = known
         tensor = ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
@@ -79,14 +79,12 @@ class Reading:
         return tensor
 
     def _number(self, node: Node, word: str, what: str) -> Fraction | None:
-        """The decimal, exactly."""
-        number = None
+        """Return the decimal, exactly."""
         if len(word) <= _LONGEST and _DECIMAL.fullmatch(word):
             number = Fraction(word)
-        if number is not None and (number == 0 or _SMALLEST <= abs(number) <= _LARGEST):
-            return number
-        expected = f"a decimal of usual size for {what}"
-        self.fault(expected, shown(word), node, _mend(word))
+            if number == 0 or _SMALLEST <= abs(number) <= _LARGEST:
+                return number
+        self.fault(f"a decimal of usual size for {what}", shown(word), node, _mend(word))
         return None
 
 

@@ -11,15 +11,18 @@ from __future__ import annotations
 from collections.abc import Iterable
 from fractions import Fraction
 from functools import reduce
+from math import pi, remainder
 from typing import Any, Final, NamedTuple
 
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.motion import Quaternion
-from taylor_verify.scenes.precision import exact_value
+from taylor_verify.scenes.precision import exact_value, float_text
 from taylor_verify.scenes.tensors import Matrix, Vector
 
 DECIMALS: Final = 20
 _BITS: Final = 400
+# An angle of four digits, 1.571, is as near to a quarter turn as that.
+_NEAR: Final = 3e-4
 AXES: Final = tensors.diagonal((Fraction(1),) * 3)
 
 
@@ -73,6 +76,26 @@ def turned(tensor: Matrix, q: Quaternion) -> Matrix:
         return tensor
     rotation = matrix(q)
     return tensors.product(tensors.product(rotation, tensor), tensors.transpose(rotation))
+
+
+def remarks_on(name: str, angles: Vector, degrees: bool = False) -> tuple[str, ...]:
+    """Return what a reader of the scene must know of these angles; nothing where all are zero."""
+    if not any(angles):
+        return ()
+    unit = "degrees" if degrees else "radians"
+    text = ", ".join(map(float_text, angles))
+    remarks = [
+        f"The tensor was turned by {name} = ({text}) {unit}: their quaternion is formed with 400 bits, "
+        f"its largest component made 1, and rounded to {DECIMALS} decimals (quarter turns in degrees are "
+        "exact). The turn by it is exact, so that the principal moments are those of the file."
+    ]
+    if not degrees:
+        remarks += [
+            f"The angle {float_text(angle)} is taken as written, and is near a quarter turn but none."
+            for angle in angles
+            if angle and abs(remainder(float(angle), pi / 2)) < _NEAR
+        ]
+    return tuple(remarks)
 
 
 _Parts = tuple[Any, Any, Any, Any]

@@ -14,7 +14,6 @@ from typing import Final
 
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.imported import rotation
-from taylor_verify.scenes.imported.angles import remarks_on
 from taylor_verify.scenes.imported.document import Node
 from taylor_verify.scenes.imported.link import Candidate, Format, Link
 from taylor_verify.scenes.imported.reading import Reading
@@ -43,22 +42,18 @@ def _below(part: Node, scope: str) -> Iterator[Candidate]:
         if node.name == "model":
             yield from _below(node, f"{name}::")
         else:
-            yield Candidate(name, node, node.child("inertial"))
+            yield Candidate(name, node.child("inertial"))
 
 
-def link(root: Node, chosen: Candidate, reading: Reading) -> Link | None:
+def link(root: Node, name: str, inertial: Node, reading: Reading) -> Link | None:
     """Return the inertia of one link; None beside a fault."""
     del root
-    inertial = chosen.inertial
-    assert inertial is not None
-    if inertial.attributes.get("auto", "").strip().lower() in ("true", "1"):
-        expected = "an inertia that the file writes"
+    if _is_true(inertial.attributes.get("auto")):
         mend = "write <mass> and <inertia>: geometry is not read"
-        reading.fault(expected, 'auto="true"', inertial, mend)
+        reading.fault("an inertia that the file writes", 'auto="true"', inertial, mend)
         return None
-    mass_node = inertial.child("mass") or inertial
-    text = mass_node.text if mass_node is not inertial else None
-    mass = reading.positive(mass_node, text, "mass")
+    mass_node = inertial.child("mass")
+    mass = reading.positive(mass_node or inertial, mass_node.text if mass_node else None, "mass")
     tensor = _tensor(inertial, reading)
     placed = _pose(inertial, reading)
     added_node = inertial.child("fluid_added_mass")
@@ -66,14 +61,17 @@ def link(root: Node, chosen: Candidate, reading: Reading) -> Link | None:
     if mass is None or tensor is None or placed is None or (added_node and added is None):
         return None
     centre, turn, remarks = placed
-    found = Link(chosen.name, mass, centre, rotation.turned(tensor, turn), added, remarks)
+    found = Link(name, mass, centre, rotation.turned(tensor, turn), added, remarks)
     if added_node and not tensors.is_positive_definite(found.mass_matrix):
         expected = "a positive definite mass matrix of link and added mass"
-        reading.fault(
-            expected, "one that is not", added_node, "an added mass is minus a naval derivative"
-        )
+        mend = "an added mass is minus a naval derivative"
+        reading.fault(expected, "one that is not", added_node, mend)
         return None
     return found
+
+
+def _is_true(text: str | None) -> bool:
+    return (text or "").strip().lower() in ("true", "1")
 
 
 def _tensor(inertial: Node, reading: Reading) -> Matrix | None:
@@ -90,7 +88,7 @@ def _tensor(inertial: Node, reading: Reading) -> Matrix | None:
 
 
 def _pose(inertial: Node, reading: Reading) -> tuple[Vector, Quaternion, tuple[str, ...]] | None:
-    """The centre of mass, the turn of the axes of the tensor, and remarks on it."""
+    """Return the centre of mass, the turn of the axes of the tensor, and remarks on it."""
     node = inertial.child("pose")
     if node is None or not node.text.strip():
         return ZERO_VECTOR, IDENTITY, ()
@@ -102,44 +100,40 @@ def _pose(inertial: Node, reading: Reading) -> tuple[Vector, Quaternion, tuple[s
     form = node.attributes.get("rotation_format", "euler_rpy").strip()
     if form == "quat_xyzw":
         seven = reading.vector(node, node.text, "x y z and the quaternion x y z w", 7)
-        return None if seven is None else _by_quaternion(node, seven, reading)
+        if seven is None:
+            return None
+        if not any(seven[3:]):
+            reading.fault("a quaternion that is not zero", "0 0 0 0", node)
+            return None
+        x, y, z, w = seven[3:]
+        return seven[:3], (w, x, y, z), ()
     if form != "euler_rpy":
         reading.fault("rotation_format euler_rpy or quat_xyzw", shown(form), node)
         return None
-    degrees = node.attributes.get("degrees", "").strip().lower() in ("true", "1")
+    degrees = _is_true(node.attributes.get("degrees"))
     six = reading.vector(node, node.text, "x y z roll pitch yaw", 6)
     if six is None:
         return None
     turn = rotation.roll_pitch_yaw(six[3:], degrees)
-    return six[:3], turn, remarks_on("roll, pitch, yaw", six[3:], degrees)
-
-
-def _by_quaternion(
-    node: Node, seven: Vector, reading: Reading
-) -> tuple[Vector, Quaternion, tuple[str, ...]] | None:
-    x, y, z, w = seven[3:]
-    if not any(seven[3:]):
-        reading.fault("a quaternion that is not zero", "0 0 0 0", node)
-        return None
-    return seven[:3], (w, x, y, z), ()
+    return six[:3], turn, rotation.remarks_on("roll, pitch, yaw", six[3:], degrees)
 
 
 def _added_mass(node: Node, reading: Reading) -> Matrix | None:
-    """The 6x6 matrix; what is not written of its 21 elements is zero."""
+    """Return the 6x6 matrix; what is not written of its 21 elements is zero."""
     rows = [[_ZERO] * 6 for _ in range(6)]
     is_sound = True
     for child in node.children:
-        if child.name not in _ADDED:
+        number = None
+        if child.name in _ADDED:
+            number = reading.number(child, child.text, child.name)
+        else:
             got = f"<{cut(child.name)}>"
             reading.fault("an element xx, xy, ... rr", got, child, near(cut(child.name), _ADDED))
-            is_sound = False
-            continue
-        number = reading.number(child, child.text, child.name)
         if number is None:
             is_sound = False
-            continue
-        i, k = _ADDED[child.name]
-        rows[i][k] = rows[k][i] = number
+        else:
+            i, k = _ADDED[child.name]
+            rows[i][k] = rows[k][i] = number
     return tuple(map(tuple, rows)) if is_sound else None
 
 

@@ -10,7 +10,6 @@ from fractions import Fraction
 from typing import Final
 
 from taylor_verify.scenes.imported import rotation
-from taylor_verify.scenes.imported.angles import remarks_on
 from taylor_verify.scenes.imported.document import Node
 from taylor_verify.scenes.imported.link import Candidate, Format, Link
 from taylor_verify.scenes.imported.reading import Reading
@@ -22,17 +21,15 @@ COMPONENTS: Final = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 def candidates(root: Node) -> list[Candidate]:
     """Return every link of a robot."""
     return [
-        Candidate(node.attributes.get("name", ""), node, node.child("inertial"))
+        Candidate(node.attributes.get("name", ""), node.child("inertial"))
         for node in root.named("link")
     ]
 
 
-def link(root: Node, chosen: Candidate, reading: Reading) -> Link | None:
+def link(root: Node, name: str, inertial: Node, reading: Reading) -> Link | None:
     """Return the inertia of one link; None beside a fault."""
     del root
-    inertial = chosen.inertial
-    assert inertial is not None
-    mass_node, tensor_node = (_part(inertial, name, reading) for name in ("mass", "inertia"))
+    mass_node, tensor_node = (_part(inertial, part, reading) for part in ("mass", "inertia"))
     origin = inertial.child("origin") or Node("origin", {}, inertial.line)
     mass = mass_node and reading.positive(mass_node, mass_node.attributes.get("value"), "mass")
     tensor = tensor_node and reading.tensor(
@@ -44,7 +41,7 @@ def link(root: Node, chosen: Candidate, reading: Reading) -> Link | None:
     if not isinstance(mass, Fraction) or not isinstance(tensor, tuple) or not centre or not angles:
         return None
     inertia = rotation.turned(tensor, rotation.roll_pitch_yaw(angles))
-    return Link(chosen.name, mass, centre, inertia, remarks=remarks_on("rpy", angles))
+    return Link(name, mass, centre, inertia, remarks=rotation.remarks_on("rpy", angles))
 
 
 def _part(inertial: Node, name: str, reading: Reading) -> Node | None:

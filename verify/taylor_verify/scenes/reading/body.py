@@ -8,60 +8,69 @@ Legend: ``inertia`` I, ``moment`` M; ``clebsch`` has p, p', q, q', r, r' (``p_pr
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from typing import Final
 
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Body, Clebsch, Ellipsoid, ImmersedBody, RigidBody
-from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.precision import float_text
 from taylor_verify.scenes.reading.faults import shown
-from taylor_verify.scenes.reading.table import Table
-from taylor_verify.scenes.tensors import ZERO_VECTOR, Matrix, Vector
+from taylor_verify.scenes.reading.table import Table, complete
+from taylor_verify.scenes.tensors import ZERO_VECTOR, Matrix
 
 _CLEBSCH_KEYS = ("p", "p_prime", "q", "q_prime", "r", "r_prime")
 
 
-def rigid_body(table: Table) -> RigidBody | Gyrostat | None:
-    """The body of model euler, a gyrostat where it has a rotor; None beside a fault."""
+def rigid_body(table: Table) -> RigidBody | None:
+    """Return the body of model euler; None beside a fault."""
     inertia = _inertia(table)
     moment = table.vector("moment", default=ZERO_VECTOR)
-    rotor = table.vector("rotor", default=ZERO_VECTOR)
-    if inertia is None or moment is None or rotor is None:
+    if inertia is None or moment is None:
         return None
-    return Gyrostat(inertia, rotor, moment) if any(rotor) else RigidBody(inertia, moment)
+    return RigidBody(inertia, moment)
 
 
 def _inertia(table: Table) -> Matrix | None:
-    """I from three principal moments or from a symmetric tensor; positive definite."""
-    if table.has_rows("inertia"):
-        tensor = table.symmetric("inertia")
-        cells = ("[0][0]", "[1][1]", "[2][2]")
+    """Return I from three principal moments or from a symmetric tensor; positive definite."""
+    if any(isinstance(row, list) for row in table.peek("inertia")):
+        tensor, cell = table.symmetric("inertia"), "inertia[{0}][{0}]"
     else:
-        moments = table.vector("inertia")
+        moments, cell = table.vector("inertia"), "inertia[{0}]"
         tensor = None if moments is None else tensors.diagonal(moments)
-        cells = ("[0]", "[1]", "[2]")
-    if tensor is None or not _has_positive_moments(table, tensor, cells):
+    if tensor is None:
         return None
-    return tensor if _is_positive(table, "a positive definite tensor", tensor, "inertia") else None
+    principal = {cell.format(i): tensor[i][i] for i in range(3)}
+    if _are(table, "a positive moment of inertia", principal) and _is_positive(
+        table, "a positive definite tensor", tensor, "inertia"
+    ):
+        return tensor
+    return None
 
 
-def _has_positive_moments(table: Table, tensor: Matrix, cells: tuple[str, ...]) -> bool:
-    wrong = [(cell, tensor[i][i]) for i, cell in enumerate(cells) if tensor[i][i] <= 0]
-    for cell, moment in wrong:
-        table.fault("a positive moment of inertia", shown(moment), f"inertia{cell}")
+def _are(
+    table: Table,
+    expected: str,
+    numbers: Mapping[str, Fraction | None],
+    is_right: Callable[[Fraction], bool] = lambda number: number > 0,
+) -> bool:
+    """Return True if all numbers are right, or missing; each other one is a fault at its place."""
+    wrong = {key: n for key, n in numbers.items() if n is not None and not is_right(n)}
+    for key, number in wrong.items():
+        table.fault(expected, shown(number), key)
     return not wrong
 
 
 def _is_positive(
     table: Table, expected: str, matrix: Matrix, key: str = "", mend: str = ""
 ) -> bool:
-    """Sylvester: a symmetric matrix is positive definite if all its leading minors are positive."""
-    for size in range(1, len(matrix) + 1):
-        leading = tuple(row[:size] for row in matrix[:size])
-        if not tensors.is_positive_definite(leading):
+    """Return True if a symmetric matrix is positive definite.
+
+    Sylvester: all its leading minors are positive.
+    """
+    for size, minor in enumerate(tensors.leading_minors(matrix), 1):
+        if minor <= 0:
             got = f"one whose leading {size}x{size} minor is not positive"
             table.fault(expected, got, key, mend)
             return False
@@ -69,7 +78,7 @@ def _is_positive(
 
 
 def immersed_body(table: Table) -> ImmersedBody | None:
-    """The body of model kirchhoff; None beside a fault."""
+    """Return the body of model kirchhoff; None beside a fault."""
     force = table.vector("force", default=ZERO_VECTOR)
     couple = table.vector("couple", default=ZERO_VECTOR)
     form = _form(table)
@@ -80,7 +89,7 @@ def immersed_body(table: Table) -> ImmersedBody | None:
 
 
 def _form(table: Table) -> Callable[[Table], ImmersedBody | None] | None:
-    """The reader of the one form of T that the body writes."""
+    """Return the reader of the one form of T that the body writes."""
     written = [form for form in FORMS if table.has(form)]
     if len(written) == 1:
         return FORMS[written[0]]
@@ -92,18 +101,17 @@ def _form(table: Table) -> Callable[[Table], ImmersedBody | None] | None:
 
 
 def _clebsch(table: Table) -> ImmersedBody | None:
-    """Hydromechanics 49 (1)."""
+    """Return the body of Clebsch's T, Hydromechanics 49 (1)."""
     form = table.table("clebsch")
     if form is None:
         return None
-    six = [form.number(key) for key in _CLEBSCH_KEYS]
+    six = complete([form.number(key) for key in _CLEBSCH_KEYS])
     form.close()
-    known = [number for number in six if number is not None]
-    return _positive(form, Clebsch(*known).body()) if len(known) == len(six) else None
+    return None if six is None else _positive(form, Clebsch(*six).body())
 
 
 def _energy(table: Table) -> ImmersedBody | None:
-    """The 21 coefficients, as A, B and C."""
+    """Return the body of 21 coefficients, as A, B and C."""
     form = table.table("energy")
     if form is None:
         return None
@@ -118,7 +126,7 @@ def _positive(form: Table, body: ImmersedBody) -> ImmersedBody | None:
 
 
 def _mass_matrix(table: Table) -> ImmersedBody | None:
-    """The inertia of body and fluid, inverted exactly."""
+    """Return the body of the inertia of body and fluid, inverted exactly."""
     matrix = table.symmetric("mass_matrix", size=6)
     expected = "a positive definite mass matrix"
     mend = "an added mass is minus a naval derivative: X_udot = -0.93 adds 0.93"
@@ -135,52 +143,34 @@ def _mass_matrix(table: Table) -> ImmersedBody | None:
 
 
 def _ellipsoid(table: Table) -> ImmersedBody | None:
-    """A homogeneous ellipsoid, its inertia and added inertia by Lamb's integrals."""
+    """Return the body of a homogeneous ellipsoid, its inertia and added inertia by Lamb's integrals."""
     form = table.table("ellipsoid")
     if form is None:
         return None
     semi_axes = form.vector("semi_axes")
     density, fluid_density = form.number("density"), form.number("fluid_density")
     form.close()
+    axes = {f"semi_axes[{i}]": axis for i, axis in enumerate(semi_axes or ())}
+    densities = {"density": density, "fluid_density": fluid_density}
     are_sound = [
-        _has_positive_axes(form, semi_axes),
-        _is_density(form, density, "density"),
-        _is_density(form, fluid_density, "fluid_density"),
+        _are(form, "a positive semi-axis", axes),
+        _are(form, "a density that is not negative", densities, lambda number: number >= 0),
     ]
     if semi_axes is None or density is None or fluid_density is None or not all(are_sound):
         return None
-    ellipsoid = Ellipsoid(semi_axes, density, fluid_density)
-    return ellipsoid.body() if _resists(form, ellipsoid) else None
-
-
-def _has_positive_axes(form: Table, semi_axes: Vector | None) -> bool:
-    wrong = [(i, axis) for i, axis in enumerate(semi_axes or ()) if axis <= 0]
-    for i, axis in wrong:
-        form.fault("a positive semi-axis", shown(axis), f"semi_axes[{i}]")
-    return not wrong
-
-
-def _is_density(form: Table, density: Fraction | None, key: str) -> bool:
-    if density is not None and density < 0:
-        form.fault("a density that is not negative", shown(density), key)
-        return False
-    return True
-
-
-def _resists(form: Table, ellipsoid: Ellipsoid) -> bool:
-    """Whether every motion takes an impulse: of a body without mass the fluid alone resists."""
-    if ellipsoid.density == 0 and ellipsoid.fluid_density == 0:
+    # Every motion takes an impulse: of a body without mass the fluid alone resists.
+    if density == fluid_density == 0:
         form.fault("a body or a fluid with mass", "two densities of 0", "density")
-        return False
-    if ellipsoid.density == 0 and len(set(ellipsoid.semi_axes)) < 3:
+        return None
+    if density == 0 and len(set(semi_axes)) < 3:
         expected = "a positive density where two semi-axes are equal"
         form.fault(expected, "0", "density", "a shell has little mass, but some")
-        return False
-    return True
+        return None
+    return Ellipsoid(semi_axes, density, fluid_density).body()
 
 
 def warnings(body: Body) -> tuple[str, ...]:
-    """What no real solid does, although the equations do not mind."""
+    """Return a sentence on what no real solid does, although the equations do not mind."""
     tensor = body.parts().get("inertia")
     if tensor is None or obeys_triangle_inequality(tensor):
         return ()
@@ -191,7 +181,7 @@ def warnings(body: Body) -> tuple[str, ...]:
 
 
 def obeys_triangle_inequality(inertia: Matrix) -> bool:
-    """Whether each principal moment is at most the sum of the other two, for I positive definite.
+    """Return True if each principal moment is at most the sum of the other two, for I positive definite.
 
     The eigenvalues of S = (tr I / 2) 1 - I are (J2 + J3 - J1)/2 and so on. Any two of them add to a
     principal moment, so at most one is negative, and exactly then is det S negative.

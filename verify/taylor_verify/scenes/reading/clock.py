@@ -15,15 +15,13 @@ MOST_SAMPLES: Final = 1_000_000
 
 
 def clock(table: Table) -> Clock | None:
-    """The start and either the instants listed in ``at`` or equally spaced ones up to ``end``."""
+    """Return the start and either the instants listed in ``at`` or equally spaced ones up to ``end``."""
     start = table.number("start", default=Fraction(0))
-    if table.has("at"):
-        return _listed(table, start)
-    return _equally_spaced(table, start)
+    return _listed(table, start) if table.has("at") else _equally_spaced(table, start)
 
 
 def _listed(table: Table, start: Fraction | None) -> Clock | None:
-    """The instants of ``at``, in which neither ``end`` nor ``samples`` has a place."""
+    """Return the instants of ``at``, beside which neither ``end`` nor ``samples`` has a place."""
     instants = table.numbers("at", most=MOST_SAMPLES)
     for key in ("end", "samples"):
         if table.has(key):
@@ -35,7 +33,7 @@ def _listed(table: Table, start: Fraction | None) -> Clock | None:
 
 
 def _moves_away(table: Table, instants: Vector, start: Fraction) -> bool:
-    """Whether the instants leave the start, on one side of it and never turning back."""
+    """Return True if the instants leave the start, on one side of it and never turning back."""
     elapsed = [instant - start for instant in instants]
     side = next((time for time in elapsed if time != 0), None)
     if side is None:
@@ -54,21 +52,14 @@ def _moves_away(table: Table, instants: Vector, start: Fraction) -> bool:
 
 
 def _equally_spaced(table: Table, start: Fraction | None) -> Clock | None:
-    """start + k (end - start)/(samples - 1), both ends included."""
-    end, samples = table.number("end"), _samples(table)
+    """Return start + k (end - start)/(samples - 1), both ends included."""
+    end, samples = table.number("end"), table.number("samples")
+    if samples is not None and (samples.denominator != 1 or not 2 <= samples <= MOST_SAMPLES):
+        table.fault(f"an integer from 2 to {MOST_SAMPLES}", shown(samples), "samples")
+        samples = None
     if start is None or end is None or samples is None:
         return None
     if end == start:
         table.fault("an end other than the start", shown(end), "end", "the time span is empty")
         return None
-    return Clock(start, EquallySpaced(start, (end - start) / (samples - 1), samples))
-
-
-def _samples(table: Table) -> int | None:
-    number = table.number("samples")
-    if number is None:
-        return None
-    if number.denominator != 1 or not 2 <= number <= MOST_SAMPLES:
-        table.fault(f"an integer from 2 to {MOST_SAMPLES}", shown(number), "samples")
-        return None
-    return int(number)
+    return Clock(start, EquallySpaced(start, (end - start) / (samples - 1), int(samples)))

@@ -52,8 +52,17 @@ class Faults:
         if len(self.lines) == _MOST_TOLD:
             self.lines.append("and more faults beyond these hundred")
             return
-        line = f"expected {expected}, got {got} @ {path}"
-        self.lines.append(f"{line} ({mend})" if mend else line)
+        self.lines.append(_line(expected, got, path, mend))
+
+
+def refusal(expected: str, got: object, place: object, mend: str = "") -> Refused:
+    """Return the refusal of what has this one fault."""
+    return Refused([_line(expected, got, place, mend)])
+
+
+def _line(expected: str, got: object, place: object, mend: str) -> str:
+    line = f"expected {expected}, got {got} @ {place}"
+    return f"{line} ({mend})" if mend else line
 
 
 def shown(value: object) -> str:

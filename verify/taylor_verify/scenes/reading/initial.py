@@ -3,103 +3,150 @@
 Legend: ``linear_impulse`` x and ``angular_impulse`` y, or ``linear_velocity`` U of the origin and
 ``angular_velocity`` Omega in their place; ``attitude`` is the quaternion of R, v_space = R v_body;
 ``centre`` is the body's origin in space.
+
+A degree is pi/180 of a radian, which is irrational. It is rounded once to 400 bits, and each rate is
+an exact multiple of that one rational: zero stays zero, and 2 deg/s is minus twice -1 deg/s exactly.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from fractions import Fraction
+from functools import cache
 from typing import Final
 
+from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import COEFFICIENT_BITS, Body, ImmersedBody
-from taylor_verify.scenes.motion import IDENTITY, Impulse, Quaternion, Spin
+from taylor_verify.scenes.motion import IDENTITY, State
+from taylor_verify.scenes.parts import Shape, Value
+from taylor_verify.scenes.precision import exact_value, rounded
 from taylor_verify.scenes.reading.faults import shown
-from taylor_verify.scenes.reading.rates import rates
-from taylor_verify.scenes.reading.table import Table
+from taylor_verify.scenes.reading.table import Table, exact_number, quantity
 from taylor_verify.scenes.tensors import ZERO_VECTOR, Vector
 
 IMPULSES: Final = ("linear_impulse", "angular_impulse")
 VELOCITIES: Final = ("linear_velocity", "angular_velocity")
+_RADIANS: Final = "rad/s"
+# A turn a minute is 360 degrees in 60 seconds.
+_DEGREES: Final = {"deg/s": 1, "rpm": 6}
+_UNITS: Final = f"{_RADIANS}, {' or '.join(_DEGREES)}"
+_GUARD_BITS: Final = 40
 
 
-def spin(table: Table, body: Body | None = None) -> Spin | None:
-    """Return the initial state of a rigid body, whatever the body; None beside a fault."""
+def state(
+    kind: type[State], moving: Vector | None, place: Mapping[str, Value] | None
+) -> State | None:
+    """Return the initial state of its moving part and its place; None without one of them."""
+    if moving is None or place is None:
+        return None
+    vectors = {name: moving[3 * k : 3 * k + 3] for k, name in enumerate(kind.MOVING)}
+    values = {**vectors, **place}
+    return kind(**{part.key: values[part.name] for part in kind.PARTS})
+
+
+def place(table: Table, kind: type[State]) -> Mapping[str, Value] | None:
+    """Return the parts of a state that do not move by equations of their own; None beside a fault."""
+    values = {
+        part.name: _attitude(table)
+        if part.shape is Shape.QUATERNION
+        else table.vector(part.name, default=ZERO_VECTOR)
+        for part in kind.PARTS
+        if part.name not in kind.MOVING
+    }
+    return None if None in values.values() else values
+
+
+def turning(table: Table, body: Body | None) -> Vector | None:
+    """Return omega of a rigid body, whatever the body; None beside a fault."""
     del body
-    omega = rates(table, "omega")
-    attitude = _attitude(table)
-    return Spin(omega, attitude) if omega and attitude else None
+    return _rates(table, "omega")
 
 
-def turned(table: Table) -> Spin | None:
-    """Return the attitude alone: a manufactured motion has the rest."""
-    attitude = _attitude(table)
-    return Spin(ZERO_VECTOR, attitude) if attitude else None
-
-
-def impulse(table: Table, body: Body | None) -> Impulse | None:
-    """Return the initial state of a solid in a fluid; None beside a fault, or without a body."""
-    pair = _impulses(table, body)
-    start = placed(table)
-    return Impulse(*pair, start.attitude, start.centre) if pair and start else None
-
-
-def placed(table: Table) -> Impulse | None:
-    """Return attitude and centre alone: a manufactured motion has the rest."""
-    attitude = _attitude(table)
-    centre = table.vector("centre", default=ZERO_VECTOR)
-    return Impulse(ZERO_VECTOR, ZERO_VECTOR, attitude, centre) if attitude and centre else None
-
-
-def _impulses(table: Table, body: Body | None) -> tuple[Vector, Vector] | None:
-    """x and y as written, or of the two velocities."""
+def impulses(table: Table, body: Body | None) -> Vector | None:
+    """Return x and y as written, or of the two velocities; None beside a fault, or without a body."""
     by_velocity = [key for key in VELOCITIES if table.has(key)]
     by_impulse = [key for key in IMPULSES if table.has(key)]
     if by_velocity and by_impulse:
-        _refuse_both(table, by_impulse, by_velocity)
+        given = (*by_impulse, *by_velocity)
+        for key in given:
+            table.take(key, "nothing")
+        expected = "either the two impulses or the two velocities"
+        keep = f"keep {_pair(IMPULSES)}, or {_pair(VELOCITIES)}"
+        table.fault(expected, " and ".join(f"`{key}`" for key in given), by_velocity[0], keep)
         return None
     if not by_velocity:
         linear, angular = (table.vector(key) for key in IMPULSES)
-        return (linear, angular) if linear and angular else None
+        return linear + angular if linear and angular else None
     for key in VELOCITIES:
         if key not in by_velocity:
             expected = f"both `{VELOCITIES[0]}` and `{VELOCITIES[1]}`"
             table.fault(expected, f"`{by_velocity[0]}` alone", key, f"add the key `{key}`")
     velocity = table.vector(VELOCITIES[0]) if VELOCITIES[0] in by_velocity else None
-    turning = rates(table, VELOCITIES[1]) if VELOCITIES[1] in by_velocity else None
-    if velocity is None or turning is None or not isinstance(body, ImmersedBody):
+    spin = _rates(table, VELOCITIES[1]) if VELOCITIES[1] in by_velocity else None
+    if velocity is None or spin is None or not isinstance(body, ImmersedBody):
         return None
-    table.note(_formed(body))
-    return body.impulses(velocity, turning)
-
-
-def _refuse_both(table: Table, by_impulse: list[str], by_velocity: list[str]) -> None:
-    for key in (*by_impulse, *by_velocity):
-        table.take(key, "nothing")
-    expected = "either the two impulses or the two velocities"
-    got = " and ".join(f"`{key}`" for key in (*by_impulse, *by_velocity))
-    table.fault(expected, got, by_velocity[0], f"keep {_pair(IMPULSES)}, or {_pair(VELOCITIES)}")
+    shape = f", of coefficients rounded to {COEFFICIENT_BITS} bits" if body.ellipsoid else ""
+    table.note(
+        "The start is given by velocities: the impulses (x, y) = M (U, Omega) are formed exactly from the "
+        f"inertia of this body{shape}."
+    )
+    return tensors.apply(body.mass_matrix, velocity + spin)
 
 
 def _pair(keys: tuple[str, str]) -> str:
     return " with ".join(f"`{key}`" for key in keys)
 
 
-def _formed(body: ImmersedBody) -> str:
-    """The sentence on where the impulses come from."""
-    shape = (
-        "" if body.ellipsoid is None else f", of coefficients rounded to {COEFFICIENT_BITS} bits"
-    )
-    return (
-        "The start is given by velocities: the impulses (x, y) = M (U, Omega) are formed exactly from the "
-        f"inertia of this body{shape}."
-    )
-
-
-def _attitude(table: Table) -> Quaternion | None:
-    """A quaternion of any norm but zero, scalar first."""
+def _attitude(table: Table) -> Vector | None:
+    """Return a quaternion of any norm but zero, scalar first."""
     entries = table.vector("attitude", default=IDENTITY, length=4)
-    if entries is None:
-        return None
-    if not any(entries):
+    if entries is not None and not any(entries):
         table.fault("a quaternion that is not zero", shown(list(entries)), "attitude")
         return None
-    q0, q1, q2, q3 = entries
-    return (q0, q1, q2, q3)
+    return entries
+
+
+# Angular velocities: bare numbers, or text with a unit such as "2 deg/s".
+
+
+def _rates(table: Table, key: str) -> Vector | None:
+    """Return an angular velocity in radians per unit of time; None beside a fault.
+
+    Where one entry has a unit, each of the others has one or is 0. A note says what was converted.
+    """
+    # Each unit once, in the order written.
+    units = dict.fromkeys(unit for _, unit in filter(None, map(quantity, table.peek(key))))
+    if not units:
+        return table.vector(key)
+    vector = table.vector(key, number=_in_radians)
+    if any(unit in _DEGREES for unit in units):
+        table.note(
+            f"{table.path(key)} is given in {' and '.join(units)}, so the unit of time is the second. "
+            f"pi/180 is rounded to {COEFFICIENT_BITS} bits (120 digits), and each component is an exact "
+            "multiple of that rational: ratios of components are those written."
+        )
+    return vector
+
+
+@cache
+def degree() -> Fraction:
+    """Return pi/180, rounded once to 400 bits."""
+    from mpmath import mp
+
+    with mp.workprec(COEFFICIENT_BITS + _GUARD_BITS):
+        return rounded(exact_value(+mp.degree), COEFFICIENT_BITS)
+
+
+def _in_radians(value: object) -> Fraction:
+    parts = quantity(value)
+    if parts is None:
+        number = exact_number(value)
+        if number:
+            raise ValueError(f"a unit, as its neighbours have one ({_UNITS})")
+        return number
+    text, unit = parts
+    if unit == _RADIANS:
+        return exact_number(text)
+    if unit in _DEGREES:
+        return exact_number(text) * _DEGREES[unit] * degree()
+    raise ValueError(f"an angular velocity in {_UNITS}")

@@ -8,52 +8,46 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from itertools import chain
 from typing import Final
 
 from taylor_verify.scenes.manufactured import Manufactured, Wave
 from taylor_verify.scenes.reading.faults import shown
-from taylor_verify.scenes.reading.table import Table
+from taylor_verify.scenes.reading.table import Table, complete
 from taylor_verify.scenes.tensors import ZERO_VECTOR, Vector
 
 # A frequency has one digit in the names of the equations' parameters.
 MOST_FREQUENCIES: Final = 9
 
-# By frequency, the coefficients of its cosine and of its sine.
+# The coefficients of cosine and sine by frequency.
 _Terms = Mapping[Fraction, tuple[Vector, Vector]]
 
 
 def manufactured(table: Table, vectors: Sequence[str]) -> Manufactured | None:
-    """The motion of these vectors, one after the other; None beside a fault."""
-    read = [_terms(table, name) for name in vectors]
-    found = [terms for terms in read if terms is not None]
-    if len(found) < len(read):
+    """Return the motion of these vectors, one after the other; None beside a fault."""
+    read = complete([_terms(table, name) for name in vectors])
+    if read is None:
         return None
-    frequencies = sorted(set().union(*found) - {Fraction(0)})
+    frequencies = sorted(set().union(*read) - {Fraction(0)})
     if len(frequencies) > MOST_FREQUENCIES:
         table.fault(f"at most {MOST_FREQUENCIES} frequencies", str(len(frequencies)))
         return None
-    constant, _ = _joined(found, Fraction(0))
-    return Manufactured(constant, tuple(Wave(nu, *_joined(found, nu)) for nu in frequencies))
 
+    def amplitudes(frequency: Fraction) -> tuple[Vector, Vector]:
+        pairs = [terms.get(frequency, (ZERO_VECTOR, ZERO_VECTOR)) for terms in read]
+        cosines, sines = zip(*pairs, strict=True)
+        return tuple(chain(*cosines)), tuple(chain(*sines))
 
-def _joined(found: Sequence[_Terms], frequency: Fraction) -> tuple[Vector, Vector]:
-    nothing = (ZERO_VECTOR, ZERO_VECTOR)
-    cosine: Vector = ()
-    sine: Vector = ()
-    for terms in found:
-        own = terms.get(frequency, nothing)
-        cosine, sine = cosine + own[0], sine + own[1]
-    return cosine, sine
+    constant, _ = amplitudes(Fraction(0))
+    return Manufactured(constant, tuple(Wave(nu, *amplitudes(nu)) for nu in frequencies))
 
 
 def _terms(table: Table, name: str) -> _Terms | None:
-    """The terms of one vector, no frequency twice."""
+    """Return the terms of one vector, no frequency twice."""
     entries = table.tables(name)
-    if entries is None:
-        return None
     found: dict[Fraction, tuple[Vector, Vector]] = {}
-    is_sound = True
-    for entry in entries:
+    is_sound = entries is not None
+    for entry in entries or ():
         term = _term(entry)
         if term is not None and term[0] in found:
             expected = "a frequency that no term before has"
@@ -61,14 +55,13 @@ def _terms(table: Table, name: str) -> _Terms | None:
             term = None
         if term is None:
             is_sound = False
-            continue
-        frequency, cosine, sine = term
-        found[frequency] = (cosine, sine)
+        else:
+            found[term[0]] = term[1:]
     return found if is_sound else None
 
 
 def _term(entry: Table) -> tuple[Fraction, Vector, Vector] | None:
-    """Frequency, cosine and sine of one term; what is not written of the two is zero."""
+    """Return frequency, cosine and sine of one term; what is not written of the two is zero."""
     frequency = entry.number("frequency")
     written = entry.has("cosine") or entry.has("sine")
     cosine = entry.vector("cosine", default=ZERO_VECTOR)

@@ -11,23 +11,25 @@ import re
 import tomllib
 from collections.abc import Callable
 from decimal import Decimal, InvalidOperation
+from functools import partial
 from typing import Final, NamedTuple, TypeVar
 
-from taylor_verify.records.quantities import MAIN, MOMENTA, TRACKED, with_needs
+from taylor_verify.records.quantities import MAIN, TRACKED, with_needs
 from taylor_verify.scenes import library
-from taylor_verify.scenes.bodies import Body
+from taylor_verify.scenes.bodies import Body, ImmersedBody, RigidBody
 from taylor_verify.scenes.motion import State
 from taylor_verify.scenes.names import escaped
 from taylor_verify.scenes.reading.body import immersed_body, rigid_body, warnings
 from taylor_verify.scenes.reading.clock import clock
 from taylor_verify.scenes.reading.faults import Faults, Refused, cut, near, shown
 from taylor_verify.scenes.reading.hints import hints
-from taylor_verify.scenes.reading.initial import VELOCITIES, impulse, placed, spin, turned
+from taylor_verify.scenes.reading.initial import VELOCITIES, impulses, place, state, turning
 from taylor_verify.scenes.reading.limit import Limit
 from taylor_verify.scenes.reading.manufactured import manufactured
 from taylor_verify.scenes.reading.regular_file import read_bytes
 from taylor_verify.scenes.reading.table import Table
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Vector
 
 T = TypeVar("T")
 
@@ -42,19 +44,29 @@ _DEEP_KEY: Final = re.compile(
 
 
 class Model(NamedTuple):
-    """How the parts of a scene that differ from model to model are read.
+    """The readers of the parts of a scene that differ from model to model.
 
-    ``moving`` are the vectors of a manufactured motion, ``velocities`` other keys for its start, ``loads``
-    the vectors that it determines, and ``placed`` reads what of the initial state it leaves open.
+    ``moving`` reads the part of the initial state that enters the equations; ``velocities`` are other keys
+    for it.
     """
 
-    name: str
+    kind: type[Body]
     body: Callable[[Table], Body | None]
-    initial: Callable[[Table, Body | None], State | None]
-    moving: tuple[str, ...]
-    velocities: tuple[str, ...]
-    loads: tuple[str, ...]
-    placed: Callable[[Table], State | None]
+    moving: Callable[[Table, Body | None], Vector | None]
+    velocities: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        return self.kind.MODEL
+
+
+MODELS: Final = {
+    model.name: model
+    for model in (
+        Model(RigidBody, rigid_body, turning),
+        Model(ImmersedBody, immersed_body, impulses, VELOCITIES),
+    )
+}
 
 
 def load(scene: str | os.PathLike[str]) -> Scene:
@@ -85,11 +97,7 @@ def read(text: str, name: str) -> Scene:
     title, source = top.text("title"), top.text("source", default="")
     model = _model(top)
     track = _track(top, model)
-    body = _part(top, "body", model.body if model else _unread, model)
-    if top.has("manufactured"):
-        body, initial = _manufactured(top, model, body)
-    else:
-        initial = _part(top, "initial", _initial(model, body) if model else _unread, model)
+    body, initial = _posed(top, model) if model else _unread(top)
     time = _part(top, "time", clock)
     top.close(hints(""))
     if title is None or source is None or model is None or track is None:
@@ -136,7 +144,7 @@ def _decimal(literal: str) -> Decimal | str:
 def _part(
     top: Table, key: str, reader: Callable[[Table], T], model: Model | None = None
 ) -> T | None:
-    """A table of the scene, read and closed."""
+    """Return a table of the scene as a reader makes it, and close it."""
     table = top.table(key)
     if table is None:
         return None
@@ -145,14 +153,26 @@ def _part(
     return part
 
 
-def _initial(model: Model, body: Body | None) -> Callable[[Table], State | None]:
-    """The reader of the initial state of this body."""
-    return lambda table: model.initial(table, body)
+def _unread(top: Table) -> tuple[None, None]:
+    """Take the tables whose contents are not known without a model."""
+    needed = {"body"} if top.has("manufactured") else {"body", "initial"}
+    for key in ("body", "manufactured", "initial"):
+        if key in needed or top.has(key):
+            top.table(key)
+    return None, None
 
 
-def _unread(table: Table) -> None:
-    """Without a model it is not known what the table should hold."""
-    table.drain()
+def _posed(top: Table, model: Model) -> tuple[Body | None, State | None]:
+    """Return the body and its initial state; None beside a fault."""
+    body = _part(top, "body", model.body, model)
+    if top.has("manufactured"):
+        return _manufactured(top, model, body)
+
+    def initial(table: Table) -> State | None:
+        moving = model.moving(table, body)
+        return state(model.kind.STATE, moving, place(table, model.kind.STATE))
+
+    return body, _part(top, "initial", initial, model)
 
 
 def _model(top: Table) -> Model | None:
@@ -175,57 +195,22 @@ def _track(top: Table, model: Model | None) -> frozenset[str] | None:
     return with_needs(words) & frozenset(TRACKED[model.name])
 
 
-def _manufactured(
-    top: Table, model: Model | None, body: Body | None
-) -> tuple[Body | None, State | None]:
-    """The body with its manufactured motion, and the state in which that motion begins."""
-    if model is None:
-        for part in ("manufactured", "initial"):
-            if top.has(part):
-                _part(top, part, _unread)
-        return None, None
-    table = top.table("manufactured")
-    motion = None if table is None else manufactured(table, model.moving)
-    if table is not None:
-        table.close()
+def _manufactured(top: Table, model: Model, body: Body | None) -> tuple[Body | None, State | None]:
+    """Return the body with its manufactured motion, and the state in which that motion begins."""
+    kind = model.kind.STATE
+    motion = _part(top, "manufactured", partial(manufactured, vectors=kind.MOVING))
     start = (top.table("initial") if top.has("initial") else None) or top.empty("initial")
-    for name in model.moving + model.velocities:
+    for name in kind.MOVING + model.velocities:
         if start.has(name):
             start.take(name, "nothing")
             got = "another one beside a manufactured motion"
             start.fault("the start that the motion has", got, name, f"remove `{name}`")
-    initial = model.placed(start)
+    initial = state(kind, motion.start if motion else None, place(start, kind))
     start.close(hints("initial", model.name))
-    for load in model.loads:
-        given = getattr(body, load, ())
-        if any(given):
+    values = body.parts() if body else {}
+    for name in model.kind.load_names():
+        load = values.get(name, ())
+        if any(load):
             expected = "no load beside a manufactured motion, which determines its own"
-            top.fault(expected, shown(list(given)), f"body.{load}", f"remove `{load}`")
-    if body is None or motion is None or initial is None:
-        return None, None
-    return body.with_motion(motion), initial.with_moving(motion.start)
-
-
-MODELS: Final = {
-    model.name: model
-    for model in (
-        Model(
-            name="euler",
-            body=rigid_body,
-            initial=spin,
-            moving=MOMENTA["euler"],
-            velocities=(),
-            loads=("moment",),
-            placed=turned,
-        ),
-        Model(
-            name="kirchhoff",
-            body=immersed_body,
-            initial=impulse,
-            moving=MOMENTA["kirchhoff"],
-            velocities=VELOCITIES,
-            loads=("force", "couple"),
-            placed=placed,
-        ),
-    )
-}
+            top.fault(expected, shown(list(load)), f"body.{name}", f"remove `{name}`")
+    return (None if body is None else body.with_motion(motion)), initial

@@ -6,11 +6,12 @@ A reader method returns None where it recorded a fault, so that reading goes on 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from decimal import Decimal
 from fractions import Fraction
 from itertools import combinations
 from types import MappingProxyType
+from typing import TypeVar
 
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.reading.faults import Faults, cut, near, shown
@@ -22,6 +23,7 @@ _MOST_BITS = 16_600  # 10^5000 has 16610 bits
 _LONGEST_SENTENCE = 1000  # it stands in a cell of a table
 
 _NUMBER = "a finite number"
+_EXPONENT = f"a number with powers of ten up to {LARGEST_EXPONENT}"
 _WITHOUT_UNIT = (
     "a number without a unit (units are any consistent set; `omega` and `angular_velocity` alone "
     'take text such as "2 deg/s")'
@@ -30,8 +32,16 @@ _FRACTION = re.compile(r"([+-]?[0-9]+)/([0-9]+)")
 _DECIMAL = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE]([+-]?[0-9]+))?")
 _QUANTITY = re.compile(r"([+-]?[0-9.][0-9./eE+-]*)\s*([^\W\d_\s].*|[°%].*)")
 
+T = TypeVar("T")
 Number = Callable[[object], Fraction]
 """Reads one entry of an array, or raises ValueError with what it expects."""
+
+
+def complete(values: Iterable[T | None]) -> tuple[T, ...] | None:
+    """Return all of the values; None where one is missing, because a fault stands in its place."""
+    read = tuple(values)
+    known = tuple(value for value in read if value is not None)
+    return known if len(known) == len(read) else None
 
 
 class Table:
@@ -47,7 +57,7 @@ class Table:
         return ".".join(part for part in (self._path, key) if part)
 
     def has(self, key: str) -> bool:
-        """Whether the scene writes the key; from now on the key is known."""
+        """Return True if the scene writes the key; from now on the key is known."""
         self._known.add(key)
         return key in self._left
 
@@ -55,53 +65,40 @@ class Table:
         self.faults.add(expected, got, self.path(key), mend)
 
     def take(self, key: str, expected: str) -> object | None:
-        """The value as TOML has it (which has no null); a missing key is a fault."""
+        """Return the value as TOML has it (which has no null); a missing key is a fault."""
         if not self.has(key):
             self.fault(expected, "nothing", key, f"add the key `{key}`")
             return None
         return self._left.pop(key)
 
     def close(self, hints: Mapping[str, str] = MappingProxyType({})) -> None:
-        """Every key that nobody took is unknown; ``hints`` says of some what to write instead."""
+        """Report every key that nobody took; ``hints`` says of some what to write instead."""
         for key in self._left:
             if self.faults.is_full:
                 break
             mend = hints.get(key.lower()) or near(cut(key), self._known)
             self.fault("a known key", f"`{cut(key)}`", cut(key), mend)
 
-    def drain(self) -> None:
-        """Leave the rest unread, without a fault."""
-        self._left.clear()
-
     def table(self, key: str) -> Table | None:
         entries = self.take(key, "a table")
-        if isinstance(entries, dict):
-            return Table(entries, self.path(key), self.faults)
-        if entries is not None:
-            self.fault("a table", shown(entries), key)
-        return None
+        return None if entries is None else self._table(entries, key)
 
-    def tables(self, key: str) -> list[Table] | None:
-        """An array of tables, not empty; each entry that is none is a fault."""
+    def tables(self, key: str) -> tuple[Table, ...] | None:
+        """Return an array of tables, not empty; each entry that is none is a fault."""
         entries = self.take(key, "an array of tables")
         if entries is None:
             return None
         if not isinstance(entries, list) or not entries:
             self.fault("an array of tables", shown(entries), key)
             return None
-        for i, entry in enumerate(entries):
-            if not isinstance(entry, dict):
-                self.fault("a table", shown(entry), f"{key}[{i}]")
-        if not all(isinstance(entry, dict) for entry in entries):
-            return None
-        return [Table(e, self.path(f"{key}[{i}]"), self.faults) for i, e in enumerate(entries)]
+        return complete([self._table(entry, f"{key}[{i}]") for i, entry in enumerate(entries)])
 
     def empty(self, key: str) -> Table:
-        """The table of that name as if it were there, with nothing in it."""
+        """Return the table of that name as if it were there, with nothing in it."""
         return Table({}, self.path(key), self.faults)
 
     def text(self, key: str, default: str | None = None) -> str | None:
-        """A string; empty or missing is a fault, unless there is a default."""
+        """Return a string; empty or missing is a fault, unless there is a default."""
         if default is not None and not self.has(key):
             return default
         value = self.take(key, "a sentence")
@@ -114,7 +111,7 @@ class Table:
         return None
 
     def words(self, key: str, known: frozenset[str]) -> frozenset[str] | None:
-        """An array of words out of the known ones; missing is the empty set."""
+        """Return an array of words out of the known ones; missing is the empty set."""
         if not self.has(key):
             return frozenset()
         value = self.take(key, "an array")
@@ -130,49 +127,41 @@ class Table:
         return known.intersection(word for word in value if isinstance(word, str))
 
     def number(self, key: str, default: Fraction | None = None) -> Fraction | None:
-        """An exact number; missing is a fault, unless there is a default."""
+        """Return an exact number; missing is a fault, unless there is a default."""
         if default is not None and not self.has(key):
             return default
         value = self.take(key, _NUMBER)
         return None if value is None else self._exact(value, key)
 
     def numbers(self, key: str, most: int) -> Vector | None:
-        """An array of at most so many exact numbers."""
+        """Return an array of at most so many exact numbers."""
         value = self.take(key, "an array of numbers")
-        if value is None:
-            return None
-        if not isinstance(value, list):
-            self.fault("an array of numbers", shown(value), key)
-            return None
-        if len(value) > most:
+        if isinstance(value, list) and len(value) <= most:
+            return self._entries(value, key)
+        if isinstance(value, list):
             self.fault(f"at most {most} numbers", str(len(value)), key)
-            return None
-        return self._entries(value, key)
+        elif value is not None:
+            self.fault("an array of numbers", shown(value), key)
+        return None
 
-    def vector(self, key: str, default: Vector | None = None, length: int = 3) -> Vector | None:
-        """An array of so many exact numbers; missing is a fault, unless there is a default."""
+    def vector(
+        self, key: str, default: Vector | None = None, length: int = 3, number: Number | None = None
+    ) -> Vector | None:
+        """Return an array of so many numbers; missing is a fault, unless there is a default.
+
+        ``number`` reads each where that is not an exact number.
+        """
         if default is not None and not self.has(key):
             return default
         value = self.take(key, f"{length} numbers")
-        return None if value is None else self._row(value, key, length)
-
-    def converted(self, key: str, number: Number) -> Vector | None:
-        """Three numbers as ``number`` reads them; it raises ValueError with what it expects."""
-        value = self.take(key, "3 numbers")
-        return None if value is None else self._row(value, key, 3, number)
-
-    def units(self, key: str) -> list[str]:
-        """The units in an array, each once, in the order written; the key is left to be taken."""
-        value = self._left.get(key)
-        parts = map(quantity, value if isinstance(value, list) else [])
-        return [*dict.fromkeys(unit for _, unit in filter(None, parts))]
+        return None if value is None else self._row(value, key, length, number)
 
     def note(self, sentence: str) -> None:
         """Add a sentence on how numbers of this table were formed."""
         self.faults.notes.append(sentence)
 
     def matrix(self, key: str, size: int = 3) -> Matrix | None:
-        """As many rows as columns, of exact numbers."""
+        """Return as many rows as columns, of exact numbers."""
         value = self.take(key, f"a {size}x{size} matrix")
         if value is None:
             return None
@@ -180,12 +169,10 @@ class Table:
             form = ", ".join(["[..]"] * size)
             self.fault(f"a {size}x{size} matrix [{form}]", shown(value), key)
             return None
-        rows = [self._row(row, f"{key}[{i}]", size) for i, row in enumerate(value)]
-        known = tuple(row for row in rows if row is not None)
-        return known if len(known) == size else None
+        return complete([self._row(row, f"{key}[{i}]", size) for i, row in enumerate(value)])
 
     def symmetric(self, key: str, size: int = 3) -> Matrix | None:
-        """A square matrix equal to its transpose; every pair that differs is a fault."""
+        """Return a square matrix equal to its transpose; every pair that differs is a fault."""
         matrix = self.matrix(key, size)
         if matrix is None or tensors.is_symmetric(matrix):
             return matrix
@@ -196,10 +183,16 @@ class Table:
                 self.fault("a symmetric matrix", got, key, "write both entries alike")
         return None
 
-    def has_rows(self, key: str) -> bool:
-        """Whether the value is an array of which some entry is an array."""
+    def peek(self, key: str) -> list[object]:
+        """Return the entries of an array, which is left to be taken; nothing for any other value."""
         value = self._left.get(key)
-        return isinstance(value, list) and any(isinstance(entry, list) for entry in value)
+        return value if isinstance(value, list) else []
+
+    def _table(self, value: object, key: str) -> Table | None:
+        if isinstance(value, dict):
+            return Table(value, self.path(key), self.faults)
+        self.fault("a table", shown(value), key)
+        return None
 
     def _row(
         self, value: object, key: str, length: int, number: Number | None = None
@@ -212,9 +205,7 @@ class Table:
     def _entries(
         self, values: list[object], key: str, number: Number | None = None
     ) -> Vector | None:
-        exact = [self._exact(value, f"{key}[{i}]", number) for i, value in enumerate(values)]
-        known = tuple(value for value in exact if value is not None)
-        return known if len(known) == len(values) else None
+        return complete([self._exact(v, f"{key}[{i}]", number) for i, v in enumerate(values)])
 
     def _exact(self, value: object, key: str, number: Number | None = None) -> Fraction | None:
         try:
@@ -225,25 +216,21 @@ class Table:
 
 
 def exact_number(value: object) -> Fraction:
-    """The rational that an integer, a decimal or an ``"a/b"`` string writes.
+    """Return the rational that an integer, a decimal or an ``"a/b"`` string writes.
 
     Raises ValueError, whose text is what was expected. Powers of ten beyond 10^5000 are refused
     before anything is built: 1e999999999 would be a gigabyte of digits.
     """
     if isinstance(value, int) and not isinstance(value, bool):
-        return _from_integer(value)
+        # Only a hexadecimal literal can be that long; tomllib refuses the decimal ones itself.
+        if value.bit_length() > _MOST_BITS:
+            raise ValueError(_EXPONENT)
+        return Fraction(value)
     if isinstance(value, Decimal):
         return _from_decimal(value)
     if isinstance(value, str):
         return _from_text(value.strip())
     raise ValueError(_NUMBER)
-
-
-def _from_integer(value: int) -> Fraction:
-    # Only a hexadecimal literal can be that long; tomllib refuses the decimal ones itself.
-    if value.bit_length() > _MOST_BITS:
-        raise ValueError(f"a number with powers of ten up to {LARGEST_EXPONENT}")
-    return Fraction(value)
 
 
 def _from_decimal(value: Decimal) -> Fraction:
@@ -252,7 +239,7 @@ def _from_decimal(value: Decimal) -> Fraction:
     exponent = value.as_tuple().exponent
     # adjusted() is the power of ten of the first digit, the exponent that of the last one.
     if max(abs(value.adjusted()), abs(int(exponent))) > LARGEST_EXPONENT:
-        raise ValueError(f"a number with powers of ten up to {LARGEST_EXPONENT}")
+        raise ValueError(_EXPONENT)
     return Fraction(value)
 
 
@@ -265,15 +252,15 @@ def _from_text(text: str) -> Fraction:
         return Fraction(int(match[1]), int(match[2]))
     if match := _DECIMAL.fullmatch(text):
         if match[1] and abs(int(match[1])) > 2 * LARGEST_EXPONENT:
-            raise ValueError(f"a number with powers of ten up to {LARGEST_EXPONENT}")
+            raise ValueError(_EXPONENT)
         return _from_decimal(Decimal(text))
-    if quantity(text):
-        raise ValueError(_WITHOUT_UNIT)
-    raise ValueError('a number (an integer, a decimal or "a/b")')
+    raise ValueError(
+        _WITHOUT_UNIT if quantity(text) else 'a number (an integer, a decimal or "a/b")'
+    )
 
 
 def quantity(value: object) -> tuple[str, str] | None:
-    """Number and unit of text such as ``"2 deg/s"``; None for a bare number and any other text."""
+    """Return number and unit of text such as ``"2 deg/s"``; None for a bare number and any other text."""
     if not isinstance(value, str) or len(value) > _MOST_DIGITS:
         return None
     text = value.strip()

@@ -9,7 +9,6 @@ neither the standard run nor a list makes one.
 from __future__ import annotations
 
 import logging
-import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
@@ -23,7 +22,7 @@ from taylor_verify.solvers.engines.environment import NotMade, Tell
 from taylor_verify.solvers.engines.script import Script, scripts
 from taylor_verify.solvers.options import Options, options
 from taylor_verify.solvers.process import process
-from taylor_verify.solvers.solver import Lack, Solver
+from taylor_verify.solvers.solver import Lack, Solver, not_started
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
 PREFIX: Final = "outside:"
@@ -62,19 +61,19 @@ class Engine:
 
     @property
     def unavailable(self) -> str:
-        """Why nothing here can run it; empty where it is ready, or would be after a download."""
+        """The reason why nothing here can run it; empty where it is ready, or would be after a download."""
         return self.script.about.unavailable or process.unavailable() or environment.unavailable()
 
 
 @cache
 def engines() -> Mapping[str, Engine]:
     """Return all engines by name, those that cannot be had included; no environment is made for it."""
-    found = [
+    every = (
         Engine(script, method)
         for script in scripts(SCRIPTS)
         for method in script.about.methods or [""]
-    ]
-    return {engine.name: engine for engine in found}
+    )
+    return {engine.name: engine for engine in every}
 
 
 def usages() -> tuple[str, ...]:
@@ -149,19 +148,17 @@ class Outside(Solver):
         return ""
 
     def solve(self, problem: Problem) -> Trajectory:
-        reason = self.unavailable(problem.rung)
-        python = reason or _interpreter(self, _log.warning)
-        if reason or isinstance(python, Lack):
-            outcome = python.outcome if isinstance(python, Lack) else Outcome.NOT_STARTED
-            return Trajectory(outcome, detail=str(python))
+        if reason := self.unavailable(problem.rung):
+            return not_started(reason)
+        python = _interpreter(self, _log.warning)
+        if isinstance(python, Lack):
+            return not_started(python)
+        settings = [f"{key}={value}" for key, value in self.settings]
+        if self.engine.method:
+            settings = [f"method={self.engine.method}", *settings]
         # Without what the user has set for another Python, and leaving no files beside the script.
-        words = [python, "-B", "-E", "-s", str(self.engine.script.path), *self._arguments()]
-        command = f"{process.PREFIX}{shlex.join(words)}"
-        return process.Process(command, self.time_limit).solve(problem)
-
-    def _arguments(self) -> list[str]:
-        method = [("method", self.engine.method)] if self.engine.method else []
-        return [f"{key}={value}" for key, value in (*method, *self.settings)]
+        words = [python, "-B", "-E", "-s", str(self.engine.script.path), *settings]
+        return process.of(words, self.time_limit).solve(problem)
 
 
 def named(name: str) -> Outside:
@@ -170,9 +167,9 @@ def named(name: str) -> Outside:
     Raises ValueError for an engine or a setting that there is not, and for a value it cannot have.
     """
     known = engines()
-    method = name.removeprefix(PREFIX).partition("?")[0]
-    defaults = known[method].script.about.settings if method in known else {}
-    versions = [_VERSION] if method in known and known[method].script.package else []
+    engine = known.get(name.removeprefix(PREFIX).partition("?")[0])
+    defaults = engine.script.about.settings if engine else {}
+    versions = [_VERSION] if engine and engine.script.package else []
     asked = options(name, known, [*defaults, *versions])
     engine = known[asked.method]
     settings: dict[str, str] = {}
@@ -187,7 +184,7 @@ def named(name: str) -> Outside:
 def _value(
     asked: Options, key: str, default: float | str | list[str], settings: Mapping[str, str]
 ) -> str:
-    """The value of a setting: one of its words, or a number as a double prints it."""
+    """Return the value of a setting: one of its words, or a number as a double prints it."""
     if isinstance(default, list):
         word = asked.values.get(key, default[0])
         if word not in default:

@@ -57,7 +57,7 @@ def interpreter(name: str, block: str, tell: Tell) -> str:
 
 
 def _script(name: str, block: str) -> str:
-    """A script of nothing but the block: uv has one environment for each path."""
+    """Return the path of a script of nothing but the block: uv has one environment for each path."""
     digest = hashlib.sha256(block.encode()).hexdigest()[:12]
     folder = user_cache_path("taylor-verify") / "outside"
     place = folder / f"{name}-{digest}.py"
@@ -71,7 +71,7 @@ def _script(name: str, block: str) -> str:
 
 
 def _uv() -> str | None:
-    """The program uv: that on the PATH, or that of the package beside this interpreter."""
+    """Return the program uv: that on the PATH, or that of the package beside this interpreter."""
     if program := shutil.which("uv"):
         return program
     try:
@@ -105,7 +105,7 @@ def _uv_says(arguments: list[str]) -> str:
 
 
 def _one_line(said: str) -> str:
-    """The words of an error and of its causes, each of which uv gives a line."""
+    """Return the words of an error and of its causes, each of which uv gives a line."""
     words = "".join(c if c.isascii() and c.isprintable() else " " for c in said).split()
     text = " ".join(words).removeprefix("error: ").replace(" cause: ", ": ")
     return text[:_LONGEST_REASON]

@@ -1,4 +1,4 @@
-"""Somebody's trajectory in a file: every number exactly as written, or every fault with its place.
+"""A trajectory in somebody's file: every number exactly as written, or every fault with its place.
 
 t                 time                          q0 q1 q2 q3      quaternion of R, scalar first
 w1 w2 w3          angular velocity, body axes   r11 r12 ... r33  R itself, r12 is row 1, column 2
@@ -14,11 +14,13 @@ of them passes through a double on its way.
 
 from __future__ import annotations
 
+import operator
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
+from itertools import pairwise
 from typing import Any, Final, final
 
 import numpy as np
@@ -27,20 +29,13 @@ from taylor_verify.models.problem import Problem
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.reading.faults import Faults, Refused, cut
 from taylor_verify.solvers.files.columns.request import Request
-from taylor_verify.solvers.files.columns.selection import Taken, select
-from taylor_verify.solvers.files.formats.column import MOST_ALIKE, Column, add_more_alike
+from taylor_verify.solvers.files.columns.selection import select
+from taylor_verify.solvers.files.formats.column import Column, alike
 from taylor_verify.solvers.files.formats.reading import parted, read_table
-from taylor_verify.solvers.files.rows import (
-    Rows,
-    check_numbers,
-    exact_times,
-    packed,
-    written_digits,
-)
+from taylor_verify.solvers.files.rows import Rows, check_numbers, written_digits
 from taylor_verify.solvers.files.step import FileStep, step_inside
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
-from taylor_verify.solvers.values import Value
 
 # Numbers as narrow as this are small integers and simple fractions in any precision.
 _TELLING_BITS: Final = 18
@@ -67,47 +62,43 @@ class Recorded(Solver):
 
 @dataclass(frozen=True)
 class TrajectoryFile:
-    """What a file holds: strictly monotonic times and whole groups of columns, all of one length.
+    """A trajectory file: strictly monotonic times and whole groups of columns, all of one length.
 
-    ``groups`` maps the names of COLUMNS to rows of values, which are formed when they are looked at
-    (rows.py); ``digits`` is the largest number of significant decimals that any value is written
-    with, None where one is binary or a fraction. ``notes`` say how the
-    format was read, which columns were taken for which, and which were ignored.
-    ``step`` is the integrator's step, where the file states it.
+    ``groups`` maps the names of COLUMNS to rows of values, which are formed when they are looked at.
+    ``digits`` is the largest number of significant decimals that any value is written with, None where
+    one is binary or a fraction. ``notes`` say how the format was read, which columns were taken for
+    which, and which were ignored. ``step`` is the integrator's step, where the file states it.
     """
 
     name: str
     times: tuple[Fraction, ...]
-    groups: Mapping[str, Sequence[tuple[Value, ...]]]
+    groups: Mapping[str, Rows]
     digits: int | None = None
     notes: tuple[str, ...] = ()
     step: FileStep | None = None
 
     @cached_property
-    def rows(self) -> Mapping[str, Rows]:
-        """The groups with ways to many of their rows at once."""
-        return {name: Rows.of(group) for name, group in self.groups.items()}
-
-    @cached_property
     def is_single_precision(self) -> bool:
         """True if every finite number is one of float32, and not by chance."""
-        values = np.concatenate([rows.doubles().ravel() for rows in self.rows.values()])
+        values = np.concatenate([rows.doubles().ravel() for rows in self.groups.values()])
         doubles = values[np.isfinite(values)]
         with np.errstate(over="ignore"):
             is_single = np.array_equal(doubles.astype(np.float32).astype(np.float64), doubles)
-        return is_single and any(_width(double) >= _TELLING_BITS for double in doubles)
+        # A number of fewer bits is an integer when scaled to one bit less than is telling.
+        scaled = np.frexp(doubles)[0] * 2.0 ** (_TELLING_BITS - 1)
+        return is_single and bool(np.any(scaled % 1))
 
     @property
     def finite(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
         """The rows of which every number is finite."""
-        found = np.ones(len(self.times), dtype=bool)
-        for rows in self.rows.values():
-            found &= rows.finite
-        return found
+        finite = np.ones(len(self.times), dtype=bool)
+        for rows in self.groups.values():
+            finite &= rows.finite
+        return finite
 
     def at(self, places: Sequence[int]) -> TrajectoryFile:
         """Return some of the rows as a file of their own."""
-        groups = {name: tuple(group[k] for k in places) for name, group in self.groups.items()}
+        groups = {name: rows.at(places) for name, rows in self.groups.items()}
         return replace(self, times=tuple(self.times[k] for k in places), groups=groups)
 
 
@@ -120,8 +111,8 @@ def read(file: str | os.PathLike[str], columns: Request = ()) -> TrajectoryFile:
     Refused with every fault of it.
     """
     table = read_table(file)
-    found = from_columns(table.columns, str(file), columns, table.notes)
-    return replace(found, step=step_inside(parted(os.fspath(file))[0], table.columns))
+    trajectory = from_columns(table.columns, str(file), columns, table.notes)
+    return replace(trajectory, step=step_inside(parted(os.fspath(file))[0], table.columns))
 
 
 def from_columns(
@@ -133,90 +124,83 @@ def from_columns(
     """
     faults = Faults()
     selection = select(_named_once(columns, place, faults), wanted, place, faults)
-    taken = [replace(one, column=_packed(one.column)) for one in selection.columns]
-    _refuse_ragged([one.column for one in taken], _length(taken), place, faults)
-    finite = {one.name: check_numbers(one.column, place, faults) for one in taken}
-    clock = next((one for one in taken if one.name == "t"), None)
-    times = _times(clock.column.values, clock.column.name, place, faults) if clock else ()
+    taken = {one.name: one for one in selection.columns}
+    read = {
+        name: one.column._replace(values=_packed(one.column.values)) for name, one in taken.items()
+    }
+    _refuse_ragged(read, place, faults)
+    finite = {name: check_numbers(column, place, faults) for name, column in read.items()}
+    clock = read.pop("t", None)
+    times = _times(clock, place, faults) if clock and not faults.lines else ()
     if faults.lines:
         raise Refused(faults.lines)
-    by_name = {one.name: one for one in taken}
     groups = {
         group: Rows(
-            [by_name[name].column.values for name in names],
+            [read[name].values for name in names],
             np.logical_and.reduce([finite[name] for name in names]),
-            [by_name[name].factor for name in names],
+            [taken[name].factor for name in names],
         )
         for group, names in COLUMNS.items()
-        if names[0] in by_name
+        if names[0] in read
     }
-    digits = written_digits(one.column for one in taken if one is not clock)
-    if clock and clock.factor != 1:
-        times = tuple(t * clock.factor for t in times)
+    if clock and (factor := taken["t"].factor) != 1:
+        times = tuple(t * factor for t in times)
+    digits = written_digits(read.values())
     return TrajectoryFile(place, times, groups, digits, (*notes, *selection.notes))
 
 
-def _packed(column: Column) -> Column:
-    return column._replace(values=packed(column.values))
+def _packed(values: Sequence[Any]) -> Any:
+    """Return the same entries in less memory, if all of them are Python's floats."""
+    if isinstance(values, list) and all(type(value) is float for value in values):
+        return np.array(values)
+    return values
 
 
 def _named_once(columns: Iterable[Column], file: str, faults: Faults) -> list[Column]:
-    found: dict[str, Column] = {}
+    by_name: dict[str, Column] = {}
     for column in columns:
-        if column.name in found:
+        if column.name in by_name:
             faults.add("every column once", f"`{cut(column.name)}` again", file)
-        found[column.name] = column
-    return list(found.values())
+        by_name[column.name] = column
+    return list(by_name.values())
 
 
-def _length(taken: Sequence[Taken]) -> int:
-    """The length that the columns should have: that of t, else the first column's."""
-    by_name = {one.name: len(one.column.values) for one in taken}
-    return by_name.get("t", next(iter(by_name.values()), 0))
-
-
-def _refuse_ragged(columns: Sequence[Column], length: int, file: str, faults: Faults) -> None:
-    for name, values in columns:
+def _refuse_ragged(columns: Mapping[str, Column], file: str, faults: Faults) -> None:
+    """Refuse columns that are not as long as t, or as the first of them where there is no t."""
+    if not columns:
+        return
+    length = len(columns.get("t", next(iter(columns.values()))).values)
+    for name, values in columns.values():
         if len(values) != length:
             faults.add(f"{length} values as in t", str(len(values)), f"{file}, column {cut(name)}")
-    if columns and not length:
+    if not length:
         faults.add("at least one row", "none", file)
 
 
-# Numbers.
-
-
-def _times(column: Sequence[Any], name: str, file: str, faults: Faults) -> tuple[Fraction, ...]:
-    """The times, strictly increasing or strictly decreasing; anything else is a fault."""
-    if faults.lines:
-        return ()
-    values = exact_times(column)
-    times = [value for value in values if isinstance(value, Fraction)]
-    if len(times) < len(values):
-        row = next(i for i, v in enumerate(values, start=1) if not isinstance(v, Fraction))
-        faults.add("a finite time", str(values[row - 1]), f"{file}, row {row}, column {cut(name)}")
-        return ()
+def _times(clock: Column, file: str, faults: Faults) -> tuple[Fraction, ...]:
+    """Return the times, strictly increasing or strictly decreasing; anything else is a fault."""
+    place = f"column {cut(clock.name)}"
+    times: list[Fraction] = []
+    for row, (value,) in enumerate(Rows([clock.values]), start=1):
+        if not isinstance(value, Fraction):
+            faults.add("a finite time", str(value), f"{file}, row {row}, {place}")
+            return ()
+        times.append(value)
     rises = times[-1] >= times[0]
-    wrong = [i for i in range(1, len(times)) if (times[i] > times[i - 1]) is not rises]
-    wrong += [i for i in range(1, len(times)) if times[i] == times[i - 1] and not rises]
-    for i in sorted(wrong)[:MOST_ALIKE]:
-        now, before = _time_text(times[i]), _time_text(times[i - 1])
-        expected = "no time twice" if now == before else f"times that keep {_word(rises)}"
-        got = f"{now} again" if now == before else f"{now} after {before}"
-        faults.add(expected, got, f"{file}, row {i + 1}, column {cut(name)}")
-    add_more_alike(faults, len(wrong), f"{file}, column {cut(name)}")
+    in_order = operator.gt if rises else operator.lt
+    with alike(faults, f"{file}, {place}") as wrong:
+        for row, (before, now) in enumerate(pairwise(times), start=2):
+            if in_order(now, before):
+                continue
+            later, earlier = _time_text(now), _time_text(before)
+            if later == earlier:
+                expected, got = "no time twice", f"{later} again"
+            else:
+                expected = f"times that keep {'increasing' if rises else 'decreasing'}"
+                got = f"{later} after {earlier}"
+            wrong(expected, got, f"{file}, row {row}, {place}")
     return tuple(times)
-
-
-def _word(rises: bool) -> str:
-    return "increasing" if rises else "decreasing"
 
 
 def _time_text(time: Fraction) -> str:
     return f"{float(time):.17g}" if abs(time) < 10**300 else "a huge time"
-
-
-def _width(double: float) -> int:
-    """The bits of a number from its first to its last one."""
-    numerator = Fraction(double).numerator
-    return (numerator // (numerator & -numerator)).bit_length() if numerator else 0

@@ -16,13 +16,7 @@ from mpmath import mp
 
 from taylor_verify.scenes.mpfr import to_mpf
 from taylor_verify.scenes.reading.faults import Faults
-from taylor_verify.solvers.files.formats.column import (
-    CHUNK,
-    MOST_ALIKE,
-    Column,
-    add_more_alike,
-    shown,
-)
+from taylor_verify.solvers.files.formats.column import CHUNK, Column, alike, shown
 from taylor_verify.solvers.values import Value, exact, held
 
 Array = np.ndarray[Any, Any]
@@ -58,14 +52,6 @@ class Rows(Sequence[tuple[Value, ...]]):
         self._count = len(self._columns[0])
         self.finite: Flags = np.ones(self._count, dtype=bool) if finite is None else finite
 
-    @classmethod
-    def of(cls, rows: Sequence[Sequence[Value]]) -> Rows:
-        """Return rows that are formed already."""
-        if isinstance(rows, Rows):
-            return rows
-        finite = [all(isinstance(value, Fraction) for value in row) for row in rows]
-        return cls(list(zip(*rows, strict=True)), np.array(finite, dtype=bool))
-
     def __len__(self) -> int:
         return self._count
 
@@ -78,31 +64,30 @@ class Rows(Sequence[tuple[Value, ...]]):
     def __getitem__(self, place: int | slice) -> Any:
         if isinstance(place, slice):
             return tuple(self[k] for k in range(self._count)[place])
-        pairs = zip(self._columns, self._factors, strict=True)
-        return tuple(_scaled(exact(column[place]), factor) for column, factor in pairs)
+        return next(zip(*map(_exact, self._some([place])), strict=True))
 
     def __iter__(self) -> Iterator[tuple[Value, ...]]:
-        for part in chunks(self._count):
-            values = [map(exact, entries) for entries in self._some(part)]
-            yield from zip(*values, strict=True)
+        for part in _chunks(self._count):
+            yield from zip(*map(_exact, self._some(part)), strict=True)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Sequence):
             return NotImplemented
         return len(self) == len(other) and all(a == b for a, b in zip(self, other, strict=True))
 
-    def __hash__(self) -> int:
-        return hash((self._count, self[:1]))
+    def at(self, places: Sequence[int]) -> Rows:
+        """Return some of the rows."""
+        columns = [_some(column, places) for column in self._columns]
+        return Rows(columns, self.finite[list(places)], self._factors)
 
     def doubles(self, places: Sequence[int] | None = None) -> Floats:
         """Return some of the rows, or all, as float64, each number rounded once."""
-        count = self._count if places is None else len(places)
-        found = np.empty((count, len(self._columns)))
-        for part in chunks(count):
-            asked = part if places is None else places[part.start : part.stop]
-            for i, entries in enumerate(self._some(asked)):
-                found[part.start : part.stop, i] = _doubles(entries)
-        return found
+        places = range(self._count) if places is None else places
+        doubles = np.empty((len(places), len(self._columns)))
+        for part in _chunks(len(places)):
+            for i, entries in enumerate(self._some(places[part.start : part.stop])):
+                doubles[part.start : part.stop, i] = _doubles(entries)
+        return doubles
 
     def held(self, places: Sequence[int], bits: int) -> Array:
         """Return some of the rows as numbers of mpmath, exact where a number has at most so many bits."""
@@ -110,31 +95,45 @@ class Rows(Sequence[tuple[Value, ...]]):
         return np.stack(columns, axis=1) if len(places) else np.empty((0, len(columns)), object)
 
     def _some(self, places: Sequence[int]) -> Iterator[Raw]:
-        """The entries of each column at some places, as they are written where the unit is our own."""
+        """Yield the entries of each column at some places, as they are written in the scene's unit."""
         for column, factor in zip(self._columns, self._factors, strict=True):
             entries = _some(column, places)
             yield entries if factor == 1 else [_scaled(exact(raw), factor) for raw in entries]
 
 
+def _exact(values: Raw) -> Iterator[Value]:
+    return map(exact, values)
+
+
 def _scaled(value: Value, factor: Fraction) -> Value:
-    """A number in the scene's unit, exactly; NaN and infinity as they are."""
+    """Return a number in the scene's unit, exactly; NaN and infinity as they are."""
     return value * factor if isinstance(value, Fraction) else value
 
 
-def chunks(count: int) -> Iterator[range]:
+def _chunks(count: int) -> Iterator[range]:
     """Yield the places of so many rows, some thousands at once."""
     for begin in range(0, count, CHUNK):
         yield range(begin, min(begin + CHUNK, count))
 
 
 def _some(column: Raw, places: Sequence[int]) -> Any:
-    """Return the entries of a column at some places."""
+    """Return the entries of a column at some places, texts as a list."""
     if isinstance(places, range) and places and abs(places.step) == 1:
         low, high = sorted((places[0], places[-1]))
-        found: Any = column[low : high + 1]
-        found = found.tolist() if _is_text(found) else found
-        return found if places.step == 1 else found[::-1]
-    return [column[k] for k in places]
+        entries: Any = column[low : high + 1][:: places.step]
+    elif isinstance(column, np.ndarray):
+        entries = column[np.asarray(places, dtype=int)]
+    else:
+        return [column[k] for k in places]
+    return entries.tolist() if _is_array(entries, "T") else entries
+
+
+def _is_array(values: Raw, kind: str) -> bool:
+    return isinstance(values, np.ndarray) and values.dtype.kind == kind
+
+
+def _is_double(values: Raw) -> bool:
+    return _is_array(values, "f") and np.asarray(values).dtype.itemsize <= 8
 
 
 def _is_short(texts: Sequence[Any]) -> bool:
@@ -144,65 +143,44 @@ def _is_short(texts: Sequence[Any]) -> bool:
     return _SHORT_TEXTS.fullmatch("\n".join([*texts, ""])) is not None
 
 
-def _is_double(values: Raw) -> bool:
-    return (
-        isinstance(values, np.ndarray) and values.dtype.kind == "f" and values.dtype.itemsize <= 8
-    )
-
-
-def _is_text(values: Raw) -> bool:
-    return isinstance(values, np.ndarray) and values.dtype.kind == "T"
-
-
 def _doubles(values: Raw) -> Floats:
     if _is_double(values) or _is_short(values):
         return np.array(values, dtype=np.float64)
-    return np.array([float(exact(raw)) for raw in values])
+    return np.array([float(value) for value in _exact(values)])
 
 
 def _held(values: Raw, bits: int) -> Array:
-    if _is_double(values):
-        found = np.empty(len(values), dtype=object)
-        found[:] = [mp.mpf(value) for value in np.asarray(values, dtype=np.float64).tolist()]
-        return found
     if _is_short(values):
         with gmpy2.context(precision=bits):
             return to_mpf(np.array([gmpy2.mpfr(text) for text in values], dtype=object))
-    return (
-        held([[exact(raw)] for raw in values], bits)[:, 0] if len(values) else np.empty(0, object)
-    )
+    if _is_double(values):
+        numbers = list(map(mp.mpf, np.asarray(values, dtype=np.float64).tolist()))
+    else:
+        numbers = [held(value, bits) for value in _exact(values)]
+    return np.fromiter(numbers, dtype=object, count=len(numbers))
 
 
 # What is read of a file.
 
 
-def packed(values: Raw) -> Any:
-    """Return the same entries in less memory, if all of them are Python's floats."""
-    if isinstance(values, list) and all(type(value) is float for value in values):
-        return np.array(values)
-    return values
-
-
 def check_numbers(column: Column, file: str, faults: Faults) -> Flags:
     """Return which entries are finite numbers; what is no number, or too large, is a fault."""
-    finite, wrong = np.ones(len(column.values), dtype=bool), 0
-    for part in chunks(len(column.values)):
-        values = _some(column.values, part)
-        if _is_double(values):
-            sizes = np.abs(np.asarray(values, dtype=np.float64))
-            finite[part.start : part.stop] = np.isfinite(sizes)
-            suspects = np.isfinite(sizes) & (sizes >= _LARGEST)
-        else:
-            suspects = np.full(len(values), not _is_short(values))
-        for k in np.flatnonzero(suspects).tolist():
-            try:
-                finite[part[k]] = _is_finite(values[k])
-            except ValueError as error:
-                wrong += 1
-                if wrong <= MOST_ALIKE:
+    finite = np.ones(len(column.values), dtype=bool)
+    with alike(faults, f"{file}, column {column.name}") as wrong:
+        for part in _chunks(len(column.values)):
+            values = _some(column.values, part)
+            if _is_double(values):
+                sizes = np.abs(np.asarray(values, dtype=np.float64))
+                finite[part.start : part.stop] = np.isfinite(sizes)
+                suspects = np.isfinite(sizes) & (sizes >= _LARGEST)
+            else:
+                suspects = np.full(len(values), not _is_short(values))
+            for k in np.flatnonzero(suspects).tolist():
+                try:
+                    finite[part[k]] = _is_finite(values[k])
+                except ValueError as error:
                     place = f"{file}, row {part[k] + 1}, column {column.name}"
-                    faults.add(str(error), shown(values[k]), place)
-    add_more_alike(faults, wrong, f"{file}, column {column.name}")
+                    wrong(str(error), shown(values[k]), place)
     return finite
 
 
@@ -213,18 +191,13 @@ def _is_finite(raw: object) -> bool:
     return isinstance(value, Fraction)
 
 
-def exact_times(values: Raw) -> list[Value]:
-    """Return the entries of the column of times, each exactly."""
-    return [exact(raw) for part in chunks(len(values)) for raw in _some(values, part)]
-
-
 def written_digits(columns: Iterable[Column]) -> int | None:
     """Return the most significant digits of any decimal; None where they do not tell."""
     most = 0
     for _, values in columns:
-        if not isinstance(values, list) and not _is_text(values):
+        if not isinstance(values, list) and not _is_array(values, "T"):
             return None
-        for part in chunks(len(values)):
+        for part in _chunks(len(values)):
             texts = _some(values, part)
             if not _is_short(texts) and not all(_is_decimal(text) for text in texts):
                 return None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
@@ -22,13 +22,11 @@ _NUMBER: Final = (
     r"(?P<number>(?:[0-9]{1,20}(?:[.p][0-9]{1,40})?|\.[0-9]{1,40})(?:e[+-]?[0-9]{1,2})?)"
 )
 _WORD: Final = r"(?P<word>dt|h|step|step[ _-]?size|time[ _-]?step)"
+_STATED: Final = rf"(?<![A-Za-z]){_WORD}%s{_NUMBER}(?![0-9A-Za-z])"
 # run_h0.01, dt=0.01, rk4-step_0.5; neither ch0.1 nor dt10ms.
-_IN_NAME: Final = re.compile(rf"(?<![A-Za-z]){_WORD}[=_-]?{_NUMBER}(?![0-9A-Za-z])", re.IGNORECASE)
-_IN_COMMENT: Final = re.compile(
-    rf"(?<![A-Za-z]){_WORD}\s*[=:]\s*{_NUMBER}(?![0-9A-Za-z])", re.IGNORECASE
-)
+_IN_NAME: Final = re.compile(_STATED % "[=_-]?", re.IGNORECASE)
+_IN_COMMENT: Final = re.compile(_STATED % r"\s*[=:]\s*", re.IGNORECASE)
 _IN_JSON: Final = re.compile(rf'"{_WORD}"\s*:\s*"?{_NUMBER}"?\s*[,}}]', re.IGNORECASE)
-_DELIMITED: Final = (".csv", ".tsv", ".txt")
 # Comments that say the step stand at the top.
 _HEAD_BYTES: Final = 2**14
 # Rows are equally spaced if their spacing differs by no more than printed times make it.
@@ -78,15 +76,13 @@ def step_of_rows(times: Sequence[Fraction]) -> FileStep | None:
     if len(times) < _FEWEST_ROWS:
         return None
     mean = (times[-1] - times[0]) / (len(times) - 1)
-    even = all(
-        abs(times[k] - times[0] - k * mean) <= _EVEN * abs(mean) for k in range(1, len(times))
-    )
+    even = all(abs(t - times[0] - k * mean) <= _EVEN * abs(mean) for k, t in enumerate(times))
     return FileStep(float(abs(mean)), Source.ROWS) if even else None
 
 
-def _stated_in_head(path: Path) -> Iterable[re.Match[str]]:
+def _stated_in_head(path: Path) -> Iterator[re.Match[str]]:
     suffix = path.suffix.lower()
-    if suffix not in (*_DELIMITED, ".json"):
+    if suffix not in (".csv", ".tsv", ".txt", ".json"):
         return
     with path.open("rb") as file:
         head = file.read(_HEAD_BYTES).decode("utf-8", errors="replace")

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import json
 import re
-import shlex
 import sys
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -25,7 +24,7 @@ from taylor_verify.models.problem import Problem
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.solvers.options import options
 from taylor_verify.solvers.process import process
-from taylor_verify.solvers.solver import Lack, Solver
+from taylor_verify.solvers.solver import Lack, Solver, float64_alone, not_started
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
 PREFIX: Final = "fmu:"
@@ -55,8 +54,8 @@ class Fmu(Solver):
     setting: str = ""
 
     def unavailable(self, rung: Rung) -> str:
-        if rung.name != "f64":
-            return f"{self.name} is made in float64: f64 alone"
+        if reason := float64_alone(self.name, rung):
+            return reason
         if find_spec("fmpy") is None:
             return Lack(f"FMPy is not installed: {_INSTALL}", Outcome.NO_PACKAGE)
         return process.unavailable()
@@ -70,14 +69,12 @@ class Fmu(Solver):
 
     def solve(self, problem: Problem) -> Trajectory:
         if reason := self.unavailable(problem.rung):
-            outcome = reason.outcome if isinstance(reason, Lack) else Outcome.NOT_STARTED
-            return Trajectory(outcome, detail=str(reason))
+            return not_started(reason)
         with TemporaryDirectory(ignore_cleanup_errors=True) as folder:
             # Without the folder of the script in the path: modules in it have the names of libraries.
             runner = [sys.executable, "-P", str(_RUNNER)]
-            command = shlex.join([*runner, str(self.file), folder, self.settings])
-            asked = process.Process(f"{process.PREFIX}{command}", self.time_limit)
-            return asked.solve(problem)
+            command = [*runner, str(self.file), folder, self.settings]
+            return process.of(command, self.time_limit).solve(problem)
 
 
 def named(name: str) -> Fmu:

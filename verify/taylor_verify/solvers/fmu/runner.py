@@ -46,18 +46,18 @@ Names = Mapping[str, Sequence[str]]
 
 
 class Fault(Exception):
-    """What is wrong with the FMU or with its settings, as a sentence."""
+    """A fault of the FMU or of its settings, as a sentence."""
 
 
 def floats(number: Any) -> Any:
-    """The doubles of a number, vector or matrix: each is held twice, as `text` and as `hex`."""
+    """Return the doubles of a number, vector or matrix: each is there as `text` and as `hex`."""
     if isinstance(number, dict):
         return floats(number["hex"])
     return [floats(one) for one in number] if isinstance(number, list) else float.fromhex(number)
 
 
 def flat(value: Any, first: int, index: str = "") -> Iterator[tuple[str, float]]:
-    """The entries of a number, vector or matrix with their indices: `12` is row 1, column 2."""
+    """Yield the entries of a number, vector or matrix with their indices: `12` is row 1, column 2."""
     if not isinstance(value, list):
         yield index, value
         return
@@ -66,18 +66,17 @@ def flat(value: Any, first: int, index: str = "") -> Iterator[tuple[str, float]]
 
 
 def values_to_set(question: Any) -> dict[str, dict[str, float]]:
-    """The numbers of the question by quantity and by default name, none of which is neutral."""
-    found = {}
-    tables = (("", question["body"]), (_START, question["initial"]))
-    for suffix, table in tables:
+    """Return the numbers of the question by quantity and by default name."""
+    values = {}
+    for suffix, table in (("", question["body"]), (_START, question["initial"])):
         for key, number in table.items():
-            value = floats(number)
+            value, first = floats(number), 1
             if key == "attitude":
-                length = math.sqrt(sum(entry * entry for entry in value))
+                length, first = math.sqrt(sum(entry * entry for entry in value)), 0
                 value = [entry / length for entry in value]
-            letter, first = _LETTERS.get(key, key), 0 if key == "attitude" else 1
-            found[key + suffix] = {f"{letter}{i}{suffix}": v for i, v in flat(value, first)}
-    return found
+            letter = _LETTERS.get(key, key)
+            values[key + suffix] = {f"{letter}{i}{suffix}": v for i, v in flat(value, first)}
+    return values
 
 
 def neutral(quantity: str, values: Mapping[str, float]) -> bool:
@@ -90,16 +89,15 @@ class Variables:
     """The variables of an FMU by name, each of one real number."""
 
     def __init__(self, description: Any, names: Names) -> None:
-        kinds = ("Real", "Float64")
         self.references = {
             one.name: one.valueReference
             for one in description.modelVariables
-            if one.type in kinds and not getattr(one, "dimensions", None)
+            if one.type in ("Real", "Float64") and not getattr(one, "dimensions", None)
         }
         self.names = names
 
     def of(self, quantity: str, default: Sequence[str]) -> list[str]:
-        """The variables of a quantity, in the order of the default names; "" for what has none."""
+        """Return the variables of a quantity, in the order of the default names; "" for what has none."""
         if quantity not in self.names:
             return list(default)
         names = list(self.names[quantity])
@@ -115,60 +113,61 @@ class Variables:
         return names
 
     def _entries(self, name: str, count: int) -> list[str]:
-        """The entries of a matrix or of a vector of the FMU; a vector may be the diagonal."""
+        """Return the entries of a matrix or of a vector of the FMU; a vector may be the diagonal."""
         if count == 9 and f"{name}[1,1]" in self.references:
             return [f"{name}[{i},{k}]" for i in (1, 2, 3) for k in (1, 2, 3)]
         return [f"{name}[{i}]" for i in range(1, (3 if count == 9 else count) + 1)]
 
     def settings(self, question: Any, fixed: Sequence[str]) -> Iterator[tuple[int, float]]:
-        """References and values of all that is set; raises Fault for what the FMU cannot be told."""
+        """Yield references and values of all that is set; raise Fault for what the FMU cannot be told."""
         wanted = values_to_set(question)
         told = {key for key in wanted if key in fixed or neutral(key, wanted[key])}
         for key, values in wanted.items():
-            names = self.of(key, list(values))
-            pairs = list(zip(names, values.values(), strict=True))
-            known = [(self.references[name], v) for name, v in pairs if name in self.references]
-            unknown = [value for name, value in pairs if name not in self.references]
-            if key not in fixed and known:
+            unknown, known = False, []
+            for name, value in zip(self.of(key, list(values)), values.values(), strict=True):
+                if name in self.references:
+                    known.append((self.references[name], value))
+                else:
+                    unknown = unknown or value != 0
+            if known and key not in fixed:
                 yield from known
-                told |= {key} if not any(unknown) else set()
-        for group in _SAME:
-            told |= set(group) if told & set(group) else set()
+                told |= set() if unknown else {key}
+        for first, other in _SAME:
+            told |= {first, other} if told & {first, other} else set()
         others = {other for first, other in _SAME if first in wanted}
         if missing := [key for key in wanted if key not in told | others]:
-            defaults = [list(wanted[key]) for key in missing]
-            listed = ", ".join(
-                f"{k} ({n[0]} ... {n[-1]})" for k, n in zip(missing, defaults, strict=True)
-            )
+            names = {key: list(wanted[key]) for key in missing}
+            listed = ", ".join(f"{key} ({n[0]} ... {n[-1]})" for key, n in names.items())
             raise Fault(
                 f"expected variables for {listed}, got none or not all @ FMU (name its own: "
                 f"?{missing[0]}=NAME,NAME,...; what is built into it: ?fixed={missing[0]})"
             )
 
     def outputs(self, columns: Sequence[str]) -> list[int]:
-        """The references of the columns of the answer."""
-        found: dict[str, str] = {}
+        """Return the references of the columns of the answer."""
+        names: dict[str, str] = {}
         for key, letter in _LETTERS.items():
-            own = [name for name in columns if name[0] == letter]
-            found |= dict(zip(own, self.of(key, own), strict=True)) if own else {}
-        missing = [name for name in found.values() if name not in self.references]
-        if missing:
+            if own := [name for name in columns if name[0] == letter]:
+                names |= dict(zip(own, self.of(key, own), strict=True))
+        if missing := [name for name in names.values() if name not in self.references]:
             raise Fault(
-                f"expected outputs {' '.join(found)}, got no {' '.join(missing)} @ FMU "
+                f"expected outputs {' '.join(names)}, got no {' '.join(missing)} @ FMU "
                 "(name its own by ?omega=NAME,NAME,NAME)"
             )
-        return [self.references[found[name]] for name in columns]
+        return [self.references[names[name]] for name in columns]
 
 
 def points(elapsed: Sequence[float], longest: float, varies: bool) -> Iterator[list[float]]:
-    """The communication points up to each sample: whole steps of equal length, the last one at it."""
+    """Yield the communication points up to each sample: whole steps of equal length, the last one at it."""
     lengths = []
     for before, instant in pairwise([0.0, *elapsed]):
-        count = math.ceil((instant - before) / longest * (1 - _EQUAL)) if instant > before else 0
-        lengths += [(instant - before) / count] if count else []
-        yield [before + k * (instant - before) / count for k in range(1, count)] + [instant] * (
-            count > 0
-        )
+        span = instant - before
+        count = math.ceil(span / longest * (1 - _EQUAL)) if span > 0 else 0
+        if not count:
+            yield []
+            continue
+        lengths.append(span / count)
+        yield [*(before + k * span / count for k in range(1, count)), instant]
     if not varies and lengths and max(lengths) - min(lengths) > _EQUAL * max(lengths):
         raise Fault(
             f"expected a step that divides every distance of samples, got {longest:g} @ step (this FMU "
@@ -186,7 +185,7 @@ def run(path: str, folder: str, settings: Any, question: Any) -> dict[str, Any]:
     if slave is None or description.fmiVersion == "1.0":
         raise Fault(f"expected an FMU for co-simulation of FMI 2 or 3, got none @ {path}")
     variables = Variables(description, settings["names"])
-    inputs = list(variables.settings(question, settings["fixed"]))
+    inputs = dict(variables.settings(question, settings["fixed"]))
     columns = question["columns"][1:]
     outputs = variables.outputs(columns)
     default = getattr(description.defaultExperiment, "stepSize", None)
@@ -201,7 +200,7 @@ def run(path: str, folder: str, settings: Any, question: Any) -> dict[str, Any]:
     write, get = (fmu.setFloat64, fmu.getFloat64) if is_new else (fmu.setReal, fmu.getReal)
     if not is_new:
         fmu.setupExperiment(startTime=0.0)
-    write([reference for reference, _ in inputs], [value for _, value in inputs])
+    write(list(inputs), list(inputs.values()))
     fmu.enterInitializationMode()
     fmu.exitInitializationMode()
     rows, now, began = [], 0.0, perf_counter()
@@ -209,15 +208,12 @@ def run(path: str, folder: str, settings: Any, question: Any) -> dict[str, Any]:
         for point in way:
             fmu.doStep(currentCommunicationPoint=now, communicationStepSize=point - now)
             now = point
-        rows.append([float(value) for value in get(outputs)])
+        rows.append([float(value).hex() for value in get(outputs)])
     return {
         "t": question["time"]["times"]["hex"],
         "steps": sum(map(len, ways)),
         "seconds": perf_counter() - began,
-        **{
-            name: [value.hex() for value in values]
-            for name, values in zip(columns, zip(*rows, strict=True), strict=True)
-        },
+        **dict(zip(columns, zip(*rows, strict=True), strict=True)),
     }
 
 

@@ -1,4 +1,4 @@
-"""What the geometric integrators have in common: a body in float64, and equal steps to each sample.
+"""Equal steps to each sample, with a body in float64: the part that geometric integrators share.
 
 H  angular momentum, body axes        K  inverse inertia tensor, omega = K H
 M  constant moment, body axes         q  attitude quaternion, body to space
@@ -12,10 +12,10 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
-from math import ceil, isfinite
+from math import ceil
 from time import perf_counter
 from typing import Any, ClassVar, Final, NamedTuple, Self
 
@@ -23,10 +23,10 @@ import numpy as np
 
 from taylor_verify.models.problem import Problem
 from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.precision import Rung, exact_value
+from taylor_verify.scenes.precision import Rung
 from taylor_verify.solvers.geometric.vectors import Matrix, Quaternion, Vector, conjugate, product
-from taylor_verify.solvers.solver import Solver
-from taylor_verify.solvers.trajectory import Outcome, Trajectory, from_scaled
+from taylor_verify.solvers.solver import Solver, float64_alone
+from taylor_verify.solvers.trajectory import Outcome, Trajectory, of_rows
 
 # At some ten microseconds a step these take a quarter of an hour: more is not begun.
 _MOST_STEPS: Final = 10**8
@@ -37,7 +37,7 @@ class Unsolved(Exception):
 
 
 class Stepped(NamedTuple):
-    """The momentum after a step, what the frame's turn is made from, and what the step took.
+    """The momentum after a step, the trace that the frame's turn is made from, and the step's cost.
 
     ``evaluations`` counts the angular velocities formed, each a derivative of the whole state.
     """
@@ -91,37 +91,14 @@ class FixedStep(Solver):
 
     @abstractmethod
     def stepping(self, body: Body, H: Vector, h: float) -> Step:
-        """The map of one step h of a motion that has the momentum H."""
+        """Return the map of one step h of a motion that has the momentum H."""
 
     @abstractmethod
     def turn(self, trace: Any) -> Quaternion:
-        """The turn of the frame in one step, as seen from the frame."""
+        """Return the turn of the frame in one step, as seen from the frame."""
 
     def unavailable(self, rung: Rung) -> str:
-        return "" if rung.name == "f64" else f"{self.name} is made in float64: f64 alone"
-
-    def solve(self, problem: Problem) -> Trajectory:
-        if reason := self.unsuited(problem) or self.unavailable(problem.rung):
-            return Trajectory(Outcome.NOT_STARTED, detail=reason)
-        course = _Course(self, problem)
-        if not course.steps <= _MOST_STEPS:
-            detail = f"{float(course.steps):.3g} steps, more than {float(_MOST_STEPS):.3g}"
-            return Trajectory(Outcome.STEP_LIMIT, detail=detail)
-        began = perf_counter()
-        outcome, detail = course.run()
-        seconds = perf_counter() - began
-        quantities = {}
-        if outcome is Outcome.FINISHED:
-            exact = [[exact_value(value) for value in row] for row in course.rows]
-            quantities = from_scaled(problem, exact)
-        return Trajectory(
-            outcome,
-            quantities,
-            detail,
-            steps=course.taken,
-            evaluations=course.evaluations,
-            seconds=seconds,
-        )
+        return float64_alone(self.name, rung)
 
     def unsuited(self, problem: Problem) -> str:
         if not isinstance(problem.given.body, RigidBody):
@@ -132,70 +109,81 @@ class FixedStep(Solver):
             return f"{self.name} is made for a body without a moment"
         return ""
 
-
-class _Course:
-    """One run: the steps that lead to each sample, what they took, and H with q at the samples."""
-
-    def __init__(self, solver: FixedStep, problem: Problem) -> None:
-        self.solver, self.problem = solver, problem
-        self.spans = _spans(problem.times)
+    def solve(self, problem: Problem) -> Trajectory:
+        if reason := self.unsuited(problem) or self.unavailable(problem.rung):
+            return Trajectory(Outcome.NOT_STARTED, detail=reason)
         # Of the scene's own times: rounded ones may be a whisker longer than a multiple of the step.
-        self.counts = [ceil(abs(t) / solver.step) for t in _spans(problem.scene.clock.elapsed)]
-        self.taken = self.evaluations = 0
-        self.rows: list[list[float]] = []
-
-    @property
-    def steps(self) -> int:
-        return sum(self.counts)
-
-    def run(self) -> tuple[Outcome, str]:
-        """Take all the steps; how that ended, and what there is to say about it."""
+        counts = [ceil(abs(t) / self.step) for t in _spans(problem.scene.clock.elapsed)]
+        if not sum(counts) <= _MOST_STEPS:
+            detail = f"{float(sum(counts)):.3g} steps, more than {float(_MOST_STEPS):.3g}"
+            return Trajectory(Outcome.STEP_LIMIT, detail=detail)
+        run = _Run(self)
+        began = perf_counter()
         try:
-            self._follow()
+            rows = run.rows(problem, counts)
         except Unsolved as error:
-            return Outcome.INTERRUPTED, str(error)
+            return run.ended(Outcome.INTERRUPTED, began, str(error))
         except (ArithmeticError, ValueError):
             # Python's floats raise where those of NumPy are no number: sin(inf), 1/0.
-            return Outcome.NON_FINITE, ""
-        if not all(isfinite(value) for row in self.rows for value in row):
-            return Outcome.NON_FINITE, ""
-        return Outcome.FINISHED, ""
+            return run.ended(Outcome.NON_FINITE, began)
+        ended = run.ended(Outcome.FINISHED, began)
+        found = of_rows(problem, rows)
+        return replace(ended, outcome=found.outcome, quantities=found.quantities)
 
-    def _follow(self) -> None:
-        body = Body.of(self.problem)
-        start = [float(value) for value in self.problem.initial_momenta]
+
+class _Run:
+    """A run, its steps and evaluations counted."""
+
+    def __init__(self, solver: FixedStep) -> None:
+        self.solver = solver
+        self.steps = self.evaluations = 0
+
+    def ended(self, outcome: Outcome, began: float, detail: str = "") -> Trajectory:
+        return Trajectory(
+            outcome,
+            detail=detail,
+            steps=self.steps,
+            evaluations=self.evaluations,
+            seconds=perf_counter() - began,
+        )
+
+    def rows(self, problem: Problem, counts: Sequence[int]) -> list[list[float]]:
+        """Return H and, where it is tracked, q at the samples, so many steps after one another."""
+        body = Body.of(problem)
+        start = [float(value) for value in problem.initial_momenta]
         H: Vector = (start[0], start[1], start[2])
         q: Quaternion | None = (start[3], start[4], start[5], start[6]) if start[3:] else None
         axes = None
         if self.solver.in_principal_axes and not body.is_diagonal:
             body, axes = principal(body)
             H, q = _into(axes, H), q and product(q, axes)
-        for span, count in zip(self.spans, self.counts, strict=True):
-            H, q = self._to_sample(body, H, q, span, count)
-            self.rows.append([*H, *(q or ())] if axes is None else _out_of(axes, H, q))
+        rows = []
+        for span, count in zip(_spans(problem.times), counts, strict=True):
+            if count:
+                H, q = self._to_sample(body, H, q, float(span / count), count)
+            rows.append([*H, *(q or ())] if axes is None else _out_of(axes, H, q))
+        return rows
 
     def _to_sample(
-        self, body: Body, H: Vector, q: Quaternion | None, span: Fraction, count: int
+        self, body: Body, H: Vector, q: Quaternion | None, h: float, count: int
     ) -> tuple[Vector, Quaternion | None]:
-        if not count:
-            return H, q
-        step = self.solver.stepping(body, H, float(span / count))
+        step = self.solver.stepping(body, H, h)
         for _ in range(count):
             H, trace, evaluations = step(H)
             if q is not None:
                 q = product(q, self.solver.turn(trace))
-            self.taken += 1
+            self.steps += 1
             self.evaluations += evaluations
         return H, q
 
 
 def _spans(times: Sequence[Fraction]) -> list[Fraction]:
-    """From the start, which is not always a sample, to the first, and on from sample to sample."""
+    """Return the times from the start, which is not always a sample, and from sample to sample."""
     return [after - before for before, after in pairwise((Fraction(0), *times))]
 
 
 def principal(body: Body) -> tuple[Body, Quaternion]:
-    """The body in its principal axes, and the turn that takes those to the body's own.
+    """Return the body in its principal axes, and the turn that takes those to the body's own.
 
     They come from an eigenvalue problem in float64: the body that is then followed differs from the
     problem's by some units of roundoff of its largest entry.
@@ -209,7 +197,7 @@ def principal(body: Body) -> tuple[Body, Quaternion]:
 
 
 def _quaternion(R: np.ndarray[Any, Any]) -> Quaternion:
-    """The unit quaternion of a rotation: q q^T is linear in R, and its longest column is q."""
+    """Return the unit quaternion of a rotation: q q^T is linear in R, and its longest column is q."""
     (a, b, c), (d, e, f), (g, h, i) = R
     columns = 0.25 * np.array(
         [
@@ -225,12 +213,12 @@ def _quaternion(R: np.ndarray[Any, Any]) -> Quaternion:
 
 
 def _into(axes: Quaternion, a: Vector) -> Vector:
-    """A vector of body axes, in principal ones."""
+    """Return a vector of body axes in principal ones."""
     _, *rest = product(product(conjugate(axes), (0.0, *a)), axes)
     return (rest[0], rest[1], rest[2])
 
 
 def _out_of(axes: Quaternion, H: Vector, q: Quaternion | None) -> list[float]:
-    """Momentum and attitude of principal axes, in those of the body."""
+    """Return momentum and attitude of principal axes in those of the body."""
     back = conjugate(axes)
     return [*_into(back, H), *(product(q, back) if q else ())]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from fractions import Fraction
+from functools import partial
 from typing import Final
 
 from taylor_verify.solvers.geometric.fixed_step import FixedStep
@@ -13,24 +14,17 @@ from taylor_verify.solvers.geometric.munthe_kaas import MuntheKaas
 from taylor_verify.solvers.geometric.splitting import Splitting
 from taylor_verify.solvers.options import options
 
-PREFIX: Final = "geometric:"
-
-
-def _preprocessed(step: Fraction, name: str) -> MoserVeselov:
-    return MoserVeselov(step, name, preprocessed=True)
-
-
 METHODS: Final[Mapping[str, Callable[[Fraction, str], FixedStep]]] = {
     "implicit-midpoint": ImplicitMidpoint,
     "splitting": Splitting,
     "moser-veselov": MoserVeselov,
-    "preprocessed-moser-veselov": _preprocessed,
+    "preprocessed-moser-veselov": partial(MoserVeselov, preprocessed=True),
     "lie-rk4": MuntheKaas,
 }
 
 
 def named(name: str) -> FixedStep:
-    """The integrator of that name, with its step in the scene's unit of time.
+    """Return the integrator of that name, with its step in the scene's unit of time.
 
     Raises ValueError for a method that there is not, and for a step that is missing or not positive.
     """

@@ -77,14 +77,14 @@ class MoserVeselov(FixedStep):
 
 
 def _with_sigma(columns: Matrix, K: Matrix, h: float, m: Vector, omega: Vector) -> Matrix:
-    """The columns less m times the gradient of sigma, h^2 K omega/2."""
+    """Return the columns less m times the gradient of sigma, h^2 K omega/2."""
     g1, g2, g3 = scaled(-h * h / 2, apply(K, omega))
     c1, c2, c3 = columns
     return (ahead(c1, g1, m), ahead(c2, g2, m), ahead(c3, g3, m))
 
 
 def _modified(K: Matrix, m: Vector, h: float) -> Matrix:
-    """K~, the tensor with which the second-order algorithm is of fourth order."""
+    """Return K~, the tensor with which the second-order algorithm is of fourth order."""
     (k11, k12, k13), (_, k22, k23), (_, _, k33) = K
     e1 = k11 + k22 + k33
     e2 = k11 * k22 + k22 * k33 + k33 * k11 - k12 * k12 - k23 * k23 - k13 * k13

@@ -57,6 +57,6 @@ class MuntheKaas(FixedStep):
 
 
 def _inverse_dexp(theta: Vector, omega: Vector) -> Vector:
-    """The rate of theta at which R0 exp([theta]x) turns with omega, seen from the body."""
+    """Return the rate of theta at which R0 exp([theta]x) turns with omega, seen from the body."""
     once = cross(theta, omega)
     return ahead(ahead(omega, 0.5, once), 1 / 12, cross(theta, once))

@@ -18,7 +18,7 @@ System = Callable[[Vector], tuple[Vector, Matrix]]
 
 
 def root(system: System, guess: Vector) -> tuple[Vector, int]:
-    """The zero of a map given with the columns of its derivative, and how often it was evaluated.
+    """Return the zero of a map with the columns of its derivative, and the number of evaluations.
 
     Raises Unsolved where the iteration does not settle.
     """
@@ -35,7 +35,7 @@ def root(system: System, guess: Vector) -> tuple[Vector, int]:
 
 
 def midpoint_columns(K: Matrix, c: float, v: Vector, omega: Vector) -> Matrix:
-    """The columns of d(v - c v x K v)/dv = 1 - c ([v]x K - [K v]x), with omega = K v."""
+    """Return the columns of d(v - c v x K v)/dv = 1 - c ([v]x K - [K v]x), with omega = K v."""
     return (
         _column((1.0, 0.0, 0.0), K, c, v, omega),
         _column((0.0, 1.0, 0.0), K, c, v, omega),

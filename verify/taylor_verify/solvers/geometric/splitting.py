@@ -61,7 +61,7 @@ class Splitting(FixedStep):
 
 
 def _seen_from_a_turned_frame(angle: float, x: float, y: float) -> tuple[float, float]:
-    """The two components across the axis, when the frame has turned by the angle about it.
+    """Return the two components across the axis, when the frame has turned by the angle about it.
 
     By increments: cos(angle) is rounded by up to 2^-54 however small the angle is, and where step after
     step turns by nearly the same one, that alone makes |H| drift in proportion to time.

@@ -43,7 +43,7 @@ def scaled(s: float, a: Vector) -> Vector:
 
 
 def solved(columns: Matrix, b: Vector) -> Vector:
-    """The x with x1 c1 + x2 c2 + x3 c3 = b, by Cramer's rule; the columns are nearly orthonormal."""
+    """Return the x with x1 c1 + x2 c2 + x3 c3 = b, by Cramer's rule; the columns are nearly orthonormal."""
     c1, c2, c3 = columns
     minor = cross(c2, c3)
     over = 1 / dot(c1, minor)
@@ -51,7 +51,7 @@ def solved(columns: Matrix, b: Vector) -> Vector:
 
 
 def product(p: Quaternion, q: Quaternion) -> Quaternion:
-    """First the turn q, then p."""
+    """Return the turn that is q first, and then p."""
     p0, p1, p2, p3 = p
     q0, q1, q2, q3 = q
     return (
@@ -72,14 +72,14 @@ def sine_over(x: float) -> float:
 
 
 def exponential(theta: Vector) -> Quaternion:
-    """The turn by the angle |theta| about theta."""
+    """Return the turn by the angle |theta| about theta."""
     half = sqrt(dot(theta, theta)) / 2
     s = sine_over(half) / 2
     return (cos(half), s * theta[0], s * theta[1], s * theta[2])
 
 
 def cayley(c: Vector) -> Quaternion:
-    """The turn (1 - [c]x)^-1 (1 + [c]x), by the angle 2 atan |c| about c."""
+    """Return the turn (1 - [c]x)^-1 (1 + [c]x), by the angle 2 atan |c| about c."""
     over = 1 / sqrt(1 + dot(c, c))
     return (over, over * c[0], over * c[1], over * c[2])
 

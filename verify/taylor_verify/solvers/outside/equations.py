@@ -21,7 +21,7 @@ Jit = Callable[[Any], Any]
 
 
 def euler(s: Any, p: Any) -> tuple[Any, ...]:
-    """H' and omega: 3 and 3."""
+    """Return H' and omega: 3 and 3."""
     w1 = p[0] * s[0] + p[1] * s[1] + p[2] * s[2]
     w2 = p[3] * s[0] + p[4] * s[1] + p[5] * s[2]
     w3 = p[6] * s[0] + p[7] * s[1] + p[8] * s[2]
@@ -36,7 +36,7 @@ def euler(s: Any, p: Any) -> tuple[Any, ...]:
 
 
 def kirchhoff(s: Any, p: Any) -> tuple[Any, ...]:
-    """x', y', Omega and U: four times 3."""
+    """Return x', y', Omega and U: four times 3."""
     x1, x2, x3, y1, y2, y3 = s[0], s[1], s[2], s[3], s[4], s[5]
     U1 = p[0] * x1 + p[1] * x2 + p[2] * x3 + p[9] * y1 + p[10] * y2 + p[11] * y3
     U2 = p[3] * x1 + p[4] * x2 + p[5] * x3 + p[12] * y1 + p[13] * y2 + p[14] * y3
@@ -61,7 +61,7 @@ def kirchhoff(s: Any, p: Any) -> tuple[Any, ...]:
 
 
 def attitude_rate(q0: Any, q1: Any, q2: Any, q3: Any, w1: Any, w2: Any, w3: Any) -> tuple[Any, ...]:
-    """q' = q (0, omega) / 2."""
+    """Return q' = q (0, omega) / 2."""
     return (
         0.5 * (-q1 * w1 - q2 * w2 - q3 * w3),
         0.5 * (q0 * w1 + q2 * w3 - q3 * w2),
@@ -71,7 +71,7 @@ def attitude_rate(q0: Any, q1: Any, q2: Any, q3: Any, w1: Any, w2: Any, w3: Any)
 
 
 def to_space(q0: Any, q1: Any, q2: Any, q3: Any, v1: Any, v2: Any, v3: Any) -> tuple[Any, ...]:
-    """v + 2 r x (r x v + q0 v), r = (q1, q2, q3): the vector in space axes."""
+    """Return the vector in space axes: v + 2 r x (r x v + q0 v), r = (q1, q2, q3)."""
     a1 = q2 * v3 - q3 * v2 + q0 * v1
     a2 = q3 * v1 - q1 * v3 + q0 * v2
     a3 = q1 * v2 - q2 * v1 + q0 * v3
@@ -87,7 +87,7 @@ def _as_it_is(function: Any) -> Any:
 
 
 def rates(columns: list[str], jit: Jit = _as_it_is) -> Rates:
-    """The rates of all that an answer with these columns needs; ``jit`` compiles each function."""
+    """Return the rates of all that an answer with these columns needs; ``jit`` compiles each function."""
     turn: Vectors = jit(attitude_rate)
     shift: Vectors = jit(to_space)
     is_euler, turns, shifts = "w1" in columns, "q0" in columns, "c1" in columns

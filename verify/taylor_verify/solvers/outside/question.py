@@ -31,7 +31,7 @@ Settings = SimpleNamespace
 
 @dataclass(frozen=True)
 class Question:
-    """One problem; see equations.py for the order of ``state`` and ``parameters``.
+    """A problem; see equations.py for the order of ``state`` and ``parameters``.
 
     ``instants`` are the absolute times since the start that are asked for, from 0 on and strictly
     rising; ``columns`` the names that the answer needs besides t, and ``times`` is its column t.
@@ -80,7 +80,7 @@ def _setting(argument: str) -> tuple[str, str | float]:
 
 
 def twice(propagate: Callable[[], Any]) -> tuple[Any, float, float]:
-    """What a propagation finds, its seconds, and how many more the first one took to compile.
+    """Return the result of a propagation, its seconds, and how many more the first one took to compile.
 
     It is done twice: the first may compile, load and allocate, the second one propagates alone.
     """
@@ -96,7 +96,7 @@ def _timed(propagate: Callable[[], Any]) -> tuple[Any, float]:
 
 
 def compiled_rates(question: Question) -> Any:
-    """``fill(state, out)``, the rates compiled by numba; the body's numbers are constants of it."""
+    """Return ``fill(state, out)``, the rates compiled by numba; the body's numbers are constants of it."""
     import numpy
     from numba import njit
 
@@ -116,7 +116,7 @@ def compiled_rates(question: Question) -> Any:
 
 
 def floats(number: Any) -> Any:
-    """The doubles of a number, vector or matrix: each is held twice, as `text` and as `hex`."""
+    """Return the doubles of a number, vector or matrix: each is there as `text` and as `hex`."""
     if isinstance(number, dict):
         return floats(number["hex"])
     if isinstance(number, list):
@@ -124,9 +124,22 @@ def floats(number: Any) -> Any:
     return float.fromhex(number)
 
 
+# The columns of each model's answer that the equations lead to, in the order of the state.
+COLUMNS = {
+    "euler": "w1 w2 w3 q0 q1 q2 q3",
+    "kirchhoff": "x1 x2 x3 y1 y2 y3 q0 q1 q2 q3 c1 c2 c3",
+}
+
+
 def read(scene: Any) -> Question:
+    """Return the question in a document; exit with a sentence if it asks for what is not computed."""
     body, initial, clock = scene["body"], scene["initial"], scene["time"]
     columns = scene["columns"][1:]
+    if scene["model"] not in COLUMNS:
+        raise SystemExit(f"expected the model {' or '.join(COLUMNS)}, got {scene['model']}")
+    known = COLUMNS[scene["model"]]
+    if unknown := [name for name in columns if name not in known.split()]:
+        raise SystemExit(f"expected columns among {known}, got {' '.join(unknown)} @ columns")
     if scene["model"] == "euler":
         parameters = _flat(body["inverse_inertia"]) + floats(body["moment"])
         state = floats(initial["angular_momentum"])
@@ -157,7 +170,7 @@ def _flat(matrix: Any) -> list[float]:
 
 
 def _unit(q: list[float]) -> list[float]:
-    """The protocol gives a quaternion of any length."""
+    """Return the unit quaternion: the protocol gives one of any length."""
     length = math.sqrt(sum(entry * entry for entry in q))
     return [entry / length for entry in q]
 
@@ -187,6 +200,6 @@ def _written(question: Question, solved: Solved) -> dict[str, Any]:
 
 
 def _with_omega(p: Row, state: list[float]) -> list[float]:
-    """omega = K H in place of H."""
+    """Return the state with omega = K H in place of H."""
     H = state[:3]
     return [sum(p[3 * i + j] * H[j] for j in range(3)) for i in range(3)] + state[3:]

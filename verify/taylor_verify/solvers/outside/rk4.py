@@ -30,12 +30,12 @@ Rates = Callable[[float, Vector], Vector]
 
 
 def floats(number: Any) -> Any:
-    """The doubles of a number, vector or matrix: each is held twice, as `text` and as `hex`."""
+    """Return the doubles of a number, vector or matrix: each is there as `text` and as `hex`."""
     if isinstance(number, dict):
         return floats(number["hex"])
-    return (
-        [floats(entry) for entry in number] if isinstance(number, list) else float.fromhex(number)
-    )
+    if isinstance(number, list):
+        return [floats(entry) for entry in number]
+    return float.fromhex(number)
 
 
 def cross(a: Vector, b: Vector) -> Vector:
@@ -146,7 +146,7 @@ def loads_of(
 
 
 def step(rates: Rates, t: float, state: Vector, h: float) -> Vector:
-    """One step of the classical Runge-Kutta method."""
+    """Take one step of the classical Runge-Kutta method."""
 
     def moved(k: Vector, by: float) -> Vector:
         return [s + by * r for s, r in zip(state, k, strict=True)]
@@ -159,9 +159,28 @@ def step(rates: Rates, t: float, state: Vector, h: float) -> Vector:
     return [s + h / 6 * (a + 2 * b + 2 * c + d) for s, a, b, c, d in slopes]
 
 
+# The columns of an answer that this program knows, in the order of its state with omega for H.
+COLUMNS = {
+    "euler": ["w1", "w2", "w3", "q0", "q1", "q2", "q3"],
+    "kirchhoff": ["x1", "x2", "x3", "y1", "y2", "y3", "q0", "q1", "q2", "q3", "c1", "c2", "c3"],
+}
+
+
+def known_columns(scene: Any) -> list[str]:
+    """Return the columns of the scene's model; exit with a sentence if the scene asks for others."""
+    model, asked = scene["model"], scene["columns"][1:]
+    if model not in COLUMNS:
+        sys.exit(f"rk4: expected the model {' or '.join(COLUMNS)}, got {model}")
+    if unknown := [name for name in asked if name not in COLUMNS[model]]:
+        expected = " ".join(COLUMNS[model])
+        sys.exit(f"rk4: expected columns among {expected}, got {' '.join(unknown)} @ columns")
+    return COLUMNS[model]
+
+
 def main() -> None:
     longest = float(sys.argv[1]) if len(sys.argv) > 1 else 0.01
     scene = json.load(sys.stdin)
+    names = known_columns(scene)
     body, initial, time = scene["body"], scene["initial"], scene["time"]
 
     # The quaternion is given with any length.
@@ -169,12 +188,10 @@ def main() -> None:
     length = math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
     q = [entry / length for entry in q]
     if scene["model"] == "euler":
-        names = ["w1", "w2", "w3", "q0", "q1", "q2", "q3"]
         start = floats(initial["angular_momentum"])
         rates = euler(body, loads_of(scene.get("manufactured"), start, free_euler(body)))
         state = start + q
     else:
-        names = ["x1", "x2", "x3", "y1", "y2", "y3", "q0", "q1", "q2", "q3", "c1", "c2", "c3"]
         start = floats(initial["linear_impulse"]) + floats(initial["angular_impulse"])
         rates = kirchhoff(body, loads_of(scene.get("manufactured"), start, free_kirchhoff(body)))
         state = start + q + floats(initial["centre"])

@@ -29,6 +29,7 @@ right-hand side does, in the argument that CyRK keeps for it.
 from __future__ import annotations
 
 import ctypes
+from functools import cache
 from typing import Any
 
 from question import Question, Settings, Solved, answer, compiled_rates, twice
@@ -45,17 +46,11 @@ MOST_MEMORY = 2000
 
 
 def solve(question: Question, settings: Settings) -> Solved:
-    address: list[int] = []
-
-    def propagate() -> tuple[Any, int, int]:
-        if not address:
-            compiled = _right_hand_side(question)
-            # Whoever holds the address must hold the code behind it too.
-            propagate.compiled = compiled  # type: ignore[attr-defined]
-            address.append(compiled.address)
-        return _propagated(address[0], question, settings)
-
-    (states, steps, evaluations), seconds, compiling = twice(propagate)
+    # Compiled by the first propagation; whoever holds the address must hold the code behind it too.
+    compiled = cache(lambda: _right_hand_side(question))
+    (states, steps, evaluations), seconds, compiling = twice(
+        lambda: _propagated(compiled().address, question, settings)
+    )
     return Solved(states, steps, evaluations, seconds, compiling)
 
 
@@ -73,7 +68,7 @@ def _right_hand_side(question: Question) -> Any:
 
 
 def _propagated(address: int, question: Question, settings: Settings) -> tuple[Any, int, int]:
-    """The states, the steps and the evaluations; the arguments are those of CyRK's own C function."""
+    """Return the states, the steps and the evaluations, by the C function of CyRK itself."""
     import numpy
     from CyRK.cy.common import MAX_SIZE
     from CyRK.cy.pyhelpers import find_ode_method_int

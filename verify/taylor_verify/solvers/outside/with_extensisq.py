@@ -44,7 +44,7 @@ def solve(question: Question, settings: Settings) -> Solved:
     steps = 0
 
     class Counted(method):  # type: ignore[misc, valid-type]
-        """The same; solve_ivp says how often it evaluated, not how many steps it took."""
+        """The method with its steps counted: solve_ivp counts evaluations alone."""
 
         def step(self) -> Any:
             nonlocal steps

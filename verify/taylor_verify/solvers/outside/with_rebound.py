@@ -23,23 +23,20 @@ right-hand side does, in ``ref``, the field of its ODE that REBOUND leaves to th
 from __future__ import annotations
 
 import ctypes
+from functools import cache
 from typing import Any
 
 from question import Question, Settings, Solved, answer, compiled_rates, twice
 
-# The only one that takes equations of one's own.
 METHODS = {"bs": "bs"}
 
 
 def solve(question: Question, settings: Settings) -> Solved:
-    compiled: list[Any] = []
-
-    def propagate() -> tuple[Any, int, int]:
-        if not compiled:
-            compiled.append(_right_hand_side(question))
-        return _propagated(compiled[0].address, question, settings)
-
-    (states, steps, evaluations), seconds, compiling = twice(propagate)
+    # Compiled by the first propagation, and held as long as its address is in use.
+    compiled = cache(lambda: _right_hand_side(question))
+    (states, steps, evaluations), seconds, compiling = twice(
+        lambda: _propagated(compiled().address, question, settings)
+    )
     return Solved(states, steps, evaluations, seconds, compiling)
 
 

@@ -1,4 +1,4 @@
-"""One run of a program that may do anything: it is asked, heard, and ended with all that it started.
+"""A run of a program that may do anything: it is asked, heard, and ended with all that it started.
 
 supervisor.py stands between the program and this process. psutil could not do its work: it finds a
 process by its parent, and an orphan that has left the session has another one.
@@ -27,7 +27,7 @@ LIMIT_VARIABLE: Final = "TAYLOR_VERIFY_TIME_LIMIT"
 
 _SUPERVISOR: Final = Path(__file__).with_name("supervisor.py")
 _log = logging.getLogger(__name__)
-# How long output is listened to after the last word of the supervisor: until then all of it was there.
+# Seconds to listen for output after the last word of the supervisor: until then all of it was there.
 _GLANCE = 0.05
 # Seconds for the supervisor to end what is left, which it gives up after five itself.
 _PATIENCE = 10.0
@@ -101,8 +101,14 @@ def converse(command: Sequence[str], asked: bytes, limit: float, longest: int) -
     return Ended(outcome, what, bytes(talk.answer), bytes(talk.stderr), report.seconds, report.left)
 
 
+_UNKNOWN: Final = "processes that have left its session, if any, could not be ended"
+
+
 class _Report(NamedTuple):
-    """The words of the supervisor, read: see there."""
+    """The words of the supervisor, read: see there.
+
+    ``left`` is a sentence on the processes that are left; it ``is_certain`` where they are known.
+    """
 
     refused: str = ""
     program: int = 0
@@ -114,28 +120,20 @@ class _Report(NamedTuple):
 
     @classmethod
     def read(cls, text: bytes) -> _Report:
-        words = [line.split(" ", 1) for line in text.decode(errors="replace").splitlines()]
-        said = {word: rest[0] for word, *rest in words if rest}
+        words = (line.partition(" ") for line in text.decode(errors="replace").splitlines())
+        said = {word: rest for word, space, rest in words if space}
         if "refused" in said:
             return cls(refused=said["refused"])
         program = int(said.get("started", 0))
         if "ended" not in said:
             # The program, or somebody else, has killed it.
             return cls(program=program, status=-signal.SIGKILL, left=_UNKNOWN, is_lost=True)
-        status, seconds, left = said["ended"].split()
-        return cls("", program, int(status), float(seconds), *_left(left))
-
-
-_UNKNOWN: Final = "processes that have left its session, if any, could not be ended"
-
-
-def _left(numbers: str) -> tuple[str, bool]:
-    """A sentence about the processes that are left, and whether it is known that there are any."""
-    if numbers == "none":
-        return "", False
-    if numbers == "unknown":
-        return _UNKNOWN, False
-    return f"processes that could not be ended: {numbers}", True
+        status, seconds, numbers = said["ended"].split()
+        is_certain = numbers not in ("none", "unknown")
+        left = {"none": "", "unknown": _UNKNOWN}.get(
+            numbers, f"processes that could not be ended: {numbers}"
+        )
+        return cls("", program, int(status), float(seconds), left, is_certain)
 
 
 class _Talk:
@@ -145,25 +143,30 @@ class _Talk:
         self.process, self.link = process, link
         self.unsaid = memoryview(asked)
         self.answer, self.stderr, self.report = bytearray(), bytearray(), bytearray()
-        self.has_ended = False
 
     def listen(self, deadline: float, longest: int) -> tuple[Outcome, str]:
         """Exchange question and answer until the program ends, its time is up, or it says too much."""
+        has_ended = False
         with selectors.DefaultSelector() as waiting:
             self._register(waiting)
             while waiting.get_map():
                 left = deadline - monotonic()
                 if left <= 0:
                     return Outcome.TIMED_OUT, ""
-                ready = waiting.select(min(left, _GLANCE) if self.has_ended else left)
+                ready = waiting.select(min(left, _GLANCE) if has_ended else left)
                 for key, _ in ready:
-                    if not key.data():
-                        waiting.unregister(key.fileobj)
-                        if key.fileobj is not self.link:
-                            key.fileobj.close()  # type: ignore[union-attr]
+                    pipe: Any = key.fileobj
+                    if self._say() if key.data is None else _hear(pipe, key.data):
+                        continue
+                    waiting.unregister(pipe)
+                    if pipe is self.link:
+                        has_ended = True
+                    else:
+                        pipe.close()
+                del self.stderr[:-_KEPT_OF_STDERR]
                 if len(self.answer) > longest:
                     return Outcome.MISANSWERED, f"more than {longest} bytes on standard output"
-                if not ready and self.has_ended:
+                if not ready and has_ended:
                     break
         return Outcome.FINISHED, ""
 
@@ -192,20 +195,20 @@ class _Talk:
         return report
 
     def _register(self, waiting: selectors.BaseSelector) -> None:
-        for pipe, event, act in (
-            (self.process.stdin, selectors.EVENT_WRITE, self._say),
-            (self.process.stdout, selectors.EVENT_READ, self._hear),
-            (self.process.stderr, selectors.EVENT_READ, self._overhear),
+        """Wait for all at once: to say what is unsaid, or to hear into a buffer."""
+        for pipe, buffer in (
+            (self.process.stdin, None),
+            (self.process.stdout, self.answer),
+            (self.process.stderr, self.stderr),
+            (self.link, self.report),
         ):
             assert pipe is not None
             os.set_blocking(pipe.fileno(), False)
-            waiting.register(pipe, event, act)
-        self.link.setblocking(False)
-        waiting.register(self.link, selectors.EVENT_READ, self._supervise)
-
-    # Each of these returns whether its pipe is still of use.
+            event = selectors.EVENT_WRITE if buffer is None else selectors.EVENT_READ
+            waiting.register(pipe, event, buffer)
 
     def _say(self) -> bool:
+        """Say as much as is taken; True if there is more to say."""
         assert self.process.stdin
         try:
             said = os.write(self.process.stdin.fileno(), self.unsaid[:_CHUNK])
@@ -217,30 +220,15 @@ class _Talk:
         self.unsaid = self.unsaid[said:]
         return bool(self.unsaid)
 
-    def _hear(self) -> bool:
-        read = _read(self.process.stdout)
-        self.answer += read or b""
-        return read != b""
 
-    def _supervise(self) -> bool:
-        read = _read(self.link)
-        self.report += read or b""
-        self.has_ended = read == b""
-        return not self.has_ended
-
-    def _overhear(self) -> bool:
-        read = _read(self.process.stderr)
-        self.stderr += read or b""
-        del self.stderr[:-_KEPT_OF_STDERR]
-        return read != b""
-
-
-def _read(pipe: Any) -> bytes | None:
-    """What there is: nothing at the end, None where there is nothing yet."""
+def _hear(pipe: Any, buffer: bytearray) -> bool:
+    """Put what there is into the buffer; False at the end of the pipe."""
     try:
-        return os.read(pipe.fileno(), _CHUNK)
+        read = os.read(pipe.fileno(), _CHUNK)
     except BlockingIOError:
-        return None
+        return True
+    buffer += read
+    return bool(read)
 
 
 def _status(returncode: int) -> str:

@@ -12,6 +12,7 @@ from __future__ import annotations
 import json
 import os
 import shlex
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import inf
@@ -81,8 +82,13 @@ def unavailable() -> str:
     )
 
 
+def of(words: Sequence[str], limit: float) -> Process:
+    """Return the solver that is this command, word by word."""
+    return Process(f"{PREFIX}{shlex.join(words)}", limit)
+
+
 def named(name: str) -> Process:
-    """The solver `process:COMMAND`, its time limit from the environment variable if that is set.
+    """Return the solver `process:COMMAND`, its time limit from the environment variable if that is set.
 
     Raises ValueError for a command that is empty or not closed, and for a limit that is no number.
     """
@@ -98,7 +104,7 @@ def named(name: str) -> Process:
 
 
 def time_limit() -> float:
-    """Seconds for a problem, as the environment variable says; ValueError where it is no number."""
+    """Return the seconds for a problem that the environment sets; ValueError where it is no number."""
     text = os.environ.get(LIMIT_VARIABLE)
     if text is None or not text.strip():
         return DEFAULT_LIMIT
@@ -109,7 +115,7 @@ def time_limit() -> float:
 
 
 def _trajectory(answer: bytes, problem: Problem, waited: float) -> Trajectory:
-    """``waited``: the seconds of the whole run, start of the program and both pipes included."""
+    """Return the trajectory; ``waited`` are the seconds of the whole run, start and pipes included."""
     found = protocol.read(answer, problem)
     if not found.steps <= _STEPS_PER_SECOND * waited:
         raise protocol.Misanswer(f"{found.steps} steps in {waited:.3g} seconds @ steps")

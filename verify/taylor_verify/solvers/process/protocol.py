@@ -1,4 +1,4 @@
-"""What a program of one's own is asked, and what is made of its answer: JSON in, JSON out.
+"""The question to a program of one's own, and the reading of its answer: JSON in, JSON out.
 
 The question is one JSON document on the program's standard input. Every key but ``text`` and ``hex``
 occurs once in it and has one meaning, whatever its table, so that a reader may search the text for
@@ -71,20 +71,21 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
+import gmpy2
+
 from taylor_verify.models.problem import Problem
 from taylor_verify.models.registry import mechanics
 from taylor_verify.records.quantities import COLUMNS
-from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.parts import Value
 from taylor_verify.scenes.precision import Rung, double_text, hexadecimal
 from taylor_verify.solvers.solver import columns
-from taylor_verify.solvers.values import exact
+from taylor_verify.solvers.values import exact, named_once
 
 VERSION = 1
 # A program that knows constant loads alone has to be able to tell.
@@ -124,7 +125,7 @@ class Answer:
 
 
 def question(problem: Problem) -> dict[str, Any]:
-    """The document that a program is asked with."""
+    """Return the document that a program is asked with."""
     scene = problem.scene
     return {
         "protocol": VERSION if scene.body.manufactured is None else VERSION_WITH_WAVES,
@@ -140,7 +141,7 @@ def question(problem: Problem) -> dict[str, Any]:
 
 
 def column_names(problem: Problem) -> list[str]:
-    """The columns of an answer: t, and those of everything the scene tracks."""
+    """Return the columns of an answer: t, and those of everything the scene tracks."""
     return ["t", *(name for group, _ in columns(problem) for name in COLUMNS[group])]
 
 
@@ -153,86 +154,67 @@ def _data(problem: Problem) -> dict[str, Any]:
         "initial": _merged(initial.parts(), derived.get("initial", {})),
     }
     if body.manufactured is not None:
-        numbers["manufactured"] = _waves(
-            mechanics(body).change(body).motion_of_momenta(body.manufactured)
-        )
+        # The motion of what a program integrates: of H = I omega, or of x and y as it stands.
+        motion = mechanics(body).change(body).motion_of_momenta(body.manufactured)
+        numbers["manufactured"] = {
+            "frequencies": [wave.frequency for wave in motion.waves],
+            "cosines": [wave.cosine for wave in motion.waves],
+            "sines": [wave.sine for wave in motion.waves],
+            "constant_part": motion.constant,
+        }
     numbers["time"] = {"start": clock.start, "elapsed": clock.elapsed, "times": clock.instants}
+    # Rounded to the rung's bits, whatever the exponent: the scene's own units may be far from one.
+    bits = Rung(rung.name, rung.bits)
     return {
-        table: {key: _written(value, rung) for key, value in entries.items()}
+        table: {
+            key: {
+                "text": _mapped(exact_text, value),
+                "hex": _mapped(lambda number: hexadecimal(bits.round(number)), value),
+            }
+            for key, value in entries.items()
+        }
         for table, entries in numbers.items()
     }
 
 
 def _merged(parts: Mapping[str, Value], derived: Mapping[str, Value]) -> dict[str, Value]:
-    """The parts, and behind the first of them what follows from it."""
-    first, *rest = parts
-    return {first: parts[first], **derived, **{name: parts[name] for name in rest}}
+    """Return the parts, and behind the first of them what follows from it."""
+    first = next(iter(parts))
+    return {first: parts[first], **derived, **parts}
 
 
-def _waves(motion: Manufactured) -> dict[str, Any]:
-    """The motion of what a program integrates: of H = I omega, or of x and y as it stands."""
-    return {
-        "frequencies": [wave.frequency for wave in motion.waves],
-        "cosines": [wave.cosine for wave in motion.waves],
-        "sines": [wave.sine for wave in motion.waves],
-        "constant_part": motion.constant,
-    }
-
-
-def _written(value: Any, rung: Rung) -> dict[str, Any]:
-    return {
-        "text": _mapped(exact_text, value),
-        "hex": _mapped(lambda number: hexadecimal(_nearest(number, rung)), value),
-    }
-
-
-def _mapped(write: Any, value: Any) -> Any:
+def _mapped(write: Callable[[Fraction], str], value: Any) -> Any:
     if isinstance(value, Fraction):
         return write(value)
     return [_mapped(write, entry) for entry in value]
 
 
-def _nearest(value: Fraction, rung: Rung) -> Fraction:
-    """To the rung's bits, whatever the exponent: the scene's own units may be far from one."""
-    return Rung(rung.name, rung.bits).round(value)
-
-
 def exact_text(value: Fraction) -> str:
-    """The decimal that is exactly this number, or "a/b" where there is none."""
-    rest, powers = value.denominator, {2: 0, 5: 0}
-    for prime in powers:
-        while rest % prime == 0:
-            rest //= prime
-            powers[prime] += 1
+    """Return the decimal that is exactly this number, or "a/b" where there is none."""
+    rest, twos = gmpy2.remove(value.denominator, 2)
+    rest, fives = gmpy2.remove(rest, 5)
     if rest != 1:
-        return f"{_digits(value.numerator)}/{_digits(value.denominator)}"
-    places = max(powers.values())
-    whole = _digits(int(value * 10**places))
-    if places == 0:
-        return whole
+        # str(int) stops at 4300 digits, and that of a Decimal does not.
+        return f"{Decimal(value.numerator)}/{Decimal(value.denominator)}"
+    places = max(twos, fives)
+    whole = Decimal(int(value * 10**places))
     if places > _PLACES:
         return f"{whole}e-{places}"
-    sign, figures = ("-", whole[1:]) if value < 0 else ("", whole)
-    figures = figures.rjust(places + 1, "0")
-    return f"{sign}{figures[:-places]}.{figures[-places:]}"
-
-
-def _digits(number: int) -> str:
-    """The integer in decimal, of any length: str(int) stops at 4300 digits."""
-    return str(Decimal(number))
+    sign, digits, _ = whole.as_tuple()
+    return f"{Decimal((sign, digits, -places)):f}"
 
 
 # The answer.
 
 
 def longest_answer(problem: Problem) -> int:
-    """The bytes that an answer to this problem may have: room for every number's every bit."""
+    """Return the bytes that an answer to this problem may have: room for every number's every bit."""
     numbers = len(problem.times) * len(column_names(problem))
     return 2**20 + numbers * (200 + 2 * problem.rung.bits)
 
 
 def read(text: bytes, problem: Problem) -> Answer:
-    """The states in an answer; raises Misanswer or NotFinite, whose text says what and where."""
+    """Return the states in an answer; raise Misanswer or NotFinite, whose text says what and where."""
     document = _parsed(text)
     names = column_names(problem)
     if missing := [name for name in names if name not in document]:
@@ -240,21 +222,21 @@ def read(text: bytes, problem: Problem) -> Answer:
     for name in names:
         _check_length(document, name, len(problem.times))
     as_double = problem.rung.bits <= _DOUBLE_BITS
-    found = {
-        name: [_number(value, as_double, f"{name}[{row}]") for row, value in enumerate(entries)]
-        for name, entries in ((name, document[name]) for name in names)
-    }
-    _check_times(found["t"], problem)
-    states = [list(row) for row in zip(*(found[name] for name in names[1:]), strict=True)]
+    times, *states = (
+        [_number(value, as_double, f"{name}[{row}]") for row, value in enumerate(document[name])]
+        for name in names
+    )
+    _check_times(times, problem)
+    rows = [list(row) for row in zip(*states, strict=True)]
     work = _count(document, "steps"), _count(document, "evaluations")
-    return Answer(states, *work, *_durations(document))
+    return Answer(rows, *work, *_durations(document))
 
 
 def _parsed(text: bytes) -> Mapping[str, Any]:
     if not text.strip():
         raise Misanswer("expected a JSON object on standard output, got nothing")
     try:
-        document = json.loads(text, parse_float=Decimal, object_pairs_hook=_without_repetition)
+        document = json.loads(text, parse_float=Decimal, object_pairs_hook=named_once)
     except json.JSONDecodeError as error:
         where = f"line {error.lineno}, column {error.colno}"
         cut = " (where the answer ends)" if error.pos >= len(text.rstrip()) - 1 else ""
@@ -266,15 +248,6 @@ def _parsed(text: bytes) -> Mapping[str, Any]:
     if not isinstance(document, dict):
         raise Misanswer(f"expected a JSON object of columns, got a {type(document).__name__}")
     return document
-
-
-def _without_repetition(pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:
-    found = dict(pairs)
-    if len(found) < len(pairs):
-        names = [name for name, _ in pairs]
-        twice = next(name for name in names if names.count(name) > 1)
-        raise Misanswer(f"expected every key once, got {twice!r} twice")
-    return found
 
 
 def _check_length(document: Mapping[str, Any], name: str, samples: int) -> None:
@@ -306,57 +279,43 @@ def _count(document: Mapping[str, Any], name: str) -> int:
 
 
 def _durations(document: Mapping[str, Any]) -> tuple[float | None, float]:
-    """The program's own seconds, None where it states none, and those of compiling."""
-    seconds = _duration(document, "seconds")
-    compile_seconds = _duration(document, "compile_seconds")
-    if seconds is None and compile_seconds is not None:
+    """Return the program's own seconds, None where it states none, and those of compiling."""
+    stated: dict[str, float] = {}
+    for name in ("seconds", "compile_seconds"):
+        if name in document:
+            value = document[name]
+            is_number = isinstance(value, int | Decimal) and not isinstance(value, bool)
+            if not (is_number and 0 <= value <= _LONGEST):
+                expected = "a number of seconds, not negative"
+                raise Misanswer(f"expected {expected}, got {_json(value)} @ {name}")
+            stated[name] = float(value)
+    if stated and "seconds" not in stated:
         raise Misanswer("expected seconds beside compile_seconds, got none @ seconds")
-    return seconds, compile_seconds or 0.0
-
-
-def _duration(document: Mapping[str, Any], name: str) -> float | None:
-    if name not in document:
-        return None
-    value = document[name]
-    is_number = isinstance(value, int | Decimal) and not isinstance(value, bool)
-    if not (is_number and 0 <= value <= _LONGEST):
-        got = json.dumps(value, default=str)
-        raise Misanswer(f"expected a number of seconds, not negative, got {got:.40} @ {name}")
-    return float(value)
+    return stated.get("seconds"), stated.get("compile_seconds", 0.0)
 
 
 def _number(value: Any, as_double: bool, place: str) -> Fraction | float:
-    """A number of an answer, held exactly."""
+    """Return a number of an answer, held exactly."""
     if value is None or (isinstance(value, float) and not math.isfinite(value)):
         raise NotFinite(f"{'null' if value is None else value} @ {place}")
-    if isinstance(value, str):
-        return _from_text(value.strip(), place)
-    if isinstance(value, bool) or not isinstance(value, int | Decimal):
-        raise Misanswer(f"expected a number, got {json.dumps(value, default=str):.40} @ {place}")
-    if as_double:
-        return _nearest_double(value, place)
-    return _exact(value, place)
-
-
-def _nearest_double(value: int | Decimal, place: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, str | int | Decimal):
+        raise Misanswer(f"expected a number, got {_json(value)} @ {place}")
+    if as_double and not isinstance(value, str):
+        try:
+            double = float(value)
+        except OverflowError:
+            double = math.inf
+        if not math.isfinite(double):
+            raise NotFinite(f"beyond the range of doubles @ {place}")
+        return double
     try:
-        double = float(value)
-    except OverflowError:
-        double = math.inf
-    if not math.isfinite(double):
-        raise NotFinite(f"beyond the range of doubles @ {place}")
-    return double
-
-
-def _from_text(text: str, place: str) -> Fraction:
-    value = _exact(text, place)
-    if not isinstance(value, Fraction):
-        raise NotFinite(f"{text} @ {place}")
-    return value
-
-
-def _exact(value: object, place: str) -> Fraction | float:
-    try:
-        return exact(value)
+        number = exact(value)
     except ValueError as error:
         raise Misanswer(f"expected {error}, got {value!s:.40} @ {place}") from None
+    if not isinstance(number, Fraction):
+        raise NotFinite(f"{value} @ {place}")
+    return number
+
+
+def _json(value: Any) -> str:
+    return f"{json.dumps(value, default=str):.40}"

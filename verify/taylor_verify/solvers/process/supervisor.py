@@ -21,6 +21,7 @@ import select
 import signal
 import sys
 from contextlib import suppress
+from functools import partial
 from time import monotonic
 
 _PR_SET_CHILD_SUBREAPER = 36
@@ -64,7 +65,7 @@ def _adopt_orphans() -> bool:
 
 
 def _deaths() -> int:
-    """A pipe that can be read from as soon as a child has ended."""
+    """Return a pipe that can be read from as soon as a child has ended."""
     reading, writing = os.pipe()
     os.set_blocking(reading, False)
     os.set_blocking(writing, False)
@@ -77,14 +78,13 @@ def _start(command: list[str]) -> int:
     """Start the program with the signals as a shell has them."""
     signals = [*_IGNORED, signal.SIGCHLD, signal.SIGPIPE]
     signals += [s for name in ("SIGXFSZ", "SIGXFZ") if (s := getattr(signal, name, None))]
+    spawn = partial(
+        os.posix_spawnp, command[0], command, os.environ, setsigdef=signals, setsigmask=()
+    )
     try:
-        return os.posix_spawnp(
-            command[0], command, os.environ, setsid=True, setsigdef=signals, setsigmask=()
-        )
+        return spawn(setsid=True)
     except NotImplementedError:
-        return os.posix_spawnp(
-            command[0], command, os.environ, setpgroup=0, setsigdef=signals, setsigmask=()
-        )
+        return spawn(setpgroup=0)
 
 
 def _let_go_of_streams() -> None:
@@ -143,12 +143,12 @@ def _end_descendants(deaths: int) -> str:
 
 
 def _descendants() -> list[int]:
-    """The processes below this one, from /proc: the kernel has no other list."""
+    """Return the processes below this one, from /proc: the kernel has no other list."""
     children: dict[int, list[int]] = {}
-    for name in _numbers():
-        parent = _parent(name)
-        if parent is not None:
-            children.setdefault(parent, []).append(int(name))
+    with suppress(OSError):
+        for name in filter(str.isdigit, os.listdir("/proc")):
+            if (parent := _parent(name)) is not None:
+                children.setdefault(parent, []).append(int(name))
     descendants, last = [], [os.getpid()]
     while last:
         last = [child for parent in last for child in children.get(parent, ())]
@@ -156,15 +156,8 @@ def _descendants() -> list[int]:
     return descendants
 
 
-def _numbers() -> list[str]:
-    try:
-        return [name for name in os.listdir("/proc") if name.isdigit()]
-    except OSError:
-        return []
-
-
 def _parent(pid: str) -> int | None:
-    """The parent of a process that has not ended; its own name may hold spaces and brackets."""
+    """Return the parent of a process that has not ended; its own name may hold spaces and brackets."""
     try:
         with open(f"/proc/{pid}/stat", "rb") as file:
             state, parent = file.read().rpartition(b")")[2].split()[:2]

@@ -59,7 +59,7 @@ def heyoka_cache_off() -> None:
 
 
 def cache_folder() -> Path:
-    """The folder of this processor type, inside the user's cache or the one HEYOKA_CACHE_DIR names."""
+    """Return the folder of this processor type, in the cache of the user or that of HEYOKA_CACHE_DIR."""
     base = os.environ.get(CACHE_VARIABLE)
     parent = Path(base) if base else user_cache_path("taylor-verify") / "heyoka"
     return parent / processor_key()
@@ -67,14 +67,14 @@ def cache_folder() -> Path:
 
 @lru_cache(maxsize=1)
 def processor_key() -> str:
-    """A name that differs between processors with different instruction sets."""
+    """Return a name that differs between processors with different instruction sets."""
     features = _processor_features()
     digest = hashlib.sha256(features.encode()).hexdigest()[:12]
     return f"{platform.machine() or 'unknown'}-{digest}"
 
 
 def _processor_features() -> str:
-    """Model and instruction-set flags as Linux lists them; elsewhere what the platform names."""
+    """Return model and instruction-set flags as Linux lists them; elsewhere what the platform names."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:
@@ -84,7 +84,7 @@ def _processor_features() -> str:
 
 
 def _name(make: Callable[..., Any], system: Any, options: dict[str, Any]) -> str:
-    """A file name that differs wherever the compiled code could."""
+    """Return a file name that differs wherever the compiled code could."""
     described = {
         name: value.shape if isinstance(value, np.ndarray) else value
         for name, value in options.items()
@@ -95,7 +95,7 @@ def _name(make: Callable[..., Any], system: Any, options: dict[str, Any]) -> str
 
 @lru_cache(maxsize=1)
 def _build() -> bytes:
-    """A text for this installation of heyoka: another build of one version may link otherwise."""
+    """Return a text for this installation of heyoka: another build of one version may link otherwise."""
     import heyoka as hy
 
     installed = os.stat(hy.__file__)
@@ -104,7 +104,7 @@ def _build() -> bytes:
 
 
 def _read(file: Path) -> Any:
-    """The integrator in a file; None where there is none, or none that can be trusted."""
+    """Return the integrator in a file; None where there is none, or none that can be trusted."""
     try:
         number = file.parent.stat().st_ino
         content = _own_bytes(file)
@@ -128,7 +128,7 @@ def _read(file: Path) -> Any:
 
 
 def _own_bytes(file: Path) -> bytes | None:
-    """The content of a plain file that this user alone could write; None of any other file."""
+    """Return the content of a plain file that this user alone could write; None of any other file."""
     # Without waiting: what lies here could be a pipe.
     handle = os.open(file, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0))
     with open(handle, "rb") as opened:
@@ -184,7 +184,12 @@ def _write(file: Path, integrator: Any) -> None:
 
 def _prune(folder: Path) -> None:
     """Remove the least recently used files beyond the size that a cache may have."""
-    files = [(about.st_mtime_ns, about.st_size, path) for path, about in _files(folder)]
+    files = []
+    for entry in os.scandir(folder):
+        # Another process may remove it at the same moment.
+        with suppress(FileNotFoundError):
+            about = entry.stat()
+            files.append((about.st_mtime_ns, about.st_size, entry.path))
     size = sum(length for _, length, _ in files)
     for _, length, path in sorted(files):
         if size <= _LARGEST_CACHE:
@@ -192,12 +197,3 @@ def _prune(folder: Path) -> None:
         with suppress(FileNotFoundError):
             os.unlink(path)
         size -= length
-
-
-def _files(folder: Path) -> list[tuple[str, os.stat_result]]:
-    files = []
-    for entry in os.scandir(folder):
-        # Another process may remove it at the same moment.
-        with suppress(FileNotFoundError):
-            files.append((entry.path, entry.stat()))
-    return files

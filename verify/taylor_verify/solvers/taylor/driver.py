@@ -27,9 +27,10 @@ from taylor_verify.models.form import Form
 from taylor_verify.models.problem import Problem
 from taylor_verify.models.rates import Linearised
 from taylor_verify.scenes.precision import Rung
+from taylor_verify.solvers.options import options
+from taylor_verify.solvers.registry import TAYLOR
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.taylor.cache import heyoka_cache_off, stored
-from taylor_verify.solvers.taylor.name import named_at, tolerance
 from taylor_verify.solvers.taylor.numbers import Arithmetic, arithmetic, unavailable
 from taylor_verify.solvers.trajectory import Outcome, Postponed, Trajectory
 
@@ -105,13 +106,23 @@ class Taylor(Solver):
 
 
 def at_tolerance(text: str) -> Taylor:
-    """The driver at a tolerance that is a decimal or a/b; ValueError for one that is not positive."""
-    return named(named_at(text))
+    """Return the driver at a tolerance, a decimal or a/b; ValueError for one that is not positive."""
+    return named(f"{TAYLOR}?tol={text}")
 
 
 def named(name: str) -> Taylor:
-    """The driver that `taylor` or `taylor?tol=NUMBER` names; ValueError for any other name."""
+    """Return the driver that `taylor` or `taylor?tol=NUMBER` names; ValueError for any other name."""
     return Taylor(name, tolerance=tolerance(name))
+
+
+def tolerance(name: str) -> Fraction | None:
+    """Return the tolerance that is set in a name, exactly as written; None for the rung's own.
+
+    Raises ValueError for a tolerance that is no positive number, and for a name of something else.
+    """
+    if name == TAYLOR:
+        return None
+    return options(name, [TAYLOR], ["tol"]).positive("tol", default="")
 
 
 def _exact(rows: Rows, rung: Rung) -> list[list[Fraction]]:
@@ -127,7 +138,7 @@ def compiled(
     literals: tuple[Fraction, ...] | None = None,
     is_long: bool = True,
 ) -> Any:
-    """One compiled integrator per form, rung and tolerance; the rest is filled in per problem.
+    """Return the one compiled integrator of a form, rung and tolerance; the rest is filled in per problem.
 
     Parameters cost what literals cost, and serve every body: literals are for measuring that. What it
     computes does not depend on ``is_long``, which tells what pays.
@@ -173,9 +184,9 @@ def equations(form: Form, coefficients: Sequence[Any]) -> list[tuple[Any, Any]]:
 def _propagate(
     integrator: Any, problem: Problem, times: np.ndarray[Any, Any]
 ) -> tuple[Outcome, int, Rows, float]:
-    """Sample the problem's times; the outcome is FINISHED only if every row is there and finite.
+    """Return the outcome, the number of steps, the rows, and the seconds that heyoka's own code took.
 
-    Also the number of steps, the rows, and the seconds that heyoka's own code took.
+    The outcome is FINISHED only if every row is there and finite.
     """
     numbers = arithmetic(problem.rung)
     zero = numbers.array([Fraction(0)])
@@ -241,7 +252,7 @@ def outcome_of(status: Any) -> Outcome:
 
 
 def _pieces(radians: float, rung: Rung) -> int:
-    """How many times the rate is looked at on a way so long, and an interrupt heard."""
+    """Return how often the rate is looked at on a way so long, and an interrupt heard."""
     if not radians <= MOST_RADIANS:
         return _MOST_LOOKS
     looks = min(max(_FEWEST_LOOKS, ceil(radians / _RADIANS_APART)), _MOST_LOOKS)
@@ -252,7 +263,7 @@ def _pieces(radians: float, rung: Rung) -> int:
 def _grid(
     problem: Problem, times: np.ndarray[Any, Any], numbers: Arithmetic, pieces: int
 ) -> tuple[np.ndarray[Any, Any], slice | list[int]]:
-    """The instants that heyoka is asked for, and where the samples are among them.
+    """Return the instants that heyoka is asked for, and where the samples are among them.
 
     They begin at its own time, asked for or not. Between few samples there are more, so that the
     rate and the path are looked at as often there as between many.
@@ -271,7 +282,7 @@ def _grid(
 
 
 def _waypoints(after: Fraction, before: Fraction, gap: Fraction, rung: Rung) -> list[Fraction]:
-    """Numbers of the rung between two others, in order and no farther apart than about ``gap``."""
+    """Return numbers of the rung between two others, in order and no farther apart than about ``gap``."""
     pieces = ceil(abs(before - after) / gap)
     found = [after]
     for k in range(1, pieces):
@@ -282,13 +293,13 @@ def _waypoints(after: Fraction, before: Fraction, gap: Fraction, rung: Rung) -> 
 
 
 def _go_on(integrator: Any) -> bool:
-    """heyoka returns to the interpreter for it, where an interrupt is waiting to be heard."""
+    """Go on; heyoka returns to the interpreter for it, where an interrupt is waiting to be heard."""
     del integrator
     return True
 
 
 def _segments(instants: int, pieces: int) -> list[tuple[int, int]]:
-    """Stretches of the grid, as first and last index, with one step cap each."""
+    """Return stretches of the grid, as first and last index, with one step cap each."""
     pieces = min(instants - 1, pieces)
     ends = sorted({round(k * (instants - 1) / pieces) for k in range(pieces + 1)}) if pieces else []
     return list(pairwise(ends))

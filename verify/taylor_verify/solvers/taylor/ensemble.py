@@ -49,7 +49,7 @@ _LARGEST_STRAIGHT_LINE: Final = 6
 
 @dataclass(frozen=True)
 class Lane:
-    """Where one start has come to: its state at ``time``, both in the units of its problem.
+    """A start on its way: its state at ``time``, both in the units of its problem.
 
     ``fastest`` is the fastest linear rate that it has met, on which its longest step rests. FINISHED
     means that it has come as far as it was asked to; any other ``outcome`` is where it ended, and
@@ -90,31 +90,31 @@ class Ensemble:
         self._is_batch = width > 1
 
     def start(self) -> tuple[Lane, ...]:
-        """Every lane at its initial state."""
+        """Return every lane at its initial state."""
         return tuple(Lane(Fraction(0), problem.initial_momenta) for problem in self.problems)
 
     def advance(self, lanes: Sequence[Lane], until: Sequence[Fraction]) -> tuple[Lane, ...]:
-        """Every lane that goes on, at its time in ``until``: numbers of the rung, in its own units.
+        """Return every lane that goes on at its time in ``until``: numbers of the rung, in its own units.
 
         A lane that does not get there is left where it was, with an outcome that says why.
         """
-        pairs = [
-            self._prepared(i, lane, t) for i, (lane, t) in enumerate(zip(lanes, until, strict=True))
-        ]
+        ready = [self._prepared(*each) for each in zip(self._linearised, lanes, until, strict=True)]
         # heyoka steps without the interpreter: threads are as good as processes.
         with ThreadPoolExecutor(_processors()) as pool:
-            work = zip(self._groups, self._steppers, strict=True)
             jobs = [
-                pool.submit(self._run, stepper, group, [pairs[i] for i in group], until)
-                for group, stepper in work
+                pool.submit(
+                    self._run, stepper, group, [ready[i] for i in group], [until[i] for i in group]
+                )
+                for group, stepper in zip(self._groups, self._steppers, strict=True)
             ]
             return tuple(lane for job in jobs for lane in job.result())
 
-    def _prepared(self, i: int, lane: Lane, until: Fraction) -> Lane:
-        """The lane with the rate that it steps by, or taken out where that is not finite."""
+    @staticmethod
+    def _prepared(linearised: Linearised, lane: Lane, until: Fraction) -> Lane:
+        """Return the lane with the rate that it steps by, or taken out where that is not finite."""
         if not lane.goes_on:
             return lane
-        rate = max(lane.fastest, self._linearised[i].fastest([_double(v) for v in lane.state]))
+        rate = max(lane.fastest, linearised.fastest([_double(v) for v in lane.state]))
         if not isfinite(rate):
             return replace(lane, outcome=Outcome.NON_FINITE)
         if not rate * abs(float(until - lane.time)) <= MOST_RADIANS:
@@ -122,22 +122,17 @@ class Ensemble:
         return replace(lane, fastest=rate)
 
     def _run(
-        self, stepper: Any, group: Sequence[int], lanes: list[Lane], until: Sequence[Fraction]
+        self, stepper: Any, group: Sequence[int], lanes: list[Lane], targets: Sequence[Fraction]
     ) -> list[Lane]:
-        targets = [until[i] for i in group]
         if not any(lane.goes_on for lane in lanes):
             return lanes
         if not self._is_batch:
             return [self._run_alone(stepper, group[0], lanes[0], targets[0])]
-        stretch = _Stretch(self, stepper, group, lanes, targets)
-        while stretch.step():
-            pass
-        return stretch.lanes
+        return self._run_batch(stepper, group, lanes, targets)
 
     def _run_alone(self, integrator: Any, i: int, lane: Lane, target: Fraction) -> Lane:
         numbers = self._numbers
-        time, end = numbers.array([lane.time, target])
-        integrator.time = time
+        integrator.time, end = numbers.array([lane.time, target])
         integrator.state[:] = numbers.array(lane.state)
         integrator.pars[:] = numbers.array(self.problems[i].parameters)
         status, _, _, steps, *_ = integrator.propagate_until(
@@ -145,89 +140,59 @@ class Ensemble:
             max_delta_t=numbers.double(LONGEST_STEP / lane.fastest),
             max_steps=most_steps(lane, target),
         )
-        outcome = outcome_of(status)
-        return self._reached(lane, target, outcome, int(steps), integrator.state)
+        return self._reached(lane, target, outcome_of(status), int(steps), integrator.state)
+
+    def _run_batch(
+        self, integrator: Any, group: Sequence[int], lanes: list[Lane], targets: Sequence[Fraction]
+    ) -> list[Lane]:
+        numbers, width, lanes = self._numbers, integrator.batch_size, list(lanes)
+        # The last group may have fewer lanes than the batch: the places left over stay empty.
+        end = _padded(numbers.array(targets), width)
+        time = _padded(numbers.array([lane.time for lane in lanes]), width)
+        state = _padded(np.array([numbers.array(lane.state) for lane in lanes]).T, width)
+        given = [numbers.array(self.problems[i].parameters) for i in group]
+        parameters = _padded(np.array(given, dtype=numbers.fp_type).T, width)
+        rates = [lane.fastest if lane.goes_on else 1.0 for lane in lanes]
+        rates += rates[:1] * (width - len(lanes))
+        longest = np.array([numbers.double(LONGEST_STEP / rate) for rate in rates])
+        steps = np.zeros(width, dtype=int)
+        while going := [k for k, lane in enumerate(lanes) if lane.goes_on]:
+            # A place without a lane that goes on holds another's numbers, and is where it should be.
+            for k in set(range(width)) - set(going):
+                state[:, k], parameters[:, k] = state[:, going[0]], parameters[:, going[0]]
+                time[k] = end[k] = end[going[0]]
+            integrator.set_time(time)
+            integrator.state[:], integrator.pars[:] = state, parameters
+            most = max(most_steps(lanes[k], targets[k]) for k in going)
+            integrator.propagate_until(end, max_delta_t=longest, max_steps=most)
+            results = integrator.propagate_res
+            steps += [int(result[3]) for result in results]
+            finite = np.isfinite(integrator.state).all(axis=0) & np.isfinite(integrator.time)
+            lost = [k for k in going if not finite[k]]
+            for k in lost or going:
+                outcome = Outcome.NON_FINITE if lost else outcome_of(results[k][0])
+                reached = integrator.state[:, k]
+                lanes[k] = self._reached(lanes[k], targets[k], outcome, int(steps[k]), reached)
+            if not lost:
+                break
+            # The others have been stopped where they are, not at their targets: they go on from there.
+            time, state = integrator.time.copy(), integrator.state.copy()
+        return lanes
 
     def _reached(
         self, lane: Lane, target: Fraction, outcome: Outcome, steps: int, state: Array
     ) -> Lane:
+        lane = replace(lane, steps=lane.steps + steps)
         if outcome is Outcome.FINISHED and not np.isfinite(state).all():
             outcome = Outcome.NON_FINITE
         if outcome is not Outcome.FINISHED:
-            return replace(lane, outcome=outcome, steps=lane.steps + steps)
+            return replace(lane, outcome=outcome)
         exact = tuple(self._numbers.exact(value) for value in state)
-        return replace(lane, time=target, state=exact, steps=lane.steps + steps)
-
-
-class _Stretch:
-    """One batch on its way to the targets of its lanes."""
-
-    def __init__(
-        self,
-        ensemble: Ensemble,
-        integrator: Any,
-        group: Sequence[int],
-        lanes: list[Lane],
-        targets: Sequence[Fraction],
-    ) -> None:
-        self._ensemble, self._integrator = ensemble, integrator
-        self.lanes, self._targets = list(lanes), targets
-        numbers = ensemble._numbers
-        width, problems = integrator.batch_size, ensemble.problems
-        # The last group may have fewer lanes than the batch: the places left over stay empty.
-        self._end = _padded(numbers.array(targets), width)
-        self._time = _padded(numbers.array([lane.time for lane in lanes]), width)
-        self._state = _padded(
-            np.array([numbers.array(lane.state) for lane in lanes], dtype=numbers.fp_type).T, width
-        )
-        parameters = [numbers.array(problems[i].parameters) for i in group]
-        self._parameters = _padded(np.array(parameters, dtype=numbers.fp_type).T, width)
-        rates = [lane.fastest if lane.goes_on else 1.0 for lane in lanes]
-        self._longest = _padded(numbers.array([]), width)
-        self._longest[: len(lanes)] = [numbers.double(LONGEST_STEP / rate) for rate in rates]
-        self._longest[len(lanes) :] = self._longest[0]
-        self._steps = np.zeros(width, dtype=int)
-
-    def step(self) -> bool:
-        """As far as the batch goes; whether there are lanes that still have to go on."""
-        going = [k for k, lane in enumerate(self.lanes) if lane.goes_on]
-        if not going:
-            return False
-        self._fill_empty_places(going)
-        integrator = self._integrator
-        integrator.set_time(self._time)
-        integrator.state[:], integrator.pars[:] = self._state, self._parameters
-        most = max(most_steps(self.lanes[k], self._targets[k]) for k in going)
-        integrator.propagate_until(self._end, max_delta_t=self._longest, max_steps=most)
-        found = integrator.propagate_res
-        self._steps += [int(result[3]) for result in found]
-        finite = np.isfinite(integrator.state).all(axis=0) & np.isfinite(integrator.time)
-        lost = [k for k in going if not finite[k]]
-        if not lost:
-            for k in going:
-                self._settle(k, outcome_of(found[k][0]), integrator.state[:, k])
-            return False
-        # The others have been stopped where they are, not at their targets: they go on from there.
-        for k in lost:
-            self._settle(k, Outcome.NON_FINITE, integrator.state[:, k])
-        self._time, self._state = integrator.time.copy(), integrator.state.copy()
-        return True
-
-    def _fill_empty_places(self, going: Sequence[int]) -> None:
-        """A place without a lane that goes on holds another's numbers, and is where it should be."""
-        for k in set(range(len(self._end))) - set(going):
-            self._state[:, k] = self._state[:, going[0]]
-            self._parameters[:, k] = self._parameters[:, going[0]]
-            self._time[k] = self._end[k] = self._end[going[0]]
-
-    def _settle(self, k: int, outcome: Outcome, state: Array) -> None:
-        self.lanes[k] = self._ensemble._reached(
-            self.lanes[k], self._targets[k], outcome, int(self._steps[k]), state
-        )
+        return replace(lane, time=target, state=exact)
 
 
 def batch_width(rung: Rung) -> int:
-    """How many lanes this processor steps at once; 1 where heyoka has no batch for the rung."""
+    """Return the lanes that this processor steps at once; 1 where heyoka has no batch for the rung."""
     import heyoka as hy
 
     kind = _BATCHED.get(rung.name)
@@ -235,12 +200,12 @@ def batch_width(rung: Rung) -> int:
 
 
 def most_steps(lane: Lane, target: Fraction) -> int:
-    """A bound that no regular orbit comes near: what needs more has gone astray."""
+    """Return a bound that no regular orbit comes near: what needs more has gone astray."""
     return LEAST_STEPS + int(STEPS_PER_RADIAN * lane.fastest * abs(float(target - lane.time)))
 
 
 def _processors() -> int:
-    """How many this process may use."""
+    """Return the number of processors that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
@@ -266,7 +231,7 @@ def _check(problems: Sequence[Problem], tolerance: Fraction | None) -> None:
 
 @lru_cache(maxsize=32)
 def _stepper(form: Form, rung: Rung, tolerance: Fraction | None, width: int) -> Any:
-    """One compiled integrator of so many lanes."""
+    """Return one compiled integrator of so many lanes."""
     if width == 1:
         return compiled(form, rung, tolerance)
     import heyoka as hy
@@ -291,7 +256,7 @@ def _stepper(form: Form, rung: Rung, tolerance: Fraction | None, width: int) -> 
 
 
 def _double(value: Fraction) -> float:
-    """Infinite beyond a double: nothing that is to be stepped is so large in units of its own size."""
+    """Return a double, infinite beyond its range: nothing to be stepped is so large in its own units."""
     try:
         return float(value)
     except OverflowError:
@@ -299,6 +264,6 @@ def _double(value: Fraction) -> float:
 
 
 def _padded(values: Array, width: int) -> Array:
-    """The last axis with zeros up to so many places."""
+    """Return the values with zeros behind the last axis up to so many places."""
     missing = width - values.shape[-1]
     return np.pad(values, [(0, 0)] * (values.ndim - 1) + [(0, missing)])

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 from math import ldexp
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from mpmath import libmp
@@ -28,26 +28,28 @@ _LARGEST_INTEGER_BITS = 14000
 
 @dataclass(frozen=True)
 class Arithmetic:
-    """One rung's numbers in heyoka: its fp_type, and conversions that round nothing.
+    """The numbers of one rung in heyoka: its fp_type, and conversions that round nothing.
 
-    ``number`` makes one of a rational, ``scaled`` of a significand and an exponent of two; ``double``
-    rounds a double to nearest where the rung is the narrower. ``exact`` leads back. Code for it
-    that is stored on disk is found again by another process if ``is_found_again``.
+    ``scaled`` makes one of a significand and an exponent of two; ``double`` rounds a double to nearest
+    where the rung is the narrower. ``exact`` leads back. Code for it that is stored on disk is found
+    again by another process if ``is_found_again``.
     """
 
     fp_type: Any
-    number: Callable[[Fraction], Any]
-    exact: Callable[[Any], Fraction]
-    compact: bool
     scaled: Callable[[int, int], Any]
     double: Callable[[float], Any]
+    exact: Callable[[Any], Fraction] = exact_value
+    compact: bool = False
     is_found_again: bool = True
+
+    def number(self, value: Fraction) -> Any:
+        return self.scaled(value.numerator, 1 - value.denominator.bit_length())
 
     def array(self, values: Iterable[Fraction]) -> np.ndarray[Any, Any]:
         return np.array([self.number(value) for value in values], dtype=self.fp_type)
 
     def times(self, times: Sequence[Fraction]) -> np.ndarray[Any, Any]:
-        """The same of sample times, by the form in which they were rounded."""
+        """Return the array of sample times, by the form in which they were rounded."""
         if isinstance(times, TypedTimes):
             return times.typed
         if isinstance(times, BinaryTimes):
@@ -55,48 +57,35 @@ class Arithmetic:
         return self.array(times)
 
 
+_OF_NUMPY: Final = {
+    "f32": Arithmetic(np.float32, lambda m, e: np.float32(ldexp(m, e)), np.float32),
+    "f64": Arithmetic(float, ldexp, float),
+    "f80": Arithmetic(np.longdouble, lambda m, e: np.ldexp(np.longdouble(m), e), np.longdouble),
+}
+
+
 def arithmetic(rung: Rung) -> Arithmetic:
-    """The number type of a rung that is available here; ``unavailable`` tells which are not."""
-    if rung.name == "f32":
-        return Arithmetic(
-            np.float32,
-            lambda v: np.float32(float(v)),
-            exact_value,
-            compact=False,
-            scaled=lambda m, e: np.float32(ldexp(m, e)),
-            double=np.float32,
-        )
-    if rung.name == "f64":
-        return Arithmetic(float, float, exact_value, compact=False, scaled=ldexp, double=float)
-    if rung.name == "f80":
-        return Arithmetic(
-            np.longdouble,
-            _longdouble,
-            exact_value,
-            compact=False,
-            scaled=lambda m, e: np.ldexp(np.longdouble(m), e),
-            double=np.longdouble,
-        )
+    """Return the number type of a rung that is available here; ``unavailable`` tells which are not."""
+    if rung.name in _OF_NUMPY:
+        return _OF_NUMPY[rung.name]
     import heyoka as hy
 
     # Without compact mode these compile for seconds to minutes and then run no faster.
     if rung.name == "f128":
         return Arithmetic(
             hy.real128,
-            _real128,
+            lambda m, e: hy.real128(_real(m, e, 113)),
+            hy.real128,
             _from_real128,
             compact=True,
-            scaled=lambda m, e: hy.real128(_scaled(m, e, 113)),
-            double=hy.real128,
         )
     bits = rung.bits
     return Arithmetic(
         hy.real,
-        lambda v: _real(v, bits),
+        lambda m, e: _real(m, e, bits),
+        lambda v: hy.real(v, bits),
         _from_real,
         compact=True,
-        scaled=lambda m, e: _scaled(m, e, bits),
-        double=lambda v: hy.real(v, bits),
         is_found_again=False,
     )
 
@@ -117,27 +106,12 @@ def unavailable(rung: Rung) -> str:
     return Lack(reason, Outcome.NO_FORMAT) if reason else ""
 
 
-def _longdouble(value: Fraction) -> Any:
-    return np.ldexp(np.longdouble(value.numerator), 1 - value.denominator.bit_length())
-
-
-def _real128(value: Fraction) -> Any:
+def _real(significand: int, exponent: int, bits: int) -> Any:
+    """Return significand times 2^exponent: the odd part as an integer, times exact powers of two."""
     import heyoka as hy
 
-    return hy.real128(_real(value, 113))
-
-
-def _real(value: Fraction, bits: int) -> Any:
-    """The significand as an integer, then exact products with powers of two."""
-    exponent = _trailing_zeros(value.numerator) - (value.denominator.bit_length() - 1)
-    return _scaled(int(value / power_of_two(exponent)), exponent, bits)
-
-
-def _scaled(significand: int, exponent: int, bits: int) -> Any:
-    """significand times 2^exponent, for a significand of no more than so many bits."""
-    import heyoka as hy
-
-    result = hy.real(significand, bits)
+    zeros = (significand & -significand).bit_length() - 1 if significand else 0
+    result, exponent = hy.real(significand >> zeros, bits), exponent + zeros
     while exponent:
         step = max(-_LARGEST_INTEGER_BITS, min(_LARGEST_INTEGER_BITS, exponent))
         power = _power(abs(step), bits)
@@ -151,10 +125,6 @@ def _power(exponent: int, bits: int) -> Any:
     import heyoka as hy
 
     return hy.real(2**exponent, bits)
-
-
-def _trailing_zeros(value: int) -> int:
-    return (value & -value).bit_length() - 1 if value else 0
 
 
 def _from_real128(value: Any) -> Fraction:

@@ -1,4 +1,4 @@
-"""How fast heyoka steps: one compiled form, run again and again over the same stretch, unsampled.
+"""The pace of heyoka's steps: one compiled form, run again and again over a stretch, unsampled.
 
 This is for measuring what a form costs. A run that is to be believed is the driver's.
 """
@@ -41,7 +41,7 @@ class Pace:
         return int(self._integrator.order)
 
     def run(self) -> int:
-        """Step from the start to the end of the stretch; the number of steps that took."""
+        """Step from the start to the end of the stretch, and return the number of steps."""
         self._integrator.time = self._zero
         self._integrator.state[:] = self._start
         self._integrator.pars[:] = self._parameters

@@ -30,7 +30,7 @@ _READ = {"time_limit": Outcome.FINISHED, "err_nf_state": Outcome.NON_FINITE}
 
 
 class Ran(NamedTuple):
-    """What a call returned: its outcome, the number of steps, and a row for each time."""
+    """The answer of a call: its outcome, the number of steps, and a row for each time."""
 
     outcome: Any
     steps: int
@@ -38,7 +38,7 @@ class Ran(NamedTuple):
 
 
 def euler_equations(I: Sequence[Any]) -> list[Any]:
-    """The equations as they are typed."""
+    """Return the equations as they are typed."""
     import heyoka as hy
 
     w1, w2, w3 = hy.make_vars("w1", "w2", "w3")

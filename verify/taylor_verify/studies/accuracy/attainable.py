@@ -3,10 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import inf
 from statistics import median
 from typing import Final
 
-from taylor_verify.publish.cells import INFINITE, NOTHING, figure, instant, ratio, word
+from taylor_verify.publish.cells import (
+    INFINITE,
+    NOTHING,
+    figure,
+    instant,
+    over_attainable,
+    ratio,
+    word,
+)
 from taylor_verify.publish.markdown import bold, bullets, code, prose, table
 from taylor_verify.publish.page import counts, page, roundoffs, sections, unscored
 from taylor_verify.records.precisions import place_of_rung
@@ -28,7 +37,7 @@ _MODEL: Final = (
 
 
 def attainable(verdicts: Sequence[Verdict]) -> str:
-    """A line a rung, then a line for every state quantity of every scene with a cell for each rung."""
+    """Return the page: a line a rung, then one for every state quantity with a cell for each rung."""
     found = runs(verdicts)
     shown = [verdict for run in found for verdict in run.state]
     legend = [
@@ -64,24 +73,19 @@ def _rung_row(rung: str, verdicts: Sequence[Verdict]) -> list[str]:
     scored = [verdict for verdict in verdicts if verdict.is_compared]
     if not scored:
         return [rung, *[NOTHING] * 6]
-    ratios = [_or_infinite(verdict) for verdict in scored]
-    worst = max(scored, key=_or_infinite)
+    ratios = [over_attainable(verdict) for verdict in scored]
+    most = max(scored, key=over_attainable)
     within = sum(value <= 1 for value in ratios)
     middle = median(ratios)
     return [
         rung,
         figure(scored[0].roundoff),
         str(len(scored)),
-        figure(middle) if middle < float("inf") else bold(INFINITE),
+        figure(middle) if middle < inf else bold(INFINITE),
         f"{within} of {len(scored)}",
-        ratio(worst) if worst.verdict is Status.PASS else bold(ratio(worst)),
-        f"{code(worst.quantity)} of {code(worst.scene)} at t = {instant(worst.ratio_at)}",
+        ratio(most) if most.verdict is Status.PASS else bold(ratio(most)),
+        f"{code(most.quantity)} of {code(most.scene)} at t = {instant(most.ratio_at)}",
     ]
-
-
-def _or_infinite(verdict: Verdict) -> float:
-    """A ratio that is none stands above every number: an error without one is not small."""
-    return float("inf") if verdict.ratio is None else verdict.ratio
 
 
 def _section(group: Sequence[Run]) -> str:
@@ -95,8 +99,7 @@ def _section(group: Sequence[Run]) -> str:
         [code(scene), code(quantity), *(_cell(by_rung.get(rung)) for rung in rungs)]
         for (scene, quantity), by_rung in lines.items()
     ]
-    parts = [table(columns, rows), unscored(group)]
-    return "\n\n".join(part for part in parts if part)
+    return "\n\n".join(filter(None, [table(columns, rows), unscored(group)]))
 
 
 def _cell(verdict: Verdict | None) -> str:

@@ -6,12 +6,12 @@ from collections.abc import Iterable, Sequence
 from statistics import median
 from typing import TYPE_CHECKING
 
-from taylor_verify.publish.cells import NOTHING, error, figure, in_roundoffs, judged, ratio
+from taylor_verify.publish.cells import NOTHING, figure, in_roundoffs, main_error, ratio, worst
 from taylor_verify.publish.markdown import bold, bullets, code, prose, table
-from taylor_verify.publish.page import counts, whole
+from taylor_verify.publish.page import counts, made_with, whole
 from taylor_verify.records.precisions import place_of_rung
-from taylor_verify.records.quantities import GATE_FACTOR, STATES
-from taylor_verify.records.runs import Run, gravest, runs
+from taylor_verify.records.quantities import GATE_FACTOR
+from taylor_verify.records.runs import Run, runs
 from taylor_verify.records.store import versions
 from taylor_verify.records.verdict import Verdict
 
@@ -52,7 +52,7 @@ _CONTENTS = (
 
 
 def front(verdicts: Sequence[Verdict], others: Iterable[Page]) -> str:
-    """The page of a report, with links to what else there is."""
+    """Return the front page of a report, with links to what else there is."""
     found = runs(verdicts)
     contents = [*_CONTENTS, *(page.row() for page in others)]
     return whole(
@@ -71,29 +71,40 @@ def front(verdicts: Sequence[Verdict], others: Iterable[Page]) -> str:
         _by_scene(found),
         "## What else is here",
         table(["file", "what it has"], contents),
-        _remake(verdicts),
+        "## To remake this",
+        "`make verify` runs the standard set and writes a copy of this folder to "
+        "`reports/local/`; `make reports` rewrites the committed one. `make check-reports` runs "
+        "part of it anew and fails if a number has left its *rounding class*: processors fuse "
+        "and order operations in their own ways, so the roundings differ, and with them the "
+        "digits of an error, but neither its verdict nor its size. "
+        "`verify/taylor_verify/judge/rounding_class.py` says what that means in numbers, and why.",
+        "What is *not committed* is large and made from the rest: records, portraits of the "
+        "scenes, `gates`, PDF, LaTeX, HTML, and the JSON of `reference`. `taylor-verify publish "
+        "--missing` makes the data of these in minutes, `taylor-verify publish --paper` the "
+        "renderings, and `make release-data` packs all into one archive.",
+        made_with(versions(verdicts)),
     )
 
 
 def _in_short(found: Sequence[Run], verdicts: Sequence[Verdict]) -> str:
-    scenes = {run.scene for run in found}
-    scored = [verdict for verdict in verdicts if verdict.is_compared]
+    counted = {
+        "scenes": len({run.scene for run in found}),
+        "runs": len(found),
+        "verdicts": len(verdicts),
+    }
+    text = ", ".join(f"{bold(str(number))} {what}" for what, number in counted.items())
+    finite = [v.ratio for v in verdicts if v.is_compared and v.ratio is not None]
+    if not finite:
+        return f"{text}."
     kept = sum(verdict.max == 0 for run in found for verdict in run.conserved.values())
-    text = (
-        f"{bold(str(len(scenes)))} scenes, {bold(str(len(found)))} runs, "
-        f"{bold(str(len(verdicts)))} verdicts."
+    return (
+        f"{text}. Half of the errors are below {bold(figure(median(finite)))} of what is attainable; "
+        f"{kept} conserved quantities are kept exactly."
     )
-    finite = [verdict.ratio for verdict in scored if verdict.ratio is not None]
-    if finite:
-        text += (
-            f" Half of the errors are below {bold(figure(median(finite)))} of what is attainable; "
-            f"{kept} conserved quantities are kept exactly."
-        )
-    return text
 
 
 def _by_rung(found: Sequence[Run]) -> str:
-    """A line a rung: its roundoff, the median and the worst state error, the worst over attainable."""
+    """Return a line a rung: roundoff, median and worst error of state, the worst over attainable."""
     errors = ("median error, u:", "largest error, u:", "over attainable:")
     columns = ["rung", "u:", "runs:", "all pass:", *errors, "where"]
     rungs = sorted({run.rung for run in found}, key=place_of_rung)
@@ -104,7 +115,7 @@ def _rung_row(of_rung: Sequence[Run]) -> list[str]:
     states = [verdict for run in of_rung for verdict in run.state if verdict.is_compared]
     sizes = [in_roundoffs(verdict, verdict.max) for verdict in states]
     finite = [size for size in sizes if size is not None]
-    worst = max(states, key=_ratio, default=None)
+    most = worst(states)
     passed = sum(all(v.verdict.value == "pass" for v in run.verdicts) for run in of_rung)
     lost = len(finite) < len(sizes)
     return [
@@ -114,18 +125,13 @@ def _rung_row(of_rung: Sequence[Run]) -> list[str]:
         str(passed) if passed == len(of_rung) else bold(str(passed)),
         figure(median(finite)) if finite else NOTHING,
         bold("no number") if lost else figure(max(finite, default=None)),
-        ratio(worst) if worst else NOTHING,
-        f"{code(worst.quantity)} of {code(worst.scene)}" if worst else NOTHING,
+        ratio(most) if most else NOTHING,
+        f"{code(most.quantity)} of {code(most.scene)}" if most else NOTHING,
     ]
 
 
-def _ratio(verdict: Verdict) -> float:
-    """None at all stands above every number."""
-    return float("inf") if verdict.ratio is None else verdict.ratio
-
-
 def _by_scene(found: Sequence[Run]) -> str:
-    """A line a scene and solver, a column a rung, the main quantity's largest error in the cell."""
+    """Return a line a scene and solver, with the main quantity's largest error on each rung."""
     rungs = sorted({run.rung for run in found}, key=place_of_rung)
     solvers = {(run.solver, run.setting) for run in found}
     lines: dict[tuple[str, str, str], dict[str, Run]] = {}
@@ -136,38 +142,8 @@ def _by_scene(found: Sequence[Run]) -> str:
         [
             code(scene),
             *([prose(f"{solver} {setting}".strip())] if len(solvers) > 1 else []),
-            *(_cell(by_rung.get(rung)) for rung in rungs),
+            *(main_error(by_rung.get(rung)) for rung in rungs),
         ]
         for (scene, solver, setting), by_rung in lines.items()
     ]
     return table([*columns, *(f"{rung}:" for rung in rungs)], rows)
-
-
-def _cell(run: Run | None) -> str:
-    if run is None:
-        return NOTHING
-    status = gravest(run.verdicts)
-    main = min(run.state, key=lambda v: STATES.index(v.quantity), default=None)
-    if main is None or main.max is None:
-        return judged(status)
-    return error(main) if status.value == "pass" else f"{error(main)} {judged(status)}"
-
-
-def _remake(verdicts: Iterable[Verdict]) -> str:
-    packages = (f"{package} {version}" for package, version in versions(verdicts).items())
-    return "\n\n".join(
-        [
-            "## To remake this",
-            "`make verify` runs the standard set and writes a copy of this folder to "
-            "`reports/local/`; `make reports` rewrites the committed one. `make check-reports` runs "
-            "part of it anew and fails if a number has left its *rounding class*: processors fuse "
-            "and order operations in their own ways, so the roundings differ, and with them the "
-            "digits of an error, but neither its verdict nor its size. "
-            "`verify/taylor_verify/judge/rounding_class.py` says what that means in numbers, and why.",
-            "What is *not committed* is large and made from the rest: records, portraits of the "
-            "scenes, `gates`, PDF, LaTeX, HTML, and the JSON of `reference`. `taylor-verify publish "
-            "--missing` makes the data of these in minutes, `taylor-verify publish --paper` the "
-            "renderings, and `make release-data` packs all into one archive.",
-            f"Made with {', '.join(packages) or 'unknown versions'}.",
-        ]
-    )

@@ -2,21 +2,10 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Final
 
-from taylor_verify.publish.cells import (
-    NOTHING,
-    error,
-    figure,
-    in_roundoffs,
-    instant,
-    judged,
-    peak,
-    ratio,
-    reason,
-)
+from taylor_verify.publish.cells import NOTHING, judged, peak, verdict_table, worst_ratio
 from taylor_verify.publish.markdown import bold, bullets, code, prose, table
 from taylor_verify.publish.page import counts, page, roundoffs, sections, unscored
 from taylor_verify.records.runs import (
@@ -32,7 +21,7 @@ from taylor_verify.records.verdict import Verdict
 if TYPE_CHECKING:
     from taylor_verify.publish.entry import Page
 
-_MEANINGS = {
+_MEANINGS: Final[Mapping[Status, str]] = {
     Status.PASS: "the error of every sample is within its bound",
     Status.FAIL: "an error exceeds its bound or is no number, or the solver did not finish",
     Status.UNDECIDED: "the exact solution is not known sharply enough to judge by",
@@ -41,11 +30,11 @@ _MEANINGS = {
     Status.REFUSED: "the numbers of this rung cannot hold the scene",
     Status.UNAVAILABLE: "this machine does not have the rung",
 }
-_RATIO = (
+_RATIO: Final = (
     "*Over attainable* is the largest ratio, over all samples, of the error to what perfect "
     "rounding of every step would leave on this orbit"
 )
-_CONTENTS = (
+_CONTENTS: Final = (
     ("[State errors](accuracy.md)", "[csv](accuracy.csv)", "the error of what each scene tracks"),
     (
         "[Attainable and reached](attainable.md)",
@@ -59,7 +48,7 @@ _CONTENTS = (
         "every verdict, its bound and why that bound: `gates.md`, not committed",
     ),
 )
-_RENDERED = (
+_RENDERED: Final = (
     "`taylor-verify publish --paper` renders these pages, and the ledger of claims, from their Markdown "
     "and from nothing else: each as NAME.tex, which pdflatex compiles as it is (three times, for the "
     "columns to stand right), and as NAME.html, which is one file without a script; all of them "
@@ -67,11 +56,18 @@ _RENDERED = (
     "publish --missing` makes the tables of the gates. The gates are left to their CSV: a line for every "
     "verdict with its reason is for searching and not for reading."
 )
-_RUN = ("scene", "rung")
+_ACCURACY: Final = (
+    *("scene", "rung", "quantity", "max:", "mean:", "at t:", "max, u:", "mean, u:"),
+    *("over attainable:", "bound:", "steps:", "verdict"),
+)
+_GATES: Final = (
+    *("scene", "rung", "quantity", "max:", "at t:", "bound:", "attainable:", "over attainable:"),
+    *("verdict", "because"),
+)
 
 
 def accuracy(verdicts: Sequence[Verdict]) -> str:
-    """The error of every state quantity of every run."""
+    """Return the page of the error of every state quantity of every run."""
     found = runs(verdicts)
     shown = [verdict for run in found for verdict in run.state]
     units = {verdict.quantity: verdict.unit for verdict in shown if verdict.unit}
@@ -94,31 +90,12 @@ def accuracy(verdicts: Sequence[Verdict]) -> str:
 
 
 def _accuracy_section(group: Sequence[Run]) -> str:
-    numbers = ("max:", "mean:", "at t:", "max, u:", "mean, u:", "over attainable:", "bound:")
-    columns = [*_RUN, "quantity", *numbers, "steps:", "verdict"]
-    rows = [_accuracy_row(verdict) for run in group for verdict in run.state]
-    return "\n\n".join(part for part in (table(columns, rows), unscored(group)) if part)
-
-
-def _accuracy_row(verdict: Verdict) -> list[str]:
-    return [
-        code(verdict.scene),
-        verdict.rung,
-        code(verdict.quantity),
-        prose(error(verdict)),
-        figure(verdict.mean),
-        instant(verdict.at),
-        figure(in_roundoffs(verdict, verdict.max)),
-        figure(in_roundoffs(verdict, verdict.mean)),
-        ratio(verdict),
-        figure(verdict.bound),
-        str(verdict.steps or NOTHING),
-        judged(verdict.verdict),
-    ]
+    rows = verdict_table(_ACCURACY, [verdict for run in group for verdict in run.state])
+    return "\n\n".join(filter(None, [rows, unscored(group)]))
 
 
 def conserved(verdicts: Sequence[Verdict]) -> str:
-    """The drift of every conserved quantity, a run a line."""
+    """Return the page of the drift of every conserved quantity, a run a line."""
     found = runs(verdicts)
     shown = [verdict for run in found for verdict in run.drifts]
     legend = [
@@ -144,7 +121,7 @@ def conserved(verdicts: Sequence[Verdict]) -> str:
 def _conserved_section(group: Sequence[Run]) -> str:
     quantities = conserved_quantities(group)
     cells = [f"{code(name)}:" for name in quantities]
-    columns = [*_RUN, *cells, "over attainable:", "verdict"]
+    columns = ["scene", "rung", *cells, "over attainable:", "verdict"]
     return table(columns, [_conserved_row(run, group, quantities) for run in group])
 
 
@@ -152,7 +129,7 @@ def _conserved_row(run: Run, group: Sequence[Run], quantities: Iterable[str]) ->
     of_scene = quantities_of_scene(run, group)
     cells = [_drift(run, name, name in of_scene) for name in quantities]
     verdict = judged(gravest(run.drifts)) if run.drifts else NOTHING
-    return [code(run.scene), run.rung, *cells, _worst_ratio(run.drifts), verdict]
+    return [code(run.scene), run.rung, *cells, worst_ratio(run.drifts), verdict]
 
 
 def _drift(run: Run, quantity: str, of_scene: bool) -> str:
@@ -166,17 +143,8 @@ def _drift(run: Run, quantity: str, of_scene: bool) -> str:
     return bold(text if verdict.max is None else f"{text} {verdict.verdict.value}")
 
 
-def _worst_ratio(verdicts: Sequence[Verdict]) -> str:
-    """The largest with its quantity; none at all stands above every number."""
-    scored = [verdict for verdict in verdicts if verdict.is_compared]
-    if not scored:
-        return NOTHING
-    worst = max(scored, key=lambda v: math.inf if v.ratio is None else v.ratio)
-    return f"{ratio(worst)} ({code(worst.quantity)})"
-
-
 def gates(verdicts: Sequence[Verdict]) -> str:
-    """Every verdict with its bound and its reason."""
+    """Return the page of every verdict with its bound and its reason."""
     legend = [
         "*max*, *bound* and *attainable* are those of the time *at t* of the largest error.",
         f"{_RATIO}; a gate asks every sample.",
@@ -188,34 +156,15 @@ def gates(verdicts: Sequence[Verdict]) -> str:
         "Every quantity that was compared, the bound it was held against, and why that bound.",
         counts(verdicts),
         bullets(legend),
-        sections(runs(verdicts), _gates_section),
+        sections(
+            runs(verdicts),
+            lambda group: verdict_table(_GATES, [v for run in group for v in run.verdicts]),
+        ),
     )
 
 
-def _gates_section(group: Sequence[Run]) -> str:
-    numbers = ("max:", "at t:", "bound:", "attainable:", "over attainable:")
-    columns = [*_RUN, "quantity", *numbers, "verdict", "because"]
-    rows = [_gate_row(verdict) for run in group for verdict in run.verdicts]
-    return table(columns, rows)
-
-
-def _gate_row(verdict: Verdict) -> list[str]:
-    return [
-        code(verdict.scene),
-        verdict.rung,
-        code(verdict.quantity),
-        prose(error(verdict)),
-        instant(verdict.at),
-        figure(verdict.bound),
-        figure(verdict.attainable),
-        ratio(verdict),
-        judged(verdict.verdict),
-        prose(reason(verdict)),
-    ]
-
-
 def readme(verdicts: Sequence[Verdict], others: Iterable[Page] = ()) -> str:
-    """What the files are and how a cell is read; ``others`` are what else is there."""
+    """Return the index of the tables, and how a cell is read; ``others`` are what else is there."""
     how = [
         "A number has three significant digits; the CSV has them all. A time has its own digits.",
         "Where there is no number stands a word: the verdict, or how a failed run ended. "
@@ -227,11 +176,12 @@ def readme(verdicts: Sequence[Verdict], others: Iterable[Page] = ()) -> str:
         "is empty; `max_u` and `mean_u` are in u.",
     ]
     meanings = [[judged(status), text] for status, text in _MEANINGS.items()]
+    besides = [other.row_with_sheet() for other in others]
     return page(
         "Tables",
         verdicts,
         table(["table", "every digit", "what it has"], _CONTENTS),
-        _besides(others),
+        table(["besides", "every digit", "what it has"], besides) if besides else "",
         counts(verdicts),
         "## How to read a cell",
         bullets(how),
@@ -243,14 +193,8 @@ def readme(verdicts: Sequence[Verdict], others: Iterable[Page] = ()) -> str:
     )
 
 
-def _besides(others: Iterable[Page]) -> str:
-    rows = [other.row_with_sheet() for other in others]
-    columns = ["besides", "every digit", "what it has"]
-    return table(columns, rows) if rows else ""
-
-
 def _scenes(verdicts: Sequence[Verdict]) -> list[list[str]]:
-    """Every scene with its rungs and the digest of its text."""
+    """Return every scene with its rungs and the digest of its text."""
     rungs: dict[str, list[str]] = {}
     digests: dict[str, str] = {}
     for run in runs(verdicts):

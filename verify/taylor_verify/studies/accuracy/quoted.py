@@ -15,7 +15,7 @@ from taylor_verify.publish.markdown import code, table
 from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.studies.controls import page as controls
-from taylor_verify.studies.controls.stored import CONTROLS
+from taylor_verify.studies.controls.document import CONTROLS
 
 BEGIN: Final = "<!-- accuracy: made by taylor-verify publish; do not edit -->"
 END: Final = "<!-- end of accuracy -->"
@@ -34,29 +34,27 @@ _SHOWN: Final = (
 
 
 def requoted(folder: Path, verdicts: Sequence[Verdict]) -> dict[str, str]:
-    """The pages beside ``folder`` that quote it, by their paths from there, with today's blocks.
+    """Return the pages beside ``folder`` that quote it, by their paths from there, with today's blocks.
 
     Raises ValueError for a page with the first mark of a block and not the second.
     """
     place = folder.resolve()
     if place.name != _FOLDER:
         return {}
-    blocks: dict[tuple[str, str], Callable[[], str]] = {
-        (BEGIN, END): lambda: accuracy(verdicts),
-    }
-    if (folder / CONTROLS.name).exists():
-        blocks[controls.BEGIN, controls.END] = lambda: controls.short(CONTROLS.load(folder))
-    pages = {name: place.parent / name for name in _PAGES}
-    texts = {n: page.read_text(encoding="utf-8") for n, page in pages.items() if page.is_file()}
-    return {
-        name: _with_blocks(text, blocks)
-        for name, text in texts.items()
-        if any(begin in text for begin, _ in blocks)
-    }
+    blocks: dict[tuple[str, str], Callable[[], str]] = {(BEGIN, END): lambda: accuracy(verdicts)}
+    if (study := CONTROLS.find(folder)) is not None:
+        blocks[controls.BEGIN, controls.END] = lambda: controls.short(study)
+    quoting = {}
+    for name in _PAGES:
+        page = place.parent / name
+        text = page.read_text(encoding="utf-8") if page.is_file() else ""
+        if any(begin in text for begin, _ in blocks):
+            quoting[name] = _with_blocks(text, blocks)
+    return quoting
 
 
 def accuracy(verdicts: Iterable[Verdict]) -> str:
-    """Largest errors of chosen scenes by rung, in u and over what is attainable, between the marks."""
+    """Return the largest errors of chosen scenes by rung, in u and over what is attainable."""
     found = {(v.scene, v.quantity, v.rung): v for v in verdicts if v.solver == "taylor"}
     rungs = sorted({rung for _, _, rung in found}, key=place_of_rung)
     columns = ["scene", "what is compared", *(f"{r}:" for r in rungs)]

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable
 from typing import Any, Final
 
-from taylor_verify.publish.cells import in_roundoffs, word
+from taylor_verify.publish.cells import in_roundoffs, over_attainable, word
 from taylor_verify.publish.sheet import sheet
 from taylor_verify.records.runs import (
     Run,
@@ -18,37 +17,32 @@ from taylor_verify.records.runs import (
 from taylor_verify.records.verdict import Verdict
 
 _RUN: Final = ("scene", "solver", "setting", "rung")
-_ACCURACY: Final = (
-    *_RUN,
-    *("quantity", "max", "mean", "final", "at", "unit", "max_u", "mean_u", "ratio", "ratio_at"),
-    *("bound", "steps", "verdict", "outcome"),
-)
+_ERROR: Final = ("quantity", "max", "mean", "final", "at", "unit", "max_u", "mean_u")
+_ACCURACY: Final = (*_RUN, *_ERROR, "ratio", "ratio_at", "bound", "steps", "verdict", "outcome")
 _ATTAINABLE: Final = (
     *_RUN,
     *("quantity", "max", "at", "attainable", "ratio", "ratio_at", "unit", "max_u", "attainable_u"),
     *("roundoff", "verdict", "outcome"),
 )
 _GATES: Final = (
-    *_RUN,
-    *("quantity", "max", "mean", "final", "at", "unit", "max_u", "mean_u", "ratio", "ratio_at"),
-    *("bound", "attainable", "roundoff", "exponent", "steps", "evaluations"),
-    *("verdict", "outcome", "because", "scene_sha256"),
+    *(*_RUN, *_ERROR, "ratio", "ratio_at", "bound", "attainable", "roundoff", "exponent"),
+    *("steps", "evaluations", "verdict", "outcome", "because", "scene_sha256"),
 )
 _CONSERVED: Final = ("max_u", "mean_u", "at", "ratio", "verdict")
 
 
 def accuracy(verdicts: Iterable[Verdict]) -> str:
-    """A row for every state quantity of every run."""
+    """Return a row for every state quantity of every run."""
     return sheet(_ACCURACY, (_fields(v) for run in runs(verdicts) for v in run.state))
 
 
 def attainable(verdicts: Iterable[Verdict]) -> str:
-    """A row for every state quantity of every run, with what was attainable."""
+    """Return a row for every state quantity of every run, with what was attainable."""
     return sheet(_ATTAINABLE, (_fields(v) for run in runs(verdicts) for v in run.state))
 
 
 def conserved(verdicts: Iterable[Verdict]) -> str:
-    """A row for every run, with five columns for each quantity: ``T_max_u`` and so on."""
+    """Return a row for every run, with five columns for each quantity: ``T_max_u`` and so on."""
     found = runs(verdicts)
     quantities = conserved_quantities(found)
     names = [f"{quantity}_{field}" for quantity in quantities for field in _CONSERVED]
@@ -59,7 +53,7 @@ def conserved(verdicts: Iterable[Verdict]) -> str:
 def gates(
     verdicts: Iterable[Verdict], more: Callable[[Verdict], dict[str, Any]] | None = None
 ) -> str:
-    """A row for every verdict; ``more`` has further columns of each, the same ones for all."""
+    """Return a row for every verdict; ``more`` has further columns of each, the same ones for all."""
     found = [v for run in runs(verdicts) for v in run.verdicts]
     further = [more(v) if more else {} for v in found]
     names = [*_GATES, *(further[0] if further else ())]
@@ -77,7 +71,7 @@ def _conserved_row(run: Run, of_scene: Iterable[str]) -> dict[str, Any]:
 
 
 def _fields(verdict: Verdict) -> dict[str, Any]:
-    """The verdict's own fields, and the errors in u; a word in place of a maximum that is none."""
+    """Return a verdict's own fields, and errors in u; a word in place of a maximum that is none."""
     row = verdict.row() | {
         "mean_u": in_roundoffs(verdict, verdict.mean),
         "attainable_u": in_roundoffs(verdict, verdict.attainable),
@@ -85,5 +79,5 @@ def _fields(verdict: Verdict) -> dict[str, Any]:
     }
     if verdict.max is None:
         return row | {"max": word(verdict), "max_u": word(verdict)}
-    ratio = math.inf if verdict.ratio is None and verdict.is_compared else verdict.ratio
+    ratio = over_attainable(verdict) if verdict.is_compared else verdict.ratio
     return row | {"max_u": in_roundoffs(verdict, verdict.max), "ratio": ratio}

@@ -29,8 +29,8 @@ def _measure(folder: Path, progress: Progress) -> Measured:
     from taylor_verify.batch.selection import select
 
     selection = select()
-    with progress.jobs() as told:
-        judgements = tuple(judge_all(selection.jobs(_SOLVER), told))
+    with progress.jobs() as bar:
+        judgements = tuple(judge_all(selection.jobs(_SOLVER), bar))
     results = Judgements(judgements, selection, _SOLVER)
     written = store.write(folder, results.verdicts, results.records)
     return Measured(written, status=results.exit_status)
@@ -40,21 +40,19 @@ def _find(folder: Path) -> Verdicts | None:
     return store.load(folder) if (folder / store.FOLDER / store.VERDICTS).exists() else None
 
 
-# What the repository leaves out: every sample of every run, and every verdict with its reason.
-
+# Files that the repository leaves out: every sample of every run, and every verdict with its reason.
 
 _GATES: Final = {"tables/gates.md": page.gates, "tables/gates.csv": sheet.gates}
 
 
 def _gates_lacking(report: Published) -> list[tuple[str, str]]:
     """Return path and text of each table of gates that is not the one of the verdicts."""
-
-    def current(name: str) -> str | None:
-        file = report.folder / name
-        return file.read_text(encoding="utf-8") if file.exists() else None
-
-    texts = {name: made(report.verdicts) for name, made in _GATES.items()}
-    return [(name, text) for name, text in texts.items() if current(name) != text]
+    lacking = []
+    for name, make in _GATES.items():
+        file, text = report.folder / name, make(report.verdicts)
+        if not file.exists() or file.read_text(encoding="utf-8") != text:
+            lacking.append((name, text))
+    return lacking
 
 
 def _write_gates(
@@ -67,20 +65,12 @@ def _write_gates(
 def _runs_lacking(report: Published) -> tuple[Run, ...]:
     """Return the runs without a record, all of them where the records are those of other verdicts."""
     data = report.folder / store.FOLDER
-    has_records = store.has_own_records(report.folder)
-    return tuple(
-        run
-        for run in report.runs
-        if _has_a_record(run)
-        and not (
-            has_records and (data / store.record_name(run.scene, run.solver, run.rung)).exists()
-        )
-    )
-
-
-def _has_a_record(run: Run) -> bool:
-    is_judged = any(verdict.verdict not in _UNJUDGED for verdict in run.verdicts)
-    return run.solver == _SOLVER and not run.setting and is_judged
+    own = [run for run in report.runs if run.solver == _SOLVER and not run.setting]
+    judged = [run for run in own if any(v.verdict not in _UNJUDGED for v in run.verdicts)]
+    if not store.has_own_records(report.folder):
+        return tuple(judged)
+    names = [store.record_name(run.scene, run.solver, run.rung) for run in judged]
+    return tuple(r for r, name in zip(judged, names, strict=True) if not (data / name).exists())
 
 
 def _add_records(folder: Path, lacking: Sequence[Run], progress: Progress) -> tuple[Path, ...]:
@@ -88,12 +78,12 @@ def _add_records(folder: Path, lacking: Sequence[Run], progress: Progress) -> tu
     from taylor_verify.batch.job import Job
     from taylor_verify.batch.judging import judge_all
 
-    rungs: dict[tuple[str, str], list[str]] = {}
+    rungs: dict[str, list[str]] = {}
     for run in lacking:
-        rungs.setdefault((run.scene, run.solver), []).append(run.rung)
-    jobs = [Job(scene, solver, tuple(own)) for (scene, solver), own in rungs.items()]
-    with progress.jobs() as told:
-        results = judge_all(jobs, told)
+        rungs.setdefault(run.scene, []).append(run.rung)
+    jobs = [Job(scene, _SOLVER, tuple(own)) for scene, own in rungs.items()]
+    with progress.jobs() as bar:
+        results = judge_all(jobs, bar)
     return store.add_records(folder, [one.record for one in results if one.record is not None])
 
 

@@ -1,4 +1,4 @@
-"""The page of the ledger: first what a reader of the two texts must correct, then every entry.
+"""Page of the ledger: first what a reader of the two texts must correct, then every entry.
 
 It is made from the rows of `claims --json` alone, and holds nothing that another machine would change: what
 made the rows stands beside them, in data/claims.json.
@@ -6,7 +6,8 @@ made the rows stands beside them, in data/claims.json.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from math import isfinite
 from typing import Any, Final
 
@@ -48,11 +49,11 @@ def page(study: ClaimsStudy) -> str:
         _INTRODUCTION,
         _counts(rows),
         "## Errata",
-        _errata(rows),
+        *_entries(rows, _erratum, Verdict.FALSE),
         "## True on a condition",
-        _on_condition(rows),
+        *_entries(rows, _conditional, Verdict.ONLY_IF),
         "## Neither true nor false",
-        _neither(rows),
+        *_entries(rows, _neither, Verdict.UNDECIDED, Verdict.VACUOUS),
         "## Restored",
         _restored(rows),
         "## The ledger",
@@ -65,129 +66,93 @@ def page(study: ClaimsStudy) -> str:
     )
 
 
-def _of(rows: Sequence[ClaimRow], *verdicts: Verdict) -> list[ClaimRow]:
-    return [row for row in rows if row.verdict in verdicts]
-
-
 def _counts(rows: Sequence[ClaimRow]) -> str:
-    verdicts = [row.verdict.value for row in rows]
-    found = list(dict.fromkeys(verdicts))
-    columns = [f"{verdict}:" for verdict in found]
-    return table(columns, [[str(verdicts.count(verdict)) for verdict in found]])
+    counts = Counter(row.verdict.value for row in rows)
+    return table([f"{verdict}:" for verdict in counts], [list(map(str, counts.values()))])
 
 
-def _errata(rows: Sequence[ClaimRow]) -> str:
-    """For each false entry: as transcribed, correct, and where the first form fails."""
-    return "\n\n".join(
-        _entry(
-            row,
-            [
-                f"as transcribed: {_math(row.statement)}",
-                f"correct: {_math(row.correction)}",
-                f"counterexample: {prose(row.counterexample or '')}",
-                f"residual as transcribed {_short(row.residual.transcribed)}, corrected "
-                f"{_residual(row)}",
-                prose(row.remark or ""),
-            ],
-        )
-        for row in _of(rows, Verdict.FALSE)
-    )
+def _entries(
+    rows: Iterable[ClaimRow], lines: Callable[[ClaimRow], Sequence[str]], *verdicts: Verdict
+) -> Iterator[str]:
+    """Yield the entries with one of the verdicts, each with its lines that are not empty."""
+    for row in rows:
+        if row.verdict in verdicts:
+            yield f"{bold(code(row.id))}\n\n{bullets(filter(None, lines(row)))}"
 
 
-def _on_condition(rows: Sequence[ClaimRow]) -> str:
-    return "\n\n".join(
-        _entry(
-            row,
-            [
-                _math(row.statement),
-                f"only if {prose(row.condition or '')}",
-                f"correct: {_math(row.correction)}" if row.correction else "",
-                f"else, for one: {prose(row.counterexample)}" if row.counterexample else "",
-                prose(row.remark or ""),
-            ],
-        )
-        for row in _of(rows, Verdict.ONLY_IF)
-    )
+def _erratum(row: ClaimRow) -> list[str]:
+    """Return a false entry as transcribed, correct, and where the first form fails."""
+    return [
+        f"as transcribed: {_math(row.statement)}",
+        f"correct: {_math(row.correction)}",
+        f"counterexample: {prose(row.counterexample or '')}",
+        f"residual as transcribed {_short(row.residual.transcribed)}, corrected {_residual(row)}",
+        prose(row.remark or ""),
+    ]
 
 
-def _neither(rows: Sequence[ClaimRow]) -> str:
-    return "\n\n".join(
-        _entry(
-            row,
-            [
-                _math(row.statement),
-                f"{bold(row.verdict.value)}: {prose(row.open or row.void or '')}",
-                f"what is true: {_math(row.correction)}" if row.correction else "",
-                f"checked: {prose(row.method)}",
-            ],
-        )
-        for row in _of(rows, Verdict.UNDECIDED, Verdict.VACUOUS)
-    )
+def _conditional(row: ClaimRow) -> list[str]:
+    return [
+        _math(row.statement),
+        f"only if {prose(row.condition or '')}",
+        f"correct: {_math(row.correction)}" if row.correction else "",
+        f"else, for one: {prose(row.counterexample)}" if row.counterexample else "",
+        prose(row.remark or ""),
+    ]
 
 
-def _restored(rows: Sequence[ClaimRow]) -> str:
-    """What the scan lost, where the equation is true once that is put back."""
-    lost = [[code(row.id), prose(row.lost or "")] for row in _of(rows, Verdict.RESTORED)]
-    return table(["equation", "what the scan lost"], lost)
+def _neither(row: ClaimRow) -> list[str]:
+    return [
+        _math(row.statement),
+        f"{bold(row.verdict.value)}: {prose(row.open or row.void or '')}",
+        f"what is true: {_math(row.correction)}" if row.correction else "",
+        f"checked: {prose(row.method)}",
+    ]
 
 
-def _entry(row: ClaimRow, lines: Sequence[str]) -> str:
-    return "\n".join([f"{bold(code(row.id))}\n", bullets(line for line in lines if line)])
-
-
-def _ledger(rows: Sequence[ClaimRow]) -> list[str]:
-    """One table of verdicts for each text, and below it the statements with domain and check."""
-    blocks: list[str] = []
-    columns = ["claim", "verdict", "residual", "mutations rejected"]
-    for text in dict.fromkeys(_text_of(row) for row in rows):
-        own = [row for row in rows if _text_of(row) == text]
-        cells = [
-            [
-                code(row.id),
-                row.verdict.value,
-                _residual(row),
-                prose("; ".join(row.mutations)),
-            ]
-            for row in own
-        ]
-        blocks += [
-            f"### {text}",
-            table(columns, cells),
-            "\n\n".join(_statement(row) for row in own),
-        ]
-    return blocks
-
-
-def _text_of(row: ClaimRow) -> str:
-    author, number, *_ = row.id.split()
-    return "Heinbockel" if author == "heinbockel" else f"Hydromechanics {number}"
-
-
-def _statement(row: ClaimRow) -> str:
-    lines = [
+def _statement(row: ClaimRow) -> list[str]:
+    return [
         _math(row.statement),
         f"domain: {prose(row.domain)}",
         f"checked by: {prose(row.method)}",
         f"remark: {prose(row.remark)}" if row.remark else "",
     ]
-    return _entry(row, lines)
+
+
+def _restored(rows: Sequence[ClaimRow]) -> str:
+    """Return what the scan lost, where the equation is true once that is put back."""
+    lost = [[code(r.id), prose(r.lost or "")] for r in rows if r.verdict is Verdict.RESTORED]
+    return table(["equation", "what the scan lost"], lost)
+
+
+def _ledger(rows: Sequence[ClaimRow]) -> Iterator[str]:
+    """Yield a table of verdicts for each text, and below it the statements with domain and check."""
+    texts: dict[str, list[ClaimRow]] = {}
+    for row in rows:
+        author, number, *_ = row.id.split()
+        text = "Heinbockel" if author == "heinbockel" else f"Hydromechanics {number}"
+        texts.setdefault(text, []).append(row)
+    for text, own in texts.items():
+        cells = [
+            [code(r.id), r.verdict.value, _residual(r), prose("; ".join(r.mutations))] for r in own
+        ]
+        yield f"### {text}"
+        yield table(["claim", "verdict", "residual", "mutations rejected"], cells)
+        yield from _entries(own, _statement, *Verdict)
 
 
 def _math(latex: str | None) -> str:
-    """Mathematics as GitHub renders it inside a line, safe from Markdown's own signs."""
+    """Return mathematics as GitHub renders it inside a line, safe from Markdown's own signs."""
     return f"$`{latex}`$" if latex else ""
 
 
 def _residual(row: ClaimRow) -> str:
-    """Zero where the check is exact; else the bound that holds, which no machine's rounding moves."""
+    """Return zero where the check is exact; else its bound, which no machine's rounding moves."""
     return "0, exactly" if row.bound == 0 else f"within {_short(row.bound)}"
 
 
 def _short(size: float | None) -> str:
     return "not finite" if size is None or not isfinite(size) else f"{size:.2g}"
-
-
-# The sheet.
 
 
 _SHEET: Final = (

@@ -62,17 +62,9 @@ def study(seen: Iterable[Sight]) -> ControlsStudy:
 
 
 def _row(defect: Defect) -> DefectRow:
-    return DefectRow(
-        name=defect.name,
-        setting=defect.setting,
-        scene=defect.scene,
-        gate=defect.gate,
-        what=defect.what,
-        why=defect.why,
-        told=defect.told,
-        twin=defect.twin.name,
-        twin_setting=defect.twin.setting,
-    )
+    names = ("name", "setting", "scene", "gate", "what", "why", "told")
+    own = {name: getattr(defect, name) for name in names}
+    return DefectRow(**own, twin=defect.twin.name, twin_setting=defect.twin.setting)
 
 
 def _verdicts(scene: str, solver: Solver) -> Verdicts:

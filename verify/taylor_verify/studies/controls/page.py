@@ -13,7 +13,7 @@ from taylor_verify.publish.sheet import sheet as csv_sheet
 from taylor_verify.records.json_text import plain
 from taylor_verify.records.quantities import INITIAL, STATES, is_conserved
 from taylor_verify.records.status import Status
-from taylor_verify.studies.controls.document import ControlsStudy, DefectRow, Sight
+from taylor_verify.studies.controls.document import CONTROLS, ControlsStudy, DefectRow, Sight
 from taylor_verify.studies.controls.proof import (
     MAIN,
     constant_shift,
@@ -22,7 +22,6 @@ from taylor_verify.studies.controls.proof import (
     times_bound,
     title,
 )
-from taylor_verify.studies.controls.stored import CONTROLS
 
 # Where the short table stands in a page that is otherwise written by hand.
 BEGIN: Final = "<!-- controls: made by taylor-verify publish; do not edit -->"

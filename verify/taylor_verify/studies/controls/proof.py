@@ -1,9 +1,9 @@
-"""What the rows of a controls run prove, in sentences: every name and number is counted from them."""
+"""Sentences that the rows of a controls run prove: every name and number is counted from them."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Final
 
 from taylor_verify.publish.cells import INFINITE, figure
@@ -21,18 +21,22 @@ _SPELT: Final = {"nan": "NaN", "munk": "Munk"}
 
 
 def proven(sights: Sequence[Sight]) -> list[str]:
-    """Sentences, each true of these rows; one that is true of none is not said."""
+    """Return sentences, each true of these rows; one that is true of none is left out."""
     finished = [sight for sight in sights if sight.is_finished]
-    told = [
+    sentences = [
         _energy_alone(finished),
         _conservation_together(finished),
         _body_axes(finished),
-        _together(finished),
+        "Omega or impulse, attitude and centre together see "
+        f"{_seeing(finished, lambda sight: sight.state)} of {len(finished)}; all conserved quantities "
+        f"together see {_seeing(finished, lambda sight: sight.conserved)}.",
         _shifted(finished),
-        _said(sights),
+        f"{len(finished)} of {len(sights)} report success: a solver's own word is no gate."
+        if finished
+        else "",
         _all_caught(sights),
     ]
-    return [sentence for sentence in told if sentence]
+    return [sentence for sentence in sentences if sentence]
 
 
 def _energy_alone(sights: Sequence[Sight]) -> str:
@@ -67,18 +71,20 @@ def _conservation_together(sights: Sequence[Sight]) -> str:
 
 
 def conserving(sights: Iterable[Sight]) -> list[Sight]:
-    """The defects that every gate on a conserved quantity passes, and a gate of the state sees."""
+    """Return the defects that every gate on a conserved quantity passes, and one of the state sees."""
     return [
         sight
         for sight in sights
-        if all(sight.is_missed_by(name) for name in sight.conserved)
-        and any(sight.is_seen_by(name) for name in sight.state)
+        if _is_conserving(sight) and any(sight.is_seen_by(name) for name in sight.state)
     ]
 
 
+def _is_conserving(sight: Sight) -> bool:
+    return all(sight.is_missed_by(name) for name in sight.conserved)
+
+
 def _worst_state(sight: Sight) -> float:
-    found = [sight.over_bound(name) for name in sight.state if sight.is_seen_by(name)]
-    return max(or_infinite(over) for over in found)
+    return max(or_infinite(sight.over_bound(n)) for n in sight.state if sight.is_seen_by(n))
 
 
 def _body_axes(sights: Sequence[Sight]) -> str:
@@ -92,43 +98,25 @@ def _body_axes(sights: Sequence[Sight]) -> str:
     )
 
 
-def _together(sights: Sequence[Sight]) -> str:
-    """What the gates of the state see together, and what those of the conserved quantities do."""
-    state = sum(any(sight.is_seen_by(name) for name in sight.state) for sight in sights)
-    conserved = sum(any(sight.is_seen_by(name) for name in sight.conserved) for sight in sights)
-    return (
-        f"Omega or impulse, attitude and centre together see {state} of {len(sights)}; all "
-        f"conserved quantities together see {conserved}."
-    )
+def _seeing(sights: Iterable[Sight], quantities: Callable[[Sight], Iterable[str]]) -> int:
+    return sum(any(map(sight.is_seen_by, quantities(sight))) for sight in sights)
 
 
 def _shifted(sights: Sequence[Sight]) -> str:
-    told = []
-    for sight in sights:
+    listed = []
+    for sight in filter(_is_conserving, sights):
         shift = constant_shift(sight)
-        if shift is None or not all(sight.is_missed_by(name) for name in sight.conserved):
-            continue
-        verdict = next(sight.verdicts[name] for name in MAIN if name in sight.verdicts)
-        if verdict.residual is None or not verdict.max:
+        verdict = next((sight.verdicts[name] for name in MAIN if name in sight.verdicts), None)
+        if shift is None or verdict is None or verdict.residual is None or not verdict.max:
             continue
         left = verdict.residual / verdict.max
         if left <= _WHOLLY:
-            told.append(f"{title(sight)} ({figure(shift)}; {_short(left)} of the error is left)")
-    if not told:
+            listed.append(f"{title(sight)} ({figure(shift)}; {_short(left)} of the error is left)")
+    if not listed:
         return ""
     return (
         "What no conserved quantity can see, a comparison in time names: the error of "
-        f"{_listed(told)} is {'a' if len(told) == 1 else 'in each case a'} constant shift of time."
-    )
-
-
-def _said(sights: Sequence[Sight]) -> str:
-    stopped = [sight for sight in sights if not sight.is_finished]
-    number = len(sights) - len(stopped)
-    return (
-        f"{number} of {len(sights)} report success: a solver's own word is no gate."
-        if number
-        else ""
+        f"{_listed(listed)} is {'a' if len(listed) == 1 else 'in each case a'} constant shift of time."
     )
 
 
@@ -153,16 +141,13 @@ def _listed(words: Sequence[str]) -> str:
     return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
 
 
-# What is said of one defect.
-
-
 def title(sight: Sight) -> str:
-    """The name in words."""
+    """Return the name of a defect in words."""
     return prose(" ".join(_SPELT.get(word, word) for word in sight.defect.name.split("-")))
 
 
 def times_bound(sight: Sight, quantity: str) -> str:
-    """The error over the bound in two digits; NaN, and infinity where the bound is zero."""
+    """Return the error over the bound in two digits; NaN, and infinity where the bound is zero."""
     over = sight.over_bound(quantity)
     if over is None:
         return "NaN" if sight.verdicts[quantity].max is None else INFINITE
@@ -170,7 +155,7 @@ def times_bound(sight: Sight, quantity: str) -> str:
 
 
 def _short(value: float) -> str:
-    """Two digits: 1.0, 42, 2.1e9."""
+    """Return a number in two digits: 1.0, 42, 2.1e9."""
     if 0.1 <= abs(value) < 100:
         return f"{value:.2g}" if abs(value) >= 10 else f"{value:.1f}"
     mantissa, _, exponent = f"{value:.1e}".partition("e")
@@ -178,7 +163,7 @@ def _short(value: float) -> str:
 
 
 def constant_shift(sight: Sight) -> float | None:
-    """The shift of time that explains the error of the state; None where none does."""
+    """Return the shift of time that explains the error of the state; None where none does."""
     for name in MAIN:
         verdict = sight.verdicts.get(name)
         if verdict is not None and sight.is_seen_by(name) and verdict.shift == "constant":
@@ -187,4 +172,5 @@ def constant_shift(sight: Sight) -> float | None:
 
 
 def or_infinite(value: float | None) -> float:
+    """Return the number; infinity for None, which is above every number."""
     return math.inf if value is None else value

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Final
 
 from taylor_verify.studies.controls import page
-from taylor_verify.studies.controls.stored import CONTROLS
+from taylor_verify.studies.controls.document import CONTROLS
 from taylor_verify.studies.study import Measured, Progress, Study
 
 

@@ -27,6 +27,11 @@ class ExtremeVerdict(Verdict):
 
     expected: Expected | None = None
 
+    @property
+    def is_met(self) -> bool:
+        """False for a mismatch; a row that was compared with nothing is none."""
+        return self.expected is None or self.expected.verdict is self.verdict
+
     @classmethod
     def of(cls, verdict: Verdict, expected: Expected | None) -> ExtremeVerdict:
         """Return a verdict with what was expected of it."""
@@ -60,16 +65,3 @@ class ExtremesStudy:
     def titles(self) -> dict[str, str]:
         """The title of each scene."""
         return {each.scene: each.title for each in self.scenes}
-
-    def expected(self, verdict: Verdict) -> Expected | None:
-        """Return what was expected of one of the verdicts; None where it was compared with nothing."""
-        return self._expected.get((verdict.scene, verdict.rung, verdict.quantity))
-
-    def is_met(self, verdict: Verdict) -> bool:
-        """Return False for a mismatch; a verdict that was compared with nothing is none."""
-        expected = self.expected(verdict)
-        return expected is None or expected.verdict is verdict.verdict
-
-    @cached_property
-    def _expected(self) -> dict[tuple[str, str, str], Expected | None]:
-        return {(each.scene, each.rung, each.quantity): each.expected for each in self.verdicts}

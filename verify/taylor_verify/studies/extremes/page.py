@@ -1,4 +1,4 @@
-"""What becomes of the extremes: the stored verdicts of one run of them, and the page made of those.
+"""Fate of the extremes: the stored verdicts of one run of them, and the page made of those.
 
     extremes.json   every verdict, beside it what was expected; the scenes with their titles; the runs that
                     were left out; what made the rows
@@ -9,10 +9,10 @@ is a mismatch: the page tells the two apart and shows both.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Any, Final
 
-from taylor_verify.publish.cells import NOTHING, figure, judged, peak, ratio, reason, word
+from taylor_verify.publish.cells import NOTHING, figure, judged, peak, reason, word, worst_ratio
 from taylor_verify.publish.markdown import bold, bullets, code, prose, table
 from taylor_verify.publish.page import counts, roundoffs, traced, whole
 from taylor_verify.records import store
@@ -21,7 +21,7 @@ from taylor_verify.records.runs import Run, gravest, runs
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, read_study
 from taylor_verify.studies.accuracy import sheet as sheets
-from taylor_verify.studies.extremes.document import ExtremesStudy
+from taylor_verify.studies.extremes.document import ExtremesStudy, ExtremeVerdict
 from taylor_verify.studies.stored import Stored
 
 _FOLDER: Final = "extremes/"
@@ -59,15 +59,17 @@ EXTREMES: Final = Stored(ExtremesStudy, "extremes", _fields, read_study)
 
 
 def page(found: ExtremesStudy) -> str:
-    """The counts, a line a scene, and every answer that is no pass with its reason."""
-    own = runs(found.verdicts)
+    """Return the counts, a line a scene, and every answer that is no pass with its reason."""
+    by_model: dict[str, list[Run]] = {}
+    for run in runs(found.verdicts):
+        by_model.setdefault(run.model, []).append(run)
     return whole(
         "The extremes",
         _WHAT,
         counts(found.verdicts),
         _held(found),
         bullets([*_LEGEND, roundoffs(found.verdicts)]),
-        *(_section(found, [run for run in own if run.model == m], m) for m in _models(own)),
+        *(_section(found, own, model) for model, own in by_model.items()),
         "## No pass, and why",
         _not_passed(found),
         _left_out(found),
@@ -80,19 +82,15 @@ def page(found: ExtremesStudy) -> str:
     )
 
 
-def _models(own: Iterable[Run]) -> list[str]:
-    return list(dict.fromkeys(run.model for run in own))
-
-
 def _held(found: ExtremesStudy) -> str:
-    """How many were foreseen, and whatever was not, in full."""
-    met = sum(found.is_met(v) for v in found.verdicts if v.verdict is not Status.PASS)
-    others = sum(v.verdict is not Status.PASS for v in found.verdicts)
-    told = f"{met} of {others} answers other than pass came as expected."
+    """Return how many answers were foreseen, and whatever was not, in full."""
+    others = [verdict for verdict in found.verdicts if verdict.verdict is not Status.PASS]
+    met = sum(verdict.is_met for verdict in others)
+    counted = f"{met} of {len(others)} answers other than pass came as expected."
     if not found.mismatches:
-        return told
-    faults = bullets(prose(one) for one in found.mismatches)
-    return f"{told} {bold(f'{len(found.mismatches)} mismatches')}:\n\n{faults}"
+        return counted
+    faults = bullets(map(prose, found.mismatches))
+    return f"{counted} {bold(f'{len(found.mismatches)} mismatches')}:\n\n{faults}"
 
 
 def _section(found: ExtremesStudy, own: Sequence[Run], model: str) -> str:
@@ -104,75 +102,67 @@ def _section(found: ExtremesStudy, own: Sequence[Run], model: str) -> str:
 
 def _cells(found: ExtremesStudy, run: Run) -> list[str]:
     main = run.state[0] if run.state else run.verdicts[0]
-    met = sum(found.is_met(verdict) for verdict in run.verdicts)
-    told = f"{met} of {len(run.verdicts)}"
+    met = sum(isinstance(row, ExtremeVerdict) and row.is_met for row in run.verdicts)
+    counted = f"{met} of {len(run.verdicts)}"
     return [
         code(run.scene.removeprefix(_FOLDER)),
         run.rung,
         prose(found.titles.get(run.scene, "")),
         _state(main),
-        _worst(run),
+        worst_ratio(v for v in run.verdicts if v.verdict in (Status.PASS, Status.FAIL)),
         judged(gravest(run.verdicts)),
-        told if met == len(run.verdicts) else bold(told),
+        counted if met == len(run.verdicts) else bold(counted),
     ]
 
 
 def _state(verdict: Verdict) -> str:
-    """The error, and the word of the verdict where it is no pass."""
+    """Return the error, and the word of the verdict where it is no pass."""
     if verdict.max is None:
         return bold(prose(word(verdict)))
     text = prose(peak(verdict))
     return text if verdict.verdict is Status.PASS else f"{text} {judged(verdict.verdict)}"
 
 
-def _worst(run: Run) -> str:
-    """The largest among the quantities that a gate asked; none at all stands above every number."""
-    asked = [v for v in run.verdicts if v.is_compared and v.verdict in (Status.PASS, Status.FAIL)]
-    if not asked:
-        return NOTHING
-    worst = max(asked, key=lambda v: float("inf") if v.ratio is None else v.ratio)
-    return f"{ratio(worst)} ({code(worst.quantity)})"
-
-
 def _not_passed(found: ExtremesStudy) -> str:
-    """A line for every answer that is no pass, as the solver's run has it and as it was foreseen."""
+    """Return a line for every answer that is no pass, beside what was foreseen."""
     columns = ["scene", "quantity", "verdict", "expected", "bound:", "why"]
-    rows = [_told(found, verdict) for verdict in found.verdicts if _is_told(found, verdict)]
+    rows = [
+        _row(verdict)
+        for verdict in found.verdicts
+        if verdict.verdict is not Status.PASS or not verdict.is_met
+    ]
     return table(columns, rows) if rows else "Every answer is a pass."
 
 
-def _is_told(found: ExtremesStudy, verdict: Verdict) -> bool:
-    return verdict.verdict is not Status.PASS or not found.is_met(verdict)
-
-
-def _told(found: ExtremesStudy, verdict: Verdict) -> list[str]:
-    wanted = found.expected(verdict)
+def _row(verdict: ExtremeVerdict) -> list[str]:
+    wanted = verdict.expected
     expected = wanted.verdict.value if wanted else NOTHING
     return [
         code(verdict.scene.removeprefix(_FOLDER)),
         code(verdict.quantity),
         judged(verdict.verdict),
-        expected if found.is_met(verdict) else bold(expected),
+        expected if verdict.is_met else bold(expected),
         figure(verdict.bound),
         prose((wanted.why if wanted else "") or reason(verdict)),
     ]
 
 
 def _left_out(found: ExtremesStudy) -> str:
-    told = [f"{code(run.scene)}, {run.rung}: {prose(run.why)}" for run in found.left_out]
-    return f"Not run:\n\n{bullets(told)}" if told else ""
+    lines = [f"{code(run.scene)}, {run.rung}: {prose(run.why)}" for run in found.left_out]
+    return f"Not run:\n\n{bullets(lines)}" if lines else ""
 
 
 def sheet(found: ExtremesStudy) -> str:
-    """A row for every quantity of every scene."""
+    """Return a row for every quantity of every scene."""
 
     def expected(verdict: Verdict) -> dict[str, Any]:
-        wanted = found.expected(verdict)
+        assert isinstance(verdict, ExtremeVerdict)
+        wanted = verdict.expected
         return {
             "title": found.titles.get(verdict.scene),
             "expected": wanted.verdict.value if wanted else None,
             "why_expected": wanted.why if wanted else None,
-            "as_expected": "yes" if found.is_met(verdict) else "no",
+            "as_expected": "yes" if verdict.is_met else "no",
         }
 
     return sheets.gates(found.verdicts, expected)

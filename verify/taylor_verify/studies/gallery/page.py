@@ -9,19 +9,19 @@ from __future__ import annotations
 import csv
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.publish.markdown import code, prose
-from taylor_verify.publish.page import MADE_BY
+from taylor_verify.publish.page import whole
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.records import store
 from taylor_verify.records.file_names import of_scene
 from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.quantities import COLUMNS
-from taylor_verify.records.verdict import Verdict
 from taylor_verify.studies.controls import picture as shifts
-from taylor_verify.studies.controls.stored import CONTROLS
+from taylor_verify.studies.controls.document import CONTROLS
 from taylor_verify.studies.gallery.pictures import (
     axis_path,
     centre_path,
@@ -29,7 +29,7 @@ from taylor_verify.studies.gallery.pictures import (
     polhode,
     potential,
 )
-from taylor_verify.studies.portraits import stored as portraits
+from taylor_verify.studies.portraits.study import PORTRAITS
 from taylor_verify.studies.reference import page as reference_files
 
 _SOLVER: Final = "taylor"
@@ -69,8 +69,8 @@ class Shown:
 
 
 def _named(source: str) -> str:
-    """A link to a file of data, or its name where the repository does not hold it."""
-    is_made = source.startswith((portraits.FOLDER, f"{store.FOLDER}/{store.RECORDS}"))
+    """Return a link to a file of data, or its name where the repository does not hold it."""
+    is_made = source.startswith((PORTRAITS.folder, f"{store.FOLDER}/{store.RECORDS}"))
     return code(source) if is_made else f"[{Path(source).name}](../{source})"
 
 
@@ -90,25 +90,21 @@ class Stored:
         return store.read_document(self.folder / self.record_name(scene, rung))
 
     def rungs(self, scene: str) -> list[str]:
-        """Those on which the scene was run, in the order of the ladder."""
+        """Return the rungs on which the scene was run, in the order of the ladder."""
         stem = f"{of_scene(scene)}.{_SOLVER}"
         files = (self.folder / store.FOLDER / store.RECORDS).glob(f"{stem}.*.json")
         names = [file.name.removeprefix(f"{stem}.").removesuffix(".json") for file in files]
         return sorted(names, key=place_of_rung)
 
     def samples(self, scene: str, columns: Sequence[str]) -> list[list[float]]:
-        """The exact motion at the scene's instants, a row each."""
+        """Return the exact motion at the scene's instants, a row each."""
         file = self.folder / self.reference_name(scene)
         with file.open(encoding="utf-8", newline="") as lines:
             return [[float(row[column]) for column in columns] for row in csv.DictReader(lines)]
 
-    def controls(self) -> tuple[Verdict, ...]:
-        """The verdicts on solvers that were broken on purpose, and on their sound twins."""
-        return CONTROLS.load(self.folder).verdicts
-
     @staticmethod
     def portrait_name(scene: str) -> str:
-        return f"{portraits.FOLDER}/{of_scene(scene)}.json"
+        return PORTRAITS.name(scene)
 
     @staticmethod
     def record_name(scene: str, rung: str) -> str:
@@ -126,75 +122,64 @@ def gallery(folder: Path) -> list[Shown]:
 
 
 def shown(stored: Stored) -> Iterator[Shown]:
-    """Every picture of the gallery, scene by scene."""
+    """Yield every picture of the gallery, scene by scene."""
     for scene, kinds in _SCENES:
+        portrait = stored.portrait(scene)
         for kind in kinds:
-            yield kind(stored, scene)
-    yield _quartics(stored)
-    yield _shifts(stored)
+            yield Shown(f"{scene}: {prose(portrait['title'])}", *kind(stored, portrait))
+    yield Shown("Clebsch's body: where the axial impulse may go", *_quartics(stored))
+    yield Shown("Errors split in lateness and the rest", *_shifts(stored))
 
 
 def page(found: Sequence[Shown]) -> str:
-    """All of them below their headings."""
-    blocks = [f"{MADE_BY}\n# Pictures of motions and of their errors", _WHAT]
-    last = ""
-    for one in found:
-        if one.heading != last:
-            blocks.append(f"## {one.heading}")
-            last = one.heading
-        blocks.append(one.block())
-    return "\n\n".join([*blocks, "## Elsewhere", _ELSEWHERE]) + "\n"
+    """Return the page of all of them below their headings."""
+    blocks = []
+    for heading, group in groupby(found, key=lambda one: one.heading):
+        blocks += [f"## {heading}", *(one.block() for one in group)]
+    title = "Pictures of motions and of their errors"
+    return whole(title, _WHAT, *blocks, "## Elsewhere", _ELSEWHERE)
 
 
-# One kind of picture each.
+# The kinds of pictures, each with its caption and the files that it is made of.
+
+Made = tuple[Picture, str, tuple[str, ...]]
 
 
-def _heading(portrait: Document) -> str:
-    return f"{portrait['scene']}: {prose(portrait['title'])}"
-
-
-def _polhode(stored: Stored, scene: str) -> Shown:
-    portrait, record = stored.portrait(scene), stored.record(scene, _RUNG)
+def _polhode(stored: Stored, portrait: Document) -> Made:
+    scene = portrait["scene"]
     caption = (
         f"{code(scene)}: the angular velocity on its ellipsoid of inertia. The line is the exact course, "
         f"the marks are the samples of {_SOLVER} on {_RUNG}, coloured by their error in units of u; dashed "
         "the separatrices. Repeated turns lie on each other: later marks are above earlier ones."
     )
-    sources = (
-        *(stored.portrait_name(scene), stored.record_name(scene, _RUNG)),
-        stored.reference_name(scene),
-    )
-    drawn = polhode.picture(portrait, stored.samples(scene, COLUMNS["omega"]), record)
-    return Shown(_heading(portrait), drawn, caption, sources)
+    samples, record = stored.samples(scene, COLUMNS["omega"]), stored.record(scene, _RUNG)
+    sources = stored.portrait_name(scene), stored.record_name(scene, _RUNG)
+    picture = polhode.picture(portrait, samples, record)
+    return picture, caption, (*sources, stored.reference_name(scene))
 
 
-def _axis(stored: Stored, scene: str) -> Shown:
-    portrait = stored.portrait(scene)
+def _axis(stored: Stored, portrait: Document) -> Made:
     found = axis_path.series(portrait)
     still = "" if found.fixed is None else f"; the cross is the direction of its {found.fixed_name}"
     caption = (
-        f"{code(scene)}: where body axis {found.axis} points in space, from light to dark with time, on "
-        f"the unit sphere{still}."
+        f"{code(portrait['scene'])}: where body axis {found.axis} points in space, from light to dark with "
+        f"time, on the unit sphere{still}."
     )
-    return Shown(
-        _heading(portrait), axis_path.picture(portrait), caption, (stored.portrait_name(scene),)
-    )
+    return axis_path.picture(portrait), caption, (stored.portrait_name(portrait["scene"]),)
 
 
-def _path(stored: Stored, scene: str) -> Shown:
-    portrait = stored.portrait(scene)
+def _path(stored: Stored, portrait: Document) -> Made:
     found = centre_path.series(portrait)
     caption = (
-        f"{code(scene)}: the path of the body's origin through the fluid, with its projections on three "
-        f"walls; the short lines are body axis {found.axis} at equal intervals of time."
+        f"{code(portrait['scene'])}: the path of the body's origin through the fluid, with its projections "
+        f"on three walls; the short lines are body axis {found.axis} at equal intervals of time."
     )
-    return Shown(
-        _heading(portrait), centre_path.picture(portrait), caption, (stored.portrait_name(scene),)
-    )
+    return centre_path.picture(portrait), caption, (stored.portrait_name(portrait["scene"]),)
 
 
-def _errors(stored: Stored, scene: str) -> Shown:
-    portrait, rungs = stored.portrait(scene), stored.rungs(scene)
+def _errors(stored: Stored, portrait: Document) -> Made:
+    scene = portrait["scene"]
+    rungs = stored.rungs(scene)
     if not rungs:
         raise FileNotFoundError(2, "no such file", stored.folder / stored.record_name(scene, _RUNG))
     caption = (
@@ -204,24 +189,21 @@ def _errors(stored: Stored, scene: str) -> Shown:
         "an unstable motion the state's error grows faster for a while, whatever the rung."
     )
     records = [stored.record(scene, rung) for rung in rungs]
-    drawn = errors_over_time.picture(scene, records, portrait["course"]["t"][0])
-    sources = tuple(stored.record_name(scene, rung) for rung in rungs)
-    return Shown(_heading(portrait), drawn, caption, sources)
+    picture = errors_over_time.picture(scene, records, portrait["course"]["t"][0])
+    return picture, caption, tuple(stored.record_name(scene, rung) for rung in rungs)
 
 
-def _quartics(stored: Stored) -> Shown:
+def _quartics(stored: Stored) -> Made:
     caption = (
         "The quartic X3 of Clebsch's body, whose root the axial impulse follows: x3'^2 = r^2 X3(x3). The "
         "body swings between two simple roots; a double root it only approaches, like an exponential, and "
         "a triple one like 1/t^2. With two real roots the other two are a complex pair."
     )
-    found = [stored.portrait(scene) for scene in QUARTICS]
-    drawn = potential.picture(found, "kirchhoff")
-    sources = tuple(stored.portrait_name(scene) for scene in QUARTICS)
-    return Shown("Clebsch's body: where the axial impulse may go", drawn, caption, sources)
+    picture = potential.picture([stored.portrait(scene) for scene in QUARTICS], "kirchhoff")
+    return picture, caption, tuple(stored.portrait_name(scene) for scene in QUARTICS)
 
 
-def _shifts(stored: Stored) -> Shown:
+def _shifts(stored: Stored) -> Made:
     caption = (
         "Solvers that were broken on purpose: the largest error of each, and what the best shift of time "
         "leaves of it. Of a sound run the shift is as random as its roundings, and is not stored. A body "
@@ -229,13 +211,11 @@ def _shifts(stored: Stored) -> Shown:
         "is right. Where the second mark lies on the first, the motion is another one, or only some of its "
         "samples are late."
     )
-    drawn = shifts.picture(stored.controls(), "controls")
-    return Shown("Errors split in lateness and the rest", drawn, caption, (CONTROLS.name,))
+    verdicts = CONTROLS.load(stored.folder).verdicts
+    return shifts.picture(verdicts, "controls"), caption, (CONTROLS.name,)
 
 
-Kind = Callable[[Stored, str], Shown]
-
-_SCENES: Final[tuple[tuple[str, tuple[Kind, ...]], ...]] = (
+_SCENES: Final[tuple[tuple[str, tuple[Callable[[Stored, Document], Made], ...]], ...]] = (
     ("euler/generic", (_polhode, _errors)),
     ("euler/with-attitude", (_polhode, _axis, _errors)),
     ("euler/separatrix", (_polhode, _errors)),
@@ -253,5 +233,5 @@ QUARTICS: Final = (
 
 
 def scenes() -> tuple[str, ...]:
-    """Those that a gallery shows by themselves."""
+    """Return the scenes that the gallery shows by themselves."""
     return tuple(scene for scene, _ in _SCENES)

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Final
 
 from taylor_verify.publish.pictures.picture import plotting
 from taylor_verify.studies.figures import FOLDER
-from taylor_verify.studies.portraits.stored import FOLDER as PORTRAITS
+from taylor_verify.studies.portraits.study import PORTRAITS
 from taylor_verify.studies.study import Measured, NotMeasured, Progress, Study
 
 if TYPE_CHECKING:
     from taylor_verify.studies.gallery.page import Shown
 
-# The pictures are built with NumPy, which nothing else asks for that makes pages: it is imported late.
+# The pictures are built with NumPy, which nothing else that makes pages asks for: it is imported late.
 
 
 def _measure(folder: Path, progress: Progress) -> Measured:
@@ -36,7 +36,7 @@ def _measure(folder: Path, progress: Progress) -> Measured:
 
 def _find(folder: Path) -> list[Shown] | None:
     """Return every picture of the gallery; None for a folder without some of its data."""
-    if not (folder / PORTRAITS).exists():
+    if not (folder / PORTRAITS.folder).exists():
         return None
     from taylor_verify.studies.gallery.page import gallery
 

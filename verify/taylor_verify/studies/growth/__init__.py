@@ -1,1 +1,1 @@
-"""How drift and phase grow over decades of time."""
+"""The growth of drift and phase over decades of time."""

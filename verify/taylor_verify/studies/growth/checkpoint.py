@@ -1,4 +1,4 @@
-"""How far a course has come, as a file: everything needed to go on as if it had never been left.
+"""A checkpoint: how far a course has come, with everything needed to go on as if it had never been left.
 
 States and times are exact hexadecimal numbers. The file is replaced whole, after each piece of the
 course; one that belongs to another question, or was made by other versions, is refused.
@@ -9,20 +9,21 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 from typing import Any, Final
 
+import msgspec
+
 from taylor_verify.scenes.precision import hexadecimal
 from taylor_verify.solvers.taylor.ensemble import Lane
-from taylor_verify.solvers.trajectory import Outcome
 from taylor_verify.solvers.values import exact
 from taylor_verify.studies.stored import made_by
 
 # Another format would be another number.
-_FORMAT: Final = 1
+_FORMAT: Final = 2
 
 # The state of every lane at one instant, and the steps that it took to there; None if it never came.
 Sample = tuple[tuple[Fraction, ...], int] | None
@@ -34,7 +35,10 @@ class OfAnotherError(ValueError):
 
 @dataclass(frozen=True)
 class Progress:
-    """``pieces`` of the course are done: there the lanes stand; ``samples`` holds the instants passed."""
+    """The lanes where they stand after so many ``pieces`` of the course.
+
+    ``samples[k][i]`` is lane i at instant k, in its problem's own units, for the instants passed.
+    """
 
     pieces: int
     lanes: tuple[Lane, ...]
@@ -50,9 +54,7 @@ def write(
         "format": _FORMAT,
         "question": dict(question),
         "versions": dict(versions),
-        "pieces": progress.pieces,
-        "lanes": [_of_lane(lane) for lane in progress.lanes],
-        "samples": [[_of_sample(sample) for sample in row] for row in progress.samples],
+        **msgspec.to_builtins(progress, enc_hook=hexadecimal),
     }
     text = json.dumps({**content, "checksum": _checksum(content)}, indent=0)
     file.parent.mkdir(parents=True, exist_ok=True)
@@ -66,7 +68,7 @@ def write(
 
 
 def read(file: Path, question: Mapping[str, Any], versions: Mapping[str, str]) -> Progress | None:
-    """What was written for this question; None where there is no file.
+    """Return what was written for this question; None where there is no file.
 
     Raises OfAnotherError for a checkpoint of something else, and ValueError for what is none.
     """
@@ -76,15 +78,10 @@ def read(file: Path, question: Mapping[str, Any], versions: Mapping[str, str]) -
         return None
     try:
         content = json.loads(text)
-        checksum = content.pop("checksum")
-        if checksum != _checksum(content):
+        if content.pop("checksum") != _checksum(content):
             raise ValueError("the checksum is not that of the content")
-        _belongs(content, question, versions, file)
-        return Progress(
-            int(content["pieces"]),
-            tuple(_lane(lane) for lane in content["lanes"]),
-            tuple(tuple(_sample(sample) for sample in row) for row in content["samples"]),
-        )
+        _check_origin(content, question, versions, file)
+        return msgspec.convert(content, Progress, dec_hook=_number)
     except OfAnotherError:
         raise
     except (AttributeError, LookupError, TypeError, ValueError) as fault:
@@ -94,7 +91,7 @@ def read(file: Path, question: Mapping[str, Any], versions: Mapping[str, str]) -
         ) from fault
 
 
-def _belongs(
+def _check_origin(
     content: Mapping[str, Any], question: Mapping[str, Any], versions: Mapping[str, str], file: Path
 ) -> None:
     """Raise for the first thing in which the checkpoint is another one."""
@@ -112,44 +109,9 @@ def _checksum(content: Mapping[str, Any]) -> str:
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
-def _of_lane(lane: Lane) -> dict[str, Any]:
-    return {
-        "time": hexadecimal(lane.time),
-        "state": _texts(lane.state),
-        "fastest": lane.fastest.hex(),
-        "steps": lane.steps,
-        "outcome": lane.outcome.name,
-    }
-
-
-def _lane(found: Mapping[str, Any]) -> Lane:
-    return Lane(
-        _number(found["time"]),
-        _numbers(found["state"]),
-        float.fromhex(found["fastest"]),
-        int(found["steps"]),
-        Outcome[found["outcome"]],
-    )
-
-
-def _of_sample(sample: Sample) -> list[Any] | None:
-    return None if sample is None else [_texts(sample[0]), sample[1]]
-
-
-def _sample(found: Sequence[Any] | None) -> Sample:
-    return None if found is None else (_numbers(found[0]), int(found[1]))
-
-
-def _texts(numbers: Sequence[Fraction]) -> list[str]:
-    return [hexadecimal(number) for number in numbers]
-
-
-def _numbers(texts: Sequence[str]) -> tuple[Fraction, ...]:
-    return tuple(_number(text) for text in texts)
-
-
-def _number(text: str) -> Fraction:
+def _number(kind: type, text: Any) -> Any:
+    """Return the exact number of a text, for a field that holds one."""
     value = exact(text)
-    if not isinstance(value, Fraction):
+    if not isinstance(value, kind):
         raise ValueError(f"expected a finite number, got {text!r}")
     return value

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 from taylor_verify.records.provenance import Provenance
 from taylor_verify.records.status import Status
 
 # None stands for a number that is not finite.
 Number = float | None
+
+# The word of a quantity without any error.
+EXACT: Final = "exact"
 
 
 @dataclass(frozen=True)
@@ -24,7 +28,7 @@ class GrowthGate:
 
 @dataclass(frozen=True)
 class GrowthOfQuantity:
-    """One quantity of an ensemble.
+    """A quantity of an ensemble and its growth.
 
     ``rms`` are root mean squares over the starts at each of the ensemble's instants, ``in_walks`` the last
     over that of a walk whose every step is one roundoff. ``exponent`` lies between ``low`` and ``high`` at
@@ -47,7 +51,7 @@ class GrowthOfQuantity:
 
 @dataclass(frozen=True)
 class Ensemble:
-    """One scene followed from ``lanes`` starts; ``counts`` are its instants in periods."""
+    """A scene followed from ``lanes`` starts; ``counts`` are its instants in periods."""
 
     scene: str
     digest: str

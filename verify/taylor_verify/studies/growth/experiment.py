@@ -1,26 +1,34 @@
-"""The whole chain, from a question to the growth of each of its errors."""
+"""The experiment: an ensemble followed piece by piece, and the growth of each of its errors."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import sqrt
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from taylor_verify.records.json_text import finite
-from taylor_verify.studies.growth.course import Course, Finished, course
-from taylor_verify.studies.growth.document import Ensemble, GrowthGate, GrowthOfQuantity
-from taylor_verify.studies.growth.errors import Floats, Measured, lane_errors
-from taylor_verify.studies.growth.fit import Gate, Growth, growth
+from taylor_verify.judge.provenance import versions
+from taylor_verify.records.json_text import complete, converted
+from taylor_verify.solvers.taylor.ensemble import Ensemble as Lanes
+from taylor_verify.studies.growth import checkpoint
+from taylor_verify.studies.growth.checkpoint import Progress
+from taylor_verify.studies.growth.document import Ensemble, GrowthOfQuantity
+from taylor_verify.studies.growth.errors import lane_errors
+from taylor_verify.studies.growth.fit import Floats, Growth, growth
 from taylor_verify.studies.growth.question import Question
+
+# The packages that the numbers of a course depend on.
+_NUMERICAL = ("taylor-verify", "heyoka", "numpy")
+
+# Called after each piece with the number of pieces done, and of all.
+Finished = Callable[[int, int], None]
 
 
 @dataclass(frozen=True)
 class Found:
-    """One quantity of an ensemble: its signed errors (lanes, instants), and how they grow."""
+    """A quantity of an ensemble: its signed errors (lanes, instants), and how they grow."""
 
     quantity: str
     errors: Floats
@@ -29,20 +37,19 @@ class Found:
 
 @dataclass(frozen=True)
 class Experiment:
-    """An answered question; ``steps`` is the mean over the lanes at every instant."""
+    """An answered question; ``steps`` is the mean over the lanes at every instant.
 
-    course: Course
+    ``lost`` is the number of lanes that did not come to the end.
+    """
+
+    question: Question
+    lost: int
     steps: tuple[float, ...]
     found: tuple[Found, ...]
 
-    @property
-    def lost(self) -> int:
-        """How many lanes did not come to the end."""
-        return sum(not lane.goes_on for lane in self.course.lanes)
-
     def ensemble(self, why: str = "") -> Ensemble:
         """Return the ensemble as it is stored; ``why`` says what it is measured for."""
-        question = self.course.question
+        question = self.question
         return Ensemble(
             scene=question.scene.name,
             digest=question.scene.digest,
@@ -60,76 +67,69 @@ class Experiment:
         )
 
     def _quantity(self, one: Found) -> GrowthOfQuantity:
-        u = float(self.course.question.rung.unit_roundoff)
-        grown, exponent = one.growth, one.growth.exponent
-        return GrowthOfQuantity(
-            quantity=one.quantity,
-            rms=_finite(*grown.rms),
+        u, grown = float(self.question.rung.unit_roundoff), one.growth
+        late = grown.late
+        row = {
+            **complete(grown.exponent),
+            "quantity": one.quantity,
+            "rms": grown.rms,
             # Of a walk whose every step is one roundoff.
-            in_walks=finite(grown.rms[-1] / (u * sqrt(self.steps[-1]))) if self.steps[-1] else None,
-            exponent=finite(exponent.value),
-            low=finite(exponent.low),
-            high=finite(exponent.high),
-            level=exponent.level,
-            lanes=exponent.lanes,
-            word=exponent.word,
-            late=_finite(grown.late.value, grown.late.low, grown.late.high),
-            late_word=grown.late.word,
-            gate=_gate(grown.gate) if grown.gate else None,
-        )
+            "in_walks": grown.rms[-1] / (u * sqrt(self.steps[-1])) if self.steps[-1] else None,
+            "exponent": grown.exponent.value,
+            "late": (late.value, late.low, late.high),
+            "late_word": late.word,
+            "gate": grown.gate,
+        }
+        # A number that is not finite is stored as none.
+        return converted(complete(row), GrowthOfQuantity)
+
+
+def course(
+    question: Question, file: Path | None = None, finished: Finished = lambda done, all_: None
+) -> Progress:
+    """Follow the question to its end, from the checkpoint in ``file`` where there is one.
+
+    It ends the same to the last bit however often it was left and taken up. Raises ValueError for a
+    checkpoint that is not this question's, and OSError where it cannot be written.
+    """
+    asked, made_with = question.document(), numerical_versions()
+    ensemble = Lanes(question.problems, question.tolerance)
+    progress = checkpoint.read(file, asked, made_with) if file else None
+    progress = progress or Progress(0, ensemble.start())
+    for until, is_instant in question.pieces[progress.pieces :]:
+        lanes = ensemble.advance(progress.lanes, until)
+        samples = progress.samples
+        if is_instant:
+            samples += (tuple((one.state, one.steps) if one.goes_on else None for one in lanes),)
+        progress = Progress(progress.pieces + 1, lanes, samples)
+        if file:
+            checkpoint.write(file, asked, made_with, progress)
+        finished(progress.pieces, len(question.pieces))
+    return progress
+
+
+def numerical_versions() -> dict[str, str]:
+    """Return the versions that the numbers of a course depend on."""
+    return {name: versions()[name] for name in _NUMERICAL}
 
 
 def experiment(
     question: Question, file: Path | None = None, finished: Finished = lambda done, all_: None
 ) -> Experiment:
     """Follow the ensemble and judge it; ``file`` is where its checkpoint is kept."""
-    return judged(course(question, file, finished))
-
-
-def judged(followed: Course) -> Experiment:
-    question = followed.question
+    end = course(question, file, finished)
     by_lane = [
-        lane_errors(problem, [_state(row[i]) for row in followed.samples], question.period)
-        for i, problem in enumerate(question.problems)
+        lane_errors(problem, [sample and sample[0] for sample in samples], question.period)
+        for problem, *samples in zip(question.problems, *end.samples, strict=True)
     ]
-    u = float(question.rung.unit_roundoff)
-    times = np.array(question.counts)
-    names = dict.fromkeys(one.quantity for lane in by_lane for one in lane)
+    u, times = float(question.rung.unit_roundoff), np.array(question.counts)
     found = []
-    for name in names:
-        kind, errors = _gathered(name, by_lane, len(times))
+    for name, kind in {one.quantity: one for lane in by_lane for one in lane}.items():
+        # A lane that does not have the quantity has no number for it.
+        rows = [{one.quantity: one.values for one in lane} for lane in by_lane]
+        errors = np.array([row.get(name, np.full(len(times), np.nan)) for row in rows])
         found.append(Found(name, errors, growth(times, errors, kind.law, u, kind.signed)))
-    return Experiment(followed, _mean_steps(followed), tuple(found))
-
-
-def _gathered(
-    name: str, by_lane: Sequence[Sequence[Measured]], instants: int
-) -> tuple[Measured, Floats]:
-    """One quantity of all lanes; a lane that does not have it has no number for it."""
-    each = [next((one for one in lane if one.quantity == name), None) for lane in by_lane]
-    rows = [np.full(instants, np.nan) if one is None else one.values for one in each]
-    return next(one for one in each if one is not None), np.array(rows)
-
-
-def _state(sample: Any) -> Any:
-    return None if sample is None else sample[0]
-
-
-def _mean_steps(followed: Course) -> tuple[float, ...]:
-    counted = [[sample[1] for sample in row if sample is not None] for row in followed.samples]
-    return tuple(float(np.mean(row)) if row else 0.0 for row in counted)
-
-
-def _finite(*values: float) -> tuple[Any, ...]:
-    """Return the numbers; None for each that is not finite."""
-    return tuple(map(finite, values))
-
-
-def _gate(found: Gate) -> GrowthGate:
-    return GrowthGate(
-        verdict=found.verdict,
-        law=found.law.value,
-        chance=finite(found.chance),
-        false_alarm=found.false_alarm,
-        because=found.because,
-    )
+    counts = [[sample[1] for sample in row if sample is not None] for row in end.samples]
+    steps = tuple(float(np.mean(row)) if row else 0.0 for row in counts)
+    lost = sum(not lane.goes_on for lane in end.lanes)
+    return Experiment(question, lost, steps, tuple(found))

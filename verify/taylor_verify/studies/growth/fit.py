@@ -1,4 +1,4 @@
-"""How errors grow with time over an ensemble of starts: exponent, interval, word, and a gate.
+"""The growth of errors over an ensemble of starts: exponent, interval, word, and a gate.
 
 t_k          instants, equally many to a decade        e_ik   error of lane i at t_k, signed
 p_i          slope of log |e_ik| against log t_k       n      lanes, independent of each other
@@ -18,13 +18,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cache
-from math import isfinite, nan, sqrt, tan
+from math import isfinite, isnan, nan, sqrt, tan
 from typing import Any, Final
 
 import mpmath
 import numpy as np
 
 from taylor_verify.records.status import Status
+from taylor_verify.studies.growth.document import EXACT
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -45,7 +46,7 @@ _LEAST_INSTANTS: Final = _LATE + 2
 
 
 class Law(StrEnum):
-    """What independent roundings make of a quantity: the null hypothesis of its gate.
+    """The law of a quantity under independent roundings: the null hypothesis of its gate.
 
     WALK is a conserved quantity, whose error grows with the half power of time; INTEGRATED a phase, the
     integral of such an error, which grows with the power 3/2 (D. Brouwer, 1937).
@@ -55,7 +56,6 @@ class Law(StrEnum):
     INTEGRATED = "the integral of a random walk"
 
 
-EXACT: Final = "exact"
 BOUNDED: Final = "bounded"
 RANDOM_WALK: Final = "random walk"
 BIAS: Final = "bias"
@@ -65,13 +65,7 @@ NO_WORD: Final = "no number"
 # grows by one power of time more.
 _WORDS: Final[Mapping[Law, Mapping[float, str]]] = {
     Law.WALK: {0: BOUNDED, 0.5: RANDOM_WALK, 1: BIAS},
-    Law.INTEGRATED: {
-        0: BOUNDED,
-        0.5: "jitter",
-        1: "constant rate",
-        1.5: RANDOM_WALK,
-        2: BIAS,
-    },
+    Law.INTEGRATED: {0: BOUNDED, 0.5: "jitter", 1: "constant rate", 1.5: RANDOM_WALK, 2: BIAS},
 }
 
 
@@ -92,7 +86,7 @@ class Exponent:
 
 @dataclass(frozen=True)
 class Gate:
-    """Whether the errors grow no faster than ``law`` allows.
+    """The judgement on errors: they grow no faster than ``law`` allows, or they do.
 
     ``chance`` is the probability that the law makes them grow as fast as they do, or faster; the gate
     fails where it is less than ``false_alarm``, which is therefore how often the law itself fails.
@@ -109,7 +103,7 @@ class Gate:
 
 @dataclass(frozen=True)
 class Growth:
-    """One quantity of one ensemble: its root mean square over the lanes at every instant, and more.
+    """The growth of a quantity of an ensemble: root mean squares over the lanes at every instant, and more.
 
     ``late`` is the exponent of the second half of the decades alone; ``gate`` is None for an error
     without a sign, of which no law gives the distribution.
@@ -123,14 +117,15 @@ class Growth:
 
 
 def growth(times: Floats, errors: Floats, law: Law, roundoff: float, signed: bool = True) -> Growth:
-    """The growth of errors of shape (lanes, instants); NaN stands for what a lane did not reach.
+    """Return the growth of errors of shape (lanes, instants); NaN is what a lane did not reach.
 
     ``times`` (instants) are since the start and increase. ``law`` is what the errors are held
     against, if they are ``signed``; ``roundoff`` is the size of one rounding in the unit of the
     errors. Raises ValueError for fewer than two lanes or four instants, and for instants that do
     not increase.
     """
-    times, errors = _checked(times, errors)
+    times, errors = np.asarray(times, dtype=float), np.asarray(errors, dtype=float)
+    _check(times, errors)
     with np.errstate(all="ignore"):
         rms = np.sqrt(np.mean(errors**2, axis=0))
     half = len(times) // 2
@@ -143,8 +138,7 @@ def growth(times: Floats, errors: Floats, law: Law, roundoff: float, signed: boo
     )
 
 
-def _checked(times: Floats, errors: Floats) -> tuple[Floats, Floats]:
-    times, errors = np.asarray(times, dtype=float), np.asarray(errors, dtype=float)
+def _check(times: Floats, errors: Floats) -> None:
     if errors.ndim != 2 or errors.shape[1] != len(times):
         raise ValueError(
             f"expected errors of shape (lanes, {len(times)}), got {errors.shape} @ growth"
@@ -156,51 +150,43 @@ def _checked(times: Floats, errors: Floats) -> tuple[Floats, Floats]:
         )
     if not (times[0] > 0 and np.all(np.diff(times) > 0)):
         raise ValueError("expected instants after the start that increase, got others @ growth")
-    return times, errors
 
 
 # The exponent.
 
 
-def exponent(
-    times: Floats, errors: Floats, law: Law, roundoff: float, level: float = LEVEL
-) -> Exponent:
-    """Student's interval of the mean of the lanes' slopes, of log |error| over log time.
+def exponent(times: Floats, errors: Floats, law: Law, roundoff: float) -> Exponent:
+    """Return Student's interval of the mean of the lanes' slopes, of log |error| over log time.
 
-    ``times`` (n), ``errors`` (lanes, n) and ``roundoff`` are as in `growth`; ``level`` is the
-    probability that the interval holds the mean, ``law`` what chooses the word for it. An error of
-    exactly zero, which has no logarithm, counts as one rounding.
+    ``times`` (n), ``errors`` (lanes, n) and ``roundoff`` are as in `growth`; the interval holds the mean
+    with probability LEVEL, and ``law`` chooses the word for it. An error of exactly zero, which has no
+    logarithm, counts as one rounding.
     """
     whole = errors[np.isfinite(errors).all(axis=1)]
     count = len(whole)
     if count < _LEAST_LANES:
-        return Exponent(nan, nan, nan, NO_WORD, count, level)
+        return Exponent(nan, nan, nan, NO_WORD, count)
     if not whole.any():
-        return Exponent(0.0, 0.0, 0.0, EXACT, count, level)
-    slopes = _slopes(np.log(times), np.log(np.where(whole == 0, roundoff, np.abs(whole))))
+        return Exponent(0.0, 0.0, 0.0, EXACT, count)
+    x = np.log(times) - np.mean(np.log(times))
+    # Of the least-squares line of every lane.
+    slopes = np.log(np.where(whole == 0, roundoff, np.abs(whole))) @ x / (x @ x)
     mean = float(np.mean(slopes))
-    reach = student(count - 1, level) * float(np.std(slopes, ddof=1)) / sqrt(count)
+    reach = student(count - 1, LEVEL) * float(np.std(slopes, ddof=1)) / sqrt(count)
     found = word(mean, max(reach, _RESOLUTION), law)
-    return Exponent(mean, mean - reach, mean + reach, found, count, level)
-
-
-def _slopes(x: Floats, y: Floats) -> Floats:
-    """The slope of the least-squares line of every row of y."""
-    centred = x - np.mean(x)
-    slopes: Floats = y @ centred / (centred @ centred)
-    return slopes
+    return Exponent(mean, mean - reach, mean + reach, found, count)
 
 
 def word(value: float, reach: float, law: Law) -> str:
-    """The one word whose exponent is within reach; else that several are, or between which it is."""
+    """Return the word whose exponent is within reach; else that several are, or between which it is."""
+    if isnan(value):
+        return NO_WORD
     words, low, high = _WORDS[law], value - reach, value + reach
     inside = [name for power, name in words.items() if low <= power <= high]
     if inside:
         return inside[0] if len(inside) == 1 else f"unclear: {' or '.join(inside)}"
     below = [name for power, name in words.items() if power < low]
     above = [name for power, name in words.items() if high < power]
-    if not (below or above):
-        return NO_WORD
     if not below:
         return "shrinking"
     return f"between {below[-1]} and {above[0]}" if above else f"faster than {below[-1]}"
@@ -212,7 +198,7 @@ def word(value: float, reach: float, law: Law) -> str:
 def gate(
     times: Floats, errors: Floats, law: Law, roundoff: float, false_alarm: float = FALSE_ALARM
 ) -> Gate:
-    """Whether the last two instants are further out than the law allows after those before them.
+    """Judge whether the last two instants are further out than the law allows after those before them.
 
     The law's covariance makes of the errors of a lane independent numbers z_ik of one variance (of a
     walk: its increments over the square roots of their times). With L_i and E_i the sums of squares
@@ -229,21 +215,21 @@ def gate(
     with np.errstate(all="ignore"):
         statistic = float(m * np.sum(np.log1p(late / early)))
     chance = chi_square_tail(statistic, 2 * lanes)
-    passed = false_alarm <= chance  # written so that a NaN fails
-    because = (
-        f"no worse than {law.value}, which fails once in {1 / false_alarm:.0f}: "
-        f"{statistic:.3g} is chi-square with {2 * lanes} degrees of freedom, chance {chance:.2g}"
-    )
-    if not isfinite(statistic):
-        because = f"expected finite errors of every lane, to be held against {law.value}"
-    verdict = Status.PASS if passed else Status.FAIL
+    because = f"expected finite errors of every lane, to be held against {law.value}"
+    if isfinite(statistic):
+        because = (
+            f"no worse than {law.value}, which fails once in {1 / false_alarm:.0f}: "
+            f"{statistic:.3g} is chi-square with {2 * lanes} degrees of freedom, chance {chance:.2g}"
+        )
+    # Written so that a NaN fails.
+    verdict = Status.PASS if false_alarm <= chance else Status.FAIL
     return Gate(verdict, law, chance, statistic, 2 * lanes, because, false_alarm)
 
 
 def early_and_late(
     times: Floats, errors: Floats, law: Law, roundoff: float
 ) -> tuple[Floats, Floats]:
-    """E_i and L_i of every lane; E_i counts at least one rounding at the first instant."""
+    """Return E_i and L_i of every lane; E_i counts at least one rounding at the first instant."""
     covariance = covariance_of(law, times)
     spread = np.sqrt(np.diag(covariance))
     # In units of their own spread the instants have a covariance that is far from singular.
@@ -254,7 +240,9 @@ def early_and_late(
 
 
 def covariance_of(law: Law, times: Floats) -> Floats:
-    """Of unit walk W: E W(s) W(t) = min(s, t); of its integral s^2 (3 t - s)/6 for s <= t.
+    """Return the covariance of unit walk W, E W(s) W(t) = min(s, t), or of its integral.
+
+    That of the integral is s^2 (3 t - s)/6 for s <= t.
 
     Times count the last one, which leaves both laws as they are but for their size.
     """
@@ -268,7 +256,7 @@ def covariance_of(law: Law, times: Floats) -> Floats:
 
 
 def chi_square_tail(value: float, freedom: int) -> float:
-    """P(chi-square > value); NaN for a value that is none."""
+    """Return P(chi-square > value); NaN for a value that is none."""
     if not value >= 0:
         return nan
     return float(mpmath.gammainc(freedom / 2, value / 2, regularized=True))
@@ -276,7 +264,10 @@ def chi_square_tail(value: float, freedom: int) -> float:
 
 @cache
 def student(freedom: int, level: float) -> float:
-    """The t for which Student's variable is between -t and t with probability ``level``."""
+    """Return the t for which Student's variable is between -t and t with probability ``level``.
+
+    It is not SciPy's, which is no dependency of what judges.
+    """
 
     def excess(theta: mpmath.mpf) -> mpmath.mpf:
         within = mpmath.betainc(0.5, freedom / 2, 0, mpmath.sin(theta) ** 2, regularized=True)

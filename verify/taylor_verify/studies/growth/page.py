@@ -1,4 +1,4 @@
-"""How errors grow over decades of time: the stored ensembles, and the page and picture made of them.
+"""The page of errors that grow over decades of time, made of the stored ensembles.
 
 growth.json        the published ensembles: of every quantity its root mean squares and the gate
 growth-long.json   the same of the long run, where somebody has made it
@@ -10,18 +10,17 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.publish.cells import NOTHING, figure
+from taylor_verify.publish.cells import NOTHING, figure, judged
 from taylor_verify.publish.markdown import bold, bullets, code, prose, table
 from taylor_verify.publish.page import made_on, whole
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.sheet import sheet as csv_sheet
 from taylor_verify.records.json_text import complete
-from taylor_verify.records.provenance import Provenance
 from taylor_verify.records.status import Status
 from taylor_verify.studies import figures
 from taylor_verify.studies.growth.document import (
+    EXACT,
     Ensemble,
-    GrowthGate,
     GrowthOfQuantity,
     GrowthStudy,
     Number,
@@ -66,6 +65,15 @@ _LEANING: Final = (
     "hangs on the size of the other factor. An orbit that favours a size has a bias then, which no "
     "tolerance removes: round numbers make a handy example and a hard one."
 )
+_REMAKE: Final = (
+    "`taylor-verify publish growth` follows the ensembles anew, writes "
+    f"[growth.json](../{GROWTH.name}), the picture and this page: minutes, all cores. "
+    "It may be stopped and goes on from where it was.",
+    "`taylor-verify publish growth --long` follows the long run, 100 million periods, likewise: "
+    "a thousand pieces of some seconds.",
+    "Roundings are other draws on another processor, and so are the last digits here; the exponents "
+    "are the same within their intervals.",
+)
 
 
 def find(folder: Path) -> GrowthStudy | None:
@@ -73,11 +81,9 @@ def find(folder: Path) -> GrowthStudy | None:
     stored = [study for study in (GROWTH.find(folder), LONG.find(folder)) if study and study.runs]
     if not stored:
         return None
-    return GrowthStudy(
-        runs=tuple(run for study in stored for run in study.runs),
-        left_out=tuple(one for study in stored for one in study.left_out),
-        provenance=stored[0].provenance,
-    )
+    runs = tuple(run for study in stored for run in study.runs)
+    left_out = tuple(one for study in stored for one in study.left_out)
+    return GrowthStudy(runs, left_out, stored[0].provenance)
 
 
 def page(study: GrowthStudy, folder: Path) -> str:
@@ -96,7 +102,7 @@ def page(study: GrowthStudy, folder: Path) -> str:
         _LEANING,
         _NO_CONSERVATION,
         "## To remake this",
-        bullets(_remake(study.provenance)),
+        bullets([*_REMAKE, made_on(study.provenance)]),
     )
 
 
@@ -110,55 +116,45 @@ def pictures(study: GrowthStudy) -> list[Picture]:
 
 def _gates(runs: Iterable[Ensemble]) -> str:
     """Return how many gates passed, and the names of those that did not."""
-    judged = [(run, row, row.gate) for run in runs for row in run.quantities if row.gate]
-    failed = [f"{code(row.quantity)} of {_name(run)}" for run, row, gate in judged if _fails(gate)]
-    told = f"{len(judged) - len(failed)} of {len(judged)} gates passed."
-    return f"{told} Worse than a random walk: {'; '.join(failed)}." if failed else told
+    gates = [(run, row, row.gate) for run in runs for row in run.quantities if row.gate]
+    failed = [
+        f"{code(row.quantity)} of {_name(run)}"
+        for run, row, gate in gates
+        if gate.verdict is not Status.PASS
+    ]
+    counts = f"{len(gates) - len(failed)} of {len(gates)} gates passed."
+    return f"{counts} Worse than a random walk: {'; '.join(failed)}." if failed else counts
 
 
 def _section(run: Ensemble) -> list[str]:
     lost = bold(f" {run.lost} of them did not reach the end.") if run.lost else ""
-    told = (
-        f"{run.lanes} starts from {_count(run.counts[0])} to {_count(run.counts[-1])} periods of "
-        f"{figure(run.period)} each, {figure(run.steps[-1])} steps.{lost}"
-    )
+    first, last = (f"{count:.3g}".replace("e+0", "e") for count in (run.counts[0], run.counts[-1]))
     numbers = ("rms, first:", "rms, last:", "walks:", "exponent:")
-    columns = ["quantity", *numbers, "word", "late", "no worse than a walk"]
+    rows = [
+        [
+            code(row.quantity),
+            *(figure(row.rms[0]), figure(row.rms[-1]), figure(row.in_walks)),
+            _interval(row.word, row.exponent, row.low, row.high),
+            prose(row.word),
+            _interval(row.late_word, *row.late),
+            f"{judged(row.gate.verdict)}, chance {figure(row.gate.chance)}"
+            if row.gate
+            else NOTHING,
+        ]
+        for row in run.quantities
+    ]
     return [
         f"## {_name(run)}",
-        f"{prose(run.why.capitalize())}. {told}",
-        table(columns, [_cells(row) for row in run.quantities]),
+        f"{prose(run.why.capitalize())}. {run.lanes} starts from {first} to {last} periods of "
+        f"{figure(run.period)} each, {figure(run.steps[-1])} steps.{lost}",
+        table(["quantity", *numbers, "word", "late", "no worse than a walk"], rows),
     ]
 
 
-def _cells(row: GrowthOfQuantity) -> list[str]:
-    return [
-        code(row.quantity),
-        figure(row.rms[0]),
-        figure(row.rms[-1]),
-        figure(row.in_walks),
-        _interval(row.exponent, row.low, row.high) if row.word != "exact" else NOTHING,
-        prose(row.word),
-        _interval(*row.late) if row.late_word != "exact" else NOTHING,
-        _verdict(row.gate),
-    ]
-
-
-def _interval(value: Number, low: Number, high: Number) -> str:
-    if value is None or low is None or high is None:
+def _interval(word: str, value: Number, low: Number, high: Number) -> str:
+    if word == EXACT or value is None or low is None or high is None:
         return NOTHING
     return f"{value:.2f} [{low:.2f}, {high:.2f}]"
-
-
-def _verdict(gate: GrowthGate | None) -> str:
-    if gate is None:
-        return NOTHING
-    word = bold(gate.verdict.value) if _fails(gate) else gate.verdict.value
-    return f"{word}, chance {figure(gate.chance)}"
-
-
-def _fails(gate: GrowthGate) -> bool:
-    return gate.verdict is not Status.PASS
 
 
 def _gate_told(runs: Sequence[Ensemble]) -> str:
@@ -175,26 +171,8 @@ def _gate_told(runs: Sequence[Ensemble]) -> str:
     )
 
 
-def _remake(provenance: Provenance) -> list[str]:
-    return [
-        "`taylor-verify publish growth` follows the ensembles anew, writes "
-        f"[growth.json](../{GROWTH.name}), the picture and this page: minutes, all cores. "
-        "It may be stopped and goes on from where it was.",
-        "`taylor-verify publish growth --long` follows the long run, 100 million periods, likewise: "
-        "a thousand pieces of some seconds.",
-        "Roundings are other draws on another processor, and so are the last digits here; the exponents "
-        "are the same within their intervals.",
-        made_on(provenance),
-    ]
-
-
 def _name(run: Ensemble) -> str:
     return f"{run.scene} on {run.rung}, {run.solver}"
-
-
-def _count(periods: float) -> str:
-    """Half-decades: 100, 3.16e3, 1e6."""
-    return f"{periods:.3g}".replace("e+0", "e")
 
 
 # The sheet.
@@ -215,10 +193,9 @@ def sheet(study: GrowthStudy) -> str:
 
 def _grown(run: Ensemble, row: GrowthOfQuantity) -> dict[str, Any]:
     late, late_low, late_high = row.late
-    shared = ("scene", "solver", "rung", "lost", "period")
     return {
+        **complete(run),
         **complete(row),
-        **{name: getattr(run, name) for name in shared},
         "starts": run.lanes,
         "periods_first": run.counts[0],
         "periods_last": run.counts[-1],

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import partial
 from math import log10
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from taylor_verify.publish.pictures.log_axes import number_axes, widened
 from taylor_verify.publish.pictures.palette import QUIET
@@ -43,36 +43,31 @@ def picture(runs: Sequence[Ensemble]) -> Picture:
     """Return the picture of all runs. Raises ValueError where none has points to draw."""
     by_label = dict(zip(labels_of(runs), runs, strict=True))
     lines = {
-        quantity: {label: points_of(run, quantity) for label, run in by_label.items()}
+        quantity: {label: _points(run, quantity) for label, run in by_label.items()}
         for quantity, _, _ in PANELS
     }
     if not any(points for by_run in lines.values() for points in by_run.values()):
         raise ValueError("expected a run with errors above zero, got none @ runs")
-    said = "; ".join(_said(label, run) for label, run in by_label.items())
+    said = []
+    for label in by_label:
+        ends = []
+        for quantity, by_run in lines.items():
+            if points := by_run[label]:
+                (n0, e0), (n1, e1) = points[0], points[-1]
+                ends.append(f"{quantity} {plain(e0)} at {n0:g} and {plain(e1)} at {n1:g} periods")
+        said.append(f"{label}: {', '.join(ends) or 'nothing above zero'}")
     alt = (
         f"Errors against periods on {_TITLE}, both logarithmic, energy on the left and "
-        f"phase on the right. {said}."
+        f"phase on the right. {'; '.join(said)}."
     )
     title = f"Growth of errors: {_TITLE}"
     return Picture(stem_of({"scene": _TITLE}, "growth"), title, alt, partial(_figure, lines))
 
 
-def points_of(run: Ensemble, quantity: str) -> Points:
+def _points(run: Ensemble, quantity: str) -> Points:
     """Return the root mean squares that a logarithmic axis can show."""
-    row = next((one for one in run.quantities if one.quantity == quantity), None)
-    if row is None:
-        return []
-    return [(n, e) for n, e in zip(run.counts, row.rms, strict=True) if e is not None and e > 0]
-
-
-def _said(label: str, run: Ensemble) -> str:
-    ends = []
-    for quantity, _, _ in PANELS:
-        points = points_of(run, quantity)
-        if points:
-            (n0, e0), (n1, e1) = points[0], points[-1]
-            ends.append(f"{quantity} {plain(e0)} at {n0:g} and {plain(e1)} at {n1:g} periods")
-    return f"{label}: {', '.join(ends) or 'nothing above zero'}"
+    rms = next((one.rms for one in run.quantities if one.quantity == quantity), ())
+    return [(n, e) for n, e in zip(run.counts, rms, strict=False) if e is not None and e > 0]
 
 
 def _figure(lines: Mapping[str, Mapping[str, Points]]) -> Figure:
@@ -90,7 +85,7 @@ def _figure(lines: Mapping[str, Mapping[str, Points]]) -> Figure:
         axes.set(xlim=widened([n for n, _ in everything], 0.05, 0.12))
         axes.set(ylim=widened([e for _, e in everything], 0.07, 0.1))
         number_axes(axes)
-        for points in apart(list(drawn.values())):
+        for points in _apart(list(drawn.values())):
             for power, name in powers:
                 _draw_power(axes, points, power, name)
         for label, points in drawn.items():
@@ -98,8 +93,8 @@ def _figure(lines: Mapping[str, Mapping[str, Points]]) -> Figure:
     return figure
 
 
-def apart(lines: Sequence[Points]) -> list[Points]:
-    """Those that begin far from each other: of several beginnings in one place one has the powers."""
+def _apart(lines: Sequence[Points]) -> list[Points]:
+    """Return lines that begin far from each other: of several that begin in one place the first."""
     found: list[Points] = []
     for points in lines:
         if all(abs(log10(points[0][1] / other[0][1])) > _APART for other in found):
@@ -108,25 +103,24 @@ def apart(lines: Sequence[Points]) -> list[Points]:
 
 
 def _draw_power(axes: Axes, points: Points, power: float, name: str) -> None:
-    """From the first point of a line to the border of the panel that it meets first."""
+    """Draw a power of time from the first point of a line to the border that it meets first."""
     (n0, e0), top, right = points[0], axes.get_ylim()[1], axes.get_xlim()[1]
     end = min(right, n0 * (top / e0) ** (1 / power))
-    axes.plot(
-        [n0, end],
-        [e0, e0 * (end / n0) ** power],
-        color=QUIET,
-        linewidth=0.5,
-        zorder=1,
-        gid=f"power {power:g}",
-        scalex=False,
-        scaley=False,
-    )
+    level = e0 * (end / n0) ** power
+    thin: dict[str, Any] = {
+        "color": QUIET,
+        "linewidth": 0.5,
+        "zorder": 1,
+        "scalex": False,
+        "scaley": False,
+    }
+    axes.plot([n0, end], [e0, level], gid=f"power {power:g}", **thin)
     # Named where it ends inside the panel, so that the names of neighbours stay apart: one that comes up
     # steeply to the right border stands above its end, where a flat one has its name below.
     is_steep_at_the_right = end == right and power >= 1
     axes.annotate(
         name,
-        (end, e0 * (end / n0) ** power),
+        (end, level),
         textcoords="offset points",
         xytext=(-3, 1 if is_steep_at_the_right else -7),
         ha="right",

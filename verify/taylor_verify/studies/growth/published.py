@@ -1,9 +1,10 @@
-"""The ensembles that are published, and the long one: followed one after the other, each resumable."""
+"""The ensembles that are published, and the long one. Each can be stopped and taken up again."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -11,16 +12,16 @@ from taylor_verify.judge.provenance import command, processor, versions
 from taylor_verify.records.provenance import Provenance
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.solvers.taylor.name import TAYLOR
+from taylor_verify.solvers.registry import TAYLOR
 from taylor_verify.solvers.taylor.numbers import unavailable
 from taylor_verify.studies.growth.document import Ensemble, GrowthStudy
 from taylor_verify.studies.growth.experiment import experiment
-from taylor_verify.studies.growth.question import LEAST_PERIODS, Question
+from taylor_verify.studies.growth.question import Question
 
 
 @dataclass(frozen=True)
 class Entry:
-    """One ensemble by names; ``why`` it is there."""
+    """An ensemble by names; ``why`` says what it is there for."""
 
     scene: str
     rung: str
@@ -30,7 +31,7 @@ class Entry:
     solver: str = TAYLOR
 
     def question(self, most: float | None = None) -> Question:
-        """Followed as long as it is published, or for at most so many periods."""
+        """Return what is asked of it: as long as it is published, or at most so many periods."""
         periods = self.periods if most is None else min(self.periods, most)
         return Question(load(self.scene), rung(self.rung), periods, self.lanes, self.solver)
 
@@ -68,7 +69,7 @@ PUBLISHED: Final = (
 )
 LONG: Final = (Entry("euler/about-max-axis", "f64", 1e8, 8, "a hundred million periods"),)
 
-# Told after each piece: the ensemble, and how much of it is done.
+# Called after each piece with the label of the ensemble, the pieces done, and their number.
 Finished = Callable[[str, int, int], None]
 
 
@@ -83,8 +84,6 @@ def followed(
     ``checkpoints`` is the folder in which those of ensembles that are under way are kept. Raises
     ValueError for too few periods, and for a checkpoint of something else.
     """
-    if most is not None and not most >= LEAST_PERIODS:
-        raise ValueError(f"expected at least {LEAST_PERIODS:.0f} periods, got {most:g}")
     runs: list[Ensemble] = []
     left_out: list[str] = []
     for entry in entries:
@@ -92,16 +91,6 @@ def followed(
             left_out.append(f"{entry.label}: {missing}")
             continue
         file = checkpoints / entry.file if checkpoints else None
-
-        def told(done: int, of: int, label: str = entry.label) -> None:
-            finished(label, done, of)
-
-        found = experiment(entry.question(most), file, told)
+        found = experiment(entry.question(most), file, partial(finished, entry.label))
         runs.append(found.ensemble(entry.why))
     return GrowthStudy(tuple(runs), tuple(left_out), Provenance(versions(), processor(), command()))
-
-
-def forget(entries: Sequence[Entry], checkpoints: Path) -> None:
-    """Remove the checkpoints of ensembles that have been stored."""
-    for entry in entries:
-        (checkpoints / entry.file).unlink(missing_ok=True)

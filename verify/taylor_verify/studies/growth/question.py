@@ -1,14 +1,13 @@
-"""What is followed: a scene and starts near it, on one rung, at a few instants in each decade of time."""
+"""The question of an ensemble: a scene and starts near it, at a few instants in each decade of time."""
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
-from math import ceil, floor, isfinite, log10, pi
+from math import ceil, floor, log10, pi
 from typing import Any, Final
 
 from taylor_verify.exact.elements import elements
@@ -17,7 +16,8 @@ from taylor_verify.models.rates import Linearised
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import Rung, hexadecimal
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.taylor.name import TAYLOR, tolerance
+from taylor_verify.solvers.registry import TAYLOR
+from taylor_verify.solvers.taylor.driver import tolerance
 from taylor_verify.studies.tradeoff.starts import nearby
 
 # A hundred periods are thousands of steps: their roundings have made a walk by then, and what swings
@@ -55,7 +55,7 @@ class Question:
                 f"expected a free body, whose conserved quantities are conserved, got loads "
                 f"@ {self.scene.name}"
             )
-        if not (isfinite(self.periods) and self.periods >= LEAST_PERIODS * (1 - _SLACK)):
+        if not self.periods >= LEAST_PERIODS * (1 - _SLACK):
             raise ValueError(
                 f"expected at least {LEAST_PERIODS:.0f} periods, got {self.periods:g} @ periods"
             )
@@ -73,7 +73,7 @@ class Question:
 
     @cached_property
     def period(self) -> float:
-        """Of the scene's own orbit; where that has none, of its fastest linear rate at the start."""
+        """The period of the scene's orbit; where that has none, of its fastest linear rate at the start."""
         found = elements(self.scene).get("period")
         if found is not None:
             return float(found.value)
@@ -98,25 +98,22 @@ class Question:
 
     @cached_property
     def pieces(self) -> tuple[tuple[tuple[Fraction, ...], bool], ...]:
-        """Where every lane stops, in its own units: at the instants (True) and on the way to them."""
+        """The stops of every lane, in its own units: at the instants (True) and on the way to them."""
         stops: list[tuple[tuple[Fraction, ...], bool]] = []
-        for k, (before, after) in enumerate(pairwise((0.0, *self.counts))):
-            parts = ceil((after - before) / PIECE_PERIODS)
+        instants = [*zip(*(problem.times for problem in self.problems), strict=True)]
+        start = (Fraction(0),) * len(self.problems)
+        for k, (count, after) in enumerate(pairwise((0.0, *self.counts))):
+            before = instants[k - 1] if k else start
+            parts = ceil((after - count) / PIECE_PERIODS)
             for part in range(1, parts):
-                stops.append((self._between(k, Fraction(part, parts)), False))
-            stops.append((tuple(problem.times[k] for problem in self.problems), True))
+                share = Fraction(part, parts)
+                ends = zip(before, instants[k], strict=True)
+                stops.append((tuple(self.rung.round(a + share * (b - a)) for a, b in ends), False))
+            stops.append((instants[k], True))
         return tuple(stops)
 
-    def _between(self, k: int, part: Fraction) -> tuple[Fraction, ...]:
-        """A part of the way from the instant before the k-th, as numbers of the rung."""
-        return tuple(
-            self.rung.round(before + part * (times[k] - before))
-            for times in (problem.times for problem in self.problems)
-            for before in (times[k - 1] if k else Fraction(0),)
-        )
-
     def document(self) -> dict[str, Any]:
-        """What is asked, and a fingerprint of every exact number that the answer depends on."""
+        """Return what is asked, with a fingerprint of every exact number that the answer depends on."""
         return {
             "scene": self.scene.name,
             "digest": self.scene.digest,
@@ -134,9 +131,5 @@ class Question:
             numbers = (*problem.parameters, *problem.initial_momenta, *problem.times)
             found.update(" ".join([*problem.form.text(), *map(hexadecimal, numbers)]).encode())
         for stops, _ in self.pieces:
-            found.update(_line(stops).encode())
+            found.update(" ".join(map(hexadecimal, stops)).encode())
         return found.hexdigest()
-
-
-def _line(numbers: Sequence[Fraction]) -> str:
-    return " ".join(map(hexadecimal, numbers))

@@ -31,7 +31,8 @@ def _measure(
         raise NotMeasured(str(error)) from error
     written = (LONG if long else GROWTH).write(folder, study)
     # Only what is stored is done: until then it could still be taken up.
-    published.forget(entries, checkpoints)
+    for entry in entries:
+        (checkpoints / entry.file).unlink(missing_ok=True)
     return Measured(written)
 
 

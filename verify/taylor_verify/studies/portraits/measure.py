@@ -10,7 +10,7 @@ the machine or the hour: two portraits of one scene are the same.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from math import lcm
 from typing import Any, Final
@@ -18,13 +18,12 @@ from typing import Any, Final
 from flint import acb, ctx, fmpz_poly
 from mpmath import mp, mpf
 
-from taylor_verify.batch.documents import documents
 from taylor_verify.exact.elements import Elements, elements
 from taylor_verify.exact.ellipsoid import formed_to
 from taylor_verify.exact.kirchhoff.displaced import centred
 from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.kirchhoff.turned import upright
-from taylor_verify.exact.printed import decimal_text, document
+from taylor_verify.exact.printed import document, shortest_text
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution, Unsettled
 from taylor_verify.explain.explanation import explanation
@@ -33,7 +32,6 @@ from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.library import find
 from taylor_verify.scenes.motion import Impulse
-from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix
 from taylor_verify.studies.portraits.equations import equations
@@ -54,11 +52,12 @@ Document = dict[str, Any]
 
 
 def portrait(scene: Scene) -> Document:
-    """The whole document of one shipped scene. Raises Unsettled where a number does not settle."""
+    """Return the whole document of one shipped scene. Raises Unsettled where a number does not settle."""
     text = find(scene.name).read_text(encoding="utf-8")
     formed = formed_to(scene, DIGITS)
     exact, orbit = solution(formed), _orbit(scene)
     values = document(formed, exact, _times(scene), DIGITS)
+    explained = explanation(scene, _RUNG)
     return {
         "scene": scene.name,
         "title": scene.title,
@@ -72,7 +71,8 @@ def portrait(scene: Scene) -> Document:
         "warnings": list(scene.warnings),
         "tex": equations(scene),
         "analytic": _analytic(orbit),
-        "explain": _without_times(explanation(scene, _RUNG)),
+        # A run takes another time each time.
+        "explain": {**explained, "cost": {**explained["cost"], "seconds": None}},
         "values": values,
         "course": _course(scene, exact, _length(scene, orbit)),
         "body": _ellipsoid_of_inertia(scene),
@@ -81,23 +81,8 @@ def portrait(scene: Scene) -> Document:
     }
 
 
-def portraits(names: Sequence[str], finished: Callable[[str], None]) -> list[Document]:
-    """The documents of many scenes on all cores, in the order given.
-
-    ``finished`` is told the name of each scene as it ends. Raises Failed for one that came to
-    nothing.
-    """
-    return documents(portrait, names, _expense, finished)
-
-
-def _expense(name: str) -> tuple[int, int]:
-    """The longest first: bodies in a fluid, and of these what is tracked."""
-    scene = load(name)
-    return -len(scene.initial.moving), -len(scene.track)
-
-
 def _comment(text: str) -> list[str]:
-    """The lines of the file that are comments, without their marks: they say why the scene exists."""
+    """Return the comments of the file without their marks: they say why the scene exists."""
     return [line.lstrip("# ").rstrip() for line in text.splitlines() if line.startswith("#")]
 
 
@@ -109,7 +94,7 @@ def _tracked(scene: Scene) -> list[str]:
 
 
 def _orbit(scene: Scene) -> Elements:
-    """The orbit's own numbers; none where the digits cannot be had."""
+    """Return the orbit's own numbers; none where the digits cannot be had."""
     try:
         return elements(scene, DIGITS)
     except Unsettled as doubt:
@@ -130,22 +115,17 @@ def _analytic(orbit: Elements) -> list[Document]:
         ]
 
 
-def _without_times(explained: Document) -> Document:
-    """A run takes another time each time."""
-    return {**explained, "cost": {**explained["cost"], "seconds": None}}
-
-
 # The motion.
 
 
 def _span(scene: Scene) -> Fraction:
-    """From the start to the farthest instant asked for; below zero where time runs backward."""
+    """Return the time from the start to the farthest instant; below zero where time runs backward."""
     start = scene.clock.start
     return max((instant - start for instant in scene.clock.instants), key=abs)
 
 
 def _length(scene: Scene, orbit: Elements) -> Fraction:
-    """A few periods, if the span is longer than that."""
+    """Return the span, or a few periods if it is longer."""
     span = _span(scene)
     if "period" not in orbit:
         return span
@@ -154,20 +134,20 @@ def _length(scene: Scene, orbit: Elements) -> Fraction:
 
 
 def _times(scene: Scene) -> list[tuple[str, Fraction]]:
-    """Parts of the span with their texts, which are decimals and exact."""
+    """Return parts of the span with their texts, which are decimals and exact."""
     spread = [scene.clock.start + _span(scene) * k / TIMES for k in range(1, TIMES + 1)]
-    texts = [_shortest(t, DIGITS) for t in spread]
+    texts = [shortest_text(t, DIGITS) for t in spread]
     return [(text, Fraction(text)) for text in texts]
 
 
 def _course(scene: Scene, exact: Solution, length: Fraction) -> Document:
-    """Times and the motion at them, each number rounded to the figures of a picture.
+    """Return times and the motion at them, each number rounded to the figures of a picture.
 
     A row is the motion at exactly the time printed. A vector is a list; an attitude has nine numbers,
     row by row.
     """
     start = scene.clock.start
-    texts = [_shortest(start + length * k / INTERVALS, FIGURES) for k in range(INTERVALS + 1)]
+    texts = [shortest_text(start + length * k / INTERVALS, FIGURES) for k in range(INTERVALS + 1)]
     motion = exact.motion([Fraction(text) - start for text in texts], FIGURES + 1)
     course: Document = {"t": [float(text) for text in texts]}
     for name, rows in motion.quantities.items():
@@ -175,16 +155,8 @@ def _course(scene: Scene, exact: Solution, length: Fraction) -> Document:
     return course
 
 
-def _shortest(value: Fraction, digits: int) -> str:
-    """The number to so many digits, without its last zeros."""
-    mantissa, e, exponent = decimal_text(value, digits).partition("e")
-    if "." in mantissa:
-        mantissa = mantissa.rstrip("0").rstrip(".")
-    return f"{mantissa}{e}{exponent}"
-
-
 def _rounded(entries: Sequence[mpf]) -> list[float]:
-    """The entries to ``FIGURES`` digits; 0 for what is below the last of the largest one's."""
+    """Return the entries to ``FIGURES`` digits; 0 for what is below the last of the largest one's."""
     least = max(map(abs, entries)) / mpf(10) ** (FIGURES + 1)
     return [float(mp.nstr(v, FIGURES)) if abs(v) > least else 0.0 for v in entries]
 
@@ -193,19 +165,16 @@ def _rounded(entries: Sequence[mpf]) -> list[float]:
 
 
 def _ellipsoid_of_inertia(scene: Scene) -> Document | None:
-    """The principal moments, and for each its axis in body components; None for a body in a fluid."""
+    """Return principal moments, each with its axis in body components; None for a body in a fluid."""
     inertia = scene.body.parts().get("inertia")
     if inertia is None:
         return None
     moments, axes = principal_frame(inertia)
-    return {
-        "principal_moments": _plain(moments),
-        "axes": [_rounded(axis) for axis in axes],
-    }
+    return {"principal_moments": _plain(moments), "axes": [_rounded(axis) for axis in axes]}
 
 
 def principal_frame(inertia: Matrix) -> tuple[list[mpf], list[list[mpf]]]:
-    """The principal moments, and to each a unit vector; the three vectors are right-handed.
+    """Return the principal moments, and to each a unit vector; the three vectors are right-handed.
 
     A body whose axes are its principal axes keeps their order and signs, any other has its moments
     in ascending order and the largest component of its first two axes positive.
@@ -229,7 +198,7 @@ def _plain(numbers: Sequence[mpf]) -> list[float]:
 
 
 def _potential(scene: Scene, orbit: Elements) -> Document | None:
-    """X3 of Hydromechanics 49 with its roots, and the interval that the axial impulse moves in.
+    """Return X3 of Hydromechanics 49 with its roots, and the interval of the axial impulse.
 
     None unless the body is free, of revolution, and has a linear impulse: x3 is constant without
     one. ``variable`` names the component along the axis of symmetry, x3 but for a body turned round.
@@ -261,7 +230,7 @@ def _potential(scene: Scene, orbit: Elements) -> Document | None:
 
 
 def roots(polynomial: Sequence[Fraction]) -> list[list[float]]:
-    """[real, imaginary] of every root as often as it is one: the real ones first, upwards.
+    """Return [real, imaginary] of every root as often as it is one: the real ones first, upwards.
 
     The polynomial has its highest power first. Its roots are isolated from exact integers, so that
     repeated ones are known as such, and a real one has no imaginary part.

@@ -4,29 +4,33 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
-from taylor_verify.studies.portraits import stored
-from taylor_verify.studies.study import Bulk, Measured, Progress, Published, Study
+from taylor_verify.records import store
+from taylor_verify.studies.stored import SceneDocuments
+from taylor_verify.studies.study import Bulk, Measured, Progress, Study
+
+# Most of a portrait is rows of numbers, which need no blanks.
+PORTRAITS: Final = SceneDocuments(
+    f"{store.FOLDER}/portraits", "taylor-verify publish; do not edit", (",", ":")
+)
 
 
 def _measure(folder: Path, progress: Progress) -> Measured:
     from taylor_verify.scenes.library import names
-    from taylor_verify.studies.portraits.measure import portraits
 
-    scenes = names()
-    return Measured(stored.write(folder, portraits(scenes, progress.counting(len(scenes)))))
-
-
-def _lacking(report: Published) -> tuple[str, ...]:
-    """Return the scenes without a portrait, or with one of another text of the scene."""
-    return report.without(stored.FOLDER)
+    return Measured(PORTRAITS.write(folder, _portraits(names(), progress)))
 
 
 def _add(folder: Path, scenes: Sequence[str], progress: Progress) -> list[Path]:
-    from taylor_verify.studies.portraits.measure import portraits
+    return PORTRAITS.add(folder, _portraits(scenes, progress))
 
-    return stored.add(folder, portraits(scenes, progress.counting(len(scenes))))
+
+def _portraits(scenes: Sequence[str], progress: Progress) -> list[dict[str, Any]]:
+    from taylor_verify.batch.documents import documents
+    from taylor_verify.studies.portraits.measure import portrait
+
+    return documents(portrait, scenes, progress.counting(len(scenes)))
 
 
 STUDY: Final = Study[None](
@@ -34,5 +38,12 @@ STUDY: Final = Study[None](
     title="what each shipped scene is and how it moves, as data for pages and pictures",
     duration="a minute, all cores",
     measure=_measure,
-    bulk=(Bulk("portraits of scenes", (f"{stored.FOLDER}/",), _lacking, _add),),
+    bulk=(
+        Bulk(
+            "portraits of scenes",
+            (f"{PORTRAITS.folder}/",),
+            lambda report: report.without(PORTRAITS.folder),
+            _add,
+        ),
+    ),
 )

@@ -12,7 +12,7 @@ Interval = tuple[float, float | None, float | None]
 
 @dataclass(frozen=True)
 class PriceRow:
-    """One variant on one rung: its equations, and what a step and a unit of time cost."""
+    """A variant on a rung: its equations, and the cost of a step and of a unit of time."""
 
     rung: str
     variant: str

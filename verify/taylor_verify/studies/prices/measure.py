@@ -1,4 +1,4 @@
-"""The price of each thing that a scene may ask for: measured in turns, in multiples of the barest form.
+"""The price of each thing that a scene may ask for, measured in turns, in multiples of the barest form.
 
 A price is the processor time of a step, and that of a unit of the scene's time, over the same of the
 barest form of the model in the same round: an integrator steps from the start to the end of a stretch,
@@ -7,10 +7,9 @@ again and again, unsampled. Compiling is not in it.
 
 from __future__ import annotations
 
-import gc
 import random
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
 from math import ceil, exp, log
@@ -23,11 +22,9 @@ from taylor_verify.records.json_text import finite
 from taylor_verify.records.provenance import SceneProvenance
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.precision import rung as rung_named
-from taylor_verify.solvers.taylor.driver import Taylor
-from taylor_verify.solvers.taylor.name import named_at
+from taylor_verify.solvers.taylor.driver import Taylor, at_tolerance
 from taylor_verify.solvers.taylor.pace import Pace
 from taylor_verify.studies.prices.document import (
-    Interval,
     PriceAtEqualError,
     PriceMethod,
     PriceRow,
@@ -35,7 +32,8 @@ from taylor_verify.studies.prices.document import (
 )
 from taylor_verify.studies.prices.variants import Variant, variants
 from taylor_verify.studies.tradeoff.accuracy import Truth
-from taylor_verify.studies.tradeoff.order_statistics import Estimate, estimate
+from taylor_verify.studies.tradeoff.order_statistics import estimate
+from taylor_verify.studies.tradeoff.rounds import without_collector
 
 # Each rung with its rounds: the interval of the median asks for six, and a wide rung takes its time.
 RUNGS: Final = {"f64": 31, "f80": 31, "f128": 9, "mp237": 7}
@@ -53,43 +51,42 @@ _EQUAL_ERROR: Final = 1e-11
 _TOLERANCES: Final = ("1e-7", "1e-9", "1e-11", "1e-13")
 
 
-@dataclass
+@dataclass(frozen=True)
 class _Bench:
-    """One variant on one rung, ready to run; ``count`` runs make one measurement."""
+    """A variant on a rung, ready to run; ``count`` runs of ``steps`` each make one measurement.
+
+    ``unit`` is the stretch in the scene's units of time.
+    """
 
     variant: Variant
     pace: Pace
     unit: float
-    span: Fraction
-    steps: int = 0
-    count: int = 1
+    steps: int
+    count: int
 
     @classmethod
     def of(cls, variant: Variant, rung: Rung, tolerance: Fraction | None = None) -> _Bench:
         problem = variant.posed(rung)
         span = _SPAN_ON_WIDE_RUNGS if rung.name in _WIDE else _SPAN
         pace = Pace(problem, span, tolerance, variant.literals)
-        made = cls(variant, pace, float(span * problem.units.time), span)
         # The first run is not timed: what it touches is there afterwards.
-        made.steps = pace.run()
-        made.count = max(1, ceil(_LEAST_SECONDS / max(made.seconds(), 1e-6)))
-        return made
+        once = cls(variant, pace, float(span * problem.units.time), pace.run(), 1)
+        return replace(once, count=max(1, ceil(_LEAST_SECONDS / max(once.seconds(), 1e-6))))
 
     def seconds(self) -> float:
-        """The processor time of one run."""
+        """Return the processor time of one run."""
         began = process_time()
         for _ in range(self.count):
             self.pace.run()
         return (process_time() - began) / self.count
 
 
-def study(finished: Callable[[str], None] | None = None) -> PricesStudy:
+def study(finished: Callable[[str], None] = lambda rung: None) -> PricesStudy:
     """Return every row of the published table; ``finished`` is called with each rung as it ends."""
     rows: list[PriceRow] = []
     for name, rounds in RUNGS.items():
         rows += _rows(rung_named(name), rounds)
-        if finished is not None:
-            finished(name)
+        finished(name)
     return PricesStudy(
         rows=tuple(rows),
         equal=_at_equal_error(rung_named("f64")),
@@ -99,65 +96,58 @@ def study(finished: Callable[[str], None] | None = None) -> PricesStudy:
 
 
 def _rows(rung: Rung, rounds: int) -> list[PriceRow]:
-    asked = [v for v in variants() if rung.name not in _WIDE or v.name in _ON_WIDE_RUNGS]
     if Taylor().unavailable(rung):
         return []
+    asked = [v for v in variants() if rung.name not in _WIDE or v.name in _ON_WIDE_RUNGS]
     benches = [_Bench.of(variant, rung) for variant in asked]
-    taken = _in_rounds(benches, rounds)
-    by_name = {bench.variant.name: i for i, bench in enumerate(benches)}
+    taken = dict(zip((v.name for v in asked), _in_rounds(benches, rounds), strict=True))
+    by_name = {bench.variant.name: bench for bench in benches}
     return [
-        _row(rung, benches[i], benches[base], taken[i], taken[base])
-        for i, base in enumerate(by_name[bench.variant.against] for bench in benches)
+        _row(rung, bench, by_name[v.against], [*zip(taken[v.name], taken[v.against], strict=True)])
+        for v, bench in zip(asked, benches, strict=True)
     ]
 
 
 def _in_rounds(benches: Sequence[_Bench], rounds: int) -> list[list[float]]:
-    """Seconds of a run by bench and round: each round has every bench once, in an order drawn anew."""
-    found: list[list[float]] = [[0.0] * rounds for _ in benches]
+    """Return seconds of a run by bench and round.
+
+    A round has every bench once, in an order drawn anew.
+    """
+    found: list[list[float]] = [[] for _ in benches]
     order, draw = list(range(len(benches))), random.Random(_SEED)
-    enabled = gc.isenabled()
-    gc.disable()
-    try:
-        for k in range(rounds):
+    with without_collector():
+        for _ in range(rounds):
             draw.shuffle(order)
             for i in order:
-                found[i][k] = benches[i].seconds()
-    finally:
-        if enabled:
-            gc.enable()
+                found[i].append(benches[i].seconds())
     return found
 
 
 def _row(
-    rung: Rung, bench: _Bench, base: _Bench, taken: Iterable[float], unit: Iterable[float]
+    rung: Rung, bench: _Bench, base: _Bench, rounds: Sequence[tuple[float, float]]
 ) -> PriceRow:
-    problem = bench.variant.posed(rung)
-    rounds = list(zip(taken, unit, strict=True))
-    per_step = estimate(a / bench.steps / (b / base.steps) for a, b in rounds)
-    per_time = estimate(a / bench.unit / (b / base.unit) for a, b in rounds)
+    """Return the row of a variant; ``rounds`` have its seconds, and those of the barest form."""
+    variant = bench.variant
+    problem = variant.posed(rung)
     return PriceRow(
         rung=rung.name,
-        variant=bench.variant.name,
-        against=bench.variant.against,
-        what=bench.variant.what,
+        variant=variant.name,
+        against=variant.against,
+        what=variant.what,
         states=len(problem.form.states),
         parameters=len(problem.form.parameters),
         **problem.form.operations(),
         order=bench.pace.order,
         steps_per_time=bench.steps / bench.unit,
-        step_ratio=_interval(per_step),
-        time_ratio=_interval(per_time),
+        step_ratio=estimate(a / bench.steps / (b / base.steps) for a, b in rounds),
+        time_ratio=estimate(a / bench.unit / (b / base.unit) for a, b in rounds),
         microseconds=1e6 * median(a for a, _ in rounds) / bench.steps,
-        error=finite(_error(bench.variant, rung, Taylor())),
+        error=finite(_error(variant, rung, Taylor())),
     )
 
 
-def _interval(found: Estimate) -> Interval:
-    return found.median, found.low, found.high
-
-
 def _error(variant: Variant, rung: Rung, solver: Taylor) -> float:
-    """The largest error over the scene's samples, relative: of omega or the impulses alone."""
+    """Return the largest relative error over the scene's samples, of omega or the impulses alone."""
     problem = variant.posed(rung)
     found = Truth(problem).accuracy(solver.solve(problem))
     return max(found.max[name] for name in ("omega", "impulse") if name in found.max)
@@ -166,15 +156,14 @@ def _error(variant: Variant, rung: Rung, solver: Taylor) -> float:
 def _at_equal_error(rung: Rung) -> tuple[PriceAtEqualError, ...]:
     """Return the time over that of the barest form at one error, from a row of tolerances."""
     asked = [v for v in variants() if not v.literals]
-    solvers = [Taylor(named_at(text), tolerance=Fraction(text)) for text in _TOLERANCES]
+    solvers = [at_tolerance(text) for text in _TOLERANCES]
     benches = [_Bench.of(v, rung, solver.tolerance) for v in asked for solver in solvers]
-    taken = [median(seconds) for seconds in _in_rounds(benches, 9)]
-    costs = {}
-    for k, variant in enumerate(asked):
-        place = slice(k * len(solvers), (k + 1) * len(solvers))
-        paces = [s / b.unit for s, b in zip(taken[place], benches[place], strict=True)]
+    seconds = zip(benches, _in_rounds(benches, 9), strict=True)
+    paces = iter([median(taken) / bench.unit for bench, taken in seconds])
+    costs: dict[str, float | None] = {}
+    for variant in asked:
         errors = [_error(variant, rung, solver) for solver in solvers]
-        costs[variant.name] = _between(errors, paces)
+        costs[variant.name] = _between(errors, [next(paces) for _ in solvers])
     rows = []
     for variant in asked:
         own, base = costs[variant.name], costs[variant.against]
@@ -184,7 +173,7 @@ def _at_equal_error(rung: Rung) -> tuple[PriceAtEqualError, ...]:
 
 
 def _between(errors: Sequence[float], costs: Sequence[float]) -> float | None:
-    """The cost at the error asked for, on straight lines in logarithms; None outside the row."""
+    """Return the cost at the error asked for, on straight lines in logarithms; None outside the row."""
     points = sorted(zip(errors, costs, strict=True), reverse=True)
     for (e, c), (f, d) in pairwise(points):
         if e >= _EQUAL_ERROR >= f > 0 and e > f:

@@ -1,4 +1,4 @@
-"""The price of each thing that a scene may ask for: the stored measurement, and the page made of it."""
+"""The page of the price of each thing that a scene may ask for, made of the stored measurement."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from taylor_verify.studies.stored import Stored
 
 PRICES: Final = Stored(PricesStudy, "prices")
 
-_ROOTS: Final = {"omega": "A rigid body", "impulse": "A solid in an ideal fluid"}
-_BAREST: Final = {"omega": "a rigid body", "impulse": "a solid in an ideal fluid"}
+# The models by their barest forms.
+_MODELS: Final = {"omega": "a rigid body", "impulse": "a solid in an ideal fluid"}
 # The three questions: the barest form, its attitude, and all of a solid in a fluid.
 _ASKED: Final = (
     ("omega", "omega"),
@@ -37,11 +37,24 @@ _WHAT: Final = (
     "round on the same machine."
 )
 
+_LEGEND: Final = (
+    "*operations* are the distinct sums, products and quotients of one evaluation of the equations; "
+    "the integrator forms each of them once for every order of a step.",
+    "*a step* and *a unit of time* are medians of the ratios to the barest form, in the brackets the "
+    "interval that holds the median of their distribution with at least 95 %. A unit of time is "
+    "one of the scene's: it has more steps in it where the motion is faster.",
+    "*error* is that of omega or of the impulses at the rung's own tolerance, the largest of all "
+    "samples, relative; *at equal error* is the price of a unit of time where tolerances are "
+    "set so that both forms achieve 1e-11, on f64.",
+    "Up to five states are compiled as straight-line code, more as loops over tables, which "
+    "compile in a fraction of the time and run slower: part of the price of a sixth state.",
+)
+
 
 def pictures(study: PricesStudy) -> list[Picture]:
     """Return the price of each thing that a scene may ask for on f64, a picture for each model."""
     found = []
-    for root, words in _BAREST.items():
+    for root, words in _MODELS.items():
         rows = [
             Ratio(row.variant, row.rung, *row.step_ratio)
             for row in study.rows
@@ -61,7 +74,7 @@ def page(study: PricesStudy, folder: Path) -> str:
         "Processor time of one step of the Taylor integrator at the rung's own tolerance, in "
         "microseconds; in brackets, as a multiple of a step of *omega* on the same rung.",
         _three_questions(study.rows),
-        bullets(_legend()),
+        bullets(_LEGEND),
         figures.shown(folder, pictures(study)),
         *_sections(study.rows, {one.variant: one.ratio for one in study.equal}),
         "## How it was measured",
@@ -73,42 +86,20 @@ def page(study: PricesStudy, folder: Path) -> str:
 
 
 def _three_questions(rows: Iterable[PriceRow]) -> str:
-    by_place = {(row.variant, row.rung): row for row in rows}
-    rungs = list(dict.fromkeys(rung for _, rung in by_place))
-    columns = ["what is followed", *(f"{rung}:" for rung in rungs)]
+    cost = {(row.variant, row.rung): row.microseconds for row in rows}
+    rungs = list(dict.fromkeys(rung for _, rung in cost))
     lines = []
     for name, words in _ASKED:
-        cells = []
-        for rung in rungs:
-            row, unit = by_place.get((name, rung)), by_place.get(("omega", rung))
-            cells.append(_microseconds(row, unit) if row and unit else NOTHING)
+        found = [(cost.get((name, rung)), cost.get(("omega", rung))) for rung in rungs]
+        cells = [f"{figure(a)} ({figure(a / b)})" if a and b else NOTHING for a, b in found]
         lines.append([words, *cells])
-    return table(columns, lines)
-
-
-def _microseconds(row: PriceRow, unit: PriceRow) -> str:
-    return f"{figure(row.microseconds)} ({figure(row.microseconds / unit.microseconds)})"
-
-
-def _legend() -> list[str]:
-    return [
-        "*operations* are the distinct sums, products and quotients of one evaluation of the equations; "
-        "the integrator forms each of them once for every order of a step.",
-        "*a step* and *a unit of time* are medians of the ratios to the barest form, in the brackets the "
-        "interval that holds the median of their distribution with at least 95 %. A unit of time is "
-        "one of the scene's: it has more steps in it where the motion is faster.",
-        "*error* is that of omega or of the impulses at the rung's own tolerance, the largest of all "
-        "samples, relative; *at equal error* is the price of a unit of time where tolerances are "
-        "set so that both forms achieve 1e-11, on f64.",
-        "Up to five states are compiled as straight-line code, more as loops over tables, which "
-        "compile in a fraction of the time and run slower: part of the price of a sixth state.",
-    ]
+    return table(["what is followed", *(f"{rung}:" for rung in rungs)], lines)
 
 
 def _sections(rows: Sequence[PriceRow], equal: Mapping[str, float | None]) -> list[str]:
     blocks = []
-    for root, heading in _ROOTS.items():
-        blocks.append(f"## {heading}")
+    for root, model in _MODELS.items():
+        blocks.append(f"## {model[0].upper()}{model[1:]}")
         found = [row for row in rows if row.against == root]
         for rung in dict.fromkeys(row.rung for row in found):
             of_rung = [row for row in found if row.rung == rung]
@@ -120,20 +111,20 @@ def _prices(rows: Sequence[PriceRow], equal: Mapping[str, float | None]) -> str:
     on_f64 = rows[0].rung == "f64"
     numbers = ("states:", "operations:", "a step:", "a unit of time:", "error:")
     at_equal = ("at equal error:",) if on_f64 else ()
-    columns = ["variant", *numbers, *at_equal, "what it is"]
-    return table(columns, [_cells(row, equal, on_f64) for row in rows])
-
-
-def _cells(row: PriceRow, equal: Mapping[str, float | None], on_f64: bool) -> list[str]:
-    return [
-        prose(row.variant),
-        str(row.states),
-        str(row.sums + row.products + row.quotients),
-        *(_ratio(interval) for interval in (row.step_ratio, row.time_ratio)),
-        figure(row.error),
-        *([figure(equal.get(row.variant))] if on_f64 else []),
-        prose(row.what),
+    lines = [
+        [
+            prose(row.variant),
+            str(row.states),
+            str(row.sums + row.products + row.quotients),
+            _ratio(row.step_ratio),
+            _ratio(row.time_ratio),
+            figure(row.error),
+            *([figure(equal.get(row.variant))] if on_f64 else []),
+            prose(row.what),
+        ]
+        for row in rows
     ]
+    return table(["variant", *numbers, *at_equal, "what it is"], lines)
 
 
 def _ratio(interval: Interval) -> str:
@@ -171,11 +162,11 @@ def sheet(study: PricesStudy) -> str:
 
 
 def _priced(row: PriceRow, at_equal: Mapping[str, float | None]) -> dict[str, Any]:
-    step, step_low, step_high = row.step_ratio
-    time, time_low, time_high = row.time_ratio
-    intervals = {
-        **{"step_ratio": step, "step_low": step_low, "step_high": step_high},
-        **{"time_ratio": time, "time_low": time_low, "time_high": time_high},
+    intervals = {"step": row.step_ratio, "time": row.time_ratio}
+    ends = {
+        f"{name}_{end}": value
+        for name, interval in intervals.items()
+        for end, value in zip(("ratio", "low", "high"), interval, strict=True)
     }
     equal = at_equal.get(row.variant) if row.rung == "f64" else None
-    return {**complete(row), **intervals, "ratio_at_equal_error": equal}
+    return {**complete(row), **ends, "ratio_at_equal_error": equal}

@@ -45,12 +45,10 @@ def picture(scene: str, yardstick: str, found: Sequence[Ratio]) -> Picture:
 
 
 def _figure(found: Sequence[Ratio], yardstick: str) -> Figure:
-    height = _ABOVE + _BAR * len(found) + _BELOW + _FOOT
-    figure = blank(height)
+    bars, below = _BAR * len(found), _BELOW + _FOOT
+    figure = blank(_ABOVE + bars + below)
     left = min(0.25 + _LETTER * max(len(_name(one)) for one in found), _WIDEST)
-    axes = add_axes(
-        figure, Frame(left, _BELOW + _FOOT, PAGE_WIDTH - left - _RIGHT, _BAR * len(found))
-    )
+    axes = add_axes(figure, Frame(left, below, PAGE_WIDTH - left - _RIGHT, bars))
     _draw_bars(axes, found)
     axes.set(xlabel=f"time, as a multiple of that of {yardstick}")
     if any(one.least < one.greatest for one in found):
@@ -59,7 +57,7 @@ def _figure(found: Sequence[Ratio], yardstick: str) -> Figure:
 
 
 def _draw_bars(axes: Axes, found: Sequence[Ratio]) -> None:
-    """From 1, the yardstick, to the right what is dearer; the number stands behind its range."""
+    """Draw bars from 1, the yardstick, to the right what is dearer; the number is behind its range."""
     axes.set(xscale="log", ylim=(len(found) - 0.4, -0.6))
     for i, one in enumerate(found):
         colour = look_of_rung(one.rung).colour
@@ -80,10 +78,8 @@ def _draw_bars(axes: Axes, found: Sequence[Ratio]) -> None:
             gid="number",
         )
     axes.axvline(1, color=QUIET, linewidth=0.8, zorder=4)
-    least, most = (
-        min(min(one.least for one in found), 1.0),
-        max(max(one.greatest for one in found), 1.0),
-    )
+    least = min(1.0, *(one.least for one in found))
+    most = max(1.0, *(one.greatest for one in found))
     # The last number needs room: an inch of four or five.
     axes.set_xlim(least / 1.15, most * max((most / least) ** 0.22, 1.3))
     axes.set_yticks(range(len(found)), [_name(one) for one in found])

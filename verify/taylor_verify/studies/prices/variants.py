@@ -1,4 +1,4 @@
-"""What is priced: one motion in several forms, and one body with more and more asked of it."""
+"""The variants that are priced: one motion in several forms, one body with more and more asked of it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _LOAD: Final = (Fraction(1, 64), Fraction(-1, 128), Fraction(1, 256))
 
 @dataclass(frozen=True)
 class Variant:
-    """One form of one scene. ``against`` names the variant that its price is a multiple of."""
+    """A form of a scene. ``against`` names the variant that its price is a multiple of."""
 
     name: str
     against: str
@@ -33,21 +33,18 @@ class Variant:
 
 
 def variants() -> tuple[Variant, ...]:
-    """In reading order; a variant comes after the one that it is held against."""
+    """Return the variants in reading order; each comes after the one that it is held against."""
     omega, impulse = "omega", "impulse"
+    whole = _of(_CLEBSCH, "attitude", "centre")
     return (
         Variant(omega, omega, "three moments, free, omega alone", _of(_PRINCIPAL)),
         Variant("literals", omega, "the coefficients written into the code", _of(_PRINCIPAL), True),
         Variant(
-            "differences",
-            omega,
-            "differences of K's diagonal formed by the integrator",
+            *("differences", omega, "differences of K's diagonal formed by the integrator"),
             lambda rung: pose(load(_PRINCIPAL), rung).with_equations(euler_equations),
         ),
         Variant(
-            "zeros",
-            omega,
-            "products of inertia and moment carried along, all of them zero",
+            *("zeros", omega, "products of inertia and moment carried along, all of them zero"),
             lambda rung: in_general_form(pose(load(_PRINCIPAL), rung), zeros=True),
         ),
         Variant("moment", omega, "a constant moment about all axes", _of(_PRINCIPAL, loaded=True)),
@@ -58,25 +55,20 @@ def variants() -> tuple[Variant, ...]:
         Variant("impulse, literals", impulse, "as above, in the code", _of(_CLEBSCH), True),
         Variant("y3 a state", impulse, "the constant y3 integrated", _with_y3),
         Variant(
-            "21 coefficients",
-            impulse,
-            "the same body by the general equations, zeros left out",
+            *("21 coefficients", impulse, "the same body by the general equations, zeros left out"),
             lambda rung: in_general_form(_of(_CLEBSCH)(rung)),
         ),
         Variant(
-            "21, zeros carried",
-            impulse,
-            "and with 15 coefficients and 6 loads that are zero",
+            *("21, zeros carried", impulse, "and with 15 coefficients and 6 loads that are zero"),
             lambda rung: in_general_form(_of(_CLEBSCH)(rung), zeros=True),
         ),
         Variant("loads", impulse, "a constant force and couple", _of(_CLEBSCH, loaded=True)),
         Variant("impulse, attitude", impulse, "and the attitude", _of(_CLEBSCH, "attitude")),
-        Variant("whole", impulse, "attitude and centre", _of(_CLEBSCH, "attitude", "centre")),
+        Variant("whole", impulse, "attitude and centre", whole),
         Variant(
-            "whole, 21",
-            impulse,
+            *("whole, 21", impulse),
             "attitude and centre by the general equations, zeros left out",
-            lambda rung: in_general_form(_of(_CLEBSCH, "attitude", "centre")(rung)),
+            lambda rung: in_general_form(whole(rung)),
         ),
     )
 
@@ -90,14 +82,14 @@ def _of(name: str, *track: str, loaded: bool = False) -> Callable[[Rung], Proble
 
 
 def _pushed(scene: Scene) -> Scene:
-    """The same under loads that change its motion little in the time of the scene."""
+    """Return the scene under loads that change its motion little in its time."""
     opposed = tensors.scaled(Fraction(-1), _LOAD)
     loads = dict(zip(scene.body.load_names(), (_LOAD, opposed), strict=False))
     return replace(scene, body=scene.body.with_parts(loads))
 
 
 def _with_y3(rung: Rung) -> Problem:
-    """Clebsch's equations with all six impulses among the states."""
+    """Return Clebsch's equations with all six impulses among the states."""
     problem = _of(_CLEBSCH)(rung)
     states = (*problem.form.states, "y3")
     parameters = tuple(name for name in problem.form.parameters if name != "y3")

@@ -1,1 +1,1 @@
-"""How far each precision carries, and where it ends."""
+"""The reach of each precision: how far it carries, and where it ends."""

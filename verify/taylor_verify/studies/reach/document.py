@@ -9,7 +9,7 @@ from taylor_verify.records.provenance import SceneProvenance
 
 @dataclass(frozen=True)
 class ReachFamily:
-    """One family of motions: its values, and the periods that each rung is followed for."""
+    """A family of motions: its values, and the periods that each rung is followed for."""
 
     name: str
     title: str
@@ -21,7 +21,7 @@ class ReachFamily:
 
 @dataclass(frozen=True)
 class ReachRow:
-    """One member of a family on one rung, after each number of periods.
+    """A member of a family on a rung, after each number of periods.
 
     ``errors`` and ``floors`` are the largest up to then; of a motion that was lost they are None, and
     infinite while it is measured. There are no floors for periods that no rung was followed for. Both

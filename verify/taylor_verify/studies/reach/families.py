@@ -27,8 +27,10 @@ from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Clebsch, RigidBody
 from taylor_verify.scenes.motion import Clock, Impulse, Spin
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.studies.reach.document import ReachFamily
 
-Numbers = tuple[Fraction | int, ...]
+# Rationals, or their texts with spaces between.
+Numbers = tuple[Fraction | int, ...] | str
 
 QUARTERS: Final = 4
 # Half-decades, then decades, where a period is cheap.
@@ -64,18 +66,23 @@ class Family:
     far: Mapping[str, int] = field(default_factory=lambda: _FAR)
 
     def scene(self, value: str) -> Scene:
-        """The member of this value; its clock has the start alone."""
+        """Return the member of this value; its clock has the start alone."""
         return replace(self.made(Fraction(value)), name=self.label(value), title=self.title)
 
     def label(self, value: str) -> str:
         return f"{self.name} {self.symbol} = {value}" if self.symbol else self.name
+
+    def described(self) -> ReachFamily:
+        """Return the family as it is stored."""
+        about = (self.name, self.title, self.symbol, self.extreme, self.values)
+        return ReachFamily(*about, dict(self.far))
 
     def periods(self, rung: str) -> tuple[int, ...]:
         return tuple(count for count in PERIODS if count <= self.far[rung])
 
 
 def at_quarters(scene: Scene, periods: Sequence[int]) -> Scene:
-    """The scene asked at the quarters of the n-th period, for every n."""
+    """Return the scene asked at the quarters of the n-th period, for every n."""
     period = period_of(scene)
     instants = [
         (n - 1 + Fraction(quarter, QUARTERS)) * period
@@ -87,24 +94,19 @@ def at_quarters(scene: Scene, periods: Sequence[int]) -> Scene:
 
 @lru_cache(maxsize=64)
 def period_of(scene: Scene) -> Fraction:
-    """The period of omega or the impulses, to a dozen digits; ValueError for an orbit without one."""
+    """Return the period of omega or the impulses, to a dozen digits; ValueError without one."""
     found = elements(scene)
     if "period" not in found:
         raise ValueError(f"expected a periodic orbit, got a {found.regime} one @ {scene.name}")
     return Fraction(mp.nstr(found["period"].value, _PERIOD_DIGITS))
 
 
-def families() -> tuple[Family, ...]:
-    """In reading order: how long, then how near a separatrix, how equal, how unequal, how large."""
-    return (*_long(), *_near(), *_gaps(), *_ratios(), *_scales())
-
-
 def family(name: str) -> Family:
-    """The family of that name; ValueError for a name that is none."""
-    for one in families():
+    """Return the family of that name; ValueError for a name that is none."""
+    for one in FAMILIES:
         if one.name == name:
             return one
-    names = ", ".join(one.name for one in families())
+    names = ", ".join(one.name for one in FAMILIES)
     raise ValueError(f"expected one of the families {names}, got {name!r}")
 
 
@@ -124,134 +126,101 @@ def _kirchhoff(six: Numbers, linear: Numbers, angular: Numbers) -> Scene:
 
 
 def _exact(numbers: Numbers) -> tuple[Fraction, ...]:
-    return tuple(Fraction(number) for number in numbers)
-
-
-def _long() -> tuple[Family, ...]:
-    half, fifth, tenth = Fraction(1, 2), Fraction(1, 5), Fraction(1, 10)
-    moments, omega = (1, 2, 3), (Fraction(3, 10), 1, fifth)
-    with_attitude = {**_FARTHEST, "f64": 10_000, "f80": 1000, "f128": 30, "mp237": 3}
-    return (
-        Family(
-            *("euler-periods", "a triaxial body, omega alone", "", "many periods", ("1",)),
-            *(lambda _: _euler(moments, omega), _FARTHEST),
-        ),
-        Family(
-            *("euler-attitude", "a triaxial body with its attitude", "", "many periods", ("1",)),
-            *(lambda _: _euler(moments, omega, "attitude"), with_attitude),
-        ),
-        Family(
-            *("kirchhoff-periods", "Clebsch's body, impulses alone", "", "many periods", ("1",)),
-            lambda _: _kirchhoff(
-                (1, 2, 0, tenth, 1, half), (Fraction(3, 10), fifth, 1), (Fraction(2, 5), -half, 1)
-            ),
-            {**_FARTHEST, "f64": 10_000, "f80": 1000},
-        ),
-    )
-
-
-def _near() -> tuple[Family, ...]:
-    quarter, half, three_quarters = Fraction(1, 4), Fraction(1, 2), Fraction(3, 4)
-    # Its unstable spin grows: A = 29/16 in Hydromechanics 49 (25).
-    falling = (1, Fraction(5, 4), 0, quarter, 1, half)
-    return (
-        Family(
-            *("unstable-axis", "a triaxial body at d beside its unstable axis", "d"),
-            *("the axis itself", _decades(-2, -40, -2)),
-            *(lambda d: _euler((1, 2, 3), (d, 1, 0)), _FARTHER),
-        ),
-        Family(
-            # Half-way from one turn of the unstable spin to the next, where omega2 is zero.
-            *("separatrix", "a triaxial body, 1 - k^2 = d, from the middle of a flip", "d"),
-            *("the separatrix itself", _decades(-2, -14, -2)),
-            lambda d: _euler((1, Fraction(4, 3), 2), (1, 0, half + d / 4)),
-        ),
-        Family(
-            *("unstable-spin", "Clebsch's body at d beside its unstable spin", "d"),
-            *("the spin itself", _decades(-2, -18, -4)),
-            lambda d: _kirchhoff(falling, (d, 0, Fraction(5, 4)), (0, 0, 1)),
-            _NEARER,
-        ),
-        Family(
-            *("homoclinic", "Clebsch's body, y3 off the homoclinic orbit's by d", "d"),
-            *("the orbit itself", _decades(-2, -14, -4)),
-            lambda d: _kirchhoff(falling, (1, 0, three_quarters), (half, -half, 1 + d)),
-            _NEARER,
-        ),
-    )
-
-
-def _gaps() -> tuple[Family, ...]:
-    half, quarter, three_quarters = Fraction(1, 2), Fraction(1, 4), Fraction(3, 4)
-    off_axis = (three_quarters, half, Fraction(-5, 8))
-    return (
-        Family(
-            *("nearly-spherical", "moments 1, 1 + e, 1 - e", "e", "a sphere"),
-            *(_decades(-2, -6, -1), lambda e: _euler((1, 1 + e, 1 - e), off_axis), _SLOW),
-        ),
-        Family(
-            *("nearly-axisymmetric", "moments 1, 1 + e, 2", "e"),
-            *("an axis of symmetry", _decades(-2, -14, -3)),
-            lambda e: _euler((1, 1 + e, 2), (half, -quarter, 1)),
-        ),
-        Family(
-            *("nearly-singular", "Clebsch's body with q = 1 - e beside p = r = 1", "e"),
-            *("an energy that is none", _decades(-2, -14, -3)),
-            lambda e: _kirchhoff(
-                (1, 2, 1 - e, half, 1, three_quarters),
-                (half, quarter, 1),
-                (-half, three_quarters, quarter),
-            ),
-        ),
-    )
-
-
-def _ratios() -> tuple[Family, ...]:
-    half, quarter = Fraction(1, 2), Fraction(1, 4)
-    thousandth = Fraction(1, 1000)
-    return (
-        Family(
-            *("inertia-ratio", "moments 1, sqrt R, R, all spins alike", "R"),
-            *("unlike moments", _decades(2, 14, 2)),
-            lambda r: _euler((1, isqrt(int(r)), r), (1, 1, 1)),
-        ),
-        Family(
-            *("thin-rod", "a rod, moments 1/R, 1, 1 + 1/R", "R"),
-            *("a line", _decades(2, 14, 3)),
-            lambda r: _euler((1 / r, 1, 1 + 1 / r), (1, thousandth, 2 * thousandth)),
-        ),
-        Family(
-            *("added-mass", "Clebsch's body, p = 1, p' = 1/R", "R"),
-            *("a disc without mass", _decades(2, 14, 3)),
-            lambda r: _kirchhoff((1, 1 / r, 0, 0, 1, 2), (half, quarter, 1), (quarter, -half, 1)),
-        ),
-    )
-
-
-def _scales() -> tuple[Family, ...]:
-    half, tenth = Fraction(1, 2), Fraction(1, 10)
-    six: Numbers = (1, 2, 0, tenth, 1, half)
-    y: Numbers = (Fraction(2, 5), -half, 1)
-    return (
-        Family(
-            *("small-impulse", "Clebsch's body, |x| = F beside y of size 1", "F"),
-            *("no linear impulse", _decades(-2, -32, -6)),
-            lambda f: _kirchhoff(six, (Fraction(3, 5) * f, 0, Fraction(4, 5) * f), y),
-        ),
-        Family(
-            *("large-impulse", "Clebsch's body, x of size S beside y of size 1", "S"),
-            *("no angular impulse", _decades(2, 20, 3)),
-            lambda s: _kirchhoff(six, (Fraction(3, 10) * s, Fraction(1, 5) * s, s), y),
-        ),
-        Family(
-            *("mixed-scales", "moments of 1/S, omega of S", "S"),
-            *("the ends of the range of numbers", _decades(10, 250, 80)),
-            lambda s: _euler((1 / s, 2 / s, 3 / s), (Fraction(3, 10) * s, s, Fraction(1, 5) * s)),
-        ),
-    )
+    parts = numbers.split() if isinstance(numbers, str) else numbers
+    return tuple(map(Fraction, parts))
 
 
 def _decades(first: int, last: int, step: int) -> tuple[str, ...]:
-    """1e-2, 1e-4, ... as texts, both ends included."""
+    """Return 1e-2, 1e-4, ... as texts, both ends included."""
     beyond = last + (1 if step > 0 else -1)
     return tuple(f"1e{exponent}" for exponent in range(first, beyond, step))
+
+
+_SIX: Final = "1 2 0 1/10 1 1/2"
+# Its unstable spin grows: A = 29/16 in Hydromechanics 49 (25).
+_FALLING: Final = "1 5/4 0 1/4 1 1/2"
+
+# In reading order: how long, then how near a separatrix, how equal, how unequal, how large.
+FAMILIES: Final = (
+    Family(
+        *("euler-periods", "a triaxial body, omega alone", "", "many periods", ("1",)),
+        *(lambda _: _euler("1 2 3", "3/10 1 1/5"), _FARTHEST),
+    ),
+    Family(
+        *("euler-attitude", "a triaxial body with its attitude", "", "many periods", ("1",)),
+        lambda _: _euler("1 2 3", "3/10 1 1/5", "attitude"),
+        {**_FARTHEST, "f64": 10_000, "f80": 1000, "f128": 30, "mp237": 3},
+    ),
+    Family(
+        *("kirchhoff-periods", "Clebsch's body, impulses alone", "", "many periods", ("1",)),
+        lambda _: _kirchhoff(_SIX, "3/10 1/5 1", "2/5 -1/2 1"),
+        {**_FARTHEST, "f64": 10_000, "f80": 1000},
+    ),
+    Family(
+        *("unstable-axis", "a triaxial body at d beside its unstable axis", "d"),
+        *("the axis itself", _decades(-2, -40, -2)),
+        *(lambda d: _euler("1 2 3", (d, 1, 0)), _FARTHER),
+    ),
+    Family(
+        # Half-way from one turn of the unstable spin to the next, where omega2 is zero.
+        *("separatrix", "a triaxial body, 1 - k^2 = d, from the middle of a flip", "d"),
+        *("the separatrix itself", _decades(-2, -14, -2)),
+        lambda d: _euler("1 4/3 2", (1, 0, Fraction(1, 2) + d / 4)),
+    ),
+    Family(
+        *("unstable-spin", "Clebsch's body at d beside its unstable spin", "d"),
+        *("the spin itself", _decades(-2, -18, -4)),
+        *(lambda d: _kirchhoff(_FALLING, (d, 0, Fraction(5, 4)), "0 0 1"), _NEARER),
+    ),
+    Family(
+        *("homoclinic", "Clebsch's body, y3 off the homoclinic orbit's by d", "d"),
+        *("the orbit itself", _decades(-2, -14, -4)),
+        lambda d: _kirchhoff(_FALLING, "1 0 3/4", (Fraction(1, 2), Fraction(-1, 2), 1 + d)),
+        _NEARER,
+    ),
+    Family(
+        *("nearly-spherical", "moments 1, 1 + e, 1 - e", "e", "a sphere", _decades(-2, -6, -1)),
+        *(lambda e: _euler((1, 1 + e, 1 - e), "3/4 1/2 -5/8"), _SLOW),
+    ),
+    Family(
+        *("nearly-axisymmetric", "moments 1, 1 + e, 2", "e"),
+        *("an axis of symmetry", _decades(-2, -14, -3)),
+        lambda e: _euler((1, 1 + e, 2), "1/2 -1/4 1"),
+    ),
+    Family(
+        *("nearly-singular", "Clebsch's body with q = 1 - e beside p = r = 1", "e"),
+        *("an energy that is none", _decades(-2, -14, -3)),
+        lambda e: _kirchhoff(
+            (1, 2, 1 - e, Fraction(1, 2), 1, Fraction(3, 4)), "1/2 1/4 1", "-1/2 3/4 1/4"
+        ),
+    ),
+    Family(
+        *("inertia-ratio", "moments 1, sqrt R, R, all spins alike", "R"),
+        *("unlike moments", _decades(2, 14, 2)),
+        lambda r: _euler((1, isqrt(int(r)), r), "1 1 1"),
+    ),
+    Family(
+        *("thin-rod", "a rod, moments 1/R, 1, 1 + 1/R", "R", "a line", _decades(2, 14, 3)),
+        lambda r: _euler((1 / r, 1, 1 + 1 / r), "1 1/1000 2/1000"),
+    ),
+    Family(
+        *("added-mass", "Clebsch's body, p = 1, p' = 1/R", "R"),
+        *("a disc without mass", _decades(2, 14, 3)),
+        lambda r: _kirchhoff((1, 1 / r, 0, 0, 1, 2), "1/2 1/4 1", "1/4 -1/2 1"),
+    ),
+    Family(
+        *("small-impulse", "Clebsch's body, |x| = F beside y of size 1", "F"),
+        *("no linear impulse", _decades(-2, -32, -6)),
+        lambda f: _kirchhoff(_SIX, (3 * f / 5, 0, 4 * f / 5), "2/5 -1/2 1"),
+    ),
+    Family(
+        *("large-impulse", "Clebsch's body, x of size S beside y of size 1", "S"),
+        *("no angular impulse", _decades(2, 20, 3)),
+        lambda s: _kirchhoff(_SIX, (3 * s / 10, s / 5, s), "2/5 -1/2 1"),
+    ),
+    Family(
+        *("mixed-scales", "moments of 1/S, omega of S", "S"),
+        *("the ends of the range of numbers", _decades(10, 250, 80)),
+        lambda s: _euler((1 / s, 2 / s, 3 / s), (3 * s / 10, s, s / 5)),
+    ),
+)

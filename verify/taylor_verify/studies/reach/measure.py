@@ -9,10 +9,10 @@ the same orbit, instants and steps. An error of 1 is the size of the motion: fro
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from math import inf, isfinite
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from mpmath import mp
@@ -21,7 +21,7 @@ from taylor_verify.batch.runs import run_all
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
-from taylor_verify.judge.errors.state import largest, state_errors
+from taylor_verify.judge.errors.state import state_errors
 from taylor_verify.judge.floor.arithmetic import truth_digits, working_bits
 from taylor_verify.judge.floor.attainable import floor
 from taylor_verify.judge.provenance import command, processor, versions
@@ -33,17 +33,16 @@ from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
-from taylor_verify.studies.reach.document import ReachFamily, ReachRow, ReachStudy
+from taylor_verify.studies.reach.document import ReachRow, ReachStudy
 from taylor_verify.studies.reach.families import (
+    FAMILIES,
     QUARTERS,
     Family,
     at_quarters,
-    families,
     family,
     period_of,
 )
 
-# As the judge has them.
 # Of a truth that says only how large the motion is.
 _DIGITS_OF_SCALES: Final = 15
 # From here on nothing is left, and a longer run would tell nothing new.
@@ -51,56 +50,48 @@ _LOST: Final = 1.0
 # Rounded data whose period is off by more are another orbit: the rung cannot hold the number asked for.
 _SAME_PERIOD: Final = Fraction(1, 10)
 
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+# A family by its name, and a value.
+Member = tuple[str, str]
 
-def study(finished: Callable[[str], None] | None = None) -> ReachStudy:
+
+def study(finished: Callable[[str], None] = lambda label: None) -> ReachStudy:
     """Return every row of what is published; ``finished`` is called with each member as it ends."""
-    found = families()
-    asked = [Member(one.name, value) for one in found for value in one.values]
 
-    def tell(member: Member, _: object) -> None:
-        if finished is not None:
-            finished(str(member))
+    def ended(member: Member, _: object) -> None:
+        name, value = member
+        finished(family(name).label(value))
 
-    measured = run_all(_measured, asked, expense=_expense, ended=tell)
+    measured = run_all(_measured, members(), expense=_expense, ended=ended)
     return ReachStudy(
-        families=tuple(map(_described, found)),
+        families=tuple(one.described() for one in FAMILIES),
         rows=tuple(stored(row) for rows in measured for row in rows),
         lost=_LOST,
         provenance=SceneProvenance(versions(), processor(), command()),
     )
 
 
-@dataclass(frozen=True)
-class Member:
-    """One value of one family, by name: small enough to be sent to a process."""
-
-    family: str
-    value: str
-
-    def __str__(self) -> str:
-        return family(self.family).label(self.value)
-
-
-def members() -> int:
-    """How many members all families have together."""
-    return sum(len(one.values) for one in families())
+def members() -> list[Member]:
+    """Return every value of every family, by name: small enough to be sent to a process."""
+    return [(one.name, value) for one in FAMILIES for value in one.values]
 
 
 def reaches(one: Family, value: str, rungs: Iterable[Rung]) -> list[ReachRow]:
     """Return what is left of one member on each of the rungs, with all digits."""
     scene = one.scene(value)
-    found = [
-        _followed(
-            ReachRow(one.name, value, rung.name, one.periods(rung.name), (), (), 0, ""), scene, rung
-        )
-        for rung in rungs
-    ]
+    found = []
+    for rung in rungs:
+        nothing = ReachRow(one.name, value, rung.name, one.periods(rung.name), (), (), 0, "")
+        found.append(_followed(nothing, scene, rung))
     return _with_floors(found, scene)
 
 
 def stored(row: ReachRow) -> ReachRow:
     """Return the row as it is stored: four digits, and None for an error that is not finite."""
-    errors, floors = (tuple(map(_rounded, each)) for each in (row.errors, row.floors))
+    errors, floors = (
+        tuple(None if e is None or not isfinite(e) else float(f"{e:.4g}") for e in each)
+        for each in (row.errors, row.floors)
+    )
     return replace(row, errors=errors, floors=floors)
 
 
@@ -115,29 +106,25 @@ def _followed(nothing: ReachRow, scene: Scene, rung: Rung) -> ReachRow:
     try:
         # A member that is lost within its first period is not followed for a thousand.
         first = _solved(nothing, nothing.periods[:1], scene, rung)
-        if _is_lost(first.errors[-1]):
-            return first
-        return _solved(nothing, nothing.periods, scene, rung)
+        error = first.errors[-1]
+        is_lost = error is None or not error < _LOST
+        return first if is_lost else _solved(nothing, nothing.periods, scene, rung)
     except (NotRepresentable, Unsettled, _Another) as fault:
         return replace(nothing, why=str(fault))
 
 
-def _is_lost(error: float | None) -> bool:
-    return error is None or not error < _LOST
-
-
 def _solved(nothing: ReachRow, periods: Sequence[int], scene: Scene, rung: Rung) -> ReachRow:
-    """Raises NotRepresentable, Unsettled, and _Another where the rung has no such orbit."""
+    """Return the row with the errors after so many periods.
+
+    Raises NotRepresentable, Unsettled, and _Another where the rung has no such orbit.
+    """
     problem = pose(at_quarters(scene, periods), rung)
     _check_orbit(scene, problem)
     trajectory = Taylor().solve(problem)
+    is_whole = trajectory.outcome is Outcome.FINISHED
+    why = "" if is_whole else f"the run {trajectory.outcome.value}"
     errors = _up_to(_errors(problem, trajectory))
-    return replace(nothing, errors=errors, steps=trajectory.steps, why=_unfinished(trajectory))
-
-
-def _unfinished(trajectory: Trajectory) -> str:
-    finished = trajectory.outcome is Outcome.FINISHED
-    return "" if finished else f"the run {trajectory.outcome.value}"
+    return replace(nothing, errors=errors, steps=trajectory.steps, why=why)
 
 
 def _check_orbit(scene: Scene, problem: Problem) -> None:
@@ -150,16 +137,18 @@ def _check_orbit(scene: Scene, problem: Problem) -> None:
         raise _Another(f"rounded to {problem.rung.name}, its period is {ratio:.3g} times as long")
 
 
-def _errors(problem: Problem, trajectory: Trajectory) -> list[float]:
-    """At every instant the largest of all tracked quantities; NaN where an answer is no number."""
-    rung, given = problem.rung, problem.given
+def _errors(problem: Problem, trajectory: Trajectory) -> Floats:
+    """Return the largest of all tracked quantities at every instant; NaN for an answer that is none."""
+    given, bits = problem.given, working_bits(problem.rung.bits)
+    instants = given.clock.elapsed
     if trajectory.outcome is not Outcome.FINISHED:
-        return [inf] * len(given.clock.instants)
-    truth = _truth(problem)
-    with mp.workprec(working_bits(rung.bits)):
-        states = state_errors(given, truth, trajectory.motion(working_bits(rung.bits)))
-        bounds = [one.values + one.truth_radius for one in states]
-        return [float(largest(row)) for row in zip(*bounds, strict=True)]
+        return np.full(len(instants), inf)
+    truth = solution(given).motion(instants, truth_digits(problem.rung.bits))
+    with mp.workprec(bits):
+        states = state_errors(given, truth, trajectory.motion(bits))
+        bounds = [(one.values + one.truth_radius).astype(float) for one in states]
+    worst: Floats = np.max(bounds, axis=0)
+    return worst
 
 
 def _with_floors(found: Sequence[ReachRow], scene: Scene) -> list[ReachRow]:
@@ -184,38 +173,24 @@ def _with_floor(one: ReachRow, asked: Scene, truth: Motion) -> ReachRow:
     # Only the parts and their scales are asked for: the truth is compared with itself.
     states = state_errors(asked, truth, truth)
     worst = np.max([base.of_state(errors) for errors in states], axis=0)
-    floors = _up_to([float(value) for value in worst])[: len(one.periods)]
+    floors = _up_to(worst.astype(float))[: len(one.periods)]
     lost = () if floors[-1] < _LOST else (inf,) * (len(one.periods) - len(floors))
     beyond = (inf,) * (len(one.periods) - count)
     return replace(one, errors=one.errors + beyond, floors=floors + lost)
 
 
-def _truth(problem: Problem) -> Motion:
-    digits = truth_digits(problem.rung.bits)
-    return solution(problem.given).motion(problem.given.clock.elapsed, digits)
-
-
-def _up_to(values: Sequence[float]) -> tuple[float, ...]:
-    """The largest up to the end of each group of quarters."""
-    return tuple(
-        float(largest(values[: end + QUARTERS])) for end in range(0, len(values), QUARTERS)
-    )
+def _up_to(values: Floats) -> tuple[float, ...]:
+    """Return the largest up to the end of each group of quarters; NaN is the largest of all."""
+    groups = np.max(np.reshape(values, (-1, QUARTERS)), axis=1)
+    return tuple(np.maximum.accumulate(groups).tolist())
 
 
 def _measured(member: Member) -> list[ReachRow]:
-    one = family(member.family)
-    return reaches(one, member.value, [rung_named(name) for name in one.far])
+    name, value = member
+    return reaches(family(name), value, map(rung_named, family(name).far))
 
 
 def _expense(member: Member) -> float:
-    """The longest first: the wide rungs of a family, whose periods are long where it is extreme."""
-    far = family(member.family).far
+    """Return the rank of a member: first the wide rungs, whose periods are long where it is extreme."""
+    far = family(member[0]).far
     return -(1000.0 * far.get("mp237", 0) + 100.0 * far.get("f128", 0) + far.get("f64", 0) / 10)
-
-
-def _described(one: Family) -> ReachFamily:
-    return ReachFamily(one.name, one.title, one.symbol, one.extreme, one.values, dict(one.far))
-
-
-def _rounded(value: float | None) -> float | None:
-    return float(f"{value:.4g}") if value is not None and isfinite(value) else None

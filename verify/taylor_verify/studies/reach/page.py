@@ -1,9 +1,9 @@
-"""The reach of each precision: the stored measurement, and the page made of it."""
+"""The page of the reach of each precision, made of the stored measurement."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import takewhile, zip_longest
+from itertools import product, takewhile, zip_longest
 from pathlib import Path
 from typing import Any, Final
 
@@ -49,9 +49,11 @@ _LEGEND: Final = (
 
 def pictures(study: ReachStudy) -> list[Picture]:
     """Return a map of digits for every family that leads to a separatrix."""
-    return [
-        digits_map.picture(one, _rows_of(study, one)) for one in study.families if one.symbol == "d"
-    ]
+    return [picture for one in study.families for picture in _maps(one, _rows_of(study, one))]
+
+
+def _maps(one: ReachFamily, rows: Sequence[ReachRow]) -> list[Picture]:
+    return [digits_map.picture(one, rows)] if one.symbol == "d" else []
 
 
 def page(study: ReachStudy, folder: Path) -> str:
@@ -71,20 +73,12 @@ def page(study: ReachStudy, folder: Path) -> str:
 
 def _section(study: ReachStudy, one: ReachFamily, folder: Path) -> list[str]:
     rows = _rows_of(study, one)
-    blocks = [f"## {one.name}", f"{prose(_heading(one))}"]
-    if len(one.values) > 1:
-        maps = [p for p in pictures(study) if p.stem == digits_map.stem_of(one)]
-        blocks += [
-            figures.shown(folder, maps),
-            _by_value(one, rows),
-            "Periods at which so many digits are left:",
-        ]
-    return [*blocks, _by_periods(one, rows)]
-
-
-def _heading(one: ReachFamily) -> str:
     towards = f"; {one.symbol} leads to {one.extreme}" if one.symbol else ""
-    return f"{one.title[0].upper()}{one.title[1:]}{towards}."
+    blocks = [f"## {one.name}", prose(f"{one.title[0].upper()}{one.title[1:]}{towards}.")]
+    if len(one.values) > 1:
+        blocks += [figures.shown(folder, _maps(one, rows)), _by_value(one, rows)]
+        blocks.append("Periods at which so many digits are left:")
+    return [*blocks, _by_periods(one, rows)]
 
 
 def _rows_of(study: ReachStudy, family: ReachFamily) -> list[ReachRow]:
@@ -113,71 +107,55 @@ def most_periods(row: ReachRow, digits: int, key: str = ACHIEVED) -> int | None:
 
 def _keeps(row: ReachRow, after: int, digits: int, key: str) -> bool:
     """Return True if the largest error until then is small enough; None, or no number, is not."""
-    errors = dict(zip(row.periods, numbers_of(row, key), strict=False))
-    error = errors.get(after)
+    error = dict(zip(row.periods, numbers_of(row, key), strict=False)).get(after)
     return error is not None and error <= 10.0**-digits
 
 
+def _headings(what: str) -> list[str]:
+    achieved = [f"{what}{n} digits:" for n in DIGITS]
+    return [*achieved, *(f"attainable, {n}:" for n in DIGITS)]
+
+
 def _by_value(one: ReachFamily, rows: Sequence[ReachRow]) -> str:
-    columns = [
-        "rung",
-        "periods:",
-        *(f"{one.symbol}, {n} digits:" for n in DIGITS),
-        *(f"attainable, {n}:" for n in DIGITS),
-    ]
     lines = []
     for rung in one.rungs:
         own = [row for row in rows if row.rung == rung]
         for after in _AFTER:
             if any(after in row.periods for row in own):
-                cells = [
-                    _value_cell(last_value(own, after, n, key), one.values[-1])
-                    for key in (ACHIEVED, ATTAINABLE)
-                    for n in DIGITS
-                ]
-                lines.append([rung, str(after), *cells])
-    return table(columns, lines)
+                blocks = product((ACHIEVED, ATTAINABLE), DIGITS)
+                values = (last_value(own, after, n, key) for key, n in blocks)
+                lines.append([rung, str(after), *(_cell(v, one.values[-1]) for v in values)])
+    return table(["rung", "periods:", *_headings(f"{one.symbol}, ")], lines)
 
 
-def _value_cell(value: str | None, last: str) -> str:
+def _cell(value: str | int | None, last: str | int) -> str:
+    """Return the value; behind the last that was tried stands that it may go on."""
     if value is None:
         return NOTHING
-    return f"{value}{_LAST}" if value == last else value
+    return f"{value}{_LAST}" if value == last else str(value)
 
 
 def _by_periods(one: ReachFamily, rows: Sequence[ReachRow]) -> str:
     """Return a line for each value with three numbers for every rung; a single value is turned round."""
     by_place = {(row.value, row.rung): row for row in rows}
+    lines = []
     if len(one.values) == 1:
-        digits = (f"{n} digits:" for n in DIGITS)
-        columns = ["rung", *digits, *(f"attainable, {n}:" for n in DIGITS)]
-        (value,) = one.values
-        found = [(rung, by_place[value, rung]) for rung in one.rungs]
-        return table(columns, [[rung, *_turned(row)] for rung, row in found])
-    columns = [f"{one.symbol}:", *(f"{r}: 3, 6, 12:" for r in one.rungs)]
-    return table(
-        columns,
-        [[value, *(_three(by_place[value, rung]) for rung in one.rungs)] for value in one.values],
-    )
+        for rung in one.rungs:
+            row = by_place[one.values[0], rung]
+            lines.append([rung, *_periods(row, ACHIEVED), *_periods(row, ATTAINABLE)])
+        return table(["rung", *_headings("")], lines)
+    for value in one.values:
+        own = [by_place[value, rung] for rung in one.rungs]
+        cells = [_periods(row, ACHIEVED) if row.errors else [_nothing(row)] for row in own]
+        lines.append([value, *map(", ".join, cells)])
+    return table([f"{one.symbol}:", *(f"{r}: 3, 6, 12:" for r in one.rungs)], lines)
 
 
-def _turned(row: ReachRow) -> list[str]:
-    return [_periods_cell(row, n, key) for key in (ACHIEVED, ATTAINABLE) for n in DIGITS]
-
-
-def _three(row: ReachRow) -> str:
-    if not row.errors:
-        return _nothing(row)
-    return ", ".join(_periods_cell(row, n, ACHIEVED) for n in DIGITS)
-
-
-def _periods_cell(row: ReachRow, digits: int, key: str) -> str:
+def _periods(row: ReachRow, key: str) -> list[str]:
+    """Return the most periods for each number of digits."""
     if not numbers_of(row, key):
-        return _nothing(row)
-    found = most_periods(row, digits, key)
-    if found is None:
-        return NOTHING
-    return f"{found}{_LAST}" if found == row.periods[-1] else str(found)
+        return [_nothing(row)] * len(DIGITS)
+    return [_cell(most_periods(row, n, key), row.periods[-1]) for n in DIGITS]
 
 
 def _nothing(row: ReachRow) -> str:
@@ -201,19 +179,12 @@ def _over_attainable(rows: Sequence[ReachRow]) -> str:
     )
 
 
-def _stopped(rows: Sequence[ReachRow]) -> list[str]:
-    """Return the runs that ended on their own, which no number tells from those that were lost."""
-    found = [row for row in rows if row.errors and row.why]
-    return [
-        f"{row.family} {row.value}, {row.rung}: {prose(row.why)}. It counts as lost."
-        for row in found
-    ]
-
-
 def _method(study: ReachStudy) -> list[str]:
-    given, rows = study.provenance, study.rows
+    rows = study.rows
     lost = sum(bool(row.errors) and row.errors[-1] is None for row in rows)
     blurred = sum(row.why.startswith(_ROUNDED) for row in rows)
+    # No number tells a run that ended on its own from one that was lost.
+    stopped = [row for row in rows if row.errors and row.why]
     return [
         f"{len(rows)} runs: a family's value on a rung each. An error of {study.lost:g} is the size "
         "of the motion: a run that reaches it within its first period is followed no further, and its "
@@ -222,8 +193,8 @@ def _method(study: ReachStudy) -> list[str]:
         "The wider a rung, the fewer periods are run: a period takes hundreds of times as long on f128 "
         "as on f64.",
         _over_attainable(rows),
-        *_stopped(rows),
-        made_on(given),
+        *(f"{r.family} {r.value}, {r.rung}: {prose(r.why)}. It counts as lost." for r in stopped),
+        made_on(study.provenance),
     ]
 
 

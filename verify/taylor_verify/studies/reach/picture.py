@@ -6,11 +6,12 @@ digits, its lightness the class that the legend explains, so that the map reads 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from itertools import pairwise, product
 from math import floor, log10
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from taylor_verify.publish.pictures.palette import FAINT, INK, PAPER, QUIET, contrast
 from taylor_verify.publish.pictures.picture import Picture
@@ -47,17 +48,6 @@ _BELOW: Final = 0.42
 _LEGEND: Final = 0.34
 _NUMBER: Final = 5.5
 _MOST_NAMES: Final = 7
-_HATCHED: Final[Mapping[str, Any]] = {
-    "facecolor": PAPER,
-    "edgecolor": FAINT,
-    "hatch": "////",
-    "linewidth": 0.0,
-}
-
-
-def stem_of(family: ReachFamily) -> str:
-    """Return the file's name without its ending."""
-    return f"reach-{family.name}"
 
 
 def numbers_of(row: ReachRow, key: str) -> tuple[float | None, ...]:
@@ -77,12 +67,12 @@ def picture(family: ReachFamily, rows: Sequence[ReachRow]) -> Picture:
         f"by taylor, and attainable beside it. {' '.join(one.sentence for one in maps)}"
     )
     title = f"Digits left: {family.name}"
-    return Picture(stem_of(family), title, alt, partial(_figure, family, maps))
+    return Picture(f"reach-{family.name}", title, alt, partial(_figure, family, maps))
 
 
 @dataclass(frozen=True)
 class _Map:
-    """One rung: of each value and number of periods the digits achieved and attainable.
+    """The map of a rung: digits achieved and attainable, of each value and number of periods.
 
     A cell that is missing was not run.
     """
@@ -106,36 +96,21 @@ class _Map:
 
     @property
     def sentence(self) -> str:
-        """How far six digits go."""
-        first, last = self.periods[0], self.periods[-1]
-        said = [f"after {_periods(n)} up to {self._far(n)}" for n in sorted({first, last})]
+        """The values up to which six digits are left, in words."""
+        said = []
+        for n in sorted({self.periods[0], self.periods[-1]}):
+            left = [self.cells.get((value, n, ACHIEVED), 0) >= 6 for value in self.values]
+            last = ("none of these", *self.values)[[*left, False].index(False)]
+            said.append(f"after {n} {'period' if n == 1 else 'periods'} up to {last}")
         return f"On {self.rung} six digits are left {' and '.join(said)}."
-
-    def _far(self, count: int) -> str:
-        """The last value up to which there are six digits."""
-        found = "none of these"
-        for value in self.values:
-            if not self.cells.get((value, count, ACHIEVED), 0) >= 6:
-                break
-            found = value
-        return found
 
 
 def digits_of(error: float | None) -> int:
-    """Whole digits; 0 of what is lost, which is stored as null, or no number."""
+    """Return whole digits; 0 of what is lost, which is stored as null, or no number."""
     if error is None or not error < 1:
         return 0
     # An error of zero leaves all digits that a double can tell.
     return floor(-log10(error)) if error > 0 else 307
-
-
-def colour_of(digits: int) -> str:
-    """Of the class that so many digits belong to."""
-    return next(colour for least, colour in reversed(CLASSES) if digits >= least)
-
-
-def _periods(count: int) -> str:
-    return "1 period" if count == 1 else f"{count} periods"
 
 
 def _figure(family: ReachFamily, maps: Sequence[_Map]) -> Figure:
@@ -152,9 +127,14 @@ def _figure(family: ReachFamily, maps: Sequence[_Map]) -> Figure:
             if one is maps[0]:
                 axes.set_title(_HEADINGS[key], pad=5)
             if one is maps[-1]:
-                _name_values(axes, family)
+                # Where the values are many, some are named.
+                values = family.values
+                shown = range(0, len(values), -(-len(values) // _MOST_NAMES))
+                axes.set_xticks(list(shown), [power_of_ten(float(values[i])) for i in shown])
+                axes.set_xlabel(f"{family.symbol}: towards {family.extreme}", size=SMALL)
             if column == 0:
-                axes.set_yticks(range(len(one.periods)), [_count(n) for n in one.periods])
+                names = [str(n) if n < 1000 else power_of_ten(n) for n in one.periods]
+                axes.set_yticks(range(len(names)), names)
                 axes.set_ylabel(f"{one.rung}\nperiods", size=SMALL)
                 axes.yaxis.set_label_coords(_NAMES / width, 0.5)
         top -= own + _GAP
@@ -170,68 +150,43 @@ def _draw_cells(axes: Axes, one: _Map, key: str) -> None:
     axes.tick_params(length=0)
     for spine in axes.spines.values():
         spine.set_visible(True)
-    for x, y, digits in _placed(one, key):
-        corner = (x - 0.5, y - 0.5)
+    for (x, value), (y, count) in product(enumerate(one.values), enumerate(one.periods)):
+        digits = one.cells.get((value, count, key))
+        cell = Rectangle((x - 0.5, y - 0.5), 1, 1, edgecolor=FAINT)
+        axes.add_patch(cell)
         if digits is None:
-            axes.add_patch(Rectangle(corner, 1, 1, gid="not run", **_HATCHED))
+            cell.set(facecolor=PAPER, hatch="////", linewidth=0.0, gid="not run")
             continue
-        colour = colour_of(digits)
-        axes.add_patch(
-            Rectangle(corner, 1, 1, facecolor=colour, edgecolor=FAINT, linewidth=0.4, gid="cell")
-        )
+        colour = next(colour for least, colour in reversed(CLASSES) if digits >= least)
+        cell.set(facecolor=colour, linewidth=0.4, gid="cell")
         axes.text(
             *(x, y, str(digits)),
             size=_NUMBER,
             ha="center",
             va="center_baseline",
             color=text_on(colour) if digits else QUIET,
-            gid=f"{one.rung} {_HEADINGS[key]} {one.values[x]} {one.periods[y]}",
+            gid=f"{one.rung} {_HEADINGS[key]} {value} {count}",
         )
 
 
-def _placed(one: _Map, key: str) -> Iterator[tuple[int, int, int | None]]:
-    for x, value in enumerate(one.values):
-        for y, count in enumerate(one.periods):
-            yield x, y, one.cells.get((value, count, key))
-
-
 def text_on(colour: str) -> str:
-    """Ink or paper, whichever is told better from the colour."""
+    """Return ink or paper, whichever is told better from the colour."""
     return max((INK, PAPER), key=lambda text: contrast(text, colour))
 
 
-def _count(periods: int) -> str:
-    return str(periods) if periods < 1000 else power_of_ten(periods)
-
-
-def _name_values(axes: Axes, family: ReachFamily) -> None:
-    """Name some of the values where they are many."""
-    values = family.values
-    shown = range(0, len(values), -(-len(values) // _MOST_NAMES))
-    axes.set_xticks(list(shown), [power_of_ten(float(values[i])) for i in shown])
-    axes.set_xlabel(f"{family.symbol}: towards {family.extreme}", size=SMALL)
-
-
 def _draw_legend(figure: Figure) -> None:
-    """The classes in a line at the foot."""
+    """Draw the classes in a line at the foot."""
     from matplotlib.patches import Rectangle
 
     axes = add_axes(figure, Frame(_LEFT, 0.06, PAGE_WIDTH - _LEFT - _RIGHT, 0.16))
     axes.set(xlim=(0, len(CLASSES) + 2.2), ylim=(0, 1))
     axes.axis("off")
     axes.text(0, 0.5, "digits left", size=SMALL, va="center_baseline", color=INK)
-    ends = [least for least, _ in CLASSES[1:]]
-    for i, (least, colour) in enumerate(CLASSES):
+    words = [f"{least}\N{EN DASH}{beyond - 1}" for (least, _), (beyond, _) in pairwise(CLASSES)]
+    words = ["none", *words[1:], f"{CLASSES[-1][0]} and more"]
+    for i, ((_, colour), name) in enumerate(zip(CLASSES, words, strict=True)):
         left = 1.2 + i
         axes.add_patch(
             Rectangle((left, 0), 0.24, 1, facecolor=colour, edgecolor=QUIET, linewidth=0.5)
         )
-        last = ends[i] - 1 if i < len(ends) else None
-        words = (
-            "none"
-            if last == 0
-            else f"{least} and more"
-            if last is None
-            else f"{least}\N{EN DASH}{last}"
-        )
-        axes.text(left + 0.3, 0.5, words, size=SMALL, va="center_baseline", color=INK)
+        axes.text(left + 0.3, 0.5, name, size=SMALL, va="center_baseline", color=INK)

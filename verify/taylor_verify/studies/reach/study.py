@@ -13,7 +13,7 @@ from taylor_verify.studies.study import Measured, Progress, Study
 def _measure(folder: Path, progress: Progress) -> Measured:
     from taylor_verify.studies.reach.measure import members, study
 
-    return Measured(REACH.write(folder, study(progress.counting(members()))))
+    return Measured(REACH.write(folder, study(progress.counting(len(members())))))
 
 
 STUDY: Final = Study(

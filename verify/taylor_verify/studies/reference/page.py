@@ -10,7 +10,6 @@ example.rs    a program that integrates a body and compares itself with a refere
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
@@ -20,10 +19,11 @@ from taylor_verify.publish.markdown import code, table
 from taylor_verify.publish.page import MADE_BY
 from taylor_verify.records import file_names
 from taylor_verify.records.replacement import first_line, replace_files
+from taylor_verify.studies.stored import SceneDocuments
 
 FOLDER: Final = "reference"
 
-_MADE_BY: Final = {"made_by": "taylor-verify publish --reference; do not edit"}
+TRAJECTORIES: Final = SceneDocuments(FOLDER, "taylor-verify publish --reference; do not edit")
 EXAMPLES: Final = ("example.cpp", "example.rs")
 _TEMPLATES: Final = Path(__file__).with_name("templates")
 _SHEET: Final = re.compile(r"\[csv\]\(([^()/]+\.csv)\)")
@@ -33,29 +33,33 @@ Document = Mapping[str, Any]
 """One scene: ``columns`` (name to decimal texts, one a row) and what else its JSON shall hold."""
 
 
-def write(folder: Path | str, documents: Sequence[Document]) -> list[Path]:
+def write(folder: Path, documents: Sequence[Document]) -> list[Path]:
     """Write ``folder``/reference, in place of an earlier one, and return the files written.
 
     Files of scenes that are no longer there are removed, other people's files are left alone.
     Raises OSError; what the folder held then stays as it was.
     """
-    texts = _json_texts(documents)
-    for document in documents:
-        texts[f"{_stem(document)}.csv"] = _sheet(document["columns"])
     examples = {name: (_TEMPLATES / name).read_text(encoding="utf-8") for name in EXAMPLES}
-    texts |= examples
-    texts["README.md"] = _readme(documents, examples)
-    target = Path(folder) / FOLDER
-    return list(replace_files(target, texts, stale=_own_files(target)))
+    beside = {
+        **{f"{_stem(document)}.csv": _sheet(document["columns"]) for document in documents},
+        **examples,
+        "README.md": _readme(documents, examples),
+    }
+    texts = TRAJECTORIES.texts(map(_flat, documents))
+    texts |= {f"{FOLDER}/{name}": text for name, text in beside.items()}
+    stale = [*TRAJECTORIES.own(folder), *_own_sheets(folder / FOLDER)]
+    return list(replace_files(folder, texts, stale=stale))
 
 
-def add_json(folder: Path | str, documents: Iterable[Document]) -> list[Path]:
+def add_json(folder: Path, documents: Iterable[Document]) -> list[Path]:
     """Write the JSON files alone, beside what is there, and return them. Raises OSError."""
-    return list(replace_files(Path(folder) / FOLDER, _json_texts(documents)))
+    return TRAJECTORIES.add(folder, map(_flat, documents))
 
 
-def _json_texts(documents: Iterable[Document]) -> dict[str, str]:
-    return {f"{_stem(document)}.json": _laid_out(document) for document in documents}
+def _flat(document: Document) -> dict[str, Any]:
+    """Return a document whose columns stand beside its other keys."""
+    others = {name: value for name, value in document.items() if name != "columns"}
+    return {**others, **document["columns"]}
 
 
 def _stem(document: Document) -> str:
@@ -63,17 +67,9 @@ def _stem(document: Document) -> str:
 
 
 def _sheet(columns: Mapping[str, Sequence[str]]) -> str:
-    """Nothing in it needs a quotation mark, and no line is a comment: any reader takes it."""
+    """Return columns as CSV. Nothing in it needs a quotation mark, and no line is a comment."""
     lines = [columns.keys(), *zip(*columns.values(), strict=True)]
     return "".join(",".join(cells) + "\n" for cells in lines)
-
-
-def _laid_out(document: Document) -> str:
-    """JSON with a line for every key; the columns stand beside the other keys."""
-    keys = {**_MADE_BY, **document, **document["columns"]}
-    del keys["columns"]
-    lines = (f"{json.dumps(k)}: {json.dumps(v, ensure_ascii=False)}" for k, v in keys.items())
-    return "{" + ",\n ".join(lines) + "}\n"
 
 
 def _readme(documents: Iterable[Document], examples: Mapping[str, str]) -> str:
@@ -99,11 +95,9 @@ def _row(document: Document) -> list[str]:
     ]
 
 
-def _own_files(target: Path) -> list[Path]:
-    """The JSON files that name us as their maker, and the CSV files that our page links to."""
-    maker = "{" + json.dumps(_MADE_BY)[1:-1] + ","
-    own = [file for file in target.glob("*.json") if first_line(file) == maker]
+def _own_sheets(target: Path) -> list[Path]:
+    """Return the CSV files that our page links to."""
     page = target / "README.md"
-    if page.exists() and first_line(page) == MADE_BY:
-        own += [target / name for name in _SHEET.findall(page.read_text(encoding="utf-8"))]
-    return own
+    if not page.exists() or first_line(page) != MADE_BY:
+        return []
+    return [target / name for name in _SHEET.findall(page.read_text(encoding="utf-8"))]

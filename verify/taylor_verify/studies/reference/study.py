@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from taylor_verify.records.file_names import of_scene
 from taylor_verify.studies.reference import page
@@ -13,10 +13,8 @@ from taylor_verify.studies.study import Bulk, Measured, Progress, Published, Stu
 
 def _measure(folder: Path, progress: Progress) -> Measured:
     from taylor_verify.scenes.library import names
-    from taylor_verify.studies.reference.measure import references
 
-    scenes = names()
-    return Measured(page.write(folder, references(scenes, progress.counting(len(scenes)))))
+    return Measured(page.write(folder, _trajectories(names(), progress)))
 
 
 def _lacking(report: Published) -> tuple[str, ...]:
@@ -30,9 +28,14 @@ def _lacking(report: Published) -> tuple[str, ...]:
 
 
 def _add(folder: Path, scenes: Sequence[str], progress: Progress) -> list[Path]:
-    from taylor_verify.studies.reference.measure import references
+    return page.add_json(folder, _trajectories(scenes, progress))
 
-    return page.add_json(folder, references(scenes, progress.counting(len(scenes))))
+
+def _trajectories(scenes: Sequence[str], progress: Progress) -> list[dict[str, Any]]:
+    from taylor_verify.batch.documents import documents
+    from taylor_verify.studies.reference.measure import reference
+
+    return documents(reference, scenes, progress.counting(len(scenes)))
 
 
 STUDY: Final = Study[None](

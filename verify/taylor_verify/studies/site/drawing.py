@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from tempfile import TemporaryDirectory
 from typing import Any, Final
 
 from taylor_verify.batch.pool import LocalPool, available_cores
-from taylor_verify.publish.pictures.picture import Picture, save
+from taylor_verify.publish.pictures.picture import Picture, content
 from taylor_verify.studies.gallery.pictures import errors_over_time, potential
 
 _FONTS: Final = re.compile(r"font-family: [^;\"}]*")
@@ -25,21 +24,17 @@ def smaller(svg: str) -> str:
 def pictures_of(
     scene: str, portrait: Mapping[str, Any], records: Mapping[str, Mapping[str, Any]]
 ) -> list[Picture]:
-    """The pictures of one scene that stand still: errors over time, and the quartic of its orbit."""
-    pictures = []
-    if any(_has_an_error(record) for record in records.values()):
-        pictures.append(errors_over_time.picture(scene, list(records.values())))
+    """Return pictures of a scene that stand still: errors over time, and the quartic of its orbit."""
+    runs, pictures = list(records.values()), []
+    if errors_over_time.panels_of(errors_over_time.series(runs)):
+        pictures.append(errors_over_time.picture(scene, runs))
     if portrait.get("potential"):
         pictures.append(potential.picture([portrait], scene))
     return pictures
 
 
-def _has_an_error(record: Mapping[str, Any]) -> bool:
-    return bool(errors_over_time.panels_of(errors_over_time.series([record])))
-
-
 def drawn(pictures: Sequence[Picture]) -> dict[str, str]:
-    """The SVG of each picture by the name of its file, drawn on all cores where there are many."""
+    """Return the SVG of each picture by the name of its file, drawn on all cores where there are many."""
     names = [f"{picture.stem}.svg" for picture in pictures]
     if len(pictures) < _MANY:
         return dict(zip(names, map(_svg, pictures), strict=True))
@@ -48,6 +43,4 @@ def drawn(pictures: Sequence[Picture]) -> dict[str, str]:
 
 
 def _svg(picture: Picture) -> str:
-    with TemporaryDirectory(prefix="taylor-verify-drawing-") as place:
-        (file,) = save([picture], place, ["svg"])
-        return smaller(file.read_text(encoding="utf-8"))
+    return smaller(content(picture, "svg").decode())

@@ -33,7 +33,7 @@ class Figure:
     axes: Sequence[str]
 
     def html(self) -> str:
-        """The figure as a block of HTML: no line of it is empty."""
+        """Return the figure as a block of HTML, no line of which is empty."""
         document = {"traces": list(self.traces), "axes": list(self.axes)}
         text = json.dumps(document, allow_nan=False, ensure_ascii=False, separators=(",", ":"))
         # No text of the data may end the script element.
@@ -51,19 +51,13 @@ class Figure:
         )
 
 
-def short(value: float | None, digits: int = _DIGITS) -> float | None:
-    """A number with so many digits; None for one that no axis has a place for."""
-    if value is None or not math.isfinite(value):
+def column(values: Iterable[float], digits: int = _DIGITS) -> list[float | None]:
+    """Return numbers with so many digits each; None for one that no axis has a place for."""
+    return [_short(float(value), digits) for value in values]
+
+
+def _short(value: float, digits: int) -> float | None:
+    if not math.isfinite(value):
         return None
     rounded = float(f"{value:.{digits - 1}e}")
     return int(rounded) if rounded == int(rounded) and abs(rounded) < 1e6 else rounded
-
-
-def column(values: Iterable[float | None], digits: int = _DIGITS) -> list[float | None]:
-    """Numbers with so many digits each."""
-    return [short(value, digits) for value in values]
-
-
-def components(rows: Sequence[Sequence[float]]) -> list[list[float | None]]:
-    """Rows of three as three columns."""
-    return [column(row[i] for row in rows) for i in range(3)]

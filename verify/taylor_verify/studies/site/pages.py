@@ -1,4 +1,4 @@
-"""The pages that the site makes itself: the front, the list of scenes, each scene, and all gates."""
+"""Pages that the site makes itself: the front, the list of scenes, each scene, and all gates."""
 
 from __future__ import annotations
 
@@ -6,16 +6,15 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
-from taylor_verify.publish.cells import NOTHING, error, figure, instant, judged, ratio, word
-from taylor_verify.publish.markdown import Column, code, prose, table
+from taylor_verify.publish.cells import NOTHING, judged, main_error, ratio, verdict_table, worst
+from taylor_verify.publish.markdown import code, prose, table
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.records.file_names import of_scene
-from taylor_verify.records.quantities import STATES
 from taylor_verify.records.runs import Run, gravest
 from taylor_verify.records.verdict import summary
 from taylor_verify.studies.site.drawing import drawn, pictures_of
 from taylor_verify.studies.site.extension import SCENES
-from taylor_verify.studies.site.scene_page import ScenePage, drawing_of, made_with, shown
+from taylor_verify.studies.site.scene_page import drawing_of, made_with, scene_page, shown
 from taylor_verify.studies.site.source import Report
 from taylor_verify.studies.site.stage import FRONT, REPORTS, Stage, docs_beside
 
@@ -33,10 +32,13 @@ _WHAT: Final = (
     "Every quantity that was compared, and the bound it was held against. The reason of each bound stands "
     "on the page of its scene."
 )
+_COLUMNS: Final = (
+    *("scene", "rung", "quantity", "max:", "at t:", "bound:", "over attainable:", "verdict"),
+)
 
 
 def staged(folder: Path) -> Stage:
-    """Every page of the site, and the files that pages link to.
+    """Return every page of the site, and the files that pages link to.
 
     Raises OSError for files that cannot be read, and ValueError for files that hold something else.
     """
@@ -54,7 +56,7 @@ def staged(folder: Path) -> Stage:
             f"{SCENES}.md": _scenes(report),
             _GATES: _gates(report),
             **{
-                f"{SCENES}/{of_scene(scene)}.md": ScenePage(scene, report, found).markdown()
+                f"{SCENES}/{of_scene(scene)}.md": scene_page(scene, report, found)
                 for scene, found in pictures.items()
             },
             FRONT: _front(report, stage, pictures.get(_EXAMPLE, ())),
@@ -78,27 +80,26 @@ def _front(report: Report, stage: Stage, pictures: Sequence[Picture]) -> str:
 
 
 def _reading_order(page: str) -> tuple[int, str]:
-    """The summary, the scenes, and what else lies beside them; a folder's README before its pages."""
+    """Return a key to sort pages by: the summary, the scenes, then a folder's README before its pages."""
     first = (f"{REPORTS}/README", SCENES)
     return (first.index(page) if page in first else 2 + page.count("/"), page)
 
 
 def _counts(runs: Sequence[Run]) -> str:
-    """The number of scenes, runs and verdicts; those other than pass only where there are some."""
+    """Return the number of scenes, runs and verdicts; those other than pass where there are some."""
     verdicts = [verdict for run in runs for verdict in run.verdicts]
+    by_status = summary(verdicts).items()
     counts = {
         "scenes": len({run.scene for run in runs}),
         "runs": len(runs),
         "verdicts": len(verdicts),
-        **{name: n for name, n in summary(verdicts).items() if n or name in ("pass", "fail")},
+        **{name: count for name, count in by_status if count or name in ("pass", "fail")},
     }
-    return table(
-        [Column(name, to_right=True) for name in counts], [list(map(str, counts.values()))]
-    )
+    return table([f"{name}:" for name in counts], [list(map(str, counts.values()))])
 
 
 def _blind(report: Report) -> str:
-    """How many broken solvers the conserved quantities do not see."""
+    """Return how many broken solvers the conserved quantities do not see."""
     finished = [s for s in report.sights if s.is_finished and s.seen_by]
     unseen = [s for s in finished if not any(s.is_seen_by(name) for name in s.conserved)]
     energy = [s for s in finished if s.is_missed_by("T")]
@@ -112,11 +113,8 @@ def _blind(report: Report) -> str:
 
 
 def _scenes(report: Report) -> str:
-    columns = [
-        *(Column("scene"), Column("what it is"), Column("regime")),
-        *(Column(rung, to_right=True) for rung in report.rungs),
-        *(Column("over attainable", to_right=True), Column("verdict")),
-    ]
+    rungs = (f"{rung}:" for rung in report.rungs)
+    columns = ["scene", "what it is", "regime", *rungs, "over attainable:", "verdict"]
     rows = [_scene_row(report, scene) for scene in report.scenes]
     return f"# Scenes\n\n{_SCENES}\n\n{table(columns, rows)}\n"
 
@@ -124,45 +122,17 @@ def _scenes(report: Report) -> str:
 def _scene_row(report: Report, scene: str) -> list[str]:
     runs = {run.rung: run for run in report.runs_of(scene) if run.solver == "taylor"}
     about = report.portrait(scene) or next(iter(report.records(scene).values()), {})
-    state = [v for run in runs.values() for v in run.state if v.is_compared]
-    worst = max(state, key=lambda v: float("inf") if v.ratio is None else v.ratio, default=None)
+    most = worst(verdict for run in runs.values() for verdict in run.state)
     return [
         code(scene),
-        prose(str(about.get("title", ""))),
-        prose(str(about.get("regime", ""))),
-        *(_main_error(runs.get(rung)) for rung in report.rungs),
-        ratio(worst) if worst else NOTHING,
+        *(prose(str(about.get(key, ""))) for key in ("title", "regime")),
+        *(main_error(runs.get(rung)) for rung in report.rungs),
+        ratio(most) if most else NOTHING,
         judged(gravest(v for run in runs.values() for v in run.verdicts)),
     ]
 
 
-def _main_error(run: Run | None) -> str:
-    """The largest error of omega or the impulse, or the word that stands in its place."""
-    if run is None:
-        return NOTHING
-    main = min(run.state, key=lambda v: STATES.index(v.quantity), default=None)
-    status = gravest(run.verdicts)
-    if main is None or main.max is None:
-        return judged(status)
-    return error(main) if status.value == "pass" else f"{error(main)} {judged(status)}"
-
-
 def _gates(report: Report) -> str:
-    """Every verdict in one table, to be searched."""
-    numbers = ("max", "at t", "bound", "over attainable")
-    columns = [
-        *(Column("scene"), Column("rung"), Column("quantity")),
-        *(Column(name, to_right=True) for name in numbers),
-        Column("verdict"),
-    ]
-    rows = [
-        [
-            *(code(run.scene), run.rung, code(verdict.quantity)),
-            word(verdict) if verdict.max is None else figure(verdict.max),
-            *(instant(verdict.at), figure(verdict.bound), ratio(verdict)),
-            judged(verdict.verdict),
-        ]
-        for run in report.runs
-        for verdict in run.verdicts
-    ]
-    return f"# Gates\n\n{_WHAT}\n\n{table(columns, rows)}\n"
+    """Return every verdict in one table, to be searched."""
+    verdicts = [verdict for run in report.runs for verdict in run.verdicts]
+    return f"# Gates\n\n{_WHAT}\n\n{verdict_table(_COLUMNS, verdicts)}\n"

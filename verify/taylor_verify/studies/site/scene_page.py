@@ -3,22 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 from html import escape
 from itertools import groupby
 from typing import Any, Final
 
-from taylor_verify.publish.cells import (
-    conclusion,
-    figure,
-    in_roundoffs,
-    instant,
-    judged,
-    ratio,
-    word,
-)
-from taylor_verify.publish.markdown import Column, bullets, code, prose, table
+from taylor_verify.publish.cells import conclusion, figure, verdict_table
+from taylor_verify.publish.markdown import bullets, code, prose, table
+from taylor_verify.publish.page import packages
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.records.file_names import of_scene
 from taylor_verify.records.quantities import COLUMNS, GATE_FACTOR
@@ -33,113 +25,108 @@ from taylor_verify.studies.tradeoff.stored import TimedPoint, Trade
 _SHOWN: Final = "f64"
 # The table of scenes leads here: hundreds of lines would be no navigation.
 _ORPHAN: Final = "---\norphan: true\n---"
+_ACCURACY: Final = (
+    *("rung", "quantity", "max:", "mean:", "max, u:", "at t:", "attainable:", "bound:"),
+    *("over attainable:", "steps:", "verdict"),
+)
+_ALLOWED: Final = (
+    f"A gate allows {GATE_FACTOR} times what perfect rounding of every step would leave on this orbit; the "
+    "table above has both."
+)
 
 
-@dataclass(frozen=True)
-class ScenePage:
-    """What is stored of one scene, and the pictures of it that stand still."""
-
-    scene: str
-    report: Report
-    pictures: Sequence[Picture]
-
-    def markdown(self) -> str:
-        """The whole page; a section without contents is left out."""
-        runs = self.report.runs_of(self.scene)
-        portrait = self.report.portrait(self.scene) or {}
-        records = self.report.records(self.scene)
-        record = next(iter(records.values()), {})
-        explained = portrait.get("explain", {})
-        title = portrait.get("title") or record.get("title") or self.scene
-        sections = {
-            "": [
-                f"[Scenes](../scenes.md) / {code(self.scene)}",
-                _facts(runs, portrait, record),
-                *_words(portrait),
-            ],
-            "Equations of motion": _equations(portrait, record),
-            "The orbit in numbers": _orbit(portrait),
-            "Initial data": _data(portrait),
-            "Accuracy": [_accuracy(runs)],
-            "Other solvers": _solvers(self.report.trade(self.scene)),
-            "Pictures": [*self._drawings(), *self._motions(portrait, records)],
-            "The arithmetic of the gates": [
-                prose((explained.get("condition") or {}).get("sentence", "")),
-                _folded("Every bound with its terms", _gates(runs)),
-            ],
-            "Exact values": _values(portrait.get("values") or {}),
-            "How to reproduce this": [
-                _block("text", _commands(self.scene, self.report.rungs, portrait), "commands"),
-                self._reference(),
-                f"SHA-256 of the scene: {code(portrait.get('sha256') or _digest(runs))}. "
-                f"{made_with(self.report)}",
-            ],
-        }
-        blocks = [_ORPHAN, f"# {prose(title)}"]
-        for heading, parts in sections.items():
-            filled = [part for part in parts if part]
-            blocks += [f"## {heading}"] if heading and filled else []
-            blocks += filled
-        return "\n\n".join(blocks) + "\n"
-
-    def _drawings(self) -> Iterator[str]:
-        for picture in self.pictures:
-            yield shown(self.report, picture, "..")
-            if picture.stem.endswith("-errors"):
-                yield (
-                    f"A gate allows {GATE_FACTOR} times what perfect rounding of every step would leave "
-                    "on this orbit; the table above has both."
-                )
-
-    def _motions(self, portrait: Document, records: Mapping[str, Document]) -> list[str]:
-        found = [one.html() for one in motions_of(portrait, records.get(_SHOWN))]
-        return ['<div class="motions">', *found, "</div>"] if found else []
-
-    def _reference(self) -> str:
-        """Links to the exact trajectory, as CSV and as JSON."""
-        names = (f"{of_scene(self.scene)}{ending}" for ending in (".csv", ".json"))
-        links = [
-            f"[{name}](../reference/{name})"
-            for name in names
-            if self.report.has(f"reference/{name}")
-        ]
-        if not links:
-            return ""
-        return (
-            f"Exact trajectory with 32 digits and proven radii: {', '.join(links)}. "
-            "[What the columns mean](../reference/README.md)."
-        )
+def scene_page(scene: str, report: Report, pictures: Sequence[Picture]) -> str:
+    """Return the whole page of a scene, with pictures of it; a section without contents is left out."""
+    runs = report.runs_of(scene)
+    portrait, records = report.portrait(scene) or {}, report.records(scene)
+    record = next(iter(records.values()), {})
+    verdicts = [verdict for run in runs for verdict in run.verdicts]
+    condition = portrait.get("explain", {}).get("condition") or {}
+    digest = next((str(v.provenance.get("scene", "")) for v in verdicts), "")
+    sections = {
+        "": [
+            f"[Scenes](../scenes.md) / {code(scene)}",
+            _facts(runs, portrait, record),
+            *_words(portrait),
+        ],
+        "Equations of motion": _equations(portrait, record),
+        "The orbit in numbers": _orbit(portrait),
+        "Initial data": _data(portrait),
+        "Accuracy": [verdict_table(_ACCURACY, verdicts)],
+        "Other solvers": _solvers(report.trade(scene)),
+        "Pictures": [*_drawings(report, pictures), *_motions(portrait, records.get(_SHOWN))],
+        "The arithmetic of the gates": [
+            prose(condition.get("sentence", "")),
+            _folded("Every bound with its terms", _gates(verdicts)),
+        ],
+        "Exact values": _values(portrait.get("values") or {}),
+        "How to reproduce this": [
+            _block("text", _commands(scene, report.rungs, portrait), "commands"),
+            _reference(scene, report),
+            f"SHA-256 of the scene: {code(portrait.get('sha256') or digest)}. {made_with(report)}",
+        ],
+    }
+    title = portrait.get("title") or record.get("title") or scene
+    blocks = [_ORPHAN, f"# {prose(title)}"]
+    for heading, parts in sections.items():
+        if filled := [part for part in parts if part]:
+            blocks += [*([f"## {heading}"] if heading else []), *filled]
+    return "\n\n".join(blocks) + "\n"
 
 
 def drawing_of(picture: Picture) -> str:
-    """The place in the report where a picture may have been published already."""
+    """Return the place in the report where a picture may have been published already."""
     return f"{figures.FOLDER}/{picture.stem}.svg"
 
 
 def shown(report: Report, picture: Picture, top: str) -> str:
-    """A picture with what it shows in words; ``top`` is the way to the report's folder."""
+    """Return a picture with what it shows in words; ``top`` is the way to the report's folder."""
     drawing = drawing_of(picture)
     place = drawing if report.has(drawing) else f"scenes/{picture.stem}.svg"
     return f"![{prose(picture.alt)}]({top}/{place})"
 
 
 def made_with(report: Report) -> str:
-    """The versions and machines that the numbers were made with, in a sentence."""
-    packages = ", ".join(f"{name} {version}" for name, version in report.versions.items())
+    """Return the versions and machines that the numbers were made with, in a sentence."""
     machines = "; ".join(
         f"{prose(machine.get('processor', 'an unnamed processor'))}, {code(machine.get('command', ''))}"
         for machine in report.machines
     )
-    return f"Made with {'; '.join(filter(None, (packages or 'unknown versions', machines)))}."
+    parts = (packages(report.versions) or "unknown versions", machines)
+    return f"Made with {'; '.join(filter(None, parts))}."
+
+
+def _drawings(report: Report, pictures: Sequence[Picture]) -> Iterator[str]:
+    for picture in pictures:
+        yield shown(report, picture, "..")
+        if picture.stem.endswith("-errors"):
+            yield _ALLOWED
+
+
+def _motions(portrait: Document, record: Document | None) -> list[str]:
+    found = [figure.html() for figure in motions_of(portrait, record)]
+    return ['<div class="motions">', *found, "</div>"] if found else []
+
+
+def _reference(scene: str, report: Report) -> str:
+    """Return links to the exact trajectory, as CSV and as JSON; nothing where it is not there."""
+    names = [f"{of_scene(scene)}{ending}" for ending in (".csv", ".json")]
+    links = [f"[{n}](../reference/{n})" for n in names if report.has(f"reference/{n}")]
+    if not links:
+        return ""
+    return (
+        f"Exact trajectory with 32 digits and proven radii: {', '.join(links)}. "
+        "[What the columns mean](../reference/README.md)."
+    )
 
 
 def _facts(runs: Sequence[Run], portrait: Document, record: Document) -> str:
-    verdicts = [verdict for run in runs for verdict in run.verdicts]
+    periods = [row["value"] for row in portrait.get("analytic", ()) if row["name"] == "period"]
     facts = {
-        "verdict": gravest(verdicts).value,
+        "verdict": gravest(verdict for run in runs for verdict in run.verdicts).value,
         "model": portrait.get("model") or (runs[0].model.lower() if runs else ""),
         "regime": portrait.get("regime") or record.get("regime", ""),
-        "period": next(map(_rounded, filter(_is_period, portrait.get("analytic", ()))), ""),
+        "period": f"{float(periods[0]):.6g}" if periods else "",
         "compared": ", ".join(dict.fromkeys(v.quantity for run in runs for v in run.state)),
         "truth": portrait.get("route") or record.get("route", ""),
         "source": portrait.get("source") or "",
@@ -147,26 +134,12 @@ def _facts(runs: Sequence[Run], portrait: Document, record: Document) -> str:
     return "\n".join(f":{name}: {prose(value)}" for name, value in facts.items() if value)
 
 
-def _is_period(quantity: Document) -> bool:
-    return bool(quantity["name"] == "period")
-
-
-def _rounded(quantity: Document) -> str:
-    """An analytic quantity to the digits that a line has room for."""
-    text = str(quantity["value"])
-    try:
-        return f"{float(text):.6g}"
-    except ValueError:
-        return text
-
-
 def _words(portrait: Document) -> Iterator[str]:
-    """Why there is this scene, and what it warns of."""
+    """Yield why there is this scene, and what it warns of."""
     # Comment lines run together; an empty one parts two paragraphs.
-    groups = groupby((line.strip() for line in portrait.get("why", ())), key=bool)
-    for filled, lines in groups:
-        text = " ".join(lines).removeprefix("Why: ")
-        if filled:
+    for is_filled, lines in groupby((line.strip() for line in portrait.get("why", ())), key=bool):
+        if is_filled:
+            text = " ".join(lines).removeprefix("Why: ")
             yield prose(f"{text[0].upper()}{text[1:]}")
     for warning in portrait.get("warnings", ()):
         yield f"```{{warning}}\n{prose(warning)}\n```"
@@ -185,12 +158,12 @@ def _orbit(portrait: Document) -> list[str]:
     rows = portrait.get("analytic")
     if not rows:
         return []
-    columns = [Column("quantity"), Column("value"), Column("meaning")]
     cells = [
         [code(str(row["name"])), code(str(row["value"])), prose(str(row["meaning"] or ""))]
         for row in rows
     ]
-    return [*map(prose, portrait.get("explain", {}).get("sentences", ())), table(columns, cells)]
+    sentences = portrait.get("explain", {}).get("sentences", ())
+    return [*map(prose, sentences), table(["quantity", "value", "meaning"], cells)]
 
 
 def _data(portrait: Document) -> list[str]:
@@ -198,95 +171,40 @@ def _data(portrait: Document) -> list[str]:
     return ["The whole scene, in exact numbers:", _block("toml", text, "scene")] if text else []
 
 
-def _block(language: str, text: str, name: str = "") -> str:
-    """Text to be copied; ``name`` is its anchor on the page."""
-    option = f":name: {name}\n" if name else ""
-    # Longer than any in the text, which could end the block.
-    fence = "`" * max(3, 1 + max(map(len, re.findall("`+", text)), default=0))
-    return f"{fence}{{code-block}} {language}\n{option}\n{text}\n{fence}"
-
-
-def _folded(summary: str, contents: str) -> str:
-    """Markdown behind a line that opens it."""
-    return f"<details>\n<summary>{escape(summary)}</summary>\n\n{contents}\n\n</details>"
-
-
-# Tables.
-
-
-def _accuracy(runs: Iterable[Run]) -> str:
-    """A line for every quantity of every rung."""
-    headings = ("max", "mean", "max, u", "at t", "attainable", "bound", "over attainable", "steps")
-    columns = [
-        *(Column("rung"), Column("quantity")),
-        *(Column(heading, to_right=True) for heading in headings),
-        Column("verdict"),
-    ]
-    rows = [_accuracy_row(run, verdict) for run in runs for verdict in run.verdicts]
-    return table(columns, rows)
-
-
-def _accuracy_row(run: Run, verdict: Verdict) -> list[str]:
-    size = in_roundoffs(verdict, verdict.max)
-    return [
-        run.rung,
-        code(verdict.quantity),
-        word(verdict) if verdict.max is None else figure(verdict.max),
-        figure(verdict.mean),
-        figure(size),
-        instant(verdict.at),
-        figure(verdict.attainable),
-        figure(verdict.bound),
-        ratio(verdict),
-        str(verdict.steps),
-        judged(verdict.verdict),
-    ]
-
-
 def _solvers(trade: Trade | None) -> list[str]:
     """Return the most accurate sound setting of each family, with its time over that of the yardstick."""
     if trade is None:
         return []
     best: dict[tuple[str, str], TimedPoint] = {}
-    for row in trade.sound:
-        key = (row.point.family, row.point.rung)
-        if key not in best or row.error < best[key].error:
-            best[key] = row
-    columns = [
-        *(Column("solver"), Column("rung")),
-        *(Column(name, to_right=True) for name in ("error", "digits", "steps", "time")),
-    ]
-    rows = sorted(best.values(), key=lambda row: row.error)
+    for row in sorted(trade.sound, key=lambda row: row.error):
+        best.setdefault((row.point.family, row.point.rung), row)
     lines = [
         [
             *(code(row.point.solver), row.point.rung, figure(row.error), f"{digits:.1f}"),
             *(str(row.point.steps), figure(row.timing.ratio)),
         ]
-        for row in rows
+        for row in best.values()
         if (digits := row.point.achieved_digits) is not None
     ]
-    what = (
+    return [
         "The most accurate setting of every family of solvers that was sound on this scene; *time* is "
-        "that of a solve over that of taylor on f64."
-    )
-    return [what, table(columns, lines)]
-
-
-def _gates(runs: Sequence[Run]) -> str:
-    """Each rung's arithmetic by quantity, and once the words behind it."""
-    names = dict.fromkeys(v.quantity for run in runs for v in run.verdicts)
-    found = [
-        (run.rung, v) for name in names for run in runs for v in run.verdicts if v.quantity == name
+        "that of a solve over that of taylor on f64.",
+        table(["solver", "rung", "error:", "digits:", "steps:", "time:"], lines),
     ]
-    parts = [(rung, v.quantity, *_bound(v)) for rung, v in found]
-    rows = [[code(quantity), rung, prose(sum_)] for rung, quantity, sum_, _ in parts]
-    said: dict[str, dict[str, None]] = {}
-    for _, quantity, _, words in parts:
-        if words:
-            said.setdefault(words, {})[code(quantity)] = None
-    notes = [f"{', '.join(names)}: {prose(words)}." for words, names in said.items()]
-    arithmetic = table([Column("quantity"), Column("rung"), Column("bound")], rows)
-    return "\n\n".join([arithmetic, bullets(notes)])
+
+
+def _gates(verdicts: Sequence[Verdict]) -> str:
+    """Return each rung's arithmetic by quantity, and once the words behind it."""
+    names = list(dict.fromkeys(verdict.quantity for verdict in verdicts))
+    rows: list[list[str]] = []
+    meanings: dict[str, dict[str, None]] = {}
+    for verdict in sorted(verdicts, key=lambda verdict: names.index(verdict.quantity)):
+        arithmetic, meaning = _bound(verdict)
+        rows.append([code(verdict.quantity), verdict.rung, prose(arithmetic)])
+        if meaning:
+            meanings.setdefault(meaning, {})[code(verdict.quantity)] = None
+    notes = [f"{', '.join(of)}: {prose(meaning)}." for meaning, of in meanings.items()]
+    return "\n\n".join([table(["quantity", "rung", "bound"], rows), bullets(notes)])
 
 
 def _bound(verdict: Verdict) -> tuple[str, str]:
@@ -297,11 +215,21 @@ def _bound(verdict: Verdict) -> tuple[str, str]:
     return "; ".join(filter(None, parts)), meaning
 
 
-# Text to copy.
+def _block(language: str, text: str, name: str = "") -> str:
+    """Return text to be copied; ``name`` is its anchor on the page."""
+    option = f":name: {name}\n" if name else ""
+    # Longer than any in the text, which could end the block.
+    fence = "`" * max(3, 1 + max(map(len, re.findall("`+", text)), default=0))
+    return f"{fence}{{code-block}} {language}\n{option}\n{text}\n{fence}"
+
+
+def _folded(summary: str, contents: str) -> str:
+    """Return Markdown behind a line that opens it."""
+    return f"<details>\n<summary>{escape(summary)}</summary>\n\n{contents}\n\n</details>"
 
 
 def _values(document: Document) -> list[str]:
-    """Ten instants as the columns of a trajectory file, each number with all of its digits."""
+    """Return ten instants as the columns of a trajectory file, each number with all of its digits."""
     rows = document.get("rows")
     if not rows:
         return []
@@ -314,19 +242,17 @@ def _values(document: Document) -> list[str]:
         f"{document['digits']} digits by {route}{error}. The columns are those that "
         "`taylor-verify check` reads."
     )
-    return [what, _block("text", trajectory_text(rows), "exact")]
+    return [what, _block("text", _trajectory(rows), "exact")]
 
 
-def trajectory_text(rows: Sequence[Document]) -> str:
-    """Exact states as a trajectory file, its columns one below the other."""
+def _trajectory(rows: Sequence[Document]) -> str:
+    """Return exact states as a trajectory file, its columns one below the other."""
     keys = [key for key in COLUMNS if key in rows[0]]
     heading = ["t", *(name for key in keys for name in COLUMNS[key])]
     lines = [heading, *([str(r["t"]), *(n for key in keys for n in _flat(r[key]))] for r in rows)]
-    widths = [max(len(line[i]) for line in lines) for i in range(len(heading))]
-    return "\n".join(
-        ", ".join(cell.rjust(width) for cell, width in zip(line, widths, strict=True))
-        for line in lines
-    )
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    padded = [[c.rjust(width) for c, width in zip(line, widths, strict=True)] for line in lines]
+    return "\n".join(map(", ".join, padded))
 
 
 def _flat(value: Sequence[Any]) -> list[str]:
@@ -346,7 +272,3 @@ def _commands(scene: str, rungs: Sequence[str], portrait: Document) -> str:
         f"taylor-verify check my_run.csv --scene {scene}",
     ]
     return "\n".join(lines)
-
-
-def _digest(runs: Sequence[Run]) -> str:
-    return next((str(v.provenance.get("scene", "")) for run in runs for v in run.verdicts), "")

@@ -14,14 +14,12 @@ from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.records import store
-from taylor_verify.records.file_names import of_scene, of_solver
 from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.runs import Run, runs
-from taylor_verify.studies.controls.document import Sight
-from taylor_verify.studies.controls.stored import CONTROLS
-from taylor_verify.studies.portraits import stored as portraits
+from taylor_verify.studies.controls.document import CONTROLS, Sight
+from taylor_verify.studies.portraits.study import PORTRAITS
 from taylor_verify.studies.tradeoff import stored as trades
-from taylor_verify.studies.tradeoff.stored import Trade, Trades
+from taylor_verify.studies.tradeoff.stored import Trade
 
 Document = Mapping[str, Any]
 
@@ -30,7 +28,7 @@ _SOLVER: Final = "taylor"
 
 @dataclass(frozen=True)
 class Report:
-    """What lies in ``folder``; each part is read when it is first asked for, and kept.
+    """The report in ``folder``; each part is read when it is first asked for.
 
     Every part raises OSError for files that cannot be read and ValueError for files that hold
     something else; a measurement that was never published is None.
@@ -40,36 +38,40 @@ class Report:
 
     @cached_property
     def runs(self) -> tuple[Run, ...]:
+        """All runs in reading order."""
         return runs(store.load(self.folder))
 
     @cached_property
     def versions(self) -> dict[str, str]:
+        """The packages of all runs, with their versions."""
         return store.versions(verdict for run in self.runs for verdict in run.verdicts)
 
     @cached_property
     def machines(self) -> list[Document]:
         """Processor, Python and command of the runs, each machine once."""
-        stored = self._stored(store.TIMINGS)
-        return list(stored["machines"]) if stored else []
+        return list((self._stored(store.TIMINGS) or {}).get("machines", ()))
 
     @cached_property
     def scenes(self) -> tuple[str, ...]:
-        """In reading order, each once."""
+        """The scenes in reading order, each once."""
         return tuple(dict.fromkeys(run.scene for run in self.runs))
 
     @cached_property
     def rungs(self) -> tuple[str, ...]:
+        """The rungs upwards."""
         return tuple(sorted({run.rung for run in self.runs}, key=place_of_rung))
 
     def runs_of(self, scene: str) -> list[Run]:
+        """Return the runs of one scene."""
         return [run for run in self.runs if run.scene == scene]
 
     def portrait(self, scene: str) -> Document | None:
-        return portraits.load(self.folder, scene)
+        """Return the portrait of a scene."""
+        return PORTRAITS.find(self.folder, scene)
 
     def records(self, scene: str) -> dict[str, Document]:
-        """By rung, as far as there are some."""
-        found = {rung: self._record(scene, rung) for rung in self.rungs}
+        """Return the records of a scene by rung, as far as there are some."""
+        found = {r: self._stored(store.record_name(scene, _SOLVER, r)) for r in self.rungs}
         return {rung: record for rung, record in found.items() if record is not None}
 
     @cached_property
@@ -79,25 +81,21 @@ class Report:
         return found.sights if found else ()
 
     @cached_property
-    def trades(self) -> Trades | None:
-        return trades.load(self.folder)
+    def _trades(self) -> dict[str, Trade]:
+        found = trades.load(self.folder)
+        return {trade.scene: trade for trade in found.trades} if found else {}
 
     def trade(self, scene: str) -> Trade | None:
-        """Speed against accuracy on one scene, where it was measured."""
-        found = self.trades.trades if self.trades else ()
-        return next((trade for trade in found if trade.scene == scene), None)
+        """Return speed against accuracy on one scene."""
+        return self._trades.get(scene)
 
     def has(self, place: str) -> bool:
         """Return True for the place of a published file."""
         return (self.folder / place).is_file()
 
     def read(self, place: str) -> str:
-        """The text of a published file; empty where there is none."""
+        """Return the text of a published file; empty where there is none."""
         return (self.folder / place).read_text(encoding="utf-8") if self.has(place) else ""
-
-    def _record(self, scene: str, rung: str) -> Document | None:
-        name = f"{of_scene(scene)}.{of_solver(_SOLVER)}.{rung}.json"
-        return self._stored(f"{store.RECORDS}/{name}")
 
     def _stored(self, name: str) -> Document | None:
         file = self.folder / store.FOLDER / name

@@ -1,4 +1,4 @@
-"""The source folder that Sphinx reads: pages of docs and of the report, and the files they link to.
+"""Source folder that Sphinx reads: pages of docs and of the report, and the files they link to.
 
 Places are those of a checkout: ``docs/method.md``, ``reports/tables/README.md``. So a link that holds
 there holds here.
@@ -6,16 +6,16 @@ there holds here.
 
 from __future__ import annotations
 
+import lzma
 import posixpath
 import re
-import tarfile
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
-from io import BytesIO
 from pathlib import Path, PurePosixPath
 from typing import Final
 
+from taylor_verify.studies.archive import tar
 from taylor_verify.studies.site.drawing import smaller
 from taylor_verify.studies.site.links import relinked
 
@@ -33,14 +33,14 @@ _ENTRY: Final = re.compile(r"^([a-z][\w/-]*)$", re.MULTILINE)
 
 
 def docs_beside(folder: Path) -> Path | None:
-    """The folder of docs in the checkout that ``folder`` is the report of; None without one."""
+    """Return the folder of docs in the checkout that ``folder`` is the report of; None without one."""
     docs = folder.resolve().parent / DOCS
     return docs if (docs / "conf.py").exists() else None
 
 
 @dataclass
 class Stage:
-    """The files to be read, by place. ``folder`` has the report, ``docs`` the pages beside it."""
+    """Files for Sphinx, by place. ``folder`` has the report, ``docs`` the pages beside it."""
 
     folder: Path
     docs: Path | None
@@ -71,7 +71,7 @@ class Stage:
         return [place.removesuffix(".md") for place in pages]
 
     def toctrees(self) -> str:
-        """The lists of pages of docs/index.md, for the navigation; none without docs."""
+        """Return the lists of pages of docs/index.md, for the navigation; nothing without docs."""
         if self.docs is None:
             return ""
         text = (self.docs / "index.md").read_text(encoding="utf-8")
@@ -93,7 +93,7 @@ class Stage:
         self.files[place] = relinked(text, folder, folder, self._resolve)
 
     def _included(self, place: str, block: re.Match[str]) -> str:
-        """The file that a page includes, with links as they are on that page."""
+        """Return the file that a page includes, with links as they are on that page."""
         included = _joined(place, block[1])
         file = self._origin(included)
         if file is None:
@@ -102,7 +102,7 @@ class Stage:
         return relinked(file.read_text(encoding="utf-8"), written_in, shown_in, lambda at: at)
 
     def _resolve(self, place: str) -> str | None:
-        """The page or file that a link leads to; None for what is neither, or outside the tree."""
+        """Return the page or file that a link leads to; None for what is neither, or outside the tree."""
         for page in (self._stand_ins.get(place, place), f"{place}/README.md"):
             if page in self._places:
                 return page
@@ -118,32 +118,23 @@ class Stage:
         return _as_linked(place)
 
     def _origin(self, place: str) -> Path | None:
-        """Where a file is stored; None outside the report and the checkout around it."""
+        """Return the stored file of a place; None outside the report and the checkout around it."""
         if place.startswith(f"{REPORTS}/"):
             return self.folder / place.removeprefix(f"{REPORTS}/")
         return None if self.docs is None or place.startswith("..") else self.docs.parent / place
 
 
 def _as_linked(place: str) -> str:
-    """Markdown that is no page is a file to Sphinx only if the link says so."""
+    """Return a place as Sphinx wants it: Markdown that is no page is a file if the link says so."""
     return f"path:{place}" if place.endswith(".md") else place
 
 
 def _content(file: Path, is_packed: bool) -> str | bytes:
-    """A file as it is, a drawing made smaller, or an archive with the file."""
+    """Return a file as it is, a drawing made smaller, or an archive with the file."""
     content = file.read_bytes()
     if is_packed:
-        return _packed(file.name, content)
+        return lzma.compress(tar({file.name: content}))
     return smaller(content.decode()) if file.suffix == ".svg" else content
-
-
-def _packed(name: str, content: bytes) -> bytes:
-    archive = BytesIO()
-    with tarfile.open(fileobj=archive, mode="w:xz", format=tarfile.USTAR_FORMAT) as packed:
-        about = tarfile.TarInfo(name)
-        about.size = len(content)
-        packed.addfile(about, BytesIO(content))
-    return archive.getvalue()
 
 
 def _joined(place: str, path: str) -> str:

@@ -1,8 +1,9 @@
-"""What a trajectory achieved: its errors against the truth of one start on one rung, and its drift."""
+"""The accuracy of a trajectory: its errors against the truth of one start on one rung, and its drift."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from fractions import Fraction
 from math import inf, isnan
@@ -10,17 +11,16 @@ from math import inf, isnan
 from mpmath import mp
 
 from taylor_verify.exact.route import solution
-from taylor_verify.exact.solution import Unsettled
+from taylor_verify.exact.solution import Solution, Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.judge.errors.drifts import drifts
 from taylor_verify.judge.errors.state import largest, state_errors
 from taylor_verify.judge.floor.arithmetic import MORE_DIGITS, truth_digits, working_bits
 from taylor_verify.models.problem import Problem
 from taylor_verify.scenes.motion import Motion
-from taylor_verify.solvers.trajectory import Trajectory
-
-# As the judge has them: the truth is a thousandth of a unit of roundoff wide, differences lose no
-# more than their leading bits.
+from taylor_verify.scenes.precision import Rung
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,8 @@ class Accuracy:
 class Truth:
     """The exact motion of one problem, that every answer to it is compared with.
 
-    Raises Unsettled where its digits cannot be had.
+    As the judge has it, it is a thousandth of a unit of roundoff wide. Raises Unsettled where its digits
+    cannot be had.
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -54,32 +55,47 @@ class Truth:
         self._given, self._bits = problem.given, working_bits(bits)
         self._digits = truth_digits(bits)
         try:
-            self._motion, self._start = self._evaluate(closed=True)
+            self._motion, self._start = self._evaluated(solution(self._given))
         except Unsettled:
-            self._motion, self._start = self._evaluate(closed=False)
+            # Beside a degenerate orbit Taylor series have the digits that the closed form has not.
+            self._motion, self._start = self._evaluated(TaylorSolution(self._given))
 
-    def _evaluate(self, closed: bool) -> tuple[Motion, Motion]:
-        """The motion at the samples and at the start; beside a degenerate orbit, by Taylor series."""
-        exact = solution(self._given) if closed else TaylorSolution(self._given)
+    def _evaluated(self, exact: Solution) -> tuple[Motion, Motion]:
+        """Return the motion at the samples and at the start."""
         motion = exact.motion(self._given.clock.elapsed, self._digits)
         return motion, exact.motion([Fraction(0)], self._digits + MORE_DIGITS)
 
     def accuracy(self, trajectory: Trajectory) -> Accuracy:
-        """Of a trajectory that finished."""
+        """Return the accuracy of a trajectory that finished."""
+        given = self._given
         with mp.workprec(self._bits):
             answer = trajectory.motion(self._bits)
-            states = state_errors(self._given, self._motion, answer)
+            states = state_errors(given, self._motion, answer)
             bounds = {errors.quantity: errors.values + errors.truth_radius for errors in states}
-            found = {name: float(largest(values)) for name, values in bounds.items()}
+            most = {name: float(largest(values)) for name, values in bounds.items()}
             final = {name: float(values[-1]) for name, values in bounds.items()}
-            drift = self._drift(answer, trajectory) if self._given.body.is_free else {}
-        if not drift:
-            return Accuracy(found, final)
+            own = (self._start, self._motion, answer, trajectory.quantities, self._digits)
+            conserved = drifts(given, *own) if given.body.is_free else ()
+            drift = [(float(largest(one.values)), name.name) for name, one in conserved]
         # NaN is larger than any.
-        name = max(drift, key=lambda key: (isnan(drift[key]), drift[key]))
-        return Accuracy(found, final, drift[name], name)
+        worst = max(drift, key=lambda one: (isnan(one[0]), one[0]), default=(None, ""))
+        return Accuracy(most, final, *worst)
 
-    def _drift(self, answer: Motion, trajectory: Trajectory) -> dict[str, float]:
-        own = trajectory.quantities
-        found = drifts(self._given, self._start, self._motion, answer, own, self._digits)
-        return {invariant.name: float(largest(errors.values)) for invariant, errors in found}
+
+class Truths:
+    """The truth of each scene and rung, evaluated once."""
+
+    def __init__(self) -> None:
+        self._known: dict[tuple[Scene, Rung], Truth | None] = {}
+
+    def accuracy(self, problem: Problem, trajectory: Trajectory) -> Accuracy | None:
+        """Return the accuracy; None for a run that did not finish, and where the truth cannot be had."""
+        if trajectory.outcome is not Outcome.FINISHED:
+            return None
+        key = problem.scene, problem.rung
+        if key not in self._known:
+            self._known[key] = None
+            with suppress(Unsettled):
+                self._known[key] = Truth(problem)
+        truth = self._known[key]
+        return truth.accuracy(trajectory) if truth is not None else None

@@ -1,4 +1,4 @@
-"""Which precisions can reach an error at all: what rounding alone leaves on the scene's own orbit.
+"""The precisions that can reach an error at all, by what rounding alone leaves on the scene's own orbit.
 
 The judge's floor grows with the number of steps, which is a solver's own affair. So it is taken for the
 fewest there can be, one rounding a sample: no arithmetic of that precision is asked for less. Only a
@@ -36,7 +36,7 @@ _ATTEMPTS: Final = 8
 
 @lru_cache(maxsize=64)
 def least_error(scene: Scene, rung: Rung) -> float | None:
-    """The largest attainable error of all tracked quantities and samples; None where it is not known."""
+    """Return the largest attainable error of all tracked quantities and samples; None if not known."""
     try:
         given = pose(scene, rung).given
         truth = solution(given).motion(given.clock.elapsed, _DIGITS)
@@ -44,12 +44,12 @@ def least_error(scene: Scene, rung: Rung) -> float | None:
     except (NotRepresentable, Unsettled):
         return None
     # Only the parts and their scales are asked for: the truth is compared with itself.
-    found = [np.max(base.of_state(errors)) for errors in state_errors(given, truth, truth)]
-    return float(max(found))
+    states = state_errors(given, truth, truth)
+    return float(max(np.max(base.of_state(errors)) for errors in states))
 
 
 def left_out(scene: Scene, rungs: Iterable[Rung], error: float) -> dict[Rung, str]:
-    """The rungs on which rounding alone leaves far more than an error, each with that in words.
+    """Return the rungs on which rounding alone leaves far more than an error, each with that in words.
 
     The floor is a model of random roundings: as the judge's gates leave GATE_FACTOR above it, so it takes
     GATE_FACTOR here before a rung is given up unmeasured.
@@ -58,36 +58,27 @@ def left_out(scene: Scene, rungs: Iterable[Rung], error: float) -> dict[Rung, st
     for rung in dict.fromkeys(rungs):
         least = least_error(scene, rung)
         if least is not None and least > GATE_FACTOR * error:
-            found[rung] = f"on {rung.name} rounding alone leaves {_figure(least)}"
+            beyond = "" if least < 1 else ", more than the motion's own size"
+            found[rung] = f"on {rung.name} rounding alone leaves {least:.2g}{beyond}"
     return found
 
 
 def narrowest(scene: Scene, error: float) -> tuple[Rung, float] | None:
-    """The rung of the fewest bits on which rounding alone leaves no more than an error, and how much.
+    """Return the narrowest rung on which rounding alone leaves no more than an error, and how much.
 
     A type of the ladder where one will do, else mpN; None where no rung does, or nothing is known.
     """
-    rung, least = rung_named([*FORMATS][-1]), inf
-    for name in FORMATS:
-        rung = rung_named(name)
-        found = least_error(scene, rung)
-        if found is not None and found <= error:
-            return rung, found
-        least = inf if found is None else found
-    bits = rung.bits
-    for _ in range(_ATTEMPTS):
-        if not least < inf:
-            return None
-        bits += max(ceil(log2(least / error)), _MORE_BITS)
-        if not bits <= _MOST_BITS:
-            return None
-        rung = rung_named(f"mp{bits}")
-        found = least_error(scene, rung)
-        if found is not None and found <= error:
-            return rung, found
-        least = inf if found is None else found
+    names = [*FORMATS]
+    for attempt in range(len(FORMATS) + _ATTEMPTS):
+        rung = rung_named(names[attempt])
+        least = least_error(scene, rung)
+        if least is not None and least <= error:
+            return rung, least
+        if attempt >= len(FORMATS) - 1:
+            if least is None or not least < inf:
+                return None
+            bits = rung.bits + max(ceil(log2(least / error)), _MORE_BITS)
+            if not bits <= _MOST_BITS:
+                return None
+            names.append(f"mp{bits}")
     return None
-
-
-def _figure(least: float) -> str:
-    return f"{least:.2g}" if least < 1 else f"{least:.2g}, more than the motion's own size"

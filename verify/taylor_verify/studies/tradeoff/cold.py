@@ -1,4 +1,4 @@
-"""What the first solve of all takes: a process of its own, with nothing loaded and nothing compiled.
+"""The first solve of all: a process of its own, with nothing loaded and nothing compiled.
 
 A process that has solved before has the libraries in its memory and heyoka's code compiled, so a cold
 figure cannot be had from it. Each setting is begun in a new one, with an empty folder as heyoka's
@@ -12,9 +12,8 @@ import pickle
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
-from dataclasses import asdict, dataclass
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -22,60 +21,45 @@ if TYPE_CHECKING:
     from taylor_verify.scenes.scene import Scene
     from taylor_verify.studies.tradeoff.setting import Setting
 
+Answer = TypeVar("Answer")
 
-@dataclass(frozen=True)
-class Cold:
-    """Seconds of a first solve, part by part.
+
+def cold(
+    scene: Scene, asked: Sequence[Setting], finished: Callable[[str], None] = lambda label: None
+) -> dict[Setting, dict[str, float]]:
+    """Return the seconds of the first solves of these settings, one after the other, part by part.
 
     ``process`` until the new process runs, ``importing`` the libraries, the solver's own among them, and
     posing the problem, ``compiling`` what the solver says went before its propagation, ``solving`` the
     propagation, ``rest`` the answer made exact, ``whole`` all of it as the caller waits for it.
-    """
-
-    process: float
-    importing: float
-    compiling: float
-    solving: float
-    rest: float
-    whole: float
-
-    def row(self) -> dict[str, float]:
-        return asdict(self)
-
-
-def cold(
-    scene: Scene, asked: Sequence[Setting], finished: Callable[[str], None] | None = None
-) -> dict[Setting, Cold]:
-    """The first solves of these settings, one after the other.
 
     A setting whose process is lost, or whose solver cannot be sent to another process, has none.
-    ``finished`` is told the label of each as it ends.
+    ``finished`` is called with the label of each as it ends.
     """
     from taylor_verify.studies.tradeoff.timing import cold_caches
 
     found = {}
+    # What a lambda or a function of a function raises in pickling differs between versions.
+    unsent = (pickle.PicklingError, AttributeError, TypeError, BrokenProcessPool)
     for setting in asked:
-        # What a lambda or a function of a function raises here differs between versions.
-        with cold_caches(), suppress(pickle.PicklingError, AttributeError, TypeError):
+        with cold_caches(), suppress(*unsent):
             data = pickle.dumps((scene, setting.solver, setting.rung))
-            taken = _in_a_new_process(data)
-            if taken is not None:
-                found[setting] = taken
-        if finished is not None:
-            finished(setting.label)
+            began = perf_counter()
+            parts = in_a_new_process(first_solve, data)
+            whole = perf_counter() - began
+            process = max(0.0, whole - sum(parts.values()))
+            found[setting] = {"process": process, **parts, "whole": whole}
+        finished(setting.label)
     return found
 
 
-def _in_a_new_process(data: bytes) -> Cold | None:
-    began = perf_counter()
-    # Spawned: a fork would have all that this process has loaded and compiled.
+def in_a_new_process(function: Callable[..., Answer], *arguments: object) -> Answer:
+    """Return what a function returns in a process that has loaded nothing.
+
+    It is spawned: a fork would have this process's memory, its compiled code and its hash seed.
+    """
     with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
-        try:
-            parts = pool.submit(first_solve, data).result()
-        except BrokenProcessPool:
-            return None
-        whole = perf_counter() - began
-    return Cold(process=max(0.0, whole - sum(parts.values())), whole=whole, **parts)
+        return pool.submit(function, *arguments).result()
 
 
 def first_solve(data: bytes) -> dict[str, float]:

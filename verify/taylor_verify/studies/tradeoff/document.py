@@ -13,9 +13,14 @@ from taylor_verify.records.standing import Standing
 Number = float | None
 
 
+def label(solver: str, setting: str, rung: str) -> str:
+    """Return solver, setting and rung in one line, as they are printed."""
+    return " ".join(filter(None, (solver, setting, rung)))
+
+
 @dataclass(frozen=True)
 class TradePoint:
-    """One setting on one scene: what was asked and achieved.
+    """A setting on a scene: the tolerance or step asked for, and the errors achieved.
 
     ``error`` is the largest of all tracked quantities and samples, ``drift`` the largest of the conserved
     quantities, of which ``drifting`` is the name. ``max`` and ``final`` are errors by quantity.
@@ -45,7 +50,7 @@ class TradePoint:
     @property
     def label(self) -> str:
         """The setting as `tradeoff` prints it."""
-        return " ".join(word for word in (self.solver, self.setting, self.rung) if word)
+        return label(self.solver, self.setting, self.rung)
 
 
 @dataclass(frozen=True)
@@ -111,6 +116,11 @@ class TradeTiming:
     low: Number
     high: Number
     processes: int
+
+    @property
+    def spread(self) -> float | None:
+        """The upper end of the interval over the lower, which a picture draws as a bar."""
+        return self.high / self.low if self.low and self.high else None
 
 
 @dataclass(frozen=True)

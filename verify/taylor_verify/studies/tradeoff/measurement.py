@@ -11,45 +11,33 @@ nobody else's.
 
 from __future__ import annotations
 
-import multiprocessing
 import random
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 from math import inf
 from typing import Final
 
-from taylor_verify.judge.provenance import command, processor, versions
-from taylor_verify.records.standing import Standing
+from taylor_verify.judge.provenance import command, packages, processor, versions
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.studies.tradeoff import SEED
+from taylor_verify.studies.tradeoff.cold import in_a_new_process
 from taylor_verify.studies.tradeoff.document import (
-    PlainDouble,
     TimingMachine,
-    TimingMethod,
     TradeNumbers,
     TradeScene,
     TradeTiming,
     TradeTimings,
 )
-from taylor_verify.studies.tradeoff.front import request_sentences
-from taylor_verify.studies.tradeoff.order_statistics import CONFIDENCE, FORMULA, estimate
+from taylor_verify.studies.tradeoff.order_statistics import estimate
 from taylor_verify.studies.tradeoff.plain_doubles import plain_doubles
-from taylor_verify.studies.tradeoff.rounds import (
-    LEAST_SECONDS,
-    ROUNDS,
-    TIMES_RESOLUTION,
-    YARDSTICK,
-    Measured,
-    Name,
-    clock_resolution,
-    measured,
-)
+from taylor_verify.studies.tradeoff.rounds import ROUNDS, YARDSTICK, Measured, measured, method
 from taylor_verify.studies.tradeoff.setting import (
+    ELLIPJ,
+    Name,
     Setting,
     geometric,
     library,
@@ -57,8 +45,12 @@ from taylor_verify.studies.tradeoff.setting import (
     setting,
     taylor,
 )
-from taylor_verify.studies.tradeoff.timing import SEED, WHAT_IS_TIMED
-from taylor_verify.studies.tradeoff.trade_off import TradeOff, trade_off
+from taylor_verify.studies.tradeoff.trade_off import (
+    TradeOff,
+    request_sentences,
+    sound_points,
+    trade_off,
+)
 
 SCENES: Final = (
     *("euler/generic", "euler/with-attitude"),
@@ -70,11 +62,11 @@ PROCESSES: Final = 6
 # seconds for the last one; the two that are made for stiff equations take them much earlier.
 _EVERY_DIGIT: Final = tuple(f"1e-{digits}" for digits in range(3, 14))
 _SCIPY: Final = {
-    "RK45": _EVERY_DIGIT[:-1],
-    "DOP853": _EVERY_DIGIT,
-    "LSODA": _EVERY_DIGIT,
-    "Radau": ("1e-3", "1e-6"),
-    "BDF": ("1e-3", "1e-6"),
+    "scipy:RK45": _EVERY_DIGIT[:-1],
+    "scipy:DOP853": _EVERY_DIGIT,
+    "scipy:LSODA": _EVERY_DIGIT,
+    "scipy:Radau": ("1e-3", "1e-6"),
+    "scipy:BDF": ("1e-3", "1e-6"),
 }
 _ODEFUN: Final = "mpmath:odefun?tol=1e-6"
 # Of the other libraries those whose equations are compiled too. Each solve compiles anew, for seconds:
@@ -83,53 +75,8 @@ _COMPILED: Final = ("cyrk-dop853", "cyrk-lsoda", "diffrax-dopri8")
 _FOR_THE_COLUMNS: Final = ("1e-8", "1e-11", "1e-13")
 _OWN_TOLERANCE: Final = ("f32", "f80", "f128", "mp237")
 
-
-@dataclass(frozen=True)
-class Measurement:
-    """The trades of some scenes, and the timings of every setting that is sound."""
-
-    trades: tuple[TradeOff, ...]
-    timings: tuple[TradeTiming, ...]
-    processes: int
-    rounds: int
-    seed: int
-    resolution: float
-    doubles: tuple[PlainDouble, ...] = ()
-
-    def numbers(self) -> TradeNumbers:
-        """Return what is the same on the next machine, but for the rounding: errors, digits, outcomes."""
-        return TradeNumbers(
-            versions=_versions(),
-            yardstick=" ".join(YARDSTICK),
-            scenes=tuple(map(_scene, self.trades)),
-            plain_doubles=self.doubles,
-            points=tuple(p.on(trade.scene.name) for trade in self.trades for p in trade.points),
-        )
-
-    def times(self) -> TradeTimings:
-        """Return what is this machine's: seconds, and ratios to the yardstick with their intervals."""
-        method = TimingMethod(
-            processes=self.processes,
-            rounds=self.rounds,
-            seed=self.seed,
-            least_seconds=LEAST_SECONDS,
-            times_resolution=TIMES_RESOLUTION,
-            clock_resolution=self.resolution,
-            confidence=CONFIDENCE,
-            coverage=estimate([1.0] * self.processes).coverage,
-            formula=FORMULA,
-            of=WHAT_IS_TIMED,
-        )
-        machine = TimingMachine(processor(), versions()["python"], command())
-        return TradeTimings(machine, method, self.timings)
-
-
-def _versions() -> dict[str, str]:
-    """Of all that takes part in the numbers: SciPy too, which is no part of a verdict."""
-    found = {package: found for package, found in versions().items() if package != "python"}
-    with suppress(PackageNotFoundError):
-        found["scipy"] = version("scipy")
-    return found
+# A scene with the settings that are timed on it.
+Asked = tuple[Scene, Sequence[Name]]
 
 
 def measurement(
@@ -138,105 +85,95 @@ def measurement(
     rounds: int = ROUNDS,
     with_outside: bool = False,
     seed: int = SEED,
-    finished: Callable[[str], None] | None = None,
-) -> Measurement:
+    finished: Callable[[str], None] = lambda part: None,
+) -> tuple[TradeNumbers, TradeTimings]:
     """Solve the scenes with every published setting, then time what is sound in fresh processes.
 
-    ``finished`` is told of each part as it ends.
+    ``finished`` is called with the name of each part as it ends.
     """
-    tell = finished if finished is not None else (lambda what: None)
     trades = []
     for scene in map(load, names):
-        asked = published_settings(scene, with_outside)
+        settings = tuple(published_settings(scene, with_outside))
         # What is published must not hang on how busy the machine was.
-        trades.append(trade_off(scene, asked, 0, seed, patience=inf))
-        tell(f"errors of {scene.name}")
-    found: list[dict[str, dict[Name, Measured]]] = []
+        trades.append(trade_off(scene, settings, 0, seed, patience=inf))
+        finished(f"errors of {scene.name}")
+    asked = [
+        (one.scene, [p.timed.setting.name for p in sound_points(one.points)]) for one in trades
+    ]
+    by_process = []
     for number in range(processes):
-        found.append(_in_a_new_process(_asked(trades), seed + number, rounds))
-        tell(f"times, process {number + 1} of {processes}")
+        by_process.append(in_a_new_process(one_process, asked, seed + number, rounds))
+        finished(f"times, process {number + 1} of {processes}")
     doubles = tuple(plain_doubles())
-    tell("the closed form in doubles")
-    timings = tuple(one for trade in trades for one in _timings(trade, found))
-    resolution = clock_resolution()
-    return Measurement(tuple(trades), timings, processes, rounds, seed, resolution, doubles)
+    finished("the closed form in doubles")
+    numbers = TradeNumbers(
+        versions=_versions(),
+        yardstick=" ".join(YARDSTICK),
+        scenes=tuple(map(_scene, trades)),
+        plain_doubles=doubles,
+        points=tuple(p.on(trade.scene.name) for trade in trades for p in trade.points),
+    )
+    machine = TimingMachine(processor(), versions()["python"], command())
+    return numbers, TradeTimings(
+        machine, method(processes, rounds, seed), tuple(_timings(asked, by_process))
+    )
 
 
-def published_settings(scene: Scene, with_outside: bool = False) -> tuple[Setting, ...]:
-    """Family by family, the coarsest first: taylor on every rung, all else on f64."""
-    return tuple(_published(scene, with_outside))
+def _versions() -> dict[str, str]:
+    """Return the versions of all that takes part: SciPy too, which is no part of a verdict."""
+    found = packages()
+    with suppress(PackageNotFoundError):
+        found["scipy"] = version("scipy")
+    return found
 
 
-def _published(scene: Scene, with_outside: bool) -> Iterator[Setting]:
+def published_settings(scene: Scene, with_outside: bool = False) -> Iterator[Setting]:
+    """Yield the settings family by family, the coarsest first: taylor on every rung, all else on f64."""
     f64 = rung_named("f64")
     yield from taylor(f64)
     for name in _OWN_TOLERANCE:
         yield setting(YARDSTICK[0], rung_named(name))
-    for method, tolerances in _SCIPY.items():
-        yield from library([method], tolerances, f64)
+    for solver, tolerances in _SCIPY.items():
+        yield from library([solver], tolerances, f64)
     if isinstance(scene.body, RigidBody):
         yield from geometric(scene, f64)
-        yield setting("closed-form:ellipj", f64)
-    if isinstance(scene.body, RigidBody) and not scene.track - {"omega"}:
-        # Seconds a solve: the scene with the fewest equations says enough.
-        yield setting(_ODEFUN, f64)
+        yield setting(ELLIPJ, f64)
+        if not scene.track - {"omega"}:
+            # Seconds a solve: the scene with the fewest equations says enough.
+            yield setting(_ODEFUN, f64)
     if with_outside:
         yield from outside(["f64"], _COMPILED, _FOR_THE_COLUMNS)
 
 
-Asked = Sequence[tuple[Scene, Sequence[Name]]]
-
-
-def _asked(trades: Sequence[TradeOff]) -> Asked:
-    return [(trade.scene, [name for name, _ in _sound(trade)]) for trade in trades]
-
-
-def _sound(trade: TradeOff) -> Iterator[tuple[Name, Setting]]:
-    for p in trade.points:
-        if p.standing is Standing.SOUND:
-            asked = p.timed.setting
-            yield (asked.solver.name, asked.rung.name), asked
-
-
-def _in_a_new_process(asked: Asked, seed: int, rounds: int) -> dict[str, dict[Name, Measured]]:
-    # Spawned, not forked: a fork would have the memory of this process, and its hash seed.
-    with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
-        return pool.submit(one_process, asked, seed, rounds).result()
-
-
-def one_process(asked: Asked, seed: int, rounds: int) -> dict[str, dict[Name, Measured]]:
-    """What one process measures, by scene; the scenes too in an order of its own."""
+def one_process(asked: Sequence[Asked], seed: int, rounds: int) -> dict[str, dict[Name, Measured]]:
+    """Return what one process measures, by scene; the scenes too in an order of its own."""
     scenes = list(asked)
     random.Random(seed).shuffle(scenes)
     return {scene.name: measured(scene, names, seed, rounds) for scene, names in scenes}
 
 
 def _timings(
-    trade: TradeOff, found: Sequence[Mapping[str, Mapping[Name, Measured]]]
+    asked: Sequence[Asked], by_process: Sequence[dict[str, dict[Name, Measured]]]
 ) -> Iterator[TradeTiming]:
     """Yield the times of every setting that finished in all the processes."""
-    scene = trade.scene.name
-    of_scene = [one[scene] for one in found]
-    for name, _ in _sound(trade):
-        its = [one[name] for one in of_scene if name in one]
-        if its and len(its) == len(of_scene):
-            yield _timing(scene, name, its)
+    for scene, names in asked:
+        of_scene = [process[scene.name] for process in by_process]
+        for name in names:
+            if of_scene and all(name in one for one in of_scene):
+                yield _timing(scene.name, name, [one[name] for one in of_scene])
 
 
-def _timing(scene: str, name: Name, its: Sequence[Measured]) -> TradeTiming:
-    solver, rung = name
-    inner = [one.inner for one in its if one.inner is not None]
-    ratio = estimate(one.ratio for one in its)
+def _timing(scene: str, name: Name, every: Sequence[Measured]) -> TradeTiming:
+    inner = [one.inner for one in every if one.inner is not None]
+    ratio = estimate(one.ratio for one in every)
     return TradeTiming(
-        scene=scene,
-        solver=solver,
-        rung=rung,
-        seconds=estimate(one.seconds for one in its).median,
-        inner_seconds=estimate(inner).median if len(inner) == len(its) else None,
+        *(scene, *name),
+        seconds=estimate(one.seconds for one in every).median,
+        inner_seconds=estimate(inner).median if len(inner) == len(every) else None,
         ratio=ratio.median,
         low=ratio.low,
         high=ratio.high,
-        processes=ratio.count,
+        processes=len(every),
     )
 
 

@@ -12,44 +12,39 @@ or more, whatever the distribution (H. A. David and H. N. Nagaraja, Order Statis
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from math import comb
 from statistics import median
-from typing import Final
+from typing import Final, NamedTuple
 
 CONFIDENCE: Final = 0.95
 FORMULA: Final = "1 - 2 sum_{i<k} C(n, i)/2^n"
 
 
-@dataclass(frozen=True)
-class Estimate:
-    """The median of ``count`` values; ``low`` and ``high`` hold that of their distribution.
+class Estimate(NamedTuple):
+    """The median of some values; ``low`` and ``high`` hold that of their distribution.
 
-    ``coverage`` is the probability that they do. ``low`` and ``high`` are None where ``count`` is too
-    small for the confidence asked for, and ``coverage`` then is that of the two extremes.
+    Both are None where the values are too few for the confidence asked for.
     """
 
     median: float
     low: float | None
     high: float | None
-    count: int
-    coverage: float
 
 
-def estimate(values: Iterable[float], confidence: float = CONFIDENCE) -> Estimate:
-    """Of at least one value."""
-    found = sorted(values)
-    rank = place(len(found), confidence)
-    low, high = (found[rank - 1], found[-rank]) if rank else (None, None)
-    return Estimate(median(found), low, high, len(found), coverage(len(found), max(rank, 1)))
+def estimate(values: Iterable[float]) -> Estimate:
+    """Return the median of at least one value, with its interval of CONFIDENCE."""
+    ranked = sorted(values)
+    rank = place(len(ranked), CONFIDENCE)
+    low, high = (ranked[rank - 1], ranked[-rank]) if rank else (None, None)
+    return Estimate(median(ranked), low, high)
 
 
 def coverage(count: int, rank: int) -> float:
-    """The probability that the median lies between the rank-th smallest and largest of so many."""
+    """Return the probability that the median is between the rank-th smallest and largest of so many."""
     return 1 - 2 * sum(comb(count, i) for i in range(rank)) * 0.5**count
 
 
 def place(count: int, confidence: float) -> int:
-    """The largest rank whose interval has the confidence; 0 where not even the extremes have it."""
+    """Return the largest rank whose interval has the confidence; 0 if not even the extremes have it."""
     ranks = range(1, (count + 1) // 2 + 1)
     return max((rank for rank in ranks if coverage(count, rank) >= confidence), default=0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from math import log10
+from math import isclose, log10
 from pathlib import Path
 from typing import Final
 
@@ -13,10 +13,11 @@ from taylor_verify.publish.page import whole
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.pictures.ratio import Ratio
 from taylor_verify.publish.sheet import sheet as csv_sheet
+from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.standing import Standing
 from taylor_verify.studies import figures
-from taylor_verify.studies.tradeoff.document import TradePoint
-from taylor_verify.studies.tradeoff.doubles_table import doubles_table
+from taylor_verify.studies.tradeoff.document import PlainDouble, TradePoint
+from taylor_verify.studies.tradeoff.pareto import pareto
 from taylor_verify.studies.tradeoff.pictures import time_by_rung
 from taylor_verify.studies.tradeoff.pictures import trade as of_one_scene
 from taylor_verify.studies.tradeoff.stored import TimedPoint, Trade, Trades
@@ -37,10 +38,33 @@ _WHAT: Final = (
     "heyoka in float64 at its own tolerance, in the same minute on the same machine; the error is "
     "the largest of everything that the scene tracks, at all its samples."
 )
+_PLAIN_DOUBLES: Final = (
+    "Omega of a free body is Jacobi's sn, cn and dn of time, and SciPy has them: `closed-form:ellipj` is "
+    "that in float64, written with care. 1 - m is exact here and 0 on the separatrix; the error is "
+    "relative to the largest |omega|. Beside it the integrator, where the motion is short enough for it."
+)
+_WHY_DOUBLES_FAIL: Final = (
+    "**Long times.** The argument u = lam t + u0 is rounded to 2^-53 of itself, and so is lam: a phase "
+    "error of some 1e-16 lam |t|. No step was taken, and still the error grows in proportion to time; "
+    "at t = 1e15 u is known to a tenth, and the answer is a point somewhere on the right orbit.",
+    "**Near the separatrix.** m is a double near 1, so that 1 - m is known to 1e-16: its relative error "
+    "is 1e-16/(1 - m), the period depends on its logarithm, and where an orbit waits at the middle "
+    "axis that shows. Below 1 - m = 1e-10 SciPy's `ellipj` takes series about m = 1 that hold within "
+    "the first quarter of a period only. Beyond it they grow like an exponential, and what comes back "
+    "is larger than the motion by any factor, without a warning.",
+    "**On it** the answer hangs on the last bit of m. It is right where that happens to be 1, and where "
+    "the principal axes are themselves found in doubles it need not be.",
+    "**About the middle axis** the phase is infinite and the answer no number, where the motion is the "
+    "simplest of all.",
+    "Equal moments, a moment of force, a body at rest, an attitude, a fluid: it says beforehand that "
+    "it is not made for them.",
+    "The exact route of this suite has the same functions with 1 - m formed in rationals and as much "
+    "precision as the answer needs: none of these orbits is difficult for it.",
+)
 
 
 def page(found: Trades, folder: Path) -> str:
-    """The whole page, with the pictures that are in ``folder``/figures."""
+    """Return the whole page, with the pictures that are in ``folder``/figures."""
     return whole(
         "Speed against accuracy",
         _WHAT,
@@ -75,7 +99,9 @@ def page(found: Trades, folder: Path) -> str:
         "None of these is on a front, and none has a number above.",
         _failures(found),
         "## The closed form in plain doubles",
-        doubles_table(found.numbers.plain_doubles),
+        _PLAIN_DOUBLES,
+        _doubles(found.numbers.plain_doubles),
+        bullets(_WHY_DOUBLES_FAIL),
         "## What is timed",
         what_is_timed(),
         "## How it was timed, and where",
@@ -91,12 +117,12 @@ def pictures(found: Trades) -> list[Picture]:
 
 
 def _of_trade(found: Trade) -> list[Picture]:
-    """Error against time, evaluations and steps, and the digits asked for and left, of one scene."""
+    """Return the pictures of one scene; none where no setting is sound."""
     return of_one_scene.pictures(found.document()) if found.sound else []
 
 
 def _of_rungs(found: Sequence[Trade]) -> list[Picture]:
-    """Taylor's time at each rung's own tolerance, a line for each scene."""
+    """Return the picture of taylor's time at each rung's own tolerance, a line for each scene."""
     rows = [
         Ratio(one.scene, row.point.rung, row.timing.ratio, row.timing.low, row.timing.high)
         for one in found
@@ -113,28 +139,32 @@ def _by_digits(found: Trades) -> str:
     columns = ["scene", "solver", *(f"{digits} digits:" for digits in DIGITS)]
     rows = []
     for trade in found.trades:
-        rows.append(
-            [code(trade.scene), _yardstick(trade, found.numbers.yardstick), *[""] * len(DIGITS)]
-        )
+        yardstick = _yardstick(trade, found.numbers.yardstick)
+        rows.append([code(trade.scene), yardstick, *[""] * len(DIGITS)])
+        ran = {p.family for p in trade.points if p.standing is not Standing.NOT_RUN}
         for family in (_TAYLOR, *_RIVALS, _CLOSED_FORM):
-            own = [row for row in trade.sound if row.point.family == family]
-            if any(p.family == family and _ran(p) for p in trade.points):
-                cells = [_cheapest(own, digits) for digits in DIGITS]
-                rows.append(["", _family(family), *cells])
-        rows.append(["", *_outside(trade)])
+            if family in ran:
+                own = [row for row in trade.sound if row.point.family == family]
+                rows.append(["", _family(family), *(_cheapest(own, digits) for digits in DIGITS)])
+        others = [row for row in trade.sound if row.point.family.startswith(_OUTSIDE)]
+        cells = [_cheapest(others, n, named=True) if others else "not measured" for n in DIGITS]
+        rows.append(["", "fastest compiled other library", *cells])
     return table(columns, rows)
 
 
 def _yardstick(trade: Trade, name: str) -> str:
     """Return what the yardstick leaves on this scene, and its own part in heyoka's compiled code."""
-    for row in trade.sound:
-        if row.point.label == name:
-            inner, seconds = row.timing.inner_seconds, row.timing.seconds
-            part = f", {inner / seconds:.0%} of its time in heyoka itself" if inner else ""
-            achieved = row.point.achieved_digits
-            digits = f"{achieved:.1f} digits" if achieved else "exact"
-            return f"*{prose(name)} = 1*: {digits}{part}"
-    return f"*{prose(name)}*: no sound answer"
+    row = next((row for row in trade.sound if row.point.label == name), None)
+    if row is None:
+        return f"*{prose(name)}*: no sound answer"
+    inner, seconds = row.timing.inner_seconds, row.timing.seconds
+    part = f", {inner / seconds:.0%} of its time in heyoka itself" if inner else ""
+    return f"*{prose(name)} = 1*: {_digits(row.point)}{part}"
+
+
+def _digits(point: TradePoint, exact: str = "exact") -> str:
+    """Return the digits that were left; the word ``exact`` where all were."""
+    return exact if point.achieved_digits is None else f"{point.achieved_digits:.1f} digits"
 
 
 def _cheapest(rows: Iterable[TimedPoint], digits: int, named: bool = False) -> str:
@@ -144,7 +174,8 @@ def _cheapest(rows: Iterable[TimedPoint], digits: int, named: bool = False) -> s
         return _NOT_REACHED
     best = min(reached, key=lambda row: row.timing.ratio)
     who = f"{_family(best.point.family)}, " if named else ""
-    return f"{who}{_ratio(best)}{_at(best)}"
+    is_tolerance = best.point.asked == "tolerance" and best.point.requested
+    return f"{who}{_ratio(best)}{f' @ {best.point.requested:.0e}' if is_tolerance else ''}"
 
 
 def _ratio(row: TimedPoint) -> str:
@@ -153,60 +184,37 @@ def _ratio(row: TimedPoint) -> str:
     return f"{bold(figure(timing.ratio))}{interval}"
 
 
-def _at(row: TimedPoint) -> str:
-    asked = row.point.requested
-    return f" @ {asked:.0e}" if row.point.asked == "tolerance" and asked else ""
-
-
-def _outside(trade: Trade) -> list[str]:
-    own = [row for row in trade.sound if row.point.family.startswith(_OUTSIDE)]
-    if not own:
-        return ["fastest compiled other library", *["not measured"] * len(DIGITS)]
-    return [
-        "fastest compiled other library",
-        *(_cheapest(own, digits, named=True) for digits in DIGITS),
-    ]
-
-
 # Rungs and requests.
 
 
 def _by_rung(found: Trades) -> str:
-    rungs = dict.fromkeys(
-        p.rung for trade in found.trades for p in trade.points if _is_own_tolerance(p)
-    )
-    ladder = sorted(rungs, key=lambda rung: (rung.startswith("mp"), int(rung.lstrip("fmp"))))
-    columns = ["scene", *(f"{rung}:" for rung in ladder)]
+    own = {
+        trade.scene: {row.point.rung: row for row in trade.sound if _is_own_tolerance(row.point)}
+        for trade in found.trades
+    }
+    rungs = {p.rung for p in found.numbers.points if _is_own_tolerance(p)}
+    ladder = sorted(rungs, key=place_of_rung)
     rows = []
     for trade in found.trades:
-        own = {row.point.rung: row for row in trade.sound if _is_own_tolerance(row.point)}
-        cells = [_rung_cell(own[rung]) if rung in own else NOTHING for rung in ladder]
+        on = own[trade.scene]
+        cells = [f"{_ratio(on[r])}, {_digits(on[r].point)}" if r in on else NOTHING for r in ladder]
         rows.append([code(trade.scene), *cells])
         if floors := trade.about.attainable:
-            rows.append(["*attainable*", *(_floor_cell(floors.get(rung)) for rung in ladder)])
-    return table(columns, rows)
-
-
-def _floor_cell(least: float | None) -> str:
-    """Return the digits that one rounding a sample leaves."""
-    return f"{-log10(least):.1f} digits" if least and least < 1 else NOTHING
+            least = [floors.get(rung) for rung in ladder]
+            cells = [f"{-log10(e):.1f} digits" if e and e < 1 else NOTHING for e in least]
+            rows.append(["*attainable*", *cells])
+    return table(["scene", *(f"{rung}:" for rung in ladder)], rows)
 
 
 def _is_own_tolerance(point: TradePoint) -> bool:
     return point.solver == "taylor" and not point.setting
 
 
-def _rung_cell(row: TimedPoint) -> str:
-    digits = row.point.achieved_digits
-    return f"{_ratio(row)}, {'exact' if digits is None else f'{digits:.1f} digits'}"
-
-
 def _by_request(found: Trades) -> str:
     columns = ["scene", "solver", *(f"{-log10(asked):.0f} asked for:" for asked in _ASKED)]
     rows = []
     for trade in found.trades:
-        families = dict.fromkeys(p.family for p in trade.points if p.asked == "tolerance")
-        for family in families:
+        for family in dict.fromkeys(p.family for p in trade.points if p.asked == "tolerance"):
             own = [p for p in trade.points if p.family == family]
             cells = [_achieved(own, asked) for asked in _ASKED]
             if any(cell != NOTHING for cell in cells):
@@ -217,7 +225,7 @@ def _by_request(found: Trades) -> str:
 def _achieved(points: Iterable[TradePoint], asked: float) -> str:
     """Return the digits that were left; a word where the answer is not sound."""
     for p in points:
-        if p.requested is not None and abs(p.requested / asked - 1) <= 1e-9:
+        if p.requested is not None and isclose(p.requested, asked):
             if p.standing is not Standing.SOUND:
                 return p.standing.value
             return NOTHING if p.achieved_digits is None else f"{p.achieved_digits:.1f}"
@@ -229,28 +237,21 @@ def _achieved(points: Iterable[TradePoint], asked: float) -> str:
 
 def front(rows: Iterable[TimedPoint]) -> list[TimedPoint]:
     """Return what no other beats in both ratio and error, the fastest first."""
-    found: list[TimedPoint] = []
-    for row in sorted(rows, key=lambda row: (row.timing.ratio, row.error)):
-        if not found or row.error < found[-1].error:
-            found.append(row)
-    return found
+    return pareto(rows, lambda row: (row.timing.ratio, row.error))
 
 
 def _front(trade: Trade) -> str:
     doubles = [row for row in trade.sound if row.point.rung == "f64"]
     integrators = [row for row in doubles if row.point.family != _CLOSED_FORM]
-    said = [_front_line(row) for row in front(doubles)]
-    parts = [f"{code(trade.scene)}:", bullets(said)]
+    parts = [f"{code(trade.scene)}:", bullets(map(_front_line, front(doubles)))]
     if len(integrators) != len(doubles):
         parts += ["And of the integrators alone:", bullets(map(_front_line, front(integrators)))]
     return "\n\n".join(parts)
 
 
 def _front_line(row: TimedPoint) -> str:
-    digits = row.point.achieved_digits
-    left = "every digit" if digits is None else f"{digits:.1f} digits"
     name = code(row.point.label.removesuffix(f" {row.point.rung}"))
-    return f"{left}: {name}, {_ratio(row)} times the yardstick"
+    return f"{_digits(row.point, 'every digit')}: {name}, {_ratio(row)} times the yardstick"
 
 
 def _geometric(found: Trades) -> str:
@@ -274,26 +275,43 @@ def _geometric(found: Trades) -> str:
 
 
 def _failures(found: Trades) -> str:
+    """Return the points that are not sound, or were not timed in every process."""
+    rows = []
+    for trade in found.trades:
+        compared = [row.point for row in trade.sound]
+        for p in trade.points:
+            if p not in compared:
+                is_sound = p.standing is Standing.SOUND
+                standing = "sound, and not timed" if is_sound else prose(p.standing.value)
+                rows.append([code(trade.scene), code(p.label), standing, prose(p.because)])
     columns = ["scene", "setting", "what it is", "because"]
-    rows = [
-        [code(trade.scene), code(p.label), prose(_standing(p)), prose(p.because)]
-        for trade in found.trades
-        for p in trade.uncompared
-    ]
     return table(columns, rows) if rows else "Nothing."
-
-
-def _standing(point: TradePoint) -> str:
-    is_sound = point.standing is Standing.SOUND
-    return "sound, and not timed" if is_sound else point.standing.value
-
-
-def _ran(point: TradePoint) -> bool:
-    return point.standing is not Standing.NOT_RUN
 
 
 def _family(family: str) -> str:
     return prose(family.removesuffix(" f64").replace("scipy ", "SciPy "))
+
+
+# The closed form in plain doubles.
+
+
+def _doubles(rows: Iterable[PlainDouble]) -> str:
+    """Return a line for each case. A false success stands out; an honest outcome has its own words."""
+    lines = []
+    for row in rows:
+        error = figure(row.error)
+        claims = {Standing.SOUND: "success", Standing.FALSE: bold("success, falsely")}
+        stands_out = row.error is not None and row.standing is not Standing.SOUND
+        lines.append(
+            [
+                *(prose(row.what), figure(row.end), figure(row.m_prime)),
+                bold(error) if stands_out else error,
+                figure(row.error_beside),
+                claims.get(row.standing, prose(row.outcome)),
+            ]
+        )
+    numbers = ("until t:", "1 - m:", "error:", "taylor f64:")
+    return table(["orbit", *numbers, "what it claims"], lines)
 
 
 # The sheet.
@@ -307,5 +325,5 @@ _FIELDS: Final = (
 
 
 def sheet(found: Trades) -> str:
-    """A row for every scene and setting, with every digit."""
+    """Return a row for every scene and setting, with every digit."""
     return csv_sheet(_FIELDS, (row for trade in found.trades for row in trade.rows))

@@ -1,4 +1,4 @@
-"""The failures of the closed form in plain doubles: the same solver, from an easy orbit to none.
+"""The failures of the closed form in plain doubles: one solver, from an easy orbit to none.
 
 1 - m of each orbit, on which it hangs, is exact; the error is that of omega, the largest of all samples.
 """
@@ -8,22 +8,19 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from math import inf
 from typing import Final
 
 from taylor_verify.exact.elements import elements
-from taylor_verify.models.problem import Problem, pose
+from taylor_verify.models.problem import pose
 from taylor_verify.scenes.motion import Clock, Spin
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.registry import solver_named
-from taylor_verify.studies.tradeoff.document import PlainDouble, TradePoint
-from taylor_verify.studies.tradeoff.point import point
-from taylor_verify.studies.tradeoff.setting import setting
-from taylor_verify.studies.tradeoff.timing import Timed
-from taylor_verify.studies.tradeoff.trade_off import Truths
+from taylor_verify.studies.tradeoff.document import PlainDouble
+from taylor_verify.studies.tradeoff.setting import ELLIPJ, setting
+from taylor_verify.studies.tradeoff.trade_off import trade_off
 
-NAME: Final = "closed-form:ellipj"
 # Where a step by step solver gets in a moment, it is shown beside.
 _BESIDE: Final = "taylor"
 
@@ -35,7 +32,7 @@ _SAMPLES: Final = 11
 
 @dataclass(frozen=True)
 class Case:
-    """A scene, what it is in words, and whether it is short enough for a solver that takes steps."""
+    """A scene, its words, and whether it is short enough for a solver that takes steps."""
 
     scene: Scene
     what: str
@@ -43,7 +40,7 @@ class Case:
 
 
 def cases() -> Iterator[Case]:
-    """Easy orbits, long times, starts beside the middle axis, separatrices, the middle axis itself."""
+    """Yield easy orbits, long times, starts beside the middle axis, separatrices, the axis itself."""
     yield Case(load(_EASY), "far from every degeneracy")
     for digits in _LONG:
         end = Fraction(10) ** digits
@@ -67,32 +64,20 @@ def plain_doubles() -> Iterator[PlainDouble]:
     ``m_prime`` is None where the orbit has none.
     """
     f64 = rung("f64")
-    truths = Truths()
     for case in cases():
-        problem = pose(case.scene, f64)
-        found = _achieved(NAME, problem, truths)
-        beside = _achieved(_BESIDE, problem, truths).error if case.is_short else None
+        solvers = (ELLIPJ, _BESIDE) if case.is_short else (ELLIPJ,)
+        trade = trade_off(case.scene, [setting(name, f64) for name in solvers], 0, patience=inf)
+        found, *beside = (p.on(case.scene.name) for p in trade.points)
+        m_prime = elements(pose(case.scene, f64).given).get("m_prime")
         yield PlainDouble(
             what=case.what,
             scene=case.scene.name,
             end=float(case.scene.clock.instants[-1]),
-            m_prime=_m_prime(problem),
+            m_prime=None if m_prime is None else float(m_prime.value),
             error=found.error,
             outcome=found.outcome,
             standing=found.standing,
             because=found.because,
             beside=_BESIDE,
-            error_beside=beside,
+            error_beside=beside[0].error if beside else None,
         )
-
-
-def _achieved(name: str, problem: Problem, truths: Truths) -> TradePoint:
-    """Return one solve as a point of a trade."""
-    trajectory = solver_named(name).solve(problem)
-    run = Timed(setting(name, problem.rung), trajectory, 0.0, (trajectory.seconds,))
-    return point(run, truths.accuracy(problem, trajectory)).on(problem.scene.name)
-
-
-def _m_prime(problem: Problem) -> float | None:
-    found = elements(problem.given)
-    return float(found["m_prime"].value) if "m_prime" in found else None

@@ -1,4 +1,4 @@
-"""A point of the trade: what one setting achieved on a scene, and what it took."""
+"""A point of the trade: the accuracy of one setting on a scene, and its time."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from taylor_verify.studies.tradeoff.timing import Timed
 
 @dataclass(frozen=True)
 class Point:
-    """One setting's accuracy and time; ``because`` says why it is not sound, where it is not."""
+    """The accuracy and the time of a setting; ``because`` says why it is not sound, where it is not."""
 
     timed: Timed
     accuracy: Accuracy
@@ -29,7 +29,7 @@ class Point:
 
     @property
     def asked_digits(self) -> float | None:
-        """Those of the tolerance; a step asks for none."""
+        """Digits of the tolerance; a step asks for none."""
         setting = self.timed.setting
         asks = setting.asked == "tolerance" and setting.requested is not None
         return digits(setting.requested or 0.0) if asks else None
@@ -81,23 +81,21 @@ class Point:
             "spread": self.timed.spread,
             "repeats": len(self.timed.seconds),
             "first_seconds": self.timed.first,
-            "compile_seconds": self.timed.compiling,
+            "compile_seconds": self.timed.trajectory.compile_seconds,
         }
 
 
 def point(timed: Timed, accuracy: Accuracy | None) -> Point:
-    """The point of a run; ``accuracy`` is None where there is no truth to compare with."""
-    trajectory = timed.trajectory
-    if trajectory.outcome is not Outcome.FINISHED:
-        outcome = trajectory.outcome
+    """Return the point of a run; ``accuracy`` is None where there is no truth to compare with."""
+    outcome = timed.trajectory.outcome
+    if outcome is not Outcome.FINISHED:
         started = outcome is not Outcome.NOT_STARTED and not outcome.is_unavailable
-        because = trajectory.detail or trajectory.outcome.value
+        because = timed.trajectory.detail or outcome.value
         return Point(timed, Accuracy(), Standing.FAILED if started else Standing.NOT_RUN, because)
     if accuracy is None:
         return Point(timed, Accuracy(), Standing.UNDECIDED, "the truth is not to be had")
     if not accuracy.worst < 1:
-        size = f"{accuracy.worst:.2g}"
-        because = f"it claims success with an error of {size}, the size of the motion"
+        because = f"it claims success with an error of {accuracy.worst:.2g}, the size of the motion"
         return Point(timed, accuracy, Standing.FALSE, because)
     if timed.best is None:
         return Point(timed, accuracy, Standing.UNDECIDED, "it was not timed")
@@ -105,5 +103,5 @@ def point(timed: Timed, accuracy: Accuracy | None) -> Point:
 
 
 def digits(error: float) -> float | None:
-    """How many decimal digits an error leaves; None of one that is no number or leaves them all."""
+    """Return the decimal digits that an error leaves; None if it is no number or leaves them all."""
     return -log10(error) if error > 0 and isfinite(error) else None

@@ -15,13 +15,14 @@ from taylor_verify.scenes.reading.reader import as_scene
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.registry import PROCESS
 from taylor_verify.solvers.solver import Solver
+from taylor_verify.studies.tradeoff import SEED
+from taylor_verify.studies.tradeoff.accuracy import Truths
 from taylor_verify.studies.tradeoff.attainability import left_out, narrowest
-from taylor_verify.studies.tradeoff.front import sound_points
+from taylor_verify.studies.tradeoff.document import label
 from taylor_verify.studies.tradeoff.point import Point
-from taylor_verify.studies.tradeoff.setting import Setting, label, settings
+from taylor_verify.studies.tradeoff.setting import Setting, settings
 from taylor_verify.studies.tradeoff.starts import nearby
-from taylor_verify.studies.tradeoff.timing import SEED
-from taylor_verify.studies.tradeoff.trade_off import TradeOff, Truths, trade_off
+from taylor_verify.studies.tradeoff.trade_off import TradeOff, sound_points, trade_off
 
 # A start outside the ensemble may fare worse than the worst of a handful within it: a binary digit.
 MARGIN: Final = 2.0
@@ -54,17 +55,13 @@ class Recommendation:
     left_out: tuple[str, ...] = ()
 
     def document(self) -> dict[str, Any]:
-        """As ``tradeoff --target --json`` prints it."""
+        """Return what ``tradeoff --target --json`` prints."""
+        names = ("target", "error", "margin", "starts", "seed", "seconds")
         return {
             "solver": self.solver.name,
             "setting": self.solver.setting,
             "rung": self.rung.name,
-            "target": self.target,
-            "error": self.error,
-            "margin": self.margin,
-            "starts": self.starts,
-            "seed": self.seed,
-            "seconds": self.seconds,
+            **{name: getattr(self, name) for name in names},
             "left_out": list(self.left_out),
             "command": self.command,
             "sentence": self.sentence,
@@ -72,18 +69,20 @@ class Recommendation:
 
     @property
     def command(self) -> str:
-        """What runs and judges it, as it is typed into a shell."""
+        """The command line that runs and judges it."""
         words = ["taylor-verify", "run", self.scene, "--solver", self.solver.name]
         return shlex.join([*words, "--rung", self.rung.name])
 
     @property
     def sentence(self) -> str:
-        """The same for a person, with what was not measured and why."""
+        """The recommendation in words, with what was not measured and why."""
+        setting = label(self.solver.name, self.solver.setting, self.rung.name)
+        unmeasured = f" Not measured: {'; '.join(self.left_out)}." if self.left_out else ""
         return (
-            f"To stay below {self.target:.3g}: {label(self.solver, self.rung)}, "
+            f"To stay below {self.target:.3g}: {setting}, "
             f"{self.seconds:.3g} s per solve. Its largest error over {self.starts} starts "
             f"(seed {self.seed}) is {self.error:.2g}; a margin of {self.margin:g} is kept."
-            f"{_not_measured(self.left_out)}"
+            f"{unmeasured}"
         )
 
 
@@ -97,20 +96,13 @@ def recommend(
     check_target(error)
     scene = as_scene(scene)
     asked = settings(scene) if asked is None else asked
-    without = left_out(scene, (one.rung for one in asked if _computes_on_its_rung(one)), error)
-    kept = [one for one in asked if one.rung not in without or not _computes_on_its_rung(one)]
+    bound = [one for one in asked if not one.solver.name.startswith(_OF_ANOTHER_PRECISION)]
+    without = left_out(scene, (one.rung for one in bound), error)
+    kept = [one for one in asked if one.rung not in without or one not in bound]
     reasons = tuple(without.values())
     if not kept and reasons:
-        raise OutOfReach(f"{_none_below(scene, error)}: {'; '.join(reasons)}{_wider(scene, error)}")
+        raise OutOfReach(_out_of_reach(scene, error, f": {'; '.join(reasons)}"))
     return replace(recommended(trade_off(scene, kept, seed=seed), error), left_out=reasons)
-
-
-def _computes_on_its_rung(setting: Setting) -> bool:
-    return not setting.solver.name.startswith(_OF_ANOTHER_PRECISION)
-
-
-def _not_measured(reasons: Sequence[str]) -> str:
-    return f" Not measured: {'; '.join(reasons)}." if reasons else ""
 
 
 def check_target(error: float) -> None:
@@ -119,13 +111,13 @@ def check_target(error: float) -> None:
 
 
 def recommended(trade: TradeOff, error: float) -> Recommendation:
-    """The same from a trade that is measured already.
+    """Return the fastest setting of a trade that is measured already.
 
     ``error`` is as in `recommend`. Raises OutOfReach where nothing reaches it.
     """
-    scenes = nearby(trade.scene, trade.seed)
-    truths = Truths()
-    hopeful = [p for p in sound_points(trade.points) if MARGIN * p.error <= error]
+    scenes, truths = nearby(trade.scene, trade.seed), Truths()
+    sound = sound_points(trade.points)
+    hopeful = [p for p in sound if MARGIN * p.error <= error]
     for p in sorted(hopeful, key=lambda p: p.seconds):
         worst = _largest(p, scenes, truths, error)
         if worst is not None:
@@ -134,11 +126,15 @@ def recommended(trade: TradeOff, error: float) -> Recommendation:
                 *(trade.scene.name, setting.solver, setting.rung, error, worst, MARGIN),
                 *(1 + len(scenes), trade.seed, p.seconds),
             )
-    raise OutOfReach(_nearest(trade, error))
+    if not sound:
+        raise OutOfReach(_out_of_reach(trade.scene, error, "; none gave a sound answer"))
+    best = min(sound, key=lambda p: p.error)
+    nearest = f"; the most accurate, {best.label}, has an error of {best.error:.2g} on the scene"
+    raise OutOfReach(_out_of_reach(trade.scene, error, nearest))
 
 
 def _largest(p: Point, scenes: Sequence[Scene], truths: Truths, target: float) -> float | None:
-    """The largest error over all starts; None where one of them misses the target, or has no truth."""
+    """Return the largest error over all starts; None if one misses the target, or has no truth."""
     setting, worst = p.timed.setting, p.error
     for scene in scenes:
         try:
@@ -152,25 +148,15 @@ def _largest(p: Point, scenes: Sequence[Scene], truths: Truths, target: float) -
     return worst
 
 
-def _nearest(trade: TradeOff, error: float) -> str:
-    asked, wider = _none_below(trade.scene, error), _wider(trade.scene, error)
-    sound = sound_points(trade.points)
-    if not sound:
-        return f"{asked}; none gave a sound answer{wider}"
-    best = min(sound, key=lambda p: p.error)
-    nearest = f"the most accurate, {best.label}, has an error of {best.error:.2g} on the scene"
-    return f"{asked}; {nearest}{wider}"
-
-
-def _none_below(scene: Scene, error: float) -> str:
-    return f"no setting stays below {error:.3g} with a margin of {MARGIN:g} @ {scene.name}"
-
-
-def _wider(scene: Scene, error: float) -> str:
-    """The narrowest rung that would do, in words."""
+def _out_of_reach(scene: Scene, error: float, reason: str) -> str:
+    """Return the reason why nothing reaches an error, with the narrowest rung that would do."""
     found = narrowest(scene, error / MARGIN)
-    if found is None:
-        return "; no precision is known on which rounding alone leaves so little"
-    rung, least = found
-    leaves = f"{rung.name} ({least:.2g})"
-    return f"; the narrowest precision on which rounding alone leaves so little is {leaves}"
+    wider = "no precision is known on which rounding alone leaves so little"
+    if found is not None:
+        rung, least = found
+        wider = (
+            "the narrowest precision on which rounding alone leaves so little is "
+            f"{rung.name} ({least:.2g})"
+        )
+    nothing = f"no setting stays below {error:.3g} with a margin of {MARGIN:g} @ {scene.name}"
+    return f"{nothing}{reason}; {wider}"

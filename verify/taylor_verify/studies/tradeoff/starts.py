@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from typing import Final
@@ -17,19 +16,14 @@ _GRAIN: Final = 100
 
 
 def nearby(scene: Scene, seed: int, count: int = STARTS) -> list[Scene]:
-    """Scenes whose angular velocity or impulses differ by up to one per cent in each component.
+    """Return scenes whose angular velocity or impulses differ by up to one per cent in each component.
 
     A component that is zero stays so; attitude and centre only say from where the motion is seen.
     """
-    draw = random.Random(seed)
+    draw, start = random.Random(seed), scene.initial
 
-    def factor() -> Fraction:
-        return 1 + _REACH * Fraction(draw.randint(-_GRAIN, _GRAIN), _GRAIN)
+    def moved(component: Fraction) -> Fraction:
+        return component * (1 + _REACH * Fraction(draw.randint(-_GRAIN, _GRAIN), _GRAIN))
 
-    return [_moved(scene, factor) for _ in range(count)]
-
-
-def _moved(scene: Scene, factor: Callable[[], Fraction]) -> Scene:
-    start = scene.initial
-    moved = tuple(component * factor() for component in start.moving)
-    return replace(scene, initial=start.with_moving(moved))
+    starts = (start.with_moving(tuple(map(moved, start.moving))) for _ in range(count))
+    return [replace(scene, initial=one) for one in starts]

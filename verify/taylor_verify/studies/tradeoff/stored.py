@@ -1,14 +1,13 @@
 """The measurement of speed against accuracy, as stored: errors in one file, times in another.
 
-tradeoff.json           of every scene and setting what was asked and achieved; the same on any
-                        machine, but for the rounding
+tradeoff.json           what was asked and achieved, the same on any machine but for the rounding
 tradeoff-timings.json   seconds, ratios and intervals; the machine's own, and never compared
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
@@ -26,9 +25,8 @@ from taylor_verify.studies.tradeoff.document import (
 NUMBERS: Final = Stored(TradeNumbers, "tradeoff")
 TIMINGS: Final = Stored(TradeTimings, "tradeoff", stem="tradeoff-timings")
 
-# What both files have of a setting.
-_NAMES: Final = ("scene", "solver", "rung")
-_TIMES: Final = tuple(f.name for f in fields(TradeTiming) if f.name not in _NAMES)
+# What the times add to a row of the numbers.
+_TIMES: Final = ("seconds", "inner_seconds", "ratio", "low", "high", "processes", "spread")
 
 
 @dataclass(frozen=True)
@@ -46,7 +44,7 @@ class TimedPoint:
 
 @dataclass(frozen=True)
 class Trade:
-    """One scene: a point for every setting, the coarsest of a family first, and the times of some.
+    """A scene with a point for every setting, the coarsest of a family first, and the times of some.
 
     ``timings`` are by solver and rung.
     """
@@ -62,20 +60,17 @@ class Trade:
 
     @property
     def sound(self) -> tuple[TimedPoint, ...]:
-        """What may be compared: sound, and timed in every process."""
+        """The points that may be compared: sound, and timed in every process."""
         timed = ((p, self._timing(p)) for p in self.points if p.standing is Standing.SOUND)
         return tuple(TimedPoint(p, timing) for p, timing in timed if timing is not None)
 
     @property
-    def uncompared(self) -> list[TradePoint]:
-        """The points that are not sound, or were not timed in every process."""
-        compared = {(row.point.solver, row.point.rung) for row in self.sound}
-        return [p for p in self.points if (p.solver, p.rung) not in compared]
-
-    @property
     def rows(self) -> list[dict[str, Any]]:
         """A row of `tradeoff --json` for every setting, with the ratio to the yardstick besides."""
-        return [self._row(p) for p in self.points]
+        return [
+            {**complete(p), **{name: getattr(self._timing(p), name, None) for name in _TIMES}}
+            for p in self.points
+        ]
 
     def document(self) -> dict[str, Any]:
         """Return what `tradeoff --json` has for one scene, as far as it is stored."""
@@ -89,28 +84,25 @@ class Trade:
     def _timing(self, point: TradePoint) -> TradeTiming | None:
         return self.timings.get((point.solver, point.rung))
 
-    def _row(self, point: TradePoint) -> dict[str, Any]:
-        timing = self._timing(point)
-        times = {name: getattr(timing, name, None) for name in _TIMES}
-        return {**complete(point), **times, "spread": _spread(timing)}
-
 
 @dataclass(frozen=True)
 class Trades:
-    """The whole measurement: its numbers, its times, and both of them together scene by scene."""
+    """The whole measurement: its numbers, its times, and both scene by scene."""
 
     numbers: TradeNumbers
     times: TradeTimings
 
     @property
     def trades(self) -> tuple[Trade, ...]:
-        """Every scene with its points and their times."""
-        return tuple(map(self._trade, self.numbers.scenes))
-
-    def _trade(self, about: TradeScene) -> Trade:
-        points = tuple(p for p in self.numbers.points if p.scene == about.scene)
-        own = [timing for timing in self.times.timings if timing.scene == about.scene]
-        return Trade(about, points, {(timing.solver, timing.rung): timing for timing in own})
+        """The scenes, each with its points and their times."""
+        timings: dict[str, dict[tuple[str, str], TradeTiming]] = {}
+        for one in self.times.timings:
+            timings.setdefault(one.scene, {})[one.solver, one.rung] = one
+        points = self.numbers.points
+        return tuple(
+            Trade(one, tuple(p for p in points if p.scene == one.scene), timings.get(one.scene, {}))
+            for one in self.numbers.scenes
+        )
 
 
 def write(folder: Path, numbers: TradeNumbers, times: TradeTimings) -> list[Path]:
@@ -125,10 +117,3 @@ def load(folder: Path) -> Trades | None:
     """
     numbers = NUMBERS.find(folder)
     return None if numbers is None else Trades(numbers, TIMINGS.load(folder))
-
-
-def _spread(timing: TradeTiming | None) -> float | None:
-    """Return the upper end of the interval over the lower, which a picture draws as a bar."""
-    if timing is None or not (timing.low and timing.high):
-        return None
-    return timing.high / timing.low

@@ -13,8 +13,8 @@ from taylor_verify.studies.tradeoff.stored import load, write
 def _measure(folder: Path, progress: Progress, outside: bool = False) -> Measured:
     from taylor_verify.studies.tradeoff.measurement import measurement
 
-    found = measurement(with_outside=outside, finished=progress.say)
-    return Measured(write(folder, found.numbers(), found.times()))
+    numbers, times = measurement(with_outside=outside, finished=progress.say)
+    return Measured(write(folder, numbers, times))
 
 
 STUDY: Final = Study(

@@ -1,4 +1,4 @@
-"""How long each setting takes: in a fresh order each time, start-up apart, caches off for the cold.
+"""The times of each setting: in a fresh order each round, start-up apart, caches off for the cold.
 
 A time is the solver's own propagation, as its trajectory states it. The first solve of a setting is
 apart: it compiles, imports and fills caches. What follows is repeated in rounds, each of them in an
@@ -20,8 +20,6 @@ from taylor_verify.models.problem import Problem
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.studies.tradeoff.setting import Setting
 
-REPEATS: Final = 5
-SEED: Final = 1
 # A setting that took longer is not set finer, and one that has is not repeated more than once.
 PATIENCE: Final = 2.0
 _HEYOKA_CACHE: Final = "HEYOKA_CACHE_DIR"
@@ -41,9 +39,9 @@ Clock = Callable[[], float]
 class Timed:
     """The first answer of a setting and the times of all others, in seconds.
 
-    ``first`` is the whole of the first solve as the caller waits for it, ``compiling`` the part of
-    it that the solver says went before the propagation. ``seconds`` is empty for a run that failed.
-    ``inner`` is what the best of them spent in somebody else's compiled integrator, where known.
+    ``first`` is the whole of the first solve as the caller waits for it. ``seconds`` is empty for a run
+    that failed. ``inner`` is what the best of them spent in somebody else's compiled integrator, where
+    known.
     """
 
     setting: Setting
@@ -53,67 +51,62 @@ class Timed:
     inner: float | None = None
 
     @property
-    def compiling(self) -> float:
-        return self.trajectory.compile_seconds
-
-    @property
     def best(self) -> float | None:
         return min(self.seconds, default=None)
 
     @property
     def spread(self) -> float | None:
         """The slowest over the fastest."""
-        best = self.best
-        return max(self.seconds) / best if best else None
+        return max(self.seconds) / self.best if self.best else None
 
 
 def timed(
-    problems: Mapping[Setting, Problem],
+    problems: Mapping[Setting, Problem | str],
     repeats: int,
     seed: int,
     clock: Clock = perf_counter,
     patience: float = PATIENCE,
 ) -> list[Timed]:
-    """Every setting solved once and those that finished ``repeats`` times more, in their own order.
+    """Solve every setting once, those that finished ``repeats`` times more; return them in their order.
 
-    Without repeats the first time is all there is, as for whoever is after the errors alone.
-    A setting is left out where a coarser one of its family took more than ``patience`` seconds; the
-    outcome says so.
+    A text in place of a problem is the reason why a setting cannot run. Without repeats the first time is
+    all there is, as for whoever is after the errors alone. A setting is left out where a coarser one
+    of its family took more than ``patience`` seconds; the outcome says so.
     """
     firsts = _first_solves(problems, clock, patience)
-    again: dict[Setting, list[Trajectory]] = {
-        one.setting: [] for one in firsts if one.trajectory.outcome is Outcome.FINISHED
-    }
-    spent = {one.setting: one.trajectory.seconds for one in firsts}
+    finished = [one for one in firsts if one.trajectory.outcome is Outcome.FINISHED]
+    # Of each solve the seconds, and those in a compiled integrator: whole answers would fill the memory.
+    again: dict[Setting, list[tuple[float, float | None]]] = {one.setting: [] for one in finished}
+    spent = {one.setting: one.trajectory.seconds for one in finished}
+    posed = {setting: one for setting, one in problems.items() if not isinstance(one, str)}
     order = random.Random(seed)
     for _ in range(repeats):
         settings = [s for s, made in again.items() if not made or spent[s] <= patience]
         order.shuffle(settings)
         for setting in settings:
-            # The numbers are those of the first solve; kept, they would fill the memory.
-            solved = replace(setting.solver.solve(problems[setting]), quantities={})
-            again[setting].append(solved)
+            solved = setting.solver.solve(posed[setting])
+            again[setting].append((solved.seconds, solved.inner_seconds))
             spent[setting] += solved.seconds
-    return [_with_times(one, again.get(one.setting, ())) for one in firsts]
+    return [_with_times(one, again[one.setting]) if one.setting in again else one for one in firsts]
 
 
-def _with_times(one: Timed, again: Sequence[Trajectory]) -> Timed:
-    if not again and one.trajectory.outcome is Outcome.FINISHED:
-        again = (one.trajectory,)
-    best = min(again, key=lambda solved: solved.seconds, default=None)
-    inner = best.inner_seconds if best is not None else None
-    return replace(one, seconds=tuple(solved.seconds for solved in again), inner=inner)
+def _with_times(one: Timed, again: Sequence[tuple[float, float | None]]) -> Timed:
+    solves = again or [(one.trajectory.seconds, one.trajectory.inner_seconds)]
+    _, inner = min(solves, key=lambda solve: solve[0])
+    return replace(one, seconds=tuple(seconds for seconds, _ in solves), inner=inner)
 
 
 def _first_solves(
-    problems: Mapping[Setting, Problem], clock: Clock, patience: float
+    problems: Mapping[Setting, Problem | str], clock: Clock, patience: float
 ) -> list[Timed]:
     found: list[Timed] = []
     dear: set[str] = set()
     for setting, problem in problems.items():
-        if setting.family in dear:
-            detail = f"a coarser setting took more than {patience:g} s"
-            found.append(Timed(setting, Trajectory(Outcome.NOT_STARTED, detail=detail), 0.0))
+        if isinstance(problem, str) or setting.family in dear:
+            coarser = f"a coarser setting took more than {patience:g} s"
+            because = problem if isinstance(problem, str) else coarser
+            nothing = Trajectory(Outcome.NOT_STARTED, detail=because)
+            found.append(Timed(setting, nothing, 0.0))
             continue
         began = clock()
         trajectory = setting.solver.solve(problem)
@@ -125,7 +118,7 @@ def _first_solves(
 
 @contextmanager
 def cold_caches() -> Iterator[None]:
-    """What heyoka compiles within is compiled for the first time, and not kept for the next time.
+    """Give heyoka an empty cache: what compiles within does so for the first time, and is not kept.
 
     What this process has compiled before, it still has: a cold figure asks for a process of its own.
     """
@@ -135,7 +128,6 @@ def cold_caches() -> Iterator[None]:
         try:
             yield
         finally:
-            if before is None:
-                del os.environ[_HEYOKA_CACHE]
-            else:
+            del os.environ[_HEYOKA_CACHE]
+            if before is not None:
                 os.environ[_HEYOKA_CACHE] = before

@@ -1,4 +1,4 @@
-"""The trade of one scene: every setting solved, timed, compared with the truth, and the front of it."""
+"""The trade of one scene: every setting solved, timed and compared with the truth; and the front."""
 
 from __future__ import annotations
 
@@ -7,25 +7,21 @@ from dataclasses import dataclass
 from time import perf_counter
 from typing import Any
 
-from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.provenance import provenance
 from taylor_verify.models.problem import NotRepresentable, Problem, pose
 from taylor_verify.records.json_text import finite
-from taylor_verify.scenes.precision import Rung
+from taylor_verify.records.standing import Standing
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.trajectory import Outcome, Trajectory
-from taylor_verify.studies.tradeoff.accuracy import Accuracy, Truth
+from taylor_verify.studies.tradeoff import REPEATS, SEED
+from taylor_verify.studies.tradeoff.accuracy import Truths
 from taylor_verify.studies.tradeoff.attainability import least_error
-from taylor_verify.studies.tradeoff.front import front, front_sentences, request_sentences
-from taylor_verify.studies.tradeoff.point import Point, point
+from taylor_verify.studies.tradeoff.pareto import pareto
+from taylor_verify.studies.tradeoff.point import Point, digits, point
 from taylor_verify.studies.tradeoff.setting import Setting, settings
 from taylor_verify.studies.tradeoff.timing import (
     PATIENCE,
-    REPEATS,
-    SEED,
     WHAT_IS_TIMED,
     Clock,
-    Timed,
     timed,
 )
 
@@ -45,7 +41,10 @@ class TradeOff:
         return front(self.points)
 
     def document(self) -> dict[str, Any]:
-        """As JSON holds it: ``sentences`` tell the front in words, ``integrators`` theirs alone."""
+        """Return what JSON holds: ``sentences`` tell the front in words, ``integrators`` theirs alone."""
+        integrators = [p for p in self.points if p.timed.setting.is_integrator]
+        # What needs no steps leads the front: behind it integrators have a front of their own.
+        is_led = not all(p.timed.setting.is_integrator for p in self.front)
         return {
             "scene": self.scene.name,
             "track": sorted(self.scene.track),
@@ -53,7 +52,7 @@ class TradeOff:
             "attainable": self.attainable,
             "front": [p.label for p in self.front],
             "sentences": front_sentences(self.points),
-            "integrators": self._front_of_integrators(),
+            "integrators": front_sentences(integrators) if is_led else [],
             "requests": request_sentences(self.points),
             "timing": {
                 "repeats": self.repeats,
@@ -67,15 +66,9 @@ class TradeOff:
 
     @property
     def attainable(self) -> dict[str, float | None]:
-        """By rung, the least that rounding leaves there; None where it is not known or no number."""
+        """The least error that rounding leaves on each rung; None where it is not known or no number."""
         rungs = dict.fromkeys(p.timed.setting.rung for p in self.points)
         return {rung.name: finite(least_error(self.scene, rung)) for rung in rungs}
-
-    def _front_of_integrators(self) -> list[str]:
-        """The front in words without what needs no steps; empty where that is not on the front."""
-        if all(p.timed.setting.is_integrator for p in self.front):
-            return []
-        return front_sentences([p for p in self.points if p.timed.setting.is_integrator])
 
 
 def trade_off(
@@ -93,51 +86,75 @@ def trade_off(
     that says why, not an error.
     """
     asked = settings(scene) if asked is None else asked
-    posed, refused = _posed(scene, asked)
-    measured = {one.setting: one for one in timed(posed, repeats, seed, clock, patience)}
-    measured |= {one.setting: one for one in refused}
-    truths = Truths()
-    found = [
-        point(measured[setting], truths.accuracy(posed.get(setting), measured[setting].trajectory))
-        for setting in asked
-    ]
-    return TradeOff(scene, tuple(found), repeats, seed)
+    posed = {setting: _posed(scene, setting) for setting in asked}
+    truths, points = Truths(), []
+    for one in timed(posed, repeats, seed, clock, patience):
+        problem = posed[one.setting]
+        known = None if isinstance(problem, str) else truths.accuracy(problem, one.trajectory)
+        points.append(point(one, known))
+    return TradeOff(scene, tuple(points), repeats, seed)
 
 
-class Truths:
-    """The truth of each scene and rung, found once."""
-
-    def __init__(self) -> None:
-        self._found: dict[tuple[Scene, Rung], Truth | None] = {}
-
-    def accuracy(self, problem: Problem | None, trajectory: Trajectory) -> Accuracy | None:
-        """None of a run that did not finish, and where the truth cannot be had."""
-        if problem is None or trajectory.outcome is not Outcome.FINISHED:
-            return None
-        key = problem.scene, problem.rung
-        if key not in self._found:
-            try:
-                self._found[key] = Truth(problem)
-            except Unsettled:
-                self._found[key] = None
-        truth = self._found[key]
-        return truth.accuracy(trajectory) if truth is not None else None
+def _posed(scene: Scene, setting: Setting) -> Problem | str:
+    """Return the problem of a setting; the reason for one that cannot be begun."""
+    if reason := setting.withheld or setting.solver.unavailable(setting.rung):
+        return reason
+    try:
+        problem = pose(scene, setting.rung)
+    except NotRepresentable as fault:
+        return str(fault)
+    return setting.solver.unsuited(problem) or problem
 
 
-def _posed(scene: Scene, asked: Iterable[Setting]) -> tuple[dict[Setting, Problem], list[Timed]]:
-    """The problem of every setting that can be begun, and the others with the reason."""
-    posed: dict[Setting, Problem] = {}
-    refused: list[Timed] = []
-    for setting in asked:
-        reason = setting.withheld or setting.solver.unavailable(setting.rung)
-        if not reason:
-            try:
-                problem = pose(scene, setting.rung)
-                reason = setting.solver.unsuited(problem)
-            except NotRepresentable as fault:
-                reason = str(fault)
-        if not reason:
-            posed[setting] = problem
+# The front, and what came of each tolerance, in sentences.
+
+
+def front(points: Iterable[Point]) -> list[Point]:
+    """Return the sound points that none beats in both time and error, the fastest first."""
+    return pareto(sound_points(points), lambda p: (p.seconds, p.error))
+
+
+def sound_points(points: Iterable[Point]) -> list[Point]:
+    """Return the points that are compared. A comparison with NaN is false, so none has that error."""
+    return [p for p in points if p.standing is Standing.SOUND and p.error < 1]
+
+
+def front_sentences(points: Sequence[Point]) -> list[str]:
+    """Return the front in words, every ratio to the fastest of this very run."""
+    best, sound = front(points), sound_points(points)
+    if not best:
+        return ["No setting gave an answer that is sound."]
+    said = [_sentence(p, best[0].seconds) for p in best]
+    beaten = len(sound) - len(best)
+    said.append(
+        f"{beaten} of {len(sound)} sound settings are beaten in both time and error by one of these."
+    )
+    if (widest := max(p.timed.spread or 1.0 for p in best)) > 1:
+        said.append(
+            f"A setting's slowest solve took up to {widest:.2g} times its fastest: times nearer to "
+            "each other than that are not told apart."
+        )
+    return said
+
+
+def _sentence(p: Point, fastest: float) -> str:
+    left = digits(p.error)
+    named = "All digits" if left is None else f"{left:.1f} digits"
+    pace = f", {p.seconds / fastest:.2f} times the fastest" if p.seconds > fastest > 0 else ""
+    return f"{named} (error {p.error:.2g}): {p.label} in {p.seconds:.3g} s{pace}."
+
+
+def request_sentences(points: Iterable[Point]) -> list[str]:
+    """Return, for each tolerance, the digits asked for and got. It bounds a step's error and no more."""
+    said = []
+    for p in sound_points(points):
+        asked, got, requested = p.asked_digits, digits(p.error), p.timed.setting.requested
+        if asked is None or got is None or requested is None:
             continue
-        refused.append(Timed(setting, Trajectory(Outcome.NOT_STARTED, detail=reason), 0.0))
-    return posed, refused
+        ratio = p.error / requested
+        compared = f"{ratio:.2g} times" if ratio >= 1 else f"1/{1 / ratio:.2g} of"
+        said.append(
+            f"{p.label}: {asked:.1f} digits asked for, {got:.1f} got; the error is {compared} the "
+            "tolerance."
+        )
+    return said

@@ -35,6 +35,8 @@ _LEAST_STEP: Final = 1e-3
 _RATE: Final = 3**-0.5  # of the moments 1, 2, 3 beside the middle axis, at omega = 1
 
 Place = Sequence[float]
+# A number, or the text of one that six digits do not hold.
+Numbers = Sequence[float | str]
 
 
 @dataclass(frozen=True)
@@ -47,13 +49,13 @@ class Family:
     text: Callable[[Place], str]
 
     def scene(self, place: Place) -> Scene:
-        """Raises Refused for a place where there is no body."""
+        """Return the scene of a place. Raises Refused where there is no body."""
         return read(self.text(place), self.name)
 
 
 @dataclass(frozen=True)
 class Catch:
-    """One scene of a family and the verdict on it that came nearest to failing."""
+    """A scene of a family with the verdict on it that came nearest to failing."""
 
     place: tuple[float, ...]
     verdict: Verdict
@@ -67,7 +69,7 @@ class Catch:
 
 @dataclass(frozen=True)
 class Found:
-    """What a family has given: how many scenes were judged, and the worst of them."""
+    """The result of a family: the number of scenes that were judged, and the worst of them."""
 
     family: Family
     judged: int
@@ -77,17 +79,20 @@ class Found:
     def scene_text(self) -> str:
         """The worst as a scene file that says why it is there."""
         ratio = f"{self.worst.ratio:.3g}"
-        why = (
+        return (
             f"# Why: of {self.family.what}, the largest error over attainable that a hunt has found,\n"
             f"# {ratio} in {self.worst.verdict.quantity} on {RUNG}; a gate stands at {GATE_FACTOR}.\n"
+            f"{self.family.text(self.worst.place)}"
         )
-        return why + self.family.text(self.worst.place)
 
 
 def hunt(
     families: Iterable[Family], seconds: float, seed: int, told: Callable[[str], None]
 ) -> list[Found]:
-    """The worst of each family; ``seconds`` are divided evenly, ``told`` hears of each as it ends."""
+    """Return the worst of each family, in an even share of the ``seconds``.
+
+    ``told`` is called with the name of each as it ends.
+    """
     asked = list(families)
     found = []
     for family in asked:
@@ -97,32 +102,27 @@ def hunt(
 
 
 def _hunt(family: Family, seconds: float, draw: random.Random) -> Found:
-    began, judged = monotonic(), 0
+    began, judged, width = monotonic(), 0, _FIRST_STEP
     worst: Catch | None = None
-    width = _FIRST_STEP
     while worst is None or (monotonic() - began < seconds and width >= _LEAST_STEP):
-        in_cloud = worst is None or monotonic() - began < _CLOUD_SHARE * seconds
-        if in_cloud or worst is None:
-            place = tuple(draw.random() for _ in range(family.free))
+        if worst is None or monotonic() - began < _CLOUD_SHARE * seconds:
+            place, narrowing = [draw.random() for _ in range(family.free)], 1.0
         else:
-            place = tuple(_inside(draw.gauss(value, width)) for value in worst.place)
+            near = (draw.gauss(value, width) for value in worst.place)
+            place, narrowing = [min(1.0, max(0.0, value)) for value in near], 0.9
         catch = caught(family, place)
         if catch is None:
             continue
         judged += 1
         if worst is None or catch.ratio > worst.ratio:
             worst = catch
-        elif not in_cloud:
-            width *= 0.9
+        else:
+            width *= narrowing
     return Found(family, judged, worst)
 
 
-def _inside(value: float) -> float:
-    return min(1.0, max(0.0, value))
-
-
 def caught(family: Family, place: Place) -> Catch | None:
-    """The gate nearest to failing; None where there is no body, or every gate is vacuous."""
+    """Return the gate nearest to failing; None where there is no body, or every gate is vacuous."""
     try:
         scene = family.scene(place)
     except Refused:
@@ -165,26 +165,35 @@ def study(found: Iterable[Found], seconds: float, seed: int) -> WorstStudy:
 # The families.
 
 
-def _number(value: float) -> str:
-    """A short decimal, exact in the scene for what it says: six digits."""
-    return format(Decimal(f"{value:.5e}"), "f")
+def _number(value: float | str) -> str:
+    """Return a short decimal, exact in the scene for what it says: six digits. A text is left as it is."""
+    return value if isinstance(value, str) else format(Decimal(f"{value:.5e}"), "f")
+
+
+def _beside_one(distance: float) -> str:
+    """Return 1 + distance, written out: six digits would not hold it."""
+    return format(1 + Decimal(f"{distance:.5e}"), "f")
 
 
 def _power(share: float, least: float, most: float) -> float:
-    """From 10^least at 0 to 10^most at 1."""
+    """Return a power of ten, from 10^least at 0 to 10^most at 1."""
     return float(10.0 ** (least + share * (most - least)))
 
 
-def _row(values: Iterable[float]) -> str:
-    return f"[{', '.join(_number(value) for value in values)}]"
+def _row(values: Numbers) -> str:
+    return f"[{', '.join(map(_number, values))}]"
 
 
-def _rigid(title: str, inertia: Place, omega: Place, end: float) -> str:
+def _scene(title: str, head: str, body: str, initial: str, end: float) -> str:
     return (
-        f'title = "{title}"\nmodel = "euler"\nsource = "Heinbockel (2.2.72)"\n\n'
-        f"[body]\ninertia = {_row(inertia)}\n\n[initial]\nomega = {_row(omega)}\n\n"
+        f'title = "{title}"\n{head}\n\n[body]\n{body}\n\n[initial]\n{initial}\n\n'
         f"[time]\nend = {_number(end)}\nsamples = 31\n"
     )
+
+
+def _rigid(title: str, inertia: Numbers, omega: Numbers, end: float) -> str:
+    head = 'model = "euler"\nsource = "Heinbockel (2.2.72)"'
+    return _scene(title, head, f"inertia = {_row(inertia)}", f"omega = {_row(omega)}", end)
 
 
 def _distance(p: Place) -> str:
@@ -194,19 +203,15 @@ def _distance(p: Place) -> str:
 
 
 def _gaps(p: Place) -> str:
-    gap = _power(p[0], -14, -1)
-    omega = (2 * p[1] - 1, 2 * p[2] - 1, 0.1 + p[3])
-    # Six digits would not hold the gap: it is written out.
-    text = _rigid("Two moments close together", (1, 1, 2), omega, 50)
-    near = format(1 + Decimal(f"{gap:.5e}"), "f")
-    return text.replace(_row((1, 1, 2)), f"[1, {near}, 2]")
+    inertia = ("1", _beside_one(_power(p[0], -14, -1)), "2")
+    return _rigid(
+        "Two moments close together", inertia, (2 * p[1] - 1, 2 * p[2] - 1, 0.1 + p[3]), 50
+    )
 
 
 def _ratios(p: Place) -> str:
-    long, broad = _power(p[0], -6, 0), 0.5 + 0.45 * p[1]
-    return _rigid(
-        "Moments far apart", (long, broad, 1), (2 * p[2] - 1, 2 * p[3] - 1, 0.1 + p[4]), 20
-    )
+    inertia = (_power(p[0], -6, 0), 0.5 + 0.45 * p[1], 1)
+    return _rigid("Moments far apart", inertia, (2 * p[2] - 1, 2 * p[3] - 1, 0.1 + p[4]), 20)
 
 
 def _scales(p: Place) -> str:
@@ -219,57 +224,43 @@ def _modulus(p: Place) -> str:
     # H^2 = 2 T I2 where omega3^2 I3 (I3 - I2) = omega1^2 I1 (I2 - I1): omega1 = sqrt(3) omega3.
     off, third = _power(p[0], -12, -1), 0.05 + p[1]
     omega = (3**0.5 * third * (1 + off), 2 * p[2] - 1, third)
-    text = _rigid("Near the separatrix", (1, 2, 3), omega, 30 + 90 * p[3])
-    exact = ", ".join(f"{value:.16e}" for value in omega)
-    return text.replace(f"omega = {_row(omega)}", f"omega = [{exact}]")
+    exact = [f"{value:.16e}" for value in omega]
+    return _rigid("Near the separatrix", (1, 2, 3), exact, 30 + 90 * p[3])
 
 
-def _immersed(title: str, clebsch: dict[str, float], x: Place, y: Place, end: float) -> str:
-    six = ", ".join(f"{name} = {_number(value)}" for name, value in clebsch.items())
-    return (
-        f'title = "{title}"\nmodel = "kirchhoff"\nsource = "Hydromechanics 49 (1)"\n\n'
-        f"[body]\nclebsch = {{ {six} }}\n\n"
-        f"[initial]\nlinear_impulse = {_row(x)}\nangular_impulse = {_row(y)}\n\n"
-        f"[time]\nend = {_number(end)}\nsamples = 31\n"
-    )
-
-
-def _six(p: float, p_axial: float, q: float, q_axial: float) -> dict[str, float]:
+def _immersed(title: str, four: Numbers, x: Numbers, y: Numbers, end: float) -> str:
+    """Return the scene of a solid with p, p', q, q' as given, r = 1 and r' = 1/2."""
     names = ("p", "p_prime", "q", "q_prime", "r", "r_prime")
-    return dict(zip(names, (p, p_axial, q, q_axial, 1.0, 0.5), strict=True))
+    six = zip(names, (*four, 1.0, 0.5), strict=True)
+    body = ", ".join(f"{name} = {_number(value)}" for name, value in six)
+    head = 'model = "kirchhoff"\nsource = "Hydromechanics 49 (1)"'
+    initial = f"linear_impulse = {_row(x)}\nangular_impulse = {_row(y)}"
+    return _scene(title, head, f"clebsch = {{ {body} }}", initial, end)
 
 
 def _small_impulse(p: Place) -> str:
     size = _power(p[0], -10, 0)
     x, y = (size * (p[1] - 0.5), 0.1 * size, size * p[2]), (0.5, p[3] - 0.5, 1.0)
-    return _immersed("A small impulse", _six(1, 2, 0, 0), x, y, 40)
+    return _immersed("A small impulse", (1, 2, 0, 0), x, y, 40)
 
 
 def _critical_spin(p: Place) -> str:
     # x = (0, 0, 1), y = (0, 0, w): stable from w = 2 on, for the p and p' here and r = 1.
     d, w = _power(p[0], -8, -1), 2 + (2 * p[1] - 1) * _power(p[2], -6, 0)
-    return _immersed(
-        "Near the critical spin", _six(2, 1, 0, 0), (d, 0, 1), (0, 0, w), 10 + 30 * p[3]
-    )
+    return _immersed("Near the critical spin", (2, 1, 0, 0), (d, 0, 1), (0, 0, w), 10 + 30 * p[3])
 
 
 def _near_singular(p: Place) -> str:
-    short = _power(p[0], -10, -1)
-    text = _immersed(
-        "An energy nearly singular",
-        _six(1, 2, 0.123456, 0),
-        (0.3, p[1] - 0.5, 0.5),
-        (p[2] - 0.5, 0.2, 0.7),
-        10,
-    )
-    # q^2 = p r is the limit: q is written out.
-    return text.replace("q = 0.123456", f"q = {format(1 - Decimal(f'{short:.5e}'), 'f')}")
+    # q^2 = p r is the limit.
+    four = (1, 2, _beside_one(-_power(p[0], -10, -1)), 0)
+    x, y = (0.3, p[1] - 0.5, 0.5), (p[2] - 0.5, 0.2, 0.7)
+    return _immersed("An energy nearly singular", four, x, y, 10)
 
 
 def _added_mass(p: Place) -> str:
     across, along = _power(p[0], -5, 3), _power(p[1], -5, 3)
     x, y = (p[2] - 0.5, 0.1, p[3]), (0.5, p[4] - 0.5, 0.5)
-    return _immersed("Added mass", _six(across, along, 0, 0), x, y, 20 / (1 + across + along))
+    return _immersed("Added mass", (across, along, 0, 0), x, y, 20 / (1 + across + along))
 
 
 FAMILIES: Final = (

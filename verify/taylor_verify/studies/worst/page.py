@@ -1,4 +1,4 @@
-"""What the hunt for the worst has found: the stored rows, the scenes, and the page made of them."""
+"""The page of the hunt for the worst, made of the stored rows; and the scenes that are kept."""
 
 from __future__ import annotations
 
@@ -38,12 +38,11 @@ def keep(folder: Path, scenes: Mapping[str, str]) -> list[Path]:
 
 def page(study: WorstStudy) -> str:
     """Return the page of the worst of each family, and of the search."""
-    factor, rung = f"{study.factor:g}", study.rung
     families = sorted(study.families, key=lambda row: -row.ratio)
     judged = sum(row.judged for row in families)
     return whole(
         "The worst that a search has found",
-        _WHAT.format(factor=factor, rung=code(rung)),
+        _WHAT.format(factor=f"{study.factor:g}", rung=code(study.rung)),
         f"Of {judged} scenes the worst is {code(families[0].scene)}: "
         f"{figure(families[0].ratio)} in {code(families[0].quantity)}.",
         _table(families),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from math import inf
 from pathlib import Path
 from typing import Final
@@ -24,20 +25,16 @@ def _measure(folder: Path, progress: Progress, seconds: float = 600.0, seed: int
 
 
 def _seconds(text: str) -> float:
-    try:
-        seconds = float(text)
-    except ValueError:
-        seconds = 0.0
-    if not 0 < seconds < inf:
-        raise ValueError(f"expected a time in seconds above 0, got {text}")
-    return seconds
+    with suppress(ValueError):
+        if 0 < float(text) < inf:
+            return float(text)
+    raise ValueError(f"expected a time in seconds above 0, got {text}")
 
 
 def _seed(text: str) -> int:
-    try:
+    with suppress(ValueError):
         return int(text)
-    except ValueError:
-        raise ValueError(f"expected a whole number, got {text}") from None
+    raise ValueError(f"expected a whole number, got {text}")
 
 
 STUDY: Final = Study(

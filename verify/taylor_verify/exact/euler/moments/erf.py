@@ -15,108 +15,69 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import Final
 
-from flint import acb, arb, ctx
+from flint import acb, arb
 
-from taylor_verify.exact.balls import Enclosed, Enclosure, ball, balls
+from taylor_verify.exact.balls import ball, balls
 from taylor_verify.exact.euler import quaternion
 from taylor_verify.exact.euler.moments.kummer import KummerTurn
-from taylor_verify.exact.euler.moments.regime import LoadedSpin, MomentRegime, loaded
+from taylor_verify.exact.euler.moments.regime import Line, LoadedSpin, MomentRegime
 from taylor_verify.exact.euler.quaternion import Quaternion
+from taylor_verify.exact.euler.rotations import RotationBalls
+from taylor_verify.exact.rotation import product
 from taylor_verify.scenes import motion, tensors
-from taylor_verify.scenes.scene import Scene
-
-# Working precisions are multiples of this, so that calls share their set-ups.
-_PRECISION_STEP: Final = 32
 
 
-def enclosed(scene: Scene) -> LoadedRotationBalls:
-    """The rigorous motion of a scene with a constant moment, attitude included where it is tracked.
+def loaded_rotation(spin: LoadedSpin, attitude: motion.Quaternion | None = None) -> RotationBalls:
+    """The motion of a body with two or three equal moments, and R from an attitude at the start.
 
-    Raises NoClosedForm where anything tracked has none.
+    Raises NoClosedForm where the attitude has none.
     """
-    return LoadedRotationBalls(*loaded(scene))
-
-
-class LoadedRotationBalls(Enclosed):
-    """omega(t) in body axes and, from a start, R(t) of a body with two or three equal moments."""
-
-    def __init__(self, spin: LoadedSpin, attitude: motion.Quaternion | None = None) -> None:
-        self.spin = spin
-        self.regime = spin.regime.value
-        self._attitude = attitude
-        self._courses: dict[int, _Course] = {}
-
-    def enclose(self, elapsed: Sequence[Fraction], bits: int) -> Enclosure:
-        """``omega``, rows of 3, and ``attitude``, rows of 3x3, where it is tracked."""
-        working = -(-bits // _PRECISION_STEP) * _PRECISION_STEP
-        with ctx.workprec(working):
-            if working not in self._courses:
-                self._courses[working] = _Course(self.spin, self._attitude)
-            course = self._courses[working]
-            found: dict[str, list[list[arb]]] = {"omega": [course.omega(t) for t in elapsed]}
-            if self._attitude is None:
-                return found
-            turns = [quaternion.matrix(course.quaternion(t)) for t in elapsed]
-            return {**found, "attitude": turns}
+    line = None if attitude is None else spin.line
+    return RotationBalls(spin.regime.value, lambda: _Course(spin, line), attitude)
 
 
 class _Course:
     """One motion, set up at one precision of flint and good only there."""
 
-    def __init__(self, spin: LoadedSpin, attitude: motion.Quaternion | None) -> None:
+    def __init__(self, spin: LoadedSpin, line: Line | None) -> None:
         self._spin = spin
-        length = ball(spin.axis_squared).sqrt()
-        self._length = length
-        self._axis = [component / length for component in balls(spin.axis)]
-        start, push = (spin.across(vector) for vector in (spin.omega, spin.moment))
-        push = tensors.scaled(1 / spin.double_moment, push)
+        self._length = length = ball(spin.free.axis_squared).sqrt()
         # A transverse vector times a complex number: its imaginary part turns the vector by e x.
         self._start, self._push = (
-            (balls(vector), [p / length for p in balls(tensors.cross(spin.axis, vector))])
-            for vector in (start, push)
+            (balls(vector), [p / length for p in balls(tensors.cross(spin.free.axis, vector))])
+            for vector in (spin.free.across(spin.omega), spin.push)
         )
-        self._is_pushed = any(push)
+        self._is_pushed = any(spin.push)
         if spin.bending and self._is_pushed:
             self._root = acb(0, ball(spin.bending) / length).sqrt()
-            self._at_start = (self._root * ball(self._half_way)).erf()
+            self._at_start = (self._root * ball(spin.half_way)).erf()
             self._factor = arb.pi().sqrt() / (2 * self._root)
-        if attitude is not None:
-            self._turn = KummerTurn(spin.line)
-            self._attitude = quaternion.unit(attitude)
+        if line is not None:
+            self._axis = [component / length for component in balls(spin.free.axis)]
+            self._turn = KummerTurn(line)
 
-    @property
-    def _half_way(self) -> Fraction:
-        """s0 = b/2c."""
-        return self._spin.turning / (2 * self._spin.bending)
+    def at(self, t: Fraction, turned: bool) -> tuple[list[arb], Quaternion]:
+        phi = ball(self._spin.phi(t)) / self._length
+        omega = self._omega(t, phi)
+        if not turned:
+            return omega, []
+        return omega, product(self._turn.quaternion(t), quaternion.turn(self._axis, -phi / 2))
 
-    def omega(self, t: Fraction) -> list[arb]:
-        """In body axes."""
+    def _omega(self, t: Fraction, phi: arb) -> list[arb]:
         spin = self._spin
-        gained = tensors.scaled(t / spin.simple_moment, spin.along(spin.moment))
         if spin.regime is MomentRegime.SPHERICAL:
+            gained = tensors.scaled(t / spin.free.double_moment, spin.moment)
             return balls(tensors.plus(spin.omega, gained))
-        found = balls(tensors.plus(spin.along(spin.omega), gained))
-        found = _added(found, acb(0, self._angle(t)).exp(), *self._start)
+        found = _added(balls(spin.along(t)), acb(0, phi).exp(), *self._start)
         return _added(found, self._gathered(t), *self._push) if self._is_pushed else found
-
-    def quaternion(self, t: Fraction) -> Quaternion:
-        """q of unit length, of the sign that follows from the start without a jump."""
-        turned = quaternion.product(self._attitude, self._turn.quaternion(t))
-        return quaternion.product(turned, quaternion.turn(self._axis, -self._angle(t) / 2))
-
-    def _angle(self, t: Fraction) -> arb:
-        """phi."""
-        return ball(t * (self._spin.turning + self._spin.bending * t)) / self._length
 
     def _gathered(self, t: Fraction) -> acb:
         """Y."""
         if not self._spin.bending:
-            half = ball(self._spin.turning * t / 2) / self._length
+            half = ball(self._spin.free.turning * t / 2) / self._length
             return acb(0, half).exp() * (half.sinc() * ball(t))
-        s = t + self._half_way
-        root = self._root * ball(s)
+        root = self._root * ball(t + self._spin.half_way)
         return (root * root).exp() * (root.erf() - self._at_start) * self._factor
 
 

@@ -21,9 +21,9 @@ from fractions import Fraction
 from flint import acb
 
 from taylor_verify.exact.balls import ball, balls
-from taylor_verify.exact.euler import quaternion
 from taylor_verify.exact.euler.moments.regime import Line
 from taylor_verify.exact.euler.quaternion import Quaternion
+from taylor_verify.exact.rotation import conjugate, product
 from taylor_verify.scenes import tensors
 
 
@@ -39,11 +39,11 @@ class KummerTurn:
         self._ahead = [component / self._rate for component in balls(ahead)]
         squared = ball(tensors.dot(line.across, line.across))
         self._parameter = acb(0, squared / (8 * self._rate))
-        self._back = quaternion.conjugate(self._since_nearest(line.lead))
+        self._back = conjugate(self._since_nearest(line.lead))
 
     def quaternion(self, t: Fraction) -> Quaternion:
         """The unit quaternion at the time t, 1 at t = 0 and without a jump of sign."""
-        return quaternion.product(self._back, self._since_nearest(t + self._lead))
+        return product(self._back, self._since_nearest(t + self._lead))
 
     def _since_nearest(self, s: Fraction) -> Quaternion:
         """g(s): w1 and the axes 1 and 2 enter as the vectors a_perp and b x a_perp/|b| alone."""

@@ -27,10 +27,8 @@ from functools import cached_property
 from typing import Final
 
 from taylor_verify.exact.euler.regime import FreeSpin
-from taylor_verify.exact.euler.top import top
 from taylor_verify.exact.solution import NoClosedForm
-from taylor_verify.scenes import motion, tensors
-from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes import tensors
 from taylor_verify.scenes.tensors import Matrix, Vector
 
 # Kummer's series cancels about as many digits as this, and has a few times as many terms. Beyond it
@@ -69,17 +67,7 @@ class Line:
 
     @cached_property
     def across(self) -> Vector:
-        return tensors.plus(self.a, tensors.scaled(-self.lead, self.b))
-
-    @property
-    def turns_squared(self) -> Fraction:
-        """The square of |across|^2/8|b|, the size of Kummer's parameter."""
-        return tensors.dot(self.across, self.across) ** 2 / (64 * tensors.dot(self.b, self.b))
-
-    @property
-    def angle_squared(self) -> Fraction:
-        """The square of |b| lead^2/2, the size of Kummer's argument at t = 0."""
-        return tensors.dot(self.b, self.b) * self.lead**4 / 4
+        return tensors.minus(self.a, tensors.scaled(self.lead, self.b))
 
 
 @dataclass(frozen=True)
@@ -96,91 +84,55 @@ class LoadedSpin:
     def __post_init__(self) -> None:
         if not any(self.moment):
             raise ValueError("expected a moment that is not zero, got 0 0 0 @ body.moment")
-        if self._free.discriminant != 0:
+        if self.free.discriminant != 0:
             raise NoClosedForm("a moment acts on a body with three different moments of inertia")
-        if not self.angle_squared <= _LARGEST_ANGLE**2:
+        # The square of phi between t = 0 and the instant without spin, where that comes.
+        if self.regime is MomentRegime.OBLIQUE and not (
+            self.free.turning**4
+            <= 16 * self.bending**2 * self.free.axis_squared * _LARGEST_ANGLE**2
+        ):
             raise NoClosedForm("the part of the moment along the axis is too weak beside the spin")
 
     @cached_property
-    def _free(self) -> FreeSpin:
+    def free(self) -> FreeSpin:
+        """The same body and start without a moment: moments of inertia, axis n, |n| sg u0."""
         return FreeSpin(self.inertia, self.omega)
 
     @cached_property
     def regime(self) -> MomentRegime:
         """The kind of motion, decided in rationals."""
-        if self._free.spread == 0:
+        if self.free.spread == 0:
             return MomentRegime.SPHERICAL
-        if not any(tensors.cross(self.axis, self.moment)):
+        if not any(tensors.cross(self.free.axis, self.moment)):
             return MomentRegime.AXIAL
-        if tensors.dot(self.axis, self.moment) == 0:
+        if tensors.dot(self.free.axis, self.moment) == 0:
             return MomentRegime.TRANSVERSE
         return MomentRegime.OBLIQUE
 
-    # Three equal moments: every axis is one of symmetry, and phi is 0 about any of them.
-
     @cached_property
-    def double_moment(self) -> Fraction:
-        """J_d, or J."""
-        is_spherical = self._free.spread == 0
-        return self._free.trace / 3 if is_spherical else self._free.double_moment
-
-    @cached_property
-    def simple_moment(self) -> Fraction:
-        """J_s, or J."""
-        return self._free.trace - 2 * self.double_moment
-
-    @cached_property
-    def ratio(self) -> Fraction:
-        """sg = (J_s - J_d)/J_d; 0 for three equal moments."""
-        return (self.simple_moment - self.double_moment) / self.double_moment
-
-    @cached_property
-    def axis(self) -> Vector:
-        """n, a rational vector along the axis e: the longest column of (I - J_d)/(J_s - J_d) = e e^T.
-
-        For three equal moments, that of M, which no formula uses for more than its direction.
-        """
-        if self._free.spread == 0:
-            return self.moment
-        columns = [
-            tuple(
-                (self.inertia[i][j] - (self.double_moment if i == j else 0))
-                / (self.simple_moment - self.double_moment)
-                for i in range(3)
-            )
-            for j in range(3)
-        ]
-        return max(columns, key=lambda column: tensors.dot(column, column))
-
-    @cached_property
-    def axis_squared(self) -> Fraction:
-        """|n|^2."""
-        return tensors.dot(self.axis, self.axis)
-
-    def along(self, vector: Vector) -> Vector:
-        """(e.v) e, rational."""
-        return tensors.scaled(tensors.dot(self.axis, vector) / self.axis_squared, self.axis)
-
-    def across(self, vector: Vector) -> Vector:
-        """v - (e.v) e, rational."""
-        return tensors.plus(vector, tensors.scaled(Fraction(-1), self.along(vector)))
-
-    @property
-    def turning(self) -> Fraction:
-        """|n| sg u0, the linear coefficient of |n| phi."""
-        return self.ratio * tensors.dot(self.axis, self.omega)
-
-    @property
     def bending(self) -> Fraction:
         """|n| sg (e.M)/2J_s, the quadratic coefficient of |n| phi."""
-        return self.ratio * tensors.dot(self.axis, self.moment) / (2 * self.simple_moment)
+        pushed = tensors.dot(self.free.axis, self.moment)
+        return self.free.ratio * pushed / (2 * self.free.simple_moment)
+
+    @cached_property
+    def push(self) -> Vector:
+        """M_perp/J_d."""
+        return tensors.scaled(1 / self.free.double_moment, self.free.across(self.moment))
 
     @property
-    def angle_squared(self) -> Fraction:
-        """The square of phi between t = 0 and the instant without spin; 0 where that never comes."""
-        if not self.bending or self.regime is not MomentRegime.OBLIQUE:
-            return Fraction(0)
-        return self.turning**4 / (16 * self.bending**2 * self.axis_squared)
+    def half_way(self) -> Fraction:
+        """s0 = turning/2 bending, where phi bends."""
+        return self.free.turning / (2 * self.bending)
+
+    def phi(self, t: Fraction) -> Fraction:
+        """|n| phi."""
+        return t * (self.free.turning + self.bending * t)
+
+    def along(self, t: Fraction) -> Vector:
+        """u e, rational."""
+        gained = tensors.scaled(t / self.free.simple_moment, self.moment)
+        return self.free.along(tensors.plus(self.omega, gained))
 
     @cached_property
     def line(self) -> Line:
@@ -192,26 +144,16 @@ class LoadedSpin:
             raise NoClosedForm(
                 "the attitude of an axisymmetric body under a moment that is not along its axis"
             )
-        stretch = self.simple_moment / self.double_moment
-        a = tensors.plus(self.across(self.omega), tensors.scaled(stretch, self.along(self.omega)))
-        found = Line(a, tensors.scaled(1 / self.double_moment, self.moment))
-        if not found.turns_squared <= _MOST_TURNS**2:
+        free = self.free
+        gyration = tensors.scaled(free.ratio, free.along(self.omega))
+        b = tensors.scaled(1 / free.double_moment, self.moment)
+        found = Line(tensors.plus(self.omega, gyration), b)
+        across, pace = tensors.dot(found.across, found.across), tensors.dot(found.b, found.b)
+        # Squares of |across|^2/8|b|, the size of Kummer's parameter, and of |b| lead^2/2, his argument's.
+        if not across**2 <= _MOST_TURNS**2 * 64 * pace:
             raise NoClosedForm(
                 f"Kummer's parameter of the attitude exceeds {_MOST_TURNS}: the moment is too weak"
             )
-        if not found.angle_squared <= _LARGEST_ANGLE**2:
+        if not pace * found.lead**4 <= 4 * _LARGEST_ANGLE**2:
             raise NoClosedForm("the attitude under a moment that is too weak beside omega")
         return found
-
-
-def loaded(scene: Scene) -> tuple[LoadedSpin, motion.Quaternion | None]:
-    """The exact data of a loaded scene, and the attitude at the start where it is tracked.
-
-    Raises NoClosedForm where anything that is tracked has none.
-    """
-    body, start = top(scene)
-    spin = LoadedSpin(body.inertia, body.moment, start.omega)
-    if "attitude" not in scene.track:
-        return spin, None
-    _ = spin.line  # decided here, and not when the first sample is asked for
-    return spin, start.attitude

@@ -26,8 +26,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, cmp_to_key
-from typing import Final
+from typing import Any, Final
 
+from taylor_verify.exact.kirchhoff.integrable import diagonal_family
 from taylor_verify.exact.kirchhoff.plane import plane
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.kirchhoff.weber.surd import Surd, compare, roots
@@ -172,40 +173,30 @@ def curve(scene: Scene) -> Curve | None:
     body, start = solid(scene)
     if not body.is_free or body.axis_of_symmetry is not None or not any(start.linear):
         return None
-    if not belongs(body) or plane(scene) is not None:
+    family = diagonal_family(body)
+    if family is None or family[0] not in ("neumann", "clebsch2") or plane(scene) is not None:
         return None
     if tensors.dot(start.linear, start.angular) != 0:
         raise NoClosedForm(_ORTHOGONAL)
     if scene.track:
         raise NoClosedForm(_TRACKED)
-    found = _curve(body, start)
+    found = _curve(body, start, *family)
     if found is None or found.is_degenerate:
         raise NoClosedForm(_DEGENERATE)
     return found
 
 
-def belongs(body: ImmersedBody) -> bool:
-    """Whether T is diagonal in body axes, and r_i = r or Clebsch's sum (p_j - p_k)/r_i = 0, exactly."""
-    blocks = (body.linear, body.coupling, body.angular)
-    if not all(tensors.is_diagonal(block) for block in blocks):
-        return False
-    p, b, r = (_entries(body, block) for block in ("linear", "coupling", "angular"))
-    if len(set(b)) > 1:
-        return False
-    left = sum(((p[j] - p[k]) * r[j] * r[k] for i, j, k in CYCLIC), Fraction(0))
-    return len(set(r)) == 1 or left == 0
-
-
-def _curve(body: ImmersedBody, start: Impulse) -> Curve | None:
+def _curve(
+    body: ImmersedBody, start: Impulse, family: str, coefficients: tuple[Any, ...]
+) -> Curve | None:
     """The curve, or None where the a_i are equal."""
     F2 = tensors.dot(start.linear, start.linear)
-    p, r = _entries(body, "linear"), _entries(body, "angular")
-    if len(set(r)) == 1:
-        a, rho = tensors.scaled(r[0] * F2, p), r[0]
+    if family == "neumann":
+        rho = coefficients[0]
+        a = tensors.scaled(rho * F2, tuple(body.linear[i][i] for i in range(3)))
         flow = (Fraction(0), Fraction(1))
     else:
-        i, j, k = CYCLIC[0]
-        theta = (p[i] - p[j]) / (r[k] * (r[j] - r[i]))
+        r, theta = coefficients
         if theta == 0:
             return None
         a, rho = tensors.scaled(-theta * F2, r), Fraction(1)
@@ -216,7 +207,3 @@ def _curve(body: ImmersedBody, start: Impulse) -> Curve | None:
     sigma = power_of_two(floor_log2(max(a) - min(a)) // 2)
     scaled = tuple((entry - middle) / sigma**2 for entry in a)
     return Curve(scaled, sigma, rho, (sigma**3 * flow[0], sigma * flow[1]), start)
-
-
-def _entries(body: ImmersedBody, block: str) -> Vector:
-    return tuple(getattr(body, block)[i][i] for i in range(3))

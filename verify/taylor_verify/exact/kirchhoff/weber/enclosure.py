@@ -28,7 +28,6 @@ from taylor_verify.exact.kirchhoff.weber.curve import CYCLIC, REGIME, Curve
 from taylor_verify.exact.kirchhoff.weber.integrals import Jacobian, branch_points, jacobian
 from taylor_verify.exact.solution import Unsettled
 
-_CHARACTERISTICS: Final = 16
 _DOUBLINGS: Final = 8
 
 
@@ -53,7 +52,7 @@ class WeberBalls(Enclosed):
 
 
 def rates(found: Curve, digits: int) -> tuple[mpf, mpf]:
-    """How fast the two angles of the motion grow, in radians per unit of time, without a claim.
+    """The rates of the two angles of the motion, in radians per unit of time, without a claim.
 
     A shift of Z by a whole real period may turn signs of x_i and y_i; by two of them it does not.
     """
@@ -92,27 +91,22 @@ class Quotients:
 
     def _direction(self, t: arb) -> tuple[list[arb], list[arb]]:
         """n, and its rate along Neumann's time."""
-        values, slopes = self._thetas(t)
-        below, below_rate = values[0], slopes[0]
+        found = self._jacobian
+        Z = [acb(start + rate * t) for start, rate in zip(found.phase, found.rate, strict=True)]
+        jets, along = found.tau.theta_jets(acb_mat(2, 1, Z), 1), found.neumann
+
+        def jet(which: int) -> tuple[arb, arb]:
+            # The theta functions are real here.
+            value, first, second = (jets[which, order].real for order in range(3))
+            return value, along[0] * first + along[1] * second
+
+        below, below_rate = jet(0)
         n, rate = [], []
         for c, place in zip(self._c, self._places, strict=True):
-            which = HALF_PERIODS[place]
-            n.append(c * values[which] / below)
-            rate.append(c * (slopes[which] * below - values[which] * below_rate) / below**2)
+            value, slope = jet(HALF_PERIODS[place])
+            n.append(c * value / below)
+            rate.append(c * (slope * below - value * below_rate) / below**2)
         return n, rate
-
-    def _thetas(self, t: arb) -> tuple[list[arb], list[arb]]:
-        """The sixteen theta functions, which are real here, and their rates along Neumann's time."""
-        found = self._jacobian
-        Z = [start + rate * t for start, rate in zip(found.phase, found.rate, strict=True)]
-        jets = found.tau.theta_jets(acb_mat([[acb(entry)] for entry in Z]), 1)
-        along = found.neumann
-        values = [jets[which, 0].real for which in range(_CHARACTERISTICS)]
-        slopes = [
-            along[0] * jets[which, 1].real + along[1] * jets[which, 2].real
-            for which in range(_CHARACTERISTICS)
-        ]
-        return values, slopes
 
 
 def _sizes(found: Curve, place: Jacobian) -> list[arb]:

@@ -1,18 +1,18 @@
 """Weber's curve in mpmath: its periods and the start on its Jacobian, by double exponentials.
 
 Legend: that of curve.py and characteristics.py. On each stretch between branch points the substitution
-is that of integrals.py, and the nodes in phi are those of tanh-sinh, which crowd at the ends, where a
-near branch point beyond them is felt. Nothing here bounds an error: two precisions must agree.
+is that of integrals.py, and the nodes in phi are mpmath's of tanh-sinh, which crowd at the ends, where
+a near branch point beyond them is felt. Nothing here bounds an error: two precisions must agree.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final
 
-from mpmath import mp, mpf
+from mpmath import mp, mpc, mpf
 
 from taylor_verify.exact.kirchhoff.weber.curve import Curve, Point
 from taylor_verify.exact.kirchhoff.weber.riemann import Symmetric
@@ -24,7 +24,6 @@ _LEVELS: Final = 12
 _DOUBLINGS: Final = 10
 
 Pair = tuple[mpf, mpf]
-Triple = tuple[mpf, mpf, mpf]
 
 
 @dataclass(frozen=True)
@@ -55,8 +54,7 @@ def narrowness(curve: Curve) -> int:
 def real_jacobian(curve: Curve) -> RealJacobian:
     """At the ambient precision of mpmath."""
     e = branch_points(curve)
-    nodes = Nodes()
-    gap1, oval1, gap2, oval2 = (stretch(e, s, mp.pi / 2, mpf(0), nodes) for s in range(4))
+    gap1, oval1, gap2, oval2 = (stretch(e, s, mp.pi / 2, mpf(0)) for s in range(4))
     det = 4 * (oval1[1] * oval2[0] - oval1[0] * oval2[1])
 
     def turns(v: Pair) -> Pair:
@@ -73,7 +71,7 @@ def real_jacobian(curve: Curve) -> RealJacobian:
             # u1 from e2 to e3, or u2 from e4 to e5, is half of its own period.
             phase[k] += mpf(point.branch - (1, 3)[k]) / 2
         else:
-            share = turns(_from_below(e, (1, 3)[k], point, nodes))
+            share = turns(_from_below(e, (1, 3)[k], point))
             phase = [entry + part for entry, part in zip(phase, share, strict=True)]
     flow = [mp.convert(rate) for rate in curve.flow]
     return RealJacobian(
@@ -84,88 +82,35 @@ def real_jacobian(curve: Curve) -> RealJacobian:
     )
 
 
-def stretch(e: Sequence[mpf], s: int, angle: mpf, rest: mpf, nodes: Nodes) -> Pair:
+def stretch(e: Sequence[mpf], s: int, angle: mpf, rest: mpf) -> Pair:
     """The integrals of dz/|w| and z dz/|w| from e_s, s counted from 0, to where phi is the angle.
 
-    ``rest`` is what the angle lacks of a right one.
+    ``rest`` is what the angle lacks of a right one. Raises Unsettled where the levels do not suffice.
     """
-    radius = (e[s + 1] - e[s]) / 2
+    width = e[s + 1] - e[s]
     below = [e[s] - entry for entry in e[:s]]
     above = [entry - e[s + 1] for entry in e[s + 2 :]]
 
-    def both(x: mpf, left: mpf) -> Pair:
-        # 1 - cos 2 phi, and the same of the angle that phi lacks: each has its digits where it is small.
-        up = 2 * radius * mp.sin(angle * x) ** 2
-        down = 2 * radius * mp.sin(rest + angle * left) ** 2
-        product = mpf(1)
-        for distance in below:
-            product *= distance + up
-        for distance in above:
-            product *= distance + down
-        weight = angle / mp.sqrt(product)
-        return weight, weight * (e[s] + up if up <= down else e[s + 1] - down)
+    def both(x: mpf) -> mpc:
+        # z from either end: each has its digits where it is small.
+        up = width * mp.sin(angle * x) ** 2
+        down = width * mp.sin(rest + angle * (1 - x)) ** 2
+        near = [distance + up for distance in below] + [distance + down for distance in above]
+        weight = angle / mp.sqrt(mp.fprod(near))
+        return mpc(weight, weight * (e[s] + up if up <= down else e[s + 1] - down))
 
-    return nodes.integral(both)
-
-
-class Nodes:
-    """The tanh-sinh rule on the unit interval, at one precision of mpmath and good only there.
-
-    x = 1/(1 + e^{-pi sinh t}) at equal steps of t, halved level by level; kept while the weight counts.
-    """
-
-    def __init__(self) -> None:
-        self._levels: list[list[Triple]] = []
-
-    def integral(self, integrands: Callable[[mpf, mpf], Pair]) -> Pair:
-        """Of both, functions of x and 1 - x, over the unit interval.
-
-        With each level the number of right digits doubles: what is left after one that changes
-        less than eps^(2/3) is far below eps. Raises Unsettled where the levels do not suffice.
-        """
-        totals, poorer, goal = [mpf(0), mpf(0)], None, mp.cbrt(mp.eps) ** 2
-        for level in range(_LEVELS):
-            for x, left, weight in self._level(level):
-                for n, value in enumerate(integrands(x, left)):
-                    totals[n] += weight * value
-            better = (totals[0] / 2**level, totals[1] / 2**level)
-            if poorer is not None:
-                change = max(abs(b - p) for b, p in zip(better, poorer, strict=True))
-                if change <= max(map(abs, better)) * goal:
-                    return better
-            poorer = better
+    found, error = mp.quad(both, [0, 1], error=True, maxdegree=_LEVELS)
+    # Every integral is near 1 in the unit sigma.
+    if not error <= mp.eps:
         raise Unsettled("an integral along Weber's curve does not settle")
-
-    def _level(self, level: int) -> list[Triple]:
-        """The nodes that this level adds."""
-        while len(self._levels) <= level:
-            self._levels.append(_nodes(len(self._levels)))
-        return self._levels[level]
+    return found.real, found.imag
 
 
-def _nodes(level: int) -> list[Triple]:
-    """x, 1 - x and dx/dt at the odd multiples of 2^-level, and at level 0 at all whole ones."""
-    found: list[Triple] = []
-    n, stride = (0, 1) if level == 0 else (1, 2)
-    while True:
-        t = mp.ldexp(n, -level)
-        grown = mp.exp(mp.pi * mp.sinh(t))
-        # x (1 - x) pi cosh t, with 1 - x formed without a difference.
-        weight = grown / (1 + grown) ** 2 * mp.pi * mp.cosh(t)
-        if not weight > mp.eps**2:
-            return found
-        near, far = grown / (1 + grown), 1 / (1 + grown)
-        found.append((near, far, weight))
-        if n:
-            found.append((far, near, weight))
-        n += stride
-
-
-def _from_below(e: Sequence[mpf], s: int, point: Point, nodes: Nodes) -> Pair:
+def _from_below(e: Sequence[mpf], s: int, point: Point) -> Pair:
     """The two integrals from e_s to the point."""
     u = _real(point.u)
     up, down = mp.sqrt(u - e[s]), mp.sqrt(e[s + 1] - u)
-    first, second = stretch(e, s, mp.atan2(up, down), mp.atan2(down, up), nodes)
+    first, second = stretch(e, s, mp.atan2(up, down), mp.atan2(down, up))
     return point.sheet * first, point.sheet * second
 
 

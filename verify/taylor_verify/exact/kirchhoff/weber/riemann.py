@@ -26,9 +26,13 @@ Symmetric = tuple[mpf, mpf, mpf]  # Y11, Y12, Y22
 Term = tuple[int, int, mpf]
 
 
+# cos and sin of pi m.Z for every term.
+Waves = tuple[Sequence[mpf], Sequence[mpf]]
+
+
 @dataclass(frozen=True)
 class Series:
-    """One characteristic: (-1)^{n.b} times the weights, and these times m1 and m2.
+    """A characteristic: (-1)^{n.b} times the weights, and these times m1 and m2.
 
     ``turns`` are the right angles a.b, which leave theta to the sum of the cosines or of the sines.
     """
@@ -38,15 +42,20 @@ class Series:
     by_m1: Sequence[mpf]
     by_m2: Sequence[mpf]
 
-    def value(self, cosines: Sequence[mpf], sines: Sequence[mpf]) -> mpf:
-        waves, sign = ((cosines, 1), (sines, -1), (cosines, -1))[self.turns]
-        return sign * mp.fdot(self.weights, waves)
+    def value(self, waves: Waves) -> mpf:
+        return _sum(self.weights, waves, self.turns)
 
-    def slope(self, cosines: Sequence[mpf], sines: Sequence[mpf], along: Sequence[mpf]) -> mpf:
-        """The rate along a direction g."""
-        waves, sign = ((sines, -1), (cosines, -1), (sines, 1))[self.turns]
-        first, second = mp.fdot(self.by_m1, waves), mp.fdot(self.by_m2, waves)
-        return sign * mp.pi * (along[0] * first + along[1] * second)
+    def slope(self, waves: Waves, along: Sequence[mpf]) -> mpf:
+        """The rate along a direction g: another right angle, and pi m.g for a factor."""
+        first, second = (_sum(by_m, waves, self.turns + 1) for by_m in (self.by_m1, self.by_m2))
+        return mp.pi * (along[0] * first + along[1] * second)
+
+
+def _sum(weights: Sequence[mpf], waves: Waves, turns: int) -> mpf:
+    """The weighted sum of cos(pi m.Z + turns pi/2)."""
+    cosines, sines = waves
+    total = mp.fdot(weights, sines if turns % 2 else cosines)
+    return -total if turns in (1, 2) else total
 
 
 class Thetas:
@@ -61,7 +70,7 @@ class Thetas:
     def values(self, Z: Sequence[mpf]) -> Mapping[int, mpf]:
         """theta at Z, by characteristic."""
         waves = self._waves(Z)
-        return {c: series.value(*waves[c >> 2]) for c, series in self._series.items()}
+        return {c: series.value(waves[c >> 2]) for c, series in self._series.items()}
 
     def slopes(self, Z: Sequence[mpf], along: Sequence[mpf]) -> Mapping[int, mpf]:
         """Its rate at Z along a direction.
@@ -69,10 +78,10 @@ class Thetas:
         What is left out of a rate is larger by the size of m: it serves where a sign is asked for.
         """
         waves = self._waves(Z)
-        return {c: series.slope(*waves[c >> 2], along) for c, series in self._series.items()}
+        return {c: series.slope(waves[c >> 2], along) for c, series in self._series.items()}
 
-    def _waves(self, Z: Sequence[mpf]) -> Mapping[int, tuple[list[mpf], list[mpf]]]:
-        """cos and sin of pi m.Z for every term, by a."""
+    def _waves(self, Z: Sequence[mpf]) -> Mapping[int, Waves]:
+        """The waves of every a."""
         kept = [term for terms in self._terms.values() for term in terms]
         first = _powers(Z[0], max((m1 for m1, _, _ in kept), default=0))
         second = _powers(Z[1], max((abs(m2) for _, m2, _ in kept), default=0))

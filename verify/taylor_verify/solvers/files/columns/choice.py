@@ -1,19 +1,25 @@
-"""One choice of the columns of a group, and the sentence about it."""
+"""The choices that the names of a file leave for a group of columns, and the sentence about each."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import cached_property
 from typing import Final
 
 from taylor_verify.scenes.reading.faults import cut
-from taylor_verify.solvers.files.columns.names import GROUPS
-from taylor_verify.solvers.files.columns.readings import is_ours
-from taylor_verify.solvers.files.columns.units import Unit
-from taylor_verify.solvers.files.formats.column import Column
+from taylor_verify.solvers.files.columns.names import GROUPS, Spelling
+from taylor_verify.solvers.files.columns.readings import Name
+from taylor_verify.solvers.files.columns.units import OWN, Unit
 
 MOST_NAMED: Final = 8
+_NUMBERED: Final = re.compile(r"[a-z]\d")
+
+# By component the names that may be it, each with its unit (None: not known).
+Cells = Mapping[int, Sequence[tuple[Name, Unit | None]]]
 
 
 class Rank(IntEnum):
@@ -29,7 +35,7 @@ class Choice:
     """The columns of one group, in our order, each with its unit (None: not known)."""
 
     group: str
-    columns: tuple[Column, ...]
+    names: tuple[Name, ...]
     units: tuple[Unit | None, ...]
     rank: Rank
     remark: str = ""
@@ -37,36 +43,91 @@ class Choice:
 
     @property
     def shown(self) -> str:
-        return shown_names(self.columns)
+        return shown_names(self.names)
 
     @property
     def note(self) -> str:
         """The sentence about what was taken; empty for our own names in the scene's units."""
         words = dict.fromkeys(unit.words for unit in self.units if unit and unit.words)
-        is_plain = all(is_ours(column.name) for column in self.columns)
+        is_plain = all(name.is_ours for name in self.names)
         if is_plain and not words and self.rank is not Rank.ASKED:
             return ""
-        said = [self.remark] if self.remark and not is_plain else []
-        said += [f"in {' and in '.join(words)}"] if words else []
-        names = " ".join(GROUPS[self.group])
-        return f"{self.shown} taken as {names}{''.join(f', {part}' for part in said)}"
+        parts = [f"{self.shown} taken as {' '.join(GROUPS[self.group])}"]
+        parts += [self.remark] if self.remark and not is_plain else []
+        parts += [f"in {' and in '.join(words)}"] if words else []
+        return ", ".join(parts)
 
 
-def scalar_requests(choice: Choice) -> str:
-    """The requests for a scalar that is the first of four columns, and for one that is the last."""
-    names = [column.name.strip() for column in choice.columns]
-    if choice.group != "quaternion":
-        return ""
-    first, last = (
-        ",".join(
-            f"{ours}={cut(name)}" for ours, name in zip(GROUPS[choice.group], order, strict=True)
-        )
-        for order in (names, [names[-1], *names[:-1]])
-    )
-    return f"{first} for the first, {last} for the last"
+def shown_names(names: Sequence[Name]) -> str:
+    if len(names) > MOST_NAMED:
+        return f"`{cut(names[0].text)}` ... `{cut(names[-1].text)}`"
+    return " ".join(f"`{cut(name.text)}`" for name in names)
 
 
-def shown_names(columns: Sequence[Column]) -> str:
-    if len(columns) > MOST_NAMED:
-        return f"`{cut(columns[0].name)}` ... `{cut(columns[-1].name)}`"
-    return " ".join(f"`{cut(column.name)}`" for column in columns)
+@dataclass(frozen=True)
+class Candidates:
+    """The names of a file, and those of them that somebody asked for, by our names."""
+
+    names: Sequence[Name]
+    asked: Mapping[str, Name]
+
+    @cached_property
+    def free(self) -> list[Name]:
+        """The names that nobody asked for."""
+        asked = set(self.asked.values())
+        return [name for name in self.names if name not in asked]
+
+    @cached_property
+    def _keys(self) -> set[str]:
+        return {name.key for name in self.free}
+
+    @cached_property
+    def cells(self) -> Mapping[tuple[Spelling, str], Cells]:
+        """The names that may be each component, by spelling and path."""
+        cells: dict[tuple[Spelling, str], dict[int, list[tuple[Name, Unit | None]]]] = {}
+        for name in self.free:
+            for reading in name.readings:
+                cell = cells.setdefault((reading.spelling, reading.path), defaultdict(list))
+                cell[reading.component].append((name, reading.unit))
+        return cells
+
+    def of(self, group: str, chosen: Mapping[str, Choice]) -> list[Choice]:
+        """Return every spelling all of whose names are there; each set of columns once."""
+        choices: dict[tuple[Name, ...], Choice] = {}
+        for (spelling, _), cells in self.cells.items():
+            is_possible = spelling.beside in ("", *chosen) and not spelling.unless & self._keys
+            if spelling.group == group and is_possible and (whole := self._whole(spelling, cells)):
+                choices.setdefault(whole.names, whole)
+        return list(choices.values())
+
+    def _whole(self, spelling: Spelling, cells: Cells) -> Choice | None:
+        ours, doubt = GROUPS[spelling.group], spelling.doubt
+        names: list[Name] = []
+        units: list[Unit | None] = []
+        for component, own in enumerate(ours):
+            hits = cells.get(component, ())
+            if own in self.asked:
+                hits = [(self.asked[own], self.asked[own].unit(spelling.group) or OWN)]
+            hits = [hit for hit in hits if hit[0].text == own] or hits
+            if not hits:
+                return None
+            if len(hits) > 1:
+                doubt = doubt or f"{shown_names([name for name, _ in hits])} are alike"
+            names.append(hits[0][0])
+            units.append(hits[0][1])
+        is_own = all(name.is_ours for name in names) and spelling.keys == ours
+        if not is_own and self.numbered_beside(spelling.keys):
+            return None
+        rank = Rank.OURS if is_own else Rank.USUAL
+        if not self.asked.keys().isdisjoint(ours):
+            rank = Rank.ASKED
+        return Choice(spelling.group, tuple(names), tuple(units), rank, spelling.remark, doubt)
+
+    def numbered_beside(self, keys: Sequence[str]) -> list[Name]:
+        """Return the names of a letter and a digit as these are, and others than these."""
+        first = {key[0] for key in keys if _NUMBERED.fullmatch(key)}
+        return [
+            name
+            for name in self.free
+            if _NUMBERED.fullmatch(name.key) and name.key[0] in first and name.key not in keys
+        ]

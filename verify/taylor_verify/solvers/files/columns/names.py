@@ -68,77 +68,70 @@ _STEMS: Final = {
     "angular_impulse": "angularimpulse impulseangular",
     "centre": "c centre center position pos translation location",
 }
-_ATTITUDES: Final = "q quat quaternion orientation attitude att rotation"
-_MATRICES: Final = "r rot rotation rotationmatrix rotmat rmat orientation attitude attitudematrix"
-# A direction cosine matrix takes space to body as often as body to space.
-_COSINES: Final = "dcm directioncosinematrix c"
+# Other names of all components, in our order.
+_WORDS: Final = {
+    "centre": ("px py pz", "xpos ypos zpos"),
+    "omega": ("rollrate pitchrate yawrate", "rollspeed pitchspeed yawspeed"),
+    "quaternion": (
+        *("qc q1 q2 q3", "qs q1 q2 q3", "qw q1 q2 q3", "qr qi qj qk"),
+        *("eta eps1 eps2 eps3", "eta epsilon1 epsilon2 epsilon3"),
+    ),
+}
 _TIMES: Final = (
     "time times timestamp timestamps stamp tout seconds sec simtime simulationtime elapsed "
     "elapsedtime"
 )
+_ATTITUDES: Final = "q quat quaternion orientation attitude att rotation"
+_MATRICES: Final = "r rot rotation rotationmatrix rotmat rmat orientation attitude attitudematrix"
+# A direction cosine matrix takes space to body as often as body to space.
+_COSINES: Final = "dcm directioncosinematrix c"
+_DOUBT: Final = "the scalar is the first of them or the last, and the names do not say which"
 
-_FIRST: Final = "scalar first"
 _TO_SPACE: Final = "body axes to space axes"
-_BODY: Final = {"omega": "body axes", "linear_velocity": "of the body's origin, in body axes"}
+_TO_BODY_SHOWS: Final = f"{_TO_SPACE}; one that takes space to body shows as transposed"
+_AXES: Final = {"omega": "body axes", "linear_velocity": "of the body's origin, in body axes"}
+_REMARKS: Final = {**_AXES, "quaternion": "scalar first", "attitude": _TO_SPACE}
 
 
 def _spellings() -> Iterator[Spelling]:
     for group, names in GROUPS.items():
-        yield Spelling(group, names, _remark(group))
+        yield Spelling(group, names, _REMARKS.get(group, ""))
     for group, stems in _STEMS.items():
         for stem, triple in product(stems.split(), _TRIPLES):
-            yield Spelling(group, tuple(stem + c for c in triple), _remark(group))
-    yield Spelling("centre", ("px", "py", "pz"))
-    yield Spelling("centre", ("xpos", "ypos", "zpos"))
-    yield Spelling("centre", _LETTERS, is_whole=True)
-    for words in ("rollrate pitchrate yawrate", "rollspeed pitchspeed yawspeed"):
-        yield Spelling("omega", tuple(words.split()), _BODY["omega"])
-    yield Spelling("omega", ("p", "q", "r"), _BODY["omega"], is_whole=True)
-    yield Spelling(
-        "linear_velocity", ("u", "v", "w"), _BODY["linear_velocity"], is_whole=True, beside="omega"
-    )
-    yield from _quaternions()
-    for stem, pairs in product(_MATRICES.split(), COMPONENTS["attitude"]):
-        yield Spelling("attitude", tuple(stem + c for c in pairs), _TO_SPACE)
-    remark = f"{_TO_SPACE}; one that takes space to body shows as transposed"
-    for stem, pairs in product(_COSINES.split(), COMPONENTS["attitude"]):
-        yield Spelling("attitude", tuple(stem + c for c in pairs), remark)
+            yield Spelling(group, tuple(stem + c for c in triple), _AXES.get(group, ""))
+    for group, spelled in _WORDS.items():
+        for words in spelled:
+            yield Spelling(group, tuple(words.split()), _AXES.get(group, ""))
     for name in _TIMES.split():
         yield Spelling("time", (name,))
-
-
-def _remark(group: str) -> str:
-    return {**_BODY, "quaternion": _FIRST, "attitude": _TO_SPACE}.get(group, "")
-
-
-def _quaternions() -> Iterator[Spelling]:
-    for stem in _ATTITUDES.split():
-        yield Spelling("quaternion", tuple(stem + c for c in ("w", *_LETTERS)))
-        yield Spelling("quaternion", tuple(stem + c for c in ("s", *_LETTERS)))
-        for digits in (("1", "2", "3", "4"), ("0", "1", "2", "3")):
-            if (stem, digits[0]) != ("q", "0"):
-                doubt = (
-                    "the scalar is the first of them or the last, and the names do not say which"
-                )
-                yield Spelling("quaternion", tuple(stem + c for c in digits), doubt=doubt)
-    for words in (
-        *("qc q1 q2 q3", "qs q1 q2 q3", "qw q1 q2 q3", "qr qi qj qk"),
-        *("eta eps1 eps2 eps3", "eta epsilon1 epsilon2 epsilon3"),
-    ):
-        yield Spelling("quaternion", tuple(words.split()))
+    yield Spelling("centre", _LETTERS, is_whole=True)
+    yield Spelling("omega", ("p", "q", "r"), _AXES["omega"], is_whole=True)
+    velocity = "linear_velocity"
+    yield Spelling(velocity, ("u", "v", "w"), _AXES[velocity], is_whole=True, beside="omega")
+    for stem, scalar in product(_ATTITUDES.split(), "ws"):
+        yield Spelling("quaternion", tuple(stem + c for c in (scalar, *_LETTERS)))
+    for stem, first in product(_ATTITUDES.split(), (1, 0)):
+        if (stem, first) != ("q", 0):
+            keys = tuple(f"{stem}{first + k}" for k in range(4))
+            yield Spelling("quaternion", keys, doubt=_DOUBT)
     yield Spelling(
         "quaternion", ("w", *_LETTERS), is_whole=True, unless=frozenset({"u", "v", "p", "r"})
     )
+    for stems, remark in ((_MATRICES, _TO_SPACE), (_COSINES, _TO_BODY_SHOWS)):
+        for stem, pairs in product(stems.split(), COMPONENTS["attitude"]):
+            yield Spelling("attitude", tuple(stem + c for c in pairs), remark)
 
 
 SPELLINGS: Final = tuple(dict.fromkeys(_spellings()))
-# Where each name stands: its spelling by number, and its component.
-PLACES: Final[Mapping[str, tuple[tuple[int, int], ...]]] = {
-    key: tuple(
-        (number, component)
-        for number, spelling in enumerate(SPELLINGS)
-        for component, name in enumerate(spelling.keys)
-        if name == key
-    )
-    for key in {key for spelling in SPELLINGS for key in spelling.keys}
-}
+
+
+def _places() -> Mapping[str, Sequence[tuple[Spelling, int]]]:
+    places: dict[str, list[tuple[Spelling, int]]] = {}
+    for spelling in SPELLINGS:
+        for component, key in enumerate(spelling.keys):
+            places.setdefault(key, []).append((spelling, component))
+    return places
+
+
+# The spellings that have each name, and its component there.
+PLACES: Final = _places()

@@ -10,10 +10,18 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
+from typing import Final, NamedTuple
 
-from taylor_verify.solvers.files.columns.names import GROUP_OF, PLACES, SPELLINGS
-from taylor_verify.solvers.files.columns.units import OWN, Unit, as_suffix, in_brackets, plain
+from taylor_verify.solvers.files.columns.names import GROUP_OF, PLACES, Spelling
+from taylor_verify.solvers.files.columns.units import (
+    OWN,
+    Unit,
+    as_suffix,
+    in_brackets,
+    letters,
+    plain,
+)
+from taylor_verify.solvers.files.formats.column import Column
 
 _BRACKETS: Final = re.compile(r"(?P<name>.*\S)\s*[\[({](?P<inside>[^\[\](){}]*)[\])}]")
 # An index, a component, or the variable of a function of time.
@@ -26,34 +34,44 @@ _LONGEST_SUFFIX: Final = 3
 _LONGEST: Final = 200
 
 
-@dataclass(frozen=True)
-class Reading:
-    """A place in the table that a name may stand for, and the path in front of it.
+class Reading(NamedTuple):
+    """A spelling that a name may belong to, its component there, and the path in front of it.
 
     ``unit`` is None where the brackets hold no unit of this group.
     """
 
-    spelling: int
+    spelling: Spelling
     component: int
     path: str
     unit: Unit | None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Name:
-    """The name of a column, as its file writes it."""
+    """The name of a column, as its file writes it but for blanks around it."""
 
-    text: str
+    column: Column
+
+    @cached_property
+    def text(self) -> str:
+        return self.column.name.strip()
+
+    @property
+    def is_ours(self) -> bool:
+        """True for a name that is ours to the letter."""
+        return self.text in GROUP_OF
 
     @cached_property
     def _parts(self) -> tuple[str, str | None]:
         """The name in plain letters, and the text of brackets behind it that are no index."""
         name = plain(self.text[:_LONGEST])
-        found = _BRACKETS.fullmatch(name)
-        if found is None or _INDEX.fullmatch(found["inside"].strip()):
+        bracketed = _BRACKETS.fullmatch(name)
+        if bracketed is None:
             return name, None
-        inside = found["inside"].strip()
-        return found["name"], None if inside == _OF_TIME else inside
+        inside = bracketed["inside"].strip()
+        if _INDEX.fullmatch(inside):
+            return name, None
+        return bracketed["name"], None if inside == _OF_TIME else inside
 
     @property
     def unit_text(self) -> str:
@@ -63,14 +81,14 @@ class Name:
     @cached_property
     def key(self) -> str:
         """All letters and digits of the name, the unit left out."""
-        return _key(self._parts[0])
+        return letters(self._parts[0])
 
     def unit(self, group: str) -> Unit | None:
         """Return the unit of a column that is of this group, by its brackets or the end of its name."""
         name, brackets = self._parts
         if brackets is not None:
             return in_brackets(brackets, group)
-        suffixed = (as_suffix(_key("".join(tail)), group) for _, tail in _suffixes(name))
+        suffixed = (as_suffix(end, group) for _, end in _suffixes(name))
         return next((unit for unit in suffixed if unit is not None), OWN)
 
     @cached_property
@@ -78,56 +96,46 @@ class Name:
         """Every reading; of each spelling the one with the shortest path, and without a suffix."""
         if len(self.text) > _LONGEST:
             return ()
-        found: dict[tuple[int, int], Reading] = {}
+        readings: dict[tuple[Spelling, int], Reading] = {}
         matched: set[str] = set()
         for path, name in _tails(self._parts[0]):
-            here = [r for r in self._of(path, name) if SPELLINGS[r.spelling].group not in matched]
+            here = [r for r in self._of(path, name) if r.spelling.group not in matched]
             for reading in here:
-                found.setdefault((reading.spelling, reading.component), reading)
-            matched |= {SPELLINGS[reading.spelling].group for reading in here}
-        return tuple(found.values())
+                readings.setdefault((reading.spelling, reading.component), reading)
+            matched |= {reading.spelling.group for reading in here}
+        return tuple(readings.values())
 
     def _of(self, path: str, name: str) -> Iterator[Reading]:
         brackets = self._parts[1]
         for spelling, component in _places(name, path):
-            group = SPELLINGS[spelling].group
-            unit = OWN if brackets is None else in_brackets(brackets, group)
+            unit = OWN if brackets is None else in_brackets(brackets, spelling.group)
             yield Reading(spelling, component, path, unit)
-        for stem, tail in _suffixes(name) if brackets is None else ():
+        for stem, end in _suffixes(name) if brackets is None else ():
             for spelling, component in _places(stem, path):
-                if unit := as_suffix(_key("".join(tail)), SPELLINGS[spelling].group):
+                if unit := as_suffix(end, spelling.group):
                     yield Reading(spelling, component, path, unit)
 
 
-def is_ours(text: str) -> bool:
-    """Return True for a name that is ours to the letter."""
-    return text.strip() in GROUP_OF
-
-
-def _key(text: str) -> str:
-    return re.sub(r"[^a-z0-9]", "", text)
-
-
-def _places(name: str, path: str) -> Iterator[tuple[int, int]]:
-    key = _key(name)
+def _places(name: str, path: str) -> Iterator[tuple[Spelling, int]]:
+    key = letters(name)
     # The w1 of motor.w1 is no angular velocity, nor the x of acceleration.x a position.
     if path and _TERSE.fullmatch(key):
         return
     for spelling, component in PLACES.get(key, ()):
-        if not (path and SPELLINGS[spelling].is_whole):
+        if not (path and spelling.is_whole):
             yield spelling, component
 
 
 def _tails(name: str) -> Iterator[tuple[str, str]]:
-    """Return the name, and what is left of it behind longer and longer paths."""
+    """Yield the name, and what is left of it behind longer and longer paths."""
     yield "", name
     for separator in re.finditer(r"[/.]", name):
         if separator.start():
             yield name[: separator.start()], name[separator.end() :]
 
 
-def _suffixes(name: str) -> Iterator[tuple[str, list[str]]]:
-    """Return the name without its last words, and these words, the longest end first."""
+def _suffixes(name: str) -> Iterator[tuple[str, str]]:
+    """Yield the name without its last words, and the letters of these, the longest end first."""
     words = re.split(r"([_\s./]+)", name)
     for count in range(min(_LONGEST_SUFFIX, len(words) // 2), 0, -1):
-        yield "".join(words[: -2 * count]), words[-2 * count + 1 :: 2]
+        yield "".join(words[: -2 * count]), letters("".join(words[-2 * count + 1 :: 2]))

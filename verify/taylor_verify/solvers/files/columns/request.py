@@ -26,11 +26,8 @@ _MOST_NEAR: Final = 3
 
 def request(texts: Iterable[str]) -> Request:
     """Return the pairs of each ``NAME=THEIRS,NAME=THEIRS``; nothing is looked up yet."""
-    pairs = []
-    for pair in (pair for text in texts for pair in _NEXT.split(text)):
-        name, _, theirs = pair.partition("=")
-        pairs.append((name.strip(), _unquoted(theirs.strip())))
-    return tuple(pairs)
+    pairs = (pair.partition("=") for text in texts for pair in _NEXT.split(text))
+    return tuple((name.strip(), _unquoted(theirs.strip())) for name, _, theirs in pairs)
 
 
 def _unquoted(text: str) -> str:
@@ -39,16 +36,16 @@ def _unquoted(text: str) -> str:
 
 
 def asked_columns(
-    wanted: Request, columns: Sequence[Column], place: str, faults: Faults
-) -> Mapping[str, Column]:
-    """Return the column of each of our names that is asked for; what cannot be met is a fault."""
-    by_name = {column.name.strip(): column for column in columns}
-    found: dict[str, Column] = {}
+    wanted: Request, names: Sequence[Name], place: str, faults: Faults
+) -> Mapping[str, Name]:
+    """Return the file's name for each of ours that is asked for; what cannot be met is a fault."""
+    by_text = {name.text: name for name in names}
+    asked: dict[str, Name] = {}
     used: dict[str, str] = {}
     for name, theirs in wanted:
         at = f"columns {cut(name)}={cut(theirs)}"
-        if name in GROUPS and name not in by_name.keys() & {theirs}:
-            pairs = _of_group(name, theirs, columns, at, faults)
+        if name in GROUPS and not (name == theirs and name in by_text):
+            pairs = _of_group(name, theirs, names, at, faults)
         elif name in KNOWN:
             pairs = [(name, theirs)]
         else:
@@ -56,42 +53,46 @@ def asked_columns(
             faults.add(expected, f"`{cut(name)}`", at, near(name, (*KNOWN, *GROUPS)))
             continue
         for ours, own in pairs:
-            if own not in by_name:
+            if own not in by_text:
                 expected = f"the name of a column of {place}"
-                faults.add(expected, f"`{cut(own)}`", at, _near(own, by_name))
-            elif ours in found:
+                faults.add(expected, f"`{cut(own)}`", at, _near(own, names))
+            elif ours in asked:
                 faults.add("every name once", f"{ours} again", at)
             elif own in used:
                 faults.add("every column once", f"`{cut(own)}`, which is {used[own]}", at)
             else:
-                found[ours], used[own] = by_name[own], ours
-    return found
+                asked[ours], used[own] = by_text[own], ours
+    return asked
 
 
 def _of_group(
-    group: str, theirs: str, columns: Sequence[Column], at: str, faults: Faults
+    group: str, theirs: str, names: Sequence[Name], at: str, faults: Faults
 ) -> list[tuple[str, str]]:
-    """The columns of a whole group, whose names begin with one word."""
+    """Return the columns of a whole group, whose names begin with one word."""
     if group == "time":
         return [("t", theirs)]
-    stem = Name(theirs).key
-    keys = {Name(column.name).key: column.name.strip() for column in columns}
+    stem = _key(theirs)
+    texts = {name.key: name.text for name in names}
     sets = [
-        [keys[stem + c] for c in components]
+        [texts[stem + c] for c in components]
         for components in COMPONENTS[group]
-        if all(stem + c in keys for c in components)
+        if all(stem + c in texts for c in components)
     ]
     if len(sets) == 1:
         return list(zip(GROUPS[group], sets[0], strict=True))
     ways = " or ".join(f"{theirs}_{c[0]} ... {theirs}_{c[-1]}" for c in COMPONENTS[group])
-    got = "several of them" if sets else f"none ({_near(theirs, list(keys.values()))})"
+    got = "several of them" if sets else f"none ({_near(theirs, names)})"
     faults.add(f"columns {cut(ways)}", got, at, f"name each of {' '.join(GROUPS[group])}")
     return []
 
 
-def _near(name: str, names: Iterable[str]) -> str:
-    """The names of the file that are most like this one."""
-    by_key = {Name(text).key or text: text for text in names}
-    close = difflib.get_close_matches(Name(name).key, by_key, n=_MOST_NEAR, cutoff=0.5)
+def _key(text: str) -> str:
+    return Name(Column(text, ())).key
+
+
+def _near(text: str, names: Sequence[Name]) -> str:
+    """Return a phrase on the names of the file that are most like this one."""
+    by_key = {name.key or name.text: name.text for name in names}
+    close = difflib.get_close_matches(_key(text), by_key, n=_MOST_NEAR, cutoff=0.5)
     shown = ", ".join(f"`{cut(by_key[key])}`" for key in close or list(by_key)[:8])
     return f"near it: {shown}" if close else f"it has {shown}"

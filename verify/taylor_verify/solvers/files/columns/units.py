@@ -102,7 +102,8 @@ def _key(text: str) -> str:
     return re.sub(r"\s+", "", plain(text))
 
 
-def _letters(text: str) -> str:
+def letters(text: str) -> str:
+    """Return the small letters and the digits of a text."""
     return re.sub(r"[^a-z0-9]", "", text)
 
 
@@ -113,7 +114,7 @@ _IN_BRACKETS: Final = {
     for dimension, rows in _WRITTEN.items()
 }
 _AS_SUFFIX: Final = {
-    dimension: {_letters(text): unit for text, unit in units.items() if text[0].isalpha()}
+    dimension: {letters(text): unit for text, unit in units.items() if text[0].isalpha()}
     for dimension, units in _IN_BRACKETS.items()
 }
 

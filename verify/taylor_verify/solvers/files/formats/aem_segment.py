@@ -1,12 +1,16 @@
-"""A segment of a CCSDS AEM: its metadata and its states, as text."""
+"""The segments of a CCSDS AEM: metadata and states as they are written, in text (KVN) or in XML."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Final
+from mmap import ACCESS_READ, mmap
+from pathlib import Path
+from typing import BinaryIO, Final
+from xml.etree import ElementTree
 
-from taylor_verify.scenes.reading.faults import Refused, cut
+from taylor_verify.scenes.reading.faults import cut, refusal
+from taylor_verify.scenes.reading.limit import Limit
 from taylor_verify.solvers.files.formats.column import ROWS
 
 QUATERNION: Final = ("Q1", "Q2", "Q3", "QC")
@@ -20,6 +24,12 @@ _STATES: Final[Mapping[str, tuple[str, ...]]] = {
     "QUATERNION/ANGVEL": QUATERNION + ANGULAR_VELOCITY,
 }
 _REQUIRED: Final = ("REF_FRAME_A", "REF_FRAME_B", "TIME_SYSTEM", "START_TIME", "ATTITUDE_TYPE")
+_LINE: Final = Limit(4096, "characters in a line", "the standard allows 254")
+_VERSION: Final = "CCSDS_AEM_VERS"
+# Roots of XML that is no attitude ephemeris.
+_OTHER_MESSAGES: Final = frozenset(
+    "apm acm oem opm omm ocm cdm tdm rdm robot sdf mujoco".split()  # noqa: SIM905 (a table of words)
+)
 
 
 @dataclass
@@ -29,10 +39,18 @@ class Segment:
     metadata: Mapping[str, str]
     columns: dict[str, list[str]] = field(default_factory=dict)
 
+    def check(self, place: object) -> None:
+        """Refuse metadata that say too little, or are of another type."""
+        if missing := [name for name in _REQUIRED if name not in self.metadata]:
+            raise refusal(", ".join(_REQUIRED), f"no {', '.join(missing)}", place)
+        if self.kind not in _STATES:
+            expected = f"an ATTITUDE_TYPE of quaternions ({', '.join(_STATES)})"
+            raise refusal(expected, cut(self.kind), place, "write QUATERNION or QUATERNION/ANGVEL")
+
     def add(self, names: Sequence[str], cells: Sequence[str], place: object) -> None:
         """Add a state; refuse one that has not as many numbers as its type."""
         if len(cells) != len(names):
-            raise Refused([f"expected {' '.join(names)}, got {len(cells)} values @ {place}"])
+            raise refusal(" ".join(names), f"{len(cells)} values", place)
         for name, cell in zip(names, cells, strict=True):
             self.columns.setdefault(name, []).append(cell)
         ROWS.check(len(self.columns["EPOCH"]), place)
@@ -44,33 +62,109 @@ class Segment:
     def frame(self, letter: str) -> str:
         return self.metadata[f"REF_FRAME_{letter}"].upper()
 
-
-def begun(metadata: Mapping[str, str], place: object) -> Segment:
-    """Return the segment with these metadata; refuse it if it says too little or is of another type."""
-    missing = [name for name in _REQUIRED if name not in metadata]
-    if missing:
-        raise Refused([f"expected {', '.join(_REQUIRED)}, got no {', '.join(missing)} @ {place}"])
-    segment = Segment(metadata)
-    if segment.kind not in _STATES:
-        raise Refused(
-            [
-                f"expected an ATTITUDE_TYPE of quaternions ({', '.join(_STATES)}), got "
-                f"{cut(segment.kind)} @ {place} (write QUATERNION or QUATERNION/ANGVEL)"
-            ]
-        )
-    return segment
+    def state_names(self, version: str, place: object) -> tuple[str, ...]:
+        """Return the order of the values in a line; the scalar is last, but where version 1 says so."""
+        default = "" if version.startswith("1") else "LAST"
+        where = self.metadata.get("QUATERNION_TYPE", default).upper()
+        if where not in ("FIRST", "LAST"):
+            raise refusal("QUATERNION_TYPE = FIRST or LAST", cut(where or "none"), place)
+        names = _STATES[self.kind]
+        if where == "FIRST":
+            names = ("QC", *QUATERNION[:3], *names[4:])
+            if self.kind == "QUATERNION/DERIVATIVE":
+                names = (*names[:4], "QC_DOT", *DERIVATIVE[:3])
+        return ("EPOCH", *names)
 
 
-def state_names(segment: Segment, version: str, place: object) -> tuple[str, ...]:
-    """The order of the values in a line; version 1 says where the scalar stands, later it is last."""
-    names = _STATES[segment.kind]
-    default = "" if version.startswith("1") else "LAST"
-    where = segment.metadata.get("QUATERNION_TYPE", default).upper()
-    if where not in ("FIRST", "LAST"):
-        got = where or "none"
-        raise Refused([f"expected QUATERNION_TYPE = FIRST or LAST, got {cut(got)} @ {place}"])
-    if where == "FIRST":
-        names = ("QC", *QUATERNION[:3], *names[4:])
-        if segment.kind == "QUATERNION/DERIVATIVE":
-            names = (*names[:4], "QC_DOT", *DERIVATIVE[:3])
-    return ("EPOCH", *names)
+# Text: a `KEYWORD = value` in a line, and blocks of data lines.
+
+
+def in_text(file: BinaryIO, path: Path) -> list[Segment]:
+    """Return the segments in order; refuse a line that is neither metadata nor a state."""
+    version, block, metadata = "", "", dict[str, str]()
+    read, names = list[Segment](), tuple[str, ...]()
+    for place, line in _lines(file, path):
+        word, equals, value = (part.strip() for part in line.partition("="))
+        if word == "META_START":
+            block, metadata = "META", {}
+        elif word == "DATA_START":
+            block = "DATA"
+            read.append(Segment(metadata))
+            read[-1].check(place)
+            names = read[-1].state_names(version, place)
+        elif word in ("META_STOP", "DATA_STOP"):
+            block = ""
+        elif block == "DATA" and not equals:
+            read[-1].add(names, line.split(), place)
+        elif equals and block == "META":
+            metadata[word.upper()] = value
+        elif equals and word.startswith("CCSDS_"):
+            if word != _VERSION:
+                expected = f"an attitude ephemeris ({_VERSION})"
+                raise refusal(expected, cut(word), place, "no other message of the CCSDS is read")
+            version = value
+        elif not equals or block == "DATA":
+            raise refusal("KEYWORD = value or a block of data", repr(cut(line)), place)
+    if block:
+        raise refusal(f"{block}_STOP", "the end of the file", path)
+    return read
+
+
+def _lines(file: BinaryIO, path: Path) -> Iterator[tuple[str, str]]:
+    """Yield the lines with their places; blank lines and comments are left out."""
+    number = 0
+    while line := file.readline(_LINE.most + 1):
+        number += 1
+        place = f"{path}, line {number}"
+        _LINE.check(len(line), place)
+        try:
+            text = line.decode("utf-8-sig").strip()
+        except UnicodeDecodeError:
+            raise refusal("text in UTF-8", "other bytes", place) from None
+        if text and text.split(maxsplit=1)[0] != "COMMENT":
+            yield place, text
+
+
+# XML: no entity is declared in such a file, and none is expanded.
+
+
+def in_xml(file: BinaryIO, path: Path) -> list[Segment]:
+    """Return the segments in order, each state read and forgotten before the next one."""
+    with mmap(file.fileno(), 0, access=ACCESS_READ) as content:
+        if content.find(b"<!DOCTYPE") >= 0 or content.find(b"<!ENTITY") >= 0:
+            raise refusal("XML without a DOCTYPE", "one", path)
+    read: list[Segment] = []
+    try:
+        for event, element in ElementTree.iterparse(file, ("start", "end")):
+            tag, place = _tag(element), f"{path}, segment {len(read)}"
+            if event == "start":
+                if tag in _OTHER_MESSAGES:
+                    raise refusal("an attitude ephemeris (<aem>)", f"<{tag}>", path)
+            elif tag == "metadata":
+                read.append(Segment(_texts(element)))
+                read[-1].check(f"{path}, segment {len(read)}")
+            elif tag == "attitudeState":
+                if not read:
+                    raise refusal("metadata before the states", "none", path)
+                _add(read[-1], _texts(element), place)
+                element.clear()
+    except ElementTree.ParseError as error:
+        raise refusal("XML", f"a fault in it: {error}", path) from None
+    return read
+
+
+def _add(segment: Segment, texts: Mapping[str, str], place: str) -> None:
+    # The names of the elements tell where the scalar is.
+    names = [name for name in segment.state_names("2.0", place) if not name.endswith("_RATE")]
+    if missing := [name for name in names if name not in texts]:
+        row = len(segment.columns.get("EPOCH", ())) + 1
+        raise refusal(" ".join(names), f"no {cut(missing[0])}", f"{place}, state {row}")
+    segment.add(names, [texts[name] for name in names], place)
+
+
+def _texts(element: ElementTree.Element) -> dict[str, str]:
+    return {_tag(one): one.text.strip() for one in element.iter() if one.text and one.text.strip()}
+
+
+def _tag(element: ElementTree.Element) -> str:
+    return element.tag.rpartition("}")[2]

@@ -9,13 +9,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from itertools import product
 from math import prod
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.scenes.reading.faults import refusal
 from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Column, Table, check_size
 
 _TIMES: Final = ("t", "time", "times", "tout", "timestamp")
@@ -31,6 +30,10 @@ class Array(NamedTuple):
     kind: str
     itemsize: int
     load: Callable[[], np.ndarray[Any, Any]]
+
+    @property
+    def group(self) -> str:
+        return self.name.rpartition(".")[0]
 
     @property
     def is_time(self) -> bool:
@@ -60,45 +63,36 @@ def table(arrays: Iterable[Array], part: str, place: object) -> Table:
 
 
 def _within(arrays: list[Array], part: str, place: object) -> list[Array]:
-    """The arrays of a group, named without it."""
+    """Return the arrays of a group, named without it."""
     group = part.strip("/.").replace("/", ".")
     if not group:
         return arrays
-    inner = [
-        array._replace(name=array.name.removeprefix(f"{group}."))
-        for array in arrays
-        if array.name.startswith(f"{group}.")
-    ]
+    prefix = f"{group}."
+    inner = [a._replace(name=a.name[len(prefix) :]) for a in arrays if a.name.startswith(prefix)]
     if not inner:
-        groups = ", ".join(sorted({a.name.rpartition(".")[0] for a in arrays} - {""})) or "none"
-        raise Refused(
-            [f"expected one of the groups in the file ({groups}), got `#{part}` @ {place}"]
-        )
+        groups = ", ".join(sorted({a.group for a in arrays} - {""})) or "none"
+        raise refusal(f"one of the groups in the file ({groups})", f"`#{part}`", place)
     return inner
 
 
 def _without_common_group(arrays: list[Array]) -> list[Array]:
-    """The arrays, named without the group that holds them all."""
-    while len({array.name.partition(".")[0] for array in arrays}) == 1:
-        if not all("." in array.name for array in arrays):
-            return arrays
+    """Return the arrays, named without the groups that hold them all."""
+    while arrays and all("." in array.name for array in arrays):
+        if len({array.name.partition(".")[0] for array in arrays}) > 1:
+            break
         arrays = [a._replace(name=a.name.partition(".")[2]) for a in arrays]
     return arrays
 
 
 def _refuse_several(arrays: Sequence[Array], place: object) -> None:
-    groups = sorted({a.name.rpartition(".")[0] for a in arrays if a.is_time})
+    groups = sorted({a.group for a in arrays if a.is_time})
     if len(groups) > 1 and "" not in groups:
-        raise Refused(
-            [
-                f"expected one trajectory, got times in the groups {_listed(groups)} @ {place} "
-                f"(name one of them: FILE#{groups[0]})"
-            ]
-        )
+        got = f"times in the groups {_listed(groups)}"
+        raise refusal("one trajectory", got, place, f"name one of them: FILE#{groups[0]}")
 
 
 def _rows(arrays: Sequence[Array]) -> int:
-    """The number of times; where nothing is called so, the length that most arrays have."""
+    """Return the number of times; where nothing is called so, the length that most arrays have."""
     times = [array for array in arrays if array.is_time and array.longest == prod(array.shape)]
     if times:
         return min(times, key=lambda array: array.name.count(".")).longest
@@ -111,20 +105,17 @@ def _columns(array: Array, rows: int) -> Iterator[Column]:
     if values.size == rows:
         yield Column(array.name, values.reshape(rows).tolist())
         return
-    for index in product(*map(range, values.shape[1:])):
+    for index in np.ndindex(values.shape[1:]):
         name = array.name + "".join(f"[{i}]" for i in index)
-        place: tuple[Any, ...] = (slice(None), *index)
-        yield Column(name, values[place].tolist())
+        yield Column(name, values[(slice(None), *index)].tolist())
 
 
 def _left_out(arrays: Sequence[Array], read: Sequence[Array], rows: int) -> Iterator[str]:
     names = {array.name for array in read}
     other = [array for array in arrays if array.name not in names]
-    short = [array.name for array in other if array.kind in _NUMBERS]
-    if short:
+    if short := [array.name for array in other if array.kind in _NUMBERS]:
         yield f"not read, because they have no {rows} rows: {_listed(short)}"
-    strange = [array.name for array in other if array.kind not in _NUMBERS]
-    if strange:
+    if strange := [array.name for array in other if array.kind not in _NUMBERS]:
         yield f"not read, because they hold no real numbers: {_listed(strange)}"
 
 

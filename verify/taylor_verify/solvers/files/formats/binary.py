@@ -9,18 +9,17 @@ from __future__ import annotations
 import re
 import zipfile
 import zlib
-from collections.abc import Sequence
 from io import BytesIO
 from itertools import islice
 from lzma import LZMAError
 from mmap import ACCESS_READ, mmap
 from pathlib import Path
 from tokenize import TokenError
-from typing import Any, BinaryIO, Final, NamedTuple, cast
+from typing import Any, BinaryIO, Final, NamedTuple
 
 import numpy as np
 
-from taylor_verify.scenes.reading.faults import Faults, Refused
+from taylor_verify.scenes.reading.faults import Faults, Refused, refusal
 from taylor_verify.solvers.files.formats.column import (
     BYTES,
     CHARACTERS,
@@ -29,8 +28,11 @@ from taylor_verify.solvers.files.formats.column import (
     check_size,
 )
 
-_SUFFIX: Final = ".npy"
-_VERSIONS: Final = ((1, 0), (2, 0), (3, 0))
+_READERS: Final = {
+    (1, 0): np.lib.format.read_array_header_1_0,
+    (2, 0): np.lib.format.read_array_header_2_0,
+    (3, 0): np.lib.format.read_array_header_2_0,
+}
 _ENTRY: Final = re.compile(rb"PK\x01\x02")
 # NumPy's own bound on a header, and the twelve bytes before it.
 _LONGEST_HEADER: Final = 10_012
@@ -45,7 +47,6 @@ class _Member(NamedTuple):
     """An array of an archive that is not read yet."""
 
     name: str
-    place: str
     info: zipfile.ZipInfo
     header_bytes: int
     shape: tuple[int, ...]
@@ -59,9 +60,9 @@ def read(file: BinaryIO, path: Path) -> list[Column]:
         with zipfile.ZipFile(file) as archive:
             members = [_member(archive, info, path) for info in archive.infolist()]
             _check(members, path)
-            return [Column(member.name, _values(archive, member)) for member in members]
+            return [_column(archive, member) for member in members]
     except _BROKEN as error:
-        raise Refused([f"expected an NPZ archive, got a fault in it: {error} @ {path}"]) from None
+        raise refusal("an NPZ archive", f"a fault in it: {error}", path) from None
 
 
 def _check_entries(file: BinaryIO, path: Path) -> None:
@@ -75,48 +76,42 @@ def _check_entries(file: BinaryIO, path: Path) -> None:
 
 
 def _member(archive: zipfile.ZipFile, info: zipfile.ZipInfo, path: Path) -> _Member:
-    """What the header of an array says of it."""
-    name = info.filename.removesuffix(_SUFFIX)
-    place = f"{path}, column {name}"
+    """Return what the header of an array says of it."""
+    name = info.filename.removesuffix(".npy")
     with archive.open(info) as stream:
         start = BytesIO(stream.read(_LONGEST_HEADER))
     try:
         version = np.lib.format.read_magic(start)
-        if version not in _VERSIONS:
+        if version not in _READERS:
             raise ValueError(f"format version {version}")
-        if version == (1, 0):
-            shape, _, dtype = np.lib.format.read_array_header_1_0(start)
-        else:
-            shape, _, dtype = np.lib.format.read_array_header_2_0(start)
+        shape, _, dtype = _READERS[version](start)
     except _BROKEN as error:
-        reason = str(error).splitlines()[0]
-        raise Refused([f"expected an array in NPY form, got {reason!r} @ {place}"]) from None
-    return _Member(name, place, info, start.tell(), shape, dtype)
+        got = repr(str(error).splitlines()[0])
+        raise refusal("an array in NPY form", got, f"{path}, column {name}") from None
+    return _Member(name, info, start.tell(), shape, dtype)
 
 
 def _check(members: list[_Member], path: Path) -> None:
     faults = Faults()
-    for member in members:
-        shape, dtype = member.shape, member.dtype
+    for name, info, header_bytes, shape, dtype in members:
+        place = f"{path}, column {name}"
         if len(shape) != 1 or shape[0] < 0 or dtype.kind not in "fiuUb":
             expected = "a one-dimensional array of real numbers"
-            faults.add(expected, f"shape {shape} of {dtype}", member.place)
+            faults.add(expected, f"shape {shape} of {dtype}", place)
         elif dtype.kind == "U" and dtype.itemsize > 4 * CHARACTERS.most:
-            faults.lines += CHARACTERS.refusal(dtype.itemsize // 4, member.place).faults
-        elif member.info.file_size != member.header_bytes + shape[0] * dtype.itemsize:
+            faults.lines += CHARACTERS.refusal(dtype.itemsize // 4, place).faults
+        elif info.file_size != header_bytes + shape[0] * dtype.itemsize:
             expected = f"{shape[0] * dtype.itemsize} bytes of data as its header says"
-            got = str(member.info.file_size - member.header_bytes)
-            faults.add(expected, got, member.place)
+            faults.add(expected, str(info.file_size - header_bytes), place)
     if faults.lines:
         raise Refused(faults.lines)
     check_size(len(members), max((member.shape[0] for member in members), default=0), path)
     BYTES.check(sum(member.info.file_size for member in members), path)
 
 
-def _values(archive: zipfile.ZipFile, member: _Member) -> Sequence[Any]:
-    with archive.open(member.info) as stream:
-        data = stream.read()
+def _column(archive: zipfile.ZipFile, member: _Member) -> Column:
+    data = archive.read(member.info)
     if len(data) != member.info.file_size:
         raise ValueError(f"{member.name} ends early")
-    found: Any = np.frombuffer(data, member.dtype, offset=member.header_bytes)
-    return cast("Sequence[Any]", found)
+    values: Any = np.frombuffer(data, member.dtype, offset=member.header_bytes)
+    return Column(member.name, values)

@@ -6,11 +6,12 @@ Every format holds a file to these limits before it makes anything of its conten
 from __future__ import annotations
 
 from codecs import BOM_UTF16_BE, BOM_UTF16_LE
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any, Final, NamedTuple
 
 from taylor_verify.scenes.reading.clock import MOST_SAMPLES
-from taylor_verify.scenes.reading.faults import Faults, Refused
+from taylor_verify.scenes.reading.faults import Faults, Refused, cut, refusal
 from taylor_verify.scenes.reading.limit import Limit
 
 ROWS: Final = Limit(MOST_SAMPLES, "rows", "no scene has more samples")
@@ -27,12 +28,9 @@ COLUMNS: Final = Limit(
 )
 CHARACTERS: Final = Limit(4000, "characters in a number", "beyond them none is read")
 
-MOST_ALIKE: Final = 3
-_MOST_SHOWN: Final = 40
-
-
-# So many entries of a column are worked on at once.
+# Entries of a column that are worked on at once.
 CHUNK: Final = 4096
+_MOST_ALIKE: Final = 3
 
 
 class Column(NamedTuple):
@@ -59,22 +57,27 @@ def check_size(columns: int, rows: int, place: object) -> None:
 def no_utf8(start: bytes, place: object) -> Refused:
     """Return the refusal of text in another encoding, told by the first bytes of its file."""
     is_utf16 = start[:2] in (BOM_UTF16_LE, BOM_UTF16_BE)
-    got = "UTF-16 (save it as UTF-8)" if is_utf16 else "other bytes"
-    return Refused([f"expected text in UTF-8, got {got} @ {place}"])
+    return refusal(
+        "text in UTF-8", "UTF-16 (save it as UTF-8)" if is_utf16 else "other bytes", place
+    )
 
 
-def check_lengths(columns: Iterable[Column], place: object) -> None:
-    """Raise Refused for columns that are longer than any scene."""
-    ROWS.check(max((len(column.values) for column in columns), default=0), place)
+@contextmanager
+def alike(faults: Faults, place: str) -> Iterator[Callable[[str, str, str], None]]:
+    """Add the first three of the block's faults of one kind, and the number of the others."""
+    count = 0
 
+    def add(expected: str, got: str, at: str) -> None:
+        nonlocal count
+        count += 1
+        if count <= _MOST_ALIKE:
+            faults.add(expected, got, at)
 
-def add_more_alike(faults: Faults, wrong: int, place: str) -> None:
-    """Say how many more faults of a kind there are than are told one by one."""
-    if wrong > MOST_ALIKE:
-        faults.lines.append(f"and {wrong - MOST_ALIKE} more of this kind @ {place}")
+    yield add
+    if count > _MOST_ALIKE:
+        faults.lines.append(f"and {count - _MOST_ALIKE} more of this kind @ {place}")
 
 
 def shown(value: object) -> str:
-    """A value as its file writes it, cut short where it is long."""
-    text = repr(value) if isinstance(value, str) or value is None else str(value)
-    return text if len(text) <= _MOST_SHOWN else f"{text[:_MOST_SHOWN]}..."
+    """Return a value as its file writes it, cut short where it is long."""
+    return cut(repr(value) if isinstance(value, str) or value is None else str(value))

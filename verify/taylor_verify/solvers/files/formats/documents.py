@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, BinaryIO, Final
 
-from taylor_verify.scenes.reading.faults import Faults, Refused
+from taylor_verify.scenes.reading.faults import Faults, Refused, refusal
 from taylor_verify.solvers.files.columns.names import KNOWN
 from taylor_verify.solvers.files.formats.column import ROWS, VALUES, Column, no_utf8, shown
+from taylor_verify.solvers.values import named_once
 
 _BETWEEN_BRACKETS: Final = re.compile(r"[^\[\]{}]+")
 
@@ -22,13 +22,17 @@ def read(file: BinaryIO, path: Path) -> list[Column]:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError:
         raise no_utf8(content[:2], path) from None
-    _check_count(text, path)
+    # No array has more entries than commas and one.
+    longest = max((text.count(",", *m.span()) for m in _BETWEEN_BRACKETS.finditer(text)), default=0)
+    for limit, commas in ((ROWS, longest), (VALUES, text.count(","))):
+        if commas > limit.most:
+            raise limit.refusal("more", path)
     document = _parsed(text, path)
     if isinstance(document, dict) and isinstance(document.get("columns"), dict):
         document = document["columns"]
     if not isinstance(document, dict):
         expected = 'an object of column arrays {"t": [...], "w1": [...]}'
-        raise Refused([f"expected {expected}, got {shown(document)} @ {path}"])
+        raise refusal(expected, shown(document), path)
     faults, columns = Faults(), []
     for name, values in document.items():
         if isinstance(values, list):
@@ -47,26 +51,8 @@ def _parsed(text: str, path: Path) -> Any:
             parse_float=str,
             parse_int=str,
             parse_constant=float,
-            object_pairs_hook=_named_once,
+            object_pairs_hook=named_once,
         )
     except (ValueError, RecursionError) as error:
         reason = "brackets nested too deeply" if isinstance(error, RecursionError) else error
-        raise Refused([f"expected a JSON document, got a fault in it: {reason} @ {path}"]) from None
-
-
-def _named_once(pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:
-    document = dict(pairs)
-    if len(document) < len(pairs):
-        names = [name for name, _ in pairs]
-        twice = next(name for name in names if names.count(name) > 1)
-        raise ValueError(f"the key {shown(twice)} twice")
-    return document
-
-
-def _check_count(text: str, path: Path) -> None:
-    """Count the commas of each array and of all: no array has more entries than commas and one."""
-    longest = max((text.count(",", *m.span()) for m in _BETWEEN_BRACKETS.finditer(text)), default=0)
-    if longest > ROWS.most:
-        raise ROWS.refusal("more", path)
-    if text.count(",") > VALUES.most:
-        raise VALUES.refusal("more", path)
+        raise refusal("a JSON document", f"a fault in it: {reason}", path) from None

@@ -8,17 +8,17 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_left
-from datetime import date, timedelta
+from datetime import datetime
 from fractions import Fraction
 from typing import Final
 
 _EPOCH: Final = re.compile(
-    r"(\d{4})-(?:(\d{2})-(\d{2})|(\d{3}))T(\d{2}):(\d{2}):(\d{2}(?:\.\d{0,40})?)Z?", re.ASCII
+    r"(\d{4})-(\d{2}-\d{2}|\d{3})T(\d{2}):(\d{2}):(\d{2}(?:\.\d{0,40})?)Z?", re.ASCII
 )
 _DAY: Final = 86400
 # Days of UTC that had a second 23:59:60, from the bulletins of the IERS; there was none after 2016.
 _LEAP_DAYS: Final = tuple(
-    date.fromisoformat(day).toordinal()
+    datetime.fromisoformat(day).toordinal()
     for day in (
         *("1972-06-30", "1972-12-31", "1973-12-31", "1974-12-31", "1975-12-31", "1976-12-31"),
         *("1977-12-31", "1978-12-31", "1979-12-31", "1981-06-30", "1982-06-30", "1983-06-30"),
@@ -37,17 +37,15 @@ def seconds(text: str, is_utc: bool) -> Fraction:
     match = _EPOCH.fullmatch(text.strip())
     if match is None:
         raise ValueError("an epoch like 2024-01-31T12:00:00.5")
-    year, month, day, day_of_year, hour, minute, second = match.groups()
+    year, day, hour, minute, second = match.groups()
     try:
-        if day_of_year:
-            ordinal = (date(int(year), 1, 1) + timedelta(int(day_of_year) - 1)).toordinal()
-            is_date = date.fromordinal(ordinal).year == int(year)
-        else:
-            ordinal, is_date = date(int(year), int(month), int(day)).toordinal(), True
-    except (ValueError, OverflowError):
-        is_date = False
-    if not is_date:
+        date = datetime.strptime(f"{year}-{day}", "%Y-%j" if len(day) == 3 else "%Y-%m-%d")
+    except ValueError:
+        date = None
+    # strptime takes day 366 of a common year for the first day of the next one.
+    if date is None or date.year != int(year):
         raise ValueError("an epoch on a day of the calendar")
+    ordinal = date.toordinal()
     leaps = is_utc and ordinal in _LEAP_DAYS and (hour, minute) == ("23", "59")
     if int(hour) > 23 or int(minute) > 59 or not Fraction(second) < 60 + leaps:
         raise ValueError("an epoch at a time of the day")

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, BinaryIO, Final
 
-from taylor_verify.scenes.reading.faults import Refused, cut
+from taylor_verify.scenes.reading.faults import cut, refusal
 from taylor_verify.solvers.files.formats.arrays import Array, table
 from taylor_verify.solvers.files.formats.column import COLUMNS, Table
 from taylor_verify.solvers.files.formats.package import needed, unbroken
@@ -33,7 +33,7 @@ def opened(file: BinaryIO, path: Path, tabulate: Callable[[Any], Table]) -> Tabl
 
 
 def _arrays(content: Any, path: Path) -> Iterator[Array]:
-    """The datasets of the file; the fields of a table stand beside it, or below its name."""
+    """Yield the datasets of the file; the fields of a table stand beside it, or below its name."""
     for name, dataset in datasets(content, path):
         if dataset.dtype.names is None:
             yield _array(name, dataset, path)
@@ -44,7 +44,7 @@ def _arrays(content: Any, path: Path) -> Iterator[Array]:
 
 
 def datasets(content: Any, path: Path) -> Iterator[tuple[str, Any]]:
-    """The datasets of a file with their names, a dot between groups; no link out of it is followed."""
+    """Yield the datasets of a file by name, a dot between groups; no link out of it is followed."""
     import h5py
 
     waiting, visited, count = [("", content)], set[int](), 0
@@ -63,11 +63,11 @@ def datasets(content: Any, path: Path) -> Iterator[tuple[str, Any]]:
             if isinstance(member, h5py.Group):
                 waiting.append((f"{prefix}{name}.", member))
             elif isinstance(member, h5py.Dataset):
+                _check_stored(member, path)
                 yield f"{prefix}{name}", member
 
 
 def _array(name: str, dataset: Any, path: Path, field: str = "") -> Array:
-    check_stored(dataset, path)
     dtype = dataset.dtype[field] if field else dataset.dtype
 
     def load() -> Any:
@@ -76,12 +76,12 @@ def _array(name: str, dataset: Any, path: Path, field: str = "") -> Array:
     return Array(name, dataset.shape or (), dtype.kind, dtype.itemsize, load)
 
 
-def check_stored(dataset: Any, path: Path) -> None:
+def _check_stored(dataset: Any, path: Path) -> None:
     """Refuse a dataset whose numbers are not in this file, or are packed by a foreign filter."""
     place = f"{path}, dataset {cut(dataset.name)}"
     properties = dataset.id.get_create_plist()
     filters = {properties.get_filter(i)[0] for i in range(properties.get_nfilters())}
     if dataset.is_virtual or dataset.external:
-        raise Refused([f"expected numbers in this file, got a reference to another @ {place}"])
+        raise refusal("numbers in this file", "a reference to another", place)
     if filters - _FILTERS:
-        raise Refused([f"expected HDF5's own filters, got {sorted(filters - _FILTERS)} @ {place}"])
+        raise refusal("HDF5's own filters", sorted(filters - _FILTERS), place)

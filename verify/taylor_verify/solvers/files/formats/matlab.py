@@ -16,7 +16,7 @@ from typing import Any, BinaryIO, Final, NamedTuple
 
 import numpy as np
 
-from taylor_verify.scenes.reading.faults import Refused, cut
+from taylor_verify.scenes.reading.faults import cut, refusal
 from taylor_verify.solvers.files.formats import hdf5
 from taylor_verify.solvers.files.formats.arrays import Array, table
 from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Table
@@ -29,31 +29,12 @@ _MATRIX, _COMPRESSED = 14, 15
 _STRUCT, _OPAQUE = 2, 17
 # The types of stored numbers, and the classes of arrays of real numbers, as NumPy writes them.
 _STORED: Final = {
-    1: "i1",
-    2: "u1",
-    3: "i2",
-    4: "u2",
-    5: "i4",
-    6: "u4",
-    7: "f4",
-    9: "f8",
-    12: "i8",
-    13: "u8",
+    **dict(enumerate(("i1", "u1", "i2", "u2", "i4", "u4", "f4"), start=1)),
+    **{9: "f8", 12: "i8", 13: "u8"},
 }
-_CLASSES: Final = {
-    **{
-        6: "f8",
-        7: "f4",
-        8: "i1",
-        9: "u1",
-        10: "i2",
-        11: "u2",
-        12: "i4",
-        13: "u4",
-        14: "i8",
-        15: "u8",
-    }
-}
+_CLASSES: Final = dict(
+    enumerate(("f8", "f4", "i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8"), start=6)
+)
 _NUMBERS: Final = ("double", "single", *(f"{u}int{b}" for u in ("", "u") for b in (8, 16, 32, 64)))
 _KINDS: Final = "fiuO"
 _COMPLEX, _LOGICAL = 0x800, 0x200
@@ -66,38 +47,38 @@ class _Element(NamedTuple):
     data: memoryview
 
 
+_NO_ELEMENT: Final = _Element(0, memoryview(b""))
+
+
 def read(file: BinaryIO, path: Path, part: str) -> Table:
     """Return the arrays of a struct, or of the whole file; their sizes are checked first."""
     header = file.read(_HEADER)
-    order = _ORDERS.get(header[126:])
+    order = _ORDERS.get(header[126:], "")
     version = struct.unpack(f"{order}H", header[124:126])[0] if order else 0
     if version == _HDF5 or header.startswith(b"\x89HDF"):
         file.seek(0)
         return hdf5.opened(file, path, lambda f: _checked(list(_hdf5_arrays(f, path)), part, path))
     if version != _VERSION:
-        got = repr(header[:10].decode("latin-1"))
-        expected = "a MATLAB file of version 5 to 7.3"
-        raise Refused([f"expected {expected}, got one that begins with {got} @ {path}"])
-    assert order
+        got = f"one that begins with {header[:10].decode('latin-1')!r}"
+        raise refusal("a MATLAB file of version 5 to 7.3", got, path)
     try:
         arrays = list(_Reader(order, path).arrays(file.read()))
     except _BROKEN as error:
-        raise Refused([f"expected a MATLAB file, got a fault in it: {error} @ {path}"]) from None
+        raise refusal("a MATLAB file", f"a fault in it: {error}", path) from None
     return _checked(arrays, part, path)
 
 
 def _checked(arrays: list[Array], part: str, path: Path) -> Table:
-    """The table; where there is no time and an object of MATLAB's, refuse, and say how to save it."""
+    """Return the table; refuse an object of MATLAB's that has no time beside it, and say how to save it."""
     objects = [array for array in arrays if array.kind not in _KINDS]
     if objects and not any(array.is_time for array in arrays):
         name = cut(objects[0].name)
-        raise Refused(
-            [
-                f"expected arrays or a struct of arrays, got the object `{name}` of class "
-                f"{cut(objects[0].kind)} @ {path} (save the numbers: s.t = {name}.Time; "
-                f"s.w = {name}.Data; save file.mat -struct s; of a timetable, writetimetable to CSV)"
-            ]
+        mend = (
+            f"save the numbers: s.t = {name}.Time; s.w = {name}.Data; save file.mat -struct s; of a "
+            "timetable, writetimetable to CSV"
         )
+        got = f"the object `{name}` of class {cut(objects[0].kind)}"
+        raise refusal("arrays or a struct of arrays", got, path, mend)
     return table(arrays, part, path)
 
 
@@ -105,19 +86,15 @@ def _checked(arrays: list[Array], part: str, path: Path) -> Table:
 
 
 def _hdf5_arrays(content: Any, path: Path) -> Iterator[Array]:
-    """The arrays of a file of version 7.3, whose axes HDF5 has in the opposite order."""
+    """Yield the arrays of a file of version 7.3, whose axes HDF5 has in the opposite order."""
     for name, dataset in hdf5.datasets(content, path):
-        if name.startswith("#"):
+        if name.startswith("#") or "MATLAB_empty" in dataset.attrs:
             continue
-        hdf5.check_stored(dataset, path)
         class_name = bytes(dataset.attrs.get("MATLAB_class", b"double")).decode("latin-1")
-        shape = tuple(reversed(dataset.shape or ()))
-        if "MATLAB_empty" in dataset.attrs:
-            continue
+        kind = dataset.dtype.kind if class_name in _NUMBERS else "O"
         if "MATLAB_object_decode" in dataset.attrs:
             kind = class_name
-        else:
-            kind = dataset.dtype.kind if class_name in _NUMBERS else "O"
+        shape = tuple(reversed(dataset.shape or ()))
         yield Array(name, shape, kind, dataset.dtype.itemsize, partial(_transposed, dataset))
 
 
@@ -153,7 +130,7 @@ class _Reader:
         return memoryview(unpacked)
 
     def _elements(self, data: memoryview) -> Iterator[_Element]:
-        """The elements in a row; a small one has its number of bytes in the upper half of its tag."""
+        """Yield the elements in a row; a small one has its number of bytes in the upper half of its tag."""
         place = 0
         while place < len(data):
             kind, size = struct.unpack_from(f"{self.order}II", data, place)
@@ -169,7 +146,7 @@ class _Reader:
     def _matrix(
         self, element: _Element, group: str = "", name: str = "", depth: int = 0
     ) -> Iterator[Array]:
-        """The array in an element, or the arrays of the struct in it; other elements hold none."""
+        """Yield the array in an element, or the arrays of the struct in it; other elements hold none."""
         if element.kind != _MATRIX or not len(element.data):
             return
         self.count += 1
@@ -178,14 +155,12 @@ class _Reader:
         (flags,) = struct.unpack_from(f"{self.order}I", _next(parts).data)
         kind = flags & 0xFF
         if kind == _OPAQUE:
-            own, _, class_name = (bytes(_next(parts).data).decode("latin-1") for _ in range(3))
+            own, _, class_name = (_text(_next(parts)) for _ in range(3))
             yield Array(f"{group}{name or own}", (1,), class_name or "object", 8, _nothing)
             return
-        sizes = _next(parts).data
+        sizes, own = _next(parts).data, _text(_next(parts))
         shape = struct.unpack(f"{self.order}{len(sizes) // 4}i", sizes)
-        full = group + (name or bytes(_next(parts).data).decode("latin-1"))
-        if name:
-            _next(parts)
+        full = group + (name or own)
         if any(size < 0 for size in shape):
             raise ValueError(f"the shape {shape}")
         if kind == _STRUCT:
@@ -201,17 +176,12 @@ class _Reader:
         if depth == _DEEPEST:
             raise ValueError(f"structs nested more than {_DEEPEST} deep")
         (length,) = struct.unpack_from(f"{self.order}i", _next(parts).data)
-        names = bytes(_next(parts).data)
-        fields = [
-            names[i : i + length].split(b"\0")[0].decode("latin-1")
-            for i in range(0, len(names), length)
-        ]
+        names = _text(_next(parts))
+        fields = [names[i : i + length].partition("\0")[0] for i in range(0, len(names), length)]
         for row in range(min(prod(shape), COLUMNS.most + 1)):
             group = f"{name}." if prod(shape) == 1 else f"{name}[{row}]."
             for field in fields:
-                yield from self._matrix(
-                    next(parts, _Element(0, memoryview(b""))), group, field, depth + 1
-                )
+                yield from self._matrix(next(parts, _NO_ELEMENT), group, field, depth + 1)
 
     def _numbers(
         self, name: str, shape: tuple[int, ...], kind: int, stored: _Element | None
@@ -234,6 +204,10 @@ def _next(parts: Iterator[_Element]) -> _Element:
     if element is None:
         raise ValueError("an array that ends early")
     return element
+
+
+def _text(element: _Element) -> str:
+    return bytes(element.data).decode("latin-1")
 
 
 def _nothing() -> np.ndarray[Any, Any]:

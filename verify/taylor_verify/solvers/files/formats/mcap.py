@@ -14,7 +14,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, BinaryIO, Final, NamedTuple
 
-from taylor_verify.scenes.reading.faults import Refused, cut
+from taylor_verify.scenes.reading.faults import cut, refusal
 from taylor_verify.scenes.reading.limit import Limit
 from taylor_verify.solvers.files.formats import messages
 from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Table
@@ -36,7 +36,7 @@ def read(file: BinaryIO, path: Path, part: str) -> Table:
 
 
 class _Recording(NamedTuple):
-    """What an MCAP file has: its schemas and channels by their numbers, and messages by channel."""
+    """The schemas and channels of an MCAP file by their numbers, and the number of messages by channel."""
 
     file: BinaryIO
     schemas: dict[int, Any]
@@ -60,16 +60,16 @@ class _Recording(NamedTuple):
         return recording
 
     def topics(self) -> list[Topic]:
-        """The topics, by name; the messages of several channels of a topic are counted together."""
-        found: dict[tuple[str, str], int] = {}
+        """Return the topics, by name; the messages of all channels of a topic are counted together."""
+        counts = Counter[tuple[str, str]]()
         for number, channel in self.channels.items():
             schema = self.schemas.get(channel.schema_id)
             name = (channel.topic, schema.name if schema else channel.message_encoding)
-            found[name] = found.get(name, 0) + self.counts[number]
-        return [Topic(name, kind, count) for (name, kind), count in sorted(found.items())]
+            counts[name] += self.counts[number]
+        return [Topic(name, kind, count) for (name, kind), count in sorted(counts.items())]
 
     def decoded(self, topic: Topic, path: Path) -> Iterator[Any]:
-        """The messages of a topic in the order of the file."""
+        """Yield the messages of a topic in the order of the file."""
         from mcap.records import Message
 
         decoders = {
@@ -92,14 +92,14 @@ def _decoder(channel: Any, schema: Any, path: Path) -> Callable[[bytes], Any]:
         decode = DecoderFactory().decoder_for(channel.message_encoding, schema)
     if decode is None:
         got = f"{channel.message_encoding or 'no encoding'} with schemas in {schema.encoding or 'none'}"
-        place = f"{path}, topic {cut(channel.topic)}"
-        raise Refused([f"expected ROS 2 messages (cdr, ros2msg) or JSON, got {cut(got)} @ {place}"])
+        expected = "ROS 2 messages (cdr, ros2msg) or JSON"
+        raise refusal(expected, cut(got), f"{path}, topic {cut(channel.topic)}")
     decoded: Callable[[bytes], Any] = decode
     return decoded
 
 
 def _from_json(data: bytes) -> Any:
-    """A message with its numbers as text, so that none is rounded."""
+    """Return a message with its numbers as text, so that none is rounded."""
     return json.loads(
         data, parse_float=str, parse_int=str, object_hook=lambda pairs: SimpleNamespace(**pairs)
     )
@@ -119,7 +119,7 @@ class _Bounded:
 
 
 def _records(file: BinaryIO, path: Path) -> Iterator[Any]:
-    """The records of the file from its beginning, those in chunks among them."""
+    """Yield the records of the file from its beginning, those in chunks among them."""
     from mcap.records import Chunk
     from mcap.stream_reader import StreamReader
 
@@ -137,7 +137,7 @@ def _records(file: BinaryIO, path: Path) -> Iterator[Any]:
 
 
 def _unpacked(chunk: Any, most: int) -> bytes:
-    """The content of a chunk, of at most so many bytes."""
+    """Return the content of a chunk, of at most so many bytes."""
     if chunk.compression == "zstd":
         import zstandard
 

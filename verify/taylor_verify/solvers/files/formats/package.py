@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from taylor_verify.scenes.reading.faults import Refused, cut
+from taylor_verify.scenes.reading.faults import Refused, cut, refusal
 
 
 @contextmanager
@@ -17,19 +17,15 @@ def needed(package: str, what: str, extra: str, place: object) -> Iterator[None]
     try:
         yield
     except ModuleNotFoundError:
-        raise Refused(
-            [
-                f"expected the package {package} to read {what}, got none @ {place} "
-                f"(install it with `pip install 'taylor-verify[{extra}]'`, or write CSV)"
-            ]
-        ) from None
+        mend = f"install it with `pip install 'taylor-verify[{extra}]'`, or write CSV"
+        raise refusal(f"the package {package} to read {what}", "none", place, mend) from None
 
 
 @contextmanager
 def unbroken(what: str, place: object) -> Iterator[None]:
-    """Refuse the file at ``place`` if a library raises anything in the block.
+    """Refuse the file at ``place`` if the block raises anything.
 
-    Which exceptions a broken file becomes is written down by none of them.
+    No library documents which exceptions a broken file becomes.
     """
     try:
         yield
@@ -37,4 +33,4 @@ def unbroken(what: str, place: object) -> Iterator[None]:
         raise
     except Exception as error:
         reason = cut((str(error).splitlines() or [type(error).__name__])[0])
-        raise Refused([f"expected {what}, got a fault in it: {reason} @ {place}"]) from None
+        raise refusal(what, f"a fault in it: {reason}", place) from None

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from taylor_verify.scenes.reading.faults import Faults, Refused
+from taylor_verify.scenes.reading.faults import Faults, Refused, refusal
 from taylor_verify.solvers.files.formats.column import BYTES, CHARACTERS, Column, check_size
 from taylor_verify.solvers.files.formats.package import needed
 
@@ -16,33 +16,32 @@ def read(file: BinaryIO, path: Path) -> list[Column]:
     with needed("pyarrow", "Parquet", "parquet", path):
         from pyarrow import ArrowException, parquet
     try:
-        footer = parquet.ParquetFile(file)
-        texts = _checked(footer, path)
+        texts = _checked(parquet.ParquetFile(file), path)
         table = parquet.ParquetFile(file, read_dictionary=texts).read(use_threads=False)
     except MemoryError:
         raise
     except (ArrowException, OSError, ValueError) as error:
         reason = str(error).splitlines()[0]
-        raise Refused([f"expected a Parquet file, got a fault in it: {reason} @ {path}"]) from None
-    for _ in range(_depth(footer.schema_arrow)):
-        table = table.flatten()
+        raise refusal("a Parquet file", f"a fault in it: {reason}", path) from None
+    table = _flat(table)
     _check_texts(table, texts, path)
     return [Column(name, table.column(i).to_pylist()) for i, name in enumerate(table.column_names)]
 
 
 def _checked(footer: Any, path: Path) -> list[str]:
-    """The names of the columns of text, if the file is not too large and holds numbers."""
+    """Return the names of the columns of text, if the file is not too large and holds numbers."""
     import pyarrow as pa
 
-    metadata, schema = footer.metadata, footer.schema_arrow
+    metadata = footer.metadata
     check_size(metadata.num_columns, metadata.num_rows, path)
     groups = [metadata.row_group(i) for i in range(metadata.num_row_groups)]
     BYTES.check(sum(group.total_byte_size for group in groups), path)
-    faults, texts = Faults(), []
-    for field in _fields(schema):
-        if pa.types.is_string(field.type) or pa.types.is_large_string(field.type):
+    is_a, faults, texts = pa.types, Faults(), []
+    numbers = (is_a.is_integer, is_a.is_floating, is_a.is_decimal, is_a.is_boolean)
+    for field in _flat(footer.schema_arrow.empty_table()).schema:
+        if is_a.is_string(field.type) or is_a.is_large_string(field.type):
             texts.append(field.name)
-        elif not _is_number(field.type):
+        elif not any(is_such(field.type) for is_such in numbers):
             place = f"{path}, column {field.name}"
             faults.add("a column of numbers", f"the type {field.type}", place)
     if faults.lines:
@@ -50,31 +49,13 @@ def _checked(footer: Any, path: Path) -> list[str]:
     return texts
 
 
-def _fields(schema: Any) -> Iterator[Any]:
-    """The columns, those in a column of structs by their dotted names."""
+def _flat(table: Any) -> Any:
+    """Return a table with a column for each field of a struct, named with a dot between."""
     import pyarrow as pa
 
-    for field in schema:
-        if pa.types.is_struct(field.type):
-            yield from _fields(
-                [inner.with_name(f"{field.name}.{inner.name}") for inner in field.type]
-            )
-        else:
-            yield field
-
-
-def _depth(fields: Any) -> int:
-    """How deep structs are nested."""
-    import pyarrow as pa
-
-    return max((1 + _depth(f.type) for f in fields if pa.types.is_struct(f.type)), default=0)
-
-
-def _is_number(kind: Any) -> bool:
-    import pyarrow as pa
-
-    kinds = (pa.types.is_integer, pa.types.is_floating, pa.types.is_decimal, pa.types.is_boolean)
-    return any(is_such(kind) for is_such in kinds)
+    while any(pa.types.is_struct(field.type) for field in table.schema):
+        table = table.flatten()
+    return table
 
 
 def _check_texts(table: Any, names: Collection[str], path: Path) -> None:

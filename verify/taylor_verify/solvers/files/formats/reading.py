@@ -11,7 +11,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import BinaryIO, Final, NamedTuple
 
-from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.scenes.reading.faults import refusal
 from taylor_verify.scenes.reading.regular_file import regular_file
 from taylor_verify.solvers.files.formats import (
     aem,
@@ -24,14 +24,14 @@ from taylor_verify.solvers.files.formats import (
     parquet,
     rosbag,
 )
-from taylor_verify.solvers.files.formats.column import BYTES, Column, Table, check_lengths
+from taylor_verify.solvers.files.formats.column import BYTES, ROWS, Column, Table
 
 # The text after # in FILE#PART says which of several trajectories in a file is read.
 Reader = Callable[[BinaryIO, Path, str], Table]
 
 
 class Format(NamedTuple):
-    """What a format is, its reader, and the package that the reader needs with the extra that has it."""
+    """A format: a phrase on it, its reader, and the package that the reader needs with its extra."""
 
     what: str
     read: Reader
@@ -41,7 +41,7 @@ class Format(NamedTuple):
 
     @property
     def sentence(self) -> str:
-        """What the format is, with the install command where its package is missing."""
+        """The phrase, with the install command where the package is missing."""
         if not self.package or _is_there(self.package):
             return self.what
         install = f"pip install 'taylor-verify[{self.extra}]'"
@@ -49,12 +49,11 @@ class Format(NamedTuple):
 
 
 def _alone(read: Callable[[BinaryIO, Path], list[Column]]) -> Reader:
-    """The reader of a format that holds one trajectory in a file."""
+    """Return the reader of a format that holds one trajectory in a file."""
 
     def read_alone(file: BinaryIO, path: Path, part: str) -> Table:
         if part:
-            expected = "a file of one trajectory by its name alone"
-            raise Refused([f"expected {expected}, got `#{part}` @ {path}"])
+            raise refusal("a file of one trajectory by its name alone", f"`#{part}`", path)
         return Table(read(file, path))
 
     return read_alone
@@ -91,10 +90,11 @@ def read_table(file: str | os.PathLike[str]) -> Table:
     """
     path, part = parted(os.fspath(file))
     if rosbag.is_folder(path):
-        return rosbag.read_folder(path, part)
-    with regular_file(path, "a trajectory file", BYTES) as content:
-        table = _reader(content, path)(content, path, part)
-    check_lengths(table.columns, path)
+        table = rosbag.read_folder(path, part)
+    else:
+        with regular_file(path, "a trajectory file", BYTES) as content:
+            table = _reader(content, path)(content, path, part)
+    ROWS.check(max((len(column.values) for column in table.columns), default=0), path)
     return table
 
 
@@ -113,7 +113,7 @@ def _reader(content: BinaryIO, path: Path) -> Reader:
     found = FORMATS.get(path.suffix.lower())
     if found is None:
         expected = f"a file that ends in {', '.join(FORMATS)}"
-        raise Refused([f"expected {expected}, got {path.suffix or 'no suffix'} @ {path}"])
+        raise refusal(expected, path.suffix or "no suffix", path)
     return found.read
 
 

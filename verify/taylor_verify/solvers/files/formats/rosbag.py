@@ -10,13 +10,14 @@ import bz2
 import os
 import re
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any, BinaryIO, Final
 
-from taylor_verify.scenes.reading.faults import Refused, cut
+from taylor_verify.scenes.reading.faults import cut, refusal
 from taylor_verify.scenes.reading.regular_file import read_bytes, regular_file
 from taylor_verify.solvers.files.formats import mcap, messages
-from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Table, check_lengths
+from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Table
 from taylor_verify.solvers.files.formats.messages import Topic
 from taylor_verify.solvers.files.formats.package import needed, unbroken
 
@@ -42,18 +43,15 @@ def read_folder(path: Path, part: str) -> Table:
     metadata = read_bytes(path / _METADATA, "the metadata of a rosbag", BYTES)
     if _PACKED.search(metadata.decode(errors="replace")):
         mend = "`ros2 bag convert` unpacks it"
-        raise Refused([f"expected a rosbag that is not packed, got a packed one @ {path} ({mend})"])
+        raise refusal("a rosbag that is not packed", "a packed one", path, mend)
     recordings = [path / name for name in names if name.endswith(".mcap")]
     if len(recordings) > 1:
         files = ", ".join(cut(file.name) for file in recordings[:3])
-        raise Refused([f"expected one file, got {files} ... @ {path} (name one of them)"])
-    if recordings:
-        with regular_file(recordings[0], "a trajectory file", BYTES) as file:
-            table = mcap.read(file, recordings[0], part)
-    else:
-        table = _table(path, part)
-    check_lengths(table.columns, path)
-    return table
+        raise refusal("one file", f"{files} ...", path, "name one of them")
+    if not recordings:
+        return _table(path, part)
+    with regular_file(recordings[0], "a trajectory file", BYTES) as file:
+        return mcap.read(file, recordings[0], part)
 
 
 def read(file: BinaryIO, path: Path, part: str) -> Table:
@@ -76,7 +74,7 @@ def _table(path: Path, part: str) -> Table:
 
 
 def _decoded(reader: Any, topic: Topic, path: Path) -> Iterator[Any]:
-    """The messages of a topic by the time of their recording."""
+    """Yield the messages of a topic by the time of their recording."""
     from rosbags.typesys import Stores, get_typestore
 
     is_ros1 = path.suffix.lower() == _ROS1
@@ -85,9 +83,7 @@ def _decoded(reader: Any, topic: Topic, path: Path) -> Iterator[Any]:
     own = types.generate_msgdef(topic.kind)[1] if is_ros1 else types.hash_rihs01(topic.kind)
     connections = [one for one in reader.connections if one.topic == topic.name]
     if foreign := [one for one in connections if one.digest not in ("", own)]:
-        raise Refused(
-            [f"expected {topic.kind} as ROS defines it, got {cut(foreign[0].digest)} @ {path}"]
-        )
+        raise refusal(f"{topic.kind} as ROS defines it", cut(foreign[0].digest), path)
     for connection, _, data in reader.messages(connections=connections):
         yield decode(data, connection.msgtype)
 
@@ -101,19 +97,15 @@ def _bound_chunks(reader: Any, path: Path) -> None:
         decompressors["bz2"]: bz2.BZ2Decompressor,
         decompressors["lz4"]: LZ4FrameDecompressor,
     }
-    sizes = [0]
+    size = 0
 
-    def bounded(unpacker: Callable[[], Any]) -> Callable[[bytes], bytes]:
-        def unpack(data: bytes) -> bytes:
-            unpacked = bytes(unpacker().decompress(data, BYTES.most - sizes[0] + 1))
-            sizes[0] += len(unpacked)
-            BYTES.check(sizes[0], path)
-            return unpacked
-
-        return unpack
+    def unpack(unpacker: Callable[[], Any], data: bytes) -> bytes:
+        nonlocal size
+        unpacked = bytes(unpacker().decompress(data, BYTES.most - size + 1))
+        size += len(unpacked)
+        BYTES.check(size, path)
+        return unpacked
 
     for place, chunk in reader.chunks.items():
-        if chunk.decompressor in unpackers:
-            reader.chunks[place] = chunk._replace(
-                decompressor=bounded(unpackers[chunk.decompressor])
-            )
+        if unpacker := unpackers.get(chunk.decompressor):
+            reader.chunks[place] = chunk._replace(decompressor=partial(unpack, unpacker))

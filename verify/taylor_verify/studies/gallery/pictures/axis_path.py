@@ -14,24 +14,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from taylor_verify.publish.pictures.palette import INK, PAPER
 from taylor_verify.publish.pictures.picture import Picture
-from taylor_verify.publish.pictures.sheet import Entry, Frame, blank, draw_legend
-from taylor_verify.publish.pictures.style import PAGE_WIDTH
 from taylor_verify.publish.pictures.wording import stem_of
-from taylor_verify.studies.gallery.pictures.solids import (
-    draw_axes,
-    draw_bar,
-    draw_on,
-    draw_surface,
-    reach,
-    scale,
-    stage,
-)
+from taylor_verify.studies.gallery.pictures.stage import END, START, Look, Stage, scale
 from taylor_verify.studies.gallery.pictures.view import Ellipsoid, Numbers, View
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 Document = Mapping[str, Any]
@@ -40,18 +28,20 @@ Document = Mapping[str, Any]
 _HEIGHT: Final = 3.4
 _STAGE: Final = 4.2
 _SPHERE: Final = Ellipsoid((1.0, 1.0, 1.0))
-# Of one colour each.
-_STRETCHES: Final = 40
 # The digits of a course are nine; what turns by less than this stands still.
 _AT_REST: Final = 1e-6
-_MARKS: Final[Mapping[str, Any]] = {"linestyle": "none", "zorder": 6, "clip_on": False}
+_WIDTH: Final = 1.3
+_FIXED: Final[Look] = {
+    **{"linestyle": "none", "marker": "x", "markersize": 6},
+    **{"markeredgecolor": "#A83C00", "markeredgewidth": 1.6},
+}
 
 
 @dataclass(frozen=True)
 class Series:
-    """``path`` has the axis in space, one unit vector a time; ``fixed`` a direction that keeps still.
+    """The axis in space, one unit vector a time, and its number in the body.
 
-    ``axis`` is its number in the body, ``fixed_name`` what keeps its direction; None where nothing does.
+    ``fixed`` is a direction that keeps still, ``fixed_name`` what has it; None where nothing does.
     """
 
     times: Numbers
@@ -62,7 +52,7 @@ class Series:
 
 
 def series(portrait: Document) -> Series:
-    """Raises ValueError for a scene that tracks no attitude."""
+    """Return the path of the axis. Raises ValueError for a scene that tracks no attitude."""
     course = portrait["course"]
     if "attitude" not in course:
         raise ValueError(f"expected a scene with its attitude, got none @ {portrait['scene']}")
@@ -79,7 +69,7 @@ def series(portrait: Document) -> Series:
 
 
 def axis_of(portrait: Document) -> int:
-    """1, 2 or 3: the axis of symmetry, or of the moment that the polhode goes round; else the third."""
+    """Return 1, 2 or 3: the axis of symmetry, or that which the polhode goes round; else the third."""
     if portrait["potential"]:
         return int(portrait["potential"]["variable"][1:])
     body = portrait["body"]
@@ -91,7 +81,7 @@ def axis_of(portrait: Document) -> int:
 
 
 def _momentum(portrait: Document) -> tuple[Numbers, str]:
-    """In body axes: H = I omega with the tensor put together of its moments and axes, or x as it is."""
+    """Return H = I omega in body axes, its tensor put together of moments and axes; or x as it is."""
     course, body = portrait["course"], portrait["body"]
     if body is None:
         return np.array(course["linear_impulse"]), "linear impulse"
@@ -114,67 +104,22 @@ def picture(portrait: Document) -> Picture:
 
 
 def _figure(found: Series) -> Figure:
-    from matplotlib.colors import Normalize
-
-    figure = blank(_HEIGHT)
-    view = View.facing([float(v) for v in _middle(found)])
-    axes = stage(figure, Frame(0.0, 0.0, _STAGE, _HEIGHT), reach(_SPHERE, view))
-    draw_surface(axes, _SPHERE, view)
-    norm = Normalize(float(found.times.min()), float(found.times.max()))
-    _draw_path(axes, view, found)
-    _draw_marks(axes, view, found)
-    draw_axes(axes, _SPHERE, view, ("x", "y", "z (space)"))
-    right = PAGE_WIDTH - _STAGE
-    legend = Frame(_STAGE, 1.6, right - 0.2, 1.2)
-    draw_legend(figure, _entries(found), "Faint: on the far side.", legend)
-    is_backward = bool(found.times[-1] < found.times[0])
-    draw_bar(figure, Frame(_STAGE, 0.85, right - 0.15, 0.12), norm, "time t", is_backward)
-    return figure
-
-
-def _middle(found: Series) -> Numbers:
-    mean: Numbers = found.path.mean(axis=0)
-    # A path all round the sphere has no side.
-    return mean if float(np.linalg.norm(mean)) > 0.05 else np.array([1.0, 0.7, 0.5])
-
-
-def _draw_path(axes: Axes, view: View, found: Series) -> None:
-    colours = scale()
-    bounds = np.linspace(0, len(found.path) - 1, _STRETCHES + 1).round().astype(int)
-    for k in range(_STRETCHES):
-        points = found.path[bounds[k] : bounds[k + 1] + 1]
-        look = {"color": colours((k + 0.5) / _STRETCHES), "linewidth": 1.3, "gid": "path"}
-        draw_on(axes, _SPHERE, view, points, look, zorder=3 + k / _STRETCHES)
-
-
-def _draw_marks(axes: Axes, view: View, found: Series) -> None:
-    for point, look, gid in _marks(found):
-        is_seen = bool(_SPHERE.faces(point, view)[0])
-        spot = view.seen(point)[0]
-        alpha = 1.0 if is_seen else 0.4
-        axes.plot([spot[0]], [spot[1]], alpha=alpha, gid=gid, **{**_MARKS, **look})
-
-
-def _marks(found: Series) -> list[tuple[Numbers, dict[str, Any], str]]:
-    edge = {"markeredgecolor": INK, "markeredgewidth": 0.9}
-    marks = [
-        (
-            found.path[0],
-            {"marker": "o", "markersize": 5, "markerfacecolor": PAPER, **edge},
-            "start",
-        ),
-        (found.path[-1], {"marker": "s", "markersize": 5, "markerfacecolor": INK, **edge}, "end"),
-    ]
+    stage = Stage.around(_SPHERE, View.facing(_middle(found.path)), _STAGE, _HEIGHT)
+    stage.course(found.path, _WIDTH, 3)
+    marks = [(found.path[0], START, "start"), (found.path[-1], END, "end")]
     if found.fixed is not None:
-        cross = {"marker": "x", "markersize": 6, "markeredgecolor": "#A83C00"}
-        marks.append((found.fixed, {**cross, "markeredgewidth": 1.6}, found.fixed_name))
-    return marks
+        marks.append((found.fixed, _FIXED, found.fixed_name))
+    for point, look, name in marks:
+        stage.mark(point, look, clip_on=False, gid=name)
+    stage.name_axes(_SPHERE.semi_axes, ("x", "y", "z (space)"))
+    path = {"color": scale()(0.6), "linewidth": _WIDTH}
+    entries = [(path, f"body axis {found.axis}"), *((look, name) for _, look, name in marks)]
+    stage.legend(entries, "Faint: on the far side.", 2.8)
+    stage.time_bar(found.times, 0.85)
+    return stage.figure
 
 
-def _entries(found: Series) -> list[Entry]:
-    line: Entry = (
-        {"color": scale()(0.6), "linewidth": 1.3},
-        f"body axis {found.axis}",
-    )
-    marks = [({**look, "linestyle": "none"}, name) for _, look, name in _marks(found)]
-    return [line, *marks]
+def _middle(path: Numbers) -> list[float]:
+    mean = path.mean(axis=0)
+    # A path all round the sphere has no side.
+    return mean.tolist() if float(np.linalg.norm(mean)) > 0.05 else [1.0, 0.7, 0.5]

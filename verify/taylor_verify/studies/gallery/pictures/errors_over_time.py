@@ -56,7 +56,7 @@ class Panel:
 
 
 def series(records: Sequence[Record], start: float | None = None) -> dict[str, dict[str, Points]]:
-    """By quantity and rung: the time since the start, and the error in u; what is zero is left out.
+    """Return by quantity and rung the time since the start, and the error in u; a zero is left out.
 
     ``start`` is the time of the initial state, the first sample where it is not given.
     """
@@ -76,7 +76,7 @@ def _is_drawable(elapsed: float, error: float | None) -> bool:
 
 
 def picture(scene: str, records: Sequence[Record], start: float | None = None) -> Picture:
-    """Of all rungs of one scene. Raises ValueError for records without any error above zero."""
+    """Return the picture of one scene. Raises ValueError for records without any error above zero."""
     panels = panels_of(series(records, start))
     if not panels:
         raise ValueError(f"expected errors above zero, got none @ {scene}")
@@ -89,20 +89,15 @@ def picture(scene: str, records: Sequence[Record], start: float | None = None) -
         f"Errors of {scene} against the time since the start for each rung, both logarithmic, in units "
         f"of the rung's roundoff: {' and '.join(panel.quantity for panel in panels)}. {ends}."
     )
-    document = {"scene": scene}
     title = f"Errors over time: {scene}"
-    return Picture(stem_of(document, "errors"), title, alt, partial(_figure, panels))
+    return Picture(stem_of({"scene": scene}, "errors"), title, alt, partial(_figure, panels))
 
 
 def panels_of(found: Mapping[str, Mapping[str, Points]]) -> list[Panel]:
-    """A conserved quantity, then what the state consists of, or that of them which there is.
-
-    Under loads that change with time nothing is conserved.
-    """
+    """Return a panel for a conserved quantity, where loads leave one, and for each part of the state."""
     panels = []
     for heading, names, power, words in PANELS:
-        name = next((name for name in names if name in found), None)
-        if name is not None:
+        if name := next((name for name in names if name in found), ""):
             panels.append(Panel(heading, name, found[name], power, words))
     return panels
 
@@ -129,14 +124,14 @@ def _draw(axes: Axes, panel: Panel) -> None:
     axes.set(ylim=widened([e for _, e in everything], 0.05, 0.08))
     number_axes(axes)
     if panel.power:
-        draw_power(axes, everything, panel.power)
+        _draw_power(axes, everything, panel.power)
     for rung, points in lines.items():
         look = {**look_of_rung(rung).line, "markevery": _marked(points)}
         axes.plot(*zip(*points, strict=True), gid=rung, zorder=3, alpha=0.9, **look)
 
 
 def _marked(points: Points) -> list[int]:
-    """Places about as far from each other on a logarithmic axis."""
+    """Return places about as far from each other on a logarithmic axis."""
     (first, _), (last, _) = points[0], points[-1]
     apart = log(last / first) / _MARKS
     found = [0]
@@ -147,23 +142,17 @@ def _marked(points: Points) -> list[int]:
 
 
 def so_far(points: Points) -> Points:
-    """The largest error up to each time: single errors fall to nothing wherever one changes its sign."""
+    """Return the largest error up to each time: a single one falls to nothing as it changes its sign."""
     largest = accumulate((error for _, error in points), max)
     return [(t, error) for (t, _), error in zip(points, largest, strict=True)]
 
 
-def draw_power(axes: Axes, points: Points, power: float) -> None:
-    """Through the middle of the points (of their logarithms), across the panel."""
+def _draw_power(axes: Axes, points: Points, power: float) -> None:
+    """Draw a power through the middle of the points (of their logarithms), across the panel."""
     shift = exp(sum(log(e) - power * log(t) for t, e in points) / len(points))
     (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
     first = max(left, (bottom / shift) ** (1 / power))
     last = min(right, (top / shift) ** (1 / power))
-    axes.plot(
-        [first, last],
-        [shift * first**power, shift * last**power],
-        zorder=4,
-        gid=f"power {power:g}",
-        scalex=False,
-        scaley=False,
-        **_POWER,
-    )
+    ends = [shift * first**power, shift * last**power]
+    look = {**_POWER, "zorder": 4, "gid": f"power {power:g}"}
+    axes.plot([first, last], ends, scalex=False, scaley=False, **look)

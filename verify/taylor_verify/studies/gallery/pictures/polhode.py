@@ -17,23 +17,12 @@ import numpy as np
 
 from taylor_verify.publish.pictures.palette import INK, PAPER, QUIET
 from taylor_verify.publish.pictures.picture import Picture
-from taylor_verify.publish.pictures.sheet import Entry, Frame, blank, draw_legend
-from taylor_verify.publish.pictures.style import PAGE_WIDTH
+from taylor_verify.publish.pictures.sheet import Entry
 from taylor_verify.publish.pictures.wording import plain, stem_of
-from taylor_verify.studies.gallery.pictures.solids import (
-    draw_axes,
-    draw_bar,
-    draw_on,
-    draw_surface,
-    norm_of,
-    reach,
-    scale,
-    stage,
-)
+from taylor_verify.studies.gallery.pictures.stage import Look, Stage, norm_of, scale
 from taylor_verify.studies.gallery.pictures.view import Ellipsoid, Numbers, View
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.colors import Normalize
     from matplotlib.figure import Figure
 
@@ -42,9 +31,15 @@ Document = Mapping[str, Any]
 # In inches.
 _HEIGHT: Final = 3.5
 _STAGE: Final = 4.2
-_COURSE: Final[Mapping[str, Any]] = {"color": INK, "linewidth": 0.8, "gid": "course"}
-_BORDER: Final[Mapping[str, Any]] = {"color": "#8A5A00", "linewidth": 0.8, "gid": "separatrix"}
-_DASHES: Final = (4, 2)
+_COURSE: Final[Look] = {"color": INK, "linewidth": 0.8, "gid": "course"}
+_BORDER: Final[Look] = {
+    **{"color": "#8A5A00", "linewidth": 0.8, "dashes": (4, 2)},
+    "gid": "separatrix",
+}
+_SAMPLE: Final[Look] = {
+    **{"linestyle": "none", "marker": "o", "markersize": 4.5},
+    **{"markerfacecolor": QUIET, "markeredgecolor": INK, "markeredgewidth": 0.4},
+}
 _OMEGA: Final = "\N{GREEK SMALL LETTER OMEGA}"
 # The width of a mark, in points.
 _NEAR, _FAR = 4.2, 3.0
@@ -67,12 +62,13 @@ class Series:
 
 
 def series(portrait: Document, samples: Sequence[Sequence[float]], record: Document) -> Series:
-    """``samples`` are the exact omega at the record's times. Raises ValueError for a scene that has none.
+    """Return the curve and the samples, whose exact omega at the record's times is ``samples``.
 
-    A scene whose moment of force is not zero has no such surface.
+    Raises ValueError for a scene without such a surface: a fluid, a moment of force, a body at rest.
     """
     body, course = portrait["body"], portrait["course"]
-    if body is None or "omega" not in course or "T" not in _names(portrait):
+    is_free = any(row["name"] == "T" for row in portrait["analytic"])
+    if body is None or "omega" not in course or not is_free:
         raise ValueError(f"expected a free rigid body, got another scene @ {portrait['scene']}")
     gate = next(gate for gate in record["gates"] if gate["quantity"] == "omega")
     axes, moments = np.array(body["axes"]), np.array(body["principal_moments"])
@@ -105,10 +101,6 @@ def picture(portrait: Document, samples: Sequence[Sequence[float]], record: Docu
     )
     title = f"Polhode: {portrait['scene']}"
     return Picture(stem_of(portrait, "polhode"), title, alt, partial(_figure, found, rung))
-
-
-def _names(portrait: Document) -> set[str]:
-    return {row["name"] for row in portrait["analytic"]}
 
 
 def _separatrices(surface: Ellipsoid, moments: Numbers) -> list[Numbers]:
@@ -144,67 +136,32 @@ def _view(found: Series) -> View:
 
 
 def _figure(found: Series, rung: str) -> Figure:
-    figure = blank(_HEIGHT)
-    surface, view = Ellipsoid(found.semi_axes), _view(found)
-    axes = stage(figure, Frame(0.0, 0.0, _STAGE, _HEIGHT), reach(surface, view))
-    draw_surface(axes, surface, view)
+    stage = Stage.around(Ellipsoid(found.semi_axes), _view(found), _STAGE, _HEIGHT)
     for curve in found.separatrices:
-        draw_on(axes, surface, view, curve, {**_BORDER, "dashes": _DASHES}, zorder=2)
-    draw_on(axes, surface, view, found.course, _COURSE, zorder=3)
+        stage.line(curve, 2, _BORDER)
+    stage.line(found.course, 3, _COURSE)
     norm = norm_of(found.errors)
-    _draw_samples(axes, surface, view, found, norm)
-    draw_axes(axes, surface, view, [_name(i, a) for i, a in enumerate(found.semi_axes)])
-    right = PAGE_WIDTH - _STAGE
-    legend = Frame(_STAGE, 1.6, right - 0.2, 1.2)
-    draw_legend(figure, _entries(found, rung), "Faint: on the far side.", legend)
-    bar = Frame(_STAGE, 1.0, right - 0.15, 0.12)
-    draw_bar(figure, bar, norm, f"error on {rung}, in u of max|{_OMEGA}|")
-    return figure
+    _draw_samples(stage, found, norm)
+    axes = zip(
+        "\N{SUBSCRIPT ONE}\N{SUBSCRIPT TWO}\N{SUBSCRIPT THREE}", found.semi_axes, strict=True
+    )
+    names = [f"{_OMEGA}{subscript} = {semi_axis:.3g}" for subscript, semi_axis in axes]
+    stage.name_axes(found.semi_axes, names)
+    entries: list[Entry] = [(_COURSE, "exact course"), (_SAMPLE, f"samples of taylor {rung}")]
+    entries += [(_BORDER, "separatrices")] if found.separatrices else []
+    stage.legend(entries, "Faint: on the far side.", 2.8)
+    stage.bar(norm, f"error on {rung}, in u of max|{_OMEGA}|", 1.0)
+    return stage.figure
 
 
-def _name(i: int, semi_axis: float) -> str:
-    subscript = "\N{SUBSCRIPT ONE}\N{SUBSCRIPT TWO}\N{SUBSCRIPT THREE}"[i]
-    return f"{_OMEGA}{subscript} = {semi_axis:.3g}"
-
-
-def _entries(found: Series, rung: str) -> list[Entry]:
-    mark = {"linestyle": "none", "marker": "o", "markersize": 4.5, "markeredgecolor": INK}
-    entries: list[Entry] = [
-        ({"color": _COURSE["color"], "linewidth": 0.8}, "exact course"),
-        ({**mark, "markerfacecolor": QUIET, "markeredgewidth": 0.4}, f"samples of taylor {rung}"),
-    ]
-    if found.separatrices:
-        dashed = {"color": _BORDER["color"], "linewidth": 0.8, "dashes": _DASHES}
-        entries.append((dashed, "separatrices"))
-    return entries
-
-
-def _draw_samples(
-    axes: Axes, surface: Ellipsoid, view: View, found: Series, norm: Normalize
-) -> None:
-    """Later samples above earlier ones, and those behind the body smaller, hollow and faint."""
+def _draw_samples(stage: Stage, found: Series, norm: Normalize) -> None:
+    """Draw later samples above earlier ones, and those behind the body smaller, hollow and faint."""
     errors = np.array(found.errors)
-    known, faces = np.isfinite(errors), surface.faces(found.samples, view)
-    spots, colours = view.seen(found.samples), scale()(norm(np.where(known, errors, 0.0)))
+    known, faces = np.isfinite(errors), stage.faces(found.samples)
+    x, y = stage.view.seen(found.samples).T
+    colours = scale()(norm(np.where(known, errors, 0.0)))
     near, far = known & faces, known & ~faces
-    axes.scatter(
-        spots[far, 0],
-        spots[far, 1],
-        s=_FAR**2,
-        facecolor=PAPER,
-        edgecolors=colours[far],
-        linewidths=0.7,
-        alpha=0.5,
-        zorder=0.6,
-        gid="hidden samples",
-    )
-    axes.scatter(
-        spots[near, 0],
-        spots[near, 1],
-        s=_NEAR**2,
-        c=colours[near],
-        edgecolors=INK,
-        linewidths=0.35,
-        zorder=5,
-        gid="samples",
-    )
+    hollow = {"facecolor": PAPER, "edgecolors": colours[far], "linewidths": 0.7, "alpha": 0.5}
+    stage.axes.scatter(x[far], y[far], s=_FAR**2, zorder=0.6, gid="hidden samples", **hollow)
+    full = {"c": colours[near], "edgecolors": INK, "linewidths": 0.35}
+    stage.axes.scatter(x[near], y[near], s=_NEAR**2, zorder=5, gid="samples", **full)

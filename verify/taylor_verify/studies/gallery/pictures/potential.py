@@ -36,6 +36,18 @@ _LEAST: Final = 0.25
 _ABOVE: Final = 1.35
 _BELOW: Final = 0.75
 _HEIGHT: Final = 1.75
+# How a root is drawn by how often it is one; more than three times as three.
+_ROOT: Final = {
+    **{"linestyle": "none", "markersize": 5.5, "markeredgecolor": INK, "markeredgewidth": 0.9},
+    "gid": "root",
+}
+_ROOTS: Final[Mapping[int, Entry]] = {
+    1: ({**_ROOT, "marker": "o", "markerfacecolor": PAPER}, "simple root"),
+    2: ({**_ROOT, "marker": "D", "markerfacecolor": INK}, "double root"),
+    3: ({**_ROOT, "marker": "^", "markerfacecolor": INK}, "triple root"),
+}
+_MULTIPLE: Final = {2: " (double)", 3: " (triple)", 4: " (fourfold)"}
+_SUBSCRIPTS: Final = str.maketrans("123", "\N{SUBSCRIPT ONE}\N{SUBSCRIPT TWO}\N{SUBSCRIPT THREE}")
 
 
 @dataclass(frozen=True)
@@ -52,7 +64,7 @@ class Series:
 
 
 def series(portrait: Document) -> Series:
-    """Raises ValueError for a scene without such a quartic."""
+    """Return what is drawn of a scene. Raises ValueError for one without such a quartic."""
     found = portrait["potential"]
     if found is None:
         raise ValueError(f"expected a quartic of the axial impulse, got none @ {portrait['scene']}")
@@ -69,26 +81,25 @@ def series(portrait: Document) -> Series:
 
 
 def _shown(low: float, high: float, roots: Sequence[float]) -> tuple[float, float]:
-    """The interval with what is near it: a root within its own length on either side is shown too."""
+    """Return the interval with what is near it: roots within its own length on either side too."""
     length = max(high - low, _LEAST * max(abs(low), abs(high), *map(abs, roots)))
     near = [root for root in roots if low - length <= root <= high + length]
     ends = [low, high, *near]
     return min(ends) - _BESIDE * length / 2, max(ends) + _BESIDE * length / 2
 
 
-def picture(portraits: Sequence[Document], stem: str = "") -> Picture:
-    """A panel for each scene. Raises ValueError for one that has no quartic, and for none at all."""
+def picture(portraits: Sequence[Document], name: str) -> Picture:
+    """Return a panel for each scene. Raises ValueError for one that has no quartic."""
     found = [series(portrait) for portrait in portraits]
-    if not found:
-        raise ValueError("expected a scene with a quartic, got none @ potential")
-    said = " ".join(_said(one) for one in found)
-    document = {"scene": stem or found[0].scene}
+    sentences = " ".join(map(_sentence, found))
     title = "The quartic of the axial impulse"
-    alt = f"The polynomial X3 against the axial impulse, with the interval of the motion. {said}"
-    return Picture(stem_of(document, "potential"), title, alt, partial(_figure, found))
+    alt = (
+        f"The polynomial X3 against the axial impulse, with the interval of the motion. {sentences}"
+    )
+    return Picture(stem_of({"scene": name}, "potential"), title, alt, partial(_figure, found))
 
 
-def _said(found: Series) -> str:
+def _sentence(found: Series) -> str:
     low, high = found.interval
     roots = ", ".join(f"{root:.3g}{_MULTIPLE.get(count, '')}" for root, count in found.roots)
     complex_pair = " and a complex pair" if found.pair else ""
@@ -98,11 +109,14 @@ def _said(found: Series) -> str:
     )
 
 
-_MULTIPLE: Final = {2: " (double)", 3: " (triple)", 4: " (fourfold)"}
-
-
 def _figure(found: Sequence[Series]) -> Figure:
-    figure, places = sheet(len(found), _entries(found), height=_HEIGHT)
+    counts = {min(count, 3) for one in found for _, count in one.roots}
+    entries: list[Entry] = [
+        ({"color": _CURVE, "linewidth": 1.3}, "X\N{SUBSCRIPT THREE}"),
+        ({"color": _ORBIT, "linewidth": 3}, "the orbit's interval"),
+        *(entry for count, entry in _ROOTS.items() if count in counts),
+    ]
+    figure, places = sheet(len(found), entries, height=_HEIGHT)
     for axes, one in zip(places, found, strict=True):
         _draw(axes, one)
     return figure
@@ -127,53 +141,11 @@ def _draw(axes: Axes, found: Series) -> None:
     axes.plot([low, high], [0, 0], color=_ORBIT, linewidth=3, zorder=4, gid="interval")
     for root, count in found.roots:
         if z[0] <= root <= z[-1]:
-            _draw_root(axes, root, count)
+            axes.plot([root], [0], zorder=5, **_ROOTS[min(count, 3)][0])
     subscript = found.variable.translate(_SUBSCRIPTS)
+    square = f"({subscript}\N{PRIME}/r)\N{SUPERSCRIPT TWO}"
     axes.set_xlabel(f"{subscript} (impulse)", labelpad=2)
-    axes.set_ylabel(
-        f"X\N{SUBSCRIPT THREE} = ({subscript}\N{PRIME}/r)\N{SUPERSCRIPT TWO}", labelpad=2
-    )
-    axes.set_title(_heading(found), pad=4, fontsize=SMALL + 0.5)
-
-
-_SUBSCRIPTS: Final = str.maketrans("123", "\N{SUBSCRIPT ONE}\N{SUBSCRIPT TWO}\N{SUBSCRIPT THREE}")
-
-
-def _heading(found: Series) -> str:
+    axes.set_ylabel(f"X\N{SUBSCRIPT THREE} = {square}", labelpad=2)
     name = found.scene.partition("/")[2]
-    return name if name == found.regime else f"{name} ({found.regime})"
-
-
-def _draw_root(axes: Axes, root: float, count: int) -> None:
-    marker, face = _ROOTS.get(count, _ROOTS[3])
-    axes.plot(
-        [root],
-        [0],
-        marker=marker,
-        markersize=5.5,
-        markerfacecolor=face,
-        markeredgecolor=INK,
-        markeredgewidth=0.9,
-        linestyle="none",
-        zorder=5,
-        gid="root",
-    )
-
-
-_ROOTS: Final = {1: ("o", PAPER), 2: ("D", INK), 3: ("^", INK)}
-
-
-def _entries(found: Sequence[Series]) -> list[Entry]:
-    """Those marks that occur."""
-    counts = {min(count, 3) for one in found for _, count in one.roots}
-    mark = {"linestyle": "none", "markersize": 5.5, "markeredgecolor": INK, "markeredgewidth": 0.9}
-    names = {1: "simple root", 2: "double root", 3: "triple root"}
-    return [
-        ({"color": _CURVE, "linewidth": 1.3}, "X\N{SUBSCRIPT THREE}"),
-        ({"color": _ORBIT, "linewidth": 3}, "the orbit's interval"),
-        *(
-            ({**mark, "marker": _ROOTS[count][0], "markerfacecolor": _ROOTS[count][1]}, name)
-            for count, name in names.items()
-            if count in counts
-        ),
-    ]
+    heading = name if name == found.regime else f"{name} ({found.regime})"
+    axes.set_title(heading, pad=4, fontsize=SMALL + 0.5)

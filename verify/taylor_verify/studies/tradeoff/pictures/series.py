@@ -10,10 +10,12 @@ from typing import Any, Final
 
 from taylor_verify.publish.pictures.style import TAYLOR, Look, heading_of, kind_of, look_of, place
 from taylor_verify.records.standing import Standing
+from taylor_verify.studies.tradeoff.document import label
+from taylor_verify.studies.tradeoff.pareto import pareto
 
 Row = Mapping[str, Any]
 
-# What is marked at the border, and how it is read.
+# The standings that are marked at the border.
 AT_THE_BORDER: Final = (Standing.FALSE, Standing.FAILED)
 
 # Beyond these a panel is hard to read: all but taylor in one panel, and any in one.
@@ -22,12 +24,45 @@ _MOST: Final = 7
 
 
 @dataclass(frozen=True)
+class Spot:
+    """A setting in a picture: its numbers along both axes, zero where a number is missing.
+
+    ``spread`` is the slowest time over the fastest.
+    """
+
+    row: Row
+    x: float
+    y: float
+    spread: float = 1.0
+
+    @property
+    def is_sound(self) -> bool:
+        """True for a sound answer with numbers that a logarithmic axis can show."""
+        return self.row["standing"] == Standing.SOUND and self.x > 0 and self.y > 0
+
+    @property
+    def is_exact(self) -> bool:
+        """True for a sound answer without any error, which a logarithmic axis has no place for."""
+        return self.row["standing"] == Standing.SOUND and self.x > 0 and self.row["error"] == 0
+
+    @property
+    def is_at_the_border(self) -> bool:
+        """True for a failure or a false success that is known to have taken some work."""
+        return self.row["standing"] in AT_THE_BORDER and self.x > 0
+
+    @property
+    def label(self) -> str:
+        """The setting as `tradeoff` prints it."""
+        return label(self.row["solver"], self.row["setting"], self.row["rung"])
+
+
+@dataclass(frozen=True)
 class Series:
-    """One family on one rung, its rows from the coarsest setting to the finest."""
+    """A family on a rung: its settings from the coarsest to the finest."""
 
     family: str
     rung: str
-    rows: tuple[Row, ...]
+    spots: tuple[Spot, ...]
 
     @property
     def look(self) -> Look:
@@ -39,66 +74,59 @@ class Series:
 
     @property
     def label(self) -> str:
-        """What a reader calls it: without the kind, which stands above the panel."""
+        """The name of the family without its kind, which stands above the panel."""
         first, _, rest = self.family.partition(" ")
         return rest if rest and first == self.kind else self.family
 
-    def pieces(self, x: str, y: str) -> list[list[Row]]:
-        """Runs of neighbours that are sound and have both numbers: what a line may join."""
-        found = []
-        for drawable, rows in groupby(self.rows, key=lambda row: is_sound(row, x, y)):
-            if drawable:
-                found.append(list(rows))
-        return found
+    @property
+    def pieces(self) -> list[list[Spot]]:
+        """Runs of sound neighbours: what a line may join."""
+        runs = groupby(self.spots, key=lambda spot: spot.is_sound)
+        return [list(spots) for is_sound, spots in runs if is_sound]
 
-    def sound(self, x: str, y: str) -> list[Row]:
-        return [row for piece in self.pieces(x, y) for row in piece]
+    @property
+    def sound(self) -> list[Spot]:
+        return [spot for spot in self.spots if spot.is_sound]
 
-    def is_seen(self, x: str, y: str) -> bool:
-        """Whether there is anything of it to draw."""
-        return bool(self.sound(x, y) or self.at_the_border(x))
-
-    def at_the_border(self, x: str) -> list[Row]:
-        """What failed or claimed a false success, where it is known what that took."""
-        return [row for row in self.rows if row["standing"] in AT_THE_BORDER and amount(row, x)]
+    @property
+    def border(self) -> list[Spot]:
+        return [spot for spot in self.spots if spot.is_at_the_border]
 
 
-def series_of(document: Mapping[str, Any]) -> list[Series]:
-    """The families of a trade-off that ran, in the order of `style.place`."""
+def series_of(document: Mapping[str, Any], x: str, y: str = "error") -> list[Series]:
+    """Return the families of a trade-off that ran, in the order of `style.place`.
+
+    ``x`` and ``y`` are the keys of the rows that the axes show.
+    """
     rows: dict[tuple[str, str], list[Row]] = {}
     for row in document["points"]:
         rows.setdefault((row["family"], row["rung"]), []).append(row)
-    found = [Series(family, rung, tuple(its)) for (family, rung), its in rows.items()]
-    ran = [one for one in found if any(row["standing"] != Standing.NOT_RUN for row in one.rows)]
-    return sorted(ran, key=lambda one: (place(one.family, one.rung), one.rung))
+    return [
+        Series(family, rung, tuple(_spot(row, x, y) for row in own))
+        for (family, rung), own in sorted(
+            rows.items(), key=lambda item: (place(*item[0]), item[0][1])
+        )
+        if any(row["standing"] != Standing.NOT_RUN for row in own)
+    ]
 
 
-def is_sound(row: Row, x: str, y: str) -> bool:
-    """Whether a row is worth a point: sound, and with numbers that a logarithmic axis can show."""
-    return row["standing"] == Standing.SOUND and bool(amount(row, x)) and bool(amount(row, y))
+def _spot(row: Row, x: str, y: str) -> Spot:
+    spread = row["spread"] if x == "seconds" else None
+    return Spot(row, _amount(row, x), _amount(row, y), spread or 1.0)
 
 
-def amount(row: Row, key: str) -> float | None:
-    """A positive finite number of the row, or None; a failed run's time is that of its only solve."""
+def _amount(row: Row, key: str) -> float:
+    """Return a positive finite number of the row, or zero; a failed run has the time of its only solve."""
     value = row.get(key)
     if value is None and key == "seconds" and row["standing"] != Standing.SOUND:
         value = row.get("first_seconds")
-    return value if value is not None and isfinite(value) and value > 0 else None
+    return value if value is not None and isfinite(value) and value > 0 else 0
 
 
-def front_of(rows: Iterable[Row], x: str, y: str) -> list[Row]:
-    """The sound rows that no other beats in both, by x; y falls from each to the next."""
-    found: list[Row] = []
-    sound = [row for row in rows if is_sound(row, x, y)]
-    for row in sorted(sound, key=lambda row: (row[x], row[y])):
-        if not found or row[y] < found[-1][y]:
-            found.append(row)
-    return found
-
-
-def requests_tolerance(row: Row) -> bool:
-    """Whether digits were asked for: a step asks for none."""
-    return bool(row["asked"] == "tolerance" and row.get("requested_digits"))
+def front_of(series: Iterable[Series]) -> list[Spot]:
+    """Return the sound spots that no other beats in both numbers, by x; y falls along them."""
+    sound = [spot for one in series for spot in one.sound]
+    return pareto(sound, lambda spot: (spot.x, spot.y))
 
 
 # Panels
@@ -113,7 +141,7 @@ class Panel:
     yardstick: Series | None = None
 
     def label(self, series: Series) -> str:
-        """What the family is called here: in full where the heading does not say its kind."""
+        """Return the name of a family: in full where the heading does not say its kind."""
         mixed = len({one.kind for one in self.series}) > 1 or series.kind != self.series[0].kind
         return series.family if mixed else series.label
 
@@ -121,26 +149,29 @@ class Panel:
     def drawn(self) -> tuple[Series, ...]:
         return (*((self.yardstick,) if self.yardstick else ()), *self.series)
 
+    @property
+    def sound(self) -> list[Spot]:
+        return [spot for one in self.drawn for spot in one.sound]
+
+    @property
+    def ladder(self) -> dict[str, str]:
+        """The colour of each rung of taylor in the panel."""
+        return {one.rung: one.look.colour for one in self.drawn if one.kind == TAYLOR}
+
 
 def panels_of(series: Sequence[Series]) -> list[Panel]:
-    """taylor by rung in one panel; the others, with its f64 beside them, in one or by kind."""
+    """Return taylor by rung in one panel, and the others, with its f64 beside them, in one or by kind."""
     ladder = tuple(one for one in series if one.kind == TAYLOR)
     others = [one for one in series if one.kind != TAYLOR]
-    yardstick = next((one for one in ladder if one.rung == "f64"), None)
-    found = []
-    if len(ladder) > 1 or not others:
-        found.append(Panel(heading_of(TAYLOR), ladder))
-        alone = None
-    else:
-        # One rung of taylor alone is no ladder: it stands among the others.
-        alone = next(iter(ladder), None)
-    for heading, group in _groups(others):
-        found.append(Panel(heading, group, yardstick or alone))
-    return [panel for panel in found if panel.drawn]
+    # One rung of taylor alone is no ladder: it stands among the others.
+    is_alone = len(ladder) == 1 and bool(others)
+    f64 = next((one for one in ladder if one.rung == "f64"), ladder[0] if is_alone else None)
+    found = [] if is_alone or not ladder else [Panel(heading_of(TAYLOR), ladder)]
+    return found + [Panel(heading, group, f64) for heading, group in _groups(others)]
 
 
 def _groups(others: Sequence[Series]) -> list[tuple[str, tuple[Series, ...]]]:
-    """The families by heading: all together where they are few, else each kind by itself."""
+    """Return the families by heading: all together where they are few, else each kind by itself."""
     if 0 < len(others) <= _ALL_IN_ONE:
         kinds = list(dict.fromkeys(heading_of(one.kind) for one in others))
         return [(kinds[0] if len(kinds) == 1 else "other solvers", tuple(others))]
@@ -149,7 +180,7 @@ def _groups(others: Sequence[Series]) -> list[tuple[str, tuple[Series, ...]]]:
 
 
 def _parts(group: tuple[Series, ...]) -> Iterator[tuple[str, tuple[Series, ...]]]:
-    """The group, or as many even parts of it as keep each legible."""
+    """Yield the group, or as many even parts of it as keep each legible."""
     heading = heading_of(group[0].kind)
     count = -(-len(group) // _MOST)
     size = -(-len(group) // count)

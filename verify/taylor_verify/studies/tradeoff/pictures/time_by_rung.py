@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import partial
-from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
 from taylor_verify.publish.pictures.log_axes import widened
@@ -42,7 +41,9 @@ def picture(scene: str, found: Sequence[Ratio]) -> Picture:
             raise ValueError(
                 f"expected a rung, such as f64 or mp237, got {one.rung!r} @ ratios[{i}]"
             )
-    lines = _lines(found)
+    lines: dict[str, list[Ratio]] = {one.label: [] for one in found}
+    for one in sorted(found, key=lambda one: (bits_of(one.rung), place_of_rung(one.rung))):
+        lines[one.label].append(one)
     said = "; ".join(
         f"{label}: {', '.join(f'{one.rung} {times(one.ratio)}' for one in line)}"
         for label, line in lines.items()
@@ -55,20 +56,11 @@ def picture(scene: str, found: Sequence[Ratio]) -> Picture:
     return Picture(stem_of({"scene": scene}, "rungs"), title, alt, partial(_figure, lines))
 
 
-def _lines(found: Sequence[Ratio]) -> dict[str, list[Ratio]]:
-    """By label, each from the shortest rung to the longest."""
-    lines: dict[str, list[Ratio]] = {}
-    for one in sorted(found, key=lambda one: (bits_of(one.rung), place_of_rung(one.rung))):
-        lines.setdefault(one.label, []).append(one)
-    return {label: lines[label] for label in dict.fromkeys(one.label for one in found)}
-
-
 def _figure(lines: Mapping[str, Sequence[Ratio]]) -> Figure:
     from taylor_verify.publish.pictures.labels import write_names
 
     figure = blank(_HEIGHT)
     axes = add_axes(figure, _FRAME)
-    looks = {label: look_of_line(i) for i, label in enumerate(lines)}
     found = [one for line in lines.values() for one in line]
     ends = [end for one in found for end in (one.least, one.greatest)]
     axes.set(xscale="log", yscale="log", ylim=widened([*ends, 1.0], 0.08, 0.12))
@@ -78,31 +70,21 @@ def _figure(lines: Mapping[str, Sequence[Ratio]]) -> Figure:
     _name_rungs(axes, sorted({one.rung for one in found}, key=bits_of))
     axes.grid(True)
     axes.axhline(1, color=QUIET, linewidth=0.8, zorder=1)
-    for label, line in lines.items():
-        look = looks[label]
-        for one in line:
+    named = []
+    for i, (label, line) in enumerate(lines.items()):
+        look = look_of_line(i)
+        bits, ratios = [bits_of(one.rung) for one in line], [one.ratio for one in line]
+        for x, one in zip(bits, line, strict=True):
             spread = [[one.ratio - one.least], [one.greatest - one.ratio]]
-            bits = bits_of(one.rung)
             axes.errorbar(
-                [bits],
-                [one.ratio],
-                yerr=spread,
+                *([x], [one.ratio], spread),
                 fmt="none",
                 ecolor=look.colour,
                 elinewidth=0.8,
                 capsize=2,
             )
-        axes.plot(
-            [bits_of(one.rung) for one in line],
-            [one.ratio for one in line],
-            gid=label,
-            zorder=3,
-            **look.line,
-        )
-    named = [
-        Named(label, looks[label].colour, [[(bits_of(r.rung), r.ratio) for r in line]])
-        for label, line in lines.items()
-    ]
+        axes.plot(bits, ratios, gid=label, zorder=3, **look.line)
+        named.append(Named(label, look.colour, [[*zip(bits, ratios, strict=True)]]))
     write_names(axes, named)
     if any(one.least < one.greatest for one in found):
         bar = {"color": QUIET, "linewidth": 0.6, "marker": "|", "markersize": 6}
@@ -111,17 +93,15 @@ def _figure(lines: Mapping[str, Sequence[Ratio]]) -> Figure:
 
 
 def _name_rungs(axes: Axes, rungs: Sequence[str]) -> None:
-    """A tick for every rung; of two that are too near, the names stand below each other."""
+    """Set a tick for every rung; of two that are too near, the names stand below each other."""
     from matplotlib.ticker import NullLocator
 
-    places = [
-        float(axes.transAxes.inverted().transform(axes.transData.transform((bits_of(r), 1)))[0])
-        for r in rungs
-    ]
-    near = [False, *(after - before < _NEAR for before, after in pairwise(places))]
+    bits = [bits_of(rung) for rung in rungs]
+    places = axes.transAxes.inverted().transform(axes.transData.transform([(b, 1) for b in bits]))
     names: list[str] = []
-    for rung, too_near in zip(rungs, near, strict=True):
-        lower = too_near and not (names and names[-1].startswith("\n"))
+    for i, rung in enumerate(rungs):
+        is_near = i > 0 and places[i][0] - places[i - 1][0] < _NEAR
+        lower = is_near and not names[-1].startswith("\n")
         names.append(f"\n{rung}" if lower else rung)
-    axes.set_xticks([bits_of(rung) for rung in rungs], names)
+    axes.set_xticks(bits, names)
     axes.xaxis.set_minor_locator(NullLocator())

@@ -1,17 +1,32 @@
-"""The pictures of a trade-off: error against time, evaluations and steps; digits asked for and got."""
+"""The pictures of a trade-off: error against time, evaluations and steps; digits asked for and achieved."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from functools import partial
+from math import isfinite
 from pathlib import Path
-from typing import Any
+from statistics import median
+from typing import Any, Final
 
 from taylor_verify.publish.pictures.picture import Picture, save
-from taylor_verify.studies.tradeoff.pictures import (
-    digits_achieved,
-    error_against_time,
-    error_against_work,
+from taylor_verify.publish.pictures.wording import plain, stem_of
+from taylor_verify.records.standing import Standing
+from taylor_verify.studies.tradeoff.pictures.diagram import digits_achieved, work_precision
+from taylor_verify.studies.tradeoff.pictures.series import (
+    AT_THE_BORDER,
+    Series,
+    Spot,
+    front_of,
+    panels_of,
+    series_of,
 )
+
+# The work of a solve: the key of a row, and the name that titles and files have for it. Evaluations and
+# steps are the same on every machine.
+WORKS: Final = {"seconds": "time", "evaluations": "evaluations", "steps": "steps"}
+_NOTE: Final = "An evaluation of taylor is one order of a step's series."
 
 
 def draw(document: Mapping[str, Any], folder: Path | str) -> list[Path]:
@@ -24,12 +39,97 @@ def draw(document: Mapping[str, Any], folder: Path | str) -> list[Path]:
 
 
 def pictures(document: Mapping[str, Any]) -> list[Picture]:
-    """Every picture with its alt text; one that would be empty is left out."""
+    """Return every picture with its alt text; one that would be empty is left out."""
     if not any(row["standing"] == "sound" for row in document["points"]):
         raise ValueError(f"expected a sound point, got none @ {document['scene']}.points")
-    found = (
-        error_against_time.picture(document),
-        *(error_against_work.picture(document, work) for work in error_against_work.AXES),
-        digits_achieved.picture(document),
-    )
+    found = (*(_work_precision(document, key) for key in WORKS), _digits_achieved(document))
     return [one for one in found if one is not None]
+
+
+def _work_precision(document: Mapping[str, Any], key: str) -> Picture | None:
+    """Return the picture of error against work; None where no sound setting has a number for it."""
+    series = [one for one in series_of(document, key) if one.sound or one.border]
+    front = front_of(series)
+    if not front:
+        return None
+    is_time, work, scene = key == "seconds", WORKS[key], document["scene"]
+    # A published time is a median of many, and the page beside the picture tells of it.
+    best = f", best of {document['timing']['repeats']}" if "timing" in document else ""
+    axes = {"seconds": f"time of a solve{best} (s)", "evaluations": "evaluations of the equations"}
+    unit = "relative; attitude in rad" if "attitude" in document["track"] else "relative"
+    figure = partial(
+        work_precision,
+        panels_of(series),
+        x_name=axes.get(key, key),
+        y_name=f"largest error ({unit})",
+        floors=floors_of(document),
+        bars=is_time,
+        note=_NOTE if key == "evaluations" else "",
+    )
+    alt = (
+        f"Largest error against {'time of a solve' if is_time else work} on {scene}, both "
+        f"logarithmic, for {_names(series)}. "
+        f"{_ends(front, work)}{_fallen(series)}"
+    )
+    return Picture(stem_of(document, work), f"Error against {work}: {scene}", alt, figure)
+
+
+def _digits_achieved(document: Mapping[str, Any]) -> Picture | None:
+    """Return digits achieved against digits asked for; None where no setting has both."""
+    asking = [row for row in document["points"] if row["asked"] == "tolerance"]
+    every = series_of({**document, "points": asking}, "requested_digits", "achieved_digits")
+    series = [one for one in every if one.sound]
+    if not series:
+        return None
+    gained = [(one.family, median(spot.y - spot.x for spot in one.sound)) for one in series]
+    typical = ", ".join(
+        f"{family} {abs(more):.1f} {'more' if more >= 0 else 'fewer'}" for family, more in gained
+    )
+    alt = (
+        f"Decimal digits achieved against digits asked for on {document['scene']}, with the "
+        f"diagonal on which both agree, for {_names(series)}. Achieved, in the median, compared "
+        f"with what was asked for: {typical}."
+    )
+    title = f"Digits asked for and achieved: {document['scene']}"
+    return Picture(
+        stem_of(document, "digits"), title, alt, partial(digits_achieved, panels_of(series))
+    )
+
+
+def _names(series: Sequence[Series]) -> str:
+    """Return the names of the families as a sentence lists them."""
+    *others, last = (one.family for one in series)
+    return f"{', '.join(others)} and {last}" if others else last
+
+
+def floors_of(document: Mapping[str, Any]) -> dict[str, float]:
+    """Return the attainable error of each rung that has one."""
+    floors = document.get("attainable") or {}
+    return {rung: float(e) for rung, e in floors.items() if e and isfinite(e) and e > 0}
+
+
+def _ends(front: Sequence[Spot], work: str) -> str:
+    """Return the two ends of the front in words."""
+    first, best = front[0], front[-1]
+    if work == "time":
+        return (
+            f"The fastest sound setting is {first.label} with an error of {plain(first.y)}, "
+            f"the most accurate {best.label} with {plain(best.y)} in {best.x / first.x:.2g} times "
+            f"its time; {len(front)} settings are beaten by none."
+        )
+    return (
+        f"The fewest {work} of a sound setting are {first.x} ({first.label}, error "
+        f"{plain(first.y)}); the smallest error is {plain(best.y)} with {best.x} ({best.label})."
+    )
+
+
+def _fallen(series: Sequence[Series]) -> str:
+    """Return the number of settings at the border, after a space; empty where all are sound."""
+    standings = Counter(spot.row["standing"] for one in series for spot in one.spots)
+    plural = {Standing.FALSE: "false successes"}
+    said = [
+        f"{standings[name]} {plural.get(name, name) if standings[name] > 1 else name}"
+        for name in AT_THE_BORDER
+        if standings[name]
+    ]
+    return f" Marked at the border: {', '.join(said)}." if said else ""

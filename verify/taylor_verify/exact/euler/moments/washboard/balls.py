@@ -15,13 +15,13 @@ is carried to the time asked for by the mean value theorem.
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Sequence
 from fractions import Fraction
-from typing import Final, final
+from typing import Final
 
 from flint import acb, arb, ctx
 
-from taylor_verify.exact.balls import Enclosed, Enclosure, Undecidable, ball, balls
+from taylor_verify.exact.balls import Undecidable, ball, balls
+from taylor_verify.exact.euler.fixed_axis import FixedAxis, FixedAxisBalls
 from taylor_verify.exact.euler.moments.washboard.board import Washboard
 from taylor_verify.exact.euler.moments.washboard.speed import Speed, Swinging, speed
 from taylor_verify.exact.euler.moments.washboard.teeth import FarTeeth
@@ -31,9 +31,10 @@ from taylor_verify.exact.euler.moments.washboard.turnings import (
     regime,
     turnings,
 )
+from taylor_verify.exact.euler.rotations import RotationBalls
 from taylor_verify.exact.solution import Unsettled
+from taylor_verify.scenes.motion import Quaternion
 
-_PRECISION_STEP: Final = 32
 _STEPS_PER_BIT: Final = 4
 # An integral over a tooth takes ten, one past a crest that is all but a double root a hundred. Where the
 # precision does not resolve the crest, no number of evaluations would.
@@ -43,25 +44,14 @@ _WIDENINGS: Final = 20
 _ARRIVED_BITS: Final = 12
 
 
-@final
-class WashboardBalls(Enclosed):
-    """omega(t) in body axes of a triaxial body under a moment along a principal axis."""
-
-    by_quadrature = True
-
-    def __init__(self, board: Washboard) -> None:
-        self.regime = regime(board).value
-        self._board = board
-        self._courses: dict[int, Course] = {}
-
-    def enclose(self, elapsed: Sequence[Fraction], bits: int) -> Enclosure:
-        """``omega``, rows of 3."""
-        working = -(-bits // _PRECISION_STEP) * _PRECISION_STEP
-        with ctx.workprec(working):
-            if working not in self._courses:
-                self._courses[working] = Course(self._board)
-            course = self._courses[working]
-            return {"omega": [course.omega(t) for t in elapsed]}
+def motion(board: Washboard, attitude: Quaternion | None = None) -> RotationBalls:
+    """The motion of a triaxial body under a moment, and R from a start where omega keeps its axis."""
+    kind = regime(board).value
+    if board.keeps_axis:
+        return RotationBalls(
+            kind, lambda: FixedAxisBalls(FixedAxis(board.omega, board.gain)), attitude
+        )
+    return RotationBalls(kind, lambda: Course(board), by_quadrature=True)
 
 
 class Turn:
@@ -129,7 +119,7 @@ class Turn:
         for _ in range(_STEPS_PER_BIT * ctx.prec):
             missing = (t - self._time(y)).mid()
             step = (missing * self._root(y) / 2).mid()
-            if abs(step) <= y * _arrived():
+            if abs(step) <= y * arb(2) ** (_ARRIVED_BITS - ctx.prec):
                 return y
             low, high = (y, high) if missing > 0 else (low, y)
             ahead = (y + step).mid()
@@ -232,12 +222,12 @@ class Course:
         """The time after which omega recurs; None for a run."""
         return None if self._upper is None else 2 * self._half
 
-    def omega(self, t: Fraction) -> list[arb]:
-        """In body axes."""
+    def at(self, t: Fraction, turned: bool) -> tuple[list[arb], list[arb]]:
+        """omega in body axes; of the turn nothing is known."""
         turn, since = self._turn(self._lead + ball(t))
         y = turn.at(since)
         nu, across = turn.nu(y), self._speed.across(turn.sigma(y))
-        return [v + nu * m for v, m in zip(across, self._moment, strict=True)]
+        return [v + nu * m for v, m in zip(across, self._moment, strict=True)], []
 
     def _turn(self, since: arb) -> tuple[Turn, arb]:
         """The turn that is nearest at this time since one at the lower end, and the time since that."""
@@ -251,8 +241,3 @@ class Course:
         if abs(since).mid() <= self._rise.mid():
             return self._lower, since
         return self._upper, since - self._half if since.mid() > 0 else since + self._half
-
-
-def _arrived() -> arb:
-    """The relative size of a step that leads no nearer."""
-    return arb(2) ** (_ARRIVED_BITS - ctx.prec)

@@ -64,13 +64,23 @@ class Washboard:
 
     @cached_property
     def is_steady(self) -> bool:
-        """Whether the gyroscopic moment balances M: omega is constant."""
+        """Return True if the gyroscopic moment balances M: omega is constant."""
         return not any(tensors.plus(self._free.torque, self.moment))
 
     @cached_property
     def is_straight(self) -> bool:
-        """Whether omega keeps to the axis of the moment."""
+        """Return True if omega keeps to the axis of the moment."""
         return not any(self.across)
+
+    @property
+    def keeps_axis(self) -> bool:
+        """Return True if omega keeps its direction: w = w0 + ``gain`` t."""
+        return self.is_steady or self.is_straight
+
+    @property
+    def gain(self) -> Vector:
+        """M/J, or 0 where omega is constant."""
+        return tensors.scaled(Fraction(0) if self.is_steady else 1 / self.axial_moment, self.moment)
 
     @cached_property
     def _free(self) -> FreeSpin:
@@ -154,7 +164,7 @@ class Washboard:
 
     @property
     def never_climbs(self) -> bool:
-        """Whether kappa > 0 and the part of v that grows with sigma is zero, exactly."""
+        """Return True if kappa > 0 and the part of v that grows with sigma is zero, exactly."""
         return self.kappa > 0 and self.odd**2 == 4 * self.kappa * self.even**2 and self.odd <= 0
 
     def _work(self, a: Vector, b: Vector) -> Fraction:

@@ -20,23 +20,23 @@ E(x) = (e^x - 1)/x.
 
 from __future__ import annotations
 
-import math
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
 from fractions import Fraction
 from functools import cached_property
 from typing import Final, final
 
-import numpy as np
 from mpmath import mp, mpf
 
 from taylor_verify.exact.balls import midpoint
+from taylor_verify.exact.euler.fixed_axis import FixedAxis, FixedAxisFloats
 from taylor_verify.exact.euler.moments.washboard.board import Washboard
 from taylor_verify.exact.euler.moments.washboard.panels import Panels
 from taylor_verify.exact.euler.moments.washboard.turnings import Turnings, located, regime
 from taylor_verify.exact.euler.moments.washboard.zeta import ZetaTeeth
 from taylor_verify.exact.euler.orbit import converted
-from taylor_verify.exact.solution import Quantities, Settled
+from taylor_verify.exact.euler.rotations import Rotation, decades
+from taylor_verify.exact.frames import Frame
+from taylor_verify.scenes.motion import Quaternion
 from taylor_verify.scenes.precision import exact_value, floor_log2
 
 _OWN_GUARD_DIGITS: Final = 14
@@ -46,35 +46,25 @@ _SPARE_BITS: Final = 8
 _FIRST_TEETH: Final = 4
 
 
-@final
-class WashboardMotion(Settled):
-    """omega(t) in body axes of a triaxial body under a moment along a principal axis."""
+def motion(board: Washboard, attitude: Quaternion | None = None) -> Rotation:
+    """The motion of a triaxial body under a moment, and R from a start where omega keeps its axis."""
+    kind = regime(board).value
+    if board.keeps_axis:
+        axis = FixedAxis(board.omega, board.gain)
+        return Rotation(kind, lambda: FixedAxisFloats(axis), axis.lost, attitude)
+    ends = located(board)
 
-    route = "mpmath"
-    by_quadrature = True
+    def lost(longest: Fraction, turned: bool) -> float:
+        return _OWN_GUARD_DIGITS + _phase_digits(board, ends, longest)
 
-    def __init__(self, board: Washboard) -> None:
-        self.regime = regime(board).value
-        self._board, self._turnings = board, located(board)
-
-    def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
-        """``omega`` (n, 3), to about ``digits`` significant digits."""
-        longest = max((abs(t) for t in elapsed), default=Fraction(0))
-        lost = math.ceil(_phase_digits(self._board, self._turnings, longest))
-        with mp.workdps(digits + _OWN_GUARD_DIGITS + lost):
-            motion = course(self._board, self._turnings)
-            rows = [motion.omega(mp.convert(t)) for t in elapsed]
-            found = np.array(rows, dtype=object).reshape(-1, 3)
-        with mp.workdps(digits):
-            return {"omega": +found}
+    return Rotation(kind, lambda: course(board, ends), lost, by_quadrature=True)
 
 
 def _phase_digits(board: Washboard, ends: Turnings, longest: Fraction) -> float:
     """The decimal digits before the point of the phase Omega sigma at the turn or in this time."""
     turn = exact_value(midpoint(ends.lower))
     furthest = (abs(board.nu) + abs(board.slope) * longest) * longest + abs(turn)
-    squared = 1 + abs(board.kappa) * furthest**2
-    return (floor_log2(squared) + 1) * math.log10(2) / 2
+    return decades(1 + abs(board.kappa) * furthest**2) / 2
 
 
 class Wave(ABC):
@@ -176,10 +166,11 @@ class Course(ABC):
     def __init__(self, board: Washboard, wave: Wave) -> None:
         self.wave, self._moment = wave, converted(board.moment)
 
-    def omega(self, t: mpf) -> list[mpf]:
-        """In body axes."""
-        sigma, nu = self._swept(self._lead + t)
-        return [v + nu * m for v, m in zip(self.wave.across(sigma), self._moment, strict=True)]
+    def at(self, t: Fraction, turned: bool) -> tuple[list[mpf], Frame]:
+        """omega in body axes; of the turn nothing is known."""
+        sigma, nu = self._swept(self._lead + mp.convert(t))
+        parts = zip(self.wave.across(sigma), self._moment, strict=True)
+        return [v + nu * m for v, m in parts], []
 
     @abstractmethod
     def _swept(self, since: mpf) -> tuple[mpf, mpf]:

@@ -45,21 +45,24 @@ class Speed(ABC):
         self.board = board
         self.slope, self.even, self.odd = (ball(e) for e in (board.slope, board.even, board.odd))
         self.rate = ball(abs(board.kappa)).sqrt()
+        self._odd = self.odd / (2 * self.rate)
         self._start = ball(board.nu**2)
         self._across = balls(board.across)
         self._ahead = [entry / self.rate for entry in balls(board.ahead)]
 
-    @abstractmethod
+    @final
     def squared(self, sigma: Number) -> Number:
         """F."""
+        return self._start + self.slope * sigma - self._wave(sigma, 0)
 
-    @abstractmethod
+    @final
     def derivative(self, sigma: Number) -> Number:
         """F'."""
+        return self.slope - self._wave(sigma, 1)
 
     @abstractmethod
-    def bend(self, sigma: acb) -> acb:
-        """F''."""
+    def _wave(self, sigma: Number, order: int) -> Number:
+        """What swings or grows in F, 0 at the start, or its derivative of this order."""
 
     @final
     def quotient(self, end: arb) -> Quotient:
@@ -83,7 +86,7 @@ class Speed(ABC):
     def spread(self, middle: acb, d: acb) -> acb:
         """F(middle + d) for a wide d, by Taylor's formula: what is small by its second order stays so."""
         found = self.squared(middle) + self.derivative(middle) * d
-        return found + self.bend(middle + d) * d * d / 2
+        return found - self._wave(middle + d, 2) * d * d / 2
 
     @abstractmethod
     def _quotient(self, end: arb) -> Quotient:
@@ -94,7 +97,7 @@ class Speed(ABC):
         """v in body axes."""
 
 
-def speed(board: Washboard) -> Speed:
+def speed(board: Washboard) -> Swinging | Growing:
     """At the ambient precision of flint."""
     return Swinging(board) if board.kappa < 0 else Growing(board)
 
@@ -103,24 +106,22 @@ def speed(board: Washboard) -> Speed:
 class Swinging(Speed):
     """kappa < 0: the moment is along the axis of greatest or least inertia."""
 
-    def squared(self, sigma: Number) -> Number:
-        sin, cos = (2 * self.rate * sigma).sin_cos()
-        swing = self.even * (cos - 1) + self.odd * sin / (2 * self.rate)
-        return self._start + self.slope * sigma - swing
+    @property
+    def swing(self) -> arb:
+        """R = (4 |kappa| P^2 + Q^2)^(1/2)."""
+        sine = 2 * self.rate * self.even
+        return (sine * sine + self.odd * self.odd).sqrt()
 
-    def derivative(self, sigma: Number) -> Number:
+    def _wave(self, sigma: Number, order: int) -> Number:
         sin, cos = (2 * self.rate * sigma).sin_cos()
-        return self.slope + 2 * self.rate * self.even * sin - self.odd * cos
-
-    def bend(self, sigma: acb) -> acb:
-        sin, cos = (2 * self.rate * sigma).sin_cos()
-        return 2 * self.rate * (2 * self.rate * self.even * cos + self.odd * sin)
+        a, b = self.even, self._odd
+        for _ in range(order):
+            a, b = 2 * self.rate * b, -2 * self.rate * a
+        return a * (cos if order else cos - 1) + b * sin
 
     def _quotient(self, end: arb) -> Quotient:
         rate, slope = self.rate, self.slope
-        sin, cos = (2 * rate * end).sin_cos()
-        first = 2 * rate * self.even * sin - self.odd * cos
-        second = rate * (2 * rate * self.even * cos + self.odd * sin)
+        first, second = -self._wave(end, 1), -self._wave(end, 2) / 2
 
         def of(z: acb) -> acb:
             x = rate * z
@@ -141,22 +142,16 @@ class Growing(Speed):
 
     def __init__(self, board: Washboard) -> None:
         super().__init__(board)
-        half = self.odd / (4 * self.rate)
-        self.growing = arb(0) if board.never_climbs else self.even / 2 + half
-        self.falling = self.even / 2 - half
+        self.growing = arb(0) if board.never_climbs else (self.even + self._odd) / 2
+        self.falling = (self.even - self._odd) / 2
 
-    def squared(self, sigma: Number) -> Number:
+    def _wave(self, sigma: Number, order: int) -> Number:
         up, down = self._powers(2 * sigma)
-        kept = self._start + self.slope * sigma + self.even
-        return kept - self.growing * up - self.falling * down
-
-    def derivative(self, sigma: Number) -> Number:
-        up, down = self._powers(2 * sigma)
-        return self.slope - 2 * self.rate * (self.growing * up - self.falling * down)
-
-    def bend(self, sigma: acb) -> acb:
-        up, down = self._powers(2 * sigma)
-        return -4 * self.rate * self.rate * (self.growing * up + self.falling * down)
+        p, q = self.growing, self.falling
+        for _ in range(order):
+            p, q = 2 * self.rate * p, -2 * self.rate * q
+        grown = p * up + q * down
+        return grown if order else grown - self.even
 
     def _quotient(self, end: arb) -> Quotient:
         rate, slope = self.rate, self.slope

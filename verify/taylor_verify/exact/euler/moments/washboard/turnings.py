@@ -12,9 +12,8 @@ each to the next. So there is an upper end if and only if F < 0 at the first min
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Final
+from itertools import count
+from typing import Final, NamedTuple
 
 from flint import arb, ctx
 
@@ -37,8 +36,7 @@ _MOST_BITS: Final = 8192
 _DOUBLINGS: Final = 1100
 
 
-@dataclass(frozen=True)
-class Turnings:
+class Turnings(NamedTuple):
     """Balls about the ends of the interval of sigma; there is no ``upper`` one in a run."""
 
     lower: arb
@@ -78,21 +76,14 @@ def turnings(board: Washboard) -> Turnings:
     found = speed(board)
     if isinstance(found, Growing):
         return _of_growth(found)
-    assert isinstance(found, Swinging)
     return _of_steep(found) if board.tilt_squared >= 0 else _of_teeth(found)
 
 
 def _of_growth(F: Growing) -> Turnings:
     """kappa > 0."""
-    board, zero = F.board, arb(0)
-    top = zero if board.nu else _summit(F)
-    starts_above = not board.nu and board.push < 0
-    starts_below = not board.nu and board.push > 0
-    lower = zero if starts_below else _root(F, top, _beyond(F, top, -1))
-    if board.never_climbs:
-        return Turnings(lower, None)
-    upper = zero if starts_above else _root(F, top, _beyond(F, top, 1))
-    return Turnings(lower, upper)
+    top = arb(0) if F.board.nu else _summit(F)
+    lower = _end(F, -1, top, _beyond(F, top, -1))
+    return Turnings(lower, None if F.board.never_climbs else _end(F, 1, top, _beyond(F, top, 1)))
 
 
 def _summit(F: Growing) -> arb:
@@ -121,11 +112,9 @@ def _beyond(F: Growing, top: arb, side: int) -> arb:
 
 def _of_steep(F: Swinging) -> Turnings:
     """kappa < 0 and F never falls: one root, where slope sigma has used up nu0^2 and what swings."""
-    board = F.board
-    if not board.nu:
+    if not F.board.nu:
         return Turnings(arb(0), None)
-    amplitude = _swing(F) / (2 * F.rate)
-    start, most = F.squared(arb(0)), 4 * amplitude
+    start, most = F.squared(arb(0)), 2 * F.swing / F.rate
     reach = (start + most + F.slope / F.rate) / F.slope
     _counted(reach * F.rate / arb.pi())
     before = ((start - most) / F.slope).max(arb(0))
@@ -134,55 +123,32 @@ def _of_steep(F: Swinging) -> Turnings:
 
 def _of_teeth(F: Swinging) -> Turnings:
     """kappa < 0 and F has minima."""
-    board, zero = F.board, arb(0)
-    minimum = _minima(F)
-    n = _first(minimum)
+    gamma = (F.slope / F.swing).acos()
+    delta = arb.atan2(2 * F.rate * F.even, F.odd)
+
+    def minimum(n: int) -> arb:
+        return (gamma - delta + 2 * n * arb.pi()) / (2 * F.rate)
+
+    # The first minimum that is not surely below the start; the one before it is. Where it cannot be told
+    # whether this one is above the start, F is nu0^2 there, all but exactly.
+    n = next(n for n in count(-2) if not minimum(n) < 0)
     top, floor = minimum(n), F.squared(minimum(n))
-    starts_below = not board.nu and board.push > 0
-    starts_above = not board.nu and board.push < 0
     # From a start at rest the search begins at the maximum between the two minima.
-    middle = zero if board.nu else (top - _descent(F)).mid()
-    drop = arb.pi() * F.slope / F.rate
+    middle = arb(0) if F.board.nu else (top - gamma / F.rate).mid()
     if floor > 0:
-        teeth = _counted(floor / drop) + 1
-        deep = minimum(n - teeth)
-        before = minimum(n - teeth + 1).mid() if teeth > 1 else middle
-        lower = zero if starts_below else _root(F, before, deep.mid())
-        return Turnings(lower, None)
+        teeth = _counted(floor / (arb.pi() * F.slope / F.rate)) + 1
+        before = minimum(n - teeth + 1) if teeth > 1 else middle
+        return Turnings(_end(F, -1, before, minimum(n - teeth)), None)
     if not (floor < 0 and top > 0):
         raise Undecidable
-    lower = zero if starts_below else _root(F, middle, minimum(n - 1).mid())
-    upper = zero if starts_above else _root(F, middle, top.mid())
-    return Turnings(lower, upper)
+    return Turnings(_end(F, -1, middle, minimum(n - 1)), _end(F, 1, middle, top))
 
 
-def _swing(F: Swinging) -> arb:
-    """R."""
-    sine = 2 * F.rate * F.even
-    return (sine * sine + F.odd * F.odd).sqrt()
-
-
-def _minima(F: Swinging) -> Callable[[int], arb]:
-    """sigma of the minimum number n of F."""
-    gamma = (F.slope / _swing(F)).acos()
-    delta = arb.atan2(2 * F.rate * F.even, F.odd)
-    return lambda n: (gamma - delta + 2 * n * arb.pi()) / (2 * F.rate)
-
-
-def _descent(F: Swinging) -> arb:
-    """The way in sigma from a maximum to the next minimum above it."""
-    return (F.slope / _swing(F)).acos() / F.rate
-
-
-def _first(minimum: Callable[[int], arb]) -> int:
-    """The number of the first minimum that is not surely below the start; the one before it is.
-
-    Where it cannot be told whether this one is above the start, F is nu0^2 there, all but exactly.
-    """
-    n = -2
-    while minimum(n) < 0:
-        n += 1
-    return n
+def _end(F: Speed, side: int, inside: arb, outside: arb) -> arb:
+    """The end on this side: exactly the start, where the motion begins at rest there, or a root."""
+    if not F.board.nu and side * F.board.push < 0:
+        return arb(0)
+    return _root(F, inside, outside)
 
 
 def _counted(teeth: arb) -> int:

@@ -1,0 +1,68 @@
+"""The verb `exact`: the exact motion of one scene."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import Any
+
+from taylor_verify.cli.answer import PASS, UNDECIDED, Answer, WrongCall
+from taylor_verify.cli.console import Page, bold
+from taylor_verify.cli.inputs import read_number, read_scenes
+from taylor_verify.cli.progress import working
+from taylor_verify.exact.ellipsoid import formed_to
+from taylor_verify.exact.printed import document
+from taylor_verify.exact.request import MOST_DIGITS
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
+
+
+def answer(options: argparse.Namespace) -> Answer:
+    """Print the exact motion at the times asked for."""
+    if not 1 <= options.digits <= MOST_DIGITS:
+        raise WrongCall(f"expected --digits from 1 to {MOST_DIGITS}, got {options.digits}")
+    times = [(text.strip(), read_number(text, "--at")) for text in options.at.split(",")]
+    (scene,) = read_scenes([options.scene])
+    try:
+        with working(f"exact {scene.name}"):
+            scene = formed_to(scene, options.digits)
+            found = document(scene, solution(scene, options.route), times, options.digits)
+    except NoClosedForm as reason:
+        found = {
+            "scene": scene.name,
+            "route": options.route,
+            "digits": options.digits,
+            "regime": NO_CLOSED_FORM,
+            "rows": [],
+            "because": f"no closed form: {reason}; leave out --route, or use --route taylor "
+            f"@ {scene.name}",
+        }
+    doubts = [found["because"]] if "because" in found else []
+    # Without rows the message has said it.
+    text = partial(_text, found) if found["rows"] else str
+    return Answer(UNDECIDED if doubts else PASS, found, text, doubts)
+
+
+def _text(found: Mapping[str, Any]) -> str:
+    page = Page()
+    how = f"(route {found['route']}, {found['evidence']})"
+    page.line(bold(found["scene"]), f": {found['regime']} {how}")
+    for row in found["rows"]:
+        page.line(f"\nt = {row['t']}   (relative radius {row['radius']})")
+        for name, value in row.items():
+            if name not in ("t", "radius", "absolute"):
+                _print_quantity(page, name, value)
+        for name, size in row.get("absolute", {}).items():
+            page.line(f"  {name} cannot be told from zero: its size is at most {size}")
+    return page.text()
+
+
+def _print_quantity(page: Page, name: str, value: Sequence[Any]) -> None:
+    rows = [row if isinstance(row, list) else [row] for row in value]
+    # A column for the sign, so that digits stand below digits.
+    signed = [[text if text.startswith("-") else f" {text}" for text in row] for row in rows]
+    width = max(len(text) for row in signed for text in row)
+    for i, row in enumerate(signed):
+        entries = " ".join(text.ljust(width) for text in row).rstrip()
+        page.line(f"  {name if i == 0 else '':15} {entries}")

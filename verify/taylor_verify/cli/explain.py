@@ -1,0 +1,124 @@
+"""The verb `explain`: the equations, the orbit and the arithmetic of one run."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping
+from functools import partial
+from typing import Any
+
+from rich.text import Text
+
+from taylor_verify.cli.answer import PASS, Answer
+from taylor_verify.cli.console import Page, bold
+from taylor_verify.cli.inputs import known_rungs, read_scenes
+from taylor_verify.cli.progress import working
+from taylor_verify.cli.sentences import figure, status_text
+from taylor_verify.explain.explanation import explanation
+from taylor_verify.records.json_text import converted
+from taylor_verify.records.reason import Reason
+
+# The unit of time is the scene's, whatever that is.
+_UNITS = {
+    "time": "time units",
+    "1/time": "per time unit",
+    "radians/time": "radians per time unit",
+}
+
+
+def answer(options: argparse.Namespace) -> Answer:
+    """Explain one run."""
+    (rung,) = known_rungs([options.rung])
+    (scene,) = read_scenes([options.scene], warn=False)
+    with working(f"explain {options.scene}"):
+        found = explanation(scene, rung)
+    return Answer(PASS, found, partial(_text, found))
+
+
+def _text(found: Mapping[str, Any]) -> str:
+    page = Page()
+    page.line(bold(found["scene"]), f": {found['title']}")
+    if found["source"]:
+        page.line(f"source: {found['source']}")
+    for warning in found["warnings"]:
+        page.line(Text("warning", "yellow"), f": {warning}")
+    for sentence in found["body"]:
+        page.indented("body: ", sentence)
+    page.line(f"tracked: {', '.join(found['track'])}")
+    if found["equations"] is not None:
+        _print_problem(page, found)
+    page.line()
+    page.line(bold(f"gates on {found['rung']}"), f", u = 2^-{found['bits']}")
+    for gate in found["gates"]:
+        _print_gate(page, gate)
+    return page.text()
+
+
+def _print_problem(page: Page, found: Mapping[str, Any]) -> None:
+    cost, units = found["cost"], found["units"]
+    page.line()
+    page.line(bold("equations as built"))
+    for line in found["equations"]:
+        page.line(f"  {line}")
+    if found["parameters"]:
+        page.line("with, shown as doubles,")
+        for name, value in found["parameters"].items():
+            page.line(f"  {name:4} {float.fromhex(value)!r}")
+    page.line("in units (exact powers of two)")
+    page.line("  " + ", ".join(f"{name} {value}" for name, value in units.items()))
+    page.line()
+    _print_orbit(page, found)
+    page.line(bold("truth"), f"  route {found['route']}, {found['truth_digits']} digits")
+    page.indented("chosen   ", *cost["because"])
+    page.line(
+        bold("cost"),
+        f"   {_counted(cost)}\n"
+        f"       general equations of this body: {_counted(cost['same'])}\n"
+        f"       with all that the model has: {_counted(cost['general'])}",
+    )
+    if cost["steps"] is not None:
+        order = cost["evaluations"] // cost["steps"] if cost["steps"] else 0
+        page.line(
+            f"       {cost['steps']} steps of order {order}: {cost['evaluations']} evaluations, "
+            f"{cost['seconds']:.3g} s",
+        )
+
+
+def _counted(cost: Mapping[str, Any]) -> str:
+    """Return the cost of one evaluation of the equations."""
+    return (
+        f"{cost['states']} states; an evaluation takes {cost['products']} products, "
+        f"{cost['sums']} sums and {cost['quotients']} quotients"
+    )
+
+
+def _print_orbit(page: Page, found: Mapping[str, Any]) -> None:
+    """Print the regime of the orbit, its numbers, and how it carries an error on."""
+    page.line(bold("orbit"), f"  {found['regime']}")
+    page.indented("  ", *found["sentences"])
+    numbers = [
+        (n["name"], f"{n['value']} {_UNITS.get(n['unit'], n['unit'])}".rstrip(), n["meaning"])
+        for n in found["elements"]
+    ]
+    if numbers:
+        page.line("numbers in the scene's own units")
+    names, values = (max((len(n[k]) for n in numbers), default=0) for k in (0, 1))
+    for name, value, meaning in numbers:
+        page.indented(f"  {name:{names}}  {value:{values}}  ", meaning)
+    if found["condition"] is not None:
+        page.line(bold("conditioning"))
+        page.indented("  ", *found["condition"]["sentences"])
+
+
+def _print_gate(page: Page, gate: Mapping[str, Any]) -> None:
+    page.line()
+    page.line(f"  {gate['quantity']:9} ", status_text(gate["verdict"]))
+    if gate["at"] is not None:
+        size, bound = figure(gate["max"]), figure(gate["bound"])
+        ratio = "not finite" if gate["ratio"] is None else f"{gate['ratio']:.2g}"
+        page.indented(
+            "    ",
+            f"largest error {size} ({gate['unit']}) at t = {gate['at']:g}, where {bound} is allowed",
+            f"largest error/attainable {ratio} at t = {gate['ratio_at']:g}",
+        )
+    page.indented("    because ", *converted(gate["reason"], Reason).parts())

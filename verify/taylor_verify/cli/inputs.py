@@ -1,0 +1,82 @@
+"""Inputs of several verbs: scenes, rungs, numbers and tolerances, read before any work begins."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from fractions import Fraction
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Any
+
+from taylor_verify.batch.selection import read_all
+from taylor_verify.cli.answer import WrongCall, wrong_calls
+from taylor_verify.cli.streams import say
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.table import exact_number
+from taylor_verify.scenes.scene import Scene
+
+if TYPE_CHECKING:
+    from taylor_verify.judge.tolerances import Tolerances
+
+
+def known_rungs(rungs: Iterable[str]) -> list[str]:
+    """Return each rung once. Raises WrongCall for a name that is none."""
+    with wrong_calls(" @ --rung"):
+        return [rung(name).name for name in dict.fromkeys(rungs)]
+
+
+def read_scenes(names: Sequence[str], warn: bool = True) -> list[Scene]:
+    """Read every scene before any work begins. Raises Refused with the faults of all of them."""
+    scenes = read_all(names)
+    for scene in scenes if warn else ():
+        for warning in scene.warnings:
+            say(f"warning: {warning} @ {scene.name}")
+    return [*scenes]
+
+
+def read_number(text: str, option: str) -> Fraction:
+    """Return the decimal or a/b of an option. Raises WrongCall for any other text."""
+    try:
+        return exact_number(text.strip())
+    except ValueError as error:
+        raise WrongCall(f"expected {error}, got {text!r} @ {option}") from error
+
+
+def require_matplotlib(option: str) -> None:
+    """Raise WrongCall without the package that draws."""
+    if find_spec("matplotlib") is None:
+        raise WrongCall(
+            f"expected matplotlib (pip install 'taylor-verify[plots]'), got none @ {option}"
+        )
+
+
+def read_tolerances(text: str | None, scenes: Iterable[Scene]) -> Tolerances:
+    """Return the tolerances that --tolerance asks for: one number for all, or one for each of some.
+
+    Raises WrongCall for what is none.
+    """
+    from taylor_verify.judge.tolerances import NO_TOLERANCES, tolerances
+
+    if text is None:
+        return NO_TOLERANCES
+    with wrong_calls():
+        asked: Any = _by_name(text) if "=" in text else _tolerance(text)
+        return tolerances(asked, scenes, "--tolerance")
+
+
+def _by_name(text: str) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for part in text.split(","):
+        name, equals, value = (word.strip() for word in part.partition("="))
+        if not equals or name in found:
+            got = f"{name} twice" if equals else repr(part)
+            raise ValueError(f"expected NAME=E,NAME=E with each name once, got {got} @ --tolerance")
+        found[name] = _tolerance(value)
+    return found
+
+
+def _tolerance(text: str) -> float | str:
+    """Return the number in a text as a double; the text itself, to be refused as it is, for any other."""
+    try:
+        return float(exact_number(text)) or text
+    except (OverflowError, ValueError):
+        return text

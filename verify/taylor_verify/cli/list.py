@@ -1,0 +1,48 @@
+"""The verb `list`: everything that has a name."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping, Sequence
+from functools import partial
+
+from taylor_verify.cli.answer import PASS, Answer
+from taylor_verify.cli.console import Page, bold
+from taylor_verify.records.precisions import LADDER
+from taylor_verify.scenes.library import EXTREMES, GUIDE, WORST, names
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.solvers.files.formats.reading import FORMATS
+from taylor_verify.solvers.registry import remarks, solver_names
+
+
+def answer(options: argparse.Namespace) -> Answer:
+    """Name the scenes, solvers, rungs and formats of files, each with a sentence."""
+    del options
+    scenes = {"scenes": list(names()), "extremes": list(names(EXTREMES, WORST))}
+    titles = {name: load(name).title for group in scenes.values() for name in group}
+    formats = {suffix: form.sentence for suffix, form in FORMATS.items()}
+    found = {
+        **scenes,
+        "solvers": list(solver_names()),
+        "rungs": list(LADDER),
+        "formats": list(formats),
+    }
+    text = partial(_text, found, {**titles, **remarks(), **formats}, GUIDE)
+    return Answer(PASS, {**found, "guide": dict(GUIDE)}, text)
+
+
+def _text(
+    found: Mapping[str, Sequence[str]], titles: Mapping[str, str], guide: Mapping[str, str]
+) -> str:
+    """Return everything that has a name, and first which scene tells what."""
+    page = Page()
+    page.line(bold("which scene tells what"))
+    guide_width = max(map(len, guide), default=0)
+    for name, purpose in guide.items():
+        page.line(f"  {name:{guide_width}}  {purpose}")
+    width = max(map(len, titles), default=0)
+    for heading, entries in found.items():
+        page.line(bold(heading))
+        for entry in entries:
+            page.line(f"  {entry:{width}}  {titles.get(entry, '')}".rstrip())
+    return page.text()

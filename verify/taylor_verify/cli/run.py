@@ -1,0 +1,231 @@
+"""The verb `run`: the whole chain for some scenes, or for the standard set."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from functools import partial
+from itertools import groupby
+from math import inf, isnan
+from typing import Final
+
+from taylor_verify.batch.comparison import Earlier
+from taylor_verify.batch.expectations import Agreement
+from taylor_verify.batch.judgements import Judgements
+from taylor_verify.batch.lock import Occupied
+from taylor_verify.batch.report import ReportNotWritten, read_report
+from taylor_verify.batch.selection import select
+from taylor_verify.cli.answer import PASS, WRONG_CALL, Answer, WrongCall, graver, wrong_calls
+from taylor_verify.cli.ci import Outputs, outputs, tell
+from taylor_verify.cli.console import PIPED_WIDTH, Cell, Page, bold, print_table
+from taylor_verify.cli.folders import IN_A_CHECKOUT, writable
+from taylor_verify.cli.inputs import known_rungs, read_tolerances
+from taylor_verify.cli.progress import advancing
+from taylor_verify.cli.sentences import (
+    print_arithmetic,
+    print_cause,
+    print_end,
+    print_sentence,
+    status_text,
+)
+from taylor_verify.cli.streams import say
+from taylor_verify.judge.costs import sentence
+from taylor_verify.records.answers import Against
+from taylor_verify.records.json_text import complete
+from taylor_verify.records.quantities import STATES
+from taylor_verify.records.showing import counts
+from taylor_verify.records.status import gravest
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.run_many import run_many
+from taylor_verify.solvers.registry import solver_named
+
+# The sentences of so many runs come before the lines of the overview.
+_FEW: Final = 2
+_OVERVIEW: Final = (
+    *("scene", "rung", "verdict", "state", ">error/u", ">at t", "drift", ">error/u"),
+    *(">/floor", ">steps", ">seconds"),
+)
+
+
+def answer(options: argparse.Namespace) -> Answer:
+    """Solve, compare and judge."""
+    rungs = known_rungs(options.rung) if options.rung else None
+    with wrong_calls(" @ --solver"):
+        solver_named(options.solver)
+    selection = select(options.scenes or None, rungs)
+    for warning in selection.warnings:
+        say(f"warning: {warning}")
+    if options.jobs is not None and not options.jobs >= 1:
+        raise WrongCall(f"expected a number of at least 1, got {options.jobs} @ --jobs")
+    folder = writable(options.out) if options.out is not None else None
+    published = _published(options.against) if options.against is not None else None
+    asked = outputs(options)
+    tolerances = read_tolerances(options.tolerance, selection.scenes)
+    written = [f"wrote {folder / 'tables'} and {folder / 'data'}"] if folder is not None else []
+    status = PASS
+    try:
+        with wrong_calls(" (--out)", Occupied), advancing() as progress:
+            results = run_many(
+                selection,
+                options.solver,
+                jobs=options.jobs,
+                resume=options.resume,
+                out=folder,
+                progress=progress,
+                tolerance=tolerances,
+            )
+    except ReportNotWritten as error:
+        # A run that took hours is shown in any case.
+        results, status, written = error.results, WRONG_CALL, [f"{error} (--out)"]
+    return _answer(results, asked, published, written, status, options.explain)
+
+
+def _published(folder: str) -> Earlier:
+    """Return the verdicts of the folder of --against."""
+    try:
+        with wrong_calls(" (--against)"):
+            return read_report(folder)
+    except FileNotFoundError as error:
+        raise WrongCall(
+            f"expected a folder of `run --out`, got no such file @ --against {error.filename}; "
+            f"{IN_A_CHECKOUT}"
+        ) from error
+
+
+def _answer(
+    results: Judgements,
+    asked: Outputs,
+    published: Earlier | None,
+    written: list[str],
+    status: int,
+    explained: bool,
+) -> Answer:
+    """Return the answer of a run, with what comparisons and files add to it."""
+    status = graver(status, results.exit_status)
+    messages = [f"nothing was judged: {results.unjudged}"] * (results.exit_status == WRONG_CALL)
+    messages += written
+    document = results.document()
+    if published is not None:
+        comparison = published.compare_as_published(results)
+        departures = tuple(map(str, comparison.failures))
+        rows = f"{comparison.compared} rows compared with {published.source}"
+        messages += [*departures, f"{rows}: {len(departures)} departures from their rounding class"]
+        against = Against(published.source, comparison.compared, departures)
+        document["against"] = complete(against)
+        status = graver(status, comparison.exit_status)
+    to_ci = tell(asked, results, status)
+    messages += to_ci.messages
+    messages += [f"not run: {o.scene} on {o.rung}: {o.why}" for o in results.left_out]
+    if len(results.selection.scenes) > 1 and results.costs:
+        messages.append(sentence(results.costs))
+    text = partial(_text, results, to_ci.stated_status, explained)
+    return Answer(to_ci.status, {**document, **to_ci.document}, to_ci.closing(text), messages)
+
+
+# The text.
+
+
+def _text(results: Judgements, status: int | None, explained: bool) -> str:
+    """Return the sentences of a run or two and then a line for each; of many runs the lines come first.
+
+    Of many runs only rows that are no pass have a sentence. Where no row was judged, and all for one
+    reason, the counts and the reason are enough. With ``explained`` the arithmetic of the bounds is there.
+    """
+    verdicts, held = results.verdicts, results.agreement
+    # A path of any length keeps its row in one line of a pipe; on a terminal it is folded.
+    page = Page(PIPED_WIDTH + max((len(v.scene) for v in verdicts), default=0))
+    why = held.unjudged(verdicts)
+    if not why or len({verdict.because for verdict in verdicts}) > 1:
+        _print_rows(page, results, explained)
+    total = f"{counts(verdicts)}{_as_expected(verdicts, held)}"
+    unexpected = [verdict for verdict in verdicts if held.met(verdict) is None]
+    print_end(page, unexpected, total, status, explained)
+    if why:
+        page.line(f"nothing was judged: {why}")
+    return page.text()
+
+
+def _print_rows(page: Page, results: Judgements, explained: bool) -> None:
+    verdicts, held, causes = results.verdicts, results.agreement, results.causes
+    runs = [(run, list(rows)) for run, rows in groupby(verdicts, key=lambda v: (v.scene, v.rung))]
+    is_few = len(runs) <= _FEW
+    for (scene, rung), rows in runs if is_few else ():
+        page.line(bold(scene), f" in {rung} arithmetic")
+        for verdict in rows:
+            print_sentence(page, verdict, why=_expected(verdict, held))
+        for cause in causes:
+            if (cause.scene, cause.rung) == (scene, rung):
+                print_cause(page, cause)
+        page.line()
+    # A line for each run: its worst state, its worst drift, its cost.
+    lines = [[scene, rung, *_run_cells(group)] for (scene, rung), group in runs]
+    print_table(page.console, _OVERVIEW, lines, keys=2)
+    page.line()
+    page.indented(
+        "",
+        "Errors and drifts are the largest of all samples, in units of roundoff u = 2^-bits; "
+        "/floor is the largest error over what perfect rounding would leave, of all gates.",
+    )
+    page.line()
+    if any(verdict.tolerance is not None for verdict in verdicts):
+        page.line("Judged by the tolerance that was asked for.")
+    others = [verdict for verdict in verdicts if verdict.verdict.value != "pass"]
+    for verdict in () if is_few else others:
+        place = f"{verdict.scene} {verdict.rung}"
+        print_sentence(page, verdict, place, _expected(verdict, held))
+    for cause in () if is_few else causes:
+        print_cause(page, cause, f"{cause.scene} {cause.rung}")
+    for mismatch in held.mismatches:
+        page.line(bold("not as expected", "red"), f"  {mismatch}")
+    if explained:
+        for (scene, rung), rows in runs:
+            page.line(bold(scene), f" in {rung} arithmetic")
+            print_arithmetic(page, rows)
+    if explained or held.mismatches or (others and not is_few):
+        page.line()
+
+
+def _expected(verdict: Verdict, held: Agreement) -> str:
+    expected = held.met(verdict)
+    return "" if expected is None else expected.why
+
+
+def _as_expected(verdicts: Sequence[Verdict], held: Agreement) -> str:
+    """Return how many of the rows that are no pass are what the extremes are expected to answer."""
+    met = sum(held.met(verdict) is not None for verdict in verdicts)
+    said = {
+        f"{met} of them as expected": met,
+        f"{len(held.mismatches)} not as expected": held.mismatches,
+    }
+    return "".join(f"; {words}" for words, count in said.items() if count)
+
+
+def _run_cells(group: list[Verdict]) -> tuple[Cell, ...]:
+    status = status_text(gravest(v.verdict for v in group))
+    compared = [v for v in group if v.at is not None]
+    if not compared:
+        return (status, *[""] * 8)
+    state = max((v for v in compared if v.quantity in STATES), key=_ratio)
+    drift = max((v for v in compared if v.is_conserved), key=_units, default=None)
+    return (
+        status,
+        *(state.quantity, f"{_units(state):.3g}", f"{state.at:.6g}"),
+        *((drift.quantity, f"{_units(drift):.3g}") if drift else ("", "")),
+        f"{max(map(_ratio, compared)):.2g}",
+        str(state.steps or ""),
+        f"{state.seconds:.3f}" if state.seconds is not None else "",
+    )
+
+
+def _units(verdict: Verdict) -> float:
+    """Return the largest error in units of roundoff; NaN counts as larger than any."""
+    return _finite(verdict.max) / verdict.roundoff if verdict.roundoff else inf
+
+
+def _ratio(verdict: Verdict) -> float:
+    """Return the largest error over attainable; NaN counts as larger than any."""
+    return _finite(verdict.ratio)
+
+
+def _finite(number: float | None) -> float:
+    return inf if number is None or isnan(number) else number

@@ -1,0 +1,74 @@
+"""A rigid body whose omega keeps its axis: free, or under a moment, by two routes.
+
+omega = w0 + a t with a along w0, or either of them zero. With a vector n along both, the body turns by
+
+    theta = (n.w0 t + n.a t^2/2)/|n|,    R = R0 Rot(n/|n|, theta).
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Final, final
+
+from flint import arb
+from mpmath import mp, mpf
+
+from taylor_verify.exact.balls import ball, balls
+from taylor_verify.exact.euler import quaternion
+from taylor_verify.exact.euler.orbit import converted
+from taylor_verify.exact.euler.quaternion import Quaternion
+from taylor_verify.exact.euler.rotations import decades
+from taylor_verify.exact.frames import Frame, turn
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.tensors import ZERO_VECTOR, Vector
+
+_GUARD_DIGITS: Final = 8
+
+
+class FixedAxis:
+    """w0, a and n, rational, and what follows from them without a root."""
+
+    def __init__(self, omega: Vector, gain: Vector = ZERO_VECTOR) -> None:
+        self._omega, self._gain = omega, gain
+        self.axis = gain if any(gain) else omega
+        self.axis_squared = tensors.dot(self.axis, self.axis)
+
+    def omega(self, t: Fraction) -> Vector:
+        return tensors.plus(self._omega, tensors.scaled(t, self._gain))
+
+    def turned(self, t: Fraction) -> Fraction:
+        """|n| theta."""
+        return t * tensors.dot(self.axis, self.omega(t / 2))
+
+    def lost(self, longest: Fraction, turned: bool) -> float:
+        """The decimal digits before the point of the angle up to this time, and for roundings."""
+        if not turned or not self.axis_squared:
+            return _GUARD_DIGITS
+        furthest = max(abs(self.turned(t)) for t in (longest, -longest))
+        return _GUARD_DIGITS + decades(1 + furthest**2 / self.axis_squared) / 2
+
+
+@final
+class FixedAxisBalls:
+    """The course in balls."""
+
+    def __init__(self, exact: FixedAxis) -> None:
+        self._exact, self._length = exact, ball(exact.axis_squared or 1).sqrt()
+        self._axis = [entry / self._length for entry in balls(exact.axis)]
+
+    def at(self, t: Fraction, turned: bool) -> tuple[list[arb], Quaternion]:
+        omega, angle = balls(self._exact.omega(t)), ball(self._exact.turned(t)) / self._length
+        return omega, quaternion.turn(self._axis, angle / 2) if turned else []
+
+
+@final
+class FixedAxisFloats:
+    """The course in mpmath."""
+
+    def __init__(self, exact: FixedAxis) -> None:
+        self._exact, self._length = exact, mp.sqrt(mp.convert(exact.axis_squared or 1))
+        self._axis = converted(exact.axis)
+
+    def at(self, t: Fraction, turned: bool) -> tuple[list[mpf], Frame]:
+        omega, angle = converted(self._exact.omega(t)), mp.convert(self._exact.turned(t))
+        return omega, turn(self._axis, angle / self._length) if turned else []

@@ -1,0 +1,102 @@
+"""The attitude and the path of Clebsch's body, Hydromechanics 49 (10)-(22), without Euler's angles.
+
+Legend: F = |x|, z = x3, xi = x1 + i x2, eta = y1 + i y2. In space axes with Z along F the body has
+the Cayley-Klein parameters (a, b), with |a|^2 + |b|^2 = 1, so that with Euler's angles
+
+    a = cos(theta/2) e^{i (psi + phi)/2},  b = i sin(theta/2) e^{i (psi - phi)/2}.
+
+Then |a|^2 = (F + z)/2F, |b|^2 = (F - z)/2F, xi = 2F conj(a) b, and the phase of each has only one
+pole, where the other one vanishes:
+
+    arg a = (q F t - L)/2 + D,   L' = (r - r') y3 - (q' - q) z,   D' = (r/2) (FG + F y3)/(F + z),
+    arg b = (q F t + L)/2 + U,                                    U' = (r/2) (FG - F y3)/(F - z).
+
+A modulus changes its sign where it vanishes; so both are smooth wherever the axis points. The moment
+of the impulse about a fixed point is constant, which gives the centre across F without an integral,
+
+    F (X + i Y) = -i Delta(y_X + i y_Y),        F Z' = p F^2 + q FG + (p' - p) z^2 + (q' - q) y3 z.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import final
+
+from mpmath import mp, mpc, mpf
+
+from taylor_verify.exact.frames import Frame, applied, product, start_frame, transposed
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.motion import Impulse
+
+Axial = tuple[mpc, mpf]  # (v1 + i v2, v3) of a vector v in body axes
+
+
+def transverse(vector: Sequence[Fraction]) -> mpc:
+    """v1 + i v2."""
+    return mpc(mp.convert(vector[0]), mp.convert(vector[1]))
+
+
+@dataclass(frozen=True)
+class CayleyKlein:
+    """The attitude of the body in some space axes."""
+
+    a: mpc
+    b: mpc
+
+    def frame(self) -> Frame:
+        """The matrix of the attitude, body to space, by rows."""
+        a, b = self.a, self.b
+        # X + i Y of the three body axes.
+        first, second, third = a**2 - b**2, 1j * (a**2 + b**2), -2 * a * b
+        level = 2 * mp.conj(a) * b
+        upright = (abs(a) - abs(b)) * (abs(a) + abs(b))
+        return [
+            [first.real, second.real, third.real],
+            [first.imag, second.imag, third.imag],
+            [level.real, level.imag, upright],
+        ]
+
+    def across(self, transverse: mpc, along: mpf) -> mpc:
+        """X + i Y of the vector (v1, v2, v3), where transverse is v1 + i v2 and along v3."""
+        a, b = self.a, self.b
+        return a**2 * transverse - b**2 * mp.conj(transverse) - 2 * a * b * along
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Everything about one instant, in body axes and in space axes with Z along F.
+
+    ``turned`` is the attitude, and ``rise`` is Z, the way of the centre along F since the start.
+    """
+
+    x: Axial
+    y: Axial
+    turned: CayleyKlein
+    rise: mpf
+
+    @property
+    def moment(self) -> mpc:
+        """y_X + i y_Y."""
+        return self.turned.across(*self.y)
+
+
+@final
+class SpaceAxes:
+    """The scene's space axes, from those with Z along F in which an orbit is given."""
+
+    def __init__(self, start: Impulse, first: Pose) -> None:
+        """``first`` is the pose at the start in the orbit's axes."""
+        to_space = start_frame(start.attitude)
+        self._axes = product(to_space, transposed(first.turned.frame()))
+        self._centre = [mp.convert(c) for c in start.centre]
+        self._F = mp.sqrt(mp.convert(tensors.dot(start.linear, start.linear)))
+        self._moment = first.moment
+
+    def place(self, pose: Pose) -> tuple[Frame, list[mpf]]:
+        """R, body to space, and the centre."""
+        across = -1j * (pose.moment - self._moment) / self._F
+        moved = applied(self._axes, [across.real, across.imag, pose.rise])
+        centre = [c + d for c, d in zip(self._centre, moved, strict=True)]
+        return product(self._axes, pose.turned.frame()), centre

@@ -1,0 +1,215 @@
+"""The part of the scene's question that a file answers: its columns, its span, and sentences on the rest.
+
+The times of the samples are the file's own affair. It has to reach the scene's end, to begin no later
+than one of its own sampling intervals after the start, and to have more than one row. Where it lacks a part
+there is the row `complete`.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from itertools import pairwise
+from typing import Any, Final
+
+from taylor_verify.judge.rows import verdict_on
+from taylor_verify.records.quantities import (
+    COLUMNS,
+    COMPLETE,
+    GROUPS,
+    MAIN,
+    MOMENTA,
+    TRACKED,
+    VELOCITIES,
+    state_groups,
+)
+from taylor_verify.records.reason import Cause, stated
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.scenes.precision import Rung
+from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.files.file import Recorded, TrajectoryFile
+from taylor_verify.solvers.trajectory import Outcome
+
+# A clock that adds up its step errs by a roundoff of the span in each of them: steps of 1e-4 up to 100.
+_CLOCK_STEPS: Final = 10**6
+# So many rows show an interval of their own.
+_FEWEST_ROWS: Final = 3
+
+
+class _Since(Sequence[Fraction]):
+    """Strictly monotonic times, counted from a start in one direction and put in ascending order."""
+
+    def __init__(self, times: Sequence[Fraction], start: Fraction, sign: int) -> None:
+        self._times, self._start, self._sign = times, start, sign
+        rises = sign * (times[-1] - times[0]) >= 0
+        self._places = range(len(times)) if rises else range(len(times) - 1, -1, -1)
+
+    def __len__(self) -> int:
+        return len(self._times)
+
+    def __getitem__(self, place: Any) -> Any:
+        return self._sign * (self._times[self._places[place]] - self._start)
+
+
+@dataclass(frozen=True)
+class Extent:
+    """The rows of a file, as times since the scene's start in the direction of its motion, sorted.
+
+    ``begin`` and ``end`` are the first and the last instant of the scene, counted likewise.
+    """
+
+    rows: Sequence[Fraction]
+    begin: Fraction
+    end: Fraction
+    slack: Fraction
+
+    @classmethod
+    def of(cls, scene: Scene, times: Sequence[Fraction], rung: Rung) -> Extent:
+        start, elapsed = scene.clock.start, scene.clock.elapsed
+        sign = 1 if elapsed[-1] >= 0 else -1
+        rows = _Since(times, start, sign)
+        end = sign * elapsed[-1]
+        rounded = _CLOCK_STEPS * rung.unit_roundoff * (end + abs(start))
+        # In less than half an interval no row of the file is missing.
+        last = rows[-1] - rows[-2] if len(rows) > 1 else Fraction(0)
+        return cls(rows, sign * elapsed[0], end, min(rounded, last / 2))
+
+    @property
+    def reaches_end(self) -> bool:
+        return self.rows[-1] >= self.end - self.slack
+
+    @cached_property
+    def inside(self) -> range:
+        """The places of the rows within the scene's span."""
+        first = bisect_left(self.rows, -self.slack)
+        return range(first, bisect_right(self.rows, self.end + self.slack))
+
+    @property
+    def first(self) -> Fraction:
+        """The first row within the span."""
+        return self.rows[self.inside[0]]
+
+    @property
+    def reaches_start(self) -> bool:
+        """True if the first row within the span is at the first instant, or one interval after it.
+
+        Of two rows nobody can tell the interval.
+        """
+        if not self.inside or self.first <= self.begin + self.slack:
+            return bool(self.inside)
+        spaces = (b - a for a, b in pairwise(self.rows[k] for k in self.inside))
+        is_known = len(self.inside) >= _FEWEST_ROWS
+        return is_known and any(self.first <= space + self.slack for space in spaces)
+
+    @property
+    def is_one_state(self) -> bool:
+        """True if one row is all there is within the span, of a scene that asks for several."""
+        return len(self.inside) <= 1 and self.begin != self.end
+
+
+def not_judged(extent: Extent, missing: Sequence[str]) -> Iterator[str]:
+    """Yield the parts of the scene's question that a file does not answer; ``missing`` are groups."""
+    yield from (f"the {GROUPS[name].noun}" for name in missing)
+    span = f"the scene's span of {float(extent.end):g}"
+    if extent.is_one_state:
+        yield f"the motion along {span} (one row within it is no trajectory)"
+        return
+    if not extent.reaches_start:
+        yield f"the first {float(extent.first):.6g} of {span}"
+    if not extent.reaches_end:
+        yield f"the last {float(extent.end - max(extent.rows[-1], Fraction(0))):.6g} of {span}"
+
+
+def complete_verdict(
+    scene: Scene, file: str, rung: Rung, lack: Sequence[str], partial: bool
+) -> Verdict:
+    """Return the row that says what was not judged: undecided, or vacuous where a part was asked for."""
+    status = Status.VACUOUS if partial else Status.UNDECIDED
+    whole = f"`taylor-verify question {scene.name} --csv` prints the header and the times of a whole file"
+    asked = "a part is all that --partial asks for" if partial else "--partial accepts a part"
+    said = f"not judged: {', '.join(lack)}; {whole}; {asked}"
+    row = (scene, Recorded({}, setting=file), rung, COMPLETE, status, Outcome.FINISHED)
+    reason, roundoff = stated(Cause.INCOMPLETE, said), float(rung.unit_roundoff)
+    return verdict_on(*row, reason=reason, roundoff=roundoff)
+
+
+# The columns, and the sentences.
+
+
+def comparable(file: TrajectoryFile, scene: Scene) -> list[str]:
+    """Return the groups that the scene's motion has. A file without any is refused."""
+    known = _known(scene)
+    # A scene might track what the columns tell, and does not.
+    untracked = {name for name in TRACKED[scene.model] if name not in scene.track}
+    groups = [n for n in file.groups if n in known and GROUPS[n].quantity not in untracked]
+    if groups:
+        return groups
+    foreign = [name for name in file.groups if name not in known]
+    if foreign:
+        expected = f"expected columns of a scene of model {scene.model} ({_columns(known)})"
+        raise Refused([f"{expected}, got {_columns([name])} @ {file.name}" for name in foreign])
+    wanted = state_groups(scene.model, scene.track)
+    # Whoever has velocities has no impulses.
+    instead = [VELOCITIES] if scene.model == "kirchhoff" else []
+    expected = " or ".join(_columns(names) for names in (*instead, *([name] for name in wanted)))
+    notes = "; ".join(
+        (*file.notes, f"name other columns: --columns {COLUMNS[wanted[0]][0]}=NAME,...")
+    )
+    got = _columns(file.groups) or "t alone"
+    raise Refused(
+        [f"expected {expected}, which {scene.name} tracks, got {got} @ {file.name} ({notes})"]
+    )
+
+
+def _columns(groups: Iterable[str]) -> str:
+    return " ".join(column for name in groups for column in COLUMNS[name])
+
+
+def _known(scene: Scene) -> list[str]:
+    """Return the groups that scenes of this model may have; of a solid in a fluid also its velocities."""
+    quantities = {MAIN[scene.model], *TRACKED[scene.model]}
+    velocities = VELOCITIES if scene.model == "kirchhoff" else ()
+    return [n for n, group in GROUPS.items() if group.quantity in quantities or n in velocities]
+
+
+def coverage_notes(file: TrajectoryFile, groups: Sequence[str], scene: Scene) -> Iterator[str]:
+    """Yield a sentence for each group that is not compared, those without a meaning here first."""
+    known = _known(scene)
+    for name in sorted(file.groups, key=lambda name: name in known):
+        if name not in known:
+            why = f"{scene.name} is of model {scene.model}, whose motion has no {GROUPS[name].noun}"
+        elif name not in groups:
+            why = f"{scene.name} does not track the {GROUPS[name].noun}"
+        else:
+            continue
+        yield f"{_columns([name])} not compared: {why}"
+    for name in missing_groups(groups, scene):
+        other = " or r11 ... r33" if name == "quaternion" else ""
+        yield (f"the {GROUPS[name].noun} is not judged: the file has no {_columns([name])}{other}")
+
+
+def missing_groups(groups: Sequence[str], scene: Scene) -> list[str]:
+    """Return the groups that the scene asks for and the file lacks."""
+    has = {"quaternion" if GROUPS[name].is_frame else name for name in groups}
+    if scene.model == "kirchhoff" and has.issuperset(VELOCITIES):
+        # Together they stand for the impulses.
+        has |= set(MOMENTA["kirchhoff"])
+    return [name for name in state_groups(scene.model, scene.track) if name not in has]
+
+
+def span_notes(scene: Scene, times: Sequence[Fraction], extent: Extent) -> Iterator[str]:
+    """Yield a sentence if no row is at the start, and one if the file stops before the scene does."""
+    start, end = float(scene.clock.start), float(scene.clock.instants[-1])
+    if all(float(time) != start for time in times):
+        yield f"no row is at the start, t = {start:g}: the initial state was not compared"
+    if extent.rows[-1] >= 0 and not extent.reaches_end:
+        last = float(max(times, key=lambda t: abs(t - scene.clock.start)))
+        yield (
+            f"the last row is at t = {last:.12g}, and the scene ends at t = {end:.12g}: "
+            "the rest was not judged"
+        )

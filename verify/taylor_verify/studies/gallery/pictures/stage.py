@@ -1,0 +1,196 @@
+"""A stage: axes without lines on which a body, and curves on it or in space, are seen from one side.
+
+What faces the reader is drawn in full, what does not faintly. Colours of a scale run from light to dark.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import hypot, isfinite
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from taylor_verify.publish.pictures.palette import INK, PAPER, QUIET
+from taylor_verify.publish.pictures.sheet import Entry, Frame, add_axes, blank, draw_legend
+from taylor_verify.publish.pictures.style import PAGE_WIDTH, SMALL
+from taylor_verify.studies.gallery.pictures.view import Ellipsoid, Numbers, View, pieces
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.colors import Colormap, Normalize
+    from matplotlib.figure import Figure
+
+Look = dict[str, Any]
+
+_SURFACE: Final = "#F3F5F7"
+_WIRE: Final = "#BFC6CC"
+# Of what is behind, lines and marks.
+_FAINT: Final = 0.28
+_FAINT_MARK: Final = 0.4
+
+# Room for a name beside the outermost spots, and above and below them, in inches.
+_ASIDE: Final = 0.62
+_ABOVE: Final = 0.12
+# Beyond the surface, in parts of the semi-axis.
+_STUB: Final = 0.24
+_NAME: Final = 0.36
+
+# Light to dark, told apart in grey and with any colour vision; the light end keeps off the paper.
+_SCALE: Final = "cividis_r"
+_FROM: Final = 0.06
+# Largest over median, beyond which colours go by decades, and how many of these are told apart.
+_UNLIKE: Final = 30.0
+_DECADES: Final = 4
+# Of a course, each of one colour.
+_STRETCHES: Final = 40
+
+_EDGE: Final[Look] = {"linestyle": "none", "markeredgecolor": INK, "markeredgewidth": 0.9}
+START: Final[Look] = {**_EDGE, "marker": "o", "markersize": 5, "markerfacecolor": PAPER}
+END: Final[Look] = {**_EDGE, "marker": "s", "markersize": 5, "markerfacecolor": INK}
+
+
+@dataclass(frozen=True)
+class Stage:
+    """Axes on the left ``width`` inches of a figure; on the right there is room for the legend.
+
+    ``surface`` hides what is behind it; where there is none, everything is seen.
+    """
+
+    figure: Figure
+    axes: Axes
+    view: View
+    width: float
+    surface: Ellipsoid | None = None
+
+    @classmethod
+    def showing(
+        cls, spots: Numbers, view: View, width: float, height: float, above: float = _ABOVE
+    ) -> Stage:
+        """Return a stage of so many inches that shows all the spots, both directions at one scale."""
+        figure = blank(height)
+        axes = add_axes(figure, Frame(0.0, 0.0, width, height))
+        axes.axis("off")
+        low, high = spots.min(axis=0), spots.max(axis=0)
+        room = np.array([width - 2 * _ASIDE, height - 2 * above])
+        unit = float(((high - low) / room).max())
+        half = unit * np.array([width, height]) / 2
+        middle = (low + high) / 2
+        axes.set_xlim(middle[0] - half[0], middle[0] + half[0])
+        axes.set_ylim(middle[1] - half[1], middle[1] + half[1])
+        return cls(figure, axes, view, width)
+
+    @classmethod
+    def around(cls, surface: Ellipsoid, view: View, width: float, height: float) -> Stage:
+        """Return a stage with a surface: its rim, filled, and the three sections across the axes."""
+        rim = view.seen(surface.outline(view))
+        names = view.seen(np.diag(surface.semi_axes) * (1 + _NAME))
+        bare = cls.showing(np.concatenate([rim, names]), view, width, height)
+        bare.axes.fill(*rim.T, facecolor=_SURFACE, edgecolor=QUIET, linewidth=0.7, zorder=0)
+        stage = cls(bare.figure, bare.axes, view, width, surface)
+        for pole in np.eye(3):
+            stage.line(surface.circle(pole), 1, {"color": _WIRE, "linewidth": 0.5})
+        return stage
+
+    def faces(self, points: Numbers) -> Any:
+        """Return True for each point that no surface hides."""
+        if self.surface is None:
+            return np.full(len(np.atleast_2d(points)), True)
+        return self.surface.faces(points, self.view)
+
+    def line(self, points: Numbers, zorder: float, look: Look) -> None:
+        """Draw a line, on the surface where there is one."""
+        for is_seen, piece in pieces(self.view.seen(points), self.faces(points)):
+            # Round ends of what is faint would lie on each other and show as dots.
+            side: Look = {"solid_capstyle": "round", "zorder": zorder}
+            if not is_seen:
+                side = {"solid_capstyle": "butt", "zorder": 0.5, "alpha": _FAINT}
+            self.axes.plot(*piece.T, **look, **side)
+
+    def course(self, points: Numbers, width: float, zorder: float) -> None:
+        """Draw a line that darkens as time goes on."""
+        bounds = np.linspace(0, len(points) - 1, _STRETCHES + 1).round().astype(int)
+        for k in range(_STRETCHES):
+            part = k / _STRETCHES
+            colour = scale()((k + 0.5) / _STRETCHES)
+            look = {"color": colour, "linewidth": width, "gid": "path"}
+            self.line(points[bounds[k] : bounds[k + 1] + 1], zorder + part, look)
+
+    def mark(self, point: Numbers, look: Look, **other: Any) -> None:
+        """Draw a mark above all lines."""
+        alpha = 1.0 if self.faces(point)[0] else _FAINT_MARK
+        self.axes.plot(*self.view.seen(point).T, alpha=alpha, zorder=6, **look, **other)
+
+    def name_axes(self, semi_axes: Sequence[float], names: Sequence[str]) -> None:
+        """Draw the axes where they leave the surface, each with its name."""
+        for direction, name in zip(np.diag(semi_axes), names, strict=True):
+            tail, head = self.view.seen(np.array([direction, direction * (1 + _STUB)]))
+            arrow = {"arrowstyle": "-|>", "color": QUIET, "linewidth": 0.8, "mutation_scale": 6}
+            self.axes.annotate(
+                "",
+                head,
+                tail,
+                arrowprops={**arrow, "shrinkA": 0, "shrinkB": 0},
+                zorder=3 if self.faces(direction)[0] else 0.2,
+            )
+            right, up = head - tail
+            x, y = map(float, self.view.seen(direction * (1 + _NAME))[0])
+            side = "left" if right > 0 else "right"
+            self.axes.text(
+                x,
+                y,
+                name,
+                size=SMALL,
+                color=INK,
+                ha="center" if abs(right) < 0.4 * hypot(right, up) else side,
+                va="center_baseline" if abs(up) < abs(right) else "center",
+                zorder=6,
+                gid="name",
+                bbox={"facecolor": PAPER, "alpha": 0.7, "linewidth": 0, "pad": 0.3},
+            )
+
+    def legend(self, entries: Sequence[Entry], note: str, top: float, indent: float = 0.0) -> None:
+        """Write the legend beside the stage, from so many inches above the foot downwards."""
+        draw_legend(self.figure, entries, note, Frame(self.width - indent, 0.0, 0.0, top))
+
+    def bar(self, norm: Normalize, name: str, low: float, is_reversed: bool = False) -> None:
+        """Draw what the colours mean; reversed where the dark end is the least value."""
+        from matplotlib.cm import ScalarMappable
+
+        axes = add_axes(self.figure, Frame(self.width, low, PAGE_WIDTH - self.width - 0.15, 0.12))
+        colours = ScalarMappable(norm, scale().reversed() if is_reversed else scale())
+        bar = self.figure.colorbar(colours, cax=axes, orientation="horizontal")
+        bar.outline.set_linewidth(0.5)
+        bar.outline.set_edgecolor(QUIET)
+        axes.set_xlabel(name, size=SMALL)
+        axes.tick_params(labelsize=SMALL)
+
+    def time_bar(self, times: Numbers, low: float) -> None:
+        """Draw the colours of a course from its start to its end."""
+        from matplotlib.colors import Normalize
+
+        norm = Normalize(float(times.min()), float(times.max()))
+        self.bar(norm, "time t", low, is_reversed=bool(times[-1] < times[0]))
+
+
+def scale() -> Colormap:
+    """Return the colours of a quantity, from little (light) to much (dark)."""
+    import matplotlib
+    from matplotlib.colors import ListedColormap
+
+    return ListedColormap(matplotlib.colormaps[_SCALE](np.linspace(_FROM, 1.0, 256)))
+
+
+def norm_of(values: Sequence[float]) -> Normalize:
+    """Return the place of each size on the scale: in proportion, or by decades where sizes are so unlike.
+
+    What is zero, or below the last decade, has the lightest colour.
+    """
+    from matplotlib.colors import LogNorm, Normalize
+
+    above = sorted(value for value in values if isfinite(value) and value > 0)
+    most = above[-1] if above else 1.0
+    if not above or most <= _UNLIKE * above[len(above) // 2]:
+        return Normalize(0.0, most, clip=True)
+    return LogNorm(max(above[0], most / 10**_DECADES), most, clip=True)
