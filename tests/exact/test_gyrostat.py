@@ -199,7 +199,7 @@ def test_without_wheels_it_is_eulers_top(moments: tuple[int, ...], spin: tuple[i
     none = FreeGyrostat(inertia, vector(0, 0, 0), omega)
     instants = slow(none, (Fraction(3, 2), Fraction(-40)))
     found = GyrostatBalls(none, TILTED).motion(instants, 20)
-    top = theta.FreeRotationBalls(FreeSpin(inertia, omega), TILTED).motion(instants, 20)
+    top = theta.free_rotation(FreeSpin(inertia, omega), TILTED).motion(instants, 20)
     with mp.workdps(40):
         assert apart(found, top) <= 2 * mpf(10) ** -20
 

@@ -36,6 +36,11 @@ def swing(motion: Manufactured) -> tuple[Exact, Exact]:
     return np.array(columns, dtype=object).T, turning
 
 
+def standing(d: int) -> Manufactured:
+    """The motion of d components that are zero: its clock is the 1 alone."""
+    return Manufactured((Fraction(0),) * d, ())
+
+
 def start(motion: Manufactured) -> Vector:
     """The clock at the start."""
     return (Fraction(1),) + (Fraction(1), Fraction(0)) * len(motion.waves)

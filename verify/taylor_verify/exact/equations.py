@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from taylor_verify.exact.clocks import Exact, Floats, swing
+from taylor_verify.exact.clocks import Exact, Floats, standing, swing
 from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.tensors import Matrix, Vector
 
@@ -21,19 +21,21 @@ class Scaled(NamedTuple):
     """Equations in units, as float64."""
 
     constant: Floats
+    linear: Floats
     hessian: Floats
     spin: Floats
     velocity: Floats
 
 
 class Equations(NamedTuple):
-    """z' = ``constant`` + z.``hessian`` z/2, with Omega = ``spin`` z and U = ``velocity`` z.
+    """z' = ``constant`` + ``linear`` z + z.``hessian`` z/2, with Omega = ``spin`` z and U = ``velocity`` z.
 
-    The shapes are (n,), (n, n, n), symmetric in the last two places, and (3, n); ``velocity`` has no rows
-    for a rigid body.
+    The shapes are (n,), (n, n), (n, n, n), symmetric in the last two places, and (3, n); ``velocity`` has
+    no rows for a rigid body.
     """
 
     constant: Exact
+    linear: Exact
     hessian: Exact
     spin: Exact
     velocity: Exact
@@ -43,24 +45,31 @@ class Equations(NamedTuple):
         return Equations(*(one - two for one, two in zip(self, other, strict=True)))
 
     def driven(self, motion: Manufactured | None) -> Equations:
-        """The equations with the loads of a manufactured motion, if there is one, and of its clock.
+        """The equations without linear terms, and with the loads and the clock of a manufactured motion.
 
-        z' = N(z) + z*' - N(z*) with N quadratic, z* = S w and w' = W w for the clock w. Its first variable
-        is 1, which makes a product of what is linear.
+        z' = N(z) + z*' - N(z*) with z* = S w and w' = W w for the clock w. Its first variable is 1, which
+        makes a product of what is linear; without a motion it is the only one, and absent where no term
+        is linear.
         """
-        if motion is None:
+        if motion is None and not self.linear.any():
             return self
-        S, W = swing(motion)
-        d, n = len(self.constant), len(self.constant) + len(W)
+        d = len(self.constant)
+        S, W = swing(motion or standing(d))
+        n = d + len(W)
         hessian = np.full((n, n, n), Fraction(0), dtype=object)
         hessian[:d, :d, :d] = self.hessian
         hessian[:d, d:, d:] = -(S.T @ self.hessian @ S)
-        linear = np.concatenate([S @ W, W])
-        hessian[:, d, d:] += linear
-        hessian[:, d:, d] += linear
+        hessian[:d, d, :d] += self.linear
+        hessian[:d, :d, d] += self.linear
+        loads = np.concatenate([S @ W - self.linear @ S, W])
+        hessian[:, d, d:] += loads
+        hessian[:, d:, d] += loads
         more = np.full((3, len(W)), Fraction(0), dtype=object)
-        spin, velocity = (np.hstack([form, more[: len(form)]]) for form in self[2:])
-        return Equations(np.concatenate([self.constant, more[0]]), hessian, spin, velocity)
+        spin, velocity = (
+            np.hstack([form, more[: len(form)]]) for form in (self.spin, self.velocity)
+        )
+        constant = np.concatenate([self.constant, more[0]])
+        return Equations(constant, nothing(n), hessian, spin, velocity)
 
     def scaled(self, units: Vector, time: Fraction, length: Fraction) -> Scaled:
         """The same with z in ``units``, one for each component; the centre goes by lengths."""
@@ -68,6 +77,7 @@ class Equations(NamedTuple):
         rates = time / one
         return Scaled(
             (self.constant * rates).astype(float),
+            (self.linear * np.outer(rates, one)).astype(float),
             (self.hessian * np.multiply.outer(rates, np.outer(one, one))).astype(float),
             (self.spin * one * time).astype(float),
             (self.velocity * one * (time / length)).astype(float),
@@ -77,6 +87,11 @@ class Equations(NamedTuple):
 def exact(rows: Sequence[Any]) -> Exact:
     """The array of a vector or a matrix."""
     return np.array(rows, dtype=object)
+
+
+def nothing(n: int) -> Exact:
+    """The linear part of equations that have none."""
+    return np.full((n, n), Fraction(0), dtype=object)
 
 
 def cross(left: Matrix, right: Matrix) -> Exact:

@@ -56,12 +56,12 @@ def rates(scene: Scene, motion: Motion, elapsed: Sequence[Fraction] | None = Non
     values = {
         name: _floats(motion[name], exponents[name]) for name in names if name in motion.quantities
     }
-    state = np.concatenate([values[name] for name in moving], axis=1)
-    if scene.body.manufactured is not None:
+    state, flow = np.concatenate([values[name] for name in moving], axis=1), _flow(scene)
+    if state.shape[1] < len(flow.constant):
         times = scene.clock.elapsed if elapsed is None else elapsed
         state = np.hstack([state, clocks.floats(scene.body.manufactured, times)])
     with np.errstate(all="ignore"):  # what is not finite stays so, and is the caller's to see
-        velocity, acceleration = _derivatives(_flow(scene), moving, state, values.get("attitude"))
+        velocity, acceleration = _derivatives(flow, moving, state, values.get("attitude"))
     return Rates(
         velocity={name: velocity[name] for name in values},
         acceleration={name: acceleration[name] for name in values},

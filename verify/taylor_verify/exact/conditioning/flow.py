@@ -19,11 +19,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from taylor_verify.exact.clocks import Floats, swing
+from taylor_verify.exact.clocks import Floats, standing, swing
 from taylor_verify.exact.conditioning.inputs import momentum
 from taylor_verify.exact.equations import Scaled, exact
 from taylor_verify.exact.registry import kind_of
-from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.precision import floor_log2, power_of_two
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Vector
@@ -55,7 +54,7 @@ def products(steps: Floats) -> Floats:
 class Flow:
     """The equations in units of their size: d = 3 or 6 components of momentum.
 
-    J is hessian @ z. ``momenta`` are the units of each block of the momentum by name; time is
+    J is linear + hessian @ z. ``momenta`` are the units of each block of the momentum by name; time is
     measured in ``time``, lengths in ``length``: powers of two. ``waves`` is S and ``turning`` W.
     """
 
@@ -73,12 +72,14 @@ class Flow:
         equations = kind.momentum_equations(scene.body)
         one = exact(units)
         scaled = equations.hessian * np.multiply.outer(1 / one, np.outer(one, one))
-        rates = [abs(rate) for rate in (*scaled.flat, *(equations.constant / one)) if rate]
+        linear = equations.linear * np.outer(1 / one, one)
+        every = (*scaled.flat, *linear.flat, *(equations.constant / one))
+        rates = [abs(rate) for rate in every if rate]
         time = 1 / power_of_two(floor_log2(max(rates))) if rates else Fraction(1)
         fastest = max((abs(s) for s in (equations.velocity * one).flat), default=Fraction(0))
         length = power_of_two(floor_log2(fastest * time)) if fastest else Fraction(1)
         motion = kind.manufactured_momentum(scene.body)
-        waves, turning = swing(motion or Manufactured((Fraction(0),) * len(one), ()))
+        waves, turning = swing(motion or standing(len(one)))
         return cls(
             momenta=dict(zip(kind.momenta, units[::3], strict=True)),
             equations=equations.scaled(units, time, length),
@@ -103,13 +104,17 @@ class Flow:
         """J (..., d, d) at z (..., d)."""
         d = z.shape[-1]
         found: Floats = z @ self.equations.hessian.reshape(d * d, d).T
-        return found.reshape(*z.shape, d)
+        return found.reshape(*z.shape, d) + self.equations.linear
+
+    def free(self, z: Floats) -> Floats:
+        """z' (..., d) at z (..., d) without loads: J counts half, and its linear part whole."""
+        return applied(self.jacobian(z) + self.equations.linear, z) / 2
 
     def load(self, clock: Floats) -> Floats:
         """The constant load, and the one that a manufactured motion takes."""
         there, rate = clock @ self.waves.T, clock @ self.turning.T @ self.waves.T
         constant = self.equations.constant
-        found: Floats = constant + rate - applied(self.jacobian(there), there) / 2
+        found: Floats = constant + rate - self.free(there)
         return found
 
     def rate(self, z: Floats) -> Floats:

@@ -237,6 +237,8 @@ def _flow(scene: Scene, motion: Quantities) -> dict[str, Array]:
     equations = posed_exactly(scene).equations
     moving = [name for name in motion if name not in ("attitude", "centre")]
     z = np.concatenate([motion[name] for name in moving], axis=1)
+    if z.shape[1] < len(equations.constant):
+        z = np.hstack([z, real(np.ones((len(z), 1), dtype=object))])
     products = (z[:, :, None] * z[:, None, :]).reshape(len(z), -1)
     hessian = equations.hessian.reshape(len(equations.hessian), -1)
     rate = real([equations.constant]) + products @ real(hessian).T / 2

@@ -175,7 +175,7 @@ def _rates(flow: Flow, at: _Arcs) -> _Arcs:
         shift = R @ (flow.equations.velocity @ at.by_momentum) - cross_matrices(speed) @ at.turn
     return _Arcs(
         clock=at.clock @ flow.turning.T,
-        momentum=flow.load(at.clock) + applied(jacobian, at.momentum) / 2,
+        momentum=flow.load(at.clock) + flow.free(at.momentum),
         attitude=R @ cross_matrices(at.momentum @ flow.equations.spin.T),
         by_momentum=jacobian @ at.by_momentum,
         turn=turn,

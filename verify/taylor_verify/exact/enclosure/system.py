@@ -68,10 +68,11 @@ def posed_exactly(scene: Scene) -> System:
     body, kind = scene.body, kind_of(scene.body)
     start, motion = kind.state(scene.initial), body.manufactured
     ends = tuple(range(3, len(start) + 1, 3))
-    if motion is not None:
-        start += clocks.start(motion)
+    equations = kind.equations(body).driven(motion)
+    if len(equations.constant) > len(start):
+        start += clocks.start(motion or clocks.standing(len(start)))
         ends += (len(start),)
-    return System(kind.equations(body).driven(motion), ends, start)
+    return System(equations, ends, start)
 
 
 @dataclass(frozen=True)
@@ -118,5 +119,6 @@ def column(entries: Sequence[arb]) -> arb_mat:
 
 
 def _matrices(equations: Equations) -> list[arb_mat]:
-    """Constant, Hessian, spin and velocity, each as the rows of a matrix."""
-    return [arb_mat([balls(np.ravel(row)) for row in array]) for array in equations]
+    """Constant, Hessian, spin and velocity, each as the rows of a matrix; nothing is linear here."""
+    arrays = equations.constant, equations.hessian, equations.spin, equations.velocity
+    return [arb_mat([balls(np.ravel(row)) for row in array]) for array in arrays]

@@ -10,7 +10,7 @@ from typing import Final, final
 import numpy as np
 
 from taylor_verify.exact import clocks
-from taylor_verify.exact.equations import Equations, cross, exact
+from taylor_verify.exact.equations import Equations, cross, exact, nothing
 from taylor_verify.exact.euler.invariants import energy, momentum, space_momentum
 from taylor_verify.exact.invariant import Array, Invariant
 from taylor_verify.exact.kind import Kind
@@ -53,7 +53,7 @@ class Rigid(Kind[RigidBody, Spin]):
         """omega' = K M + K((I omega) x omega)."""
         K = exact(body.inverse_inertia)
         turned = np.tensordot(K, cross(body.inertia, _ONE), 1)
-        return Equations(K @ exact(body.moment), turned, exact(_ONE), _NO_VELOCITY)
+        return Equations(K @ exact(body.moment), nothing(3), turned, exact(_ONE), _NO_VELOCITY)
 
     def units(self, body: RigidBody, z: Vector) -> Units:
         """omega by its size, or what the moment makes of it; time by omega, or its fastest wave."""
@@ -80,7 +80,7 @@ class Rigid(Kind[RigidBody, Spin]):
     def momentum_equations(self, body: RigidBody) -> Equations:
         """H' = M + H x K H."""
         K = body.inverse_inertia
-        return Equations(exact(body.moment), cross(_ONE, K), exact(K), _NO_VELOCITY)
+        return Equations(exact(body.moment), nothing(3), cross(_ONE, K), exact(K), _NO_VELOCITY)
 
     def manufactured_momentum(self, body: RigidBody) -> Manufactured | None:
         return None if body.manufactured is None else body.manufactured.mapped(body.inertia)

@@ -21,9 +21,9 @@ def enclosed(scene: Scene) -> Solution:
 
 def closed_form(scene: Scene) -> Solution:
     """Return the motion in mpmath; raises NoClosedForm likewise."""
-    from taylor_verify.exact.gyrostat.jacobi import GyrostatMotion
+    from taylor_verify.exact.gyrostat.jacobi import free_rotation
 
-    return GyrostatMotion(*free_gyrostat(scene))
+    return free_rotation(*free_gyrostat(scene))
 
 
 def free_gyrostat(scene: Scene) -> tuple[FreeGyrostat, Quaternion | None]:

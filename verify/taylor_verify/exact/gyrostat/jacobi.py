@@ -14,14 +14,16 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from fractions import Fraction
+from functools import cached_property
 from typing import Final, NamedTuple, final
 
-import numpy as np
 from mpmath import mp, mpc, mpf
 
 from taylor_verify.exact.elliptic import Landen
+from taylor_verify.exact.euler.orbit import converted
+from taylor_verify.exact.euler.rotations import Course, Rotation, decades
 from taylor_verify.exact.frames import Frame as Rows
-from taylor_verify.exact.frames import applied, product, start_frame, transposed, turn
+from taylor_verify.exact.frames import applied, product, transposed, turn
 from taylor_verify.exact.gyrostat.azimuth import (
     FRAMES,
     Arithmetic,
@@ -34,9 +36,8 @@ from taylor_verify.exact.gyrostat.carlson import integral_j
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.exact.gyrostat.point import point_map
 from taylor_verify.exact.gyrostat.velocity import WeierstrassForm
-from taylor_verify.exact.solution import Quantities, Settled
+from taylor_verify.scenes import tensors
 from taylor_verify.scenes.motion import Quaternion
-from taylor_verify.scenes.precision import floor_log2
 from taylor_verify.scenes.tensors import Vector
 
 _MPMATH: Final = Arithmetic(mp.convert, mpc, mp.sqrt)
@@ -47,58 +48,38 @@ _SAMPLES: Final = 48
 _UNITS: Final = 16
 
 
-@final
-class GyrostatMotion(Settled):
-    """The free motion of a rigid body with wheels: omega(t) in body axes, and R(t) where it is tracked."""
+def free_rotation(free: FreeGyrostat, attitude: Quaternion | None) -> Rotation:
+    """Return the free motion of a rigid body with wheels, and R where an attitude is given."""
 
-    route = "mpmath"
+    def course() -> Course:
+        return Tumbling(free) if free.outer is None else Turning(free, free.outer)
 
-    def __init__(self, free: FreeGyrostat, attitude: Quaternion | None) -> None:
-        self.regime = free.regime.value
-        self._free, self._attitude = free, attitude
+    return Rotation(free.regime.value, course, lambda *until: _lost_digits(free, *until), attitude)
 
-    def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
-        longest = max((abs(t) for t in elapsed), default=Fraction(0))
-        with mp.workdps(digits + _GUARD_DIGITS + self._turned_digits(longest)):
-            outer = self._free.outer
-            course = (
-                Tumbling(self._free, self._attitude)
-                if outer is None
-                else Turning(self._free, outer, self._attitude)
-            )
-            rows = [course.at(mp.convert(t)) for t in elapsed]
-        omegas: Quantities = {"omega": np.array([w for w, _ in rows], dtype=object).reshape(-1, 3)}
-        if self._attitude is None:
-            return omegas
-        attitudes = np.array([R for _, R in rows], dtype=object).reshape(-1, 3, 3)
-        return {**omegas, "attitude": attitudes}
 
-    def _turned_digits(self, longest: Fraction) -> int:
-        """The digits lost to the angle turned in that time."""
-        free = self._free
-        rates = sum(abs(c) for v in (free.omega, free.g, free.momentum) for c in v)
-        angle = rates * (1 + max(free.K[i][i] for i in range(3))) * longest
-        return max(0, floor_log2(angle)) // 3 + 1 if angle else 0
+def _lost_digits(free: FreeGyrostat, longest: Fraction, turned: bool) -> float:
+    """The decimal digits lost to the angle turned in a time; whether that is all, two precisions tell."""
+    del turned
+    rates = (free.omega, free.g, tensors.apply(free.K, free.momentum))
+    angle = longest * sum(abs(c) for v in rates for c in v)
+    return _GUARD_DIGITS + decades(1 + angle)
 
 
 @final
 class Turning:
-    """w turns in the body at a constant rate v, and the body about u: R = R(0) Rot(u t) Rot(-v t)."""
+    """w turns in the body at a constant rate v, and the body about u: a turn by Rot(u t) Rot(-v t)."""
 
-    def __init__(self, free: FreeGyrostat, outer: Vector, attitude: Quaternion | None) -> None:
-        self._omega, self._outer, self._inner = (
-            [mp.convert(c) for c in v] for v in (free.omega, outer, free.inner)
-        )
-        self._start = None if attitude is None else start_frame(attitude)
+    def __init__(self, free: FreeGyrostat, outer: Vector) -> None:
+        self._omega, self._outer, self._inner = map(converted, (free.omega, outer, free.inner))
 
-    def at(self, t: mpf) -> tuple[list[mpf], Rows | None]:
-        """omega, and R where it is tracked."""
-        inner = turn(self._inner, mp.norm(self._inner) * t)
+    def at(self, t: Fraction, turned: bool) -> tuple[list[mpf], Rows]:
+        """omega, and the turn since the start."""
+        time = mp.convert(t)
+        inner = turn(self._inner, mp.norm(self._inner) * time)
         omega = applied(inner, self._omega)
-        if self._start is None:
-            return omega, None
-        about_outer = product(self._start, turn(self._outer, mp.norm(self._outer) * t))
-        return omega, product(about_outer, transposed(inner))
+        if not turned:
+            return omega, []
+        return omega, product(turn(self._outer, mp.norm(self._outer) * time), transposed(inner))
 
 
 class Place(NamedTuple):
@@ -208,34 +189,37 @@ class Swing:
 
 @final
 class Tumbling:
-    """omega and R of a motion that is not a uniform turning, with numbers of one precision."""
+    """A motion that is no uniform turning, with numbers of one precision."""
 
-    def __init__(self, free: FreeGyrostat, attitude: Quaternion | None) -> None:
-        self._swing = Swing(free)
+    def __init__(self, free: FreeGyrostat) -> None:
+        self._free, self._swing = free, Swing(free)
         self._form = WeierstrassForm.of(free).converted(mp.convert)
-        self._K = [[mp.convert(c) for c in row] for row in free.K]
-        self._g = [mp.convert(c) for c in free.g]
-        self._omega = [mp.convert(c) for c in free.omega]
-        self._azimuth: Azimuth | None = None
-        if attitude is not None:
-            self._start = start_frame(attitude)
-            self._azimuth = Azimuth(free, self._swing)
-            start = self._azimuth.tilt([mp.convert(c) for c in free.momentum])
-            self._to_space = product(self._start, transposed(start))
+        self._K, self._g = [converted(row) for row in free.K], converted(free.g)
+        self._omega = converted(free.omega)
 
-    def at(self, t: mpf) -> tuple[list[mpf], Rows | None]:
-        """omega, and R where it is tracked."""
+    def at(self, t: Fraction, turned: bool) -> tuple[list[mpf], Rows]:
+        """omega, and the turn since the start."""
         if t == 0:
-            return self._omega, self._start if self._azimuth else None
-        turns, r = self._swing.reduced(t)
+            return self._omega, turn(self._omega, mpf(0)) if turned else []
+        time = mp.convert(t)
+        turns, r = self._swing.reduced(time)
         place = self._swing.at(r)
         G = self._form.at(place.p, place.slope)
         omega = [q - g for q, g in zip(applied(self._K, G), self._g, strict=True)]
-        if self._azimuth is None:
-            return omega, None
-        cos, sin = mp.cos_sin(self._azimuth.at(t, turns, r, place))
+        if not turned:
+            return omega, []
+        cos, sin = mp.cos_sin(self._azimuth.at(time, turns, r, place))
         about_momentum = [[cos, -sin, mpf(0)], [sin, cos, mpf(0)], [mpf(0), mpf(0), mpf(1)]]
-        return omega, product(product(self._to_space, about_momentum), self._azimuth.tilt(G))
+        return omega, product(product(self._tilted_back, about_momentum), self._azimuth.tilt(G))
+
+    @cached_property
+    def _azimuth(self) -> Azimuth:
+        return Azimuth(self._free, self._swing)
+
+    @cached_property
+    def _tilted_back(self) -> Rows:
+        """M(0)."""
+        return transposed(self._azimuth.tilt(converted(self._free.momentum)))
 
 
 @final
@@ -244,7 +228,7 @@ class Azimuth:
 
     def __init__(self, free: FreeGyrostat, swing: Swing) -> None:
         frame, self._poles = _best_poles(free, swing.period)
-        self._c = [mp.convert(c) for c in frame.c]
+        self._c = converted(frame.c)
         self._N = mp.sqrt(mp.convert(free.n))
         self._rate = rate_at_start(free, frame.c, self._N, mp.convert)
         self._half = mpf(0)
@@ -290,9 +274,8 @@ def _best_poles(free: FreeGyrostat, period: mpf) -> tuple[Frame, list[Pole]]:
 def _rough_orbit(free: FreeGyrostat, period: mpf) -> list[list[mpf]]:
     """G along one period, or some turns of a motion without one, by a rough integration."""
     with mp.workdps(_CHOICE_DIGITS):
-        K = [[mp.convert(c) for c in row] for row in free.K]
-        g = [mp.convert(c) for c in free.g]
-        G, slope = ([mp.convert(c) for c in v] for v in free.jet[:2])
+        K, g = [converted(row) for row in free.K], converted(free.g)
+        G, slope = map(converted, free.jet[:2])
         span = period if period < mp.inf else _UNITS * mp.norm(G) / mp.norm(slope)
         h = span / _SAMPLES
 

@@ -30,7 +30,7 @@ from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.exact.gyrostat.point import PointMap, point_map
 from taylor_verify.exact.gyrostat.velocity import WeierstrassForm
 from taylor_verify.exact.kirchhoff.lattice import Lattice, lattice
-from taylor_verify.exact.rotation import rotation_matrix
+from taylor_verify.exact.rotation import conjugate, cross, product, rotation_matrix, rotation_rows
 from taylor_verify.scenes.motion import Quaternion
 from taylor_verify.scenes.tensors import Vector, dot
 
@@ -87,11 +87,11 @@ class Turning:
 
     def at(self, t: arb) -> Row:
         inner = _turn(self._inner, t)
-        omega = arb_mat(quaternion.matrix(inner)) * arb_mat(3, 1, balls(self._omega))
+        omega = arb_mat(rotation_rows(inner)) * arb_mat(3, 1, balls(self._omega))
         if self._start is None:
             return omega.entries(), None
-        turned = quaternion.product(_turn(self._outer, t), quaternion.conjugate(inner))
-        return omega.entries(), arb_mat(quaternion.matrix(quaternion.product(self._start, turned)))
+        turned = product(_turn(self._outer, t), conjugate(inner))
+        return omega.entries(), arb_mat(rotation_rows(product(self._start, turned)))
 
 
 def _turn(rate: Vector, t: arb) -> quaternion.Quaternion:
@@ -169,12 +169,7 @@ class Azimuth:
         across = [p - along * q for p, q in zip(self._c, m3, strict=True)]
         length = sum((p * p for p in across), arb(0)).sqrt()
         m1 = [component / length for component in across]
-        m2 = [
-            m3[1] * m1[2] - m3[2] * m1[1],
-            m3[2] * m1[0] - m3[0] * m1[2],
-            m3[0] * m1[1] - m3[1] * m1[0],
-        ]
-        return arb_mat([m1, m2, m3]).transpose()
+        return arb_mat([m1, cross(m3, m1), m3]).transpose()
 
 
 class _Factor(NamedTuple):

@@ -7,7 +7,9 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Final, final
 
-from taylor_verify.exact.equations import Equations, cross, times, total
+import numpy as np
+
+from taylor_verify.exact.equations import Equations, cross, exact
 from taylor_verify.exact.gyrostat.invariants import energy, momentum, space_momentum, whole
 from taylor_verify.exact.invariant import Array, Invariant
 from taylor_verify.exact.kind import Kind
@@ -22,6 +24,7 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix, Vector
 
 _ONE: Final = tensors.diagonal((Fraction(1),) * 3)
+_NO_VELOCITY: Final = exact(_ONE)[:0]
 
 
 @final
@@ -47,16 +50,15 @@ class Wheeled(Kind[Gyrostat, Spin]):
 
     def equations(self, body: Gyrostat) -> Equations:
         """omega' = K M + K(h x omega) + K((I omega) x omega)."""
-        K, torque = body.inverse_inertia, cross(body.inertia, _ONE)
-        rates = [total(*(times(c, p) for c, p in zip(row, torque, strict=True))) for row in K]
-        linear = tensors.product(K, _cross_matrix(body.rotor))
-        return Equations(tensors.apply(K, body.moment), rates, _ONE, linear=linear)
+        K, wheels = exact(body.inverse_inertia), exact(_cross_matrix(body.rotor))
+        turned = np.tensordot(K, cross(body.inertia, _ONE), 1)
+        return Equations(K @ exact(body.moment), K @ wheels, turned, exact(_ONE), _NO_VELOCITY)
 
     def momentum_equations(self, body: Gyrostat) -> Equations:
         """P' = M + h x K P + P x K P, for P = I omega."""
         K = body.inverse_inertia
-        linear = tensors.product(_cross_matrix(body.rotor), K)
-        return Equations(body.moment, cross(_ONE, K), K, linear=linear)
+        linear = exact(_cross_matrix(body.rotor)) @ exact(K)
+        return Equations(exact(body.moment), linear, cross(_ONE, K), exact(K), _NO_VELOCITY)
 
     def units(self, body: Gyrostat, z: Vector) -> Units:
         """omega by its size, or what the moment makes of it; time by omega, or by the wheels."""

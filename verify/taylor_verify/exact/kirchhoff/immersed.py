@@ -12,7 +12,7 @@ from typing import Final, final
 import numpy as np
 
 from taylor_verify.exact import clocks
-from taylor_verify.exact.equations import Equations, cross, exact
+from taylor_verify.exact.equations import Equations, cross, exact, nothing
 from taylor_verify.exact.invariant import Array, Invariant
 from taylor_verify.exact.kind import Kind
 from taylor_verify.exact.kirchhoff.integrable import fourth_integral
@@ -54,7 +54,9 @@ class Immersed(Kind[ImmersedBody, Impulse]):
     def equations(self, body: ImmersedBody) -> Equations:
         U, Omega = body.energy_matrix[:3], body.energy_matrix[3:]
         hessian = np.concatenate([cross(_X, Omega), cross(_Y, Omega) + cross(_X, U)])
-        return Equations(exact(body.force + body.couple), hessian, exact(Omega), exact(U))
+        return Equations(
+            exact(body.force + body.couple), nothing(6), hessian, exact(Omega), exact(U)
+        )
 
     def units(self, body: ImmersedBody, z: Vector) -> Units:
         """Each block by its size, or by what the loads, and x x U, make of it in the unit of time."""

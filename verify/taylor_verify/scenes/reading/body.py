@@ -15,6 +15,7 @@ from typing import Final
 
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Body, Clebsch, Ellipsoid, ImmersedBody, RigidBody
+from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.precision import float_text
 from taylor_verify.scenes.reading.faults import shown
 from taylor_verify.scenes.reading.table import Table, complete
@@ -23,13 +24,14 @@ from taylor_verify.scenes.tensors import ZERO_VECTOR, Matrix
 _CLEBSCH_KEYS = ("p", "p_prime", "q", "q_prime", "r", "r_prime")
 
 
-def rigid_body(table: Table) -> RigidBody | None:
-    """Return the body of model euler; None beside a fault."""
+def rigid_body(table: Table) -> RigidBody | Gyrostat | None:
+    """Return the body of model euler, a gyrostat where wheels turn; None beside a fault."""
     inertia = _inertia(table)
     moment = table.vector("moment", default=ZERO_VECTOR)
-    if inertia is None or moment is None:
+    rotor = table.vector("rotor", default=ZERO_VECTOR)
+    if inertia is None or moment is None or rotor is None:
         return None
-    return RigidBody(inertia, moment)
+    return Gyrostat(inertia, rotor, moment) if any(rotor) else RigidBody(inertia, moment)
 
 
 def _inertia(table: Table) -> Matrix | None:

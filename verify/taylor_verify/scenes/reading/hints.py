@@ -28,7 +28,8 @@ _EULER_BODY: Final = {
     "a force does not turn a body; write its moment, constant in body axes, as `moment`": "force",
     'a body in a fluid is `model = "kirchhoff"`, there as `mass_matrix`': "mass_matrix added_mass "
     "fluid_added_mass fluid_density",
-    _NOT_YET: "rotor wheels reaction_wheels damping",
+    _NOT_YET: "damping",
+    "write `rotor`, the momentum of all wheels": "wheels reaction_wheels",
     "not modelled: drag has no exact motion to compare with": "drag friction viscosity",
     _IN_INITIAL: "omega angular_velocity attitude quaternion",
 }
@@ -43,7 +44,8 @@ _KIRCHHOFF_BODY: Final = {
     "`force` and `couple`": "gravity g weight buoyancy centre_of_buoyancy cob volume",
     "not modelled: the fluid is ideal, and an exact motion with viscous forces is not known": "drag "
     "lift friction viscosity linear_drag quadratic_drag current circulation",
-    _NOT_YET: "rotor damping",
+    _NOT_YET: "damping",
+    "not modelled: wheels turn in a body of the model euler": "rotor wheels reaction_wheels",
     "write `couple`, constant in body axes": "torque torques moment",
     "write `force` and `couple`, constant in body axes": "thrust forces wrench propeller",
     _IN_INITIAL: "linear_velocity angular_velocity linear_impulse angular_impulse attitude",
