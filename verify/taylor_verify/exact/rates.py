@@ -58,8 +58,7 @@ def rates(scene: Scene, motion: Motion, elapsed: Sequence[Fraction] | None = Non
     }
     state, flow = np.concatenate([values[name] for name in moving], axis=1), _flow(scene)
     if state.shape[1] < len(flow.constant):
-        times = scene.clock.elapsed if elapsed is None else elapsed
-        state = np.hstack([state, clocks.floats(scene.body.manufactured, times)])
+        state = np.hstack([state, _clock(scene, elapsed, len(state))])
     with np.errstate(all="ignore"):  # what is not finite stays so, and is the caller's to see
         velocity, acceleration = _derivatives(flow, moving, state, values.get("attitude"))
     return Rates(
@@ -68,6 +67,14 @@ def rates(scene: Scene, motion: Motion, elapsed: Sequence[Fraction] | None = Non
         units={name: exponents[name] for name in values},
         time=scale.time,
     )
+
+
+def _clock(scene: Scene, elapsed: Sequence[Fraction] | None, rows: int) -> Floats:
+    """The clock at every row, (rows, variables): its 1 alone without a manufactured motion."""
+    motion = scene.body.manufactured
+    if motion is None:
+        return np.ones((rows, 1))
+    return clocks.floats(motion, scene.clock.elapsed if elapsed is None else elapsed)
 
 
 def _units(scene: Scene) -> Units:

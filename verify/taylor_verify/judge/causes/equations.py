@@ -1,13 +1,13 @@
 """Equations of motion, right and with one thing wrong, as homogeneous quadratic rates of float64 rows.
 
-Euler:      z = (omega, 1), I omega' = (I omega) x omega + M
+Euler:      z = (omega, 1), I omega' = (I omega + h) x omega + M, h the momentum of wheels
 Kirchhoff:  z = (x, y, 1), x' = x x W + X, y' = y x W + x x U + L, U = A x + B y, W = B^T x + C y
 with the attitude: q' = q W / 2 besides, q a quaternion, scalar first.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final
 
@@ -15,8 +15,9 @@ import numpy as np
 
 from taylor_verify.judge.causes.flow import Floats, bilinear
 from taylor_verify.scenes.bodies import Body, ImmersedBody, RigidBody
+from taylor_verify.scenes.gyrostat import Gyrostat
 
-_KNOWN: Final = (RigidBody, ImmersedBody)
+_KNOWN: Final = (RigidBody, Gyrostat, ImmersedBody)
 
 
 @dataclass(frozen=True)
@@ -25,7 +26,7 @@ class Equations:
 
     ``tensor`` is I, or the 6x6 matrix of the energy. ``load`` is M, or (X, L). ``gyroscopic`` weighs
     (I omega) x omega, or y x W; ``munk`` weighs x x U and ``turning`` x x W. ``damping`` c adds -c z, and
-    ``drag`` d the moment -d omega (in a fluid: force -d U and couple -d W).
+    ``drag`` d the moment -d omega (in a fluid: force -d U and couple -d W). ``rotor`` is h.
     """
 
     tensor: Floats
@@ -35,6 +36,7 @@ class Equations:
     turning: float = 1.0
     damping: float = 0.0
     drag: float = 0.0
+    rotor: tuple[float, ...] = (0.0, 0.0, 0.0)
 
     @staticmethod
     def are_known(body: Body) -> bool:
@@ -46,7 +48,9 @@ class Equations:
         """Return the right equations of a body whose loads are constant."""
         values = body.parts()
         loads = [entry for name in body.load_names() for entry in values[name]]
-        return cls(np.array(body.energy_matrix, dtype=float), np.array(loads, dtype=float))
+        rotor = body.rotor if isinstance(body, Gyrostat) else ()
+        found = cls(np.array(body.energy_matrix, dtype=float), np.array(loads, dtype=float))
+        return replace(found, rotor=tuple(map(float, rotor))) if rotor else found
 
     @property
     def is_rigid(self) -> bool:
@@ -83,6 +87,7 @@ class Equations:
     def _rigid(self, z: Floats) -> Floats:
         omega, one = z[:, :3], z[:, 3:]
         torque = self.gyroscopic * np.cross(omega @ self.tensor, omega) + one**2 * self.load
+        torque = torque + one * np.cross(self.rotor, omega)
         driven = (torque - self.drag * one * omega) @ self.inverse
         return driven - self.damping * one * omega
 

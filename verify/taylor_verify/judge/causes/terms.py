@@ -53,6 +53,12 @@ def wrong_terms(material: Material) -> Iterator[Candidate]:
     right = material.equations
     terms = _RIGID if right.is_rigid else _FLUID
     tried = [(name, why, replace(right, **weights)) for name, why, weights in terms]
+    if any(right.rotor):
+        opposite = tuple(-entry for entry in right.rotor)
+        why = "from row to row omega changes by I^-1 (M - omega x I omega), without h x omega"
+        tried.append(("wheels left out", why, replace(right, rotor=(0.0, 0.0, 0.0))))
+        why = "from row to row omega changes as if the wheels had the momentum -h"
+        tried.append(("wheels with the other sign", why, replace(right, rotor=opposite)))
     if not right.is_rigid:
         uncoupled = right.tensor.copy()
         uncoupled[:3, 3:] = uncoupled[3:, :3] = 0
