@@ -15,6 +15,7 @@ from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
+from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.motion import Impulse, Spin
 from taylor_verify.scenes.scene import Scene
 
@@ -34,11 +35,14 @@ class Numbers:
         self.times = np.array([float(t) for t in scene.clock.instants])
         q = np.array(start.attitude, dtype=float)
         self.q = q / np.linalg.norm(q)
-        if isinstance(body, RigidBody):
+        self.rotor = np.zeros(3)
+        if isinstance(body, RigidBody | Gyrostat):
             assert isinstance(start, Spin)
             self.tensor = np.array(body.inertia, dtype=float)
             self.load = np.array(body.moment, dtype=float)
             self.state = np.array(start.omega, dtype=float)
+            if isinstance(body, Gyrostat):
+                self.rotor = np.array(body.rotor, dtype=float)
         else:
             assert isinstance(body, ImmersedBody)
             assert isinstance(start, Impulse)
@@ -48,7 +52,7 @@ class Numbers:
 
 
 def euler(w: Array, q: Array, n: Numbers) -> Array:
-    return np.linalg.solve(n.tensor, np.cross(n.tensor @ w, w) + n.load)
+    return np.linalg.solve(n.tensor, np.cross(n.tensor @ w + n.rotor, w) + n.load)
 
 
 def kirchhoff(z: Array, q: Array, n: Numbers) -> Array:

@@ -7,22 +7,27 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from builders.scenes import IMPULSE, LOADED, MOMENT, SPIN, TENSOR
+from builders.scenes import IMPULSE, LOADED, MOMENT, OMEGA, SPIN, TENSOR
 
 from taylor_verify.exact.equations import Equations, exact
 from taylor_verify.exact.registry import KINDS, function_at, kind_of
 from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.tensors import apply, dot
 
-SAMPLES = {"euler": (RigidBody(TENSOR, MOMENT), SPIN), "kirchhoff": (LOADED, IMPULSE)}
+SAMPLES = {
+    "euler": (RigidBody(TENSOR, MOMENT), SPIN),
+    "wheels": (Gyrostat(TENSOR, OMEGA, MOMENT), SPIN),
+    "kirchhoff": (LOADED, IMPULSE),
+}
 
 
 def rates(equations: Equations, z: Sequence[Fraction]) -> list[Fraction]:
     """The right-hand side at z, exactly."""
-    found = equations.constant + exact(z) @ equations.hessian @ exact(z) / 2
-    return list(found)
+    linear, quadratic = equations.linear @ exact(z), exact(z) @ equations.hessian @ exact(z) / 2
+    return list(equations.constant + linear + quadratic)
 
 
 def test_every_shipped_body_has_a_kind() -> None:

@@ -45,7 +45,7 @@ from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 
-FREE, FULL = "euler/with-attitude", "euler/full-tensor"
+FREE, FULL, WHEELS = "euler/with-attitude", "euler/full-tensor", "euler/gyrostat"
 FORCED, FLUID, LOADED = "euler/moment-oblique", "kirchhoff/general-body", "kirchhoff/constant-loads"
 
 
@@ -164,6 +164,14 @@ def dragged(w: Array, q: Array, n: Numbers) -> Array:
     return euler(w, q, n) - 0.01 * np.linalg.solve(n.tensor, w)
 
 
+def without_wheels(w: Array, q: Array, n: Numbers) -> Array:
+    return np.linalg.solve(n.tensor, np.cross(n.tensor @ w, w))
+
+
+def wheels_turned_round(w: Array, q: Array, n: Numbers) -> Array:
+    return np.linalg.solve(n.tensor, np.cross(n.tensor @ w - n.rotor, w))
+
+
 def damped_alone(w: Array, q: Array, n: Numbers) -> Array:
     return -0.05 * w
 
@@ -175,6 +183,8 @@ def damped_alone(w: Array, q: Array, n: Numbers) -> Array:
         (FREE, damped, "damping left on"),
         (FREE, dragged, "damping left on"),
         (FREE, damped_alone, "no gyroscopic term and damping left on"),
+        (WHEELS, without_wheels, "wheels left out"),
+        (WHEELS, wheels_turned_round, "wheels with the other sign"),
         (FLUID, weighted(munk=0), "no Munk moment"),
         (FLUID, weighted(munk=-1), "Munk moment with the other sign"),
         (FLUID, weighted(gyroscopic=0), "no gyroscopic term"),
