@@ -74,14 +74,13 @@ def _causes_of(candidates: Iterable[Candidate]) -> tuple[LikelyCause, ...]:
     )
 
 
-def _best(good: list[Candidate]) -> Iterator[Candidate]:
-    """Yield the candidates that explain as well as any with the fewest fitted numbers, by name."""
+def _best(good: list[Candidate]) -> Iterable[Candidate]:
+    """The candidates that explain as well as any with the fewest fitted numbers, by name."""
     least = max(min(one.leaves for one in good), _NOTHING)
     alike = [one for one in good if one.leaves <= _ALIKE * least]
     fewest = min(one.fitted for one in alike)
     simple = sorted((one for one in alike if one.fitted == fewest), key=lambda one: one.leaves)
-    names = set()
+    first: dict[str, Candidate] = {}
     for one in simple:
-        if one.name not in names:
-            names.add(one.name)
-            yield one
+        first.setdefault(one.name, one)
+    return first.values()
