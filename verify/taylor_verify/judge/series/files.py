@@ -219,9 +219,10 @@ def _notes(
             "--steps says others"
         )
     known = {each.quantity: each.order for each in order if each.order is not None}
-    first, *others = [name for name in STATES if name in known] or [""]
-    for name in others:
-        # The order of the body's own state comes first.
+    # The body's own state comes first.
+    states = [name for name in STATES if name in known]
+    for name in states[1:]:
+        first = states[0]
         if known[name] < known[first] - _LOWER:
             yield (
                 f"{name} has a lower order ({known[name]:.1f}) than {first} ({known[first]:.1f}): it is "
