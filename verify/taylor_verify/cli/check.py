@@ -100,14 +100,12 @@ def _asked(
 
     steps = attempt(_steps, options)
     scenes = attempt(read_scenes, [options.scene])
-    files = [attempt(_read, file, options.columns or ()) for file in dict.fromkeys(options.files)]
+    columns = options.columns or ()
+    names = dict.fromkeys(options.files)
+    files = [attempt(lambda name: read(name, request(columns)), name) for name in names]
     if faults:
         raise WrongCall("\n".join(faults))
     return scenes[0], files, steps
-
-
-def _read(file: str, columns: Sequence[str]) -> TrajectoryFile:
-    return read(file, request(columns))
 
 
 def _steps(options: argparse.Namespace) -> list[float] | None:

@@ -133,13 +133,12 @@ class ClebschAbout:
         x, y, X, L = ([n.vector(letter)[i] for i in order] for letter in "xyXL")
         found = clebsch_rates(x, y, six, X, L)
         x_rate, y_rate = ([rate[order.index(i)] for i in range(3)] for rate in found)
-        A, B, C = (self._about(six[k], six[k + 1]) for k in (0, 2, 4))
+        A, B, C = ([[ABSENT] * 3 for _ in range(3)] for _ in range(3))
+        for block, across, along in zip((A, B, C), six[::2], six[1::2], strict=True):
+            for i in range(3):
+                block[i][i] = along if i == self.axis - 1 else across
         U, Omega = velocities(n.vector("x"), n.vector("y"), A, B, C)
         return labelled("x", x_rate) | labelled("y", y_rate) | frame_rates(n, Omega, U)
-
-    def _about(self, transverse: Any, axial: Any) -> Sequence[Sequence[Any]]:
-        diagonal = [axial if i == self.axis - 1 else transverse for i in range(3)]
-        return [[diagonal[i] if i == j else ABSENT for j in range(3)] for i in range(3)]
 
 
 # About axis 3 and with six coefficients; y3 is a state only where a couple turns it.

@@ -186,7 +186,7 @@ def _rounded_data(scene: Scene, units: Units, rounded: _Rounding) -> _Data:
         raise NotRepresentable(f"rounded to {rounded.rung.name}, {error}") from error
     momentum = tuple(chain(*_each(kind.momenta, momenta, units.physical).values()))
     place = {
-        part.name: _rounded_place(part, start.part(part), units, rounded)
+        part.name: units.physical(part, rounded.part(part, units.counted(part, start.part(part))))
         for part in start.PARTS
         if part.name not in start.MOVING
     }
@@ -199,13 +199,6 @@ def numbers_of(body: Body, units: Units) -> dict[str, Fraction]:
     """Return every coefficient and load of a body by name, in these units."""
     kind = mechanics(body)
     return _named(kind.body_letters, _each(kind.body_letters, kind.values(body), units.counted))
-
-
-def _rounded_place(part: Part, value: Value, units: Units, rounded: _Rounding) -> Value:
-    """Round a part of the place in its unit."""
-    if part.shape is Shape.QUATERNION:
-        return rounded.quaternion(value)
-    return units.physical(part, rounded.each(units.counted(part, value)))
 
 
 # Letters of the equations with their values: exact, in units, rounded.
