@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from fractions import Fraction
 from functools import cached_property
 from math import lcm
-from typing import Any, overload
+from typing import Any
 
 
 class Instants(Sequence[Fraction]):
@@ -28,13 +28,7 @@ class Instants(Sequence[Fraction]):
     def __len__(self) -> int:
         return self._count
 
-    @overload
-    def __getitem__(self, place: int) -> Fraction: ...
-
-    @overload
-    def __getitem__(self, place: slice) -> tuple[Fraction, ...]: ...
-
-    def __getitem__(self, place: int | slice) -> Fraction | tuple[Fraction, ...]:
+    def __getitem__(self, place: Any) -> Any:
         return self.numbers[place]
 
     def __iter__(self) -> Iterator[Fraction]:
