@@ -182,10 +182,3 @@ def test_other_rungs_are_unavailable() -> None:
     """It is made of doubles."""
     (verdict,) = run("euler/generic", NAME, "f80").verdicts
     assert verdict.verdict is Status.UNAVAILABLE
-
-
-@pytest.mark.parametrize("name", ["closed-form:ellipk", "closed-form:ellipj?tol=1e-9"])
-def test_a_name_that_is_wrong_is_told(name: str) -> None:
-    """It has one form and no settings."""
-    with pytest.raises(ValueError, match="expected a"):
-        solver_named(name)

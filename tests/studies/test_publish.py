@@ -175,7 +175,9 @@ def test_two_unlike_records_of_one_run_are_refused(tmp_path: Path) -> None:
 # Files.
 
 
-@pytest.mark.parametrize("broken", ["taylor_verify.records.store._json", "pathlib.Path.write_bytes"])
+@pytest.mark.parametrize(
+    "broken", ["taylor_verify.records.store._json", "pathlib.Path.write_bytes"]
+)
 def test_a_failure_half_way_leaves_the_old_files(report: Path, broken: str) -> None:
     """A disk that is full in the middle of writing leaves every old byte and nothing new."""
     before = contents(report)

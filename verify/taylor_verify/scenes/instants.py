@@ -51,7 +51,7 @@ class Instants(Sequence[Fraction]):
 
 
 class EquallySpaced(Instants):
-    """first + k step for k = 0 .. count - 1."""
+    """The instants first + k step for k = 0 .. count - 1."""
 
     def __init__(self, first: Fraction, step: Fraction, count: int) -> None:
         super().__init__(count, lambda: (first + k * step for k in range(count)))
@@ -63,7 +63,7 @@ class EquallySpaced(Instants):
         return super().__getitem__(place)
 
     def over_common_denominator(self, origin: Fraction) -> tuple[int, int, int]:
-        """Integers a, b, d, with which instant k less the origin is (a + k b)/d exactly."""
+        """Return integers a, b, d, with which instant k less the origin is (a + k b)/d exactly."""
         offset = self.first - origin
         d = lcm(offset.denominator, self.step.denominator)
         return int(offset * d), int(self.step * d), d
