@@ -52,7 +52,10 @@ class Rung:
 
     def holds(self, value: Fraction) -> bool:
         """Return True if the value is a number of this format."""
-        return self.round(value) == value
+        try:
+            return self.round(value) == value
+        except OverflowError:
+            return False
 
 
 _FORMATS = {
