@@ -15,8 +15,9 @@ from typing import Any
 import pytest
 from mpmath import mp, mpf
 
+from taylor_verify.exact import rotation
 from taylor_verify.exact.elliptic import Landen
-from taylor_verify.exact.euler import fixed_axis, jacobi, quaternion
+from taylor_verify.exact.euler import fixed_axis, jacobi
 from taylor_verify.exact.euler import orbit as euler_orbit
 from taylor_verify.exact.euler.moduli import Moduli
 from taylor_verify.exact.euler.regime import FreeSpin
@@ -129,7 +130,7 @@ def _backward_kirchhoff(patch: Patch) -> None:
 
 def _backward_balls(patch: Patch) -> None:
     """-u_0 for u_0 where the motion is elliptic or on the separatrix, and turns in the other sense."""
-    moduli, precession, turn = Moduli.__init__, _Precession.__init__, quaternion.turn
+    moduli, precession, turn = Moduli.__init__, _Precession.__init__, rotation.turn
 
     def orbit(self: Moduli, spin: FreeSpin) -> None:
         moduli(self, spin)
@@ -142,7 +143,7 @@ def _backward_balls(patch: Patch) -> None:
 
     patch.setattr(Moduli, "__init__", orbit)
     patch.setattr(_Precession, "__init__", precessing)
-    patch.setattr(quaternion, "turn", lambda axis, half: turn(axis, -half))
+    patch.setattr(rotation, "turn", lambda axis, half: turn(axis, -half))
 
 
 def _backward_floats(patch: Patch) -> None:

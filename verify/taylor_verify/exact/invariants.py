@@ -1,4 +1,4 @@
-"""What a free motion conserves: each quantity with its value, its scale and its sensitivity."""
+"""Conserved quantities of a free motion, each with its value, its scale and its sensitivity."""
 
 from __future__ import annotations
 

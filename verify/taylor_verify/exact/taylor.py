@@ -46,7 +46,7 @@ Times = Mapping[int, Fraction]
 
 @dataclass(frozen=True)
 class _Proven:
-    """One row: midpoints and radii of the tracked quantities, and the bits that the widest one lacks."""
+    """A row: midpoints and radii of the tracked quantities, and the bits that the widest one lacks."""
 
     values: Mapping[str, Any]
     radii: Mapping[str, mpf]

@@ -221,7 +221,7 @@ def differs_dearly(scene: Scene) -> bool:
 def sharp(
     scene: Scene, flow: Flow, points: Sequence[Fraction], least: int = 0, to_tell: bool = False
 ) -> Path:
-    """From differences so small that products of F with inverses of it have their leading digits.
+    """A path from differences so small that products of F with its inverses have their leading digits.
 
     A step of 10^-e leaves 10^-e |F|^2 in F, and that is multiplied by F^-1. Where no precision of the
     ladder is enough, what is found there is noise on top of what is asked: more, and not less. An orbit

@@ -98,7 +98,7 @@ _BEAD: Final[Mapping[WashboardRegime, tuple[str, ...]]] = {
 
 
 def elements(scene: Scene, digits: int) -> Elements:
-    """Of a free body every element it has; of a body under a moment a period at most, and words."""
+    """Every element of a free body; of a body under a moment a period at most, and words."""
     body, start = top(scene)
     if body.manufactured is not None:
         return Elements(REGIME, (), MANUFACTURED)

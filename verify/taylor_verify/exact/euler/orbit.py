@@ -1,4 +1,4 @@
-"""One torque-free motion of a rigid body as numbers of one precision: its frame, moduli and phase.
+"""The numbers of a torque-free motion at one precision of mpmath: frame, moduli and phase.
 
 Legend (see also regime): (a, b, c) are right-handed principal axes, b the intermediate one, a the
 one encircled by the orbit ("dn axis"), c the other ("cn axis"); J_a, J_b, J_c are the moments about

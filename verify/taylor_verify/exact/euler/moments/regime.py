@@ -95,7 +95,7 @@ class LoadedSpin:
 
     @cached_property
     def free(self) -> FreeSpin:
-        """The same body and start without a moment: moments of inertia, axis n, |n| sg u0."""
+        """The body and its start without the moment: moments of inertia, axis n, |n| sg u0."""
         return FreeSpin(self.inertia, self.omega)
 
     @cached_property

@@ -159,7 +159,7 @@ def _mean_growth(x: mpf) -> mpf:
 
 
 class Course(ABC):
-    """One motion, at the precision of mpmath at which this was made."""
+    """The course at one precision of mpmath."""
 
     _lead: mpf
 
@@ -179,7 +179,7 @@ class Course(ABC):
 
 @final
 class Swing(Course):
-    """Between two ends."""
+    """The motion between two ends."""
 
     def __init__(self, board: Washboard, wave: Wave, lower: mpf, upper: mpf) -> None:
         super().__init__(board, wave)
@@ -211,7 +211,7 @@ class Swing(Course):
 
 @final
 class Run(Course):
-    """Down to one end and up for ever; ``wave`` and ``lower`` have so many ``spare_bits``."""
+    """The motion down to one end and up for ever; ``wave`` and ``lower`` have so many ``spare_bits``."""
 
     def __init__(self, board: Washboard, wave: Wave, lower: mpf, spare_bits: int) -> None:
         super().__init__(board, wave)
@@ -271,7 +271,7 @@ def course(board: Washboard, ends: Turnings) -> Swing | Run:
 
 
 def _spare_bits(board: Washboard, ends: Turnings) -> int:
-    """What F loses on the crests, where it is as small as it grows by on a tooth: its terms are not."""
+    """The bits that F loses on the crests, where its terms are large and it is as small as its growth."""
     turn = abs(exact_value(midpoint(ends.lower)))
     terms = board.nu**2 + board.slope * turn + abs(board.even) + abs(board.odd)
     phase = abs(board.kappa) * turn**2
