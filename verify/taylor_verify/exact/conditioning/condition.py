@@ -131,7 +131,8 @@ class Path:
     @property
     def rate(self) -> float:
         """The largest norm of the Jacobian along the orbit, per unit of the scene's time."""
-        return self.flow.fastest(self.momentum)
+        norms = np.linalg.norm(self.flow.jacobian(self.momentum), 2, axis=(-2, -1))
+        return float(max(norms)) / float(self.flow.time)
 
     @property
     def is_regular(self) -> bool:
