@@ -272,7 +272,7 @@ def few(elapsed: Sequence[Fraction]) -> list[Fraction]:
     parts = max(_BETWEEN, _FEW - len(elapsed))
     between = [elapsed[-1] / parts * (k + k * _GOLDEN % 1) for k in range(parts)]
     first = next((t for t in samples if t), Fraction(0))
-    return _sorted([*samples, *between, first * _GOLDEN**2, first * _GOLDEN])
+    return sorted({*samples, *between, first * _GOLDEN**2, first * _GOLDEN}, key=abs)
 
 
 def many(elapsed: Sequence[Fraction], rate: float) -> list[Fraction]:
@@ -282,8 +282,4 @@ def many(elapsed: Sequence[Fraction], rate: float) -> list[Fraction]:
     while t < abs(end):
         times.append(Fraction(t if end > 0 else -t))
         t += max(1 / rate, t / _RESOLVED)
-    return _sorted([*times, *chosen(elapsed, _MOST_SAMPLES)])
-
-
-def _sorted(times: Sequence[Fraction]) -> list[Fraction]:
-    return sorted(set(times), key=abs)
+    return sorted({*times, *chosen(elapsed, _MOST_SAMPLES)}, key=abs)

@@ -72,13 +72,9 @@ class Orbit:
         )
         if not self.on_separatrix:
             self._landen = Landen(self.m, self.m_prime)
+            self.quarter_period = self._landen.quarter_period  # K
         dn, sn, cn = (w / size for w, size in zip((w_a, w_b, w_c), self.amplitudes, strict=True))
         self.phase = self._phase_of(sn, cn, dn)
-
-    @property
-    def quarter_period(self) -> mpf:
-        """K, where the orbit is periodic."""
-        return self._landen.quarter_period
 
     @property
     def period(self) -> mpf:
@@ -105,7 +101,7 @@ class Orbit:
             return mp.asinh(sn / cn)
         # Carlson's form of the inverse of sn (DLMF 22.15, 19.25.5), on the right branch of cn.
         f = sn * mp.elliprf(cn**2, dn**2, 1)
-        return f if cn >= 0 else _sign(sn) * 2 * self._landen.quarter_period - f
+        return f if cn >= 0 else _sign(sn) * 2 * self.quarter_period - f
 
 
 def principal_frame(spin: FreeSpin) -> PrincipalFrame:

@@ -75,7 +75,7 @@ class Wave(ABC):
             mp.convert(entry) for entry in (board.slope, board.even, board.odd)
         )
         self.rate = mp.sqrt(mp.convert(abs(board.kappa)))
-        self._nu2 = mp.convert(board.nu) ** 2
+        self._level = mp.convert(board.nu) ** 2 + self._even
         self._across = converted(board.across)
         self._ahead = [entry / self.rate for entry in converted(board.ahead)]
 
@@ -109,7 +109,6 @@ class _Cosine(Wave):
         super().__init__(board)
         odd = self._odd / (2 * self.rate)
         self._size, self._turn = mp.hypot(self._even, odd), mp.atan2(odd, self._even)
-        self._level = self._nu2 + self._even
 
     def squared(self, sigma: mpf) -> mpf:
         swing = self._size * mp.cos(2 * self.rate * sigma - self._turn)
@@ -134,7 +133,6 @@ class _Exponential(Wave):
         half = self._odd / (4 * self.rate)
         self._p = mpf(0) if board.never_climbs else self._even / 2 + half
         self._q = self._even / 2 - half
-        self._level = self._nu2 + self._even
         both = list(zip(self._across, self._ahead, strict=True))
         self._up = [mpf(0) if board.never_climbs else (v + u) / 2 for v, u in both]
         self._down = [(v - u) / 2 for v, u in both]
