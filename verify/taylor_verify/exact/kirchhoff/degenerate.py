@@ -40,7 +40,7 @@ class Carrier:
 
     @classmethod
     def of(cls, nutation: Nutation) -> Carrier:
-        """From f, of degree two, or with one repeated root and no start there."""
+        """Return the carrier of an f of degree two, or with one repeated root and no start there."""
         f, z, speed = nutation.f, nutation.z, nutation.speed
         if len(f) == 3:
             return cls(None, z, speed, f[0], f[1] / 2, f[2])
@@ -83,18 +83,14 @@ class Factor:
 class ElementaryOrbit(Orbit):
     """v in hyperbolic, trigonometric or algebraic functions; to be used at one precision."""
 
-    def __init__(self, nutation: Nutation, start: Impulse, digits: int) -> None:
-        super().__init__(start)
-        carrier, body = Carrier.of(nutation), nutation.body
+    def __init__(self, nutation: Nutation, start: Impulse) -> None:
+        super().__init__(nutation, start)
+        carrier = Carrier.of(nutation)
         self._d = None if carrier.d is None else mp.convert(carrier.d)
         self._A, self._B, self._C = (mp.convert(c) for c in (carrier.A, carrier.B, carrier.C))
         self._v0, self._v0_slope = mp.convert(carrier.v), mp.convert(carrier.speed)
         self._rate = mp.sqrt(abs(self._A))
-        self._r, self._screw = mp.convert(body.r), mp.convert(body.q - body.q_prime)
-        self._FG, self._F = mp.convert(nutation.FG), mp.sqrt(mp.convert(nutation.F2))
-        self._y3 = mp.convert(nutation.y3)
-        self._linear = mp.convert((body.r - body.r_prime) * nutation.y3)
-        self._glide = mp.convert(body.q) * self._F
+        self._FG = mp.convert(nutation.FG)
         self._drift = mp.convert(nutation.drift(nutation.z if carrier.d is None else carrier.d))
         self._origin = transverse(start.linear)
         if self._origin == 0:
@@ -238,15 +234,11 @@ class Front(Orbit):
     1/|xi| up to a factor; G = y3 = 0. To be used at one precision.
     """
 
-    def __init__(self, nutation: Nutation, start: Impulse, digits: int) -> None:
-        super().__init__(start)
-        body = nutation.body
+    def __init__(self, nutation: Nutation, start: Impulse) -> None:
+        super().__init__(nutation, start)
         self._minus, self._plus = distances(nutation.F2, nutation.z)
-        self._F = mp.sqrt(mp.convert(nutation.F2))
         self._c = mp.sqrt(mp.convert(nutation.f[0])) * (-1 if nutation.speed < 0 else 1)
-        self._r, self._screw = mp.convert(body.r), mp.convert(body.q - body.q_prime)
         self._origin = transverse(start.linear)
-        self._glide = mp.convert(body.q) * self._F
         # r F Z' = drift + c^2 (z^2 - F^2), and z' = c (F^2 - z^2).
         self._drift = mp.convert(
             nutation.drift(nutation.z) + nutation.f[0] * (nutation.F2 - nutation.z**2)

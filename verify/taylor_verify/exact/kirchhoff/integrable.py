@@ -1,4 +1,4 @@
-"""The fourth integrals of bodies beyond Clebsch's body of revolution: who has one, and which.
+"""The fourth integrals of bodies beyond Clebsch's body of revolution, and the families that have them.
 
 Legend: x, y the impulses in body axes, F^2 = x.x, FG = x.y; for a diagonal energy
 
@@ -30,7 +30,6 @@ from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse, Motion
 from taylor_verify.scenes.mpfr import real
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix
 
 # Coefficients of monomials, by the exponents of x1 x2 x3 y1 y2 y3.
 Terms = Mapping[tuple[int, ...], Fraction]
@@ -205,27 +204,17 @@ def _kovalevskaya_family(body: ImmersedBody, start: Impulse) -> Family | None:
     a = C[0][0]
     if tensors.diagonal((a, a, 2 * a)) != C:
         return None
-    shared = B[0][0]
-    c, d = B[0][2], B[1][2]
-    if (c or d) and _with((shared,) * 3, {(0, 2): c, (1, 2): d}) == B:
+    zero, shared, c, d = Fraction(0), B[0][0], B[0][2], B[1][2]
+    if (c or d) and B == ((shared, zero, c), (zero, shared, d), (zero, zero, shared)):
         p0 = A[0][0]
         of_sokolov = A == tensors.diagonal((p0, p0, p0 - (c**2 + d**2) / a))
         return ("sokolov", (a, c, d)) if of_sokolov else None
     c, d, p0 = (A[0][0] - A[1][1]) / 2, A[0][1], A[2][2]
+    of_chaplygin = A == ((p0 + c, d, zero), (d, p0 - c, zero), (zero, zero, p0))
     is_orthogonal = tensors.dot(start.linear, start.angular) == 0
-    of_chaplygin = _with((p0 + c, p0 - c, p0), {(0, 1): d, (1, 0): d}) == A
     if is_orthogonal and of_chaplygin and tensors.diagonal((shared,) * 3) == B:
         return "chaplygin", (a, c, d)
     return None
-
-
-def _with(diagonal: tuple[Fraction, ...], beside: Mapping[tuple[int, int], Fraction]) -> Matrix:
-    """A matrix with this diagonal and these entries beside it."""
-    rows = tensors.diagonal(diagonal)
-    return tuple(
-        tuple(beside.get((i, j), entry) for j, entry in enumerate(row))
-        for i, row in enumerate(rows)
-    )
 
 
 def _equal(values: Sequence[Fraction]) -> bool:
@@ -233,7 +222,7 @@ def _equal(values: Sequence[Fraction]) -> bool:
 
 
 def _centred(values: Sequence[Fraction]) -> list[Fraction]:
-    """Less their mean, which adds only F^2, FG and T to an integral."""
+    """Return the values less their mean, which adds only F^2, FG and T to an integral."""
     mean = sum(values, Fraction(0)) / 3
     return [value - mean for value in values]
 
@@ -265,7 +254,7 @@ def _rational(value: Any) -> Any:
 
 
 def _derivative(polynomial: Terms, place: int) -> Terms:
-    """By the variable at this place."""
+    """Return the derivative by the variable at this place."""
     return {
         (*powers[:place], powers[place] - 1, *powers[place + 1 :]): powers[place] * c
         for powers, c in polynomial.items()

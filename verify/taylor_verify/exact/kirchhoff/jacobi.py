@@ -111,13 +111,12 @@ class NutatingBody(Settled):
     def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
         longest = max((abs(t) for t in elapsed), default=Fraction(0))
         with mp.workdps(_ROUGH_DIGITS):
-            losses = self._orbit(_ROUGH_DIGITS).losses(mp.convert(longest))
+            losses = self._orbit().losses(mp.convert(longest))
             lost = sum(max(0, int(mp.ceil(mp.log10(loss)))) for loss in losses)
         if "centre" in self._track:
             lost += self._short_digits(elapsed)
-        working = digits + _GUARD_DIGITS + lost
-        with mp.workdps(working):
-            orbit = self._orbit(working)
+        with mp.workdps(digits + _GUARD_DIGITS + lost):
+            orbit = self._orbit()
             poses = [orbit.pose(mp.convert(t)) for t in elapsed]
             places = [orbit.axes.place(pose) for pose in poses] if self._track else []
             x, y = [pose.x for pose in poses], [pose.y for pose in poses]
@@ -126,14 +125,14 @@ class NutatingBody(Settled):
     def elements(self, digits: int) -> dict[str, mpf]:
         """The elements of the orbit, to about ``digits`` digits."""
         with mp.workdps(digits + _GUARD_DIGITS):
-            return self._orbit(digits + _GUARD_DIGITS).elements
+            return self._orbit().elements
 
-    def _orbit(self, digits: int) -> Orbit:
-        """The orbit at the working precision of ``digits``, made once."""
-        if digits not in self._orbits:
+    def _orbit(self) -> Orbit:
+        """The orbit at the ambient precision, made once."""
+        if mp.dps not in self._orbits:
             make = _ORBITS.get(self.regime, EllipticOrbit)
-            self._orbits[digits] = make(self._nutation, self._start, digits)
-        return self._orbits[digits]
+            self._orbits[mp.dps] = make(self._nutation, self._start)
+        return self._orbits[mp.dps]
 
     def _short_digits(self, elapsed: Sequence[Fraction]) -> int:
         """The digits by which |y|/F, whose change is the way across F, exceeds the centre itself."""

@@ -83,7 +83,7 @@ class Factor:
 
 @final
 class Orbit:
-    """One nutating motion with numbers of one precision, to be used at that precision."""
+    """A nutating motion with numbers of one precision, to be used at that precision."""
 
     def __init__(
         self, nutation: Nutation, start: Impulse, track: frozenset[str], heteroclinic: bool
@@ -109,7 +109,7 @@ class Orbit:
             self._find_space(attitude)
 
     def at(self, u: arb) -> dict[str, Any]:
-        """At least every tracked quantity, at the time u since the start."""
+        """Every tracked quantity, and maybe more, at the time u since the start."""
         if u.is_zero():
             return self._at_start
         z, speed = self._course.at(u)
@@ -168,7 +168,7 @@ class Orbit:
         return self._course.argument(side * self._F, s)
 
     def _starts_on_axis(self, side: int) -> bool:
-        return self._nutation.z**2 == self._nutation.F2 and side * self._nutation.z > 0
+        return self._nutation.is_axial and side * self._nutation.z > 0
 
     def _find_rates(self) -> None:
         """The linear rates of the exponentials, from the logarithmic derivatives at the start."""
@@ -232,7 +232,7 @@ class Orbit:
         return [jet, [value.conjugate() for value in jet]]
 
     def _eta_near_pole(self, u: arb, z: arb, xi: acb, turn: acb, above: tuple[acb, acb]) -> acb:
-        """From xi' = i r z eta - i (r' y3 + (q' - q) z) xi, without a division by xi."""
+        """Solve xi' = i r z eta - i (r' y3 + (q' - q) z) xi for eta, without a division by xi."""
         alpha, beta = above[0].conjugate(), above[1]
         alpha_slope, beta_slope = (factor.jet(u, 1)[1] for factor in (self._alpha, self._beta))
         growth = alpha_slope.conjugate() * beta + alpha * beta_slope

@@ -41,7 +41,7 @@ def branch_points(curve: Curve) -> list[mpf]:
 
 
 def narrowness(curve: Curve) -> int:
-    """How many digits the e share with a neighbour, at least: as many are lost by their differences."""
+    """Count the digits that the e share with a neighbour: as many are lost by their differences."""
     for digits in (20 << n for n in range(_DOUBLINGS)):
         with mp.workdps(digits):
             e = branch_points(curve)
@@ -52,13 +52,13 @@ def narrowness(curve: Curve) -> int:
 
 
 def real_jacobian(curve: Curve) -> RealJacobian:
-    """At the ambient precision of mpmath."""
+    """Return Y and the motion on the Jacobian, at the ambient precision of mpmath."""
     e = branch_points(curve)
     gap1, oval1, gap2, oval2 = (stretch(e, s, mp.pi / 2, mpf(0)) for s in range(4))
     det = 4 * (oval1[1] * oval2[0] - oval1[0] * oval2[1])
 
     def turns(v: Pair) -> Pair:
-        """From the integrals of dz/w and z dz/w to parts of the two real periods (Cramer)."""
+        """Convert the integrals of dz/w and z dz/w to parts of the two real periods (Cramer)."""
         first = -2 * (v[0] * oval2[1] - v[1] * oval2[0]) / det
         second = 2 * (oval1[0] * v[1] - oval1[1] * v[0]) / det
         return first, second

@@ -84,9 +84,10 @@ class Sums:
         self._c = [mpf(1)] * 3
         place = self._jacobian
         n, rate = _direction(self._thetas, place.phase, place.neumann, self._c, self._x)
-        signs = []
-        for a, b, told in zip(n, rate, found.told, strict=True):
-            signs.append(mp.sign(sum(mp.convert(t) * e for t, e in zip(told, (a, b), strict=True))))
+        signs = [
+            mp.sign(mp.convert(x) * entry + mp.convert(x_rate) * slope)
+            for (x, x_rate), entry, slope in zip(found.told, n, rate, strict=True)
+        ]
         sizes = _sizes_of_x(found, constants)
         self._c = [sign * size for sign, size in zip(signs, sizes, strict=True)]
         heights = _sizes_of_y(found, constants)
