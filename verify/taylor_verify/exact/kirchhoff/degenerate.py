@@ -106,7 +106,9 @@ class ElementaryOrbit(Orbit):
         L = self._linear * t + self._screw * self._integral_of_z(beat)
         U, D = self._up_rate * t, self._down_rate * t
         turn = self._origin * mp.expj(L + U - D)
-        shape, slope = self._product(beat)
+        top, bottom = (factor.at(beat) for factor in self._factors)
+        top_slope, bottom_slope = (factor.slope(beat, self._A) for factor in self._factors)
+        shape, slope = top * bottom, top_slope * bottom + top * bottom_slope
         if self._d is None:
             shrinking, rise = mpf(1), self._drift * t
             z, z_slope = v, v_slope
@@ -122,8 +124,8 @@ class ElementaryOrbit(Orbit):
         else:
             eta = mpc(self._FG - self._y3 * z, z_slope / self._r) / mp.conj(xi)
         half = self._glide * t / 2
-        a = self._a * mp.expj(half - L / 2 + D) * mp.conj(self._factors[1].at(beat))
-        b = self._b * mp.expj(half + L / 2 + U) * self._factors[0].at(beat)
+        a = self._a * mp.expj(half - L / 2 + D) * mp.conj(bottom)
+        b = self._b * mp.expj(half + L / 2 + U) * top
         size = mp.sqrt(shrinking)
         turned = CayleyKlein(size * a, size * b)
         return Pose((xi, z), (eta, self._y3), turned, rise / (self._r * self._F))
@@ -189,14 +191,6 @@ class ElementaryOrbit(Orbit):
         v = self._v0 + 2 * beat.sh * (self._v0_slope * beat.ch + bend * beat.sh)
         whole = 1 + 2 * self._A * beat.sh**2
         return v, self._v0_slope * whole + 2 * bend * beat.sh * beat.ch
-
-    def _product(self, beat: Beat) -> tuple[mpc, mpc]:
-        """The product of the factors, and its derivative."""
-        product, slope = mpc(1), mpc(0)
-        for factor in self._factors:
-            here = factor.at(beat)
-            product, slope = product * here, slope * here + product * factor.slope(beat, self._A)
-        return product, slope
 
     def _integral_of_z(self, beat: Beat) -> mpf:
         """int_0^t z dt; left out where no rate depends on it."""

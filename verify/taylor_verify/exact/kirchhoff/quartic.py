@@ -6,7 +6,6 @@ coefficients of T, f = r^2 X3. A polynomial is a tuple of Fractions, the highest
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -183,7 +182,16 @@ class RealRoots:
     def _isolated(self) -> list[tuple[Fraction, Fraction]]:
         """Disjoint intervals (low, high], each with one root."""
         bound = self._bound()
-        return list(self._split(-bound, bound))
+        pending, found = [(-bound, bound)], []
+        while pending:
+            low, high = pending.pop()
+            number = self._changes(low) - self._changes(high)
+            if number == 1:
+                found.append((low, high))
+            elif number > 1:
+                middle = (low + high) / 2
+                pending += [(middle, high), (low, middle)]
+        return found
 
     def _bound(self) -> Fraction:
         """A power of two above every root: none exceeds twice the largest |c_k/c_0|^(1/k) (Fujiwara).
@@ -193,17 +201,6 @@ class RealRoots:
         first, *others = self.polynomial
         exponents = [-(-(floor_log2(c / first) + 1) // k) for k, c in enumerate(others, 1) if c]
         return power_of_two(1 + max(exponents, default=0))
-
-    def _split(self, low: Fraction, high: Fraction) -> Iterator[tuple[Fraction, Fraction]]:
-        pending = [(low, high)]
-        while pending:
-            low, high = pending.pop()
-            number = self._changes(low) - self._changes(high)
-            if number == 1:
-                yield low, high
-            elif number > 1:
-                middle = (low + high) / 2
-                pending += [(middle, high), (low, middle)]
 
     @cached_property
     def _chain(self) -> tuple[Polynomial, ...]:
