@@ -61,19 +61,18 @@ class Immersed(Kind[ImmersedBody, Impulse]):
         reached = z if body.manufactured is None else body.manufactured.reach
         x, y, force, couple = reached[:3], reached[3:], body.force, body.couple
         a, b, c = body.linear, body.coupling, body.angular
-        spun = tensors.plus(tensors.apply(tensors.transpose(b), force), tensors.apply(c, couple))
-        pushed = tensors.plus(tensors.apply(a, force), tensors.apply(b, couple))
+        driven = tensors.apply(body.energy_matrix, force + couple)
         omega = largest(
             exponent(tensors.apply(tensors.transpose(b), x)),
             exponent(tensors.apply(c, y)),
-            halved(exponent(spun)),
+            halved(exponent(driven[3:])),
             default=0,
         )
         time = -omega
         velocity = largest(
             exponent(tensors.apply(a, x)),
             exponent(tensors.apply(b, y)),
-            later(exponent(pushed), time),
+            later(exponent(driven[:3]), time),
             default=omega,
         )
         if body.manufactured is not None:

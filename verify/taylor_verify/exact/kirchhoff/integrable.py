@@ -38,7 +38,7 @@ Numbers = Sequence[Any]
 # A family's word, and the coefficients of its integral.
 Family = tuple[str, tuple[Any, ...]]
 
-_CYCLIC: Final = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
+CYCLIC: Final = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
 
 
 # The integrals.
@@ -51,7 +51,7 @@ def clebsch2(x: Numbers, y: Numbers, r: Numbers, theta: Any) -> Any:
 
 def neumann(x: Numbers, y: Numbers, r: Any, p: Numbers) -> Any:
     """r_1 = r_2 = r_3 with any p and b_1 = b_2 = b_3; where FG = 0, Neumann's point on a sphere."""
-    return sum(r * p[i] * y[i] * y[i] - p[j] * p[k] * x[i] * x[i] for i, j, k in _CYCLIC)
+    return sum(r * p[i] * y[i] * y[i] - p[j] * p[k] * x[i] * x[i] for i, j, k in CYCLIC)
 
 
 def steklov(x: Numbers, y: Numbers, r: Numbers, mu: Any) -> Any:
@@ -60,7 +60,7 @@ def steklov(x: Numbers, y: Numbers, r: Numbers, mu: Any) -> Any:
         y[i] * y[i]
         - 2 * mu * r[i] * x[i] * y[i]
         + mu * mu * (r[j] - r[k]) * (r[j] - r[k]) * x[i] * x[i]
-        for i, j, k in _CYCLIC
+        for i, j, k in CYCLIC
     )
 
 
@@ -70,7 +70,7 @@ def lyapunov(x: Numbers, y: Numbers, r: Any, b: Numbers) -> Any:
         r * r * b[i] * y[i] * y[i]
         - 2 * r * b[j] * b[k] * x[i] * y[i]
         + b[i] * (b[j] - b[k]) * (b[j] - b[k]) * x[i] * x[i]
-        for i, j, k in _CYCLIC
+        for i, j, k in CYCLIC
     )
 
 
@@ -186,15 +186,15 @@ def diagonal_family(body: ImmersedBody) -> Family | None:
     if _equal(r):
         if _equal(b):
             return "neumann", (r[0], _centred(p))
-        rest = [r[0] * p[i] - (b[j] - b[k]) ** 2 for i, j, k in _CYCLIC]
+        rest = [r[0] * p[i] - (b[j] - b[k]) ** 2 for i, j, k in CYCLIC]
         return ("lyapunov", (r[0], _centred(b))) if _equal(rest) else None
     if _equal(b):
         theta = _slope(p, r)
-        fits = _equal([p[i] - theta * r[j] * r[k] for i, j, k in _CYCLIC])
+        fits = _equal([p[i] - theta * r[j] * r[k] for i, j, k in CYCLIC])
         return ("clebsch2", (r, theta)) if fits else None
     mu = _slope(b, r)
-    of_b = [b[i] - mu * r[j] * r[k] for i, j, k in _CYCLIC]
-    of_p = [p[i] - mu**2 * r[i] * (r[j] - r[k]) ** 2 for i, j, k in _CYCLIC]
+    of_b = [b[i] - mu * r[j] * r[k] for i, j, k in CYCLIC]
+    of_p = [p[i] - mu**2 * r[i] * (r[j] - r[k]) ** 2 for i, j, k in CYCLIC]
     return ("steklov", (r, mu)) if _equal(of_b) and _equal(of_p) else None
 
 
@@ -229,7 +229,7 @@ def _centred(values: Sequence[Fraction]) -> list[Fraction]:
 
 def _slope(values: Sequence[Fraction], r: Sequence[Fraction]) -> Fraction:
     """s from two of v_i = v0 + s r_j r_k, for r that are not all equal."""
-    i, j, k = next(order for order in _CYCLIC if r[order[0]] != r[order[1]])
+    i, j, k = next(order for order in CYCLIC if r[order[0]] != r[order[1]])
     return (values[i] - values[j]) / (r[k] * (r[j] - r[i]))
 
 

@@ -28,7 +28,7 @@ from fractions import Fraction
 from functools import cached_property, cmp_to_key
 from typing import Any, Final
 
-from taylor_verify.exact.kirchhoff.integrable import diagonal_family
+from taylor_verify.exact.kirchhoff.integrable import CYCLIC, diagonal_family
 from taylor_verify.exact.kirchhoff.plane import plane
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.kirchhoff.weber.surd import Surd, compare, roots
@@ -41,7 +41,6 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Vector
 
 REGIME: Final = "weber"
-CYCLIC: Final = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
 _ORTHOGONAL: Final = (
     "of the bodies with r_1 = r_2 = r_3, and of Clebsch's second case, only the motions with FG = 0 "
     "are solved (Weber's)"

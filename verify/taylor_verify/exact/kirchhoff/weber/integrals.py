@@ -23,8 +23,6 @@ from taylor_verify.exact.kirchhoff.weber.surd import Surd
 # u1 is on the second stretch between neighbouring branch points, u2 on the fourth.
 OVALS = (1, 3)
 
-Integrand = Callable[[acb, bool], acb]
-
 
 @dataclass(frozen=True)
 class Jacobian:
@@ -90,7 +88,7 @@ def stretch(e: Sequence[arb], s: int, angle: arb) -> tuple[arb, arb]:
     return _integral(weight, angle), _integral(moment, angle)
 
 
-def _integral(integrand: Integrand, angle: arb) -> arb:
+def _integral(integrand: Callable[[acb, bool], acb], angle: arb) -> arb:
     """Integrate from 0, to an error that is small beside the integrand in the middle."""
     goal = abs(integrand(acb(angle / 2), False)) * arb(2) ** -ctx.prec
     return acb.integral(integrand, 0, acb(angle), abs_tol=goal).real

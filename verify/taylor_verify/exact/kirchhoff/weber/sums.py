@@ -20,8 +20,9 @@ from typing import Final, final
 import numpy as np
 from mpmath import mp, mpf
 
+from taylor_verify.exact.kirchhoff.integrable import CYCLIC
 from taylor_verify.exact.kirchhoff.weber.characteristics import HALF_PERIODS, at_branches, of_pair
-from taylor_verify.exact.kirchhoff.weber.curve import CYCLIC, REGIME, Curve
+from taylor_verify.exact.kirchhoff.weber.curve import REGIME, Curve
 from taylor_verify.exact.kirchhoff.weber.quadrature import branch_points, narrowness, real_jacobian
 from taylor_verify.exact.kirchhoff.weber.riemann import Thetas
 from taylor_verify.exact.solution import Quantities, Settled
