@@ -7,7 +7,6 @@ again and again, unsampled. Compiling is not in it.
 
 from __future__ import annotations
 
-import random
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -35,7 +34,7 @@ from taylor_verify.studies.prices.document import (
 from taylor_verify.studies.prices.variants import Variant, variants
 from taylor_verify.studies.tradeoff.accuracy import Truth
 from taylor_verify.studies.tradeoff.order_statistics import estimate
-from taylor_verify.studies.tradeoff.rounds import without_collector
+from taylor_verify.studies.tradeoff.rounds import in_rounds
 
 # Each rung with its rounds: the interval of the median asks for six, and a wide rung takes its time.
 RUNGS: Final = {"f64": 31, "f80": 31, "f128": 9, "mp237": 7}
@@ -117,13 +116,10 @@ def _rows(rung: Rung, rounds: int) -> list[PriceRow]:
 
 
 def _take(benches: Sequence[_Bench], rounds: int) -> None:
-    """Time every bench once a round, in an order drawn anew."""
-    order, draw = list(benches), random.Random(_SEED)
-    with without_collector():
-        for _ in range(rounds):
-            draw.shuffle(order)
-            for bench in order:
-                bench.taken.append(bench.seconds())
+    """Time every bench once a round."""
+    seconds = in_rounds([bench.seconds for bench in benches], rounds, _SEED)
+    for bench, taken in zip(benches, seconds, strict=True):
+        bench.taken = taken
 
 
 def _row(variant: Variant, rung: Rung, bench: _Bench, base: _Bench) -> PriceRow:

@@ -12,7 +12,6 @@ from taylor_verify.models.problem import NotRepresentable, Problem, pose
 from taylor_verify.records.json_text import finite
 from taylor_verify.records.standing import Standing
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.studies.tradeoff import REPEATS, SEED
 from taylor_verify.studies.tradeoff.accuracy import Truths
 from taylor_verify.studies.tradeoff.attainability import least_error
 from taylor_verify.studies.tradeoff.pareto import pareto
@@ -20,6 +19,8 @@ from taylor_verify.studies.tradeoff.point import Point, digits, point
 from taylor_verify.studies.tradeoff.setting import Setting, settings
 from taylor_verify.studies.tradeoff.timing import (
     PATIENCE,
+    REPEATS,
+    SEED,
     WHAT_IS_TIMED,
     Clock,
     timed,
