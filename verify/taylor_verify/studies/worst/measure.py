@@ -87,16 +87,15 @@ class FamilyResult:
 
 
 def hunt(
-    families: Iterable[Family], seconds: float, seed: int, finished: Callable[[str], None]
+    families: Sequence[Family], seconds: float, seed: int, finished: Callable[[str], None]
 ) -> list[FamilyResult]:
     """Return the worst of each family, in an even share of the ``seconds``.
 
     ``finished`` is called with the name of each as it ends.
     """
-    asked = list(families)
-    found = []
-    for family in asked:
-        found.append(_hunt(family, seconds / len(asked), random.Random(f"{seed} {family.name}")))
+    found, share = [], seconds / len(families)
+    for family in families:
+        found.append(_hunt(family, share, random.Random(f"{seed} {family.name}")))
         finished(family.name)
     return found
 
