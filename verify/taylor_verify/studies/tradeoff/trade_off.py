@@ -125,7 +125,12 @@ def front_sentences(points: Sequence[Point]) -> list[str]:
     best, sound = front(points), sound_points(points)
     if not best:
         return ["No setting gave an answer that is sound."]
-    said = [_sentence(p, best[0].seconds) for p in best]
+    said, fastest = [], best[0].seconds
+    for p in best:
+        left = digits(p.error)
+        named = "All digits" if left is None else f"{left:.1f} digits"
+        pace = f", {p.seconds / fastest:.2f} times the fastest" if p.seconds > fastest > 0 else ""
+        said.append(f"{named} (error {p.error:.2g}): {p.label} in {p.seconds:.3g} s{pace}.")
     beaten = len(sound) - len(best)
     said.append(
         f"{beaten} of {len(sound)} sound settings are beaten in both time and error by one of these."
@@ -136,13 +141,6 @@ def front_sentences(points: Sequence[Point]) -> list[str]:
             "each other than that are not told apart."
         )
     return said
-
-
-def _sentence(p: Point, fastest: float) -> str:
-    left = digits(p.error)
-    named = "All digits" if left is None else f"{left:.1f} digits"
-    pace = f", {p.seconds / fastest:.2f} times the fastest" if p.seconds > fastest > 0 else ""
-    return f"{named} (error {p.error:.2g}): {p.label} in {p.seconds:.3g} s{pace}."
 
 
 def request_sentences(points: Iterable[Point]) -> list[str]:
