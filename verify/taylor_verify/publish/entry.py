@@ -27,7 +27,7 @@ class Page:
 
     @property
     def sheet(self) -> str:
-        """Where the page's own numbers are with every digit; those of a page at the top too."""
+        """The place of the page's own numbers with every digit; those of a page at the top too."""
         return f"tables/{PurePosixPath(self.path).stem}.csv"
 
     def row_with_sheet(self) -> list[str]:

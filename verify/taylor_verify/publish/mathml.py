@@ -25,7 +25,7 @@ _WORDS: Final = re.compile(r"\\text\{([^{}]*)\}")
 
 @cache
 def mathml(tex: str, display: bool = False) -> Markup:
-    """The formula as an element <math>, its LaTeX in the attribute ``alttext``.
+    """Return the formula as an element <math>, its LaTeX in the attribute ``alttext``.
 
     Raises ValueError for LaTeX that cannot be read.
     """
@@ -41,7 +41,7 @@ def mathml(tex: str, display: bool = False) -> Markup:
 
 
 def _letter(found: re.Match[str]) -> str:
-    """A letter of another alphabet as the character that Unicode has for it, or as it was."""
+    """Return a letter of another alphabet as the character that Unicode has for it, or as it was."""
     letter = unescape(found[2])
     for first, start in _ALPHABETS.get(found[1], ()):
         if 0 <= ord(letter) - ord(first) < _LETTERS:
@@ -50,7 +50,7 @@ def _letter(found: re.Match[str]) -> str:
 
 
 def inline(tex: str) -> Markup:
-    """A formula within a line: what it says in words is text, which can be broken at its spaces."""
+    """Return a formula within a line: its words are text, which can be broken at its spaces."""
     parts, at = [], 0
     for words in _WORDS.finditer(tex):
         before = tex[at : words.start()]
@@ -61,6 +61,6 @@ def inline(tex: str) -> Markup:
 
 
 def _formula(tex: str) -> Markup:
-    """In a box of its own, which a narrow page can scroll; nothing for nothing."""
+    """Return a formula in a box of its own, which a narrow page can scroll; nothing for nothing."""
     found = mathml(tex.strip()) if tex.strip() else None
     return Markup('<span class="formula">{}</span>').format(found) if found else Markup()

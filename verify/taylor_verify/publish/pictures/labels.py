@@ -193,7 +193,7 @@ def _held(boxes: Numbers, spots: Numbers) -> Numbers:
     """Return how many of the spots each box holds."""
     (x, y), (left, low, right, top) = spots.T, boxes.T[:, :, None]
     inside = (left <= x) & (x <= right) & (low <= y) & (y <= top)
-    return np.count_nonzero(inside, axis=1).astype(np.float64)
+    return np.asarray(np.count_nonzero(inside, axis=1), dtype=np.float64)
 
 
 def _distance(boxes: Numbers, spots: Numbers) -> Numbers:

@@ -37,7 +37,7 @@ _NARROW: Final = 38
 
 @dataclass(frozen=True)
 class Frame:
-    """Where a panel stands, in inches from the lower left corner of the figure."""
+    """Place of a panel, in inches from the lower left corner of the figure."""
 
     left: float
     low: float

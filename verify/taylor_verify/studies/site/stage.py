@@ -16,7 +16,6 @@ from pathlib import Path, PurePosixPath
 from typing import Final
 
 from taylor_verify.studies.archive import tar
-from taylor_verify.studies.site.drawing import smaller
 from taylor_verify.studies.site.links import relinked
 
 DOCS: Final = "docs"
@@ -26,6 +25,9 @@ FRONT: Final = "index.md"
 # Bytes. Above this only sheets and data are found, of which a packed one has a tenth.
 _LARGE: Final = 30_000
 PACKED: Final = ".tar.xz"
+# Fonts and metadata of a drawing, which its page has too.
+_FONTS: Final = re.compile(r"font-family: [^;\"}]*")
+_METADATA: Final = re.compile(r"<metadata>.*?</metadata>\s*", re.DOTALL)
 _ROOMS: Final = ("figures", "tables", "reference", "upstream")
 _INCLUDED: Final = re.compile(r"^```\{include\} (\S+)\n```$", re.MULTILINE)
 _TOCTREE: Final = re.compile(r"^```\{toctree\}\n.*?^```$", re.MULTILINE | re.DOTALL)
@@ -122,6 +124,11 @@ class Stage:
         if place.startswith(f"{REPORTS}/"):
             return self.folder / place.removeprefix(f"{REPORTS}/")
         return None if self.docs is None or place.startswith("..") else self.docs.parent / place
+
+
+def smaller(svg: str) -> str:
+    """Return the drawing in the font of its page and without metadata; title and text stay."""
+    return _FONTS.sub("font-family: sans-serif", _METADATA.sub("", svg))
 
 
 def _as_linked(place: str) -> str:
