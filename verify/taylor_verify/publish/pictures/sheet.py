@@ -1,4 +1,4 @@
-"""A figure as wide as a page: where its panels and its legend stand, in inches."""
+"""Figure as wide as a page: the places of its panels and its legend, in inches."""
 
 from __future__ import annotations
 

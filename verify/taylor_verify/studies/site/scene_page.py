@@ -41,6 +41,7 @@ def scene_page(scene: str, report: Report, pictures: Sequence[Picture]) -> str:
     portrait, records = report.portrait(scene) or {}, report.records(scene)
     record = next(iter(records.values()), {})
     verdicts = [verdict for run in runs for verdict in run.verdicts]
+    toml = portrait.get("toml", "").strip()
     condition = portrait.get("explain", {}).get("condition") or {}
     digest = next((str(v.provenance.get("scene", "")) for v in verdicts), "")
     sections = {
@@ -51,7 +52,9 @@ def scene_page(scene: str, report: Report, pictures: Sequence[Picture]) -> str:
         ],
         "Equations of motion": _equations(portrait, record),
         "The orbit in numbers": _orbit(portrait),
-        "Initial data": _data(portrait),
+        "Initial data": ["The whole scene, in exact numbers:", _block("toml", toml, "scene")]
+        if toml
+        else [],
         "Accuracy": [verdict_table(_ACCURACY, verdicts)],
         "Other solvers": _solvers(report.trade(scene)),
         "Pictures": [*_drawings(report, pictures), *_motions(portrait, records.get(_SHOWN))],
@@ -164,11 +167,6 @@ def _orbit(portrait: Document) -> list[str]:
     ]
     sentences = portrait.get("explain", {}).get("sentences", ())
     return [*map(prose, sentences), table(["quantity", "value", "meaning"], cells)]
-
-
-def _data(portrait: Document) -> list[str]:
-    text = portrait.get("toml", "").strip()
-    return ["The whole scene, in exact numbers:", _block("toml", text, "scene")] if text else []
 
 
 def _solvers(trade: Trade | None) -> list[str]:
