@@ -3,20 +3,15 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from functools import cache
 from html import unescape
 from typing import Final
 
 from markupsafe import Markup, escape
 
-# Browsers have dropped the attribute: a bold x is a character of its own. First letter, first code.
+# Browsers have dropped the attribute: a bold x is a character of its own.
 _VARIANT: Final = re.compile(r'<mi mathvariant="([a-z-]+)">(&#x[0-9A-F]+;|.)</mi>')
-_ALPHABETS: Final = {
-    "bold": (("A", 0x1D400), ("a", 0x1D41A)),
-    "bold-italic": (("A", 0x1D468), ("a", 0x1D482), ("Α", 0x1D71C), ("α", 0x1D736)),  # noqa: RUF001
-    "sans-serif": (("A", 0x1D5A0), ("a", 0x1D5BA)),
-}
-_LETTERS: Final = 26
 # Between the name of a function and what is beside it TeX leaves a thin space.
 _FUNCTION: Final = re.compile(r"<mi>(sin|cos|tan|exp|ln|log|sinh|cosh|tanh|sn|cn|dn|am)</mi>")
 _SPACED: Final = r'<mspace width="0.14em"/><mi>\1</mi><mspace width="0.14em"/>'
@@ -42,11 +37,13 @@ def mathml(tex: str, display: bool = False) -> Markup:
 
 def _letter(found: re.Match[str]) -> str:
     """Return a letter of another alphabet as the character that Unicode has for it, or as it was."""
-    letter = unescape(found[2])
-    for first, start in _ALPHABETS.get(found[1], ()):
-        if 0 <= ord(letter) - ord(first) < _LETTERS:
-            return f"<mi>{chr(start + ord(letter) - ord(first))}</mi>"
-    return found[0]
+    alphabet = found[1].upper().replace("BOLD-", "BOLD ")
+    # Such as LATIN SMALL LETTER X.
+    _, case, _, letter = (*unicodedata.name(unescape(found[2]), "").split(), "", "", "", "")[:4]
+    try:
+        return f"<mi>{unicodedata.lookup(f'MATHEMATICAL {alphabet} {case} {letter}')}</mi>"
+    except KeyError:
+        return found[0]
 
 
 def inline(tex: str) -> Markup:
