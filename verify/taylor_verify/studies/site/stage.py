@@ -12,7 +12,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 from typing import Final
 
 from taylor_verify.studies.archive import tar
@@ -91,7 +91,7 @@ class Stage:
             self._add(place, text)
 
     def _add(self, place: str, text: str) -> None:
-        folder = PurePosixPath(place).parent.as_posix()
+        folder = posixpath.dirname(place)
         self.files[place] = relinked(text, folder, folder, self._resolve)
 
     def _included(self, place: str, block: re.Match[str]) -> str:
@@ -100,8 +100,8 @@ class Stage:
         file = self._origin(included)
         if file is None:
             raise ValueError(f"expected a file of the checkout, got {block[1]} @ {place}")
-        written_in, shown_in = (PurePosixPath(at).parent.as_posix() for at in (included, place))
-        return relinked(file.read_text(encoding="utf-8"), written_in, shown_in, lambda at: at)
+        text = file.read_text(encoding="utf-8")
+        return relinked(text, posixpath.dirname(included), posixpath.dirname(place), lambda at: at)
 
     def _resolve(self, place: str) -> str | None:
         """Return the page or file that a link leads to; None for what is neither, or outside the tree."""
