@@ -1,4 +1,4 @@
-"""All studies, in the order in which indexes name them: this list is the only one."""
+"""List of all studies, the only one, in the order in which indexes name them."""
 
 from __future__ import annotations
 
