@@ -6,7 +6,8 @@ from fractions import Fraction
 from functools import cache
 
 from builders.scenes import vector
-from taylor_verify.exact.kirchhoff.weber.curve import CYCLIC, Curve, curve
+from taylor_verify.exact.kirchhoff.integrable import CYCLIC
+from taylor_verify.exact.kirchhoff.weber.curve import Curve, curve
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Clock, Impulse

@@ -19,7 +19,7 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact import balls
 from taylor_verify.exact.balls import Enclosed, Enclosure, ball
-from taylor_verify.exact.euler import closed, fixed_axis, phase, quaternion, theta
+from taylor_verify.exact.euler import closed, fixed_axis, phase, theta
 from taylor_verify.exact.euler.closed import enclosed
 from taylor_verify.exact.euler.moduli import Moduli
 from taylor_verify.exact.euler.orbit import Orbit
@@ -27,7 +27,7 @@ from taylor_verify.exact.euler.principal import principal_balls
 from taylor_verify.exact.euler.regime import FreeSpin, Regime
 from taylor_verify.exact.euler.rotations import RotationBalls
 from taylor_verify.exact.euler.theta import free_rotation
-from taylor_verify.exact.rotation import conjugate, product, rotation_rows
+from taylor_verify.exact.rotation import conjugate, product, rotation_rows, unit
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
@@ -305,7 +305,7 @@ class Coarse(Enclosed):
             found = [course.at(t, True) for t in elapsed]
         if self._name == "omega":
             return {"omega": [omega for omega, _ in found]}
-        start = quaternion.unit(TILTED)
+        start = unit(TILTED)
         return {"attitude": [rotation_rows(product(start, turn)) for _, turn in found]}
 
 

@@ -13,7 +13,7 @@ import pytest
 from builders.numbers import apart as distance
 from builders.scenes import vector
 from builders.washboards import loaded
-from flint import ctx
+from flint import arb, ctx
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
@@ -23,7 +23,6 @@ from taylor_verify.exact.euler import closed
 from taylor_verify.exact.euler.moments import erf
 from taylor_verify.exact.euler.moments.kummer import KummerTurn
 from taylor_verify.exact.euler.moments.regime import LoadedSpin
-from taylor_verify.exact.euler.quaternion import Quaternion
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
 from taylor_verify.exact.taylor import TaylorSolution
@@ -246,7 +245,7 @@ def test_turns_compose_before_across_and_after_the_nearest_approach(first: str, 
 class OneBranch(KummerTurn):
     """Broken on purpose: s as a root of z, which is never negative: Kummer's odd solution is even."""
 
-    def _since_nearest(self, s: Fraction) -> Quaternion:
+    def _since_nearest(self, s: Fraction) -> list[arb]:
         return super()._since_nearest(abs(s))
 
 

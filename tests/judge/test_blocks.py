@@ -20,7 +20,7 @@ from taylor_verify import check, solve
 from taylor_verify.exact.invariants import decisive, invariants
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.errors import measured
-from taylor_verify.judge.errors.accumulated import Series
+from taylor_verify.judge.errors.state import Series
 from taylor_verify.records.doubles import Doubles, four_digits
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.instants import EquallySpaced

@@ -15,8 +15,9 @@ from typing import Any
 import pytest
 from mpmath import mp, mpf
 
+from taylor_verify.exact import rotation
 from taylor_verify.exact.elliptic import Landen
-from taylor_verify.exact.euler import attitude, fixed_axis, quaternion
+from taylor_verify.exact.euler import fixed_axis, jacobi
 from taylor_verify.exact.euler import orbit as euler_orbit
 from taylor_verify.exact.euler.moduli import Moduli
 from taylor_verify.exact.euler.regime import FreeSpin
@@ -129,7 +130,7 @@ def _backward_kirchhoff(patch: Patch) -> None:
 
 def _backward_balls(patch: Patch) -> None:
     """-u_0 for u_0 where the motion is elliptic or on the separatrix, and turns in the other sense."""
-    moduli, precession, turn = Moduli.__init__, _Precession.__init__, quaternion.turn
+    moduli, precession, turn = Moduli.__init__, _Precession.__init__, rotation.turn
 
     def orbit(self: Moduli, spin: FreeSpin) -> None:
         moduli(self, spin)
@@ -142,20 +143,20 @@ def _backward_balls(patch: Patch) -> None:
 
     patch.setattr(Moduli, "__init__", orbit)
     patch.setattr(_Precession, "__init__", precessing)
-    patch.setattr(quaternion, "turn", lambda axis, half: turn(axis, -half))
+    patch.setattr(rotation, "turn", lambda axis, half: turn(axis, -half))
 
 
 def _backward_floats(patch: Patch) -> None:
     """The same in mpmath."""
     phase, turn = euler_orbit.Orbit._phase_of, fixed_axis.turn
-    precession = euler_orbit.Precession.__init__
+    precession = jacobi.Precession.__init__
 
-    def precessing(self: euler_orbit.Precession, spin: FreeSpin) -> None:
+    def precessing(self: jacobi.Precession, spin: FreeSpin) -> None:
         precession(self, spin)
         self.rate = -self.rate
 
     patch.setattr(euler_orbit.Orbit, "_phase_of", lambda *a: -phase(*a))
-    patch.setattr(euler_orbit.Precession, "__init__", precessing)
+    patch.setattr(jacobi.Precession, "__init__", precessing)
     patch.setattr(fixed_axis, "turn", lambda axis, angle: turn(axis, -angle))
 
 
@@ -218,24 +219,24 @@ def _one_branch_of_the_start(patch: Patch) -> None:
 
 def _transposed(patch: Patch) -> None:
     """Space to body for body to space; in a fluid test_exact_kirchhoff_attitude has its own."""
-    right = attitude.Triaxial.at
+    right = jacobi.Triaxial.at
 
-    def wrong(self: attitude.Triaxial, t: Fraction, turned: bool) -> Any:
+    def wrong(self: jacobi.Triaxial, t: Fraction, turned: bool) -> Any:
         omega, frame = right(self, t, turned)
-        return omega, attitude.transposed(frame)
+        return omega, jacobi.transposed(frame)
 
-    patch.setattr(attitude.Triaxial, "at", wrong)
+    patch.setattr(jacobi.Triaxial, "at", wrong)
 
 
 def _windings_lost(patch: Patch) -> None:
     """An integral of the third kind that forgets its whole periods; in a fluid as above."""
-    right = attitude.Triaxial.__init__
+    right = jacobi.Triaxial.__init__
 
-    def wrong(self: attitude.Triaxial, *arguments: Any) -> None:
+    def wrong(self: jacobi.Triaxial, *arguments: Any) -> None:
         right(self, *arguments)
         self._complete = mpf(0)
 
-    patch.setattr(attitude.Triaxial, "__init__", wrong)
+    patch.setattr(jacobi.Triaxial, "__init__", wrong)
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from builders.pages import html_has_the_cells, latex_has_the_rows, links_lead_so
 from builders.verdicts import MIXED, RECORD
 
 from taylor_verify.cli import main
-from taylor_verify.publish.markdown import Column, code, prose, table
+from taylor_verify.publish.markdown import code, prose, table
 from taylor_verify.publish.paper import HTML, LATEX, MAKERS, Page, html, latex
 from taylor_verify.studies import paper as files
 from taylor_verify.studies.report import publish, write
@@ -149,7 +149,7 @@ class Layout(NamedTuple):
 def layouts(*tables: tuple[int, str]) -> list[Layout]:
     """The layouts of tables, each of so many columns with equal cells; numbers stand to the right."""
     pages = [
-        table([Column(f"c{i}", cell[:1].isdigit()) for i in range(columns)], [[cell] * columns] * 2)
+        table([f"c{i}" + ":" * cell[:1].isdigit() for i in range(columns)], [[cell] * columns] * 2)
         for columns, cell in tables
     ]
     _, *parts = re.split(r"(?=\\fontsize)", body("\n\nwords\n\n".join(["## First", *pages])))
@@ -187,7 +187,7 @@ def test_a_table_is_turned_only_where_it_must_be() -> None:
 
 def test_a_heading_goes_with_its_turned_table() -> None:
     """It would stand alone on the page before."""
-    wide = table([Column(f"c{i}", True) for i in range(16)], [["1.2345e-67"] * 16])
+    wide = table([f"c{i}:" for i in range(16)], [["1.2345e-67"] * 16])
     text = body(f"## Wide\n\n{wide}")
     assert text.index(r"\begin{landscape}") < text.index("Wide") < text.index(r"\begin{longtable}")
 

@@ -39,6 +39,7 @@ from taylor_verify.studies.gallery.pictures import (
 )
 from taylor_verify.studies.gallery.pictures.stage import norm_of, scale
 from taylor_verify.studies.gallery.pictures.view import Ellipsoid, View, pieces
+from taylor_verify.studies.portraits.study import PORTRAITS
 
 RUNGS = ("f32", "f64", "f80", "f128", "mp237")
 FREE = ("euler/generic", "euler/with-attitude", "euler/separatrix", "euler/tennis-racket")
@@ -434,11 +435,11 @@ def test_the_command_asks_for_what_is_missing(
     """A folder without portraits, or with a portrait that is none, is a wrong call and stays as it is."""
     assert main(["publish", "gallery", "--from", str(tmp_path)]) == 2
     assert "publish reference" in capsys.readouterr().err
-    name = stored().portrait_name("euler/generic")
-    for file in (name, stored().record_name("euler/generic", "f64")):
+    name = PORTRAITS.name("euler/generic")
+    for file in (name, gallery.record_name("euler/generic", "f64")):
         (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(reports.for_gallery() / file, tmp_path / file)
-    reference = stored().reference_name("euler/generic")
+    reference = gallery.reference_name("euler/generic")
     (tmp_path / reference).parent.mkdir()
     (tmp_path / reference).write_text("t\n0\n", encoding="utf-8")
     assert main(["publish", "gallery", "--from", str(tmp_path)]) == 2

@@ -178,8 +178,3 @@ def test_equal_moments_are_seen_in_any_axes() -> None:
     assert closed_form._has_distinct_moments(nearly.inverse_inertia)
 
 
-@pytest.mark.parametrize("name", ["closed-form:ellipk", "closed-form:ellipj?tol=1e-9"])
-def test_a_name_that_is_wrong_is_told(name: str) -> None:
-    """It has one form and no settings."""
-    with pytest.raises(ValueError, match="expected a"):
-        solver_named(name)

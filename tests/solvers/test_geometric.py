@@ -405,27 +405,6 @@ def test_every_method_is_listed() -> None:
         assert solver_named(name.replace("NUMBER", "0.01")).name == name.replace("NUMBER", "0.01")
 
 
-@pytest.mark.parametrize(
-    ("name", "told"),
-    [
-        ("geometric:spliting?step=1", r"got 'spliting'; did you mean splitting\?"),
-        ("geometric:splitting", r"expected \?step=NUMBER after splitting, got none"),
-        ("geometric:splitting?step=", r"expected \?step=NUMBER after splitting, got none"),
-        ("geometric:splitting?step=NUMBER", r"got 'NUMBER' @ step"),
-        ("geometric:splitting?step=0", r"expected a positive number, got '0' @ step"),
-        ("geometric:splitting?step=-1", r"expected a positive number, got '-1' @ step"),
-        ("geometric:splitting?step=nan", r"got 'nan' @ step"),
-        ("geometric:splitting?stp=1", r"got 'stp'; did you mean step\?"),
-        ("geometric:splitting?step=1&step=2", r"expected each setting once, got step twice"),
-        ("geometric:", r"expected a method \(implicit-midpoint, .*\), got ''"),
-    ],
-)
-def test_a_name_that_is_wrong_is_told(name: str, told: str) -> None:
-    """The refusal says what was expected, what came, and where."""
-    with pytest.raises(ValueError, match=told):
-        solver_named(name)
-
-
 def test_the_command_says_what_the_error_means(capsys: pytest.CaptureFixture[str]) -> None:
     """The midpoint rule is a clock that runs slow; splitting leaves the orbit too, as no clock does."""
 

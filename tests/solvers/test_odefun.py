@@ -94,19 +94,3 @@ def test_rates_that_are_no_numbers_are_an_outcome() -> None:
     found = solver_named(NAME).solve(problem)
     assert found.outcome in (Outcome.NON_FINITE, Outcome.RAISED)
     assert not found.quantities
-
-
-@pytest.mark.parametrize(
-    ("name", "told"),
-    [
-        ("mpmath:odefunc", r"got 'odefunc'; did you mean odefun\?"),
-        ("mpmath:odefun?tol=0", r"expected a positive number, got '0' @ tol"),
-        ("mpmath:odefun?degree=2.5", r"whole number from 2 to 1000, got '2.5' @ degree"),
-        ("mpmath:odefun?degree=1", r"whole number from 2 to 1000, got '1' @ degree"),
-        ("mpmath:odefun?rtol=1", r"got 'rtol'; did you mean tol\?"),
-    ],
-)
-def test_a_name_that_is_wrong_is_told(name: str, told: str) -> None:
-    """The refusal says what was expected, what came, and where."""
-    with pytest.raises(ValueError, match=told):
-        solver_named(name)

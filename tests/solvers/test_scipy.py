@@ -141,21 +141,6 @@ def test_every_method_is_listed() -> None:
         solver_named(name.replace("NUMBER", "1e-6"))
 
 
-@pytest.mark.parametrize(
-    ("name", "told"),
-    [
-        ("scipy:DOP854", r"got 'DOP854'; did you mean DOP853\?"),
-        ("scipy:RK45?tol=1e-6", r"got 'tol'; did you mean"),
-        ("scipy:RK45?rtol=1e-16", r"expected at least 2.22e-14, SciPy's own bound, .* @ rtol"),
-        ("scipy:RK45?atol=0", r"expected a positive number, got '0' @ atol"),
-    ],
-)
-def test_a_name_that_is_wrong_is_told(name: str, told: str) -> None:
-    """The refusal says what was expected, what came, and where."""
-    with pytest.raises(ValueError, match=told):
-        solver_named(name)
-
-
 @pytest.mark.parametrize("tolerance", ["1e-3", 0, -1.0, float("nan"), True, 10**400])
 @pytest.mark.parametrize("place", ["rtol", "atol"])
 def test_a_tolerance_that_is_no_positive_number_is_refused(place: str, tolerance: Any) -> None:

@@ -26,7 +26,7 @@ from taylor_verify.studies.growth import picture as diagram
 from taylor_verify.studies.growth import published
 from taylor_verify.studies.growth.document import Ensemble, GrowthOfQuantity, GrowthStudy
 from taylor_verify.studies.growth.errors import PHASE
-from taylor_verify.studies.growth.experiment import Experiment, Found, experiment
+from taylor_verify.studies.growth.experiment import Experiment, QuantityGrowth, experiment
 from taylor_verify.studies.growth.fit import BIAS, Law, growth
 from taylor_verify.studies.growth.published import Entry
 from taylor_verify.studies.growth.question import Question
@@ -39,7 +39,7 @@ def followed(name: str, periods: float = SHORT, lanes: int = 8, **changed: Any) 
     return experiment(Question(load(name), rung("f64"), periods, lanes, **changed))
 
 
-def of(found: Experiment, quantity: str) -> Found:
+def of(found: Experiment, quantity: str) -> QuantityGrowth:
     (one,) = [one for one in found.found if one.quantity == quantity]
     return one
 
@@ -232,7 +232,7 @@ def test_a_number_that_is_not_finite_is_stored_as_none() -> None:
     found = followed("euler/about-max-axis", lanes=2)
     errors = np.full((2, len(found.steps)), np.nan)
     nothing = growth(np.array(found.question.counts), errors, Law.WALK, 1e-16)
-    lost = replace(found, found=(Found("T", errors, nothing),))
+    lost = replace(found, found=(QuantityGrowth("T", errors, nothing),))
     for one in (found.ensemble("a test"), lost.ensemble()):
         assert converted(complete(one), Ensemble) == one
     (row,) = lost.ensemble().quantities

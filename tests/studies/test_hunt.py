@@ -171,8 +171,8 @@ def test_rows_that_are_none_are_refused(tmp_path: Path) -> None:
 
 def test_old_scenes_make_room(tmp_path: Path) -> None:
     """Scenes of an earlier hunt go when a new one has ended."""
-    worst.keep(tmp_path, {"one": "1\n", "two": "2\n"})
-    worst.keep(tmp_path, {"two": "3\n"})
+    worst.store_scenes(tmp_path, {"one": "1\n", "two": "2\n"})
+    worst.store_scenes(tmp_path, {"two": "3\n"})
     assert {p.name: p.read_text(encoding="utf-8") for p in tmp_path.iterdir()} == {
         "two.toml": "3\n"
     }

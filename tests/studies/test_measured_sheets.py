@@ -13,7 +13,7 @@ from builders.studies.prices import study as prices_study
 
 from taylor_verify.claims.document import ClaimResiduals, ClaimRow, ClaimsStudy, Verdict
 from taylor_verify.records.provenance import Provenance
-from taylor_verify.studies import contents, registry
+from taylor_verify.studies import registry, report
 from taylor_verify.studies.accuracy import page as tables
 from taylor_verify.studies.claims import page as claims
 from taylor_verify.studies.growth import page as growth
@@ -131,7 +131,7 @@ def test_what_is_remade_is_page_and_sheet(name: str) -> None:
 def test_the_index_links_to_the_sheets_that_are_there(tmp_path: Path) -> None:
     """A page with a sheet has a link to it, one without has none."""
     made = {"tables/growth.md", "tables/growth.csv", "claims.md", "tables/claims.csv"}
-    besides = contents.others(tmp_path, {*made, "tables/worst.md"})
+    besides = report.entries(tmp_path, {*made, "tables/worst.md"})
     text = tables.readme([], besides)
     assert "| [growth.md](growth.md)       | [csv](growth.csv) |" in text
     assert "| [../claims.md](../claims.md) | [csv](claims.csv) |" in text

@@ -17,7 +17,7 @@ from taylor_verify.publish.page import MADE_BY
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.records import store
 from taylor_verify.records.replacement import replace_files
-from taylor_verify.studies import bulk, contents, paper, registry
+from taylor_verify.studies import bulk, paper, registry, report
 from taylor_verify.studies.registry import STUDIES, UnknownStudy, find
 from taylor_verify.studies.stored import Stored
 from taylor_verify.studies.study import (
@@ -292,7 +292,7 @@ def test_the_paper_has_every_page_that_is_read() -> None:
     own = {study.path for study in registry.others() if "README" not in study.path}
     own -= {SMALLEST.path}
     assert own | {"tables/accuracy.md", "claims.md"} <= set(paper.PAGES)
-    assert {page.path for page in contents.others(Path(), paper.PAGES)} >= own
+    assert {page.path for page in report.entries(Path(), paper.PAGES)} >= own
 
 
 @pytest.mark.parametrize("study", STUDIES, ids=lambda study: study.name)

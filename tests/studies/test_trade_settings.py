@@ -58,24 +58,6 @@ def test_a_tolerance_of_taylor_has_a_name() -> None:
     assert solver_named("taylor") == Taylor()
 
 
-@pytest.mark.parametrize(
-    ("name", "told"),
-    [
-        ("taylor?tol=0", r"expected a positive number, got '0' @ tol"),
-        ("taylor?tol=many", r"got 'many' @ tol"),
-        ("taylor?", r"expected \?tol=NUMBER after taylor, got none"),
-        ("taylor?rtol=1e-6", r"got 'rtol'; did you mean tol\?"),
-        ("taylor?tol=1&tol=2", r"got tol twice"),
-        ("taylor:tol=1e-6", r"expected a solver"),
-        ("scipy:extra:RK45", r"expected a method"),
-    ],
-)
-def test_a_name_that_is_wrong_is_told(name: str, told: str) -> None:
-    """The refusal says what was expected, what came, and where."""
-    with pytest.raises(ValueError, match=told):
-        solver_named(name)
-
-
 def test_checking_a_tolerance_loads_no_heyoka() -> None:
     """A wrong name is told before anything heavy is imported."""
     program = (

@@ -106,7 +106,7 @@ def compare_with_expectations(
         foreseen = expectations.of_run(*run)
         if not foreseen and all(v.verdict is Status.UNAVAILABLE for v in found.values()):
             continue
-        for quantity in (*found, *(name for name in foreseen if name not in found)):
+        for quantity in dict.fromkeys((*found, *foreseen)):
             if quantity in found and found[quantity].tolerance is not None:
                 continue
             row, wanted = (*run, quantity), foreseen.get(quantity, _PASS)

@@ -57,7 +57,7 @@ def _print(answer: Answer, as_json: bool) -> int:
 
 
 def _told_of(interrupt: KeyboardInterrupt) -> str:
-    """One line: nothing was written, and how to go on if there is something to go on from."""
+    """Return one line: nothing was written, and how to go on if there is something to go on from."""
     finished, jobs = getattr(interrupt, "finished", 0), getattr(interrupt, "jobs", 0)
     if not finished:
         return "interrupted"
@@ -68,7 +68,7 @@ def _told_of(interrupt: KeyboardInterrupt) -> str:
 
 
 def _told(error: Exception) -> str:
-    """A message without a traceback; `python -X dev -m taylor_verify` shows the traceback."""
+    """Return a message without a traceback; `python -X dev -m taylor_verify` shows the traceback."""
     from taylor_verify.scenes.reading.faults import Refused
 
     if isinstance(error, WrongCall | Refused):

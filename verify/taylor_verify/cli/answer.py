@@ -1,4 +1,4 @@
-"""What a verb answers: an exit status, a JSON document and a text for a person."""
+"""Answer of a verb: an exit status, a JSON document and a text for a person."""
 
 from __future__ import annotations
 

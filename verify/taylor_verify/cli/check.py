@@ -11,7 +11,7 @@ from typing import Any, Final
 from rich.text import Text
 
 from taylor_verify.cli.answer import Answer, WrongCall, wrong_calls
-from taylor_verify.cli.ci import outputs, tell
+from taylor_verify.cli.ci import concluded, outputs
 from taylor_verify.cli.console import Page, bold, print_table
 from taylor_verify.cli.folders import writable_file
 from taylor_verify.cli.inputs import (
@@ -60,22 +60,16 @@ def answer(options: argparse.Namespace) -> Answer:
         scene, files, steps = _asked(options)
     picture = _picture(options, files, steps)
     asked = outputs(options)
-    judged: FileJudgement | FilesJudgement
     if len(files) == 1:
-        judged = _judged(options, scene, files[0])
-    else:
-        judged = files_judgement(judge_each(files, partial(_judged, options, scene)), steps)
-    to_ci = tell(asked, judged, exit_status(judged.verdicts))
-    document = {**judged.document(), **to_ci.document}
-    messages = [*to_ci.messages]
-    text: Callable[[], str]
-    if isinstance(judged, FileJudgement):
-        said = (scene.name, options.rung, to_ci.stated_status, options.explain)
-        text = partial(_text_of_one, judged, *said)
-    else:
-        messages += _drawn(judged, picture)
-        text = partial(_text_of_several, judged, scene.name, options.rung)
-    return Answer(to_ci.status, document, to_ci.closing(text), messages)
+        one = _judged(options, scene, files[0])
+        text = partial(_text_of_one, one, scene.name, options.rung, options.explain)
+        return concluded(asked, one, exit_status(one.verdicts), one.document(), text)
+    each = judge_each(files, partial(_judged, options, scene))
+    several = files_judgement(each, steps)
+    status = exit_status(several.verdicts)
+    text = partial(_text_of_several, several, scene.name, options.rung)
+    answered = concluded(asked, several, status, several.document(), text)
+    return answered._replace(messages=[*answered.messages, *_drawn(several, picture)])
 
 
 def _judged(options: argparse.Namespace, scene: Scene, file: TrajectoryFile) -> FileJudgement:
@@ -100,14 +94,12 @@ def _asked(
 
     steps = attempt(_steps, options)
     scenes = attempt(read_scenes, [options.scene])
-    files = [attempt(_read, file, options.columns or ()) for file in dict.fromkeys(options.files)]
+    columns = options.columns or ()
+    names = dict.fromkeys(options.files)
+    files = [attempt(lambda name: read(name, request(columns)), name) for name in names]
     if faults:
         raise WrongCall("\n".join(faults))
     return scenes[0], files, steps
-
-
-def _read(file: str, columns: Sequence[str]) -> TrajectoryFile:
-    return read(file, request(columns))
 
 
 def _steps(options: argparse.Namespace) -> list[float] | None:
@@ -168,7 +160,7 @@ def _drawn(judged: FilesJudgement, path: Path | None) -> list[str]:
 
 
 def _text_of_one(
-    judged: FileJudgement, scene: str, rung: str, status: int | None, explained: bool = False
+    judged: FileJudgement, scene: str, rung: str, explained: bool, status: int | None
 ) -> str:
     """Return the sentence for each quantity, the likely causes, the numbers, and the counts.
 
@@ -234,8 +226,9 @@ def _cells(v: Verdict) -> list[str | Text]:
 # The text about several files.
 
 
-def _text_of_several(judged: FilesJudgement, scene: str, rung: str) -> str:
+def _text_of_several(judged: FilesJudgement, scene: str, rung: str, status: int | None) -> str:
     """Return the order of each quantity, a line for each file, and what is peculiar to a file."""
+    del status
     page = Page()
     page.line(
         bold(f"{len(judged.files)} files"), f": judged as answers to {scene} in {rung} arithmetic"

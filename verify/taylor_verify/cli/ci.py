@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.batch.comparison import Comparison, Earlier, read_baseline, shown_verdicts
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.batch.report import remarks, write_junit
-from taylor_verify.cli.answer import WRONG_CALL, WrongCall, graver, wrong_calls
+from taylor_verify.cli.answer import WRONG_CALL, Answer, WrongCall, graver, wrong_calls
 from taylor_verify.cli.folders import writable_file
 from taylor_verify.cli.streams import tell_runner
 from taylor_verify.judge.judgement import Judgement
@@ -40,25 +39,6 @@ class Outputs:
     by_baseline: bool
 
 
-@dataclass(frozen=True)
-class Told:
-    """Keys for the document, messages for stderr, the exit status, and what decided it if not the rows."""
-
-    document: dict[str, Any]
-    messages: Sequence[str]
-    status: int
-    decision: str = ""
-
-    @property
-    def stated_status(self) -> int | None:
-        """The exit status that follows from the rows; None where a baseline alone has decided it."""
-        return None if self.decision else self.status
-
-    def closing(self, text: Callable[[], str]) -> Callable[[], str]:
-        """Return the text with the decision as its last line."""
-        return (lambda: f"{text()}\n{self.decision}") if self.decision else text
-
-
 def outputs(options: argparse.Namespace) -> Outputs:
     """Return what was asked for. Raises WrongCall for a file that cannot be written, or is no baseline."""
     junit = None if options.junit is None else writable_file(options.junit, "--junit")
@@ -71,34 +51,45 @@ def outputs(options: argparse.Namespace) -> Outputs:
     return Outputs(junit, options.github, baseline, by_baseline)
 
 
-def tell(asked: Outputs, results: Judgements | Judgement, status: int) -> Told:
-    """Compare with the baseline and write what was asked for; ``status`` is that of the results."""
-    document: dict[str, Any] = {}
-    messages: list[str] = []
+def concluded(
+    asked: Outputs,
+    results: Judgements | Judgement,
+    status: int,
+    document: Mapping[str, Any],
+    text: Callable[[int | None], str],
+) -> Answer:
+    """Return the answer behind a comparison with the baseline, and write what was asked for.
+
+    ``status`` is that of the results. ``text`` is given the status that follows from the rows; None where
+    the baseline alone has decided it, which a last line then says.
+    """
+    found, messages = dict(document), list[str]()
     comparison, decision = None, ""
     if asked.baseline is not None:
+        source = asked.baseline.source
         comparison = asked.baseline.compare_as_baseline(results, asked.by_baseline)
-        document["baseline"] = complete(_against(asked.baseline.source, comparison))
-        messages += _messages(asked.baseline.source, comparison)
+        departures = (comparison.failures, comparison.undecided, comparison.changes)
+        regressions, undecided, changes = (tuple(map(str, kind)) for kind in departures)
+        rows = (comparison.compared, regressions, undecided, changes, comparison.notes)
+        gate = "baseline" if comparison.decides else "bound"
+        found["baseline"] = complete(AgainstBaseline(source, *rows, gate))
+        messages += _messages(source, comparison)
         if not comparison.compared:
             messages.append(_nothing_shared(asked.baseline.verdicts, results.verdicts))
         if comparison.decides and status != WRONG_CALL:
             status = comparison.exit_status
-            decision = _decision(asked.baseline.source, comparison, results.verdicts)
+            decision = _decision(source, comparison, results.verdicts)
         status = graver(status, comparison.exit_status)
-    writers: list[Callable[[], list[str]]] = []
-    if asked.junit is not None:
-        writers.append(partial(_write_junit, asked.junit, results, comparison))
-    if asked.github:
-        writers.append(partial(_write_github, results, comparison, decision))
-    for write in writers:
+    for write in (_write_junit, _write_github):
         try:
-            messages += write()
+            messages += write(asked, results, comparison, decision)
         except OSError as error:
             # A run that took hours is shown in any case.
             messages.append(f"expected to write, got {error.strerror} @ {error.filename}")
             status = WRONG_CALL
-    return Told(document, messages, status, decision)
+    last = f"\n{decision}" if decision else ""
+    stated = None if decision else status
+    return Answer(status, found, lambda: f"{text(stated)}{last}", messages)
 
 
 def _decision(file: str, comparison: Comparison, verdicts: Iterable[Verdict]) -> str:
@@ -117,15 +108,20 @@ def _decision(file: str, comparison: Comparison, verdicts: Iterable[Verdict]) ->
 
 
 def _write_junit(
-    file: Path, results: Judgements | Judgement, comparison: Comparison | None
+    asked: Outputs, results: Judgements | Judgement, comparison: Comparison | None, decision: str
 ) -> list[str]:
-    write_junit(file, results, comparison)
-    return [f"wrote {file}"]
+    del decision
+    if asked.junit is None:
+        return []
+    write_junit(asked.junit, results, comparison)
+    return [f"wrote {asked.junit}"]
 
 
 def _write_github(
-    results: Judgements | Judgement, comparison: Comparison | None, decision: str
+    asked: Outputs, results: Judgements | Judgement, comparison: Comparison | None, decision: str
 ) -> list[str]:
+    if not asked.github:
+        return []
     verdicts, remarked = shown_verdicts(results), remarks(results, comparison)
     by_remarks = comparison is not None and comparison.decides
     for line in annotation_lines(verdicts, remarked, by_remarks):
@@ -150,14 +146,6 @@ def _baseline(file: str) -> Earlier:
         )
     with wrong_calls(" (--baseline)", (Refused, ValueError)):
         return read_baseline(file)
-
-
-def _against(file: str, comparison: Comparison) -> AgainstBaseline:
-    departures = (comparison.failures, comparison.undecided, comparison.changes)
-    regressions, undecided, changes = (tuple(map(str, kind)) for kind in departures)
-    gate = "baseline" if comparison.decides else "bound"
-    told = (regressions, undecided, changes, comparison.notes, gate)
-    return AgainstBaseline(file, comparison.compared, *told)
 
 
 def _messages(file: str, comparison: Comparison) -> list[str]:

@@ -84,7 +84,7 @@ def working(what: str) -> Iterator[None]:
 
 
 class _News(NamedTuple):
-    """What is computed, and the share of it that is done, from 0 to 1, where that is known."""
+    """Present work, and the share of it that is done, from 0 to 1, where that is known."""
 
     words: str
     share: float | None = None

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -109,16 +108,16 @@ def publish(options: argparse.Namespace) -> Answer:
 
 def _check_options(words: Sequence[str], studies: Sequence[Study[Any]]) -> None:
     """Raise WrongCall for words that look like options and are none, with the nearest that is one."""
+    from taylor_verify.studies.registry import hint
+
     own = (option.name for study in studies for option in study.options)
     known = [f"--{name}" for name in (*_OTHERS, "from", "json", "help", *own)]
-    # The name of a study behind two hyphens is told as what it is by `find`.
-    studies_with_hyphens = {f"--{study.name}" for study in studies}
-    given = (word.partition("=")[0] for word in words if word.startswith("-"))
-    faults = []
-    for word in (word for word in given if word not in studies_with_hyphens):
-        close = get_close_matches(word, known, n=1)
-        hint = f"did you mean {close[0]}?" if close else f"known: {', '.join(known)}"
-        faults.append(f"expected an option, got {word}; {hint} @ publish")
+    # A study behind two hyphens is left to `find`, which says how it is written.
+    named = {f"--{study.name}" for study in studies}
+    given = [word.partition("=")[0] for word in words if word.startswith("-")]
+    faults = [
+        f"expected an option, got {w}; {hint(w, known)} @ publish" for w in given if w not in named
+    ]
     if faults:
         raise WrongCall("\n".join(faults))
 

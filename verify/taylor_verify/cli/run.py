@@ -16,7 +16,7 @@ from taylor_verify.batch.lock import Occupied
 from taylor_verify.batch.report import ReportNotWritten, read_report
 from taylor_verify.batch.selection import select
 from taylor_verify.cli.answer import PASS, WRONG_CALL, Answer, WrongCall, graver, wrong_calls
-from taylor_verify.cli.ci import Outputs, outputs, tell
+from taylor_verify.cli.ci import Outputs, concluded, outputs
 from taylor_verify.cli.console import PIPED_WIDTH, Cell, Page, bold, print_table
 from taylor_verify.cli.folders import IN_A_CHECKOUT, writable
 from taylor_verify.cli.inputs import known_rungs, read_tolerances
@@ -113,19 +113,18 @@ def _answer(
         against = Against(published.source, comparison.compared, departures)
         document["against"] = complete(against)
         status = graver(status, comparison.exit_status)
-    to_ci = tell(asked, results, status)
-    messages += to_ci.messages
-    messages += [f"not run: {o.scene} on {o.rung}: {o.why}" for o in results.left_out]
+    left = [f"not run: {o.scene} on {o.rung}: {o.why}" for o in results.left_out]
     if len(results.selection.scenes) > 1 and results.costs:
-        messages.append(sentence(results.costs))
-    text = partial(_text, results, to_ci.stated_status, explained)
-    return Answer(to_ci.status, {**document, **to_ci.document}, to_ci.closing(text), messages)
+        left.append(sentence(results.costs))
+    text = partial(_text, results, explained)
+    answered = concluded(asked, results, status, document, text)
+    return answered._replace(messages=[*messages, *answered.messages, *left])
 
 
 # The text.
 
 
-def _text(results: Judgements, status: int | None, explained: bool) -> str:
+def _text(results: Judgements, explained: bool, status: int | None) -> str:
     """Return the sentences of a run or two and then a line for each; of many runs the lines come first.
 
     Of many runs only rows that are no pass have a sentence. Where no row was judged, and all for one

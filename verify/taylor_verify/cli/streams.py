@@ -1,4 +1,4 @@
-"""What goes to which stream: the answer alone to stdout, messages to stderr."""
+"""The streams of the process: the answer alone goes to stdout, messages to stderr."""
 
 from __future__ import annotations
 
@@ -12,14 +12,11 @@ from taylor_verify.scenes.names import escaped
 
 
 def say(message: str) -> None:
-    try:
-        print(f"taylor-verify: {escaped(message)}", file=sys.stderr, flush=True)
-    except OSError:
-        _abandon(sys.stderr)
+    tell_runner(f"taylor-verify: {message}")
 
 
 def tell_runner(line: str) -> None:
-    """A line for the runner of a CI, which reads stderr too, and commands only at a line's start."""
+    """Print a line for the runner of a CI, which reads stderr too, and commands only at a line's start."""
     try:
         print(escaped(line), file=sys.stderr, flush=True)
     except OSError:
@@ -45,7 +42,7 @@ def _abandon(stream: TextIO) -> None:
 
 
 def have_streams() -> None:
-    """Something to print to where a stream is closed, and an escape for what it cannot encode."""
+    """Give a closed stream something to print to, and stdout an escape for what it cannot encode."""
     if sys.stdout is None:
         sys.stdout = open(os.devnull, "w")  # noqa: SIM115 (it is the stream of the process)
     if sys.stderr is None:
@@ -57,7 +54,7 @@ def have_streams() -> None:
 
 @contextmanager
 def stdout_reserved() -> Iterator[None]:
-    """While a verb works, whatever a library prints on stdout goes to stderr, in workers too.
+    """Send to stderr whatever a library prints on stdout while a verb works, in workers too.
 
     heyoka, for one, has warnings of its own, written below Python.
     """

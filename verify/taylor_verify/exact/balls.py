@@ -36,7 +36,7 @@ WIDTH_BITS: Final = 64
 
 
 class Undecidable(ArithmeticError):
-    """At this precision a ball does not decide between two branches; a higher one may."""
+    """Two branches that the balls of one precision do not tell apart; a higher one may."""
 
 
 class Enclosed(Solution):
@@ -61,9 +61,11 @@ class Enclosed(Solution):
         bits, last = target + _FIRST_GUARD_BITS, None
         for _ in range(attempts):
             motion = self._attempt(elapsed, bits)
-            last = last if motion is None else motion
-            missing = _missing_bits(motion, target)
-            if missing is None:
+            widest = mp.inf
+            if motion is not None:
+                last, widest = motion, reduce(max_or_nan, motion.radius, mpf(0))
+            missing = int(mp.mag(widest)) + target if mp.isfinite(widest) and widest else 0
+            if not mp.isfinite(widest):
                 bits = 2 * bits
             elif missing <= 0 and motion is not None:
                 return motion
@@ -82,16 +84,6 @@ class Enclosed(Solution):
                 return _motion(found, len(elapsed))
         except (Undecidable, ZeroDivisionError):
             return None
-
-
-def _missing_bits(motion: Motion | None, target: int) -> int | None:
-    """How many bits the widest row lacks; None where there is no finite motion to measure."""
-    if motion is None:
-        return None
-    widest = reduce(max_or_nan, motion.radius, mpf(0))
-    if not mp.isfinite(widest):
-        return None
-    return int(mp.mag(widest)) + target if widest else 0
 
 
 def _motion(found: Enclosure, count: int) -> Motion:

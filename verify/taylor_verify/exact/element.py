@@ -1,4 +1,4 @@
-"""One number that describes an orbit as a whole, and the settled collection of them."""
+"""Numbers that describe an orbit as a whole, and how they are settled."""
 
 from __future__ import annotations
 

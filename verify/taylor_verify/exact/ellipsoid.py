@@ -99,7 +99,7 @@ def deviation(body: ImmersedBody, bits: int) -> mpf:
 
 
 def told(body: ImmersedBody) -> list[str]:
-    """What body was read, in sentences; none for one that was given by its coefficients."""
+    """Sentences on the body that was read; none for one that was given by its coefficients."""
     shape = body.ellipsoid
     if shape is None:
         return []

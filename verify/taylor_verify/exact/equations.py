@@ -72,7 +72,7 @@ class Equations(NamedTuple):
         return Equations(constant, nothing(n), hessian, spin, velocity)
 
     def scaled(self, units: Vector, time: Fraction, length: Fraction) -> Scaled:
-        """The same with z in ``units``, one for each component; the centre goes by lengths."""
+        """The equations with z in ``units``, one for each component; the centre goes by lengths."""
         one = np.array(units, dtype=object)
         rates = time / one
         return Scaled(

@@ -1,8 +1,6 @@
-"""What a free motion conserves: each quantity with its value, its scale and its sensitivity."""
+"""Conserved quantities of a free motion, each with its value, its scale and its sensitivity."""
 
 from __future__ import annotations
-
-from typing import Any
 
 from taylor_verify.exact.invariant import Invariant
 from taylor_verify.exact.registry import kind_of
@@ -31,8 +29,6 @@ def decisive(scene: Scene, motion: Motion) -> list[int]:
     passed over, if there are others.
     """
     sizes = kind_of(scene.body).sizes(scene, motion)
-    return sorted({max(range(len(rows)), key=lambda k: _finite_first(rows[k])) for rows in sizes})
-
-
-def _finite_first(size: Any) -> Any:
-    return size if size == size else -1
+    # A NaN is equal to nothing, and comes last.
+    largest = (max(range(len(rows)), key=lambda k: (rows[k] == rows[k], rows[k])) for rows in sizes)
+    return sorted(set(largest))

@@ -58,7 +58,7 @@ class Kind(ABC, Generic[B, S]):
 
     @abstractmethod
     def with_state(self, initial: S, z: Vector) -> S:
-        """The same start with another z."""
+        """The start with another z."""
 
     @abstractmethod
     def energy(self, body: B) -> Matrix:

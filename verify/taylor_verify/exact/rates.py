@@ -1,4 +1,4 @@
-"""How fast an exact motion moves: its first and second time derivatives, from its own equations.
+"""First and second time derivatives of an exact motion, from its own equations.
 
 The equations are those of exact.enclosure.system, z' = c + z.Q z/2, so that z'' = z.Q z'. No difference
 of two motions is taken.

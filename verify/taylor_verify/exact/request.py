@@ -23,7 +23,8 @@ def exact_times(times: Iterable[Any]) -> list[Fraction]:
     """
     expected = "a sequence of times"
     if isinstance(times, str | bytes | set | frozenset) or hasattr(times, "columns"):
-        raise ValueError(f"expected {expected}, got the {_type(times)} {brief(times)}")
+        kind = "text" if isinstance(times, str) else type(times).__name__
+        raise ValueError(f"expected {expected}, got the {kind} {brief(times)}")
     try:
         listed = list(times)
     except TypeError:
@@ -62,7 +63,3 @@ def _exact(time: Any) -> Fraction:
     except (ValueError, OverflowError):
         raise ValueError("a finite number") from None
     return Fraction(int(numerator), int(denominator))
-
-
-def _type(value: object) -> str:
-    return "text" if isinstance(value, str) else type(value).__name__

@@ -1,4 +1,4 @@
-"""Which route leads to the truth of a scene: a closed form where there is one, else Taylor."""
+"""The route to the truth of a scene: a closed form where there is one, else Taylor."""
 
 from __future__ import annotations
 

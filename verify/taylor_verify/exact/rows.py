@@ -66,7 +66,7 @@ def spectral_norms(matrices: Array) -> Array:
 
 
 def ones(rows: Array) -> Array:
-    """One 1 for every row, in the rows' own numbers."""
+    """A 1 for every row, in the rows' own numbers."""
     return real([1] * len(rows), rows)
 
 

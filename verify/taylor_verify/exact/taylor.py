@@ -46,7 +46,7 @@ Times = Mapping[int, Fraction]
 
 @dataclass(frozen=True)
 class _Proven:
-    """One row: midpoints and radii of the tracked quantities, and the bits that the widest one lacks."""
+    """A row: midpoints and radii of the tracked quantities, and the bits that the widest one lacks."""
 
     values: Mapping[str, Any]
     radii: Mapping[str, mpf]
@@ -70,8 +70,11 @@ class _Enclosing(Solution):
         raise NotImplementedError
 
     def _before(self, times: Times, unreached: Fraction) -> Times:
-        """The times that may be reached although this one is not; all lie on its side of the start."""
-        raise NotImplementedError
+        """The times that may be reached although this one is not; all lie on its side of the start.
+
+        None, unless stated.
+        """
+        return {}
 
     @cached_property
     def _system(self) -> System:
@@ -242,11 +245,6 @@ class _Arcs(_Enclosing):
                 state += balls(self._system.start[len(state) :])
             arc = replace(whole, start=state, place=_place(self.scene, start))
             yield number, next(arc.rows([span]))[1] if span else arc.first_row()
-
-    def _before(self, times: Times, unreached: Fraction) -> Times:
-        """None: each arc is wanted, and each has a start of its own."""
-        del times, unreached
-        return {}
 
 
 def _place(scene: Scene, initial: State) -> Place | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from math import isfinite
 from os import PathLike
 from typing import TYPE_CHECKING, Any
@@ -171,10 +172,9 @@ def _written(value: Any) -> str:
 
 def _condition(scene: Scene, rung: Rung, period: float | None) -> dict[str, Any] | None:
     """Growth of an error at the first sample along the orbit; None where that is not known."""
-    try:
+    found = None
+    with suppress(Unsettled):
         found = carrying(scene)
-    except Unsettled:
-        found = None
     if found is None:
         return None
     worst, pace = found.worst, found.pace
@@ -203,10 +203,9 @@ def _condition_sentences(found: Carrying, rung: Rung, per_period: float | None) 
         f"An error in the state at t = {found.times[0]:g} is multiplied, each time relative to the "
         f"state, by {found.factors[worst]:.3g} at worst (t = {found.times[worst]:g}){later}."
     )
-    if per_period is not None:
-        yield f"It grows in proportion to time, by about {per_period:.2g} per period."
-    elif found.pace is not None:
-        yield f"It grows in proportion to time, by about {found.pace:.2g} per time unit."
+    pace, unit = (found.pace, "time unit") if per_period is None else (per_period, "period")
+    if pace is not None:
+        yield f"It grows in proportion to time, by about {pace:.2g} per {unit}."
     lost = "; nothing of the state is left then" if not becomes < 1 else ""
     yield (
         f"On {rung.name} one rounding, u = {u:.2g}, has then become {becomes:.2g} at worst{lost}."

@@ -84,9 +84,8 @@ def hold(baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
     that, roundings drawn anew may explain it.
     """
     # That of the extent of an answer is there or not as its own call has asked.
-    rows = paired(
-        *([v for v in verdicts if v.quantity != COMPLETE] for verdicts in (baseline, made))
-    )
+    before, now = ([v for v in verdicts if v.quantity != COMPLETE] for verdicts in (baseline, made))
+    rows = paired(before, now)
     # The row of a quaternion is there only where it fails: a sound run has none.
     gone, mended = _parted(rows.missing)
     added, spoiled = _parted(rows.extra)

@@ -36,7 +36,7 @@ def times(a: Any, b: Any) -> Any:
 
 
 def dot(a: Terms, b: Terms) -> Any:
-    """The sum of a_i b_i over the terms that are there."""
+    """Return the sum of a_i b_i over the terms that are there."""
     result: Any = ABSENT
     for p, q in zip(a, b, strict=True):
         result = plus(result, times(p, q))

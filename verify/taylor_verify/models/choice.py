@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from taylor_verify.models.form import Equations, Form
-from taylor_verify.scenes.precision import Rung
 
 Numbers = Mapping[str, Fraction]
 
@@ -43,11 +42,3 @@ def constants_told(asked: tuple[str, ...], form: Form) -> tuple[str, ...]:
     still = [name for name in asked if name not in form.states]
     verb = "is a constant" if len(still) == 1 else "are constants"
     return (f"{', '.join(still)} {verb}, and no state",) if still else ()
-
-
-def holds(rung: Rung, value: Fraction) -> bool:
-    """Return True if the value is a number of the rung."""
-    try:
-        return rung.holds(value)
-    except OverflowError:
-        return False

@@ -31,8 +31,14 @@ def momentum_rate(H: Terms, K: Sequence[Terms], M: Terms) -> list[Any]:
     small and, the rounding of a difference of neighbours being exact, known to full precision; written
     with K itself the rate would be a difference of large numbers.
     """
-    free = principal_rate(H, differences(K)) if _is_diagonal(K) else turning(H, _deviation(K))
-    return add(free, M)
+    if all(is_absent(K[i][j]) for i in range(3) for j in range(3) if i != j):
+        return add(principal_rate(H, differences(K)), M)
+    # K - K33 1, a symmetric tensor again: what is left of the body when a sphere is taken away.
+    deviation = [
+        [minus(K[i][j], K[2][2]) if i == j else K[i][j] for j in range(3)] for i in range(3)
+    ]
+    deviation[2][2] = ABSENT
+    return add(turning(H, deviation), M)
 
 
 def differences(K: Sequence[Terms]) -> list[Any]:
@@ -57,21 +63,6 @@ def principal_rate(H: Terms, D: Terms, summed: int | None = None) -> list[Any]:
 def turning(H: Terms, deviation: Sequence[Terms]) -> list[Any]:
     """Return H x K H for K = deviation + any sphere."""
     return cross(H, apply(deviation, H))
-
-
-def _deviation(K: Sequence[Terms]) -> list[list[Any]]:
-    """K - K33 1, a symmetric tensor again: what is left of the body when a sphere is taken away."""
-    return [
-        [
-            ABSENT if i == j == 2 else minus(K[i][j], K[2][2]) if i == j else K[i][j]
-            for j in range(3)
-        ]
-        for i in range(3)
-    ]
-
-
-def _is_diagonal(K: Sequence[Terms]) -> bool:
-    return all(is_absent(K[i][j]) for i in range(3) for j in range(3) if i != j)
 
 
 # The equations of a form: values, so that two scenes that need the same ones share one compiled
@@ -130,20 +121,16 @@ def heinbockel_moment(omega: Terms, omega_rate: Terms, I: Sequence[Terms]) -> li
     """The left side of Heinbockel (2.2.70), M_m = I_im omega_i' - e_tmj I_ij omega_i omega_t.
 
     Not integrated: it stands here so that a test can prove the form above equal to the text's, index
-    by index; (2.2.71) is its expansion and (2.2.72) its form in principal axes.
+    by index; (2.2.71) is its expansion and (2.2.72) its form in principal axes. For indices 0, 1, 2 the
+    permutation symbol e_ijk is (i - j)(j - k)(k - i)/2.
     """
     return [
         sum(I[i][m] * omega_rate[i] for i in range(3))
         - sum(
-            _permutation_sign(t, m, j) * I[i][j] * omega[i] * omega[t]
+            (t - m) * (m - j) * (j - t) // 2 * I[i][j] * omega[i] * omega[t]
             for t in range(3)
             for j in range(3)
             for i in range(3)
         )
         for m in range(3)
     ]
-
-
-def _permutation_sign(i: int, j: int, k: int) -> int:
-    """The permutation symbol e_ijk for indices 0, 1, 2."""
-    return (i - j) * (j - k) * (k - i) // 2

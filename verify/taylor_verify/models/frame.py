@@ -12,7 +12,7 @@ from taylor_verify.models.algebra import Terms, apply, dot, minus, plus, times
 
 
 def attitude_rate(q: Terms, omega: Terms) -> list[Any]:
-    """q' = q (0, omega) / 2, the same as R' = R [omega]x."""
+    """Return q' = q (0, omega) / 2, the same as R' = R [omega]x."""
     q0, q1, q2, q3 = q
     w1, w2, w3 = omega
     doubled = [
@@ -25,7 +25,7 @@ def attitude_rate(q: Terms, omega: Terms) -> list[Any]:
 
 
 def rotation(q: Terms) -> list[list[Any]]:
-    """R(q), which is |q|^2 times a rotation where q is not a unit quaternion."""
+    """Return R(q), which is |q|^2 times a rotation where q is not a unit quaternion."""
     q0, q1, q2, q3 = q
     s0, s1, s2, s3 = q0 * q0, q1 * q1, q2 * q2, q3 * q3
     return [
@@ -36,5 +36,5 @@ def rotation(q: Terms) -> list[list[Any]]:
 
 
 def centre_rate(q: Terms, U: Terms) -> list[Any]:
-    """c' = R(q) U, space axes."""
+    """Return c' = R(q) U, space axes."""
     return apply(rotation(q), U)

@@ -24,7 +24,7 @@ _OF_MOTION = "hknabfg"
 
 
 def in_general_form(problem: Problem, zeros: bool = False) -> Problem:
-    """The same body and start by the general equations, all impulses states.
+    """Return the same body and start by the general equations, all impulses states.
 
     With ``zeros`` the coefficients and loads that are zero are parameters like any other.
     """
@@ -53,7 +53,7 @@ def in_general_form(problem: Problem, zeros: bool = False) -> Problem:
 
 
 def whole_form(body: Body) -> Form:
-    """All that this kind of body has: every coefficient and load, attitude and, in a fluid, the centre."""
+    """Return the form with every coefficient and load of this kind of body, with attitude and centre."""
     kind = mechanics(body)
     zeros = {Shape.NUMBER: 0, Shape.VECTOR: (0,) * 3}
     names = [

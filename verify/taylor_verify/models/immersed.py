@@ -101,7 +101,7 @@ def chosen_equations(numbers: Numbers) -> Choice:
 
 
 def axis_of_symmetry(numbers: Numbers) -> int | None:
-    """The body axis about which T is exactly Clebsch's; 3 where there is a choice."""
+    """Return the body axis about which T is exactly Clebsch's; 3 where there is a choice."""
     if any(value for name, value in numbers.items() if name[0] in "ABC" and name[1] != name[2]):
         return None
     for axis in (3, 1, 2):

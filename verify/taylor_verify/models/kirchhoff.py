@@ -32,7 +32,7 @@ CLEBSCH_NAMES: Final = ("p", "p'", "q", "q'", "r", "r'")
 def velocities(
     x: Terms, y: Terms, A: Sequence[Terms], B: Sequence[Terms], C: Sequence[Terms]
 ) -> tuple[list[Any], list[Any]]:
-    """U = A x + B y and Omega = B^T x + C y, body axes."""
+    """Return U = A x + B y and Omega = B^T x + C y, body axes."""
     U = add(apply(A, x), apply(B, y))
     Omega = add(apply(transpose(B), x), apply(C, y))
     return U, Omega
@@ -41,7 +41,7 @@ def velocities(
 def impulse_rates(
     x: Terms, y: Terms, U: Terms, Omega: Terms, X: Terms, L: Terms
 ) -> tuple[list[Any], list[Any]]:
-    """x' = x x Omega + X and y' = y x Omega + x x U + L: 48 (3) and (4), all 21 coefficients."""
+    """Return x' = x x Omega + X and y' = y x Omega + x x U + L: 48 (3) and (4), all 21 coefficients."""
     x_rate = add(cross(x, Omega), X)
     y_rate = add(add(cross(y, Omega), cross(x, U)), L)
     return x_rate, y_rate
@@ -50,7 +50,7 @@ def impulse_rates(
 def clebsch_rates(
     x: Terms, y: Terms, coefficients: Terms, X: Terms, L: Terms
 ) -> tuple[list[Any], list[Any]]:
-    """The same for Clebsch's T, where six products of the state serve for eighteen.
+    """Return both rates for Clebsch's T, where six products of the state serve for eighteen.
 
     x3' is 49 (3). y3' is the couple's third component alone, by 49 (2), whatever the force: without
     it y3 is a constant and the caller passes a parameter. Coefficients stand by themselves, never as
@@ -106,7 +106,7 @@ def _uncancelled(
 
 
 def kirchhoff_equations(n: Named) -> dict[str, Any]:
-    """48 (3) and (4) with the general T, and attitude and centre where they are tracked."""
+    """Return 48 (3) and (4) with the general T, and attitude and centre where they are tracked."""
     x, y = n.vector("x"), n.vector("y")
     U, Omega = velocities(x, y, n.symmetric("A"), n.matrix("B"), n.symmetric("C"))
     x_rate, y_rate = impulse_rates(x, y, U, Omega, n.vector("X"), n.vector("L"))
@@ -133,13 +133,12 @@ class ClebschAbout:
         x, y, X, L = ([n.vector(letter)[i] for i in order] for letter in "xyXL")
         found = clebsch_rates(x, y, six, X, L)
         x_rate, y_rate = ([rate[order.index(i)] for i in range(3)] for rate in found)
-        A, B, C = (self._about(six[k], six[k + 1]) for k in (0, 2, 4))
+        A, B, C = ([[ABSENT] * 3 for _ in range(3)] for _ in range(3))
+        for block, across, along in zip((A, B, C), six[::2], six[1::2], strict=True):
+            for i in range(3):
+                block[i][i] = along if i == self.axis - 1 else across
         U, Omega = velocities(n.vector("x"), n.vector("y"), A, B, C)
         return labelled("x", x_rate) | labelled("y", y_rate) | frame_rates(n, Omega, U)
-
-    def _about(self, transverse: Any, axial: Any) -> Sequence[Sequence[Any]]:
-        diagonal = [axial if i == self.axis - 1 else transverse for i in range(3)]
-        return [[diagonal[i] if i == j else ABSENT for j in range(3)] for i in range(3)]
 
 
 # About axis 3 and with six coefficients; y3 is a state only where a couple turns it.

@@ -134,14 +134,14 @@ def begun(waves: tuple[Wave, ...], start: Vector) -> Manufactured:
 
 
 def _moment(n: Named, momentum: Moved) -> dict[str, Any]:
-    """M_i = H*_i' - e_ijk H*_j K_kl H*_l."""
+    """Return M_i = H*_i' - e_ijk H*_j K_kl H*_l."""
     (H, H_rate), K = momentum, n.symmetric("K")
     omega = [dot(K[k], H) for k in range(3)]
     return labelled("M", [minus(H_rate[i], _permuted(i, H, omega)) for i in range(3)])
 
 
 def _force_and_couple(n: Named, linear: Moved, angular: Moved) -> dict[str, Any]:
-    """X_i = x*_i' - e_ijk x*_j Omega*_k and L_i = y*_i' - e_ijk (y*_j Omega*_k + x*_j U*_k)."""
+    """Return X_i = x*_i' - e_ijk x*_j Omega*_k and L_i = y*_i' - e_ijk (y*_j Omega*_k + x*_j U*_k)."""
     (x, x_rate), (y, y_rate) = linear, angular
     A, B, C = n.symmetric("A"), n.matrix("B"), n.symmetric("C")
     U = [plus(dot(A[k], x), dot(B[k], y)) for k in range(3)]

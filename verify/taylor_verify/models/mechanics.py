@@ -69,7 +69,7 @@ class Change:
 
 
 class Mechanics(ABC, Generic[B, S]):
-    """What the equations of one kind of body are made of.
+    """Ingredients of the equations of one kind of body.
 
     ``body_letters`` are its coefficients and loads, ``momenta`` the vectors that are integrated: parts
     whose names are letters.

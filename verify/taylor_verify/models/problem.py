@@ -39,7 +39,7 @@ class NotRepresentable(Exception):
 
 @dataclass(frozen=True)
 class Problem:
-    """What a solver is asked: equations, parameters, initial state and times, all on one rung.
+    """Question to a solver: equations, parameters, initial state and times, all on one rung.
 
     ``given`` is what most solvers want: the body, the start (``given.initial.omega``) and the instants
     in the scene's own units. ``parameters``, ``initial_momenta`` and ``times`` (elapsed since the
@@ -62,7 +62,7 @@ class Problem:
 
     @property
     def initial(self) -> NoReturn:
-        """Not an attribute, for it could be either of two: the error says where they are."""
+        """Raise AttributeError, which says where each of the two starts is."""
         raise AttributeError(
             "expected problem.given.initial (omega or the impulses, in the scene's units) or "
             "problem.initial_momenta (I omega or the impulses, in problem.units), got problem.initial"
@@ -82,7 +82,7 @@ class Problem:
         return dict(zip(self.form.states, self.initial_momenta, strict=True))
 
     def with_equations(self, equations: Equations) -> Problem:
-        """The same data under other equations in the same states, as the negative controls need."""
+        """Return the same data under other equations in the same states, as the negative controls need."""
         form = replace(self.form, equations=equations, parameters=tuple(self.parameter))
         kept = form.entering()
         values = tuple(self.parameter[name] for name in kept)
@@ -186,7 +186,7 @@ def _rounded_data(scene: Scene, units: Units, rounded: _Rounding) -> _Data:
         raise NotRepresentable(f"rounded to {rounded.rung.name}, {error}") from error
     momentum = tuple(chain(*_each(kind.momenta, momenta, units.physical).values()))
     place = {
-        part.name: _rounded_place(part, start.part(part), units, rounded)
+        part.name: units.physical(part, rounded.part(part, units.counted(part, start.part(part))))
         for part in start.PARTS
         if part.name not in start.MOVING
     }
@@ -199,13 +199,6 @@ def numbers_of(body: Body, units: Units) -> dict[str, Fraction]:
     """Return every coefficient and load of a body by name, in these units."""
     kind = mechanics(body)
     return _named(kind.body_letters, _each(kind.body_letters, kind.values(body), units.counted))
-
-
-def _rounded_place(part: Part, value: Value, units: Units, rounded: _Rounding) -> Value:
-    """Round a part of the place in its unit."""
-    if part.shape is Shape.QUATERNION:
-        return rounded.quaternion(value)
-    return units.physical(part, rounded.each(units.counted(part, value)))
 
 
 # Letters of the equations with their values: exact, in units, rounded.

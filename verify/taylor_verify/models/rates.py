@@ -1,4 +1,4 @@
-"""How fast a motion is at a state: the rate on which the longest step rests.
+"""Rate of a motion at a state, on which the longest step rests.
 
 s  state, in the problem's units       J(s)  the Jacobian of the rates
 """
@@ -39,7 +39,7 @@ class Linearised:
         self._linear = self._constant.tolist(), self._slopes.tolist()
 
     def fastest(self, state: Sequence[float]) -> float:
-        """The spectral radius of J, in radians per unit of time; infinite where J is not finite.
+        """Return the spectral radius of J, in radians per unit of time; infinite where J is not finite.
 
         A component too small for the error control to see grows or turns at one of these rates; they
         do not depend on the units of the components. H or x, y do not know the attitude: J falls
@@ -60,7 +60,7 @@ class Linearised:
         return rate
 
     def _largest_of_three(self, state: Sequence[float]) -> float:
-        """By the cubic: LAPACK's way in and out takes longer than all of this."""
+        """Return it by the cubic: LAPACK's way in and out takes longer than all of this."""
         x, y, z = state
         matrix = [
             [c + p * x + q * y + r * z for c, (p, q, r) in zip(constants, slopes, strict=True)]
@@ -88,7 +88,7 @@ def _stencil(n: int) -> _Stencil:
 
 
 def _values_at(problem: Problem, kept: list[int], points: Floats) -> Floats:
-    """The rates of the kept states at each column of points, the other states zero."""
+    """Return the rates of the kept states at each column of points, the other states zero."""
     state = np.zeros((len(problem.form.states), points.shape[1]))
     state[kept] = points
     parameters = [float(value) for value in problem.parameters]
@@ -99,7 +99,7 @@ def _values_at(problem: Problem, kept: list[int], points: Floats) -> Floats:
 
 
 def _derivatives(found: Floats) -> tuple[Floats, Floats]:
-    """J(0) and the symmetric second derivatives, from a quadratic function's values on the stencil."""
+    """Return J(0) and the second derivatives of a quadratic function, from its values on the stencil."""
     n = len(found)
     zero, ahead, behind = found[:, :1], found[:, 1 : n + 1], found[:, n + 1 : 2 * n + 1]
     _, i, j = _stencil(n)
@@ -111,14 +111,14 @@ def _derivatives(found: Floats) -> tuple[Floats, Floats]:
 
 
 def _characteristic(m: list[list[float]]) -> tuple[float, float, float]:
-    """t, s, d of the characteristic polynomial z^3 - t z^2 + s z - d."""
+    """Return t, s, d of the characteristic polynomial z^3 - t z^2 + s z - d."""
     (a, b, c), (d, e, f), (g, h, i) = m
     minors = (e * i - f * h) + (a * i - c * g) + (a * e - b * d)
     return a + e + i, minors, a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
 
 
 def _largest_root(t: float, s: float, d: float) -> float:
-    """The largest |z| with z^3 - t z^2 + s z - d = 0, by Cardano's and Viète's formulas.
+    """Return the largest |z| with z^3 - t z^2 + s z - d = 0, by Cardano's and Viète's formulas.
 
     With z = t/3 + w: w^3 + 3 p w - 2 q = 0. Double roots it has to half the digits, and infinity
     where a cube overflows.

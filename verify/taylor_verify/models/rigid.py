@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Final, final
 
-from taylor_verify.models.choice import Choice, Numbers, holds
+from taylor_verify.models.choice import Choice, Numbers
 from taylor_verify.models.euler import PrincipalEuler, TensorEuler, euler_equations
 from taylor_verify.models.form import Equations
 from taylor_verify.models.manufactured import EULER_INVERSE
@@ -111,7 +111,7 @@ def chosen_equations(numbers: Numbers, rung: Rung) -> Choice:
     else:
         found = dict(zip(_DIFFERENCES, (k3 - k2, k1 - k3, k2 - k1), strict=True))
         definitions, begin = _DIFFERENCES, "principal axes: "
-    extra = {name: value for name, value in found.items() if holds(rung, value)}
+    extra = {name: value for name, value in found.items() if rung.holds(value)}
     formed = tuple(int(name[1]) for name in found if name not in extra)
     shown = [name for name in extra if extra[name] or definitions is _DEVIATIONS]
     said = [begin + ", ".join(f"{name} = {definitions[name]}" for name in shown)] if shown else []

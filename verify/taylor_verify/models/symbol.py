@@ -51,13 +51,13 @@ class Symbol:
 
 
 def _within(operand: Any, strength: int) -> str:
-    """The text, in brackets if it binds less than its surroundings."""
+    """Return the text, in brackets if it binds less than its surroundings."""
     own = _STRENGTH[operand.operation] if isinstance(operand, Symbol) else _STRENGTH[""]
     return str(operand) if own >= strength else f"({operand})"
 
 
 def operations(expressions: Iterable[Any]) -> dict[str, int]:
-    """How many distinct sums, products and quotients these expressions take to evaluate."""
+    """Count the distinct sums, products and quotients of these expressions."""
     done: set[Symbol] = set()
     left = [expression for expression in expressions if isinstance(expression, Symbol)]
     while left:

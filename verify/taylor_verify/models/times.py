@@ -51,7 +51,7 @@ class BinaryTimes(Instants):
 
 
 def rounded_times(clock: Clock, unit: Fraction, rung: Rung) -> Sequence[Fraction]:
-    """Time since the initial state over ``unit``, a power of two, each rounded once to the rung.
+    """Return the time since the initial state over ``unit``, a power of two, each rounded once to the rung.
 
     Raises OverflowError for a time that the rung has no number for.
     """
@@ -61,41 +61,31 @@ def rounded_times(clock: Clock, unit: Fraction, rung: Rung) -> Sequence[Fraction
         largest = max(abs(a), abs(a + (count - 1) * b))
         if _is_in_range(largest, d, shift, rung):
             if _is_held(largest, d, rung):
-                return TypedTimes(_quotients(a, b, d, count, shift, rung))
-            numerators = range(a, a + count * b, b)
-            return BinaryTimes([_shifted(nearest(n, d, rung.bits), shift) for n in numerators])
+                kind = _HARDWARE[rung.name]
+                numerators = (a + b * np.arange(count, dtype=np.int64)).astype(kind)
+                return TypedTimes(np.ldexp(numerators / kind(d), shift))
+            rounded = (nearest(n, d, rung.bits) for n in range(a, a + count * b, b))
+            return BinaryTimes([(significand, e + shift) for significand, e in rounded])
     return tuple(rung.round(t / unit) for t in clock.elapsed)
 
 
 def are_distinct(times: Sequence[Fraction]) -> bool:
-    """Whether no two are equal; the instants were monotonic, and rounding keeps their order."""
+    """Return True if no two are equal; the instants were monotonic, and rounding keeps their order."""
     if isinstance(times, TypedTimes | BinaryTimes):
         return times.are_distinct
     return all(one != other for one, other in pairwise(times))
 
 
 def _is_in_range(largest: int, d: int, shift: int, rung: Rung) -> bool:
-    """Whether every quotient n/d 2^shift with 0 < n <= largest is a normal number of the rung."""
+    """Return True if every quotient n/d 2^shift with 0 < n <= largest is a normal number of the rung."""
     if rung.emin is None or rung.emax is None:
         return True
     return shift - d.bit_length() > rung.emin and largest.bit_length() + shift < rung.emax
 
 
 def _is_held(largest: int, d: int, rung: Rung) -> bool:
-    """Whether the rung is a type of this machine that holds every numerator and the denominator."""
+    """Return True if the rung is a type of this machine that holds every numerator and the denominator."""
     kind = _HARDWARE.get(rung.name)
     if kind is None or np.finfo(kind).nmant + 1 != rung.bits:
         return False
     return max(largest, d).bit_length() <= min(rung.bits, _INTEGER_BITS)
-
-
-def _quotients(a: int, b: int, d: int, count: int, shift: int, rung: Rung) -> np.ndarray[Any, Any]:
-    kind = _HARDWARE[rung.name]
-    numerators = (a + b * np.arange(count, dtype=np.int64)).astype(kind)
-    found: np.ndarray[Any, Any] = np.ldexp(numerators / kind(d), shift)
-    return found
-
-
-def _shifted(number: tuple[int, int], shift: int) -> tuple[int, int]:
-    significand, exponent = number
-    return significand, exponent + shift

@@ -3,20 +3,15 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from functools import cache
 from html import unescape
 from typing import Final
 
 from markupsafe import Markup, escape
 
-# Browsers have dropped the attribute: a bold x is a character of its own. First letter, first code.
+# Browsers have dropped the attribute: a bold x is a character of its own.
 _VARIANT: Final = re.compile(r'<mi mathvariant="([a-z-]+)">(&#x[0-9A-F]+;|.)</mi>')
-_ALPHABETS: Final = {
-    "bold": (("A", 0x1D400), ("a", 0x1D41A)),
-    "bold-italic": (("A", 0x1D468), ("a", 0x1D482), ("Α", 0x1D71C), ("α", 0x1D736)),  # noqa: RUF001
-    "sans-serif": (("A", 0x1D5A0), ("a", 0x1D5BA)),
-}
-_LETTERS: Final = 26
 # Between the name of a function and what is beside it TeX leaves a thin space.
 _FUNCTION: Final = re.compile(r"<mi>(sin|cos|tan|exp|ln|log|sinh|cosh|tanh|sn|cn|dn|am)</mi>")
 _SPACED: Final = r'<mspace width="0.14em"/><mi>\1</mi><mspace width="0.14em"/>'
@@ -25,7 +20,7 @@ _WORDS: Final = re.compile(r"\\text\{([^{}]*)\}")
 
 @cache
 def mathml(tex: str, display: bool = False) -> Markup:
-    """The formula as an element <math>, its LaTeX in the attribute ``alttext``.
+    """Return the formula as an element <math>, its LaTeX in the attribute ``alttext``.
 
     Raises ValueError for LaTeX that cannot be read.
     """
@@ -41,16 +36,18 @@ def mathml(tex: str, display: bool = False) -> Markup:
 
 
 def _letter(found: re.Match[str]) -> str:
-    """A letter of another alphabet as the character that Unicode has for it, or as it was."""
-    letter = unescape(found[2])
-    for first, start in _ALPHABETS.get(found[1], ()):
-        if 0 <= ord(letter) - ord(first) < _LETTERS:
-            return f"<mi>{chr(start + ord(letter) - ord(first))}</mi>"
-    return found[0]
+    """Return a letter of another alphabet as the character that Unicode has for it, or as it was."""
+    alphabet = found[1].upper().replace("BOLD-", "BOLD ")
+    # Such as LATIN SMALL LETTER X.
+    _, case, _, letter = (*unicodedata.name(unescape(found[2]), "").split(), "", "", "", "")[:4]
+    try:
+        return f"<mi>{unicodedata.lookup(f'MATHEMATICAL {alphabet} {case} {letter}')}</mi>"
+    except KeyError:
+        return found[0]
 
 
 def inline(tex: str) -> Markup:
-    """A formula within a line: what it says in words is text, which can be broken at its spaces."""
+    """Return a formula within a line: its words are text, which can be broken at its spaces."""
     parts, at = [], 0
     for words in _WORDS.finditer(tex):
         before = tex[at : words.start()]
@@ -61,6 +58,6 @@ def inline(tex: str) -> Markup:
 
 
 def _formula(tex: str) -> Markup:
-    """In a box of its own, which a narrow page can scroll; nothing for nothing."""
+    """Return a formula in a box of its own, which a narrow page can scroll; nothing for nothing."""
     found = mathml(tex.strip()) if tex.strip() else None
     return Markup('<span class="formula">{}</span>').format(found) if found else Markup()

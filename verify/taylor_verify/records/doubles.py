@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, Final, final, overload
+from typing import TYPE_CHECKING, Any, Final, final
 
 if TYPE_CHECKING:
     import numpy as np
@@ -26,13 +26,7 @@ class Doubles(Sequence[float]):
     def __len__(self) -> int:
         return len(self._values)
 
-    @overload
-    def __getitem__(self, place: int) -> float: ...
-
-    @overload
-    def __getitem__(self, place: slice) -> Doubles: ...
-
-    def __getitem__(self, place: int | slice) -> float | Doubles:
+    def __getitem__(self, place: Any) -> Any:
         return Doubles(self._values[place]) if isinstance(place, slice) else self._values[place]
 
     def __iter__(self) -> Iterator[float]:

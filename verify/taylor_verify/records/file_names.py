@@ -22,12 +22,12 @@ _SAFE: Final = "-._~ :?=,+"
 
 
 def of_scene(scene: str) -> str:
-    """The stem of the files of a scene."""
+    """Return the stem of the files of a scene."""
     if shipped := _SHIPPED.fullmatch(scene):
         return "-".join(part for part in shipped.group("family", "folder", "name") if part)
     return scene if _PLAIN.fullmatch(scene) else _MARK + quote(scene, safe=_SAFE)
 
 
 def of_solver(solver: str) -> str:
-    """A solver's name without what a file's name cannot hold, and without the dot that ends it there."""
+    """Return a solver's name with escapes for what a file's name cannot hold, and for its dots."""
     return quote(solver, safe=_SAFE).replace(".", "%2E")

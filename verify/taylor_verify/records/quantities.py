@@ -78,28 +78,18 @@ class Conserved:
 
 # r12 is row 1, column 2; q0 is the scalar.
 GROUPS: Final[Mapping[str, Group]] = {
-    each.name: each
-    for each in (
-        Group("omega", ("w1", "w2", "w3"), "omega", "angular velocity", "rate", start="omega"),
-        Group("linear_velocity", ("u1", "u2", "u3"), "velocity", "linear velocity", "velocity"),
-        Group(
-            *("linear_impulse", ("x1", "x2", "x3"), "impulse", "linear impulse", "impulse"),
-            start="linear",
+    name: Group(name, tuple(columns.split()), *rest)
+    for name, columns, *rest in (
+        ("omega", "w1 w2 w3", "omega", "angular velocity", "rate", "body", "omega"),
+        ("linear_velocity", "u1 u2 u3", "velocity", "linear velocity", "velocity"),
+        ("linear_impulse", "x1 x2 x3", "impulse", "linear impulse", "impulse", "body", "linear"),
+        (
+            *("angular_impulse", "y1 y2 y3", "impulse", "angular impulse", "moment of impulse"),
+            *("body", "angular"),
         ),
-        Group(
-            *("angular_impulse", ("y1", "y2", "y3"), "impulse"),
-            *("angular impulse", "moment of impulse"),
-            start="angular",
-        ),
-        Group(
-            *("quaternion", ("q0", "q1", "q2", "q3"), "attitude", "attitude", "number", "frame"),
-            start="attitude",
-        ),
-        Group(
-            *("attitude", tuple(f"r{i}{k}" for i in (1, 2, 3) for k in (1, 2, 3))),
-            *("attitude", "attitude", "number", "frame"),
-        ),
-        Group("centre", ("c1", "c2", "c3"), "centre", "centre", "length", "space", "centre"),
+        ("quaternion", "q0 q1 q2 q3", "attitude", "attitude", "number", "frame", "attitude"),
+        ("attitude", "r11 r12 r13 r21 r22 r23 r31 r32 r33", *("attitude",) * 2, "number", "frame"),
+        ("centre", "c1 c2 c3", "centre", "centre", "length", "space", "centre"),
     )
 }
 # In reading order.
@@ -111,15 +101,9 @@ QUANTITIES: Final[Mapping[str, Quantity]] = {
             *("impulse", "max|x|, max|y|", ("linear_impulse", "angular_impulse")),
             main_of="kirchhoff",
         ),
+        Quantity("attitude", "rad", ("quaternion",), "", ("euler", "kirchhoff"), Measure.ANGLE),
         Quantity(
-            *("attitude", "rad", ("quaternion",)),
-            tracked_by=("euler", "kirchhoff"),
-            measure=Measure.ANGLE,
-        ),
-        Quantity(
-            *("centre", "arc length", ("centre",)),
-            tracked_by=("kirchhoff",),
-            measure=Measure.PATH,
+            *("centre", "arc length", ("centre",), "", ("kirchhoff",), Measure.PATH),
             needs=("attitude",),
         ),
         Quantity("velocity", "max|U|", ("linear_velocity",)),

@@ -171,8 +171,8 @@ class AskedTolerance:
     def sentence(self) -> str:
         """Return both numbers."""
         return (
-            f"a tolerance of {_exponent(self.asked)} was asked for; arithmetic alone would have "
-            f"allowed {_figure(self.allowed)}"
+            f"a tolerance of {f'{self.asked:g}'.replace('e-0', 'e-')} was asked for; arithmetic alone "
+            f"would have allowed {_figure(self.allowed)}"
         )
 
 
@@ -318,11 +318,6 @@ def late(shift: float) -> str:
 def pace(trend: float) -> str:
     """Return the pace of a clock in words, by the shift that it makes in a unit of time."""
     return f"{'slow' if trend > 0 else 'fast'} by {abs(trend):.3g} of the time"
-
-
-def _exponent(value: float) -> str:
-    """Return a number as people write it: 1e-8."""
-    return f"{value:g}".replace("e-0", "e-")
 
 
 def _figure(value: float | None, digits: int = 2) -> str:

@@ -34,7 +34,7 @@ class GateRecord:
 
 @dataclass(frozen=True)
 class Record:
-    """One run: what was built, what the orbit is, and each gate's terms."""
+    """Record of one run: the equations as built, the regime of the orbit, and each gate's terms."""
 
     scene: str
     title: str

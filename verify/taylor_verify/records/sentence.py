@@ -72,9 +72,8 @@ def _left(verdict: Verdict) -> Iterator[str]:
     kind = verdict.error_kind
     if verdict.max == 0 or verdict.verdict is Status.VACUOUS or kind in _UNSAID:
         return
-    remains = ""
+    shift, remains = verdict.reason.shift, ""
     if verdict.remains is not None:
-        shift = verdict.reason.shift
         remains = f", and {verdict.remains:.2g} remains{shift.rows_of_it() if shift else ''}"
     if kind is ErrorKind.ROUNDOFF:
         yield "what is left is roundoff"
@@ -88,7 +87,10 @@ def _left(verdict: Verdict) -> Iterator[str]:
         clock = pace(verdict.trend or 0.0)
         yield f"the error is a drift of phase: the clock runs {clock}{remains}"
     elif kind is ErrorKind.PHASE_WANDER:
-        yield f"the error is a phase that wanders{_worst_shift(verdict)}{remains}"
+        worst = (
+            "" if shift is None or shift.at is None else f", {late(shift.late)} at t = {shift.at:g}"
+        )
+        yield f"the error is a phase that wanders{worst}{remains}"
         yield from _course(verdict)
     else:
         if verdict.shift is not None and kind is not ErrorKind.OFFSET:
@@ -144,8 +146,3 @@ def _allowed_by_arithmetic(verdict: Verdict) -> str:
     if verdict.attainable is None or verdict.error_kind is ErrorKind.ROUNDOFF:
         return ""
     return f" (roundoff of {verdict.rung} alone would need {GATE_FACTOR * verdict.attainable:.2g})"
-
-
-def _worst_shift(verdict: Verdict) -> str:
-    shift = verdict.reason.shift
-    return "" if shift is None or shift.at is None else f", {late(shift.late)} at t = {shift.at:g}"

@@ -178,7 +178,7 @@ class ImmersedBody(Body):
         return next((axis for axis in (3, 1, 2) if self._is_of_revolution(axis)), None)
 
     def _is_of_revolution(self, axis: int) -> bool:
-        """Whether A, B and C commute with the turns about the axis."""
+        """Return True if A, B and C commute with the turns about the axis."""
         i, j, k = axis % 3, (axis + 1) % 3, axis - 1
         return all(
             block[i][i] == block[j][j]
@@ -214,7 +214,7 @@ class Clebsch:
     r_prime: Fraction
 
     def body(self, force: Vector = ZERO_VECTOR, couple: Vector = ZERO_VECTOR) -> ImmersedBody:
-        """The same energy as 21 coefficients, with the loads given."""
+        """Return the body of this energy, by its 21 coefficients, with the loads given."""
         return ImmersedBody(
             linear=tensors.diagonal((self.p, self.p, self.p_prime)),
             coupling=tensors.diagonal((self.q, self.q, self.q_prime)),

@@ -52,7 +52,7 @@ def inverse_inertias(
 
 
 def _inertias(semi_axes: Vector, density: Fraction, fluid_density: Fraction) -> tuple[Any, Any]:
-    """M + m_i and I_i + j_i at the ambient precision of mpmath."""
+    """Return M + m_i and I_i + j_i at the ambient precision of mpmath."""
     from mpmath import mp
 
     squares = [axis * axis for axis in semi_axes]
@@ -74,7 +74,7 @@ def _inertias(semi_axes: Vector, density: Fraction, fluid_density: Fraction) -> 
 
 
 def lamb_integrals(semi_axes: Vector) -> tuple[list[Any], list[Any]]:
-    """alpha_i and J_i at the ambient precision of mpmath.
+    """Return alpha_i and J_i at the ambient precision of mpmath.
 
     Duplication: with s = sqrt, shift = s(x)s(y) + s(y)s(z) + s(z)s(x) and x' = (x + shift)/4,
 
@@ -115,7 +115,7 @@ def lamb_integrals(semi_axes: Vector) -> tuple[list[Any], list[Any]]:
 
 
 def _agree(x: list[Any]) -> bool:
-    """Whether the arguments agree so well that a mean of them stands for all three.
+    """Return True if the arguments agree so well that a mean of them stands for all three.
 
     R_D and E are means of (u.x)^-s over weights u of sum 1, with s <= 5/2. To take the mean of u.x
     itself is wrong by the relative s (s + 1)/2 (spread/least)^2 at most, so that half the bits of

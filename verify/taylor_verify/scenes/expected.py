@@ -41,7 +41,7 @@ Row = tuple[str, str, str]
 
 @dataclass(frozen=True)
 class Expectation:
-    """One row that is expected not to pass: with which verdict, and why."""
+    """Verdict of a row that is expected not to pass, and the reason."""
 
     verdict: str
     why: str
@@ -49,7 +49,7 @@ class Expectation:
 
 @dataclass(frozen=True)
 class Expectations:
-    """All of them by row, and the runs (scene and rung) that a folder leaves out with the reason."""
+    """Expectations by row, and the reasons of the runs (scene and rung) that a folder leaves out."""
 
     rows: Mapping[Row, Expectation] = field(default_factory=dict)
     left_out: Mapping[tuple[str, str], str] = field(default_factory=dict)

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from fractions import Fraction
 from functools import cached_property
 from math import lcm
-from typing import Any, overload
+from typing import Any
 
 
 class Instants(Sequence[Fraction]):
@@ -28,13 +28,7 @@ class Instants(Sequence[Fraction]):
     def __len__(self) -> int:
         return self._count
 
-    @overload
-    def __getitem__(self, place: int) -> Fraction: ...
-
-    @overload
-    def __getitem__(self, place: slice) -> tuple[Fraction, ...]: ...
-
-    def __getitem__(self, place: int | slice) -> Fraction | tuple[Fraction, ...]:
+    def __getitem__(self, place: Any) -> Any:
         return self.numbers[place]
 
     def __iter__(self) -> Iterator[Fraction]:
@@ -57,7 +51,7 @@ class Instants(Sequence[Fraction]):
 
 
 class EquallySpaced(Instants):
-    """first + k step for k = 0 .. count - 1."""
+    """The instants first + k step for k = 0 .. count - 1."""
 
     def __init__(self, first: Fraction, step: Fraction, count: int) -> None:
         super().__init__(count, lambda: (first + k * step for k in range(count)))
@@ -69,7 +63,7 @@ class EquallySpaced(Instants):
         return super().__getitem__(place)
 
     def over_common_denominator(self, origin: Fraction) -> tuple[int, int, int]:
-        """Integers a, b, d, with which instant k less the origin is (a + k b)/d exactly."""
+        """Return integers a, b, d, with which instant k less the origin is (a + k b)/d exactly."""
         offset = self.first - origin
         d = lcm(offset.denominator, self.step.denominator)
         return int(offset * d), int(self.step * d), d

@@ -1,4 +1,4 @@
-"""The shipped scenes: where they lie, what they are called, and how one is found."""
+"""The shipped scenes: their folder, their names, and the search for one of them."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _MOST_SUGGESTED = 3
 
 
 def cases_directory() -> Path:
-    """The folder of the shipped scenes: inside an installed package, beside `verify` in a checkout.
+    """Return the folder of the shipped scenes: inside an installed package, beside `verify` in a checkout.
 
     Raises FileNotFoundError where there is neither, so that no run passes for want of scenes.
     """
@@ -49,24 +49,33 @@ def cases_directory() -> Path:
 
 
 def names(*folders: str) -> tuple[str, ...]:
-    """The scenes of these folders by name (``euler/generic``), in alphabetical order.
+    """Return the scenes of these folders by name (``euler/generic``), in alphabetical order.
 
     Those of the standard set unless a folder is given.
     """
     cases = cases_directory()
-    found = (cases / folder for folder in folders or STANDARD_SET)
-    return tuple(_name(file) for folder in found for file in _scenes(folder))
+    files = (
+        file
+        for folder in folders or STANDARD_SET
+        for file in sorted((cases / folder).glob("*.toml"))
+    )
+    # A file in capitals is about the scenes and no scene itself.
+    return tuple(
+        file.relative_to(cases).with_suffix("").as_posix()
+        for file in files
+        if not file.stem.isupper()
+    )
 
 
 def named(scene: str) -> tuple[str, ...]:
-    """What a word of the command line stands for: all scenes of a folder (``extremes``), or one."""
+    """Return what a word of the command line stands for: all scenes of a folder (``extremes``), or one."""
     folders = (EXTREMES, WORST) if scene == EXTREMES else (scene,)
     is_folder = scene in (*STANDARD_SET, EXTREMES, WORST)
     return (names(*folders) if is_folder else ()) or (scene,)
 
 
 def find(scene: str | os.PathLike[str]) -> Path:
-    """The file of a scene given by path or by the name of a shipped scene.
+    """Return the file of a scene given by path or by the name of a shipped scene.
 
     A text that ends in ``.toml`` or names what is there is a path. Raises Refused for an unknown name,
     and for what is neither text nor a path.
@@ -85,15 +94,6 @@ def find(scene: str | os.PathLike[str]) -> Path:
     except OSError as error:  # a name longer than any file's
         raise Refused([f"expected {expected}, got {name:.60} ({error.strerror})"]) from None
     raise Refused([f"expected {expected}, got {name} ({_near(name)})"])
-
-
-def _scenes(folder: Path) -> list[Path]:
-    """In alphabetical order; a file in capitals is about the scenes and no scene itself."""
-    return sorted(file for file in folder.glob("*.toml") if not file.stem.isupper())
-
-
-def _name(file: Path) -> str:
-    return file.relative_to(cases_directory()).with_suffix("").as_posix()
 
 
 def _near(scene: str) -> str:

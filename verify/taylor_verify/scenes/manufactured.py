@@ -44,7 +44,7 @@ class Manufactured:
 
     @property
     def reach(self) -> Vector:
-        """What no component exceeds at any time: the sum of the sizes of its coefficients."""
+        """Bounds of the components at all times: the sums of the sizes of their coefficients."""
         vectors = [self.constant, *(v for w in self.waves for v in (w.cosine, w.sine))]
         return tuple(sum(map(abs, column), Fraction(0)) for column in zip(*vectors, strict=True))
 

@@ -1,4 +1,4 @@
-"""How a body moves: its exact initial state, the instants it is asked at, and its sampled motion."""
+"""Motion of a body: its exact initial state, the instants it is asked at, and its samples."""
 
 from __future__ import annotations
 
@@ -121,11 +121,11 @@ class Motion:
         return self.quantities[quantity]
 
     def radius_of(self, quantity: str) -> np.ndarray[Any, Any]:
-        """The radius of this quantity alone; that of the whole row where no other is known."""
+        """Return the radius of this quantity alone; that of the whole row where no other is known."""
         return self.radii.get(quantity, self.radius)
 
     def at(self, rows: Sequence[int]) -> Motion:
-        """The motion at some of its instants."""
+        """Return the motion at some of its instants."""
         quantities = {name: values[rows] for name, values in self.quantities.items()}
         radii = {name: radius[rows] for name, radius in self.radii.items()}
         return Motion(quantities, self.radius[rows], radii)

@@ -21,35 +21,35 @@ Array = np.ndarray[Any, Any]
 
 
 def precision() -> AbstractContextManager[Any]:
-    """MPFR at the ambient precision of mpmath, as long as this is open."""
+    """Set MPFR to the ambient precision of mpmath, as long as this is open."""
     return _bits(mp.prec)
 
 
 def to_mpfr(values: Array) -> Array:
-    """Numbers of mpmath, or Python's, as MPFR's, exactly, whatever their length."""
+    """Return numbers of mpmath, or Python's, as MPFR's, exactly, whatever their length."""
     held = _each(mp.convert, values)
     with _bits(max((value._mpf_[3] for value in held.flat), default=1)):
         return _each(_mpfr, held)
 
 
 def to_mpf(values: Array) -> Array:
-    """Numbers of MPFR as mpmath's, exactly."""
+    """Return numbers of MPFR as mpmath's, exactly."""
     return _each(_mpf, values)
 
 
 def in_mpfr(motion: Motion) -> Motion:
-    """The same motion in MPFR's numbers; the radii stay as they are."""
+    """Return the same motion in MPFR's numbers; the radii stay as they are."""
     quantities = {name: to_mpfr(rows) for name, rows in motion.quantities.items()}
     return Motion(quantities, motion.radius, motion.radii)
 
 
 def real(values: Any, like: Array) -> Array:
-    """Rationals, rounded to numbers of the kind that an array holds."""
+    """Return rationals, rounded to numbers of the kind that an array holds."""
     return _each(gmpy2.mpfr if _is_mpfr(like) else mp.convert, np.array(values, dtype=object))
 
 
 def sqrt(values: Array) -> Array:
-    """The root of each, of either kind."""
+    """Return the root of each, of either kind."""
     return _each(gmpy2.sqrt if _is_mpfr(values) else mp.sqrt, values)
 
 
@@ -58,7 +58,7 @@ def _is_mpfr(values: Array) -> bool:
 
 
 def _each(convert: Any, values: Array) -> Array:
-    """One number for one, an array also where there are none."""
+    """Convert each number; the result is an array also where there are none."""
     return np.array([convert(value) for value in values.flat], dtype=object).reshape(values.shape)
 
 

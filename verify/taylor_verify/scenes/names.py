@@ -12,5 +12,5 @@ _CONTROL: Final = re.compile(
 
 
 def escaped(text: str) -> str:
-    """The text with an escape for each character that would steer a terminal."""
+    """Return the text with an escape for each character that would steer a terminal."""
     return _CONTROL.sub(lambda found: ascii(found[0])[1:-1], text)

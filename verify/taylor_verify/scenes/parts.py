@@ -50,7 +50,7 @@ MOMENT = MOMENTUM.per_time()
 
 @dataclass(frozen=True)
 class Part:
-    """One named quantity of a body or a state.
+    """Named quantity of a body or a state.
 
     ``name`` is the word of documents and files, ``attribute`` the name in Python where that is another.
     A load makes a body that is not free as soon as it is not zero.

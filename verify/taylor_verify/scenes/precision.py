@@ -35,7 +35,7 @@ class Rung:
         return Fraction(1, 2**self.bits)
 
     def round(self, value: Fraction) -> Fraction:
-        """The nearest number of this format, ties to even; subnormals as IEEE 754 has them.
+        """Return the nearest number of this format, ties to even; subnormals as IEEE 754 has them.
 
         Raises OverflowError where the format has no such number.
         """
@@ -51,8 +51,11 @@ class Rung:
         return significand * power_of_two(exponent)
 
     def holds(self, value: Fraction) -> bool:
-        """Whether the value is a number of this format."""
-        return self.round(value) == value
+        """Return True if the value is a number of this format."""
+        try:
+            return self.round(value) == value
+        except OverflowError:
+            return False
 
 
 _FORMATS = {
@@ -61,7 +64,7 @@ _FORMATS = {
 
 
 def rung(name: str | Rung) -> Rung:
-    """The rung of that name, or the one given; ValueError for a name that is not on the ladder."""
+    """Return the rung of that name, or the one given; ValueError for a name that is not on the ladder."""
     if isinstance(name, Rung):
         return name
     bits = 0
@@ -78,7 +81,7 @@ def rung(name: str | Rung) -> Rung:
 
 
 def nearest(numerator: int, denominator: int, bits: int) -> tuple[int, int]:
-    """Significand and exponent of the number of so many bits nearest to a quotient, ties to even.
+    """Return significand and exponent of the number of so many bits nearest to a quotient, ties to even.
 
     The denominator is positive, the exponent as small as it can be: the significand has all its bits,
     or is the power of two above them that a carry leads to.
@@ -110,20 +113,20 @@ def power_of_two(exponent: int) -> Fraction:
 
 
 def floor_log2(value: Fraction) -> int:
-    """The largest e with 2^e <= |value|, for a value that is not zero."""
+    """Return the largest e with 2^e <= |value|, for a value that is not zero."""
     size = abs(value)
     estimate = size.numerator.bit_length() - size.denominator.bit_length()
     return estimate if power_of_two(estimate) <= size else estimate - 1
 
 
 def hexadecimal(value: Fraction) -> str:
-    """A dyadic rational as an exact hexadecimal float, 0x<integer>p<exponent>, as C reads it."""
+    """Return a dyadic rational as an exact hexadecimal float, 0x<integer>p<exponent>, as C reads it."""
     sign = "-" if value < 0 else ""
     return f"{sign}0x{abs(value.numerator):x}p{1 - value.denominator.bit_length():+d}"
 
 
 def exact_value(number: Any) -> Fraction:
-    """The rational that a finite binary number (float, NumPy float, mpf) is.
+    """Return the rational that a finite binary number (float, NumPy float, mpf) is.
 
     mpmath's integers may be gmpy2's, and a Fraction made of those is not quite a Fraction.
     """
@@ -132,7 +135,7 @@ def exact_value(number: Any) -> Fraction:
 
 
 def shortest_decimal(value: Fraction, bits: int) -> str:
-    """The decimal of fewest digits that rounds to the same number of so many bits as a value does.
+    """Return the decimal of fewest digits that rounds to the same number of so many bits as a value does.
 
     Numbers of usual size are written without an exponent.
     """
@@ -152,21 +155,21 @@ def decimal_text(number: Decimal) -> str:
 
 
 def held_exactly(value: Fraction) -> Any:
-    """The mpf that equals a dyadic rational, whatever the ambient precision of mpmath."""
+    """Return the mpf that equals a dyadic rational, whatever the ambient precision of mpmath."""
     from mpmath import libmp, mp
 
     return mp.make_mpf(libmp.from_man_exp(value.numerator, 1 - value.denominator.bit_length()))
 
 
 def float_text(value: Fraction) -> str:
-    """A short decimal for messages, also where a double cannot hold the value."""
+    """Return a short decimal for messages, also where a double cannot hold the value."""
     from mpmath import libmp
 
     return str(libmp.to_str(libmp.from_rational(value.numerator, value.denominator, 53), 6))
 
 
 def double_text(value: Fraction | float) -> str:
-    """Every digit of the double nearest to the value; a short decimal where there is none."""
+    """Return every digit of the double nearest to the value; a short decimal where there is none."""
     try:
         return repr(float(value))
     except OverflowError:

@@ -19,7 +19,7 @@ ZERO_MATRIX: Matrix = (ZERO_VECTOR,) * 3
 
 
 def diagonal(entries: Vector) -> Matrix:
-    """The square matrix with these diagonal entries."""
+    """Return the square matrix with these diagonal entries."""
     return tuple(
         tuple(entry if i == j else _ZERO for j in range(len(entries)))
         for i, entry in enumerate(entries)
@@ -52,7 +52,7 @@ def scaled(factor: Fraction, vector: Vector) -> Vector:
 
 
 def apply(matrix: Matrix, vector: Vector) -> Vector:
-    """The matrix times the vector."""
+    """Return the matrix times the vector."""
     return tuple(dot(row, vector) for row in matrix)
 
 
@@ -70,7 +70,7 @@ def is_symmetric(matrix: Matrix) -> bool:
 
 
 def blocks(a: Matrix, b: Matrix, c: Matrix) -> Matrix:
-    """The symmetric 6x6 matrix [[A, B], [B^T, C]]."""
+    """Return the symmetric 6x6 matrix [[A, B], [B^T, C]]."""
     upper = tuple(p + q for p, q in zip(a, b, strict=True))
     lower = tuple(p + q for p, q in zip(transpose(b), c, strict=True))
     return upper + lower

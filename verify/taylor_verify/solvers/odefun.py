@@ -59,6 +59,8 @@ class Odefun(Solver):
             # mpmath works with these bits; a wider exponent than a double's does not show here.
             with mp.workprec(problem.rung.bits):
                 rows = self._rows(problem, rates)
+                # odefun takes this degree if it is told none.
+                degree = self.degree or 3 + int(3 * mp.dps / 2.0)
         except Endless as error:
             seconds = perf_counter() - began
             return Trajectory(Outcome.STEP_LIMIT, detail=str(error), seconds=seconds)
@@ -69,7 +71,7 @@ class Odefun(Solver):
             rows,
             mp.isfinite,
             # A series takes as many evaluations as it has terms but the first.
-            steps=rates.evaluations // (self.degree or _own_degree(problem.rung)),
+            steps=rates.evaluations // degree,
             evaluations=rates.evaluations,
             seconds=perf_counter() - began,
         )
@@ -85,12 +87,6 @@ class Odefun(Solver):
             degree=self.degree,
         )
         return [state(held_exactly(abs(t))) for t in problem.times]
-
-
-def _own_degree(rung: Rung) -> int:
-    """Return the degree that odefun takes at this precision if it is told none."""
-    with mp.workprec(rung.bits):
-        return 3 + int(3 * mp.dps / 2.0)
 
 
 def named(name: str) -> Odefun:

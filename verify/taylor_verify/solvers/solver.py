@@ -6,7 +6,6 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import accumulate, pairwise
 from numbers import Rational
 from time import perf_counter
 from typing import Any, ClassVar, final
@@ -104,11 +103,9 @@ class Callback(Solver):
             numbers = np.array([[_held(v) for v in row] for row in states], dtype=object)
         except TypeError as error:
             return Trajectory(Outcome.MISSHAPEN, detail=str(error), seconds=seconds)
-        ends = list(accumulate((width for _, width in layout), initial=0))
-        quantities = {
-            name: numbers[:, left:right]
-            for (name, _), (left, right) in zip(layout, pairwise(ends), strict=True)
-        }
+        ends = np.cumsum([width for _, width in layout])[:-1]
+        parts = np.split(numbers, ends, axis=1)
+        quantities = {name: part for (name, _), part in zip(layout, parts, strict=True)}
         return Trajectory(Outcome.FINISHED, quantities, seconds=seconds)
 
 

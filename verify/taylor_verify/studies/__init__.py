@@ -1,1 +1,1 @@
-"""What is published, one folder each: measure, document, page, picture."""
+"""Published studies, one folder each: measure, document, page, picture."""

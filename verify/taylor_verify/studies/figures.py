@@ -23,7 +23,7 @@ def draw(place: Path, pictures: Iterable[Picture]) -> list[Path]:
 
 
 def shown(place: Path, pictures: Iterable[Picture]) -> str:
-    """Those that are there, as a page in ``place``/tables shows them, with what they show in words."""
+    """Return the pictures that are there, as a page in ``place``/tables shows them."""
     return "\n\n".join(
         f"![{prose(one.alt)}](../{FOLDER}/{one.stem}.svg)"
         for one in pictures

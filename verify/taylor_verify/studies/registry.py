@@ -1,4 +1,4 @@
-"""All studies, in the order in which indexes name them: this list is the only one."""
+"""List of all studies, the only one, in the order in which indexes name them."""
 
 from __future__ import annotations
 
@@ -56,9 +56,13 @@ def find(names: Iterable[str]) -> list[Study[Any]]:
 def _fault(name: str, known: list[str]) -> str:
     if (word := name.removeprefix("--")) in known:
         return f"expected `publish {word}`, got {name}"
-    close = get_close_matches(name, known, n=1)
-    hint = f"did you mean {close[0]}?" if close else f"known: {', '.join(known)}"
-    return f"expected a study, got {name!r}; {hint}"
+    return f"expected a study, got {name!r}; {hint(name, known)}"
+
+
+def hint(word: str, known: list[str]) -> str:
+    """Return the nearest of the known words as a question; all of them where none is near."""
+    close = get_close_matches(word, known, n=1)
+    return f"did you mean {close[0]}?" if close else f"known: {', '.join(known)}"
 
 
 def others() -> list[Study[Any]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 from os import PathLike, fspath
 from pathlib import Path
@@ -75,20 +75,21 @@ def write_report(folder: str | PathLike[str], results: Judgements) -> list[Path]
     return [*stored, *publish(fspath(folder))]
 
 
-def _index(
-    place: Path, verdicts: Sequence[Verdict], made: Mapping[str, str] | None = None
-) -> dict[str, str]:
+def _index(place: Path, verdicts: Sequence[Verdict], made: Collection[str] = ()) -> dict[str, str]:
     """Return the pages that name all others: those that are there, and those about to be ``made``."""
-
-    def is_there(path: str) -> bool:
-        return path in (made or {}) or (place / path).exists()
-
-    pages = (*(Page(study.path, study.title) for study in others()), *_BESIDES)
-    besides = [
-        replace(page, has_sheet=is_there(page.sheet)) for page in pages if is_there(page.path)
-    ]
+    besides = entries(place, made)
     texts = {f"{TABLES}/README.md": page.readme(verdicts, besides)}
     return texts | ({FRONT: front(verdicts, besides)} if _is_ours_or_new(place / FRONT) else {})
+
+
+def entries(place: Path, made: Collection[str] = ()) -> list[Page]:
+    """Return what lies beside the tables of every run, or is among the files about to be ``made``."""
+
+    def is_there(path: str) -> bool:
+        return path in made or (place / path).exists()
+
+    pages = (*(Page(study.path, study.title) for study in others()), *_BESIDES)
+    return [replace(page, has_sheet=is_there(page.sheet)) for page in pages if is_there(page.path)]
 
 
 def _requote(place: Path, verdicts: Sequence[Verdict]) -> tuple[Path, ...]:

@@ -121,7 +121,7 @@ def _no_document(folder: Path) -> None:
 
 @dataclass(frozen=True)
 class Study(Generic[Document]):
-    """One study.
+    """Study that is measured and published.
 
     Attributes
     ----------

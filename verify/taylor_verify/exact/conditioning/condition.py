@@ -131,7 +131,8 @@ class Path:
     @property
     def rate(self) -> float:
         """The largest norm of the Jacobian along the orbit, per unit of the scene's time."""
-        return self.flow.fastest(self.momentum)
+        norms = np.linalg.norm(self.flow.jacobian(self.momentum), 2, axis=(-2, -1))
+        return float(max(norms)) / float(self.flow.time)
 
     @property
     def is_regular(self) -> bool:
@@ -221,7 +222,7 @@ def differs_dearly(scene: Scene) -> bool:
 def sharp(
     scene: Scene, flow: Flow, points: Sequence[Fraction], least: int = 0, to_tell: bool = False
 ) -> Path:
-    """From differences so small that products of F with inverses of it have their leading digits.
+    """A path from differences so small that products of F with its inverses have their leading digits.
 
     A step of 10^-e leaves 10^-e |F|^2 in F, and that is multiplied by F^-1. Where no precision of the
     ladder is enough, what is found there is noise on top of what is asked: more, and not less. An orbit
@@ -271,7 +272,7 @@ def few(elapsed: Sequence[Fraction]) -> list[Fraction]:
     parts = max(_BETWEEN, _FEW - len(elapsed))
     between = [elapsed[-1] / parts * (k + k * _GOLDEN % 1) for k in range(parts)]
     first = next((t for t in samples if t), Fraction(0))
-    return _sorted([*samples, *between, first * _GOLDEN**2, first * _GOLDEN])
+    return sorted({*samples, *between, first * _GOLDEN**2, first * _GOLDEN}, key=abs)
 
 
 def many(elapsed: Sequence[Fraction], rate: float) -> list[Fraction]:
@@ -281,8 +282,4 @@ def many(elapsed: Sequence[Fraction], rate: float) -> list[Fraction]:
     while t < abs(end):
         times.append(Fraction(t if end > 0 else -t))
         t += max(1 / rate, t / _RESOLVED)
-    return _sorted([*times, *chosen(elapsed, _MOST_SAMPLES)])
-
-
-def _sorted(times: Sequence[Fraction]) -> list[Fraction]:
-    return sorted(set(times), key=abs)
+    return sorted({*times, *chosen(elapsed, _MOST_SAMPLES)}, key=abs)

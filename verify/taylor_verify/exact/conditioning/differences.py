@@ -171,20 +171,16 @@ def difference(before: Quantities, after: Quantities, step: Any) -> dict[str, Ar
     change = {name: after[name] - before[name] for name in before if name != "attitude"}
     if "attitude" in before:
         here, there = to_mpfr(before["attitude"]), to_mpfr(after["attitude"])
+        j, k = [1, 2, 0], [2, 0, 1]
         with precision():
-            change["attitude"] = to_mpf(_rotation_vectors(there @ here.transpose(0, 2, 1)))
+            turns = there @ here.transpose(0, 2, 1)
+            change["attitude"] = to_mpf((turns[:, k, j] - turns[:, j, k]) / 2)
     return {name: change[name] / step for name in before}
 
 
 def real(matrix: Iterable[Iterable[Any]]) -> Array:
     """The matrix as mpf, rounded at the ambient precision."""
     return np.array([[mp.convert(entry) for entry in row] for row in matrix], dtype=object)
-
-
-def _rotation_vectors(turns: Array) -> Array:
-    """The rotation vector of small rotations: the antisymmetric part of their matrices."""
-    j, k = [1, 2, 0], [2, 0, 1]
-    return (turns[:, k, j] - turns[:, j, k]) / 2
 
 
 def _balls(matrix: Array) -> arb_mat:

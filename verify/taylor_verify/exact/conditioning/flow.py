@@ -131,11 +131,6 @@ class Flow:
         found: Floats = np.maximum(own, (_norm(jacobian) * own**4) ** 0.2)
         return found
 
-    def fastest(self, momenta: Floats) -> float:
-        """The largest norm of J along a motion (n, d; in units), per unit of the scene's time."""
-        norms = np.linalg.norm(self.jacobian(momenta), 2, axis=(-2, -1))
-        return float(max(norms)) / float(self.time)
-
 
 def applied(matrices: Floats, vectors: Floats) -> Floats:
     """Each matrix (..., m, n) times its own vector (..., n)."""

@@ -1,4 +1,4 @@
-"""What a motion depends on, one component at a time: the initial state and the body, in exact rationals.
+"""Inputs of a motion, one component at a time: the initial state and the body, in exact rationals.
 
 A component is moved by some part of its unit, a power of two near its size, so that what is moved stays
 a short rational.
@@ -73,7 +73,7 @@ def body_input(scene: Scene) -> Input:
 
 
 def _block_units(z: Vector, energy: Matrix) -> Vector:
-    """For each component of a state, or a momentum, a power of two near the size of its block.
+    """Units of a state, or a momentum: for each component a power of two near the size of its block.
 
     A block that is zero takes the size that would hold the kinetic energy, 2T = z . energy z; 1 in a body
     at rest.

@@ -1,4 +1,4 @@
-"""How the exact motion changes with its initial state and with its body.
+"""Derivatives of the exact motion by its initial state and by its body.
 
     sensitivity(scene, [Fraction(10)])["attitude", "inertia"]
 
@@ -142,7 +142,7 @@ Column = dict[str, tuple[Array, Array]]
 
 
 def _column(base: _Base, by: Input, j: int, digits: int) -> Column:
-    """By quantity, the derivative by component j (n, 3) and its estimated error (n,)."""
+    """The derivative of each quantity by component j (n, 3), and its estimated error (n,)."""
     exponent = ceil(digits / 2) + _STEP_GUARD_DIGITS
     for _ in range(_ATTEMPTS):
         # The rounding of a difference, 10^-working/step, is to stay below its error, step^2.
@@ -195,7 +195,7 @@ def _lengths(vectors: Array) -> Array:
 
 
 def _sizes(motion: Quantities) -> dict[str, Array]:
-    """What an error of each quantity is measured against at each time, shape (n,)."""
+    """The size that an error of each quantity is measured against at each time, shape (n,)."""
     sizes = {name: _lengths(rows) for name, rows in motion.items()}
     if "attitude" in sizes:
         sizes["attitude"] = np.full(len(sizes["attitude"]), mpf(1), dtype=object)
@@ -206,7 +206,7 @@ def _sizes(motion: Quantities) -> dict[str, Array]:
 
 
 def _from_origin(scene: Scene) -> Scene:
-    """The same motion with its centre at the origin: digits are those of the path, wherever it begins."""
+    """A scene's motion with its centre at the origin: digits are those of the path, wherever it begins."""
     if not isinstance(scene.initial, Impulse):
         return scene
     return replace(scene, initial=replace(scene.initial, centre=ZERO_VECTOR))

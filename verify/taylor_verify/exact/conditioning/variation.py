@@ -1,4 +1,4 @@
-"""How errors travel along an orbit, by its variational equations in float64.
+"""Growth of errors along an orbit, by its variational equations in float64.
 
 They are integrated from one time to the next along a motion that starts at the truth, and that has to
 arrive at it: where float64 cannot follow the orbit that far there is no answer. A product of such steps
@@ -109,7 +109,7 @@ def _arrive(reached: _Arcs, truth: Floats) -> bool:
 
 
 class _Arcs(NamedTuple):
-    """Where n arcs are: w (n, m), z (n, d), R (n, 3, 3), and what errors of z at their starts became.
+    """The ends of n arcs: w (n, m), z (n, d), R (n, 3, 3), and what errors of z at their starts became.
 
     ``by_momentum`` (n, d, d) are the derivatives of z, ``turn`` and ``shift`` (n, 3, d) those of theta
     and c.

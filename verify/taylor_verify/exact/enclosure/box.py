@@ -54,7 +54,7 @@ class Box:
 
     @cached_property
     def apart(self) -> arb_mat:
-        """How far a state of the box may be from its point, component by component."""
+        """A bound of the distance of a state of the box from its point, component by component."""
         with ctx.workprec(BOUND_BITS):
             return magnitudes(magnitudes(self.axes) * self.radius)
 

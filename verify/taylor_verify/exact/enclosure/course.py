@@ -91,7 +91,7 @@ class Row:
 
 @dataclass(frozen=True)
 class _Step:
-    """One step of length h from a box, and everything that is known about the motion within it."""
+    """A step of length h from a box, and everything that is known about the motion within it."""
 
     length: Fraction
     state: Series
@@ -328,7 +328,7 @@ class Course:
         return min(max(needed, self.bits * 5 // 4), 6 * self.bits)
 
     def _shown(self, time: Fraction) -> str:
-        """What the clock shows at that time since the start."""
+        """The time on the clock, for a time since the start."""
         return shown(self.begin + time)
 
 

@@ -64,7 +64,7 @@ def posed(scene: Scene) -> System:
 
 
 def posed_exactly(scene: Scene) -> System:
-    """The same, with the rational coefficients of the scene for an ellipsoid as well."""
+    """The system of a scene with the rational coefficients that it has, for an ellipsoid as well."""
     body, kind = scene.body, kind_of(scene.body)
     start, motion = kind.state(scene.initial), body.manufactured
     ends = tuple(range(3, len(start) + 1, 3))

@@ -72,7 +72,7 @@ def tube(bounds: Balls, sizes: Series, h: arb, apart: arb_mat) -> Tube:
 
 
 def reached(polynomial: arb_mat, around: arb_mat) -> arb_mat:
-    """How far from zero a component may be within the tube: on the polynomial, and around it."""
+    """A bound of the size of each component within the tube: on the polynomial, and around it."""
     return polynomial + around
 
 

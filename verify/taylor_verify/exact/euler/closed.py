@@ -1,4 +1,4 @@
-"""Which closed form answers a rigid body: chosen in exact rationals.
+"""The closed form of a rigid body, chosen in exact rationals.
 
 Each function imports what it needs: the two routes load different libraries.
 """
@@ -47,7 +47,7 @@ def _solved(
     loaded: Callable[[LoadedSpin, Quaternion | None], Solution],
     washboard: Callable[[Washboard, Quaternion | None], Solution],
 ) -> Solution:
-    """The solution by one of these, for a body with the attitude where it is tracked."""
+    """The solution by the one of these that fits the body."""
     body, start = top(scene)
     attitude = start.attitude if "attitude" in scene.track else None
     spin = FreeSpin(body.inertia, start.omega)

@@ -8,6 +8,7 @@ lam the rate of the elliptic argument u, K the quarter period.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from fractions import Fraction
 from typing import Final
 
@@ -16,8 +17,9 @@ from mpmath import mp, mpf
 from taylor_verify.exact.element import Element, Elements, described, settled
 from taylor_verify.exact.euler.closed import top
 from taylor_verify.exact.euler.moments.regime import LoadedSpin, MomentRegime
-from taylor_verify.exact.euler.moments.washboard.board import Washboard
-from taylor_verify.exact.euler.moments.washboard.elements import elements as washboard
+from taylor_verify.exact.euler.moments.washboard.board import Washboard, WashboardRegime
+from taylor_verify.exact.euler.moments.washboard.chebyshev import Swing, course
+from taylor_verify.exact.euler.moments.washboard.turnings import located, regime
 from taylor_verify.exact.euler.orbit import Orbit, principal_frame
 from taylor_verify.exact.euler.regime import FreeSpin, Regime
 from taylor_verify.exact.manufactured import MANUFACTURED, REGIME
@@ -67,8 +69,36 @@ _LOADED_STORY: Final[Mapping[MomentRegime, str]] = {
 }
 
 
+_ALONG: Final = "Three different moments of inertia and a constant moment along a principal axis: "
+_CHANGED: Final = "Not conserved: T changes by the work of the moment, H by its impulse."
+_INVARIANT: Final = (
+    "Conserved: 2T J - |H|^2, with J the moment of inertia about the axis of the moment."
+)
+_BEAD: Final[Mapping[WashboardRegime, tuple[str, ...]]] = {
+    WashboardRegime.STEADY: (
+        "The gyroscopic moment of a steady rotation balances the constant moment: omega is constant.",
+    ),
+    WashboardRegime.STRAIGHT: (
+        f"{_ALONG}omega lies along it too, and grows evenly for ever.",
+        _CHANGED,
+    ),
+    WashboardRegime.SWING: (
+        f"{_ALONG}a bead on a tilted washboard that is caught between two walls. The spin about that "
+        "axis changes its sign twice a period, and omega recurs.",
+        _INVARIANT,
+        _CHANGED,
+    ),
+    WashboardRegime.RUN: (
+        f"{_ALONG}a bead on a tilted washboard that turns back once, in the past or in the future, "
+        "and then runs down for ever: the spin about that axis grows.",
+        _INVARIANT,
+        _CHANGED,
+    ),
+}
+
+
 def elements(scene: Scene, digits: int) -> Elements:
-    """Of a free body every element it has; of a body under a moment a period at most, and words."""
+    """Every element of a free body; of a body under a moment a period at most, and words."""
     body, start = top(scene)
     if body.manufactured is not None:
         return Elements(REGIME, (), MANUFACTURED)
@@ -84,7 +114,7 @@ def _loaded(body: RigidBody, omega: tensors.Vector, digits: int) -> Elements:
     """Under a constant moment T' = M.omega and nothing of the free orbit is left."""
     try:
         if FreeSpin(body.inertia, omega).discriminant:
-            return washboard(Washboard(body.inertia, body.moment, omega), digits)
+            return _washboard(Washboard(body.inertia, body.moment, omega), digits)
         spin = LoadedSpin(body.inertia, body.moment, omega)
     except NoClosedForm:
         story = (
@@ -96,7 +126,29 @@ def _loaded(body: RigidBody, omega: tensors.Vector, digits: int) -> Elements:
     return Elements(spin.regime.value, found, (_LOADED_STORY[spin.regime], _WORK))
 
 
+def _washboard(board: Washboard, digits: int) -> Elements:
+    """Raises NoClosedForm where the motion is too near to a separatrix to be told."""
+    kind = regime(board)
+    found = () if board.keeps_axis else settled(lambda _: _bead(board), digits)
+    return Elements(kind.value, found, _BEAD[kind])
+
+
 # The numbers of each regime, at the ambient precision.
+
+_PERIOD: Final = "period :: time :: omega recurs in body axes, under the moment :: 2 int dsigma/nu"
+_DIFFERENCE: Final = """
+    2TJ-H2 :: angular momentum^2 :: 2T J - |H|^2, J the moment of inertia about the axis of M, \
+conserved :: omega.I (J - I) omega
+"""
+
+
+def _bead(board: Washboard) -> list[Element]:
+    """The period of a swing, and what is conserved."""
+    motion = course(board, located(board))
+    found = described(_PERIOD, [motion.period]) if isinstance(motion, Swing) else []
+    (kept,) = described(_DIFFERENCE, [mp.convert(board.kept)])
+    return [*found, replace(kept, size=mp.convert(board.momentum_squared))]
+
 
 _CIRCLE: Final = """
     period :: time :: omega recurs in body axes :: (Js - Jd)(e.omega)/Jd

@@ -13,10 +13,9 @@ from typing import Final, final
 from flint import arb
 from mpmath import mp, mpf
 
+from taylor_verify.exact import rotation
 from taylor_verify.exact.balls import ball, balls
-from taylor_verify.exact.euler import quaternion
 from taylor_verify.exact.euler.orbit import converted
-from taylor_verify.exact.euler.quaternion import Quaternion
 from taylor_verify.exact.euler.rotations import decades
 from taylor_verify.exact.frames import Frame, turn
 from taylor_verify.scenes import tensors
@@ -56,9 +55,9 @@ class FixedAxisBalls:
         self._exact, self._length = exact, ball(exact.axis_squared or 1).sqrt()
         self._axis = [entry / self._length for entry in balls(exact.axis)]
 
-    def at(self, t: Fraction, turned: bool) -> tuple[list[arb], Quaternion]:
+    def at(self, t: Fraction, turned: bool) -> tuple[list[arb], list[arb]]:
         omega, angle = balls(self._exact.omega(t)), ball(self._exact.turned(t)) / self._length
-        return omega, quaternion.turn(self._axis, angle / 2) if turned else []
+        return omega, rotation.turn(self._axis, angle / 2) if turned else []
 
 
 @final

@@ -1,4 +1,4 @@
-"""What a rigid body's free motion conserves: T, |H|^2 and, in space, H, with H = I omega.
+"""Conserved quantities of a free rigid body: T, |H|^2 and, in space, H, with H = I omega.
 
 Written from the definitions and independent of the equations of motion.
 """

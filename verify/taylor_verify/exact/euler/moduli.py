@@ -14,7 +14,7 @@ from __future__ import annotations
 from flint import arb
 
 from taylor_verify.exact.balls import ball, balls, sign
-from taylor_verify.exact.euler.principal import Axis, principal_balls
+from taylor_verify.exact.euler.principal import principal_balls
 from taylor_verify.exact.euler.regime import FreeSpin, Regime
 from taylor_verify.exact.rotation import cross
 
@@ -40,7 +40,8 @@ class Moduli:
         ac = frame.whole_gap
 
         omega = balls(spin.omega)
-        e_a, e_b = _turned_along(frame.axes[a], omega), frame.axes[b]
+        side = sign(dot(frame.axes[a], omega))
+        e_a, e_b = [side * component for component in frame.axes[a]], frame.axes[b]
         self.axes = (e_a, e_b, cross(e_a, e_b))
         w_a, w_b, w_c = (dot(axis, omega) for axis in self.axes)
 
@@ -70,12 +71,6 @@ class Moduli:
             J_c * a_c / self.momentum,
         )
         self.nu = J_c * C / (J_a * A)
-
-
-def _turned_along(axis: Axis, omega: list[arb]) -> Axis:
-    """The axis, or its opposite, on the side of omega."""
-    side = sign(dot(axis, omega))
-    return [side * component for component in axis]
 
 
 def dot(p: list[arb], q: list[arb]) -> arb:

@@ -1,4 +1,4 @@
-"""One torque-free motion of a rigid body as numbers of one precision: its frame, moduli and phase.
+"""The numbers of a torque-free motion at one precision of mpmath: frame, moduli and phase.
 
 Legend (see also regime): (a, b, c) are right-handed principal axes, b the intermediate one, a the
 one encircled by the orbit ("dn axis"), c the other ("cn axis"); J_a, J_b, J_c are the moments about
@@ -10,47 +10,14 @@ the motion is w_a : w_b : w_c = dn u : sn u : cn u, u = lam t + u_0, each times 
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import NamedTuple
 
 from mpmath import mp, mpf
 
 from taylor_verify.exact.elliptic import Landen, Triple
 from taylor_verify.exact.euler.regime import FreeSpin, Regime
-from taylor_verify.exact.frames import Frame, product, turn
 from taylor_verify.exact.rotation import cross
 from taylor_verify.scenes import tensors
-
-
-class Precession:
-    """An axisymmetric body: omega turns about the axis of symmetry e at the rate Om.
-
-    w(t) = w_par + cos(Om t) w_perp + sin(Om t) e x w_perp, Om = (J_s - J_d)(e.w)/J_d, where J_d is
-    the double moment and J_s the simple one; R = R0 Rot(H0, |H| t/J_d) Rot(e, -Om t).
-    """
-
-    def __init__(self, spin: FreeSpin) -> None:
-        length = mp.sqrt(mp.convert(spin.axis_squared))
-        self.rate = mp.convert(spin.turning) / length
-        self.axis = [entry / length for entry in converted(spin.axis)]
-        across = spin.across(spin.omega)
-        self._along, self._across = converted(spin.along(spin.omega)), converted(across)
-        ahead = tensors.cross(spin.axis, across)
-        self._ahead = [entry / length for entry in converted(ahead)]
-        self._momentum = converted(spin.momentum)
-        momentum = mp.sqrt(mp.convert(spin.momentum_squared))
-        self._momentum_rate = momentum / mp.convert(spin.double_moment)
-
-    def at(self, t: Fraction, turned: bool) -> tuple[list[mpf], Frame]:
-        """omega in body axes, and the rotation since the start, at the precision of the set-up."""
-        time = mp.convert(t)
-        cos, sin = mp.cos_sin(self.rate * time)
-        parts = zip(self._along, self._across, self._ahead, strict=True)
-        omega = [along + cos * across + sin * ahead for along, across, ahead in parts]
-        if not turned:
-            return omega, []
-        about_momentum = turn(self._momentum, self._momentum_rate * time)
-        return omega, product(about_momentum, turn(self.axis, -self.rate * time))
 
 
 class PrincipalFrame(NamedTuple):
@@ -105,13 +72,9 @@ class Orbit:
         )
         if not self.on_separatrix:
             self._landen = Landen(self.m, self.m_prime)
+            self.quarter_period = self._landen.quarter_period  # K
         dn, sn, cn = (w / size for w, size in zip((w_a, w_b, w_c), self.amplitudes, strict=True))
         self.phase = self._phase_of(sn, cn, dn)
-
-    @property
-    def quarter_period(self) -> mpf:
-        """K, where the orbit is periodic."""
-        return self._landen.quarter_period
 
     @property
     def period(self) -> mpf:
@@ -138,7 +101,7 @@ class Orbit:
             return mp.asinh(sn / cn)
         # Carlson's form of the inverse of sn (DLMF 22.15, 19.25.5), on the right branch of cn.
         f = sn * mp.elliprf(cn**2, dn**2, 1)
-        return f if cn >= 0 else _sign(sn) * 2 * self._landen.quarter_period - f
+        return f if cn >= 0 else _sign(sn) * 2 * self.quarter_period - f
 
 
 def principal_frame(spin: FreeSpin) -> PrincipalFrame:

@@ -1,4 +1,4 @@
-"""What a free orbit is made of as functions of time, in balls: sn, cn, dn and the phase psi.
+"""The functions of time of a free orbit, in balls: sn, cn, dn and the phase psi.
 
 Legend as in moduli; K and K' the quarter periods, tau = iK'/K, q = e^{i pi tau}, and theta_i(v) are
 Jacobi's functions of v = u/2K, theta_1(v) = 2 q^(1/4) (sin pi v - q^2 sin 3 pi v + ...). The angle

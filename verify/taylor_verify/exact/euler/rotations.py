@@ -16,12 +16,9 @@ import numpy as np
 from flint import ctx
 from mpmath import mp
 
+from taylor_verify.exact import rotation
 from taylor_verify.exact.balls import Enclosed, Enclosure
-from taylor_verify.exact.euler import quaternion
-from taylor_verify.exact.euler.quaternion import Quaternion
 from taylor_verify.exact.frames import product, start_frame
-from taylor_verify.exact.rotation import product as multiplied
-from taylor_verify.exact.rotation import rotation_rows
 from taylor_verify.exact.solution import Quantities, Settled
 from taylor_verify.scenes import motion
 from taylor_verify.scenes.motion import Motion
@@ -47,13 +44,13 @@ class Course(Protocol):
 @final
 @dataclass(eq=False)
 class RotationBalls(Enclosed):
-    """omega(t) and R(t) in balls; ``answer`` is what an attitude is told as, and how."""
+    """omega(t) and R(t) in balls; ``answer`` has the name of the frame, and what makes its rows."""
 
     regime: str
     set_up: Callable[[], Course]
     attitude: motion.Quaternion | None = None
     by_quadrature: bool = False
-    answer: tuple[str, Callable[[Quaternion], Any]] = ("attitude", rotation_rows)
+    answer: tuple[str, Callable[[list[Any]], Any]] = ("attitude", rotation.rotation_rows)
     _courses: dict[int, Course] = field(default_factory=dict, init=False)
 
     def enclose(self, elapsed: Sequence[Fraction], bits: int) -> Enclosure:
@@ -62,11 +59,11 @@ class RotationBalls(Enclosed):
             course = self.course()
             if self.attitude is None:
                 return {"omega": [course.at(t, False)[0] for t in elapsed]}
-            start, (name, told) = quaternion.unit(self.attitude), self.answer
+            start, (name, rows_of) = rotation.unit(self.attitude), self.answer
             rows = [course.at(t, True) for t in elapsed]
             return {
                 "omega": [omega for omega, _ in rows],
-                name: [told(multiplied(start, turn)) for _, turn in rows],
+                name: [rows_of(rotation.product(start, turn)) for _, turn in rows],
             }
 
     def course(self) -> Course:

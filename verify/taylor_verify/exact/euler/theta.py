@@ -16,15 +16,13 @@ from functools import cached_property
 
 from flint import arb, arb_mat
 
+from taylor_verify.exact import rotation
 from taylor_verify.exact.balls import ball, balls
-from taylor_verify.exact.euler import quaternion
 from taylor_verify.exact.euler.fixed_axis import FixedAxis, FixedAxisBalls
 from taylor_verify.exact.euler.moduli import Moduli, Triple
 from taylor_verify.exact.euler.phase import Periodic, Separatrix
-from taylor_verify.exact.euler.quaternion import Quaternion
 from taylor_verify.exact.euler.regime import CONSTANT, FreeSpin, Regime
 from taylor_verify.exact.euler.rotations import Course, RotationBalls
-from taylor_verify.exact.rotation import conjugate, product
 from taylor_verify.scenes import motion, tensors
 
 
@@ -57,16 +55,16 @@ class _Precession:
         self._momentum_axis = [component / momentum for component in balls(spin.momentum)]
         self._momentum_rate = momentum / ball(spin.double_moment)
 
-    def at(self, t: Fraction, turned: bool) -> tuple[list[arb], Quaternion]:
+    def at(self, t: Fraction, turned: bool) -> tuple[list[arb], list[arb]]:
         time = ball(t)
         sin, cos = (self._rate * time).sin_cos()
         parts = zip(self._along, self._across, self._ahead, strict=True)
         omega = [along + cos * across + sin * ahead for along, across, ahead in parts]
         if not turned:
             return omega, []
-        outer = quaternion.turn(self._momentum_axis, self._momentum_rate * time / 2)
-        inner = quaternion.turn(self._axis, -self._rate * time / 2)
-        return omega, product(outer, inner)
+        outer = rotation.turn(self._momentum_axis, self._momentum_rate * time / 2)
+        inner = rotation.turn(self._axis, -self._rate * time / 2)
+        return omega, rotation.product(outer, inner)
 
 
 class Tumbling:
@@ -78,7 +76,7 @@ class Tumbling:
         self._functions = Separatrix(moduli) if is_separatrix else Periodic(moduli)
         self._to_body = arb_mat([list(row) for row in zip(*moduli.axes, strict=True)])
 
-    def at(self, t: Fraction, turned: bool) -> tuple[list[arb], Quaternion]:
+    def at(self, t: Fraction, turned: bool) -> tuple[list[arb], list[arb]]:
         time = ball(t)
         functions = self._functions.at(time)
         parts = zip(self._moduli.amplitudes, functions, strict=True)
@@ -94,13 +92,13 @@ class Tumbling:
     @cached_property
     def _tilted_back(self) -> arb_mat:
         """P B(0)^T as it acts on a quaternion, whose vector part comes out in body axes."""
-        back = conjugate(self._half_tilt(self._moduli.functions))
-        images = [product(back, [arb(int(i == k)) for i in range(4)]) for k in range(4)]
+        back = rotation.conjugate(self._half_tilt(self._moduli.functions))
+        images = [rotation.product(back, [arb(int(i == k)) for i in range(4)]) for k in range(4)]
         scalars, *vectors = zip(*images, strict=True)
         in_body = (self._to_body * arb_mat([list(row) for row in vectors])).tolist()
         return arb_mat([list(scalars), *in_body])
 
-    def _half_tilt(self, functions: Triple) -> Quaternion:
+    def _half_tilt(self, functions: Triple) -> list[arb]:
         """The quaternion of B: B^T = Rz(al) Ry(th), |al| < pi/2 and 0 < th < pi.
 
         So the cosines of both half angles, and the sine of the second, are positive.

@@ -48,6 +48,20 @@ _WAVE: Final[Words] = {
     "m": ("", "parameter k^2; 0 for sines, 1 on the separatrix"),
     "m_prime": ("", "1 - m, one measure of the separatrix's distance"),
 }
+# By the place of the first of A, B, C that is not zero, and its sign.
+_SPIN: Final[Mapping[tuple[int, int], str]] = {
+    (0, -1): "stable: A < 0 in 49 (25)",
+    (0, 1): "unstable: A > 0 in 49 (25); the axis falls away, and returns (homoclinic)",
+    (1, 1): "stable: A = 0 and B > 0; the axis strays by the square root of a tilt",
+    (1, -1): "unstable: A = 0 and B < 0 in 49 (25); the axis falls away",
+    (2, -1): "stable: A = B = 0 and C < 0",
+    (2, 0): "neutral: A = B = C = 0; a tilt drifts in proportion to time",
+}
+_STEADY: Final[Mapping[int, str]] = {
+    1: "This steady motion is unstable: a disturbance of x3 grows exponentially.",
+    -1: "This steady motion is stable: a disturbance of x3 swings about it.",
+    0: "Whether this steady motion is stable is not decided to the first order.",
+}
 _STORY: Final[Mapping[str, str]] = {
     "rest": "Both impulses are zero: the body is at rest.",
     "euler-top": (
@@ -80,7 +94,9 @@ def elements(scene: Scene, digits: int) -> Elements:
         own = _orbit(kind, nutation, start, working)
         return [*own, *conserved(body, start), *_axial(nutation)]
 
-    story = [_STORY[kind], *_steady_story(kind, nutation), _CONSERVED, *_axial_story(nutation)]
+    story = [_STORY[kind], _CONSERVED, *_axial_story(nutation)]
+    if kind == "steady" and not nutation.is_axial:
+        story.insert(1, _STEADY[_sign(_curvature(nutation))])
     return Elements(kind, settled(numbers, digits), tuple(story))
 
 
@@ -123,16 +139,14 @@ def _turning(nutation: Nutation) -> Iterator[Element]:
 
 
 def _curvature(nutation: Nutation) -> Fraction:
-    """f''(z)/2 at the start: in a steady motion a disturbance of x3 obeys s^2 = f''(z)/2.
-
-    Zero for the axial spin, of which A says more.
-    """
-    if nutation.F2 == nutation.z**2:
-        return Fraction(0)
+    """f''(z)/2 at the start: in a steady motion a disturbance of x3 obeys s^2 = f''(z)/2."""
     return value(derivative(derivative(nutation.f)), nutation.z) / 2
 
 
 def _disturbance(nutation: Nutation) -> Iterator[Element]:
+    """Yield the rate or the period of a small disturbance of x3; of the axial spin A says more."""
+    if nutation.is_axial:
+        return
     s2, source = _curvature(nutation), "s^2 = f''(x3)/2"
     size = mp.sqrt(mp.convert(abs(s2)))
     if s2 > 0:
@@ -141,18 +155,6 @@ def _disturbance(nutation: Nutation) -> Iterator[Element]:
     elif s2 < 0:
         meaning = "period of small nutations about this motion"
         yield Element("nutation_period", 2 * mp.pi / size, "time", meaning, source)
-
-
-def _steady_story(kind: str, nutation: Nutation) -> list[str]:
-    """The stability of a steady motion off the axis."""
-    if kind != "steady" or nutation.F2 == nutation.z**2:
-        return []
-    s2 = _curvature(nutation)
-    if s2 > 0:
-        return ["This steady motion is unstable: a disturbance of x3 grows exponentially."]
-    if s2 < 0:
-        return ["This steady motion is stable: a disturbance of x3 swings about it."]
-    return ["Whether this steady motion is stable is not decided to the first order."]
 
 
 # Motions with x3 variable.
@@ -255,29 +257,20 @@ def _axial(nutation: Nutation) -> Iterator[Element]:
 
 
 def _axial_story(nutation: Nutation) -> list[str]:
-    """What the signs of A, B and C say, at either pole."""
+    """The stability of that spin, at either pole, by the signs of A, B and C.
+
+    C > 0 cannot be where A = B = 0: G^2 (kappa + lambda^2) = B^2 - A C = 0 leaves C <= 0.
+    """
     if nutation.F2 == 0:
         return []
-    A, BF, C = stability(nutation)
-    if nutation.touches_pole(1) or nutation.touches_pole(-1):
-        which = "The spin along the axis with these F and G, which shares y3 with this orbit,"
-    else:
-        which = (
-            "The spin along the axis with these F and G (another orbit: its y3 is not this one's)"
-        )
-    return [f"{which} is {_axial_words(A, BF, C)}."]
+    shares = ", which shares y3 with this orbit,"
+    if not (nutation.touches_pole(1) or nutation.touches_pole(-1)):
+        shares = " (another orbit: its y3 is not this one's)"
+    signs = [_sign(number) for number in stability(nutation)]
+    first, leading = next(((k, sign) for k, sign in enumerate(signs) if sign), (2, 0))
+    words = _SPIN[first, leading]
+    return [f"The spin along the axis with these F and G{shares} is {words}."]
 
 
-def _axial_words(A: Fraction, BF: Fraction, C: Fraction) -> str:
-    """C > 0 cannot be where A = B = 0: G^2 (kappa + lambda^2) = B^2 - A C = 0 leaves C <= 0."""
-    if A < 0:
-        return "stable: A < 0 in 49 (25)"
-    if A > 0:
-        return "unstable: A > 0 in 49 (25); the axis falls away, and returns (homoclinic)"
-    if BF > 0:
-        return "stable: A = 0 and B > 0; the axis strays by the square root of a tilt"
-    if BF < 0:
-        return "unstable: A = 0 and B < 0 in 49 (25); the axis falls away"
-    if C < 0:
-        return "stable: A = B = 0 and C < 0"
-    return "neutral: A = B = C = 0; a tilt drifts in proportion to time"
+def _sign(number: Fraction) -> int:
+    return (number > 0) - (number < 0)

@@ -37,10 +37,9 @@ def enclosed(scene: Scene) -> Solution:
     if genus_two is not None:
         return WeberBalls(genus_two)
     place = plane(scene)
-    if place is None:
-        return _of_revolution(scene, TurningBody, weierstrass.NutatingBody)
-    alike = _of_revolution(of_revolution(scene, place), TurningBody, weierstrass.NutatingBody)
-    return carried(alike, in_plane(place), regime_in_plane(place))
+    alike = scene if place is None else of_revolution(scene, place)
+    found = _of_revolution(alike, TurningBody, weierstrass.NutatingBody)
+    return found if place is None else carried(found, in_plane(place), regime_in_plane(place))
 
 
 def closed_form(scene: Scene) -> Solution:

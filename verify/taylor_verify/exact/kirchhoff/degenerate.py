@@ -40,7 +40,7 @@ class Carrier:
 
     @classmethod
     def of(cls, nutation: Nutation) -> Carrier:
-        """From f, of degree two, or with one repeated root and no start there."""
+        """Return the carrier of an f of degree two, or with one repeated root and no start there."""
         f, z, speed = nutation.f, nutation.z, nutation.speed
         if len(f) == 3:
             return cls(None, z, speed, f[0], f[1] / 2, f[2])
@@ -83,18 +83,14 @@ class Factor:
 class ElementaryOrbit(Orbit):
     """v in hyperbolic, trigonometric or algebraic functions; to be used at one precision."""
 
-    def __init__(self, nutation: Nutation, start: Impulse, digits: int) -> None:
-        super().__init__(start)
-        carrier, body = Carrier.of(nutation), nutation.body
+    def __init__(self, nutation: Nutation, start: Impulse) -> None:
+        super().__init__(nutation, start)
+        carrier = Carrier.of(nutation)
         self._d = None if carrier.d is None else mp.convert(carrier.d)
         self._A, self._B, self._C = (mp.convert(c) for c in (carrier.A, carrier.B, carrier.C))
         self._v0, self._v0_slope = mp.convert(carrier.v), mp.convert(carrier.speed)
         self._rate = mp.sqrt(abs(self._A))
-        self._r, self._screw = mp.convert(body.r), mp.convert(body.q - body.q_prime)
-        self._FG, self._F = mp.convert(nutation.FG), mp.sqrt(mp.convert(nutation.F2))
-        self._y3 = mp.convert(nutation.y3)
-        self._linear = mp.convert((body.r - body.r_prime) * nutation.y3)
-        self._glide = mp.convert(body.q) * self._F
+        self._FG = mp.convert(nutation.FG)
         self._drift = mp.convert(nutation.drift(nutation.z if carrier.d is None else carrier.d))
         self._origin = transverse(start.linear)
         if self._origin == 0:
@@ -110,7 +106,9 @@ class ElementaryOrbit(Orbit):
         L = self._linear * t + self._screw * self._integral_of_z(beat)
         U, D = self._up_rate * t, self._down_rate * t
         turn = self._origin * mp.expj(L + U - D)
-        shape, slope = self._product(beat)
+        top, bottom = (factor.at(beat) for factor in self._factors)
+        top_slope, bottom_slope = (factor.slope(beat, self._A) for factor in self._factors)
+        shape, slope = top * bottom, top_slope * bottom + top * bottom_slope
         if self._d is None:
             shrinking, rise = mpf(1), self._drift * t
             z, z_slope = v, v_slope
@@ -126,8 +124,8 @@ class ElementaryOrbit(Orbit):
         else:
             eta = mpc(self._FG - self._y3 * z, z_slope / self._r) / mp.conj(xi)
         half = self._glide * t / 2
-        a = self._a * mp.expj(half - L / 2 + D) * mp.conj(self._factors[1].at(beat))
-        b = self._b * mp.expj(half + L / 2 + U) * self._factors[0].at(beat)
+        a = self._a * mp.expj(half - L / 2 + D) * mp.conj(bottom)
+        b = self._b * mp.expj(half + L / 2 + U) * top
         size = mp.sqrt(shrinking)
         turned = CayleyKlein(size * a, size * b)
         return Pose((xi, z), (eta, self._y3), turned, rise / (self._r * self._F))
@@ -194,14 +192,6 @@ class ElementaryOrbit(Orbit):
         whole = 1 + 2 * self._A * beat.sh**2
         return v, self._v0_slope * whole + 2 * bend * beat.sh * beat.ch
 
-    def _product(self, beat: Beat) -> tuple[mpc, mpc]:
-        """The product of the factors, and its derivative."""
-        product, slope = mpc(1), mpc(0)
-        for factor in self._factors:
-            here = factor.at(beat)
-            product, slope = product * here, slope * here + product * factor.slope(beat, self._A)
-        return product, slope
-
     def _integral_of_z(self, beat: Beat) -> mpf:
         """int_0^t z dt; left out where no rate depends on it."""
         if self._screw == 0:
@@ -238,15 +228,11 @@ class Front(Orbit):
     1/|xi| up to a factor; G = y3 = 0. To be used at one precision.
     """
 
-    def __init__(self, nutation: Nutation, start: Impulse, digits: int) -> None:
-        super().__init__(start)
-        body = nutation.body
+    def __init__(self, nutation: Nutation, start: Impulse) -> None:
+        super().__init__(nutation, start)
         self._minus, self._plus = distances(nutation.F2, nutation.z)
-        self._F = mp.sqrt(mp.convert(nutation.F2))
         self._c = mp.sqrt(mp.convert(nutation.f[0])) * (-1 if nutation.speed < 0 else 1)
-        self._r, self._screw = mp.convert(body.r), mp.convert(body.q - body.q_prime)
         self._origin = transverse(start.linear)
-        self._glide = mp.convert(body.q) * self._F
         # r F Z' = drift + c^2 (z^2 - F^2), and z' = c (F^2 - z^2).
         self._drift = mp.convert(
             nutation.drift(nutation.z) + nutation.f[0] * (nutation.F2 - nutation.z**2)

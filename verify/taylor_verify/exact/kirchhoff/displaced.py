@@ -18,8 +18,7 @@ from typing import Any
 from taylor_verify.exact.kirchhoff.carried import Back, Number
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.rotation import rotation_matrix
-from taylor_verify.scenes import tensors
-from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.bodies import Clebsch
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Vector
@@ -40,20 +39,13 @@ def centred(scene: Scene) -> tuple[Scene, Fraction]:
     x1, x2, _ = start.linear
     y1, y2, y3 = start.angular
     along = (row[2] for row in rotation_matrix(start.attitude))
-    return replace(
-        scene,
-        body=ImmersedBody(
-            linear=tensors.diagonal((p, p, body.linear[2][2])),
-            coupling=tensors.diagonal((q, q, body.coupling[2][2])),
-            angular=body.angular,
-        ),
-        initial=Impulse(
-            start.linear,
-            (y1 + distance * x2, y2 - distance * x1, y3),
-            start.attitude,
-            tuple(c + distance * e for c, e in zip(start.centre, along, strict=True)),
-        ),
-    ), distance
+    moved = replace(
+        start,
+        angular=(y1 + distance * x2, y2 - distance * x1, y3),
+        centre=tuple(c + distance * e for c, e in zip(start.centre, along, strict=True)),
+    )
+    six = Clebsch(p, body.linear[2][2], q, body.coupling[2][2], r, body.angular[2][2])
+    return replace(scene, body=six.body(), initial=moved), distance
 
 
 def moved_back(distance: Fraction, start: Impulse) -> Back:

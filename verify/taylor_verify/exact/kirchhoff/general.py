@@ -21,6 +21,7 @@ from taylor_verify.exact.kirchhoff.screws import Screw, Stability, is_steady, sc
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.kirchhoff.weber.curve import REGIME as WEBER
 from taylor_verify.exact.kirchhoff.weber.curve import Curve, curve
+from taylor_verify.exact.kirchhoff.weber.enclosure import rates
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
@@ -87,8 +88,8 @@ def elements(scene: Scene, digits: int) -> Elements:
 
     def numbers(working: int) -> list[Element]:
         swing = {} if place is None else Pendulum(kind, place, scene).elements(working)
-        rates = [] if weber is None else _weber_rates(weber, working)
-        return [*recurring(swing, _SWING, _PENDULUM), *rates, *conserved(body, start)]
+        angles = [] if weber is None else _weber_rates(weber, working)
+        return [*recurring(swing, _SWING, _PENDULUM), *angles, *conserved(body, start)]
 
     told = [_STORY.get(kind, _UNSOLVED if fourth is None else _UNBUILT), _THREE]
     if fourth is not None:
@@ -134,8 +135,6 @@ def _weber_curve(scene: Scene) -> Curve | None:
 
 def _weber_rates(found: Curve, working: int) -> list[Element]:
     """The rates of the two angles."""
-    from taylor_verify.exact.kirchhoff.weber.enclosure import rates
-
     meaning = "of the {} of two angles of which x and y are functions, of period 2 pi in each"
     return [
         Element(f"{which}_rate", rate, "radians/time", meaning.format(which), _CURVE)

@@ -5,7 +5,7 @@ x' = x x Omega + X and y' = y x Omega + x x U + L, with U = A x + B y and Omega 
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
+from dataclasses import asdict, replace
 from fractions import Fraction
 from typing import Final, final
 
@@ -27,8 +27,8 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix, Vector
 
 # x and y as linear forms of (x, y).
-_X: Final = tuple(tuple(Fraction(int(i == k)) for k in range(6)) for i in range(3))
-_Y: Final = tuple(tuple(Fraction(int(i + 3 == k)) for k in range(6)) for i in range(3))
+_UNIT: Final = tensors.diagonal((Fraction(1),) * 6)
+_X, _Y = _UNIT[:3], _UNIT[3:]
 
 
 @final
@@ -64,19 +64,18 @@ class Immersed(Kind[ImmersedBody, Impulse]):
         reached = z if body.manufactured is None else body.manufactured.reach
         x, y, force, couple = reached[:3], reached[3:], body.force, body.couple
         a, b, c = body.linear, body.coupling, body.angular
-        spun = tensors.plus(tensors.apply(tensors.transpose(b), force), tensors.apply(c, couple))
-        pushed = tensors.plus(tensors.apply(a, force), tensors.apply(b, couple))
+        driven = tensors.apply(body.energy_matrix, force + couple)
         omega = largest(
             exponent(tensors.apply(tensors.transpose(b), x)),
             exponent(tensors.apply(c, y)),
-            halved(exponent(spun)),
+            halved(exponent(driven[3:])),
             default=0,
         )
         time = -omega
         velocity = largest(
             exponent(tensors.apply(a, x)),
             exponent(tensors.apply(b, y)),
-            later(exponent(pushed), time),
+            later(exponent(driven[:3]), time),
             default=omega,
         )
         if body.manufactured is not None:
@@ -124,13 +123,14 @@ class Immersed(Kind[ImmersedBody, Impulse]):
 
 
 def _six(body: ImmersedBody, six: Clebsch) -> Parameters:
-    components = tuple(field.name for field in fields(six))
+    components = asdict(six)
+    names = tuple(components)
 
     def changed(j: int, amount: Fraction) -> ImmersedBody:
-        other = replace(six, **{components[j]: getattr(six, components[j]) + amount})
+        other = replace(six, **{names[j]: components[names[j]] + amount})
         return other.body(body.force, body.couple)
 
-    p, p_prime, r, r_prime = six.p, six.p_prime, six.r, six.r_prime
+    p, p_prime, _, _, r, r_prime = components.values()
     # q may be zero; T > 0 keeps q^2 below p r.
     squares = (p * p, p_prime * p_prime, p * r, p_prime * r_prime, r * r, r_prime * r_prime)
-    return Parameters("clebsch", components, squares, changed)
+    return Parameters("clebsch", names, squares, changed)

@@ -1,4 +1,4 @@
-"""The fourth integrals of bodies beyond Clebsch's body of revolution: who has one, and which.
+"""The fourth integrals of bodies beyond Clebsch's body of revolution, and the families that have them.
 
 Legend: x, y the impulses in body axes, F^2 = x.x, FG = x.y; for a diagonal energy
 
@@ -30,7 +30,6 @@ from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse, Motion
 from taylor_verify.scenes.mpfr import real
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix
 
 # Coefficients of monomials, by the exponents of x1 x2 x3 y1 y2 y3.
 Terms = Mapping[tuple[int, ...], Fraction]
@@ -39,7 +38,7 @@ Numbers = Sequence[Any]
 # A family's word, and the coefficients of its integral.
 Family = tuple[str, tuple[Any, ...]]
 
-_CYCLIC: Final = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
+CYCLIC: Final = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
 
 
 # The integrals.
@@ -52,7 +51,7 @@ def clebsch2(x: Numbers, y: Numbers, r: Numbers, theta: Any) -> Any:
 
 def neumann(x: Numbers, y: Numbers, r: Any, p: Numbers) -> Any:
     """r_1 = r_2 = r_3 with any p and b_1 = b_2 = b_3; where FG = 0, Neumann's point on a sphere."""
-    return sum(r * p[i] * y[i] * y[i] - p[j] * p[k] * x[i] * x[i] for i, j, k in _CYCLIC)
+    return sum(r * p[i] * y[i] * y[i] - p[j] * p[k] * x[i] * x[i] for i, j, k in CYCLIC)
 
 
 def steklov(x: Numbers, y: Numbers, r: Numbers, mu: Any) -> Any:
@@ -61,7 +60,7 @@ def steklov(x: Numbers, y: Numbers, r: Numbers, mu: Any) -> Any:
         y[i] * y[i]
         - 2 * mu * r[i] * x[i] * y[i]
         + mu * mu * (r[j] - r[k]) * (r[j] - r[k]) * x[i] * x[i]
-        for i, j, k in _CYCLIC
+        for i, j, k in CYCLIC
     )
 
 
@@ -71,7 +70,7 @@ def lyapunov(x: Numbers, y: Numbers, r: Any, b: Numbers) -> Any:
         r * r * b[i] * y[i] * y[i]
         - 2 * r * b[j] * b[k] * x[i] * y[i]
         + b[i] * (b[j] - b[k]) * (b[j] - b[k]) * x[i] * x[i]
-        for i, j, k in _CYCLIC
+        for i, j, k in CYCLIC
     )
 
 
@@ -187,15 +186,15 @@ def diagonal_family(body: ImmersedBody) -> Family | None:
     if _equal(r):
         if _equal(b):
             return "neumann", (r[0], _centred(p))
-        rest = [r[0] * p[i] - (b[j] - b[k]) ** 2 for i, j, k in _CYCLIC]
+        rest = [r[0] * p[i] - (b[j] - b[k]) ** 2 for i, j, k in CYCLIC]
         return ("lyapunov", (r[0], _centred(b))) if _equal(rest) else None
     if _equal(b):
         theta = _slope(p, r)
-        fits = _equal([p[i] - theta * r[j] * r[k] for i, j, k in _CYCLIC])
+        fits = _equal([p[i] - theta * r[j] * r[k] for i, j, k in CYCLIC])
         return ("clebsch2", (r, theta)) if fits else None
     mu = _slope(b, r)
-    of_b = [b[i] - mu * r[j] * r[k] for i, j, k in _CYCLIC]
-    of_p = [p[i] - mu**2 * r[i] * (r[j] - r[k]) ** 2 for i, j, k in _CYCLIC]
+    of_b = [b[i] - mu * r[j] * r[k] for i, j, k in CYCLIC]
+    of_p = [p[i] - mu**2 * r[i] * (r[j] - r[k]) ** 2 for i, j, k in CYCLIC]
     return ("steklov", (r, mu)) if _equal(of_b) and _equal(of_p) else None
 
 
@@ -205,27 +204,17 @@ def _kovalevskaya_family(body: ImmersedBody, start: Impulse) -> Family | None:
     a = C[0][0]
     if tensors.diagonal((a, a, 2 * a)) != C:
         return None
-    shared = B[0][0]
-    c, d = B[0][2], B[1][2]
-    if (c or d) and _with((shared,) * 3, {(0, 2): c, (1, 2): d}) == B:
+    zero, shared, c, d = Fraction(0), B[0][0], B[0][2], B[1][2]
+    if (c or d) and B == ((shared, zero, c), (zero, shared, d), (zero, zero, shared)):
         p0 = A[0][0]
         of_sokolov = A == tensors.diagonal((p0, p0, p0 - (c**2 + d**2) / a))
         return ("sokolov", (a, c, d)) if of_sokolov else None
     c, d, p0 = (A[0][0] - A[1][1]) / 2, A[0][1], A[2][2]
+    of_chaplygin = A == ((p0 + c, d, zero), (d, p0 - c, zero), (zero, zero, p0))
     is_orthogonal = tensors.dot(start.linear, start.angular) == 0
-    of_chaplygin = _with((p0 + c, p0 - c, p0), {(0, 1): d, (1, 0): d}) == A
     if is_orthogonal and of_chaplygin and tensors.diagonal((shared,) * 3) == B:
         return "chaplygin", (a, c, d)
     return None
-
-
-def _with(diagonal: tuple[Fraction, ...], beside: Mapping[tuple[int, int], Fraction]) -> Matrix:
-    """A matrix with this diagonal and these entries beside it."""
-    rows = tensors.diagonal(diagonal)
-    return tuple(
-        tuple(beside.get((i, j), entry) for j, entry in enumerate(row))
-        for i, row in enumerate(rows)
-    )
 
 
 def _equal(values: Sequence[Fraction]) -> bool:
@@ -233,14 +222,14 @@ def _equal(values: Sequence[Fraction]) -> bool:
 
 
 def _centred(values: Sequence[Fraction]) -> list[Fraction]:
-    """Less their mean, which adds only F^2, FG and T to an integral."""
+    """Return the values less their mean, which adds only F^2, FG and T to an integral."""
     mean = sum(values, Fraction(0)) / 3
     return [value - mean for value in values]
 
 
 def _slope(values: Sequence[Fraction], r: Sequence[Fraction]) -> Fraction:
     """s from two of v_i = v0 + s r_j r_k, for r that are not all equal."""
-    i, j, k = next(order for order in _CYCLIC if r[order[0]] != r[order[1]])
+    i, j, k = next(order for order in CYCLIC if r[order[0]] != r[order[1]])
     return (values[i] - values[j]) / (r[k] * (r[j] - r[i]))
 
 
@@ -265,7 +254,7 @@ def _rational(value: Any) -> Any:
 
 
 def _derivative(polynomial: Terms, place: int) -> Terms:
-    """By the variable at this place."""
+    """Return the derivative by the variable at this place."""
     return {
         (*powers[:place], powers[place] - 1, *powers[place + 1 :]): powers[place] * c
         for powers, c in polynomial.items()

@@ -1,4 +1,4 @@
-"""What a solid's free motion in a fluid conserves: T, F^2, FG, a fourth integral, the impulses in space.
+"""Conserved quantities of a solid's free motion in a fluid: T, F^2, FG, y3, the impulses in space.
 
 Legend: x, y are the impulses, U = A x + B y and Omega = B^T x + C y the velocities. Written from the
 definitions and independent of the equations of motion.
@@ -29,6 +29,8 @@ from taylor_verify.exact.rows import (
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Motion
 
+_BLOCKS: Final = ("linear_impulse", "angular_impulse")
+
 
 def energy(body: ImmersedBody) -> Invariant:
     """T = x.A x/2 + x.B y + y.C y/2 = (x.U + y.Omega)/2, with dT/dx = U and dT/dy = Omega."""
@@ -39,11 +41,12 @@ def energy(body: ImmersedBody) -> Invariant:
     def value(motion: Motion) -> Array:
         return dot(_impulses(motion), velocities(motion)) / 2
 
-    def sensitivity(motion: Motion) -> Mapping[str, Array]:
-        both = velocities(motion)
-        return {"linear_impulse": both[:, :3], "angular_impulse": both[:, 3:]}
-
-    return Invariant("T", value, lambda motion: largest(value(motion)), sensitivity)
+    return Invariant(
+        "T",
+        value,
+        lambda motion: largest(value(motion)),
+        lambda motion: dict(zip(_BLOCKS, np.hsplit(velocities(motion), 2), strict=True)),
+    )
 
 
 F2: Final = Invariant(
@@ -120,4 +123,4 @@ Y_SPACE: Final = Invariant("y_space", _y_space_value, _y_space_scale, _y_space_s
 
 
 def _impulses(motion: Motion) -> Array:
-    return np.concatenate([motion["linear_impulse"], motion["angular_impulse"]], axis=1)
+    return np.concatenate([motion[name] for name in _BLOCKS], axis=1)

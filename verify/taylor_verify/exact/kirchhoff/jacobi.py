@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any, Final, final
 
@@ -46,11 +47,10 @@ class Screw(Settled):
     route = "mpmath"
 
     def __init__(
-        self, kind: str, nutation: Nutation, start: Impulse, track: frozenset[str] = frozenset()
+        self, kind: str, nutation: Nutation, start: Impulse, track: frozenset[str]
     ) -> None:
         self.regime = kind
-        self._start = start
-        self._track = track
+        self._start, self._track = start, track
         self._turn_rate = nutation.turn_rate
         self._U, Omega = velocities(nutation.body.body(), start)
         self._nu = (*Omega[:2], Omega[2] + self._turn_rate)
@@ -94,54 +94,50 @@ class Screw(Settled):
 
 
 @final
+@dataclass(eq=False)
 class NutatingBody(Settled):
     """x3 varies: it swings between two roots of f, or falls away from one and returns to it."""
 
     route = "mpmath"
-
-    def __init__(
-        self, kind: str, nutation: Nutation, start: Impulse, track: frozenset[str] = frozenset()
-    ) -> None:
-        self.regime = kind
-        self._nutation = nutation
-        self._start = start
-        self._track = track
-        self._orbits: dict[int, Orbit] = {}
+    regime: str
+    nutation: Nutation
+    start: Impulse
+    track: frozenset[str] = frozenset()
+    _orbits: dict[int, Orbit] = field(default_factory=dict, init=False)
 
     def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
         longest = max((abs(t) for t in elapsed), default=Fraction(0))
         with mp.workdps(_ROUGH_DIGITS):
-            losses = self._orbit(_ROUGH_DIGITS).losses(mp.convert(longest))
+            losses = self._orbit().losses(mp.convert(longest))
             lost = sum(max(0, int(mp.ceil(mp.log10(loss)))) for loss in losses)
-        if "centre" in self._track:
+        if "centre" in self.track:
             lost += self._short_digits(elapsed)
-        working = digits + _GUARD_DIGITS + lost
-        with mp.workdps(working):
-            orbit = self._orbit(working)
+        with mp.workdps(digits + _GUARD_DIGITS + lost):
+            orbit = self._orbit()
             poses = [orbit.pose(mp.convert(t)) for t in elapsed]
-            places = [orbit.axes.place(pose) for pose in poses] if self._track else []
+            places = [orbit.axes.place(pose) for pose in poses] if self.track else []
             x, y = [pose.x for pose in poses], [pose.y for pose in poses]
-            return _quantities(x, y, places, self._track)
+            return _quantities(x, y, places, self.track)
 
     def elements(self, digits: int) -> dict[str, mpf]:
         """The elements of the orbit, to about ``digits`` digits."""
         with mp.workdps(digits + _GUARD_DIGITS):
-            return self._orbit(digits + _GUARD_DIGITS).elements
+            return self._orbit().elements
 
-    def _orbit(self, digits: int) -> Orbit:
-        """The orbit at the working precision of ``digits``, made once."""
-        if digits not in self._orbits:
+    def _orbit(self) -> Orbit:
+        """The orbit at the ambient precision, made once."""
+        if mp.dps not in self._orbits:
             make = _ORBITS.get(self.regime, EllipticOrbit)
-            self._orbits[digits] = make(self._nutation, self._start, digits)
-        return self._orbits[digits]
+            self._orbits[mp.dps] = make(self.nutation, self.start)
+        return self._orbits[mp.dps]
 
     def _short_digits(self, elapsed: Sequence[Fraction]) -> int:
         """The digits by which |y|/F, whose change is the way across F, exceeds the centre itself."""
-        start = self._start
+        start = self.start
         shortest = min((abs(t) for t in elapsed if t != 0), default=Fraction(1))
-        U, _ = velocities(self._nutation.body.body(), start)
+        U, _ = velocities(self.nutation.body.body(), start)
         reached = tensors.dot(start.centre, start.centre) + tensors.dot(U, U) * shortest**2
-        lever = tensors.dot(start.angular, start.angular) / self._nutation.F2
+        lever = tensors.dot(start.angular, start.angular) / self.nutation.F2
         if not 0 < reached < lever:
             return 0
         return math.ceil(floor_log2(lever / reached) * math.log10(2) / 2)

@@ -61,7 +61,7 @@ def lattice(g2: Fraction, g3: Fraction) -> Lattice:
 
 
 def _rectangular(g2: Fraction, g3: Fraction, discriminant: Fraction) -> Periods:
-    """Three real roots e1 > e2 > e3. The closer two have their distance from the discriminant."""
+    """The lattice of three real roots e1 > e2 > e3, the closer two apart as the discriminant says."""
     e3, e2, e1 = (root.real for root in _roots(g2, g3))
     upper, lower, whole = e1 - e2, e2 - e3, e1 - e3
     quarter = ball(discriminant).sqrt() / 4
@@ -74,7 +74,7 @@ def _rectangular(g2: Fraction, g3: Fraction, discriminant: Fraction) -> Periods:
 
 
 def _rhombic(g2: Fraction, g3: Fraction, discriminant: Fraction) -> Periods:
-    """One real root e, and a pair. With H^2 = 3 e^2 - g2/4 the parameters are 1/2 -+ 3e/4H.
+    """The lattice of one real root e and a pair. With H^2 = 3 e^2 - g2/4 the parameters are 1/2 -+ 3e/4H.
 
     Their product is -Delta/(256 H^6), from which the smaller one comes without cancellation.
     """
@@ -204,7 +204,7 @@ class Elementary(Lattice):
         return self._e + rise, -2 * rise * slope / s
 
     def argument(self, X: acb, Y: acb) -> acb:
-        """From e^{2 rho u} = (coth + 1)/(coth - 1), with p'/(p - e) = -2 rho coth = -2 s'/s."""
+        """Solved from e^{2 rho u} = (coth + 1)/(coth - 1), with p'/(p - e) = -2 rho coth = -2 s'/s."""
         if self._rho.is_zero():
             return -2 * X / Y
         slant = 2 * self._rho * (X - self._e)

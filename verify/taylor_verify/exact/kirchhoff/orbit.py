@@ -1,4 +1,4 @@
-"""One nutating motion of Clebsch's body, Hydromechanics 49 (1)-(22), as numbers of one precision.
+"""The nutating motion of Clebsch's body, Hydromechanics 49 (1)-(22), as numbers of one precision.
 
 Legend: z = x3; F = |x|, FG = x.y; f(z) = z'^2 is the quartic; A^2 = F^2 - z^2, so that
 x1 + i x2 = A e^{i chi}. Derived from x' = x x Omega alone:
@@ -31,10 +31,17 @@ _NEAR_POLE: Final = 2.0**-3
 
 
 class Orbit(ABC):
-    """One nutating motion, with numbers of one precision; to be used at that precision."""
+    """A nutating motion, with numbers of one precision; to be used at that precision."""
 
-    def __init__(self, start: Impulse) -> None:
+    def __init__(self, nutation: Nutation, start: Impulse) -> None:
+        body = nutation.body
         self._start = start
+        self._F = mp.sqrt(mp.convert(nutation.F2))
+        self._r, self._y3 = mp.convert(body.r), mp.convert(nutation.y3)
+        # L' is linear + screw z, and the phase of both parameters grows at half of glide.
+        self._linear = mp.convert((body.r - body.r_prime) * nutation.y3)
+        self._screw = mp.convert(body.q - body.q_prime)
+        self._glide = mp.convert(body.q) * self._F
 
     @abstractmethod
     def pose(self, t: mpf) -> Pose:
@@ -124,7 +131,7 @@ def distances(F2: Fraction, z: Fraction) -> tuple[mpf, mpf]:
 
 @final
 class Phase:
-    """One of L, U and D: linear but for bend times int a/(b + beta a) du, and zero at the start."""
+    """A phase, L, U or D: linear but for bend times int a/(b + beta a) du, and zero at the start."""
 
     def __init__(self, rate: mpf, wave: Wave, bend: mpf | int = 0, beta: mpf | int = 1) -> None:
         self.rate, self.bend, self.beta = rate, bend, beta
@@ -143,16 +150,13 @@ class Phase:
 class EllipticOrbit(Orbit):
     """A motion whose x3 swings between two simple roots of f."""
 
-    def __init__(self, nutation: Nutation, start: Impulse, digits: int) -> None:
-        super().__init__(start)
-        points = turning_points(nutation, digits)
+    def __init__(self, nutation: Nutation, start: Impulse) -> None:
+        super().__init__(nutation, start)
+        points = turning_points(nutation, mp.dps)
         self._wave: Wave = (SquareWave if points.pair is None else CosineWave)(nutation, points)
-        self._r, self._y3 = mp.convert(nutation.body.r), mp.convert(nutation.y3)
         self._z1, self._width = mp.convert(points.z1), mp.convert(points.z2 - points.z1)
         self._poles = _poles(nutation, points)
-        self._F = mp.sqrt(mp.convert(nutation.F2))
-        self._glide = mp.convert(nutation.body.q) * self._F
-        self._phases = self._spin_phase(nutation), *map(self._pole_phase, self._poles)
+        self._phases = self._spin_phase(), *map(self._pole_phase, self._poles)
         self._rise = Rise(nutation, points.z1, self._wave)
         self._turn = self._first_turn(start)
 
@@ -179,12 +183,11 @@ class EllipticOrbit(Orbit):
         betas = [phase.beta + 1 / phase.beta for phase in self._phases if phase.bend]
         return [1 + self._wave.rate * t, 1 / self._wave.m_prime, 1 + linear * t, *betas]
 
-    def _spin_phase(self, nutation: Nutation) -> Phase:
+    def _spin_phase(self) -> Phase:
         """L, by x3 = z1 + width w a/(b + w a)."""
-        body, wave = nutation.body, self._wave
-        pace = mp.convert(body.q - body.q_prime)
-        rate = mp.convert((body.r - body.r_prime) * nutation.y3) + pace * self._z1
-        return Phase(rate, wave, pace * self._width * wave.weight / wave.rate, wave.weight)
+        wave = self._wave
+        bend = self._screw * self._width * wave.weight / wave.rate
+        return Phase(self._linear + self._screw * self._z1, wave, bend, wave.weight)
 
     def _pole_phase(self, pole: Pole) -> Phase:
         """U or D: 1/(F -+ x3) has the form of x3 with the pole's own weight."""

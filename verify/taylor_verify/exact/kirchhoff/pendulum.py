@@ -13,7 +13,7 @@ sin^2 alpha), and across F, in the plane, by (y_k - y_k0)/F (Hydromechanics 49 (
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Final, final
@@ -56,13 +56,13 @@ class Pendulum(Settled):
         fastest = max(self._plane.omega0_squared, self._plane.h)
         swept = math.isqrt(math.ceil(fastest * longest**2))
         with mp.workdps(digits + _GUARD_DIGITS + len(str(swept))):
-            course = _course(self.regime, self._plane)
+            course = _COURSES.get(self.regime, Even)(self._plane)
             return self._quantities([course.at(t) for t in elapsed], elapsed)
 
     def elements(self, digits: int) -> dict[str, mpf]:
         """The period after which x and y recur, where they do, and the rate and parameters."""
         with mp.workdps(digits + _GUARD_DIGITS):
-            return _course(self.regime, self._plane).elements()
+            return _COURSES.get(self.regime, Even)(self._plane).elements()
 
     def _quantities(self, rows: Sequence[Swept], elapsed: Sequence[Fraction]) -> Quantities:
         place = self._plane
@@ -194,7 +194,8 @@ class Elliptic:
         return {"period": period, "rate": rate, "m": self._m, "m_prime": self._m_prime}
 
 
-def _course(kind: str, place: Plane) -> Even | Front | Elliptic:
-    if kind == "planar-front":
-        return Front(place)
-    return Elliptic(place) if kind in ("planar-swing", "planar-turn") else Even(place)
+_COURSES: Final[Mapping[str, type[Front | Elliptic]]] = {
+    "planar-front": Front,
+    "planar-swing": Elliptic,
+    "planar-turn": Elliptic,
+}

@@ -1,4 +1,4 @@
-"""Which motions stay in a plane of the body, and of what kind they are, decided in rationals.
+"""Motions that stay in a plane of the body, and their kinds, decided in rationals.
 
 Legend: body axes i, j, k in cyclic order, k across the plane; T holds p_i x_i^2 + p_j x_j^2 + r y_k^2
 of the plane (halved) and nothing that leads out of it. Of the two axes, a is the one with the smaller
@@ -21,7 +21,6 @@ from taylor_verify.exact.kirchhoff.carried import Back, Number
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
-from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.scene import Scene
 
 
@@ -81,34 +80,30 @@ def plane(scene: Scene) -> Plane | None:
         i, j = (k + 1) % 3, (k + 2) % 3
         outside = (start.linear[k], start.angular[i], start.angular[j])
         if not any(outside) and _keeps_to_plane(body, i, j, k):
-            return _plane(body, start, i, j, k)
+            swapped = body.linear[i][i] > body.linear[j][j]
+            a, b = (j, i) if swapped else (i, j)
+            return Plane(
+                a=a,
+                b=b,
+                k=k,
+                side=-1 if swapped else 1,
+                p=(body.linear[a][a], body.linear[b][b]),
+                r=body.angular[k][k],
+                x=(start.linear[a], start.linear[b]),
+                y=start.angular[k],
+            )
     return None
 
 
 def _keeps_to_plane(body: ImmersedBody, i: int, j: int, k: int) -> bool:
-    """Whether Omega_i = Omega_j = U_k = 0, and U and Omega_k are the legend's, all over the plane."""
+    """Return True if Omega_i = Omega_j = U_k = 0 all over the plane, and U and Omega_k are the legend's."""
     A, B, C = body.linear, body.coupling, body.angular
     in_the_way = (A[i][j], A[i][k], A[j][k], C[i][k], C[j][k], B[k][k])
     return not any(in_the_way) and not any(B[row][n] for row in (i, j) for n in range(3))
 
 
-def _plane(body: ImmersedBody, start: Impulse, i: int, j: int, k: int) -> Plane:
-    swapped = body.linear[i][i] > body.linear[j][j]
-    a, b = (j, i) if swapped else (i, j)
-    return Plane(
-        a=a,
-        b=b,
-        k=k,
-        side=-1 if swapped else 1,
-        p=(body.linear[a][a], body.linear[b][b]),
-        r=body.angular[k][k],
-        x=(start.linear[a], start.linear[b]),
-        y=start.angular[k],
-    )
-
-
 def regime(found: Plane) -> str:
-    """One word for a motion in a plane, decided in rationals.
+    """Return the word for a motion in a plane, decided in rationals.
 
     - planar-steady: x and y are constant, the body moves straight on or not at all;
     - planar-uniform: p_a = p_b or F = 0, and the body turns at a constant rate;

@@ -6,7 +6,6 @@ coefficients of T, f = r^2 X3. A polynomial is a tuple of Fractions, the highest
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -75,10 +74,15 @@ class Nutation:
         body, z = self.body, self.z
         if self.F2 == 0:
             return (body.r - body.r_prime) * self.y3
-        if self.F2 - z**2 == 0:
+        if self.is_axial:
             return Fraction(0)
         pull = body.r * (self.FG * z - self.F2 * self.y3) / (self.F2 - z**2)
         return (body.r - body.r_prime) * self.y3 - (body.q_prime - body.q) * z + pull
+
+    @property
+    def is_axial(self) -> bool:
+        """True if x is along axis 3 at the start."""
+        return self.F2 == self.z**2
 
     def drift(self, z: Fraction) -> Fraction:
         """r F Z' where x3 = z, with Z the way of the centre along F: Hydromechanics 49 (20)."""
@@ -88,13 +92,13 @@ class Nutation:
         return body.r * (steady + (body.p_prime - body.p) * z**2 + screw * z)
 
     def touches_pole(self, side: int) -> bool:
-        """Whether f vanishes at x3 = F (side 1) or x3 = -F (side -1), that is G = side y3."""
+        """Return True if f vanishes at x3 = F (side 1) or x3 = -F (side -1), that is G = side y3."""
         same_size = self.F2 * self.y3**2 == self.FG**2
         return same_size and side * self.FG * self.y3 >= 0
 
 
 def stripped(polynomial: Polynomial) -> Polynomial:
-    """Without leading zeros; () is the zero polynomial."""
+    """Return the polynomial without leading zeros; () is the zero polynomial."""
     for k, coefficient in enumerate(polynomial):
         if coefficient != 0:
             return polynomial[k:]
@@ -141,11 +145,6 @@ def sturm_chain(polynomial: Polynomial) -> tuple[Polynomial, ...]:
     return tuple(chain)
 
 
-def has_repeated_root(polynomial: Polynomial) -> bool:
-    """Whether some root, real or complex, is repeated, for a polynomial of degree 1 or more."""
-    return len(sturm_chain(polynomial)[-1]) > 1
-
-
 def repeated_root(polynomial: Polynomial) -> Fraction | None:
     """The one root that is repeated, which is rational; None if there is none, or more than one."""
     common = sturm_chain(polynomial)[-1]  # (z - d)^n up to a factor, if d is the only one
@@ -176,14 +175,23 @@ class RealRoots:
         return self._changes(-bound) - self._changes(bound)
 
     def number_up_to(self, z: Fraction) -> int:
-        """How many of them are <= z."""
+        """The number of roots <= z."""
         return self._changes(-self._bound()) - self._changes(z)
 
     @cached_property
     def _isolated(self) -> list[tuple[Fraction, Fraction]]:
         """Disjoint intervals (low, high], each with one root."""
         bound = self._bound()
-        return list(self._split(-bound, bound))
+        pending, found = [(-bound, bound)], []
+        while pending:
+            low, high = pending.pop()
+            number = self._changes(low) - self._changes(high)
+            if number == 1:
+                found.append((low, high))
+            elif number > 1:
+                middle = (low + high) / 2
+                pending += [(middle, high), (low, middle)]
+        return found
 
     def _bound(self) -> Fraction:
         """A power of two above every root: none exceeds twice the largest |c_k/c_0|^(1/k) (Fujiwara).
@@ -193,17 +201,6 @@ class RealRoots:
         first, *others = self.polynomial
         exponents = [-(-(floor_log2(c / first) + 1) // k) for k, c in enumerate(others, 1) if c]
         return power_of_two(1 + max(exponents, default=0))
-
-    def _split(self, low: Fraction, high: Fraction) -> Iterator[tuple[Fraction, Fraction]]:
-        pending = [(low, high)]
-        while pending:
-            low, high = pending.pop()
-            number = self._changes(low) - self._changes(high)
-            if number == 1:
-                yield low, high
-            elif number > 1:
-                middle = (low + high) / 2
-                pending += [(middle, high), (low, middle)]
 
     @cached_property
     def _chain(self) -> tuple[Polynomial, ...]:

@@ -10,8 +10,8 @@ from taylor_verify.exact.kirchhoff.quartic import (
     Nutation,
     RealRoots,
     derivative,
-    has_repeated_root,
     repeated_root,
+    sturm_chain,
     value,
 )
 from taylor_verify.exact.kirchhoff.solid import solid
@@ -37,7 +37,7 @@ def nutation_of(scene: Scene) -> tuple[Nutation, Impulse]:
 
 
 def regime(nutation: Nutation) -> str:
-    """One word for the motion, decided in rationals.
+    """Return the word for the motion, decided in rationals.
 
     - rest: no impulse at all;
     - euler-top: x = 0, and y turns about axis 3 at a constant rate;
@@ -55,7 +55,7 @@ def regime(nutation: Nutation) -> str:
         return "steady"
     if len(f) < 4:
         return "trigonometric"
-    if has_repeated_root(f):
+    if len(sturm_chain(f)[-1]) > 1:
         return _repeated(nutation)
     if len(f) == 4:
         return "cubic"
@@ -135,7 +135,7 @@ def _arranged(nutation: Nutation, real: RealRoots, width: Fraction) -> TurningPo
 
 
 def _is_pole(nutation: Nutation, roots: list[Fraction], index: int, side: int) -> bool:
-    """Whether this root is the pole side * F: if the pole is a root at all, it is the nearest."""
+    """Return True if this root is the pole side * F: a pole that is a root is the nearest one."""
     if not nutation.touches_pole(side):
         return False
     distances = [
@@ -152,7 +152,7 @@ def _complex_pair(nutation: Nutation, z1: Fraction, z2: Fraction) -> tuple[Fract
 
 
 def _allowances(nutation: Nutation, points: TurningPoints, width: Fraction) -> list[Fraction]:
-    """For each difference that enters, the error of a root that would be as large as it is."""
+    """Errors of a root that would be as large as each difference that enters."""
     z1, z2 = points.z1, points.z2
     F_above = power_of_two(floor_log2(nutation.F2) // 2 + 1)
     allowed = [z2 - z1]

@@ -42,7 +42,7 @@ _MOST_BITS: Final = 2048
 
 
 class Stability(Enum):
-    """What is proven of a screw; the value is the sentence."""
+    """Proven statements about a screw; the value is the sentence."""
 
     STABLE = "stable: T - lambda x.y - mu x.x/2 is least there"
     TO_FIRST_ORDER = "stable to the first order: small disturbances swing"
@@ -52,7 +52,7 @@ class Stability(Enum):
 
 @dataclass(frozen=True)
 class Screw:
-    """One steady screw with a given F, in body axes.
+    """A steady screw with a given F, in body axes.
 
     ``speed`` is the velocity of the body's origin along the impulse, ``c2`` and ``c0`` the
     coefficients of the exponents' equation.

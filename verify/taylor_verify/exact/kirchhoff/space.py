@@ -58,11 +58,6 @@ class CayleyKlein:
             [level.real, level.imag, upright],
         ]
 
-    def across(self, transverse: mpc, along: mpf) -> mpc:
-        """X + i Y of the vector (v1, v2, v3), where transverse is v1 + i v2 and along v3."""
-        a, b = self.a, self.b
-        return a**2 * transverse - b**2 * mp.conj(transverse) - 2 * a * b * along
-
 
 @dataclass(frozen=True)
 class Pose:
@@ -79,7 +74,8 @@ class Pose:
     @property
     def moment(self) -> mpc:
         """y_X + i y_Y."""
-        return self.turned.across(*self.y)
+        (eta, y3), a, b = self.y, self.turned.a, self.turned.b
+        return a**2 * eta - b**2 * mp.conj(eta) - 2 * a * b * y3
 
 
 @final

@@ -16,10 +16,11 @@ import numpy as np
 
 from taylor_verify.exact.kirchhoff.carried import Back, Number
 from taylor_verify.exact.kirchhoff.solid import solid
+from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse, Quaternion
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix, Vector
+from taylor_verify.scenes.tensors import Matrix
 
 _BODY_AXES: Final = {"linear_impulse", "angular_impulse", "attitude"}
 
@@ -34,17 +35,18 @@ def upright(scene: Scene) -> tuple[Scene, int]:
     axis = body.axis_of_symmetry or 3
     if axis == 3 or not body.is_free:
         return scene, 3
-    order = _order(axis)
+    unit = tensors.diagonal((Fraction(1),) * 3)
+    change = tuple(unit[i] for i in _order(axis))
+
+    def renamed(matrix: Matrix) -> Matrix:
+        return tensors.product(tensors.product(change, matrix), tensors.transpose(change))
+
     return replace(
         scene,
-        body=ImmersedBody(
-            linear=_matrix(body.linear, order),
-            coupling=_matrix(body.coupling, order),
-            angular=_matrix(body.angular, order),
-        ),
+        body=ImmersedBody(renamed(body.linear), renamed(body.coupling), renamed(body.angular)),
         initial=Impulse(
-            _vector(start.linear, order),
-            _vector(start.angular, order),
+            tensors.apply(change, start.linear),
+            tensors.apply(change, start.angular),
             _third_of_a_turn(start.attitude, 1 if axis == 1 else -1),
             start.centre,
         ),
@@ -64,16 +66,8 @@ def put_back(axis: int) -> Back:
 
 
 def _order(axis: int) -> tuple[int, int, int]:
-    """Which component of v is each one of v': the last is that of the axis."""
+    """The components of v in the order of v': the last is that of the axis."""
     return axis % 3, (axis + 1) % 3, (axis + 2) % 3
-
-
-def _vector(v: Vector, order: Sequence[int]) -> Vector:
-    return tuple(v[i] for i in order)
-
-
-def _matrix(m: Matrix, order: Sequence[int]) -> Matrix:
-    return tuple(_vector(m[i], order) for i in order)
 
 
 def _third_of_a_turn(q: Quaternion, side: int) -> Quaternion:

@@ -24,8 +24,8 @@ from taylor_verify.exact.kirchhoff.regime import TurningPoints
 class Place:
     """A point of the wave: (sn, cn, dn) at the remainder u - 2 K turns, |remainder| <= K.
 
-    ``root_a`` and ``root_b`` are signed square roots of a and b. They change sign where they vanish,
-    and so stay smooth in time: dx3/dt is proportional to root_a root_b dn.
+    ``root_a`` and ``root_b`` are signed square roots of ``a`` and ``b``. They change sign where they
+    vanish, and so stay smooth in time: dx3/dt is proportional to root_a root_b dn.
     """
 
     u: mpf
@@ -35,14 +35,8 @@ class Place:
     dn: mpf
     root_a: mpf
     root_b: mpf
-
-    @property
-    def a(self) -> mpf:
-        return self.root_a**2
-
-    @property
-    def b(self) -> mpf:
-        return self.root_b**2
+    a: mpf
+    b: mpf
 
 
 class Wave(ABC):
@@ -72,7 +66,8 @@ class Wave(ABC):
     def place(self, u: mpf) -> Place:
         turns = int(mp.nint(u / (2 * self.quarter_period)))
         sn, cn, dn = self.landen.jacobi(u - 2 * turns * self.quarter_period)
-        return Place(u, turns, sn, cn, dn, *self._roots(turns, sn, cn))
+        root_a, root_b = self._roots(turns, sn, cn)
+        return Place(u, turns, sn, cn, dn, root_a, root_b, root_a**2, root_b**2)
 
     @final
     def _begin(self, nutation: Nutation, points: TurningPoints) -> mpf:

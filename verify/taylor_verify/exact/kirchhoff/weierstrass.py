@@ -18,6 +18,7 @@ exponential of a linear function of u and of i (q' - q) int z.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from fractions import Fraction
 from math import prod
 from typing import Any, Final, final
@@ -37,24 +38,23 @@ _NEAR_POLE: Final = 2.0**-6
 
 
 @final
+@dataclass(eq=False)
 class NutatingBody(Enclosed):
     """x3 varies: it swings between two roots of f, or falls away from one and returns to it."""
 
-    def __init__(
-        self, kind: str, nutation: Nutation, start: Impulse, track: frozenset[str]
-    ) -> None:
-        self.regime = kind
-        self._nutation, self._start, self._track = nutation, start, track
-        self._names = ("linear_impulse", "angular_impulse", *sorted(track))
-        self._orbits: dict[int, Orbit] = {}
+    regime: str
+    nutation: Nutation
+    start: Impulse
+    track: frozenset[str]
+    _orbits: dict[int, Orbit] = field(default_factory=dict, init=False)
 
     def enclose(self, elapsed: Sequence[Fraction], bits: int) -> Enclosure:
         if bits not in self._orbits:
             heteroclinic = self.regime == "heteroclinic"
-            self._orbits[bits] = Orbit(self._nutation, self._start, self._track, heteroclinic)
-        orbit = self._orbits[bits]
-        rows = [orbit.at(ball(t)) for t in elapsed]
-        return {name: [row[name] for row in rows] for name in self._names}
+            self._orbits[bits] = Orbit(self.nutation, self.start, self.track, heteroclinic)
+        rows = [self._orbits[bits].at(ball(t)) for t in elapsed]
+        names = ("linear_impulse", "angular_impulse", *sorted(self.track))
+        return {name: [row[name] for row in rows] for name in names}
 
 
 @final
@@ -83,7 +83,7 @@ class Factor:
 
 @final
 class Orbit:
-    """One nutating motion with numbers of one precision, to be used at that precision."""
+    """A nutating motion with numbers of one precision, to be used at that precision."""
 
     def __init__(
         self, nutation: Nutation, start: Impulse, track: frozenset[str], heteroclinic: bool
@@ -94,6 +94,10 @@ class Orbit:
         self._FG, self._screw = ball(nutation.FG), ball(body.q_prime - body.q)
         self._spin = ball(body.r_prime * nutation.y3)
         self._course = course(nutation, heteroclinic)
+        self._needs_integral = not self._screw.is_zero()
+        # 1 where the derivatives of the poles' factors enter, else 0.
+        is_cubic = self._course.order == 2
+        self._pole_order = int((is_cubic and self._needs_integral) or "centre" in track)
         self._find_factors()
         self._find_rates()
         self._find_amplitudes(start)
@@ -109,7 +113,7 @@ class Orbit:
             self._find_space(attitude)
 
     def at(self, u: arb) -> dict[str, Any]:
-        """At least every tracked quantity, at the time u since the start."""
+        """Every tracked quantity, and maybe more, at the time u since the start."""
         if u.is_zero():
             return self._at_start
         z, speed = self._course.at(u)
@@ -138,13 +142,13 @@ class Orbit:
             frame = self._frame(one, two, xi, z)
             found["attitude"] = (self._to_space * frame).tolist()
             if "centre" in self._track:
-                path = self._path(u, self._sideways(frame, eta), poles, along)
+                path = self._path(u, self._moment(frame, eta), poles, along)
                 moved = (self._to_space * arb_mat(3, 1, path)).entries()
                 start = self._at_start["centre"]
                 found["centre"] = [c + v for c, v in zip(start, moved, strict=True)]
         return found
 
-    # What is found once.
+    # The numbers of the whole orbit.
 
     def _find_factors(self) -> None:
         """alpha where (z, z') = (-F, s-), beta where it is (F, -s+), and the poles of z."""
@@ -168,7 +172,7 @@ class Orbit:
         return self._course.argument(side * self._F, s)
 
     def _starts_on_axis(self, side: int) -> bool:
-        return self._nutation.z**2 == self._nutation.F2 and side * self._nutation.z > 0
+        return self._nutation.is_axial and side * self._nutation.z > 0
 
     def _find_rates(self) -> None:
         """The linear rates of the exponentials, from the logarithmic derivatives at the start."""
@@ -208,22 +212,12 @@ class Orbit:
         two = acb(0) if self._starts_on_axis(1) else self._two
         frame = self._frame(one, two, self._start_xi, self._course.z)
         self._to_space = attitude * frame.transpose()
-        self._start_sideways = self._sideways(frame, self._start_eta)
+        self._start_moment = self._moment(frame, self._start_eta)
         body, F2 = self._nutation.body, self._nutation.F2
         self._ahead = ball(body.p * F2 + body.q * self._nutation.FG)
         self._ahead_by_square = ball(body.p_prime - body.p)
 
-    @property
-    def _needs_integral(self) -> bool:
-        return not self._screw.is_zero()
-
-    @property
-    def _pole_order(self) -> int:
-        """1 where the derivatives of the poles' factors enter, else 0."""
-        is_cubic = self._course.order == 2
-        return int((is_cubic and self._needs_integral) or "centre" in self._track)
-
-    # What is found at every time.
+    # The numbers of one time.
 
     def _pole_jets(self, u: arb, order: int) -> list[list[acb]]:
         if not self._course.are_conjugate:
@@ -232,7 +226,7 @@ class Orbit:
         return [jet, [value.conjugate() for value in jet]]
 
     def _eta_near_pole(self, u: arb, z: arb, xi: acb, turn: acb, above: tuple[acb, acb]) -> acb:
-        """From xi' = i r z eta - i (r' y3 + (q' - q) z) xi, without a division by xi."""
+        """Solve xi' = i r z eta - i (r' y3 + (q' - q) z) xi for eta, without a division by xi."""
         alpha, beta = above[0].conjugate(), above[1]
         alpha_slope, beta_slope = (factor.jet(u, 1)[1] for factor in (self._alpha, self._beta))
         growth = alpha_slope.conjugate() * beta + alpha * beta_slope
@@ -255,14 +249,12 @@ class Orbit:
             ]
         )
 
-    def _sideways(self, frame: arb_mat, eta: acb) -> tuple[arb, arb]:
-        """(X, Y) of R y."""
+    def _moment(self, frame: arb_mat, eta: acb) -> acb:
+        """X + i Y of R y."""
         y = frame * arb_mat(3, 1, [eta.real, eta.imag, self._y3])
-        return y[0, 0], y[1, 0]
+        return acb(y[0, 0], y[1, 0])
 
-    def _path(
-        self, u: arb, sideways: tuple[arb, arb], poles: list[list[acb]], along: arb
-    ) -> list[arb]:
+    def _path(self, u: arb, moment: acb, poles: list[list[acb]], along: arb) -> list[arb]:
         """The centre from its start: 49 (18)-(19) across the impulse, and Z along it.
 
         F dZ/dt = p F^2 + q FG + (p' - p) z^2 + (q' - q) y3 z, from Z' = (U.x)/F.
@@ -271,6 +263,5 @@ class Orbit:
         if isinstance(self._course, QuarticCourse):
             square = self._course.integral_of_square(u, poles, along)
             advance += self._ahead_by_square * square
-        X, Y = sideways
-        X0, Y0 = self._start_sideways
-        return [(Y - Y0) / self._F, (X0 - X) / self._F, advance / self._F]
+        across = (moment - self._start_moment) / (_I * self._F)
+        return [across.real, across.imag, advance / self._F]

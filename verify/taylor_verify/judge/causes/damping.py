@@ -13,11 +13,10 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.candidate import Candidate
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.fit import fitted
 from taylor_verify.judge.causes.flow import Floats
-from taylor_verify.judge.causes.material import Material, Pairs
+from taylor_verify.judge.causes.material import Candidate, Material, Pairs
 
 # Where the parameter is counted in units of a rate of turn, a decay by more than this is no damping.
 _FAST: Final = 1e3

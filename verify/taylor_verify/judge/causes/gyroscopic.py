@@ -13,10 +13,9 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.candidate import Candidate
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.flow import Floats
-from taylor_verify.judge.causes.material import Material, Pairs
+from taylor_verify.judge.causes.material import Candidate, Material, Pairs
 
 # The search for h begins with this part of a radian, where a method of first order is in its regime.
 _FIRST_STEP: Final = 0.05

@@ -12,10 +12,9 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.candidate import Candidate
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.flow import Floats, bilinear, flow
-from taylor_verify.judge.causes.material import FEWEST_PAIRS, Material
+from taylor_verify.judge.causes.material import FEWEST_PAIRS, Candidate, Material
 
 _NOISE: Final = 1e-13
 

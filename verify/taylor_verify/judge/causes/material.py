@@ -15,9 +15,9 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.candidate import Candidate
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.flow import Floats, flow
+from taylor_verify.records.answers import LikelyCause
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.instants import evenly
 
@@ -28,6 +28,27 @@ _MOST_PAIRS: Final = 24
 FEWEST_PAIRS: Final = 2
 # Float64 and the series of the flow are off by less than so many roundoffs of the state.
 _NOISE: Final = 64 * 2.0**-53
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A hypothesis that was tried: the part of the error that it ``leaves``, and its ``fitted`` numbers.
+
+    Beside one that ``is_sure`` no hypothesis about the dynamics is needed.
+    """
+
+    name: str
+    quantity: str
+    leaves: float
+    why: str
+    fitted: int = 0
+    is_sure: bool = False
+
+    def cause(self) -> LikelyCause:
+        """Return the candidate as a likely cause."""
+        share = f"this explains {100 * (1 - self.leaves):.3g} % of the error of {self.quantity}"
+        sentence = f"{self.name}: {self.why}; {share}"
+        return LikelyCause(self.name, self.quantity, self.leaves, sentence)
 
 
 @dataclass(frozen=True)

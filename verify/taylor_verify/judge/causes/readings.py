@@ -8,9 +8,8 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.candidate import Candidate
 from taylor_verify.judge.causes.flow import Floats
-from taylor_verify.judge.causes.material import Material
+from taylor_verify.judge.causes.material import Candidate, Material
 from taylor_verify.judge.errors.shift import LEAVES
 
 # A row at the start that is off by more than the first is another start; within the second it is the same.

@@ -11,8 +11,7 @@ import numpy as np
 
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
-from taylor_verify.judge.causes.candidate import Candidate
-from taylor_verify.judge.causes.material import Material
+from taylor_verify.judge.causes.material import Candidate, Material
 from taylor_verify.judge.causes.readings import OFF, PRINTED
 from taylor_verify.records.quantities import MOMENTA
 from taylor_verify.records.reason import Kind

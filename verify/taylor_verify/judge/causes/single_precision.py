@@ -14,9 +14,8 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.candidate import Candidate
 from taylor_verify.judge.causes.flow import Floats
-from taylor_verify.judge.causes.material import Material, Pairs
+from taylor_verify.judge.causes.material import Candidate, Material, Pairs
 from taylor_verify.records.precisions import bits_of
 from taylor_verify.scenes.instants import evenly
 

@@ -9,11 +9,10 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.candidate import Candidate
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.fit import fitted
 from taylor_verify.judge.causes.flow import Floats
-from taylor_verify.judge.causes.material import Material, Pairs
+from taylor_verify.judge.causes.material import Candidate, Material, Pairs
 from taylor_verify.judge.errors.shift import LEAVES
 
 # Two tensors nearer than this are one.

@@ -8,10 +8,9 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.candidate import Candidate
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.flow import Floats, bilinear, flow
-from taylor_verify.judge.causes.material import Material
+from taylor_verify.judge.causes.material import Candidate, Material
 from taylor_verify.judge.causes.readings import to_body
 
 _Terms = tuple[tuple[str, str, dict[str, Any]], ...]

@@ -25,8 +25,7 @@ from mpmath import mp
 
 from taylor_verify.exact.invariants import Invariant, decisive, invariants
 from taylor_verify.exact.taylor import arcs
-from taylor_verify.judge.errors.accumulated import Series, joined
-from taylor_verify.judge.errors.state import Errors
+from taylor_verify.judge.errors.state import Errors, Series, joined
 from taylor_verify.records.quantities import GROUPS
 from taylor_verify.scenes.motion import Motion, State
 from taylor_verify.scenes.mpfr import in_mpfr, precision, sqrt, to_mpf, to_mpfr

@@ -19,14 +19,15 @@ from mpmath import mp
 from taylor_verify.exact.invariants import Invariant
 from taylor_verify.exact.solution import Solution
 from taylor_verify.judge.costs import CONSERVED, ERRORS, TRUTH, Costs
-from taylor_verify.judge.errors.accumulated import States, joined
 from taylor_verify.judge.errors.drifts import Drifts
 from taylor_verify.judge.errors.shift import Shift, time_shifts
 from taylor_verify.judge.errors.state import (
     Arc,
     Errors,
     Floats,
+    States,
     in_doubles,
+    joined,
     norms,
     state_distances,
 )

@@ -1,7 +1,14 @@
-"""Errors of a trajectory against the truth, sample by sample, in the units of design section 6."""
+"""Errors of a trajectory against the truth, sample by sample, in the units of design section 6.
+
+Of a long answer only some rows are there at a time. An error is divided by a scale that is known when all
+rows have come, as the largest size of the motion is. All rows are divided by the scale of the first block,
+and at the end by what is missing of the whole one. So a row takes eight bytes, equal errors stay equal, and
+errors that came in one block are what they would be.
+"""
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -175,3 +182,75 @@ def largest(values: Any) -> Any:
 def or_one(scale: Any) -> Any:
     """Return the scale, or 1 for one that is zero or no number."""
     return scale if scale > 0 else mpf(1)
+
+
+# Rows that come in blocks.
+
+
+def joined(one: Motion, other: Motion) -> Motion:
+    """Return the rows of a motion and those of another one behind them."""
+    both = {n: np.concatenate([rows, other[n]]) for n, rows in one.quantities.items()}
+    return Motion(both, np.concatenate([one.radius, other.radius]))
+
+
+class Series:
+    """Numbers of which blocks come one by one, over a scale of all of them, as float64."""
+
+    def __init__(self) -> None:
+        self._blocks: list[Floats] = []
+        self._first: Any = None
+        self._scale: Any = None
+
+    def add(self, values: Column, scale: Any) -> None:
+        """Take in further numbers, and the scale of all that have come."""
+        self._scale = scale
+        if not self._blocks:
+            self._first = scale
+        self._blocks.append(in_doubles(values / self._first))
+
+    def joined(self) -> tuple[Floats, Any]:
+        """Return all of them over the last scale, and that scale."""
+        found = np.concatenate(self._blocks)
+        if self._first != self._scale:
+            found *= float(self._first / self._scale)
+        # The blocks are not kept beside it.
+        self._blocks, self._first = [found], self._scale
+        return found, self._scale
+
+
+class States:
+    """The errors of all state quantities of an answer whose rows come in blocks."""
+
+    def __init__(self) -> None:
+        self._about: dict[str, Distances] = {}
+        # By quantity and part.
+        self._sizes: dict[tuple[str, str], Any] = {}
+        self._errors: defaultdict[tuple[str, str], Series] = defaultdict(Series)
+        self._widths: defaultdict[tuple[str, str], Series] = defaultdict(Series)
+
+    def add(self, found: Distances) -> dict[str, Any]:
+        """Take in the next rows of one quantity, and return its scales so far."""
+        scales = {}
+        self._about[found.quantity] = found
+        for part, distances in found.distances.items():
+            key = found.quantity, part
+            before, size = self._sizes.get(key), found.sizes[part]
+            # The larger size; NaN stays.
+            if before is None or size > before or size != size:
+                self._sizes[key] = size
+            scales[part] = scale = or_one(self._sizes[key])
+            self._errors[key].add(distances, scale)
+            self._widths[key].add(found.widths[part], scale)
+        return scales
+
+    def errors(self) -> list[Errors]:
+        """Return the errors of all rows, in the order in which the quantities came first."""
+        return [self._joined(about) for about in self._about.values()]
+
+    def _joined(self, about: Distances) -> Errors:
+        name = about.quantity
+        values = {part: self._errors[name, part].joined() for part in about.distances}
+        scales = {part: scale for part, (_, scale) in values.items()}
+        larger = np.maximum.reduce([rows for rows, _ in values.values()])
+        width = np.maximum.reduce([self._widths[name, part].joined()[0] for part in values])
+        return Errors(name, about.unit, larger, width, scales, is_state=True)

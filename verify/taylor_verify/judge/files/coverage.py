@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
-from typing import Any, Final
+from typing import Final
 
 from taylor_verify.judge.rows import verdict_on
 from taylor_verify.records.quantities import (
@@ -41,29 +41,17 @@ _CLOCK_STEPS: Final = 10**6
 _FEWEST_ROWS: Final = 3
 
 
-class _Since(Sequence[Fraction]):
-    """Strictly monotonic times, counted from a start in one direction and put in ascending order."""
-
-    def __init__(self, times: Sequence[Fraction], start: Fraction, sign: int) -> None:
-        self._times, self._start, self._sign = times, start, sign
-        rises = sign * (times[-1] - times[0]) >= 0
-        self._places = range(len(times)) if rises else range(len(times) - 1, -1, -1)
-
-    def __len__(self) -> int:
-        return len(self._times)
-
-    def __getitem__(self, place: Any) -> Any:
-        return self._sign * (self._times[self._places[place]] - self._start)
-
-
 @dataclass(frozen=True)
 class Extent:
-    """The rows of a file, as times since the scene's start in the direction of its motion, sorted.
+    """The rows of a file beside the scene's span, both as times since its start in the direction of motion.
 
-    ``begin`` and ``end`` are the first and the last instant of the scene, counted likewise.
+    ``times`` are those of the file in that direction. ``begin`` and ``end`` are the first and the last
+    instant of the scene.
     """
 
-    rows: Sequence[Fraction]
+    times: Sequence[Fraction]
+    start: Fraction
+    sign: int
     begin: Fraction
     end: Fraction
     slack: Fraction
@@ -72,27 +60,37 @@ class Extent:
     def of(cls, scene: Scene, times: Sequence[Fraction], rung: Rung) -> Extent:
         start, elapsed = scene.clock.start, scene.clock.elapsed
         sign = 1 if elapsed[-1] >= 0 else -1
-        rows = _Since(times, start, sign)
+        if sign * (times[-1] - times[0]) < 0:
+            times = times[::-1]
         end = sign * elapsed[-1]
         rounded = _CLOCK_STEPS * rung.unit_roundoff * (end + abs(start))
         # In less than half an interval no row of the file is missing.
-        last = rows[-1] - rows[-2] if len(rows) > 1 else Fraction(0)
-        return cls(rows, sign * elapsed[0], end, min(rounded, last / 2))
+        last = abs(times[-1] - times[-2]) if len(times) > 1 else Fraction(0)
+        return cls(times, start, sign, sign * elapsed[0], end, min(rounded, last / 2))
+
+    def since(self, time: Fraction) -> Fraction:
+        """Return the time since the start."""
+        return self.sign * (time - self.start)
+
+    @property
+    def last(self) -> Fraction:
+        """The last row."""
+        return self.since(self.times[-1])
 
     @property
     def reaches_end(self) -> bool:
-        return self.rows[-1] >= self.end - self.slack
+        return self.last >= self.end - self.slack
 
     @cached_property
     def inside(self) -> range:
         """The places of the rows within the scene's span."""
-        first = bisect_left(self.rows, -self.slack)
-        return range(first, bisect_right(self.rows, self.end + self.slack))
+        first = bisect_left(self.times, -self.slack, key=self.since)
+        return range(first, bisect_right(self.times, self.end + self.slack, key=self.since))
 
     @property
     def first(self) -> Fraction:
         """The first row within the span."""
-        return self.rows[self.inside[0]]
+        return self.since(self.times[self.inside[0]])
 
     @property
     def reaches_start(self) -> bool:
@@ -102,9 +100,9 @@ class Extent:
         """
         if not self.inside or self.first <= self.begin + self.slack:
             return bool(self.inside)
-        spaces = (b - a for a, b in pairwise(self.rows[k] for k in self.inside))
+        first, inside = self.first, pairwise(self.times[k] for k in self.inside)
         is_known = len(self.inside) >= _FEWEST_ROWS
-        return is_known and any(self.first <= space + self.slack for space in spaces)
+        return is_known and any(first <= abs(b - a) + self.slack for a, b in inside)
 
     @property
     def is_one_state(self) -> bool:
@@ -122,7 +120,7 @@ def not_judged(extent: Extent, missing: Sequence[str]) -> Iterator[str]:
     if not extent.reaches_start:
         yield f"the first {float(extent.first):.6g} of {span}"
     if not extent.reaches_end:
-        yield f"the last {float(extent.end - max(extent.rows[-1], Fraction(0))):.6g} of {span}"
+        yield f"the last {float(extent.end - max(extent.last, Fraction(0))):.6g} of {span}"
 
 
 def complete_verdict(
@@ -207,7 +205,7 @@ def span_notes(scene: Scene, times: Sequence[Fraction], extent: Extent) -> Itera
     start, end = float(scene.clock.start), float(scene.clock.instants[-1])
     if all(float(time) != start for time in times):
         yield f"no row is at the start, t = {start:g}: the initial state was not compared"
-    if extent.rows[-1] >= 0 and not extent.reaches_end:
+    if extent.last >= 0 and not extent.reaches_end:
         last = float(max(times, key=lambda t: abs(t - scene.clock.start)))
         yield (
             f"the last row is at t = {last:.12g}, and the scene ends at t = {end:.12g}: "

@@ -17,10 +17,9 @@ from taylor_verify.exact.invariants import invariants
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution
 from taylor_verify.judge.costs import Costs
-from taylor_verify.judge.errors.accumulated import Series, States
 from taylor_verify.judge.errors.angular_shift import angular_shift
 from taylor_verify.judge.errors.measured import MOST_SHIFTED, Comparison
-from taylor_verify.judge.errors.state import Distances, Errors, largest, norms
+from taylor_verify.judge.errors.state import Distances, Errors, Series, States, largest, norms
 from taylor_verify.judge.floor.arithmetic import truth_digits, working_bits
 from taylor_verify.judge.floor.attainable import Floats, Floor, floor
 from taylor_verify.judge.judgement import Judgement, judgement

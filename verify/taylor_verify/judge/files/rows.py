@@ -93,21 +93,18 @@ class FileRows(ByRows):
         return stands_for and not has & set(MOMENTA[self.scene.model])
 
     def sides(self) -> list[FileRows]:
-        """The rows after the start and those before it, each in the order away from the start."""
-        start, times, count = self.scene.clock.start, self.times, len(self.times)
-        if times[0] <= times[-1]:
-            at, beyond = bisect_left(times, start), bisect_right(times, start)
-            earlier, here, later = range(at - 1, -1, -1), range(at, beyond), range(beyond, count)
-        else:
-            at = bisect_left(times, -start, key=neg)
-            beyond = bisect_right(times, -start, key=neg)
-            earlier, here, later = range(beyond, count), range(at, beyond), range(at - 1, -1, -1)
-        if earlier and not later:
-            sides = [range(earlier.start - earlier.step * len(here), earlier.stop, earlier.step)]
-        else:
-            first = later.start - later.step * len(here) if later else at
-            sides = [range(first, later.stop, later.step) if later else here, earlier]
-        return [replace(self, places=side) for side in sides if side]
+        """Return the rows after the start and those before it, each in the order away from the start."""
+        start, times = self.scene.clock.start, self.times
+        rises = times[0] <= times[-1]
+        value, key = (start, None) if rises else (-start, neg)
+        at, beyond = (find(times, value, key=key) for find in (bisect_left, bisect_right))
+        above, below = range(at - 1, -1, -1), range(beyond, len(times))
+        later, earlier = (below, above) if rises else (above, below)
+        # Rows at the start begin the later side, or the only one.
+        first, second = (later, earlier) if later else (earlier, later)
+        begin = first.start - first.step * (beyond - at)
+        first = range(begin, first.stop, first.step) if first else range(at, beyond)
+        return [replace(self, places=side) for side in (first, second) if side]
 
 
 def _within(rows: range, places: Sequence[int]) -> Sequence[int]:

@@ -92,17 +92,16 @@ def files_judgement(
         for judgement, step in zip(judged, known, strict=True)
         if step is not None
     ]
-    whole = _reaching_the_end(samples)
-    short = [sample.judged.file.name for sample in samples if sample not in whole]
-    alike = _alike(whole)
+    # A file ends no more than a row before the longest one: errors grow with time.
+    longest = max((_span(sample.times) for sample in samples), default=Fraction(0))
+    ends = [_span(sample.times) + _span(sample.times[-2:]) for sample in samples]
+    whole = [sample for sample, end in zip(samples, ends, strict=True) if end >= longest]
+    short = [sample for sample in samples if sample not in whole]
+    # Steps that are too near to each other show no order.
+    neighbours = pairwise(sorted(whole, key=lambda sample: sample.step))
+    alike = [(small, large) for small, large in neighbours if large.step < _ALIKE * small.step]
     order = orders(whole) if len(whole) > 1 and not alike else ()
-    notes = (
-        *_source_notes(judged, known),
-        *(f"{name} ends before the others do, and has no part in the order" for name in short),
-        *alike,
-        *_lower_orders(order),
-        *_other_starts(judged),
-    )
+    notes = tuple(_notes(judged, known, short, alike, order))
     verdicts = tuple(verdict for judgement in judged for verdict in judgement.verdicts)
     return FilesJudgement(verdicts, None, tuple(judged), known, order, notes)
 
@@ -196,33 +195,46 @@ def _is_same(one: str, other: str) -> bool:
         return False
 
 
-# What has a part in the order.
-
-
-def _reaching_the_end(samples: Sequence[Sample]) -> list[Sample]:
-    """Return the files that end no more than a row before the longest one: errors grow with time."""
-    longest = max((_span(sample.times) for sample in samples), default=Fraction(0))
-    return [
-        sample for sample in samples if _span(sample.times) + _span(sample.times[-2:]) >= longest
-    ]
-
-
 def _span(times: Sequence[Fraction]) -> Fraction:
     return abs(times[-1] - times[0])
 
 
-def _alike(samples: Sequence[Sample]) -> list[str]:
-    """Return a sentence for each two files whose steps are too near to each other for an order."""
-    ordered = sorted(samples, key=lambda sample: sample.step)
-    return [
-        f"no order of convergence: {small.judged.file.name} and {large.judged.file.name} have the same "
-        f"step, h = {small.step:g}; --steps says others"
-        for small, large in pairwise(ordered)
-        if large.step < _ALIKE * small.step
-    ]
-
-
 # The notes.
+
+
+def _notes(
+    judged: Sequence[FileJudgement],
+    steps: Sequence[FileStep | None],
+    short: Iterable[Sample],
+    alike: Iterable[tuple[Sample, Sample]],
+    order: Sequence[Order],
+) -> Iterator[str]:
+    yield from _source_notes(judged, steps)
+    for sample in short:
+        yield f"{sample.judged.file.name} ends before the others do, and has no part in the order"
+    for small, large in alike:
+        names = f"{small.judged.file.name} and {large.judged.file.name}"
+        yield (
+            f"no order of convergence: {names} have the same step, h = {small.step:g}; "
+            "--steps says others"
+        )
+    known = {each.quantity: each.order for each in order if each.order is not None}
+    # The body's own state comes first.
+    states = [name for name in STATES if name in known]
+    for name in states[1:]:
+        first = states[0]
+        if known[name] < known[first] - _LOWER:
+            yield (
+                f"{name} has a lower order ({known[name]:.1f}) than {first} ({known[first]:.1f}): it is "
+                "integrated by a method of its own"
+            )
+    wrong = [
+        judgement.file.name
+        for judgement in judged
+        if any(v.quantity == INITIAL and v.verdict is Status.FAIL for v in judgement.verdicts)
+    ]
+    for name in wrong if len(wrong) < len(judged) else ():
+        yield f"{name} does not start as the scene does: is it a file of another scene?"
 
 
 def _source_notes(
@@ -243,25 +255,3 @@ def _source_notes(
     for judgement, step in zip(judged, steps, strict=True):
         if step is None:
             yield f"the step of {judgement.file.name} is not known: it has no part in the order"
-
-
-def _lower_orders(order: Sequence[Order]) -> list[str]:
-    """Return a sentence for each state quantity whose order is below that of the body's own."""
-    known = {each.quantity: each.order for each in order if each.order is not None}
-    states = [name for name in STATES if name in known]
-    return [
-        f"{name} has a lower order ({known[name]:.1f}) than {states[0]} ({known[states[0]]:.1f}): it is "
-        "integrated by a method of its own"
-        for name in states[1:]
-        if known[name] < known[states[0]] - _LOWER
-    ]
-
-
-def _other_starts(judged: Sequence[FileJudgement]) -> list[str]:
-    """Return a sentence for each file, of some and not all, that does not start as the scene does."""
-    wrong = [
-        f"{judgement.file.name} does not start as the scene does: is it a file of another scene?"
-        for judgement in judged
-        if any(v.quantity == INITIAL and v.verdict is Status.FAIL for v in judgement.verdicts)
-    ]
-    return wrong if len(wrong) < len(judged) else []

@@ -20,7 +20,7 @@ Key = tuple[str, str, str, str, str]
 
 
 class Remark(NamedTuple):
-    """What is said of a row besides its verdict: a regression fails it, a doubt undecides it."""
+    """Remark on a row besides its verdict: a regression fails it, a doubt undecides it."""
 
     scene: str
     solver: str
@@ -33,7 +33,7 @@ class Remark(NamedTuple):
 
 @dataclass(frozen=True)
 class Case:
-    """One quantity of one run; ``verdict`` is None for a row that only a remark speaks of.
+    """Quantity of a run; ``verdict`` is None for a row that only a remark speaks of.
 
     ``status`` is the gravest of the verdict's and the remarks', ``sentences`` say why, none for a
     pass without a remark. ``counted`` is the status that colours the row: that of the remarks where they

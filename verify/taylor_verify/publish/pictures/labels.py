@@ -11,10 +11,10 @@ marks: at one end alone, names strike through marks or leave a full panel.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import hypot, pi
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,7 +70,7 @@ class _Line:
 
 @dataclass(frozen=True)
 class _Places:
-    """Where a name may stand, place by place: its box, its point, their distance, and what it costs."""
+    """Places where a name may stand: its box, its point, their distance, and what each costs."""
 
     boxes: Numbers
     anchors: Numbers
@@ -102,7 +102,7 @@ def write_names(
         text.set_bbox({"facecolor": PAPER, "alpha": 0.75, "linewidth": 0, "pad": 0.4})
         texts.append(text)
     extents = [text.get_window_extent(renderer) for text in texts]
-    frame = _corners(axes.get_window_extent(renderer))
+    frame = np.array(axes.get_window_extent(renderer).extents)
     obstacles = _sampled(axes, beside)
     places = [
         _priced(_candidates(line, extent.width, extent.height), line, seen, frame, obstacles)
@@ -112,10 +112,8 @@ def write_names(
         box, anchor = its.boxes[i], its.anchors[i]
         text.set_position((float(box[0]), float(box[1])))
         if its.away[i] > _FAR:
-            end = _nearest(box, anchor)
             axes.plot(
-                [float(anchor[0]), float(end[0])],
-                [float(anchor[1]), float(end[1])],
+                *np.array([anchor, _nearest(box, anchor)]).T,
                 color=line.colour,
                 linewidth=0.5,
                 transform=in_points,
@@ -128,7 +126,7 @@ def write_names(
 
 
 def _chosen(places: Sequence[_Places]) -> list[int]:
-    """One place for each name: chosen in turn, and again once the others are known."""
+    """Return a place for each name, chosen in turn, and again once the others are known."""
     chosen: dict[int, int] = {}
     # The names with the fewest free places choose first.
     order = sorted(range(len(places)), key=lambda i: -float(places[i].cost.min()))
@@ -144,7 +142,7 @@ def _chosen(places: Sequence[_Places]) -> list[int]:
 
 
 def _candidates(line: _Line, width: float, height: float) -> _Places:
-    """Round every mark of the line, in every direction and at every distance."""
+    """Return places round every mark of the line, in every direction and at every distance."""
     angles = 2 * pi * np.arange(_DIRECTIONS) / _DIRECTIONS
     grid = np.meshgrid(np.arange(len(line.marks)), _RADII, angles, indexing="ij")
     index, away, angle = (values.ravel() for values in grid)
@@ -162,13 +160,13 @@ def _candidates(line: _Line, width: float, height: float) -> _Places:
 def _priced(
     places: _Places, own: _Line, lines: Sequence[_Line], frame: Numbers, obstacles: Numbers
 ) -> _Places:
-    """The same places, with what they hide and what they could be mistaken for in their cost."""
+    """Return the places with what they hide, and what they could be mistaken for, in their cost."""
     boxes = _grown(places.boxes, _GAP)
     areas = (boxes[:, 2] - boxes[:, 0]) * (boxes[:, 3] - boxes[:, 1])
     # Rounding leaves a trace of an area that is wholly inside.
     outside = np.maximum(areas - _overlap(boxes, frame) - 1e-6, 0)
     cost = places.cost + _FORBIDDEN * outside + _ON_ANOTHER * _held(boxes, obstacles)
-    here = _grown(np.concatenate([places.anchors, places.anchors], 1), _SAME)
+    here = _around(places.anchors)
     own_distance = _distance(boxes, own.samples)
     for line in lines:
         cost += _ON_A_MARK * _held(_grown(boxes, _MARK), line.marks)
@@ -177,60 +175,53 @@ def _priced(
             cost += _SHARED * (_held(here, line.samples) > 0)
             cost += _ON_ANOTHER * _crossed(places, line.samples)
             cost += _NEARER_TO_ANOTHER * (_distance(boxes, line.samples) < own_distance)
-    return _Places(places.boxes, places.anchors, places.away, cost)
+    return replace(places, cost=cost)
 
 
 def _crossed(places: _Places, spots: Numbers) -> Numbers:
-    """How many spots the thin line to each name touches; none where the name is near."""
+    """Return how many spots the thin line to each name touches; none where the name is near."""
     far = places.away > _FAR
     ends = _nearest(places.boxes, places.anchors)
-    found = np.zeros(len(far))
+    touched = np.zeros(len(far))
     for i in range(1, _DOTS):
         dots = places.anchors + (ends - places.anchors) * i / _DOTS
-        found[far] += _held(_grown(np.concatenate([dots, dots], 1), _SAME)[far], spots)
-    return found
+        touched[far] += _held(_around(dots)[far], spots)
+    return touched
 
 
 def _held(boxes: Numbers, spots: Numbers) -> Numbers:
-    """How many of the spots each box holds."""
-    x, y = spots[:, 0], spots[:, 1]
-    left, low, right, top = (boxes[:, i, None] for i in range(4))
+    """Return how many of the spots each box holds."""
+    (x, y), (left, low, right, top) = spots.T, boxes.T[:, :, None]
     inside = (left <= x) & (x <= right) & (low <= y) & (y <= top)
-    counts: Numbers = np.count_nonzero(inside, axis=1).astype(np.float64)
-    return counts
+    return np.asarray(np.count_nonzero(inside, axis=1), dtype=np.float64)
 
 
 def _distance(boxes: Numbers, spots: Numbers) -> Numbers:
-    """From each box to the nearest of the spots."""
-    x, y = spots[:, 0], spots[:, 1]
-    left, low, right, top = (boxes[:, i, None] for i in range(4))
+    """Return the distance from each box to the nearest of the spots."""
+    (x, y), (left, low, right, top) = spots.T, boxes.T[:, :, None]
     across = np.maximum(np.maximum(left - x, x - right), 0)
     along = np.maximum(np.maximum(low - y, y - top), 0)
-    nearest: Numbers = np.hypot(across, along).min(axis=1)
-    return nearest
+    return np.asarray(np.hypot(across, along).min(axis=1))
 
 
 def _overlap(boxes: Numbers, other: Numbers) -> Numbers:
-    """The area that each box shares with the other."""
-    width = np.minimum(boxes[:, 2], other[2]) - np.maximum(boxes[:, 0], other[0])
-    height = np.minimum(boxes[:, 3], other[3]) - np.maximum(boxes[:, 1], other[1])
-    shared: Numbers = np.maximum(width, 0) * np.maximum(height, 0)
-    return shared
+    """Return the area that each box shares with the other."""
+    sides = np.minimum(boxes[:, 2:], other[2:]) - np.maximum(boxes[:, :2], other[:2])
+    return np.asarray(np.maximum(sides, 0).prod(axis=1))
 
 
 def _nearest(boxes: Numbers, spots: Numbers) -> Numbers:
-    """The point of each box that is nearest to its spot."""
-    clipped: Numbers = np.clip(spots, boxes[..., :2], boxes[..., 2:])
-    return clipped
+    """Return the point of each box that is nearest to its spot."""
+    return np.asarray(np.clip(spots, boxes[..., :2], boxes[..., 2:]))
 
 
 def _grown(boxes: Numbers, gap: float) -> Numbers:
-    grown: Numbers = boxes + np.array([-gap, -gap, gap, gap])
-    return grown
+    return np.asarray(boxes + np.array([-gap, -gap, gap, gap]))
 
 
-def _corners(extent: Any) -> Numbers:
-    return np.array([extent.x0, extent.y0, extent.x1, extent.y1])
+def _around(spots: Numbers) -> Numbers:
+    """Return a box round each spot; what lies in it counts as the same place."""
+    return _grown(np.concatenate([spots, spots], 1), _SAME)
 
 
 def _in_points(axes: Axes, line: Named) -> _Line:
@@ -240,15 +231,12 @@ def _in_points(axes: Axes, line: Named) -> _Line:
 
 
 def _sampled(axes: Axes, pieces: Iterable[Sequence[Spot]]) -> Numbers:
-    """Points along the pieces, their corners among them."""
-    found = [np.empty((0, 2))]
-    for piece in pieces:
-        if not piece:
-            continue
-        spots = axes.transData.transform(list(piece))
-        found.append(spots)
-        for (x, y), (x_next, y_next) in pairwise(spots):
-            n = int(hypot(x_next - x, y_next - y) / _SAMPLING)
-            shares = np.arange(1, n)[:, None] / max(n, 1)
-            found.append(np.array([x, y]) + shares * np.array([x_next - x, y_next - y]))
-    return np.concatenate(found)
+    """Return points along the pieces, their corners among them."""
+    samples = [np.empty((0, 2))]
+    for piece in filter(None, pieces):
+        corners = axes.transData.transform(list(piece))
+        samples.append(corners)
+        for corner, following in pairwise(corners):
+            n = int(hypot(*(following - corner)) / _SAMPLING)
+            samples.append(corner + np.arange(1, n)[:, None] / max(n, 1) * (following - corner))
+    return np.concatenate(samples)

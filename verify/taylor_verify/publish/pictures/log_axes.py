@@ -22,7 +22,7 @@ _MOST_PLAIN: Final = 1e5
 
 
 def number_axes(axes: Axes) -> None:
-    """Numbers and a grid for axes whose limits are set."""
+    """Give numbers and a grid to axes whose limits are set."""
     from matplotlib.ticker import LogLocator, NullFormatter
 
     axes.grid(True, which="major")
@@ -34,18 +34,17 @@ def number_axes(axes: Axes) -> None:
         axis.set_minor_formatter(NullFormatter())
 
 
-def _formatted(is_long: bool, value: float, place: int | None) -> str:
-    del place
+def _formatted(is_long: bool, value: float, _place: int | None) -> str:
     return number(value, is_long)
 
 
 def powers_within(low: float, high: float) -> int:
-    """How many powers of ten lie on an axis."""
+    """Return how many powers of ten lie on an axis."""
     return floor(log10(high)) - ceil(log10(low)) + 1
 
 
 def number(value: float, is_long: bool) -> str:
-    """Of a long axis a power of ten, of a short one a number of one digit."""
+    """Return the text of a number: a power of ten on a long axis, one digit on a short one."""
     if is_long:
         return power_of_ten(value)
     if _LEAST_PLAIN <= value < _MOST_PLAIN:
@@ -56,7 +55,7 @@ def number(value: float, is_long: bool) -> str:
 
 
 def widened(values: Sequence[float], before: float, after: float) -> Limits:
-    """The limits of a logarithmic axis that shows these with so much room, in parts of its length."""
+    """Return limits of a logarithmic axis that shows these with so much room, in parts of its length."""
     least, most = (log10(end(values)) if values else 0.0 for end in (min, max))
     lacking = max(_LEAST_DECADES - (most - least), 0.0) / 2
     least, most = least - lacking, most + lacking

@@ -18,25 +18,25 @@ TEXT_CONTRAST: Final = 4.5
 
 
 def luminance(colour: str) -> float:
-    """Y of a colour written #RRGGBB."""
+    """Return Y of a colour written #RRGGBB."""
     red, green, blue = (_linear(int(colour[i : i + 2], 16) / 255) for i in (1, 3, 5))
     return 0.2126 * red + 0.7152 * green + 0.0722 * blue
 
 
 def lightness(colour: str) -> float:
-    """L of a colour, with the linear foot of CIE 1976 below Y = (6/29)^3."""
+    """Return L of a colour, with the linear foot of CIE 1976 below Y = (6/29)^3."""
     y = luminance(colour)
     return 116 * y ** (1 / 3) - 16 if y > (6 / 29) ** 3 else (29 / 3) ** 3 * y
 
 
 def contrast(one: str, other: str = PAPER) -> float:
-    """The contrast ratio of WCAG 2, from 1 to 21."""
+    """Return the contrast ratio of WCAG 2, from 1 to 21."""
     dark, light = sorted((luminance(one), luminance(other)))
     return (light + 0.05) / (dark + 0.05)
 
 
 def for_text(colour: str) -> str:
-    """The same hue, as dark as text on paper has to be."""
+    """Return the hue of a colour, as dark as text on paper has to be."""
     while contrast(colour) < TEXT_CONTRAST:
         colour = _darker(colour)
     return colour

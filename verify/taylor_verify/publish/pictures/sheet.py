@@ -1,4 +1,4 @@
-"""A figure as wide as a page: where its panels and its legend stand, in inches."""
+"""Figure as wide as a page: the places of its panels and its legend, in inches."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _NARROW: Final = 38
 
 @dataclass(frozen=True)
 class Frame:
-    """Where a panel stands, in inches from the lower left corner of the figure."""
+    """Place of a panel, in inches from the lower left corner of the figure."""
 
     left: float
     low: float

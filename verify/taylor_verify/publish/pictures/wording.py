@@ -11,20 +11,20 @@ _RAISED: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def stem_of(document: Mapping[str, Any], what: str) -> str:
-    """A file's name without its ending: ``euler-generic-time``."""
+    """Return a file's name without its ending: ``euler-generic-time``."""
     return re.sub(r"[^A-Za-z0-9._-]+", "-", f"{document['scene']}-{what}").strip("-.")
 
 
 def plain(error: float) -> str:
-    """Two digits: 0.0034, 2.6e-14."""
+    """Return a number in two digits: 0.0034, 2.6e-14."""
     return f"{error:.2g}"
 
 
 def times(ratio: float) -> str:
-    """Three digits, as a multiple: 1.00 times, 12.3 times, 0.520 times."""
+    """Return a ratio in three digits, as a multiple: 1.00 times, 12.3 times, 0.520 times."""
     return f"{float(f'{ratio:.2e}'):#.3g}".rstrip(".") + " \N{MULTIPLICATION SIGN}"
 
 
 def power_of_ten(value: float) -> str:
-    """A decade in plain text, its exponent raised, which any reader of an SVG shows and finds."""
+    """Return a decade in plain text, its exponent raised, which any reader of an SVG shows and finds."""
     return "10" + str(round(log10(value))).translate(_RAISED)

@@ -53,7 +53,8 @@ def _below(part: Node) -> Iterator[Node]:
 
 def link(root: Node, name: str, inertial: Node, reading: Reading) -> Link | None:
     """Return the inertia of one body; None beside a fault."""
-    settings = _settings(root)
+    # Of several <compiler> the last one counts.
+    settings = dict(ChainMap(*(node.attributes for node in reversed(root.named("compiler")))))
     is_taken = _takes_inertial(root, settings, reading)
     mass = reading.positive(inertial, inertial.attributes.get("mass"), "mass")
     centre = reading.vector(inertial, inertial.attributes.get("pos"), "pos")
@@ -62,11 +63,6 @@ def link(root: Node, name: str, inertial: Node, reading: Reading) -> Link | None
     if not is_taken or mass is None or centre is None or tensor is None or turn is None:
         return None
     return Link(name, mass, centre, rotation.turned(tensor, turn[0]), remarks=turn[1])
-
-
-def _settings(root: Node) -> dict[str, str]:
-    """Return the attributes of <compiler>; of several the last one counts."""
-    return dict(ChainMap(*(node.attributes for node in reversed(root.named("compiler")))))
 
 
 def _takes_inertial(root: Node, settings: dict[str, str], reading: Reading) -> bool:

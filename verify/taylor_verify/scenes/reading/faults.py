@@ -1,4 +1,4 @@
-"""What is wrong with a scene: every fault in one line, all of them in one exception."""
+"""Faults of a scene: each in one line, all of them in one exception."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Faults:
 
     @property
     def is_full(self) -> bool:
-        """Whether no further fault will be told."""
+        """True if no further fault will be told."""
         return len(self.lines) > _MOST_TOLD
 
     def add(self, expected: str, got: str, path: str, mend: str = "") -> None:
@@ -66,17 +66,17 @@ def _line(expected: str, got: object, place: object, mend: str) -> str:
 
 
 def shown(value: object) -> str:
-    """A value as its scene would write it, cut short where it is long."""
+    """Return a value as its scene would write it, cut short where it is long."""
     return cut(_toml(value))
 
 
 def cut(text: str) -> str:
-    """The text, cut short where it is long."""
+    """Return the text, cut short where it is long."""
     return text if len(text) <= _LONGEST_SHOWN else f"{text[:_LONGEST_SHOWN]}..."
 
 
 def brief(value: object) -> str:
-    """What a Python caller handed over, on one line and cut short."""
+    """Return what a Python caller handed over, on one line and cut short."""
     try:
         text = repr(value)
     except ValueError:  # Python prints no integer of more than 4300 digits
@@ -85,20 +85,19 @@ def brief(value: object) -> str:
 
 
 def _toml(value: object, depth: int = 0) -> str:
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, Decimal):
-        return str(value).lower()
-    if isinstance(value, int | Fraction):
-        return _rational(Fraction(value))
-    if isinstance(value, str):
-        return f'"{value}"'
-    if isinstance(value, list):
-        # What tomllib could just nest would overflow the stack here.
-        inner = ", ".join(_toml(entry, depth + 1) for entry in value) if depth < 3 else ".."
-        return f"[{inner}]"
-    if isinstance(value, Mapping):
-        return "a table"
+    match value:
+        case bool() | Decimal():
+            return str(value).lower()
+        case int() | Fraction():
+            return _rational(Fraction(value))
+        case str():
+            return f'"{value}"'
+        case list():
+            # What tomllib could just nest would overflow the stack here.
+            inner = ", ".join(_toml(entry, depth + 1) for entry in value) if depth < 3 else ".."
+            return f"[{inner}]"
+        case Mapping():
+            return "a table"
     return f"the {type(value).__name__} {value}"
 
 
@@ -110,7 +109,7 @@ def _rational(value: Fraction) -> str:
 
 
 def near(word: str, known: Iterable[str]) -> str:
-    """A mend that names the known word most like this one, else all of them."""
+    """Return a mend that names the known word most like this one, else all of them."""
     words = sorted(known)
     close = difflib.get_close_matches(word, words, n=1)
     if close:

@@ -71,7 +71,8 @@ def impulses(table: Table, body: Body | None) -> Vector | None:
         for key in given:
             table.take(key, "nothing")
         expected = "either the two impulses or the two velocities"
-        keep = f"keep {_pair(IMPULSES)}, or {_pair(VELOCITIES)}"
+        pairs = (f"`{first}` with `{second}`" for first, second in (IMPULSES, VELOCITIES))
+        keep = f"keep {', or '.join(pairs)}"
         table.fault(expected, " and ".join(f"`{key}`" for key in given), by_velocity[0], keep)
         return None
     if not by_velocity:
@@ -91,10 +92,6 @@ def impulses(table: Table, body: Body | None) -> Vector | None:
         f"inertia of this body{shape}."
     )
     return tensors.apply(body.mass_matrix, velocity + spin)
-
-
-def _pair(keys: tuple[str, str]) -> str:
-    return " with ".join(f"`{key}`" for key in keys)
 
 
 def _attitude(table: Table) -> Vector | None:

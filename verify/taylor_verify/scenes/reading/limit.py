@@ -8,14 +8,14 @@ from taylor_verify.scenes.reading.faults import Refused
 
 
 class Limit(NamedTuple):
-    """At most so many of something."""
+    """Greatest number of something that is read, with its reason."""
 
     most: int
     what: str
     because: str
 
     def refusal(self, got: int | str, place: object) -> Refused:
-        """The refusal of what exceeds the limit."""
+        """Return the refusal of what exceeds the limit."""
         limit = f"expected at most {self.most} {self.what}"
         return Refused([f"{limit}, got {got} @ {place} ({self.because})"])
 

@@ -70,7 +70,7 @@ MODELS: Final = {
 
 
 def load(scene: str | os.PathLike[str]) -> Scene:
-    """The scene at a path, or the shipped scene of that name (``euler/generic``).
+    """Return the scene at a path, or the shipped scene of that name (``euler/generic``).
 
     Every number becomes the rational that its text writes. Raises Refused with every fault of the file
     at once, each as ``expected ..., got ... @ body.inertia[1]``.
@@ -91,7 +91,7 @@ def as_scene(scene: Scene | str | os.PathLike[str]) -> Scene:
 
 
 def read(text: str, name: str) -> Scene:
-    """The scene that this text describes; raises Refused with every fault of it."""
+    """Return the scene that this text describes; raises Refused with every fault of it."""
     faults = Faults()
     top = Table(_parsed(text, name), "", faults)
     title, source = top.text("title"), top.text("source", default="")
@@ -134,7 +134,7 @@ def _parsed(text: str, name: str) -> dict[str, object]:
 
 
 def _decimal(literal: str) -> Decimal | str:
-    """The literal exactly; one beyond even Decimal's exponents stays text and is refused later."""
+    """Return the literal exactly; one beyond even Decimal's exponents stays text and is refused later."""
     try:
         return Decimal(literal)
     except InvalidOperation:

@@ -45,7 +45,7 @@ def complete(values: Iterable[T | None]) -> tuple[T, ...] | None:
 
 
 class Table:
-    """One table of a scene: what is taken from it is known, and what is left over is a fault."""
+    """Table of a scene: what is taken from it is known, and what is left over is a fault."""
 
     def __init__(self, entries: Mapping[str, object], path: str, faults: Faults) -> None:
         self._left = dict(entries)

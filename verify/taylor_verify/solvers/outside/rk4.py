@@ -27,6 +27,8 @@ from typing import Any
 
 Vector = list[float]
 Rates = Callable[[float, Vector], Vector]
+# Of a momentum z, which is H, or x and y: its rate without loads, omega, and U where there is one.
+Free = Callable[[Vector], tuple[Vector, Vector, Vector]]
 
 
 def floats(number: Any) -> Any:
@@ -55,7 +57,7 @@ def add(*vectors: Vector) -> Vector:
 
 
 def attitude_rate(q: Vector, w: Vector) -> Vector:
-    """q' = q (0, omega) / 2."""
+    """Return q' = q (0, omega) / 2."""
     return [
         (-q[1] * w[0] - q[2] * w[1] - q[3] * w[2]) / 2,
         (q[0] * w[0] + q[2] * w[2] - q[3] * w[1]) / 2,
@@ -65,71 +67,52 @@ def attitude_rate(q: Vector, w: Vector) -> Vector:
 
 
 def to_space(q: Vector, v: Vector) -> Vector:
-    """v + 2 r x (r x v + q0 v), r = (q1, q2, q3): the vector in space axes."""
+    """Return the vector in space axes: v + 2 r x (r x v + q0 v), r = (q1, q2, q3)."""
     r = q[1:]
     inner = cross(r, v)
     turned = cross(r, [inner[i] + q[0] * v[i] for i in range(3)])
     return [v[i] + 2 * turned[i] for i in range(3)]
 
 
-def free_euler(body: Any) -> Callable[[Vector], Vector]:
-    """H x K H."""
+def euler(body: Any) -> Free:
+    """Return the free motion H' = H x K H."""
     K = floats(body["inverse_inertia"])
-    return lambda H: cross(H, apply(K, H))
 
-
-def euler(body: Any, load: Callable[[float], Vector]) -> Rates:
-    """H' = H x K H + M; the state is H, q."""
-    K, M, free = floats(body["inverse_inertia"]), floats(body["moment"]), free_euler(body)
-
-    def rates(t: float, state: Vector) -> Vector:
-        H, q = state[:3], state[3:7]
-        return add(free(H), M, load(t)) + attitude_rate(q, apply(K, H))
-
-    return rates
-
-
-def velocities(body: Any) -> Callable[[Vector], tuple[Vector, Vector]]:
-    """U and Omega of x and y."""
-    A, B, C = floats(body["linear"]), floats(body["coupling"]), floats(body["angular"])
-    B_transposed = transpose(B)
-
-    def found(impulses: Vector) -> tuple[Vector, Vector]:
-        x, y = impulses[:3], impulses[3:]
-        return add(apply(A, x), apply(B, y)), add(apply(B_transposed, x), apply(C, y))
-
-    return found
-
-
-def free_kirchhoff(body: Any) -> Callable[[Vector], Vector]:
-    """x x Omega, and y x Omega + x x U."""
-    velocity = velocities(body)
-
-    def free(impulses: Vector) -> Vector:
-        x, y = impulses[:3], impulses[3:]
-        U, w = velocity(impulses)
-        return cross(x, w) + add(cross(y, w), cross(x, U))
+    def free(H: Vector) -> tuple[Vector, Vector, Vector]:
+        w = apply(K, H)
+        return cross(H, w), w, []
 
     return free
 
 
-def kirchhoff(body: Any, load: Callable[[float], Vector]) -> Rates:
-    """x' = x x Omega + X, y' = y x Omega + x x U + L, c' = R U; the state is x, y, q, c."""
-    loads = floats(body["force"]) + floats(body["couple"])
-    free, velocity = free_kirchhoff(body), velocities(body)
+def kirchhoff(body: Any) -> Free:
+    """Return the free motion x' = x x Omega, y' = y x Omega + x x U."""
+    A, B, C = floats(body["linear"]), floats(body["coupling"]), floats(body["angular"])
+    B_transposed = transpose(B)
+
+    def free(z: Vector) -> tuple[Vector, Vector, Vector]:
+        x, y = z[:3], z[3:]
+        U = add(apply(A, x), apply(B, y))
+        w = add(apply(B_transposed, x), apply(C, y))
+        return cross(x, w) + add(cross(y, w), cross(x, U)), w, U
+
+    return free
+
+
+def rates_of(free: Free, constant: Vector, load: Callable[[float], Vector]) -> Rates:
+    """Return the rates of the momentum z, the attitude q and, where there is a U, of c' = R U."""
+    n = len(constant)
 
     def rates(t: float, state: Vector) -> Vector:
-        q = state[6:10]
-        U, w = velocity(state[:6])
-        return add(free(state[:6]), loads, load(t)) + attitude_rate(q, w) + to_space(q, U)
+        q = state[n : n + 4]
+        rate, w, U = free(state[:n])
+        return add(rate, constant, load(t)) + attitude_rate(q, w) + (to_space(q, U) if U else [])
 
     return rates
 
 
-def loads_of(
-    motion: Any, start: Vector, free: Callable[[Vector], Vector]
-) -> Callable[[float], Vector]:
-    """z*' less the free rates at z*: M, or X and L; zero of a scene whose loads are constant."""
+def loads_of(motion: Any, start: Vector, free: Free) -> Callable[[float], Vector]:
+    """Return z*' less the free rates at z*: M, or X and L; zero of a scene whose loads are constant."""
     if motion is None:
         return lambda t: [0.0] * len(start)
     waves = [floats(motion[key]) for key in ("frequencies", "cosines", "sines")]
@@ -140,7 +123,7 @@ def loads_of(
             c, s = math.cos(nu * t), math.sin(nu * t)
             z = [v + p * (c - 1) + r * s for v, p, r in zip(z, a, b, strict=True)]
             rate = [v + nu * (r * c - p * s) for v, p, r in zip(rate, a, b, strict=True)]
-        return [v - f for v, f in zip(rate, free(z), strict=True)]
+        return [v - f for v, f in zip(rate, free(z)[0], strict=True)]
 
     return load
 
@@ -188,13 +171,14 @@ def main() -> None:
     length = math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
     q = [entry / length for entry in q]
     if scene["model"] == "euler":
-        start = floats(initial["angular_momentum"])
-        rates = euler(body, loads_of(scene.get("manufactured"), start, free_euler(body)))
-        state = start + q
+        start, constant = floats(initial["angular_momentum"]), floats(body["moment"])
+        free, centre = euler(body), []
     else:
         start = floats(initial["linear_impulse"]) + floats(initial["angular_impulse"])
-        rates = kirchhoff(body, loads_of(scene.get("manufactured"), start, free_kirchhoff(body)))
-        state = start + q + floats(initial["centre"])
+        constant = floats(body["force"]) + floats(body["couple"])
+        free, centre = kirchhoff(body), floats(initial["centre"])
+    rates = rates_of(free, constant, loads_of(scene.get("manufactured"), start, free))
+    state = start + q + centre
 
     rows, steps, now = [], 0, 0.0
     for instant in floats(time["elapsed"]):
@@ -204,10 +188,8 @@ def main() -> None:
         for k in range(count):
             state = step(rates, now + k * h, state, h)
         steps, now = steps + count, instant
-        if scene["model"] == "euler":
-            rows.append(apply(floats(body["inverse_inertia"]), state[:3]) + state[3:])
-        else:
-            rows.append(state)
+        # The answer has omega in place of H.
+        rows.append(free(state[:3])[1] + state[3:] if scene["model"] == "euler" else state)
 
     # Hexadecimal floats are exact; plain numbers would do on f32 and f64.
     found = dict(zip(names, zip(*rows, strict=True), strict=True))

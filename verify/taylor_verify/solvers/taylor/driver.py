@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache, partial
+from functools import lru_cache
 from itertools import pairwise
 from math import ceil, isfinite
 from time import perf_counter
@@ -93,7 +93,10 @@ class Taylor(Solver):
         quantities: Mapping[str, Any] = {}
         if outcome is Outcome.FINISHED:
             # Exact numbers of many samples take longer than the samples: the judge asks for them.
-            quantities = Postponed(problem, partial(_exact, rows, problem.rung))
+            quantities = Postponed(
+                problem,
+                lambda: [[numbers.exact(v) for v in row] for stretch in rows for row in stretch],
+            )
         return Trajectory(
             outcome=outcome,
             quantities=quantities,
@@ -123,11 +126,6 @@ def tolerance(name: str) -> Fraction | None:
     if name == TAYLOR:
         return None
     return options(name, [TAYLOR], ["tol"]).positive("tol", default="")
-
-
-def _exact(rows: Rows, rung: Rung) -> list[list[Fraction]]:
-    exact = arithmetic(rung).exact
-    return [[exact(value) for value in row] for stretch in rows for row in stretch]
 
 
 @lru_cache(maxsize=64)

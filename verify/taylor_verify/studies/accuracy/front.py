@@ -54,7 +54,7 @@ _CONTENTS = (
 def front(verdicts: Sequence[Verdict], others: Iterable[Page]) -> str:
     """Return the front page of a report, with links to what else there is."""
     found = runs(verdicts)
-    contents = [*_CONTENTS, *(page.row() for page in others)]
+    contents = [*_CONTENTS, *((page.link(), page.what) for page in others)]
     return whole(
         "How accurate it is",
         _WHAT,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from taylor_verify.publish.cells import NOTHING, judged, peak, verdict_table, worst_ratio
@@ -176,7 +177,14 @@ def readme(verdicts: Sequence[Verdict], others: Iterable[Page] = ()) -> str:
         "is empty; `max_u` and `mean_u` are in u.",
     ]
     meanings = [[judged(status), text] for status, text in _MEANINGS.items()]
-    besides = [other.row_with_sheet() for other in others]
+    besides = [
+        [
+            entry.link("tables"),
+            f"[csv]({Path(entry.sheet).name})" if entry.has_sheet else NOTHING,
+            entry.what,
+        ]
+        for entry in others
+    ]
     return page(
         "Tables",
         verdicts,

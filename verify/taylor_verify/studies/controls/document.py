@@ -18,7 +18,7 @@ from taylor_verify.studies.stored import Stored
 
 @dataclass(frozen=True)
 class DefectRow:
-    """One defect in words; ``twin`` names the sound solver that differs from it by the defect alone.
+    """Defect in words; ``twin`` names the sound solver that differs from it by the defect alone.
 
     ``gate`` is the quantity that must see it, and ``told`` marks what is in the short table.
     """
@@ -41,7 +41,7 @@ class DefectRow:
 
 @dataclass(frozen=True)
 class Sight:
-    """One defect beside its sound twin: the verdicts on both by quantity.
+    """Defect beside its sound twin: the verdicts on both by quantity.
 
     ``factor`` is the bound of every gate over what is attainable.
     """
@@ -97,7 +97,7 @@ class Sight:
 
 @dataclass(frozen=True)
 class ControlsStudy:
-    """All defects, and the verdicts on them and on their twins by solver and setting."""
+    """Document of all defects, with the verdicts on them and on their twins by solver and setting."""
 
     versions: dict[str, str]
     machine: Machine
@@ -107,7 +107,7 @@ class ControlsStudy:
 
     @cached_property
     def sights(self) -> tuple[Sight, ...]:
-        """Every defect with its verdicts. Raises ValueError for one without, or with a twin without."""
+        """The defects with their verdicts. Raises ValueError for one without, or with a twin without."""
         return tuple(self._sights())
 
     def _sights(self) -> Iterator[Sight]:

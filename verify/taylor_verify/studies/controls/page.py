@@ -1,4 +1,4 @@
-"""The table of what each gate sees, and the sentences that it proves, from stored rows alone."""
+"""Table of what each gate sees, and the sentences that it proves, from stored rows alone."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from taylor_verify.publish.sheet import sheet as csv_sheet
 from taylor_verify.records.json_text import plain
 from taylor_verify.records.quantities import INITIAL, STATES, is_conserved
 from taylor_verify.records.status import Status
-from taylor_verify.studies.controls.document import CONTROLS, ControlsStudy, DefectRow, Sight
+from taylor_verify.studies.controls.document import CONTROLS, ControlsStudy, Sight
 from taylor_verify.studies.controls.proof import (
     MAIN,
     constant_shift,
@@ -100,26 +100,25 @@ def _section(sights: Sequence[Sight], quantity: str, heading: str) -> str:
     found = [sight for sight in sights if quantity in sight.quantities]
     if not found:
         return ""
-    shown = [
-        (name_of, names)
-        for name_of, names in _COLUMNS
-        if any(name in sight.quantities for sight in found for name in names)
-    ]
-    columns = ["defect", *(f"{name}:" for name, _ in shown), "time shift:", "outcome"]
-    rows = [
-        [
-            title(sight),
-            *(_cell(sight, names) for _, names in shown),
-            _shift_cell(sight),
-            _NOT_SEEN if sight.is_finished else bold("stopped"),
-        ]
-        for sight in _blindest_first(found)
-    ]
+    there = {name for sight in found for name in sight.quantities}
+    shown = [(words, names) for words, names in _COLUMNS if there.intersection(names)]
+    columns = ["defect", *(f"{words}:" for words, _ in shown), "time shift:", "outcome"]
+    rows = []
+    for sight in _blindest_first(found):
+        shift = constant_shift(sight)
+        cells = [_cell(sight, names) for _, names in shown]
+        rows.append(
+            [
+                *(title(sight), *cells),
+                _NOT_SEEN if shift is None else bold(figure(shift)),
+                _NOT_SEEN if sight.is_finished else bold("stopped"),
+            ]
+        )
     return f"## {heading}\n\n{table(columns, rows)}"
 
 
 def _cell(sight: Sight, names: Iterable[str]) -> str:
-    """Of the quantities, the one that the scene has; empty where it has none, or was not compared."""
+    """Return the cell of the quantity that the scene has; empty where it has none, or nothing ran."""
     here = [name for name in names if name in sight.quantities]
     if not here or not sight.is_finished:
         return ""
@@ -129,13 +128,8 @@ def _cell(sight: Sight, names: Iterable[str]) -> str:
     return _NOT_SEEN if sight.is_missed_by(name) else sight.verdicts[name].verdict.value
 
 
-def _shift_cell(sight: Sight) -> str:
-    shift = constant_shift(sight)
-    return _NOT_SEEN if shift is None else bold(figure(shift))
-
-
 def _blindest_first(sights: Iterable[Sight]) -> list[Sight]:
-    """Those that fewer conserved quantities see first; what was not compared last."""
+    """Return first those that fewer conserved quantities see; last what was not compared."""
 
     def key(sight: Sight) -> tuple[bool, int, int]:
         conserved = sum(name in sight.seen_by for name in sight.conserved)
@@ -145,46 +139,40 @@ def _blindest_first(sights: Iterable[Sight]) -> list[Sight]:
 
 
 def _by_gate(sights: Sequence[Sight]) -> str:
-    """For each gate how many defects it sees of those that it was asked about, and which it misses."""
-    rows = []
-    for heading, names in _COLUMNS:
-        for name in names:
-            asked = [s for s in sights if s.is_finished and name in s.quantities]
-            seen = [sight for sight in asked if sight.is_seen_by(name)]
-            missed = [title(sight) for sight in asked if not sight.is_seen_by(name)]
-            if asked:
-                heading_of = f"{heading} ({code(name)})"
-                count = f"{len(seen)} of {len(asked)}"
-                rows.append([heading_of, count, "; ".join(missed) or "none"])
+    """Return how many defects each gate sees of those that it was asked about, and which it misses."""
     finished = [sight for sight in sights if sight.is_finished]
-    stopped = len(sights) - len(finished)
-    rows.append(["outcome", f"{stopped} of {len(sights)}", "every defect that claims success"])
+    rows = []
+    for heading, name in ((heading, name) for heading, names in _COLUMNS for name in names):
+        asked = [sight for sight in finished if name in sight.quantities]
+        missed = [title(sight) for sight in asked if not sight.is_seen_by(name)]
+        if asked:
+            count = f"{len(asked) - len(missed)} of {len(asked)}"
+            rows.append([f"{heading} ({code(name)})", count, "; ".join(missed) or "none"])
+    stopped = f"{len(sights) - len(finished)} of {len(sights)}"
+    rows.append(["outcome", stopped, "every defect that claims success"])
     return table(["gate", "sees:", "misses"], rows)
 
 
 def _in_words(sights: Sequence[Sight]) -> str:
-    columns = ["defect", "scene", "what is wrong", "why it shows so"]
-    return table(columns, [[title(sight), *_words(sight.defect)] for sight in sights])
-
-
-def _words(defect: DefectRow) -> list[str]:
-    return [code(defect.scene), prose(defect.what), prose(defect.why)]
+    rows = [
+        [title(sight), code(defect.scene), prose(defect.what), prose(defect.why)]
+        for sight in sights
+        for defect in [sight.defect]
+    ]
+    return table(["defect", "scene", "what is wrong", "why it shows so"], rows)
 
 
 def _twins(sights: Sequence[Sight]) -> str:
-    """Each twin once, with the gate that it comes closest to failing."""
-    columns = ["sound solver", "scene", "passes:", "largest error over bound:"]
+    """Return each twin once, with the gate that it comes closest to failing."""
     rows = {}
     for sight in sights:
-        judged = list(sight.sound.values())
-        passed = sum(verdict.verdict is Status.PASS for verdict in judged)
-        worst = max((v.ratio for v in judged if v.ratio is not None), default=math.inf)
-        twin, scene = sight.defect.sound_solver, sight.defect.scene
-        rows[twin, scene] = [
-            *(code(twin), code(scene)),
-            f"{passed} of {len(judged)}",
-            figure(worst / sight.factor),
-        ]
+        verdicts = sight.sound.values()
+        passed = sum(verdict.verdict is Status.PASS for verdict in verdicts)
+        largest = max((v.ratio for v in verdicts if v.ratio is not None), default=math.inf)
+        twin, scene = code(sight.defect.sound_solver), code(sight.defect.scene)
+        count = f"{passed} of {len(verdicts)}"
+        rows[twin, scene] = [twin, scene, count, figure(largest / sight.factor)]
+    columns = ["sound solver", "scene", "passes:", "largest error over bound:"]
     return table(columns, rows.values())
 
 
@@ -217,13 +205,12 @@ def short(study: ControlsStudy) -> str:
 
 
 def _summed(sight: Sight, wanted: Callable[[str], bool]) -> str:
-    """The largest over its bound among these quantities."""
+    """Return the largest error over its bound among these quantities."""
     names = [name for name in sight.quantities if wanted(name)]
     seen = [name for name in names if sight.is_seen_by(name)]
     if not seen:
         return "not seen" if all(sight.is_missed_by(name) for name in names) else "undecided"
-    finite = {name: sight.over_bound(name) for name in seen}
-    worst = max(seen, key=lambda name: or_infinite(finite[name]))
+    worst = max(seen, key=lambda name: or_infinite(sight.over_bound(name)))
     return bold(times_bound(sight, worst))
 
 

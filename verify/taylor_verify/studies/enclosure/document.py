@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class WidthRow:
-    """One instant of one motion; ``width`` and ``error`` are relative to the vector."""
+    """Instant of a motion; ``width`` and ``error`` are relative to the vector."""
 
     scene: str
     t: float
@@ -17,7 +17,7 @@ class WidthRow:
 
 @dataclass(frozen=True)
 class EnclosureStudy:
-    """All rows, of enclosures with so many bits."""
+    """Document of all rows, of enclosures with so many bits."""
 
     bits: int
     rows: tuple[WidthRow, ...]

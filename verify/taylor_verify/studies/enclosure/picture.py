@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from taylor_verify.publish.pictures.log_axes import widened
 from taylor_verify.publish.pictures.picture import Picture
@@ -19,13 +19,11 @@ Points = list[tuple[float, float]]
 Motions = Mapping[str, Mapping[str, Points]]
 
 STEM: Final = "enclosure-width"
-_WIDTH: Final[Mapping[str, Any]] = {"color": "#A83C00", "linewidth": 1.6}
 # Room for half of the last number.
 _BEYOND: Final = 1.04
-_ERROR: Final[Mapping[str, Any]] = {
-    "color": "#0072B2",
-    "linewidth": 0.9,
-    "linestyle": (0, (5, 1.6)),
+_LINES: Final[Mapping[str, Entry]] = {
+    "width": ({"color": "#A83C00", "linewidth": 1.6}, "proven width"),
+    "error": ({"color": "#0072B2", "linewidth": 0.9, "linestyle": (0, (5, 1.6))}, "true error"),
 }
 
 
@@ -33,10 +31,9 @@ def series(study: EnclosureStudy) -> dict[str, dict[str, Points]]:
     """Return the points of ``width`` and of ``error`` for each scene; a zero is left out."""
     found: dict[str, dict[str, Points]] = {}
     for row in study.rows:
-        lines = found.setdefault(row.scene, {"width": [], "error": []})
-        for name, value in (("width", row.width), ("error", row.error)):
-            if value > 0:
-                lines[name].append((row.t, value))
+        for name, points in found.setdefault(row.scene, {name: [] for name in _LINES}).items():
+            if (value := getattr(row, name)) > 0:
+                points.append((row.t, value))
     return found
 
 
@@ -58,8 +55,7 @@ def picture(study: EnclosureStudy) -> Picture:
 
 
 def _figure(motions: Motions) -> Figure:
-    entries: list[Entry] = [(dict(_WIDTH), "proven width"), (dict(_ERROR), "true error")]
-    figure, places = sheet(len(motions), entries)
+    figure, places = sheet(len(motions), list(_LINES.values()))
     # One scale for all: a motion that is regular is told from one that is not.
     points = [point for lines in motions.values() for drawn in lines.values() for point in drawn]
     limits = widened([e for _, e in points], 0.04, 0.04)
@@ -69,6 +65,6 @@ def _figure(motions: Motions) -> Figure:
         axes.yaxis.set_major_formatter(lambda value, _: power_of_ten(value))
         axes.grid(True, which="major")
         axes.set_title(scene, pad=4)
-        for name, look in (("error", _ERROR), ("width", _WIDTH)):
-            axes.plot(*zip(*lines[name], strict=True), gid=name, **look)
+        for name in ("error", "width"):
+            axes.plot(*zip(*lines[name], strict=True), gid=name, **_LINES[name][0])
     return figure

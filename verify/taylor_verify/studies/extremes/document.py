@@ -52,7 +52,7 @@ class Titled:
 
 @dataclass(frozen=True)
 class ExtremesStudy:
-    """All verdicts with what was expected of them, what differs, and the runs that were not made."""
+    """Document of all verdicts, of the mismatches, and of the runs that were not made."""
 
     versions: dict[str, str]
     machine: Machine

@@ -84,10 +84,10 @@ class Stored:
     folder: Path
 
     def portrait(self, scene: str) -> Document:
-        return store.read_document(self.folder / self.portrait_name(scene))
+        return store.read_document(self.folder / PORTRAITS.name(scene))
 
     def record(self, scene: str, rung: str) -> Document:
-        return store.read_document(self.folder / self.record_name(scene, rung))
+        return store.read_document(self.folder / record_name(scene, rung))
 
     def rungs(self, scene: str) -> list[str]:
         """Return the rungs on which the scene was run, in the order of the ladder."""
@@ -98,21 +98,19 @@ class Stored:
 
     def samples(self, scene: str, columns: Sequence[str]) -> list[list[float]]:
         """Return the exact motion at the scene's instants, a row each."""
-        file = self.folder / self.reference_name(scene)
+        file = self.folder / reference_name(scene)
         with file.open(encoding="utf-8", newline="") as lines:
             return [[float(row[column]) for column in columns] for row in csv.DictReader(lines)]
 
-    @staticmethod
-    def portrait_name(scene: str) -> str:
-        return PORTRAITS.name(scene)
 
-    @staticmethod
-    def record_name(scene: str, rung: str) -> str:
-        return f"{store.FOLDER}/{store.record_name(scene, _SOLVER, rung)}"
+def record_name(scene: str, rung: str) -> str:
+    """Return the path of the record of a run."""
+    return f"{store.FOLDER}/{store.record_name(scene, _SOLVER, rung)}"
 
-    @staticmethod
-    def reference_name(scene: str) -> str:
-        return f"{reference_files.FOLDER}/{of_scene(scene)}.csv"
+
+def reference_name(scene: str) -> str:
+    """Return the path of the exact motion of a scene."""
+    return f"{reference_files.FOLDER}/{of_scene(scene)}.csv"
 
 
 def gallery(folder: Path) -> list[Shown]:
@@ -153,9 +151,9 @@ def _polhode(stored: Stored, portrait: Document) -> Made:
         "the separatrices. Repeated turns lie on each other: later marks are above earlier ones."
     )
     samples, record = stored.samples(scene, COLUMNS["omega"]), stored.record(scene, _RUNG)
-    sources = stored.portrait_name(scene), stored.record_name(scene, _RUNG)
+    sources = PORTRAITS.name(scene), record_name(scene, _RUNG)
     picture = polhode.picture(portrait, samples, record)
-    return picture, caption, (*sources, stored.reference_name(scene))
+    return picture, caption, (*sources, reference_name(scene))
 
 
 def _axis(stored: Stored, portrait: Document) -> Made:
@@ -165,7 +163,7 @@ def _axis(stored: Stored, portrait: Document) -> Made:
         f"{code(portrait['scene'])}: where body axis {found.axis} points in space, from light to dark with "
         f"time, on the unit sphere{still}."
     )
-    return axis_path.picture(portrait), caption, (stored.portrait_name(portrait["scene"]),)
+    return axis_path.picture(portrait), caption, (PORTRAITS.name(portrait["scene"]),)
 
 
 def _path(stored: Stored, portrait: Document) -> Made:
@@ -174,14 +172,14 @@ def _path(stored: Stored, portrait: Document) -> Made:
         f"{code(portrait['scene'])}: the path of the body's origin through the fluid, with its projections "
         f"on three walls; the short lines are body axis {found.axis} at equal intervals of time."
     )
-    return centre_path.picture(portrait), caption, (stored.portrait_name(portrait["scene"]),)
+    return centre_path.picture(portrait), caption, (PORTRAITS.name(portrait["scene"]),)
 
 
 def _errors(stored: Stored, portrait: Document) -> Made:
     scene = portrait["scene"]
     rungs = stored.rungs(scene)
     if not rungs:
-        raise FileNotFoundError(2, "no such file", stored.folder / stored.record_name(scene, _RUNG))
+        raise FileNotFoundError(2, "no such file", stored.folder / record_name(scene, _RUNG))
     caption = (
         f"{code(scene)}: the largest error of {_SOLVER} up to each time on {', '.join(rungs)}, in units of "
         "the rung's own roundoff u. Dashed, through the middle of all: the powers of time that random "
@@ -190,7 +188,7 @@ def _errors(stored: Stored, portrait: Document) -> Made:
     )
     records = [stored.record(scene, rung) for rung in rungs]
     picture = errors_over_time.picture(scene, records, portrait["course"]["t"][0])
-    return picture, caption, tuple(stored.record_name(scene, rung) for rung in rungs)
+    return picture, caption, tuple(record_name(scene, rung) for rung in rungs)
 
 
 def _quartics(stored: Stored) -> Made:
@@ -200,7 +198,7 @@ def _quartics(stored: Stored) -> Made:
         "a triple one like 1/t^2. With two real roots the other two are a complex pair."
     )
     picture = potential.picture([stored.portrait(scene) for scene in QUARTICS], "kirchhoff")
-    return picture, caption, tuple(stored.portrait_name(scene) for scene in QUARTICS)
+    return picture, caption, tuple(PORTRAITS.name(scene) for scene in QUARTICS)
 
 
 def _shifts(stored: Stored) -> Made:

@@ -50,8 +50,8 @@ def _page(found: list[Shown], folder: Path) -> str:
     """Return the page of those that are drawn already; nothing without any."""
     from taylor_verify.studies.gallery.page import page
 
-    drawn = folder / FOLDER
-    shown = [one for one in found if (drawn / f"{one.picture.stem}.svg").exists()]
+    drawn = {file.stem for file in (folder / FOLDER).glob("*.svg")}
+    shown = [one for one in found if one.picture.stem in drawn]
     return page(shown) if shown else ""
 
 

@@ -110,7 +110,7 @@ def _state_and_phase(
     found = [Measured(state.quantity, Law.INTEGRATED, state.values.astype(float), signed=False)]
     shifts = _shifts(problem.given, exact, answer, elapsed, digits)
     if shifts is not None:
-        phases = 2 * pi * told(elapsed, shifts, period) / period
+        phases = 2 * pi * sure_shifts(elapsed, shifts, period) / period
         found.append(Measured(PHASE, Law.INTEGRATED, phases))
     return found
 
@@ -150,7 +150,7 @@ def _scaled(rows: np.ndarray[Any, Any], exponent: int) -> Floats:
     return scaled
 
 
-def told(elapsed: Sequence[Fraction], shifts: Floats, period: float) -> Floats:
+def sure_shifts(elapsed: Sequence[Fraction], shifts: Floats, period: float) -> Floats:
     """Return the shifts as far as they are sure, NaN from the first that may be off by a whole period.
 
     Each is found next to zero. It is the right one if the one before, growing as t^2 at most, could

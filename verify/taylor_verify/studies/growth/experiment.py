@@ -27,7 +27,7 @@ Finished = Callable[[int, int], None]
 
 
 @dataclass(frozen=True)
-class Found:
+class QuantityGrowth:
     """A quantity of an ensemble: its signed errors (lanes, instants), and how they grow."""
 
     quantity: str
@@ -45,7 +45,7 @@ class Experiment:
     question: Question
     lost: int
     steps: tuple[float, ...]
-    found: tuple[Found, ...]
+    found: tuple[QuantityGrowth, ...]
 
     def ensemble(self, why: str = "") -> Ensemble:
         """Return the ensemble as it is stored; ``why`` says what it is measured for."""
@@ -66,7 +66,7 @@ class Experiment:
             why=why,
         )
 
-    def _quantity(self, one: Found) -> GrowthOfQuantity:
+    def _quantity(self, one: QuantityGrowth) -> GrowthOfQuantity:
         u, grown = float(self.question.rung.unit_roundoff), one.growth
         late = grown.late
         row = {
@@ -128,7 +128,7 @@ def experiment(
         # A lane that does not have the quantity has no number for it.
         rows = [{one.quantity: one.values for one in lane} for lane in by_lane]
         errors = np.array([row.get(name, np.full(len(times), np.nan)) for row in rows])
-        found.append(Found(name, errors, growth(times, errors, kind.law, u, kind.signed)))
+        found.append(QuantityGrowth(name, errors, growth(times, errors, kind.law, u, kind.signed)))
     counts = [[sample[1] for sample in row if sample is not None] for row in end.samples]
     steps = tuple(float(np.mean(row)) if row else 0.0 for row in counts)
     lost = sum(not lane.goes_on for lane in end.lanes)

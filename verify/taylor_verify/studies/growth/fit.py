@@ -252,7 +252,7 @@ def covariance_of(law: Law, times: Floats) -> Floats:
     return found
 
 
-# Two distributions.
+# Two distributions. They are not SciPy's, which is no dependency of what judges.
 
 
 def chi_square_tail(value: float, freedom: int) -> float:
@@ -264,10 +264,7 @@ def chi_square_tail(value: float, freedom: int) -> float:
 
 @cache
 def student(freedom: int, level: float) -> float:
-    """Return the t for which Student's variable is between -t and t with probability ``level``.
-
-    It is not SciPy's, which is no dependency of what judges.
-    """
+    """Return the t for which Student's variable is between -t and t with probability ``level``."""
 
     def excess(theta: mpmath.mpf) -> mpmath.mpf:
         within = mpmath.betainc(0.5, freedom / 2, 0, mpmath.sin(theta) ** 2, regularized=True)

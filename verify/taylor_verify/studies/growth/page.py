@@ -98,7 +98,7 @@ def page(study: GrowthStudy, folder: Path) -> str:
         bullets(_LEGEND),
         *(block for run in runs for block in _section(run)),
         "## The gate",
-        _gate_told(runs),
+        _gate_in_words(runs),
         _LEANING,
         _NO_CONSERVATION,
         "## To remake this",
@@ -157,7 +157,7 @@ def _interval(word: str, value: Number, low: Number, high: Number) -> str:
     return f"{value:.2f} [{low:.2f}, {high:.2f}]"
 
 
-def _gate_told(runs: Sequence[Ensemble]) -> str:
+def _gate_in_words(runs: Sequence[Ensemble]) -> str:
     rates = {row.gate.false_alarm for run in runs for row in run.quantities if row.gate}
     rate = figure(max(rates)) if rates else NOTHING
     return (

@@ -51,19 +51,12 @@ PUBLISHED: Final = (
     # x87 has no batch: a lane takes a minute or two, and six are enough for an interval.
     Entry("euler/about-max-axis", "f80", 1e6, 6, "the same with eleven bits more"),
     Entry(
-        "euler/generic",
-        "f64",
-        1e6,
-        16,
+        *("euler/generic", "f64", 1e6, 16),
         "moments 1, 2, 3, whose coefficients are rounded small fractions",
     ),
     Entry(
-        "euler/about-max-axis",
-        "f64",
-        1e5,
-        16,
-        "a bias that is known: truncation at a coarse tolerance",
-        f"{TAYLOR}?tol=1e-12",
+        *("euler/about-max-axis", "f64", 1e5, 16),
+        *("a bias that is known: truncation at a coarse tolerance", f"{TAYLOR}?tol=1e-12"),
     ),
     Entry("kirchhoff/two-real-roots", "f64", 1e5, 16, "a solid in a fluid"),
 )

@@ -1,1 +1,1 @@
-"""Each shipped scene: its equations, its exact motion, the numbers of its orbit."""
+"""Portraits of the shipped scenes: equations, exact motion, numbers of the orbit."""

@@ -43,17 +43,10 @@ _CENTRE: Final = r"\dot{\mathbf c} = \mathsf R \mathbf U"
 
 
 def equations(scene: Scene) -> list[str]:
-    """A line for each equation that applies to the scene: its loads, and what it tracks."""
-    written, omega = _EQUATIONS[type(scene.body)]
-    return [
-        *written(scene.body),
-        *(
-            [rf"\dot{{\mathsf R}} = \mathsf R [{omega}]_\times"]
-            if "attitude" in scene.track
-            else []
-        ),
-        *([_CENTRE] if "centre" in scene.track else []),
-    ]
+    """Return a line for each equation that applies to the scene: its loads, and what it tracks."""
+    of_body, omega = _EQUATIONS[type(scene.body)]
+    tracked = {"attitude": rf"\dot{{\mathsf R}} = \mathsf R [{omega}]_\times", "centre": _CENTRE}
+    return [*of_body(scene.body), *(line for name, line in tracked.items() if name in scene.track)]
 
 
 def _euler_equations(body: RigidBody) -> list[str]:
@@ -64,15 +57,12 @@ def _euler_equations(body: RigidBody) -> list[str]:
 
 
 def _kirchhoff_equations(body: ImmersedBody) -> list[str]:
-    made: tuple[str, ...] = ()
     if body.manufactured is not None:
-        loads, made = (r" + \mathbf X(t)", r" + \mathbf L(t)"), _MADE_IMPULSE
-    else:
-        loads = (
-            r" + \mathbf X" if any(body.force) else "",
-            r" + \mathbf L" if any(body.couple) else "",
-        )
-    return [f"{_LINEAR}{loads[0]}", f"{_ANGULAR}{loads[1]}", _VELOCITIES, _ENERGY, *made]
+        linear, angular = rf"{_LINEAR} + \mathbf X(t)", rf"{_ANGULAR} + \mathbf L(t)"
+        return [linear, angular, _VELOCITIES, _ENERGY, *_MADE_IMPULSE]
+    force = r" + \mathbf X" if any(body.force) else ""
+    couple = r" + \mathbf L" if any(body.couple) else ""
+    return [f"{_LINEAR}{force}", f"{_ANGULAR}{couple}", _VELOCITIES, _ENERGY]
 
 
 def _gyrostat_equations(body: Gyrostat) -> list[str]:

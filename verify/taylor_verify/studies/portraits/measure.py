@@ -102,17 +102,13 @@ def _orbit(scene: Scene) -> Elements:
 
 
 def _analytic(orbit: Elements) -> list[Document]:
+    names = ("name", "value", "meaning", "unit", "source")
     with mp.workdps(DIGITS):
-        return [
-            {
-                "name": element.name,
-                "value": str(mp.nstr(element.value, DIGITS)),
-                "meaning": element.meaning,
-                "unit": element.unit,
-                "source": element.source,
-            }
-            for element in orbit.numbers
-        ]
+        texts = [str(mp.nstr(element.value, DIGITS)) for element in orbit.numbers]
+    return [
+        {name: getattr(element, name) for name in names} | {"value": text}
+        for element, text in zip(orbit.numbers, texts, strict=True)
+    ]
 
 
 # The motion.

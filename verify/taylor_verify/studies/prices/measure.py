@@ -7,17 +7,17 @@ again and again, unsampled. Compiling is not in it.
 
 from __future__ import annotations
 
-import random
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field
 from fractions import Fraction
-from itertools import pairwise
+from itertools import chain, pairwise
 from math import ceil, exp, log
 from statistics import median
 from time import process_time
 from typing import Final
 
 from taylor_verify.judge.provenance import command, processor, versions
+from taylor_verify.models.problem import Problem
 from taylor_verify.records.json_text import finite
 from taylor_verify.records.provenance import SceneProvenance
 from taylor_verify.scenes.precision import Rung
@@ -33,7 +33,7 @@ from taylor_verify.studies.prices.document import (
 from taylor_verify.studies.prices.variants import Variant, variants
 from taylor_verify.studies.tradeoff.accuracy import Truth
 from taylor_verify.studies.tradeoff.order_statistics import estimate
-from taylor_verify.studies.tradeoff.rounds import without_collector
+from taylor_verify.studies.tradeoff.rounds import in_rounds
 
 # Each rung with its rounds: the interval of the median asks for six, and a wide rung takes its time.
 RUNGS: Final = {"f64": 31, "f80": 31, "f128": 9, "mp237": 7}
@@ -51,27 +51,30 @@ _EQUAL_ERROR: Final = 1e-11
 _TOLERANCES: Final = ("1e-7", "1e-9", "1e-11", "1e-13")
 
 
-@dataclass(frozen=True)
+@dataclass
 class _Bench:
-    """A variant on a rung, ready to run; ``count`` runs of ``steps`` each make one measurement.
+    """A problem and a solver, ready to run; ``count`` runs of ``steps`` each make one measurement.
 
-    ``unit`` is the stretch in the scene's units of time.
+    ``unit`` is the stretch in the scene's units of time, ``taken`` has seconds of a run by rounds.
     """
 
-    variant: Variant
+    problem: Problem
+    solver: Taylor
     pace: Pace
     unit: float
     steps: int
-    count: int
+    count: int = 1
+    taken: list[float] = field(default_factory=list)
 
     @classmethod
-    def of(cls, variant: Variant, rung: Rung, tolerance: Fraction | None = None) -> _Bench:
+    def of(cls, variant: Variant, rung: Rung, solver: Taylor) -> _Bench:
         problem = variant.posed(rung)
         span = _SPAN_ON_WIDE_RUNGS if rung.name in _WIDE else _SPAN
-        pace = Pace(problem, span, tolerance, variant.literals)
+        pace = Pace(problem, span, solver.tolerance, variant.literals)
         # The first run is not timed: what it touches is there afterwards.
-        once = cls(variant, pace, float(span * problem.units.time), pace.run(), 1)
-        return replace(once, count=max(1, ceil(_LEAST_SECONDS / max(once.seconds(), 1e-6))))
+        made = cls(problem, solver, pace, float(span * problem.units.time), pace.run())
+        made.count = max(1, ceil(_LEAST_SECONDS / max(made.seconds(), 1e-6)))
+        return made
 
     def seconds(self) -> float:
         """Return the processor time of one run."""
@@ -79,6 +82,11 @@ class _Bench:
         for _ in range(self.count):
             self.pace.run()
         return (process_time() - began) / self.count
+
+    def error(self) -> float:
+        """Return the largest relative error over the scene's samples, of omega or the impulses alone."""
+        found = Truth(self.problem).accuracy(self.solver.solve(self.problem))
+        return max(found.max[name] for name in ("omega", "impulse") if name in found.max)
 
 
 def study(finished: Callable[[str], None] = lambda rung: None) -> PricesStudy:
@@ -99,71 +107,50 @@ def _rows(rung: Rung, rounds: int) -> list[PriceRow]:
     if Taylor().unavailable(rung):
         return []
     asked = [v for v in variants() if rung.name not in _WIDE or v.name in _ON_WIDE_RUNGS]
-    benches = [_Bench.of(variant, rung) for variant in asked]
-    taken = dict(zip((v.name for v in asked), _in_rounds(benches, rounds), strict=True))
-    by_name = {bench.variant.name: bench for bench in benches}
+    benches = {variant.name: _Bench.of(variant, rung, Taylor()) for variant in asked}
+    _take([*benches.values()], rounds)
     return [
-        _row(rung, bench, by_name[v.against], [*zip(taken[v.name], taken[v.against], strict=True)])
-        for v, bench in zip(asked, benches, strict=True)
+        _row(variant, rung, benches[variant.name], benches[variant.against]) for variant in asked
     ]
 
 
-def _in_rounds(benches: Sequence[_Bench], rounds: int) -> list[list[float]]:
-    """Return seconds of a run by bench and round.
-
-    A round has every bench once, in an order drawn anew.
-    """
-    found: list[list[float]] = [[] for _ in benches]
-    order, draw = list(range(len(benches))), random.Random(_SEED)
-    with without_collector():
-        for _ in range(rounds):
-            draw.shuffle(order)
-            for i in order:
-                found[i].append(benches[i].seconds())
-    return found
+def _take(benches: Sequence[_Bench], rounds: int) -> None:
+    """Time every bench once a round."""
+    seconds = in_rounds([bench.seconds for bench in benches], rounds, _SEED)
+    for bench, taken in zip(benches, seconds, strict=True):
+        bench.taken = taken
 
 
-def _row(
-    rung: Rung, bench: _Bench, base: _Bench, rounds: Sequence[tuple[float, float]]
-) -> PriceRow:
-    """Return the row of a variant; ``rounds`` have its seconds, and those of the barest form."""
-    variant = bench.variant
-    problem = variant.posed(rung)
+def _row(variant: Variant, rung: Rung, bench: _Bench, base: _Bench) -> PriceRow:
+    form = bench.problem.form
+    rounds = list(zip(bench.taken, base.taken, strict=True))
     return PriceRow(
         rung=rung.name,
         variant=variant.name,
         against=variant.against,
         what=variant.what,
-        states=len(problem.form.states),
-        parameters=len(problem.form.parameters),
-        **problem.form.operations(),
+        states=len(form.states),
+        parameters=len(form.parameters),
+        **form.operations(),
         order=bench.pace.order,
         steps_per_time=bench.steps / bench.unit,
         step_ratio=estimate(a / bench.steps / (b / base.steps) for a, b in rounds),
         time_ratio=estimate(a / bench.unit / (b / base.unit) for a, b in rounds),
-        microseconds=1e6 * median(a for a, _ in rounds) / bench.steps,
-        error=finite(_error(variant, rung, Taylor())),
+        microseconds=1e6 * median(bench.taken) / bench.steps,
+        error=finite(bench.error()),
     )
-
-
-def _error(variant: Variant, rung: Rung, solver: Taylor) -> float:
-    """Return the largest relative error over the scene's samples, of omega or the impulses alone."""
-    problem = variant.posed(rung)
-    found = Truth(problem).accuracy(solver.solve(problem))
-    return max(found.max[name] for name in ("omega", "impulse") if name in found.max)
 
 
 def _at_equal_error(rung: Rung) -> tuple[PriceAtEqualError, ...]:
     """Return the time over that of the barest form at one error, from a row of tolerances."""
     asked = [v for v in variants() if not v.literals]
     solvers = [at_tolerance(text) for text in _TOLERANCES]
-    benches = [_Bench.of(v, rung, solver.tolerance) for v in asked for solver in solvers]
-    seconds = zip(benches, _in_rounds(benches, 9), strict=True)
-    paces = iter([median(taken) / bench.unit for bench, taken in seconds])
-    costs: dict[str, float | None] = {}
-    for variant in asked:
-        errors = [_error(variant, rung, solver) for solver in solvers]
-        costs[variant.name] = _between(errors, [next(paces) for _ in solvers])
+    benches = {v.name: [_Bench.of(v, rung, solver) for solver in solvers] for v in asked}
+    _take([*chain.from_iterable(benches.values())], 9)
+    costs = {
+        name: _between([b.error() for b in own], [median(b.taken) / b.unit for b in own])
+        for name, own in benches.items()
+    }
     rows = []
     for variant in asked:
         own, base = costs[variant.name], costs[variant.against]

@@ -13,7 +13,6 @@ from taylor_verify.models.problem import Problem, pose
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.scenes.scene import Scene
 
 _PRINCIPAL: Final = "euler/generic"
 _TENSOR: Final = "euler/full-tensor"
@@ -76,16 +75,14 @@ def variants() -> tuple[Variant, ...]:
 def _of(name: str, *track: str, loaded: bool = False) -> Callable[[Rung], Problem]:
     def posed(rung: Rung) -> Problem:
         scene = replace(load(name), track=frozenset(track))
-        return pose(_pushed(scene) if loaded else scene, rung)
+        if loaded:
+            # They change the motion little in the time of the scene.
+            opposed = tensors.scaled(Fraction(-1), _LOAD)
+            loads = dict(zip(scene.body.load_names(), (_LOAD, opposed), strict=False))
+            scene = replace(scene, body=scene.body.with_parts(loads))
+        return pose(scene, rung)
 
     return posed
-
-
-def _pushed(scene: Scene) -> Scene:
-    """Return the scene under loads that change its motion little in its time."""
-    opposed = tensors.scaled(Fraction(-1), _LOAD)
-    loads = dict(zip(scene.body.load_names(), (_LOAD, opposed), strict=False))
-    return replace(scene, body=scene.body.with_parts(loads))
 
 
 def _with_y3(rung: Rung) -> Problem:

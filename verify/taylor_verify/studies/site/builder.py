@@ -1,10 +1,11 @@
-"""The whole site: every page of docs, report and scenes, made by Sphinx from one source folder."""
+"""Whole site: every page of docs, report and scenes, made by Sphinx from one source folder."""
 
 from __future__ import annotations
 
 import os
 import re
 import warnings
+from importlib import resources
 from importlib.util import find_spec
 from io import StringIO
 from pathlib import Path
@@ -43,7 +44,7 @@ _SHORTER: Final = {
 _OWN: Final = (".buildinfo", ".inv", ".map")
 
 
-def build(folder: Path | str, target: Path | str) -> list[Path]:
+def build(folder: Path, target: Path) -> list[Path]:
     """Make the site of the report in ``folder`` in place of an earlier one in ``target``.
 
     The pages of docs are part of it where the folder lies in a checkout. Returns the files written.
@@ -51,13 +52,12 @@ def build(folder: Path | str, target: Path | str) -> list[Path]:
     cannot be read or written, and ValueError for data that are none, for pages with a fault, and for
     a target that holds something else.
     """
-    source, place = Path(folder), Path(target)
-    stale = _earlier(place)
-    return list(replace_files(place, contents(source), stale=stale))
+    stale = _earlier(target)
+    return list(replace_files(target, contents(folder), stale=stale))
 
 
 def contents(folder: Path) -> dict[str, str | bytes]:
-    """Every file of the site by its place in it. The errors are those of `build`."""
+    """Return every file of the site by its place in it. The errors are those of `build`."""
     for module, package in _NEEDED.items():
         if find_spec(module) is None:
             raise ImportError(f"expected {package}, got no such package", name=package)
@@ -67,13 +67,18 @@ def contents(folder: Path) -> dict[str, str | bytes]:
         replace_files(source, stage.files)
         _run_sphinx(source, made, stage.docs or Path(__file__).parent)
         files = [file for file in sorted(made.rglob("*")) if file.is_file()]
-        pages = {file.relative_to(made).as_posix(): _content(file) for file in files}
-    site = {name: content for name, content in pages.items() if not name.endswith(_OWN)}
-    return {**site, f"_static/{_SCRIPT}": _plotly()}
+        site = {
+            file.relative_to(made).as_posix(): _content(file)
+            for file in files
+            if not file.name.endswith(_OWN)
+        }
+    # No page loads Plotly's script before a motion comes into view.
+    plotly = resources.files("plotly") / "package_data" / _SCRIPT
+    return {**site, f"_static/{_SCRIPT}": plotly.read_bytes()}
 
 
 def _run_sphinx(source: Path, target: Path, settings: Path) -> None:
-    """Build all pages; ValueError with every warning, for each is a fault of a page."""
+    """Build all pages. Raises ValueError with every warning, for each is a fault of a page."""
     from sphinx.application import Sphinx
     from sphinx.util.docutils import docutils_namespace, patch_docutils
 
@@ -99,7 +104,7 @@ def _run_sphinx(source: Path, target: Path, settings: Path) -> None:
 
 
 def _content(file: Path) -> str | bytes:
-    """A file as it is; a page with its maker's name in front."""
+    """Return a file as it is; a page with its maker's name in front."""
     if file.suffix != ".html":
         return file.read_bytes()
     text = file.read_text(encoding="utf-8")
@@ -108,15 +113,8 @@ def _content(file: Path) -> str | bytes:
     return f"{MADE_BY}\n{text}"
 
 
-def _plotly() -> bytes:
-    """Plotly's script from its wheel, which no page loads before a motion comes into view."""
-    spec = find_spec("plotly")
-    folders = spec.submodule_search_locations if spec else None
-    return Path((folders or [""])[0], "package_data", _SCRIPT).read_bytes()
-
-
 def _earlier(target: Path) -> list[Path]:
-    """The files of an earlier site; ValueError for a folder with somebody else's."""
+    """Return the files of an earlier site. Raises ValueError for a folder with somebody else's."""
     files = [file for file in target.rglob("*") if file.is_file()] if target.exists() else []
     if files and not ((target / FRONT).exists() and first_line(target / FRONT) == MADE_BY):
         raise ValueError(f"expected a folder that is empty or has an earlier site, got {target}")

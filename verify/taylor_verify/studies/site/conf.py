@@ -34,27 +34,19 @@ html_domain_indices = html_use_index = False
 html_show_search_summary = False
 # Names of colours in the style sheet and in the pictures. On dark paper a hue is lightened until a
 # line has the contrast of 3 that WCAG 2.1 (1.4.11) asks for.
+_COLOURS = {
+    "motion-ink": ("#1B1D21", "#E8E8E4"),
+    "motion-quiet": ("#5B616A", "#A6ABB2"),
+    "motion-faint": ("#E3E5E8", "#31363D"),
+    "motion-surface": ("#C9CED6", "#59616C"),
+    "motion-low": ("#2F7DB5", "#4FA3DC"),
+    "motion-middle": ("#8A6AA8", "#A98BC9"),
+    "motion-high": ("#C4500A", "#EE8A4E"),
+    "color-problem": ("#A83C00", "#F0976A"),
+}
 html_theme_options = {
-    "light_css_variables": {
-        "motion-ink": "#1B1D21",
-        "motion-quiet": "#5B616A",
-        "motion-faint": "#E3E5E8",
-        "motion-surface": "#C9CED6",
-        "motion-low": "#2F7DB5",
-        "motion-middle": "#8A6AA8",
-        "motion-high": "#C4500A",
-        "color-problem": "#A83C00",
-    },
-    "dark_css_variables": {
-        "motion-ink": "#E8E8E4",
-        "motion-quiet": "#A6ABB2",
-        "motion-faint": "#31363D",
-        "motion-surface": "#59616C",
-        "motion-low": "#4FA3DC",
-        "motion-middle": "#A98BC9",
-        "motion-high": "#EE8A4E",
-        "color-problem": "#F0976A",
-    },
+    "light_css_variables": {name: light for name, (light, _) in _COLOURS.items()},
+    "dark_css_variables": {name: dark for name, (_, dark) in _COLOURS.items()},
 }
 pygments_style = "default"
 pygments_dark_style = "monokai"

@@ -51,12 +51,11 @@ def _link_scenes(app: Sphinx, doctree: nodes.document) -> None:
         link += span
 
 
-def _is_within_link_or_heading(node: nodes.Node) -> bool:
-    parent = node.parent
-    while parent is not None:
-        if isinstance(parent, nodes.reference | nodes.title | addnodes.pending_xref):
+def _is_within_link_or_heading(node: nodes.Node | None) -> bool:
+    while node is not None:
+        if isinstance(node, nodes.reference | nodes.title | addnodes.pending_xref):
             return True
-        parent = parent.parent
+        node = node.parent
     return False
 
 

@@ -7,23 +7,18 @@ no eye sees the fourth digit of a point.
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
-from typing import Any, Final
+from math import isfinite
+from typing import Any
 
 Trace = dict[str, Any]
-
-_DIGITS: Final = 4
 
 
 @dataclass(frozen=True)
 class Figure:
-    """A picture in space with its ``name`` on the page, a heading, a caption, a text in its stead.
-
-    ``axes`` are the titles of the three axes.
-    """
+    """A picture in space by its ``name`` on the page, with a text in its stead and titles of the axes."""
 
     name: str
     title: str
@@ -51,13 +46,9 @@ class Figure:
         )
 
 
-def column(values: Iterable[float], digits: int = _DIGITS) -> list[float | None]:
+def column(values: Iterable[float], digits: int = 4) -> list[float | None]:
     """Return numbers with so many digits each; None for one that no axis has a place for."""
-    return [_short(float(value), digits) for value in values]
-
-
-def _short(value: float, digits: int) -> float | None:
-    if not math.isfinite(value):
-        return None
-    rounded = float(f"{value:.{digits - 1}e}")
-    return int(rounded) if rounded == int(rounded) and abs(rounded) < 1e6 else rounded
+    rounded = [float(f"{value:.{digits - 1}e}") for value in values]
+    return [
+        None if not isfinite(v) else int(v) if v == int(v) and abs(v) < 1e6 else v for v in rounded
+    ]

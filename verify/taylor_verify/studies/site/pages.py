@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
+from taylor_verify.batch.pool import LocalPool, available_cores
 from taylor_verify.publish.cells import NOTHING, judged, main_error, ratio, verdict_table, worst
 from taylor_verify.publish.markdown import code, prose, table
-from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.publish.pictures.picture import Picture, content
 from taylor_verify.records.file_names import of_scene
 from taylor_verify.records.runs import Run, gravest
 from taylor_verify.records.verdict import summary
-from taylor_verify.studies.site.drawing import drawn, pictures_of
+from taylor_verify.studies.gallery.pictures import errors_over_time, potential
 from taylor_verify.studies.site.extension import SCENES
 from taylor_verify.studies.site.scene_page import drawing_of, made_with, scene_page, shown
-from taylor_verify.studies.site.source import Report
-from taylor_verify.studies.site.stage import FRONT, REPORTS, Stage, docs_beside
+from taylor_verify.studies.site.source import Document, Report
+from taylor_verify.studies.site.stage import FRONT, REPORTS, Stage, docs_beside, smaller
 
 _GATES: Final = f"{REPORTS}/tables/gates.md"
+# A process takes the time of some drawings to start.
+_MANY: Final = 20
 # The scene whose errors the front page shows.
 _EXAMPLE: Final = "euler/generic"
 _FRONT: Final = (Path(__file__).parent / "front.md").read_text(encoding="utf-8")
@@ -44,10 +47,10 @@ def staged(folder: Path) -> Stage:
     """
     report, stage = Report(folder), Stage(folder, docs_beside(folder))
     pictures = {
-        scene: pictures_of(scene, report.portrait(scene) or {}, report.records(scene))
+        scene: _pictures_of(scene, report.portrait(scene) or {}, report.records(scene))
         for scene in report.scenes
     }
-    drawings = drawn(
+    drawings = _drawn(
         [one for found in pictures.values() for one in found if not report.has(drawing_of(one))]
     )
     stage.files |= {f"{SCENES}/{name}": svg for name, svg in drawings.items()}
@@ -63,6 +66,29 @@ def staged(folder: Path) -> Stage:
         }
     )
     return stage
+
+
+def _pictures_of(scene: str, portrait: Document, records: Mapping[str, Document]) -> list[Picture]:
+    """Return pictures of a scene that stand still: errors over time, and the quartic of its orbit."""
+    runs, pictures = list(records.values()), []
+    if errors_over_time.panels_of(errors_over_time.series(runs)):
+        pictures.append(errors_over_time.picture(scene, runs))
+    if portrait.get("potential"):
+        pictures.append(potential.picture([portrait], scene))
+    return pictures
+
+
+def _drawn(pictures: Sequence[Picture]) -> dict[str, str]:
+    """Return the SVG of each picture by the name of its file, drawn on all cores where there are many."""
+    names = [f"{picture.stem}.svg" for picture in pictures]
+    if len(pictures) < _MANY:
+        return dict(zip(names, map(_svg, pictures), strict=True))
+    with LocalPool(available_cores()) as pool:
+        return dict(zip(names, pool.map(_svg, pictures), strict=True))
+
+
+def _svg(picture: Picture) -> str:
+    return smaller(content(picture, "svg").decode())
 
 
 def _front(report: Report, stage: Stage, pictures: Sequence[Picture]) -> str:

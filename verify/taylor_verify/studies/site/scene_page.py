@@ -6,7 +6,9 @@ import re
 from collections.abc import Iterator, Sequence
 from html import escape
 from itertools import groupby
-from typing import Any, Final
+from typing import Final
+
+import numpy as np
 
 from taylor_verify.publish.cells import conclusion, figure, verdict_table
 from taylor_verify.publish.markdown import bullets, code, prose, table
@@ -41,6 +43,10 @@ def scene_page(scene: str, report: Report, pictures: Sequence[Picture]) -> str:
     portrait, records = report.portrait(scene) or {}, report.records(scene)
     record = next(iter(records.values()), {})
     verdicts = [verdict for run in runs for verdict in run.verdicts]
+    motions = [figure.html() for figure in motions_of(portrait, records.get(_SHOWN))]
+    if motions:
+        motions = ['<div class="motions">', *motions, "</div>"]
+    toml = portrait.get("toml", "").strip()
     condition = portrait.get("explain", {}).get("condition") or {}
     digest = next((str(v.provenance.get("scene", "")) for v in verdicts), "")
     sections = {
@@ -51,10 +57,12 @@ def scene_page(scene: str, report: Report, pictures: Sequence[Picture]) -> str:
         ],
         "Equations of motion": _equations(portrait, record),
         "The orbit in numbers": _orbit(portrait),
-        "Initial data": _data(portrait),
+        "Initial data": ["The whole scene, in exact numbers:", _block("toml", toml, "scene")]
+        if toml
+        else [],
         "Accuracy": [verdict_table(_ACCURACY, verdicts)],
         "Other solvers": _solvers(report.trade(scene)),
-        "Pictures": [*_drawings(report, pictures), *_motions(portrait, records.get(_SHOWN))],
+        "Pictures": [*_drawings(report, pictures), *motions],
         "The arithmetic of the gates": [
             prose(condition.get("sentence", "")),
             _folded("Every bound with its terms", _gates(verdicts)),
@@ -101,11 +109,6 @@ def _drawings(report: Report, pictures: Sequence[Picture]) -> Iterator[str]:
         yield shown(report, picture, "..")
         if picture.stem.endswith("-errors"):
             yield _ALLOWED
-
-
-def _motions(portrait: Document, record: Document | None) -> list[str]:
-    found = [figure.html() for figure in motions_of(portrait, record)]
-    return ['<div class="motions">', *found, "</div>"] if found else []
 
 
 def _reference(scene: str, report: Report) -> str:
@@ -164,11 +167,6 @@ def _orbit(portrait: Document) -> list[str]:
     ]
     sentences = portrait.get("explain", {}).get("sentences", ())
     return [*map(prose, sentences), table(["quantity", "value", "meaning"], cells)]
-
-
-def _data(portrait: Document) -> list[str]:
-    text = portrait.get("toml", "").strip()
-    return ["The whole scene, in exact numbers:", _block("toml", text, "scene")] if text else []
 
 
 def _solvers(trade: Trade | None) -> list[str]:
@@ -247,16 +245,12 @@ def _values(document: Document) -> list[str]:
 
 def _trajectory(rows: Sequence[Document]) -> str:
     """Return exact states as a trajectory file, its columns one below the other."""
-    keys = [key for key in COLUMNS if key in rows[0]]
-    heading = ["t", *(name for key in keys for name in COLUMNS[key])]
-    lines = [heading, *([str(r["t"]), *(n for key in keys for n in _flat(r[key]))] for r in rows)]
-    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
-    padded = [[c.rjust(width) for c, width in zip(line, widths, strict=True)] for line in lines]
-    return "\n".join(map(", ".join, padded))
-
-
-def _flat(value: Sequence[Any]) -> list[str]:
-    return [n for row in value for n in (row if isinstance(row, list) else [row])]
+    columns = [["t", *(str(row["t"]) for row in rows)]]
+    for key in (key for key in COLUMNS if key in rows[0]):
+        entries = np.array([row[key] for row in rows]).reshape(len(rows), -1).T.tolist()
+        columns += [[name, *own] for name, own in zip(COLUMNS[key], entries, strict=True)]
+    padded = [[cell.rjust(max(map(len, column))) for cell in column] for column in columns]
+    return "\n".join(map(", ".join, zip(*padded, strict=True)))
 
 
 def _commands(scene: str, rungs: Sequence[str], portrait: Document) -> str:

@@ -38,7 +38,7 @@ class Report:
 
     @cached_property
     def runs(self) -> tuple[Run, ...]:
-        """All runs in reading order."""
+        """The runs in reading order."""
         return runs(store.load(self.folder))
 
     @cached_property

@@ -12,11 +12,10 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 from typing import Final
 
 from taylor_verify.studies.archive import tar
-from taylor_verify.studies.site.drawing import smaller
 from taylor_verify.studies.site.links import relinked
 
 DOCS: Final = "docs"
@@ -26,6 +25,9 @@ FRONT: Final = "index.md"
 # Bytes. Above this only sheets and data are found, of which a packed one has a tenth.
 _LARGE: Final = 30_000
 PACKED: Final = ".tar.xz"
+# Fonts and metadata of a drawing, which its page has too.
+_FONTS: Final = re.compile(r"font-family: [^;\"}]*")
+_METADATA: Final = re.compile(r"<metadata>.*?</metadata>\s*", re.DOTALL)
 _ROOMS: Final = ("figures", "tables", "reference", "upstream")
 _INCLUDED: Final = re.compile(r"^```\{include\} (\S+)\n```$", re.MULTILINE)
 _TOCTREE: Final = re.compile(r"^```\{toctree\}\n.*?^```$", re.MULTILINE | re.DOTALL)
@@ -89,7 +91,7 @@ class Stage:
             self._add(place, text)
 
     def _add(self, place: str, text: str) -> None:
-        folder = PurePosixPath(place).parent.as_posix()
+        folder = posixpath.dirname(place)
         self.files[place] = relinked(text, folder, folder, self._resolve)
 
     def _included(self, place: str, block: re.Match[str]) -> str:
@@ -98,8 +100,8 @@ class Stage:
         file = self._origin(included)
         if file is None:
             raise ValueError(f"expected a file of the checkout, got {block[1]} @ {place}")
-        written_in, shown_in = (PurePosixPath(at).parent.as_posix() for at in (included, place))
-        return relinked(file.read_text(encoding="utf-8"), written_in, shown_in, lambda at: at)
+        text = file.read_text(encoding="utf-8")
+        return relinked(text, posixpath.dirname(included), posixpath.dirname(place), lambda at: at)
 
     def _resolve(self, place: str) -> str | None:
         """Return the page or file that a link leads to; None for what is neither, or outside the tree."""
@@ -122,6 +124,11 @@ class Stage:
         if place.startswith(f"{REPORTS}/"):
             return self.folder / place.removeprefix(f"{REPORTS}/")
         return None if self.docs is None or place.startswith("..") else self.docs.parent / place
+
+
+def smaller(svg: str) -> str:
+    """Return the drawing in the font of its page and without metadata; title and text stay."""
+    return _FONTS.sub("font-family: sans-serif", _METADATA.sub("", svg))
 
 
 def _as_linked(place: str) -> str:

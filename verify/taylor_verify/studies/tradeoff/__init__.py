@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -13,15 +13,12 @@ if TYPE_CHECKING:
     from taylor_verify.studies.tradeoff.setting import Setting
     from taylor_verify.studies.tradeoff.trade_off import TradeOff
 
-REPEATS: Final = 5
-SEED: Final = 1
-
 
 def tradeoff(
     scene: Scene | str | PathLike[str],
     asked: Sequence[Setting] | None = None,
-    repeats: int = REPEATS,
-    seed: int = SEED,
+    repeats: int | None = None,
+    seed: int | None = None,
 ) -> TradeOff:
     """Measure the time and the error of every setting on a scene, and find the front.
 
@@ -33,7 +30,7 @@ def tradeoff(
         The settings to measure (studies.tradeoff.setting.chosen makes them of names); all that there are
         unless given.
     repeats
-        The number of solves of which the best time counts.
+        The number of solves of which the best time counts; that of ``taylor-verify tradeoff`` unless given.
     seed
         The seed of the order of timing.
 
@@ -51,9 +48,10 @@ def tradeoff(
         For fewer than one of ``repeats``.
     """
     from taylor_verify.scenes.reading.reader import as_scene
-    from taylor_verify.studies.tradeoff.timing import cold_caches
+    from taylor_verify.studies.tradeoff.timing import REPEATS, SEED, cold_caches
     from taylor_verify.studies.tradeoff.trade_off import trade_off
 
+    repeats, seed = REPEATS if repeats is None else repeats, SEED if seed is None else seed
     if not repeats >= 1:
         raise ValueError(f"expected repeats of at least 1, got {repeats}")
     with cold_caches():
@@ -64,7 +62,7 @@ def recommend(
     scene: Scene | str | PathLike[str],
     error: float,
     asked: Sequence[Setting] | None = None,
-    seed: int = SEED,
+    seed: int | None = None,
 ) -> Recommendation:
     """Measure the settings and return the fastest whose error stays below a limit, here and nearby.
 
@@ -96,5 +94,6 @@ def recommend(
         For an error that is no positive number.
     """
     from taylor_verify.studies.tradeoff import recommendation
+    from taylor_verify.studies.tradeoff.timing import SEED
 
-    return recommendation.recommend(scene, error, asked, seed)
+    return recommendation.recommend(scene, error, asked, SEED if seed is None else seed)

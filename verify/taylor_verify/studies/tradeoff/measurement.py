@@ -23,7 +23,6 @@ from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.studies.tradeoff import SEED
 from taylor_verify.studies.tradeoff.cold import in_a_new_process
 from taylor_verify.studies.tradeoff.document import (
     TimingMachine,
@@ -45,6 +44,7 @@ from taylor_verify.studies.tradeoff.setting import (
     setting,
     taylor,
 )
+from taylor_verify.studies.tradeoff.timing import SEED
 from taylor_verify.studies.tradeoff.trade_off import (
     TradeOff,
     request_sentences,

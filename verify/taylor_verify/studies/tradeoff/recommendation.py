@@ -15,13 +15,13 @@ from taylor_verify.scenes.reading.reader import as_scene
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.registry import PROCESS
 from taylor_verify.solvers.solver import Solver
-from taylor_verify.studies.tradeoff import SEED
 from taylor_verify.studies.tradeoff.accuracy import Truths
 from taylor_verify.studies.tradeoff.attainability import left_out, narrowest
 from taylor_verify.studies.tradeoff.document import label
 from taylor_verify.studies.tradeoff.point import Point
 from taylor_verify.studies.tradeoff.setting import Setting, settings
 from taylor_verify.studies.tradeoff.starts import nearby
+from taylor_verify.studies.tradeoff.timing import SEED
 from taylor_verify.studies.tradeoff.trade_off import TradeOff, sound_points, trade_off
 
 # A start outside the ensemble may fare worse than the worst of a handful within it: a binary digit.

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import gc
 import random
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from math import ceil
 from statistics import median
 from time import perf_counter
-from typing import Final, NamedTuple
+from typing import Final, NamedTuple, TypeVar
 
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.scenes.precision import rung as rung_named
@@ -25,6 +25,8 @@ from taylor_verify.studies.tradeoff.document import TimingMethod
 from taylor_verify.studies.tradeoff.order_statistics import CONFIDENCE, FORMULA, coverage, place
 from taylor_verify.studies.tradeoff.setting import Name, setting
 from taylor_verify.studies.tradeoff.timing import WHAT_IS_TIMED
+
+Answer = TypeVar("Answer")
 
 YARDSTICK: Final = ("taylor", "f64")
 ROUNDS: Final = 3
@@ -75,58 +77,76 @@ def measured(
     The yardstick is measured with them, asked for or not.
     """
     least = max(_LEAST_SECONDS, _TIMES_RESOLUTION * (resolution or clock_resolution()))
-    work: dict[Name, tuple[Solver, Problem]] = {}
-    for solver, rung in (YARDSTICK, *names):
-        on = rung_named(rung)
-        work[solver, rung] = setting(solver, on).solver, pose(scene, on)
-    solved = {name: _solved(*work[name], 1) for name in work}
-    first = {name: taken for name, taken in solved.items() if taken is not None}
+    first: dict[Name, _Taken] = {}
+    turns: dict[Name, Callable[[], _Taken | None]] = {}
+    for name in dict.fromkeys([YARDSTICK, *names]):
+        solver, rung = name[0], rung_named(name[1])
+        solve = partial(_solved, setting(solver, rung).solver, pose(scene, rung))
+        if (taken := solve(1)) is None:
+            continue
+        first[name] = taken
+        is_unit = name == YARDSTICK
+        count = _count(taken, _YARDSTICK_SECONDS if is_unit else least)
+        if count or is_unit:
+            turns[name] = partial(solve, max(1, count))
     if YARDSTICK not in first:
         return {}
-    counts = {name: _count(taken, least) for name, taken in first.items()}
-    counts[YARDSTICK] = max(1, _count(first[YARDSTICK], _YARDSTICK_SECONDS))
-    # What is dear is measured no more.
-    order = [name for name, count in counts.items() if count]
-    draw = random.Random(seed)
-    kept: list[dict[Name, _Taken]] = []
-    with without_collector():
+    later = dict(zip(turns, in_rounds([*turns.values()], rounds, seed), strict=True))
+    unit = later[YARDSTICK]
+    return {
+        name: _summed(first[name], later.get(name, []), unit) for name in names if name in first
+    }
+
+
+def in_rounds(turns: Sequence[Callable[[], Answer]], rounds: int, seed: int) -> list[list[Answer]]:
+    """Return the answers of every turn by round; a round has every turn once, in an order drawn anew.
+
+    Python's collector of garbage runs before and not in between, where it would hit one by chance.
+    """
+    found: list[list[Answer]] = [[] for _ in turns]
+    order, draw = list(range(len(turns))), random.Random(seed)
+    enabled = gc.isenabled()
+    gc.collect()
+    gc.disable()
+    try:
         for _ in range(rounds):
-            turn = draw.sample(order, len(order))
-            taken = {name: _solved(*work[name], counts[name]) for name in turn}
-            kept.append({name: one for name, one in taken.items() if one is not None})
-    return {name: _summed(name, first[name], kept) for name in names if name in first}
+            draw.shuffle(order)
+            for i in order:
+                found[i].append(turns[i]())
+    finally:
+        if enabled:
+            gc.enable()
+    return found
 
 
-def _summed(name: Name, first: _Taken, kept: Iterable[Mapping[Name, _Taken]]) -> Measured:
+def _summed(
+    first: _Taken, later: Sequence[_Taken | None], unit: Sequence[_Taken | None]
+) -> Measured:
     """Return the medians over the rounds; of a dear setting its only solve over the yardstick's median."""
-    with_unit = [one for one in kept if YARDSTICK in one]
-    rounds = [(one[name], one[YARDSTICK].seconds) for one in with_unit if name in one]
-    if not rounds:
-        unit = median(one[YARDSTICK].seconds for one in with_unit)
-        return Measured(first.seconds, first.seconds / unit, first.inner)
+    rounds = [(a, b.seconds) for a, b in zip(later, unit, strict=False) if a and b]
+    rounds = rounds or [(first, median(b.seconds for b in unit if b))]
     inner = [taken.inner for taken, _ in rounds if taken.inner is not None]
     return Measured(
         median(taken.seconds for taken, _ in rounds),
-        median(taken.seconds / unit for taken, unit in rounds),
+        median(taken.seconds / seconds for taken, seconds in rounds),
         median(inner) if len(inner) == len(rounds) else None,
     )
 
 
 def _solved(solver: Solver, problem: Problem, count: int) -> _Taken | None:
     """Solve so many times, as the solver times itself; None if a solve did not finish."""
-    seconds, compiling = 0.0, 0.0
-    inner: list[float | None] = []
     began = perf_counter()
+    made = []
     for _ in range(count):
+        # The numbers of a trajectory are not wanted, and would fill the memory.
         trajectory = solver.solve(problem)
         if trajectory.outcome is not Outcome.FINISHED:
             return None
-        seconds += trajectory.seconds
-        compiling += trajectory.compile_seconds
-        inner.append(trajectory.inner_seconds)
-    waited = (perf_counter() - began - compiling) / count
-    known = [part for part in inner if part is not None]
-    return _Taken(seconds / count, sum(known) / count if len(known) == count else None, waited)
+        made.append((trajectory.seconds, trajectory.compile_seconds, trajectory.inner_seconds))
+    waited = perf_counter() - began
+    seconds, compiling, inner = zip(*made, strict=True)
+    inside = None if None in inner else sum(inner) / count
+    return _Taken(sum(seconds) / count, inside, (waited - sum(compiling)) / count)
 
 
 def _count(taken: _Taken, least: float) -> int:
@@ -163,16 +183,3 @@ def method(processes: int, rounds: int, seed: int) -> TimingMethod:
         formula=FORMULA,
         of=WHAT_IS_TIMED,
     )
-
-
-@contextmanager
-def without_collector() -> Iterator[None]:
-    """Run Python's collector of garbage before and not in between, where it would hit one by chance."""
-    enabled = gc.isenabled()
-    gc.collect()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if enabled:
-            gc.enable()

@@ -141,11 +141,12 @@ def setting(name: str, rung: Rung) -> Setting:
         # Nobody knows which of its own options a command reads as an accuracy.
         return Setting(solver, rung, None, NOTHING, name)
     family, _, options = name.partition("?")
-    numbers = dict(part.split("=", 1) for part in options.split("&") if part)
-    key = next((key for key in numbers if key in _ASKED), None)
-    asked = NOTHING if key is None else _ASKED[key]
-    requested = None if key is None else float(Fraction(numbers[key]))
-    return Setting(solver, rung, requested, asked, family.replace(":", " "))
+    for part in options.split("&"):
+        key, _, value = part.partition("=")
+        if key in _ASKED:
+            accuracy = float(Fraction(value))
+            return Setting(solver, rung, accuracy, _ASKED[key], family.replace(":", " "))
+    return Setting(solver, rung, None, NOTHING, family.replace(":", " "))
 
 
 def taylor(rung: Rung) -> Iterator[Setting]:

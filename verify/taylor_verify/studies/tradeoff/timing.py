@@ -20,6 +20,8 @@ from taylor_verify.models.problem import Problem
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.studies.tradeoff.setting import Setting
 
+REPEATS: Final = 5
+SEED: Final = 1
 # A setting that took longer is not set finer, and one that has is not repeated more than once.
 PATIENCE: Final = 2.0
 _HEYOKA_CACHE: Final = "HEYOKA_CACHE_DIR"

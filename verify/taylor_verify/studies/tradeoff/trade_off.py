@@ -12,7 +12,6 @@ from taylor_verify.models.problem import NotRepresentable, Problem, pose
 from taylor_verify.records.json_text import finite
 from taylor_verify.records.standing import Standing
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.studies.tradeoff import REPEATS, SEED
 from taylor_verify.studies.tradeoff.accuracy import Truths
 from taylor_verify.studies.tradeoff.attainability import least_error
 from taylor_verify.studies.tradeoff.pareto import pareto
@@ -20,6 +19,8 @@ from taylor_verify.studies.tradeoff.point import Point, digits, point
 from taylor_verify.studies.tradeoff.setting import Setting, settings
 from taylor_verify.studies.tradeoff.timing import (
     PATIENCE,
+    REPEATS,
+    SEED,
     WHAT_IS_TIMED,
     Clock,
     timed,
@@ -124,7 +125,12 @@ def front_sentences(points: Sequence[Point]) -> list[str]:
     best, sound = front(points), sound_points(points)
     if not best:
         return ["No setting gave an answer that is sound."]
-    said = [_sentence(p, best[0].seconds) for p in best]
+    said, fastest = [], best[0].seconds
+    for p in best:
+        left = digits(p.error)
+        named = "All digits" if left is None else f"{left:.1f} digits"
+        pace = f", {p.seconds / fastest:.2f} times the fastest" if p.seconds > fastest > 0 else ""
+        said.append(f"{named} (error {p.error:.2g}): {p.label} in {p.seconds:.3g} s{pace}.")
     beaten = len(sound) - len(best)
     said.append(
         f"{beaten} of {len(sound)} sound settings are beaten in both time and error by one of these."
@@ -135,13 +141,6 @@ def front_sentences(points: Sequence[Point]) -> list[str]:
             "each other than that are not told apart."
         )
     return said
-
-
-def _sentence(p: Point, fastest: float) -> str:
-    left = digits(p.error)
-    named = "All digits" if left is None else f"{left:.1f} digits"
-    pace = f", {p.seconds / fastest:.2f} times the fastest" if p.seconds > fastest > 0 else ""
-    return f"{named} (error {p.error:.2g}): {p.label} in {p.seconds:.3g} s{pace}."
 
 
 def request_sentences(points: Iterable[Point]) -> list[str]:

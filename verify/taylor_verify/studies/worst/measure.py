@@ -68,7 +68,7 @@ class Catch:
 
 
 @dataclass(frozen=True)
-class Found:
+class FamilyResult:
     """The result of a family: the number of scenes that were judged, and the worst of them."""
 
     family: Family
@@ -87,21 +87,20 @@ class Found:
 
 
 def hunt(
-    families: Iterable[Family], seconds: float, seed: int, told: Callable[[str], None]
-) -> list[Found]:
+    families: Sequence[Family], seconds: float, seed: int, finished: Callable[[str], None]
+) -> list[FamilyResult]:
     """Return the worst of each family, in an even share of the ``seconds``.
 
-    ``told`` is called with the name of each as it ends.
+    ``finished`` is called with the name of each as it ends.
     """
-    asked = list(families)
-    found = []
-    for family in asked:
-        found.append(_hunt(family, seconds / len(asked), random.Random(f"{seed} {family.name}")))
-        told(family.name)
+    found, share = [], seconds / len(families)
+    for family in families:
+        found.append(_hunt(family, share, random.Random(f"{seed} {family.name}")))
+        finished(family.name)
     return found
 
 
-def _hunt(family: Family, seconds: float, draw: random.Random) -> Found:
+def _hunt(family: Family, seconds: float, draw: random.Random) -> FamilyResult:
     began, judged, width = monotonic(), 0, _FIRST_STEP
     worst: Catch | None = None
     while worst is None or (monotonic() - began < seconds and width >= _LEAST_STEP):
@@ -118,7 +117,7 @@ def _hunt(family: Family, seconds: float, draw: random.Random) -> Found:
             worst = catch
         else:
             width *= narrowing
-    return Found(family, judged, worst)
+    return FamilyResult(family, judged, worst)
 
 
 def caught(family: Family, place: Place) -> Catch | None:
@@ -138,7 +137,7 @@ def _counts(verdict: Verdict) -> bool:
     return is_asked and verdict.quantity != INITIAL
 
 
-def study(found: Iterable[Found], seconds: float, seed: int) -> WorstStudy:
+def study(found: Iterable[FamilyResult], seconds: float, seed: int) -> WorstStudy:
     """Return the rows that the published table is made from."""
     return WorstStudy(
         factor=GATE_FACTOR,

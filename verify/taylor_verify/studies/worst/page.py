@@ -30,7 +30,7 @@ _KEPT: Final = (
 )
 
 
-def keep(folder: Path, scenes: Mapping[str, str]) -> list[Path]:
+def store_scenes(folder: Path, scenes: Mapping[str, str]) -> list[Path]:
     """Write scene files, by their names, in place of those that are there. Raises OSError."""
     texts = {f"{name}.toml": text for name, text in scenes.items()}
     return list(replace_files(folder, texts, stale=folder.glob("*.toml")))

@@ -20,7 +20,7 @@ def _measure(folder: Path, progress: Progress, seconds: float = 600.0, seed: int
 
     found = hunt(FAMILIES, seconds, seed, progress.counting(len(FAMILIES)))
     scenes = {one.family.name: one.scene_text for one in found}
-    shipped = page.keep(cases_directory() / SCENES, scenes)
+    shipped = page.store_scenes(cases_directory() / SCENES, scenes)
     return Measured([*WORST.write(folder, study(found, seconds, seed)), *shipped])
 
 

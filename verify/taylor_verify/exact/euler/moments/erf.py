@@ -18,13 +18,11 @@ from fractions import Fraction
 
 from flint import acb, arb
 
+from taylor_verify.exact import rotation
 from taylor_verify.exact.balls import ball, balls
-from taylor_verify.exact.euler import quaternion
 from taylor_verify.exact.euler.moments.kummer import KummerTurn
 from taylor_verify.exact.euler.moments.regime import Line, LoadedSpin, MomentRegime
-from taylor_verify.exact.euler.quaternion import Quaternion
 from taylor_verify.exact.euler.rotations import RotationBalls
-from taylor_verify.exact.rotation import product
 from taylor_verify.scenes import motion, tensors
 
 
@@ -38,7 +36,7 @@ def loaded_rotation(spin: LoadedSpin, attitude: motion.Quaternion | None = None)
 
 
 class _Course:
-    """One motion, set up at one precision of flint and good only there."""
+    """The course at one precision of flint."""
 
     def __init__(self, spin: LoadedSpin, line: Line | None) -> None:
         self._spin = spin
@@ -57,12 +55,14 @@ class _Course:
             self._axis = [component / length for component in balls(spin.free.axis)]
             self._turn = KummerTurn(line)
 
-    def at(self, t: Fraction, turned: bool) -> tuple[list[arb], Quaternion]:
+    def at(self, t: Fraction, turned: bool) -> tuple[list[arb], list[arb]]:
         phi = ball(self._spin.phi(t)) / self._length
         omega = self._omega(t, phi)
         if not turned:
             return omega, []
-        return omega, product(self._turn.quaternion(t), quaternion.turn(self._axis, -phi / 2))
+        return omega, rotation.product(
+            self._turn.quaternion(t), rotation.turn(self._axis, -phi / 2)
+        )
 
     def _omega(self, t: Fraction, phi: arb) -> list[arb]:
         spin = self._spin

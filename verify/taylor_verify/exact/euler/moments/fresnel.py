@@ -52,13 +52,13 @@ def _angle_digits(spin: LoadedSpin, longest: Fraction) -> float:
 
 
 def _turn_digits(line: Line, longest: Fraction) -> float:
-    """The same of |z| = |b| s^2/2, which bounds the angle that e^(z/2) turns by."""
+    """The decimal digits before the point of |z| = |b| s^2/2: e^(z/2) turns by no larger angle."""
     furthest = longest + abs(line.lead)
     return decades(1 + tensors.dot(line.b, line.b) * furthest**4 / 4) / 2
 
 
 class _Course:
-    """One motion, set up at one precision of mpmath and good only there."""
+    """The course at one precision of mpmath."""
 
     def __init__(self, spin: LoadedSpin, line: Line | None) -> None:
         self._spin = spin

@@ -18,12 +18,11 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from flint import acb
+from flint import acb, arb
 
+from taylor_verify.exact import rotation
 from taylor_verify.exact.balls import ball, balls
 from taylor_verify.exact.euler.moments.regime import Line
-from taylor_verify.exact.euler.quaternion import Quaternion
-from taylor_verify.exact.rotation import conjugate, product
 from taylor_verify.scenes import tensors
 
 
@@ -39,13 +38,13 @@ class KummerTurn:
         self._ahead = [component / self._rate for component in balls(ahead)]
         squared = ball(tensors.dot(line.across, line.across))
         self._parameter = acb(0, squared / (8 * self._rate))
-        self._back = conjugate(self._since_nearest(line.lead))
+        self._back = rotation.conjugate(self._since_nearest(line.lead))
 
-    def quaternion(self, t: Fraction) -> Quaternion:
+    def quaternion(self, t: Fraction) -> list[arb]:
         """The unit quaternion at the time t, 1 at t = 0 and without a jump of sign."""
-        return product(self._back, self._since_nearest(t + self._lead))
+        return rotation.product(self._back, self._since_nearest(t + self._lead))
 
-    def _since_nearest(self, s: Fraction) -> Quaternion:
+    def _since_nearest(self, s: Fraction) -> list[arb]:
         """g(s): w1 and the axes 1 and 2 enter as the vectors a_perp and b x a_perp/|b| alone."""
         half = acb(0, self._rate * ball(s * s) / 4)
         damped = (-half).exp()

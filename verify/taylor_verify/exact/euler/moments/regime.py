@@ -47,9 +47,6 @@ class MomentRegime(StrEnum):
     OBLIQUE = "oblique-moment"  # the same body, any other M: Fresnel's integrals
 
 
-WITH_ATTITUDE: Final = (MomentRegime.SPHERICAL, MomentRegime.AXIAL)
-
-
 @dataclass(frozen=True)
 class Line:
     """An angular velocity a + b t in a frame of its own, b not zero: rational vectors.
@@ -95,7 +92,7 @@ class LoadedSpin:
 
     @cached_property
     def free(self) -> FreeSpin:
-        """The same body and start without a moment: moments of inertia, axis n, |n| sg u0."""
+        """The body and its start without the moment: moments of inertia, axis n, |n| sg u0."""
         return FreeSpin(self.inertia, self.omega)
 
     @cached_property
@@ -140,7 +137,7 @@ class LoadedSpin:
 
         Raises NoClosedForm where there is none, or where its closed form is out of reach.
         """
-        if self.regime not in WITH_ATTITUDE:
+        if self.regime not in (MomentRegime.SPHERICAL, MomentRegime.AXIAL):
             raise NoClosedForm(
                 "the attitude of an axisymmetric body under a moment that is not along its axis"
             )

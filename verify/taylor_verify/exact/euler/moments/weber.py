@@ -60,20 +60,17 @@ class WeberTurn:
 
     def _solutions(self, s: Fraction) -> tuple[mpc, mpc]:
         """f and h."""
-        half, root = self._half(s), mp.exp(self._half(s))
-        al = self._parameter
-        return root * _m(0.5 - al, 0.5, -2 * half), mp.convert(s) * root * _m(
-            1 - al, 1.5, -2 * half
-        )
+        al, half, time = self._parameter, self._half(s), mp.convert(s)
+        f, h = _m(0.5 - al, 0.5, -2 * half), time * _m(1 - al, 1.5, -2 * half)
+        return mp.exp(half) * f, mp.exp(half) * h
 
     def _slopes(self, s: Fraction) -> tuple[mpc, mpc]:
         """f' and h' by M'(a, c, z) = (a/c) M(a + 1, c + 1, z) (DLMF 13.3.15)."""
-        half, root = self._half(s), mp.exp(self._half(s))
-        al, z = self._parameter, 2 * half
-        rate = mpc(0, self._rate) * mp.convert(s)  # z' = i|b| s
+        al, half, time = self._parameter, self._half(s), mp.convert(s)
+        z, rate = 2 * half, mpc(0, self._rate) * time  # z' = i|b| s
         df = _m(0.5 - al, 0.5, -z) / 2 - (1 - 2 * al) * _m(1.5 - al, 1.5, -z)
         dh = (1 + z) * _m(1 - al, 1.5, -z) - 4 * z * (1 - al) / 3 * _m(2 - al, 2.5, -z)
-        return rate * root * df, root * dh
+        return rate * mp.exp(half) * df, mp.exp(half) * dh
 
     def _half(self, s: Fraction) -> mpc:
         """z/2."""

@@ -1,4 +1,4 @@
-"""Which theta function vanishes where: the half periods of a curve with five real branch points.
+"""The half periods of a curve with five real branch points, and the zeros of its theta functions.
 
 Legend: e1 < ... < e5 and infinity are the branch points of w^2 = -4 prod (z - e_j); alpha_1 and alpha_2
 go round [e2, e3] and [e4, e5], beta_1 and beta_2 from the cut below e1 round to them. The periods of
@@ -29,7 +29,7 @@ HALF_PERIODS: Final = (0b0011, 0b1011, 0b1001, 0b0101, 0b0100)
 
 
 def is_odd(characteristic: int) -> bool:
-    """Whether a.b is odd: theta[a, b](-Z) = -theta[a, b](Z)."""
+    """Return True if a.b is odd: theta[a, b](-Z) = -theta[a, b](Z)."""
     return (characteristic >> 2 & characteristic).bit_count() % 2 == 1
 
 

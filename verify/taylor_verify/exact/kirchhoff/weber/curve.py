@@ -1,4 +1,4 @@
-"""Weber's case of Clebsch's second: who is of it, and the curve of genus two, all in rationals.
+"""Weber's case of Clebsch's second: its bodies, and the curve of genus two, all in rationals.
 
 Legend: T = sum (p_i x_i^2 + r_i y_i^2)/2, to which multiples of F^2 = x.x and of x.y may be added, and
 x.y = 0. Where r_i = r, or p_i - p_j = theta r_k (r_j - r_i), the direction n = x/F of the impulse is led
@@ -28,7 +28,7 @@ from fractions import Fraction
 from functools import cached_property, cmp_to_key
 from typing import Any, Final
 
-from taylor_verify.exact.kirchhoff.integrable import diagonal_family
+from taylor_verify.exact.kirchhoff.integrable import CYCLIC, diagonal_family
 from taylor_verify.exact.kirchhoff.plane import plane
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.kirchhoff.weber.surd import Surd, compare, roots
@@ -41,7 +41,6 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Vector
 
 REGIME: Final = "weber"
-CYCLIC: Final = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
 _ORTHOGONAL: Final = (
     "of the bodies with r_1 = r_2 = r_3, and of Clebsch's second case, only the motions with FG = 0 "
     "are solved (Weber's)"
@@ -56,7 +55,7 @@ Quadratic = tuple[Fraction, Fraction, Fraction]
 
 @dataclass(frozen=True)
 class Point:
-    """One of u1, u2 at the start: ``sheet`` is the sign of its w.
+    """The point u1 or u2 at the start: ``sheet`` is the sign of its w.
 
     ``branch`` counts e1 ... e5 from 0 where the point is one of them, and w = 0.
     """
@@ -68,7 +67,7 @@ class Point:
 
 @dataclass(frozen=True)
 class Curve:
-    """One motion of Weber's: the curve and the start on it.
+    """A motion of Weber's: the curve and the start on it.
 
     ``a`` are the a_i in the order of the body's axes and in the unit sigma^2, from the middle one;
     ``flow`` are the rates of the two integrals in that unit, ``start`` are x and y.
@@ -91,7 +90,7 @@ class Curve:
 
     @cached_property
     def told(self) -> tuple[tuple[Fraction, Fraction], ...]:
-        """sigma^2 x_i and x_i' at the start, what the sign of c_i is told by.
+        """sigma^2 x_i and x_i' at the start, which decide the sign of c_i.
 
         With n_i and n_i' of the right sign, but for a common one, both products are positive, so that
         their sum has its digits as long as one of the two is not small. Both are zero on a degenerate
@@ -132,7 +131,7 @@ class Curve:
 
     @cached_property
     def places(self) -> tuple[int, ...]:
-        """Which of the e, counted from 0, a_1, a_2 and a_3 are."""
+        """The places of a_1, a_2 and a_3 among the e, counted from 0."""
         return tuple(self.branches.index(Surd(entry)) for entry in self.a)
 
     @cached_property
@@ -150,7 +149,7 @@ class Curve:
 
     @property
     def is_degenerate(self) -> bool:
-        """Whether two of the e coincide: some F_i is zero, or B has a double root."""
+        """Return True if two of the e coincide: some F_i is zero, or B has a double root."""
         _, linear, constant = self.B
         return not all(self.uhlenbeck) or linear**2 == 4 * constant
 

@@ -23,8 +23,6 @@ from taylor_verify.exact.kirchhoff.weber.surd import Surd
 # u1 is on the second stretch between neighbouring branch points, u2 on the fourth.
 OVALS = (1, 3)
 
-Integrand = Callable[[acb, bool], acb]
-
 
 @dataclass(frozen=True)
 class Jacobian:
@@ -45,7 +43,7 @@ def branch_points(curve: Curve) -> list[arb]:
 
 
 def jacobian(curve: Curve) -> Jacobian:
-    """At the ambient precision of flint."""
+    """Return tau and the motion on the Jacobian, at the ambient precision of flint."""
     e = branch_points(curve)
     gap1, oval1, gap2, oval2 = (stretch(e, s, arb.pi() / 2) for s in range(4))
     # The phase of w changes by a right angle at every branch point: hence the signs.
@@ -90,14 +88,14 @@ def stretch(e: Sequence[arb], s: int, angle: arb) -> tuple[arb, arb]:
     return _integral(weight, angle), _integral(moment, angle)
 
 
-def _integral(integrand: Integrand, angle: arb) -> arb:
-    """From 0, to an error that is small beside the integrand in the middle."""
+def _integral(integrand: Callable[[acb, bool], acb], angle: arb) -> arb:
+    """Integrate from 0, to an error that is small beside the integrand in the middle."""
     goal = abs(integrand(acb(angle / 2), False)) * arb(2) ** -ctx.prec
     return acb.integral(integrand, 0, acb(angle), abs_tol=goal).real
 
 
 def _share(e: Sequence[arb], k: int, point: Point, to_turns: arb_mat) -> tuple[arb, arb]:
-    """What the point adds to Z; exactly nothing, or half a turn, where it is a branch point."""
+    """The share of the point in Z; exactly nothing, or half a turn, where it is a branch point."""
     s = OVALS[k]
     if point.branch is not None:
         half = arb(1) / 2 if point.branch == s + 1 else arb(0)

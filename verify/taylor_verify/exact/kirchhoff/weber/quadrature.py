@@ -14,7 +14,7 @@ from typing import Final
 
 from mpmath import mp, mpc, mpf
 
-from taylor_verify.exact.kirchhoff.weber.curve import Curve, Point
+from taylor_verify.exact.kirchhoff.weber.curve import Curve
 from taylor_verify.exact.kirchhoff.weber.riemann import Symmetric
 from taylor_verify.exact.kirchhoff.weber.surd import Surd
 from taylor_verify.exact.solution import Unsettled
@@ -41,7 +41,7 @@ def branch_points(curve: Curve) -> list[mpf]:
 
 
 def narrowness(curve: Curve) -> int:
-    """How many digits the e share with a neighbour, at least: as many are lost by their differences."""
+    """Count the digits that the e share with a neighbour: as many are lost by their differences."""
     for digits in (20 << n for n in range(_DOUBLINGS)):
         with mp.workdps(digits):
             e = branch_points(curve)
@@ -52,40 +52,42 @@ def narrowness(curve: Curve) -> int:
 
 
 def real_jacobian(curve: Curve) -> RealJacobian:
-    """At the ambient precision of mpmath."""
+    """Return Y and the motion on the Jacobian, at the ambient precision of mpmath."""
     e = branch_points(curve)
     gap1, oval1, gap2, oval2 = (stretch(e, s, mp.pi / 2, mpf(0)) for s in range(4))
-    det = 4 * (oval1[1] * oval2[0] - oval1[0] * oval2[1])
+    area = 2 * _cross(oval1, oval2)
 
-    def turns(v: Pair) -> Pair:
-        """From the integrals of dz/w and z dz/w to parts of the two real periods (Cramer)."""
-        first = -2 * (v[0] * oval2[1] - v[1] * oval2[0]) / det
-        second = 2 * (oval1[0] * v[1] - oval1[1] * v[0]) / det
-        return first, second
+    def turns(v: mpc) -> Pair:
+        """Convert a pair of integrals to parts of the two real periods (Cramer)."""
+        return _cross(v, oval2) / area, _cross(v, oval1) / area
 
-    Y11, Y12 = turns((2 * gap1[0], 2 * gap1[1]))
-    _, Y22 = turns((2 * (gap1[0] - gap2[0]), 2 * (gap1[1] - gap2[1])))
-    phase = [mpf(0), mpf(0)]
-    for k, point in enumerate(curve.points):
+    Y11, Y12 = turns(2 * gap1)
+    _, Y22 = turns(2 * (gap1 - gap2))
+    phase = (mpf(0), mpf(0))
+    for s, point in zip((1, 3), curve.points, strict=True):
         if point.branch is not None:
             # u1 from e2 to e3, or u2 from e4 to e5, is half of its own period.
-            phase[k] += mpf(point.branch - (1, 3)[k]) / 2
+            half = mpf(point.branch - s) / 2
+            share = (half, mpf(0)) if s == 1 else (mpf(0), half)
         else:
-            share = turns(_from_below(e, (1, 3)[k], point))
-            phase = [entry + part for entry, part in zip(phase, share, strict=True)]
-    flow = [mp.convert(rate) for rate in curve.flow]
-    return RealJacobian(
-        (Y11, Y12, Y22),
-        (phase[0], phase[1]),
-        turns((flow[0], flow[1])),
-        turns((mpf(0), mp.convert(curve.sigma))),
-    )
+            u = _real(point.u)
+            up, down = mp.sqrt(u - e[s]), mp.sqrt(e[s + 1] - u)
+            below = stretch(e, s, mp.atan2(up, down), mp.atan2(down, up))
+            share = turns(point.sheet * below)
+        phase = (phase[0] + share[0], phase[1] + share[1])
+    flow, neumann = mpc(*map(mp.convert, curve.flow)), mpc(0, mp.convert(curve.sigma))
+    return RealJacobian((Y11, Y12, Y22), phase, turns(flow), turns(neumann))
 
 
-def stretch(e: Sequence[mpf], s: int, angle: mpf, rest: mpf) -> Pair:
-    """The integrals of dz/|w| and z dz/|w| from e_s, s counted from 0, to where phi is the angle.
+def _cross(a: mpc, b: mpc) -> mpf:
+    return a.real * b.imag - a.imag * b.real
 
-    ``rest`` is what the angle lacks of a right one. Raises Unsettled where the levels do not suffice.
+
+def stretch(e: Sequence[mpf], s: int, angle: mpf, rest: mpf) -> mpc:
+    """The integrals of dz/|w| and, as imaginary part, z dz/|w| from e_s to where phi is the angle.
+
+    s counts from 0, and ``rest`` is what the angle lacks of a right one. Raises Unsettled where the levels
+    do not suffice.
     """
     width = e[s + 1] - e[s]
     below = [e[s] - entry for entry in e[:s]]
@@ -103,15 +105,7 @@ def stretch(e: Sequence[mpf], s: int, angle: mpf, rest: mpf) -> Pair:
     # Every integral is near 1 in the unit sigma.
     if not error <= mp.eps:
         raise Unsettled("an integral along Weber's curve does not settle")
-    return found.real, found.imag
-
-
-def _from_below(e: Sequence[mpf], s: int, point: Point) -> Pair:
-    """The two integrals from e_s to the point."""
-    u = _real(point.u)
-    up, down = mp.sqrt(u - e[s]), mp.sqrt(e[s + 1] - u)
-    first, second = stretch(e, s, mp.atan2(up, down), mp.atan2(down, up))
-    return point.sheet * first, point.sheet * second
+    return found
 
 
 def _real(surd: Surd) -> mpf:

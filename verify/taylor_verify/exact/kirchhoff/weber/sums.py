@@ -20,8 +20,9 @@ from typing import Final, final
 import numpy as np
 from mpmath import mp, mpf
 
+from taylor_verify.exact.kirchhoff.integrable import CYCLIC
 from taylor_verify.exact.kirchhoff.weber.characteristics import HALF_PERIODS, at_branches, of_pair
-from taylor_verify.exact.kirchhoff.weber.curve import CYCLIC, REGIME, Curve
+from taylor_verify.exact.kirchhoff.weber.curve import REGIME, Curve
 from taylor_verify.exact.kirchhoff.weber.quadrature import branch_points, narrowness, real_jacobian
 from taylor_verify.exact.kirchhoff.weber.riemann import Thetas
 from taylor_verify.exact.solution import Quantities, Settled
@@ -84,9 +85,10 @@ class Sums:
         self._c = [mpf(1)] * 3
         place = self._jacobian
         n, rate = _direction(self._thetas, place.phase, place.neumann, self._c, self._x)
-        signs = []
-        for a, b, told in zip(n, rate, found.told, strict=True):
-            signs.append(mp.sign(sum(mp.convert(t) * e for t, e in zip(told, (a, b), strict=True))))
+        signs = [
+            mp.sign(mp.convert(x) * entry + mp.convert(x_rate) * slope)
+            for (x, x_rate), entry, slope in zip(found.told, n, rate, strict=True)
+        ]
         sizes = _sizes_of_x(found, constants)
         self._c = [sign * size for sign, size in zip(signs, sizes, strict=True)]
         heights = _sizes_of_y(found, constants)

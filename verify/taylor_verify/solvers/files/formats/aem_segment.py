@@ -27,8 +27,9 @@ _REQUIRED: Final = ("REF_FRAME_A", "REF_FRAME_B", "TIME_SYSTEM", "START_TIME", "
 _LINE: Final = Limit(4096, "characters in a line", "the standard allows 254")
 _VERSION: Final = "CCSDS_AEM_VERS"
 # Roots of XML that is no attitude ephemeris.
-_OTHER_MESSAGES: Final = frozenset(
-    "apm acm oem opm omm ocm cdm tdm rdm robot sdf mujoco".split()  # noqa: SIM905 (a table of words)
+_OTHER_MESSAGES: Final = (
+    *("apm", "acm", "oem", "opm", "omm", "ocm", "cdm", "tdm", "rdm"),
+    *("robot", "sdf", "mujoco"),
 )
 
 

@@ -60,7 +60,7 @@ class Series:
 
 @dataclass(frozen=True)
 class _Box:
-    """Two opposite corners of a box, and for each side the wall that is behind."""
+    """Box by two opposite corners, and for each side the wall that is behind."""
 
     low: Numbers
     high: Numbers

@@ -46,7 +46,7 @@ _MARKS: Final = 9
 
 @dataclass(frozen=True)
 class Panel:
-    """One quantity: a line for each rung, and the power of time that belongs to it, if one does."""
+    """Panel of a quantity: a line for each rung, and the power of time that belongs to it."""
 
     heading: str
     quantity: str

@@ -104,7 +104,7 @@ def picture(portrait: Document, samples: Sequence[Sequence[float]], record: Docu
 
 
 def _separatrices(surface: Ellipsoid, moments: Numbers) -> list[Numbers]:
-    """The two plane sections through the middle axis on which H^2 = 2T J2.
+    """Return the two plane sections through the middle axis on which H^2 = 2T J2.
 
     J1 > J2 > J3 the moments: J1 (J1 - J2) omega_1^2 = J3 (J2 - J3) omega_3^2, so in units of the semi-axes
     (J1 - J2) q_1^2 = (J2 - J3) q_3^2.
@@ -113,12 +113,9 @@ def _separatrices(surface: Ellipsoid, moments: Numbers) -> list[Numbers]:
     lower, upper = moments[middle] - moments[low], moments[high] - moments[middle]
     if not min(lower, upper) > 1e-9 * moments[high]:
         return []
-    found = []
-    for side in (1.0, -1.0):
-        pole = np.zeros(3)
-        pole[high], pole[low] = sqrt(upper), side * sqrt(lower)
-        found.append(surface.circle(pole))
-    return found
+    poles = np.zeros((2, 3))
+    poles[:, high], poles[:, low] = sqrt(upper), [sqrt(lower), -sqrt(lower)]
+    return [surface.circle(pole) for pole in poles]
 
 
 def _view(found: Series) -> View:

@@ -98,21 +98,14 @@ def series_of(document: Mapping[str, Any], x: str, y: str = "error") -> list[Ser
 
     ``x`` and ``y`` are the keys of the rows that the axes show.
     """
-    rows: dict[tuple[str, str], list[Row]] = {}
+    spots: dict[tuple[str, str], list[Spot]] = {}
     for row in document["points"]:
-        rows.setdefault((row["family"], row["rung"]), []).append(row)
-    return [
-        Series(family, rung, tuple(_spot(row, x, y) for row in own))
-        for (family, rung), own in sorted(
-            rows.items(), key=lambda item: (place(*item[0]), item[0][1])
-        )
-        if any(row["standing"] != Standing.NOT_RUN for row in own)
-    ]
-
-
-def _spot(row: Row, x: str, y: str) -> Spot:
-    spread = row["spread"] if x == "seconds" else None
-    return Spot(row, _amount(row, x), _amount(row, y), spread or 1.0)
+        spread = row["spread"] if x == "seconds" else None
+        spot = Spot(row, _amount(row, x), _amount(row, y), spread or 1.0)
+        spots.setdefault((row["family"], row["rung"]), []).append(spot)
+    every = [Series(family, rung, tuple(own)) for (family, rung), own in spots.items()]
+    ran = [one for one in every if any(s.row["standing"] != Standing.NOT_RUN for s in one.spots)]
+    return sorted(ran, key=lambda one: (place(one.family, one.rung), one.rung))
 
 
 def _amount(row: Row, key: str) -> float:

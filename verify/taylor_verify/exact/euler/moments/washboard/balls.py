@@ -132,7 +132,7 @@ class Turn:
         raise Undecidable
 
     def _further(self, y: arb) -> arb:
-        """How far beyond the furthest known place to look: twice as far."""
+        """The next place to try beyond the furthest known one: twice as far."""
         if y * y * self._rate > MOST_TEETH * arb.pi():
             raise Unsettled(TOO_MANY_TEETH)
         return (2 * y + 1 / self._rate.sqrt()).mid()
@@ -197,7 +197,7 @@ class Turn:
 
 
 class Course:
-    """One motion, set up at one precision of flint and good only there."""
+    """The course at one precision of flint."""
 
     def __init__(self, board: Washboard) -> None:
         self._speed, self._moment = speed(board), balls(board.moment)

@@ -75,7 +75,7 @@ class Wave(ABC):
             mp.convert(entry) for entry in (board.slope, board.even, board.odd)
         )
         self.rate = mp.sqrt(mp.convert(abs(board.kappa)))
-        self._nu2 = mp.convert(board.nu) ** 2
+        self._level = mp.convert(board.nu) ** 2 + self._even
         self._across = converted(board.across)
         self._ahead = [entry / self.rate for entry in converted(board.ahead)]
 
@@ -109,7 +109,6 @@ class _Cosine(Wave):
         super().__init__(board)
         odd = self._odd / (2 * self.rate)
         self._size, self._turn = mp.hypot(self._even, odd), mp.atan2(odd, self._even)
-        self._level = self._nu2 + self._even
 
     def squared(self, sigma: mpf) -> mpf:
         swing = self._size * mp.cos(2 * self.rate * sigma - self._turn)
@@ -134,7 +133,6 @@ class _Exponential(Wave):
         half = self._odd / (4 * self.rate)
         self._p = mpf(0) if board.never_climbs else self._even / 2 + half
         self._q = self._even / 2 - half
-        self._level = self._nu2 + self._even
         both = list(zip(self._across, self._ahead, strict=True))
         self._up = [mpf(0) if board.never_climbs else (v + u) / 2 for v, u in both]
         self._down = [(v - u) / 2 for v, u in both]
@@ -159,7 +157,7 @@ def _mean_growth(x: mpf) -> mpf:
 
 
 class Course(ABC):
-    """One motion, at the precision of mpmath at which this was made."""
+    """The course at one precision of mpmath."""
 
     _lead: mpf
 
@@ -179,7 +177,7 @@ class Course(ABC):
 
 @final
 class Swing(Course):
-    """Between two ends."""
+    """The motion between two ends."""
 
     def __init__(self, board: Washboard, wave: Wave, lower: mpf, upper: mpf) -> None:
         super().__init__(board, wave)
@@ -211,7 +209,7 @@ class Swing(Course):
 
 @final
 class Run(Course):
-    """Down to one end and up for ever; ``wave`` and ``lower`` have so many ``spare_bits``."""
+    """The motion down to one end and up for ever; ``wave`` and ``lower`` have so many ``spare_bits``."""
 
     def __init__(self, board: Washboard, wave: Wave, lower: mpf, spare_bits: int) -> None:
         super().__init__(board, wave)
@@ -271,7 +269,7 @@ def course(board: Washboard, ends: Turnings) -> Swing | Run:
 
 
 def _spare_bits(board: Washboard, ends: Turnings) -> int:
-    """What F loses on the crests, where it is as small as it grows by on a tooth: its terms are not."""
+    """The bits that F loses on the crests, where its terms are large and it is as small as its growth."""
     turn = abs(exact_value(midpoint(ends.lower)))
     terms = board.nu**2 + board.slope * turn + abs(board.even) + abs(board.odd)
     phase = abs(board.kappa) * turn**2

@@ -31,7 +31,7 @@ _NEWTON_STEPS: Final = 60
 @final
 @dataclass(frozen=True)
 class Panel:
-    """From ``left`` to ``right``; ``series`` is the integral from ``left``, which is ``before`` there."""
+    """A panel from ``left`` to ``right``: ``series`` is the integral on it, ``before`` that up to it."""
 
     left: mpf
     right: mpf
@@ -92,7 +92,7 @@ class Panels:
         return self._end is None or not self._panels or self._panels[-1].right < self._end
 
     def _extend(self) -> None:
-        """One panel more, as wide as the coefficients of the last one promise."""
+        """Add a panel, as wide as the coefficients of the last one promise."""
         left = self._panels[-1].right if self._panels else mpf(0)
         before = self._panels[-1].after if self._panels else mpf(0)
         if len(self._panels) > _MOST_PANELS:

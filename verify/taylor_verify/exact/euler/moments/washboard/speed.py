@@ -62,7 +62,7 @@ class Speed(ABC):
 
     @abstractmethod
     def _wave(self, sigma: Number, order: int) -> Number:
-        """What swings or grows in F, 0 at the start, or its derivative of this order."""
+        """The part of F that swings or grows, 0 at the start, or its derivative of this order."""
 
     @final
     def quotient(self, end: arb) -> Quotient:
@@ -70,23 +70,25 @@ class Speed(ABC):
         difference, away = self._quotient(end), _AWAY / self.rate
 
         def of(z: acb) -> acb:
-            if not (z.abs_lower() > away and self.is_wide(z)):
+            if not (z.abs_lower() > away and self._is_wide(z)):
                 return difference(z)
-            middle = z.mid()
-            return self.spread(end + middle, z - middle) / z
+            return self.around(end + z) / z
 
         return of
 
     @final
-    def is_wide(self, z: acb) -> bool:
-        """Whether a ball of sigma is wider than a node of a quadrature."""
-        return bool(z.rad() > arb(2) ** (_NODE_BITS - ctx.prec) / self.rate)
-
-    @final
-    def spread(self, middle: acb, d: acb) -> acb:
-        """F(middle + d) for a wide d, by Taylor's formula: what is small by its second order stays so."""
+    def around(self, sigma: acb) -> acb:
+        """F of a ball; by Taylor's formula if it is wide: what is small by its second order stays so."""
+        if not self._is_wide(sigma):
+            return self.squared(sigma)
+        middle = sigma.mid()
+        d = sigma - middle
         found = self.squared(middle) + self.derivative(middle) * d
-        return found - self._wave(middle + d, 2) * d * d / 2
+        return found - self._wave(sigma, 2) * d * d / 2
+
+    def _is_wide(self, z: acb) -> bool:
+        """Return True if a ball of sigma is wider than a node of a quadrature."""
+        return bool(z.rad() > arb(2) ** (_NODE_BITS - ctx.prec) / self.rate)
 
     @abstractmethod
     def _quotient(self, end: arb) -> Quotient:
@@ -98,7 +100,7 @@ class Speed(ABC):
 
 
 def speed(board: Washboard) -> Swinging | Growing:
-    """At the ambient precision of flint."""
+    """F at the ambient precision of flint."""
     return Swinging(board) if board.kappa < 0 else Growing(board)
 
 

@@ -57,15 +57,8 @@ class FarTeeth:
         return found
 
     def _integrand(self, sigma: acb, analytic: bool) -> acb:
-        a = self._squared(sigma) / self._rise
+        a = self._speed.around(sigma) / self._rise
         return a.sqrt(analytic=analytic) * self._polynomial(1 / a)
-
-    def _squared(self, sigma: acb) -> acb:
-        """F."""
-        if not self._speed.is_wide(sigma):
-            return self._speed.squared(sigma)
-        middle = sigma.mid()
-        return self._speed.spread(middle, sigma - middle)
 
 
 def _coefficients(a: int, bits: int) -> list[fmpq]:

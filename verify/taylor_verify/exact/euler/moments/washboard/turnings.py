@@ -1,4 +1,4 @@
-"""Where the bead on the washboard turns back, in balls: what both routes know of it beforehand.
+"""The turning points of the bead on the washboard, in balls: both routes know them beforehand.
 
 Legend as in board. nu^2 = F(sigma) >= 0 confines sigma to the component about 0 of where F is not
 negative. There is always a ``lower`` end. Where there is an ``upper`` one the motion is a swing.
@@ -87,7 +87,7 @@ def _of_growth(F: Growing) -> Turnings:
 
 
 def _summit(F: Growing) -> arb:
-    """Where F, kappa > 0, is largest; anywhere above 0 if it grows for ever."""
+    """The place where F, kappa > 0, is largest; anywhere above 0 if it grows for ever."""
     if F.board.never_climbs:
         return 1 / F.rate
     p, q = F.growing, F.falling

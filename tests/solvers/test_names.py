@@ -1,0 +1,46 @@
+"""Names of solvers that are wrong, family by family."""
+
+from __future__ import annotations
+
+import pytest
+
+from taylor_verify.solvers.registry import solver_named
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("taylor?tol=0", r"expected a positive number, got '0' @ tol"),
+        ("taylor?tol=many", r"got 'many' @ tol"),
+        ("taylor?", r"expected \?tol=NUMBER after taylor, got none"),
+        ("taylor?rtol=1e-6", r"got 'rtol'; did you mean tol\?"),
+        ("taylor?tol=1&tol=2", r"got tol twice"),
+        ("taylor:tol=1e-6", r"expected a solver"),
+        ("scipy:extra:RK45", r"expected a method"),
+        ("geometric:spliting?step=1", r"got 'spliting'; did you mean splitting\?"),
+        ("geometric:splitting", r"expected \?step=NUMBER after splitting, got none"),
+        ("geometric:splitting?step=", r"expected \?step=NUMBER after splitting, got none"),
+        ("geometric:splitting?step=NUMBER", r"got 'NUMBER' @ step"),
+        ("geometric:splitting?step=0", r"expected a positive number, got '0' @ step"),
+        ("geometric:splitting?step=-1", r"expected a positive number, got '-1' @ step"),
+        ("geometric:splitting?step=nan", r"got 'nan' @ step"),
+        ("geometric:splitting?stp=1", r"got 'stp'; did you mean step\?"),
+        ("geometric:splitting?step=1&step=2", r"expected each setting once, got step twice"),
+        ("geometric:", r"expected a method \(implicit-midpoint, .*\), got ''"),
+        ("scipy:DOP854", r"got 'DOP854'; did you mean DOP853\?"),
+        ("scipy:RK45?tol=1e-6", r"got 'tol'; did you mean"),
+        ("scipy:RK45?rtol=1e-16", r"expected at least 2.22e-14, SciPy's own bound, .* @ rtol"),
+        ("scipy:RK45?atol=0", r"expected a positive number, got '0' @ atol"),
+        ("mpmath:odefunc", r"got 'odefunc'; did you mean odefun\?"),
+        ("mpmath:odefun?tol=0", r"expected a positive number, got '0' @ tol"),
+        ("mpmath:odefun?degree=2.5", r"whole number from 2 to 1000, got '2.5' @ degree"),
+        ("mpmath:odefun?degree=1", r"whole number from 2 to 1000, got '1' @ degree"),
+        ("mpmath:odefun?rtol=1", r"got 'rtol'; did you mean tol\?"),
+        ("closed-form:ellipk", r"got 'ellipk'; did you mean ellipj\?"),
+        ("closed-form:ellipj?tol=1e-9", r"expected a setting .*, got 'tol'"),
+    ],
+)
+def test_a_name_that_is_wrong_is_refused(name: str, told: str) -> None:
+    """The refusal says what was expected, what came, and where; a closed form has no settings."""
+    with pytest.raises(ValueError, match=told):
+        solver_named(name)
