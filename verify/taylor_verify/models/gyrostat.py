@@ -86,8 +86,5 @@ class Wheeled(Mechanics[Gyrostat, Spin]):
         return replace(units, time=min(units.time, 1 / binary(rate))) if rate else units
 
     def derived(self, body: Gyrostat, start: Spin) -> Mapping[str, Mapping[str, Value]]:
-        alone = tensors.apply(body.inertia, start.omega)
-        return {
-            "body": {"inverse_inertia": body.inverse_inertia},
-            "initial": {"angular_momentum": tensors.plus(alone, body.rotor)},
-        }
+        """K, and I omega without the wheels."""
+        return _RIGID.derived(RigidBody(body.inertia, body.moment), start)

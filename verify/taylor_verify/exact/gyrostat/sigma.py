@@ -18,7 +18,6 @@ from typing import Any, Final, NamedTuple, Protocol, final
 from flint import acb, arb, arb_mat
 
 from taylor_verify.exact.balls import Enclosed, Enclosure, Undecidable, ball, balls
-from taylor_verify.exact.euler import quaternion
 from taylor_verify.exact.gyrostat.azimuth import (
     FRAMES,
     Arithmetic,
@@ -30,7 +29,15 @@ from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.exact.gyrostat.point import PointMap, point_map
 from taylor_verify.exact.gyrostat.velocity import WeierstrassForm
 from taylor_verify.exact.kirchhoff.lattice import Lattice, lattice
-from taylor_verify.exact.rotation import conjugate, cross, product, rotation_matrix, rotation_rows
+from taylor_verify.exact.rotation import (
+    conjugate,
+    cross,
+    product,
+    rotation_matrix,
+    rotation_rows,
+    turn,
+    unit,
+)
 from taylor_verify.scenes.motion import Quaternion
 from taylor_verify.scenes.tensors import Vector, dot
 
@@ -83,7 +90,7 @@ class Turning:
 
     def __init__(self, free: FreeGyrostat, outer: Vector, attitude: Quaternion | None) -> None:
         self._omega, self._outer, self._inner = free.omega, outer, free.inner
-        self._start = None if attitude is None else quaternion.unit(attitude)
+        self._start = None if attitude is None else unit(attitude)
 
     def at(self, t: arb) -> Row:
         inner = _turn(self._inner, t)
@@ -94,11 +101,11 @@ class Turning:
         return omega.entries(), arb_mat(rotation_rows(product(self._start, turned)))
 
 
-def _turn(rate: Vector, t: arb) -> quaternion.Quaternion:
+def _turn(rate: Vector, t: arb) -> list[arb]:
     """The rotation at a constant rate for a time t."""
     speed = ball(dot(rate, rate)).sqrt()
     axis = [w / speed for w in balls(rate)] if any(rate) else balls(rate)
-    return quaternion.turn(axis, speed * t / 2)
+    return turn(axis, speed * t / 2)
 
 
 @final

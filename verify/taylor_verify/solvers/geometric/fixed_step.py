@@ -1,6 +1,7 @@
 """Equal steps to each sample, with a body in float64: the part that geometric integrators share.
 
 H  angular momentum, body axes        K  inverse inertia tensor, omega = K H
+r  momentum of wheels, not part of H
 M  constant moment, body axes         q  attitude quaternion, body to space
 h  step
 
@@ -23,6 +24,7 @@ import numpy as np
 
 from taylor_verify.models.problem import Problem
 from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.solvers.geometric.vectors import Matrix, Quaternion, Vector, conjugate, product
 from taylor_verify.solvers.solver import Solver, float64_alone
@@ -52,10 +54,11 @@ Step = Callable[[Vector], Stepped]
 
 @dataclass(frozen=True)
 class Body:
-    """A problem's body in float64."""
+    """A problem's body in float64; r is the momentum of its wheels."""
 
     K: Matrix
     M: Vector
+    r: Vector = (0.0, 0.0, 0.0)
 
     @classmethod
     def of(cls, problem: Problem) -> Self:
@@ -66,7 +69,8 @@ class Body:
 
         K1, K2, K3 = ((entry(i, 1), entry(i, 2), entry(i, 3)) for i in (1, 2, 3))
         M1, M2, M3 = (float(named.get(f"M{i}", 0)) for i in (1, 2, 3))
-        return cls((K1, K2, K3), (M1, M2, M3))
+        r1, r2, r3 = (float(named.get(f"r{i}", 0)) for i in (1, 2, 3))
+        return cls((K1, K2, K3), (M1, M2, M3), (r1, r2, r3))
 
     @property
     def is_diagonal(self) -> bool:
@@ -87,6 +91,7 @@ class FixedStep(Solver):
     counts_steps = True
 
     takes_moment: ClassVar[bool] = False
+    takes_wheels: ClassVar[bool] = False
     in_principal_axes: ClassVar[bool] = False
 
     @abstractmethod
@@ -101,8 +106,10 @@ class FixedStep(Solver):
         return float64_alone(self.name, rung)
 
     def unsuited(self, problem: Problem) -> str:
-        if not isinstance(problem.given.body, RigidBody):
+        if not isinstance(problem.given.body, RigidBody | Gyrostat):
             return f"{self.name} is made for Euler's equations, got {problem.scene.model}"
+        if any(Body.of(problem).r) and not self.takes_wheels:
+            return f"{self.name} is made for a body without wheels"
         if problem.given.body.manufactured is not None:
             return f"{self.name} is made for a body without a moment that changes with time"
         if any(Body.of(problem).M) and not self.takes_moment:
@@ -193,7 +200,8 @@ def principal(body: Body) -> tuple[Body, Quaternion]:
         vectors[:, 0] = -vectors[:, 0]
     k1, k2, k3 = (float(value) for value in values)
     K = ((k1, 0.0, 0.0), (0.0, k2, 0.0), (0.0, 0.0, k3))
-    return Body(K, (0.0, 0.0, 0.0)), _quaternion(vectors)
+    axes = _quaternion(vectors)
+    return Body(K, (0.0, 0.0, 0.0), _into(axes, body.r)), axes
 
 
 def _quaternion(R: np.ndarray[Any, Any]) -> Quaternion:

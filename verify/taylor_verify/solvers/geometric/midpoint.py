@@ -1,8 +1,9 @@
 """The implicit midpoint rule, of second order.
 
-    H' = H + h (w x K w + M),  w = (H + H')/2;   R' = R (1 - [c]x)^-1 (1 + [c]x),  c = h K w / 2
+    H' = H + h ((w + r) x K w + M),  w = (H + H')/2;   R' = R (1 - [c]x)^-1 (1 + [c]x),  c = h K w / 2
 
-It is a Gauss method, and conserves what is quadratic: T and |H|^2 of a free body. The second line is
+It is a Gauss method, and conserves what is quadratic: T and |H + r|^2 of a free body, r the momentum of
+wheels. The second line is
 the same rule for R' = R [omega]x; with it R H, the momentum in space, is conserved too.
 
 M. A. Austin, P. S. Krishnaprasad and L.-S. Wang, Almost Poisson integration of rigid body systems,
@@ -36,22 +37,24 @@ class ImplicitMidpoint(FixedStep):
 
     name: str = "geometric:implicit-midpoint"
     takes_moment: ClassVar[bool] = True
+    takes_wheels: ClassVar[bool] = True
 
     def stepping(self, body: Body, H: Vector, h: float) -> Step:
         del H
-        K, M = body.K, body.M
+        K, M, r = body.K, body.M, body.r
 
         def step(H: Vector) -> Stepped:
             def system(w: Vector) -> tuple[Vector, Matrix]:
                 omega = apply(K, w)
-                rate = ahead(cross(w, omega), 1.0, M)
-                columns = midpoint_columns(K, h / 2, w, omega)
+                whole = ahead(w, 1.0, r)
+                rate = ahead(cross(whole, omega), 1.0, M)
+                columns = midpoint_columns(K, h / 2, whole, omega)
                 return ahead(ahead(w, -1.0, H), -h / 2, rate), columns
 
-            guess = ahead(ahead(H, h / 2, cross(H, apply(K, H))), h / 2, M)
+            guess = ahead(ahead(H, h / 2, cross(ahead(H, 1.0, r), apply(K, H))), h / 2, M)
             w, count = root(system, guess)
             omega = apply(K, w)
-            rate = ahead(cross(w, omega), 1.0, M)
+            rate = ahead(cross(ahead(w, 1.0, r), omega), 1.0, M)
             # As an increment, and not as 2w - H: so it is rounded once, at its own small size.
             return Stepped(ahead(H, h, rate), scaled(h / 2, omega), count + 2)
 

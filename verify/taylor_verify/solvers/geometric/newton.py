@@ -35,7 +35,7 @@ def root(system: System, guess: Vector) -> tuple[Vector, int]:
 
 
 def midpoint_columns(K: Matrix, c: float, v: Vector, omega: Vector) -> Matrix:
-    """Return the columns of d(v - c v x K v)/dv = 1 - c ([v]x K - [K v]x), with omega = K v."""
+    """Return the columns of d(w - c v x K w)/dw = 1 - c ([v]x K - [omega]x), v = w + r, omega = K w."""
     return (
         _column((1.0, 0.0, 0.0), K, c, v, omega),
         _column((0.0, 1.0, 0.0), K, c, v, omega),

@@ -2,8 +2,9 @@
 
     T = T1 + T2 + T3,  Ti = ki Hi^2 / 2;   a step is  1(h/2) 2(h/2) 3(h) 2(h/2) 1(h/2)
 
-The flow of Ti alone turns the frame about axis i at the constant rate ki Hi. Each is exact, so that the
-step is a Poisson map and |H|^2 and R H are conserved; T is conserved only up to a swing of order h^2.
+The flow of Ti alone turns the frame about axis i at the constant rate ki Hi, and H + r with it, r the
+momentum of wheels. Each is exact, so that the step is a Poisson map and |H + r|^2 and R (H + r) are
+conserved; T is conserved only up to a swing of order h^2.
 
 R. I. McLachlan, Explicit Lie-Poisson integration and the Euler equations, Phys. Rev. Lett. 71 (1993)
 3043-3046; S. Reich, Momentum conserving symplectic integrators, Physica D 76 (1994) 375-383;
@@ -32,23 +33,26 @@ class Splitting(FixedStep):
 
     name: str = "geometric:splitting"
     in_principal_axes: ClassVar[bool] = True
+    takes_wheels: ClassVar[bool] = True
 
     def stepping(self, body: Body, H: Vector, h: float) -> Step:
         del H
         half1, half2, whole3 = h / 2 * body.K[0][0], h / 2 * body.K[1][1], h * body.K[2][2]
 
+        r1, r2, r3 = body.r
+
         def step(H: Vector) -> Stepped:
             H1, H2, H3 = H
             a = half1 * H1
-            H2, H3 = _seen_from_a_turned_frame(a, H2, H3)
+            H2, H3 = _seen_from_a_turned_frame(a, H2, H3, r2, r3)
             b = half2 * H2
-            H3, H1 = _seen_from_a_turned_frame(b, H3, H1)
+            H3, H1 = _seen_from_a_turned_frame(b, H3, H1, r3, r1)
             c = whole3 * H3
-            H1, H2 = _seen_from_a_turned_frame(c, H1, H2)
+            H1, H2 = _seen_from_a_turned_frame(c, H1, H2, r1, r2)
             d = half2 * H2
-            H3, H1 = _seen_from_a_turned_frame(d, H3, H1)
+            H3, H1 = _seen_from_a_turned_frame(d, H3, H1, r3, r1)
             e = half1 * H1
-            H2, H3 = _seen_from_a_turned_frame(e, H2, H3)
+            H2, H3 = _seen_from_a_turned_frame(e, H2, H3, r2, r3)
             return Stepped((H1, H2, H3), (a, b, c, d, e), _EVALUATIONS)
 
         return step
@@ -60,7 +64,9 @@ class Splitting(FixedStep):
         return product(product(first, _about(3, c)), last)
 
 
-def _seen_from_a_turned_frame(angle: float, x: float, y: float) -> tuple[float, float]:
+def _seen_from_a_turned_frame(
+    angle: float, x: float, y: float, x_wheels: float, y_wheels: float
+) -> tuple[float, float]:
     """Return the two components across the axis, when the frame has turned by the angle about it.
 
     By increments: cos(angle) is rounded by up to 2^-54 however small the angle is, and where step after
@@ -68,7 +74,8 @@ def _seen_from_a_turned_frame(angle: float, x: float, y: float) -> tuple[float, 
     """
     s, half = sin(angle), sin(angle / 2)
     versine = 2 * half * half
-    return x + (s * y - versine * x), y - (s * x + versine * y)
+    x_whole, y_whole = x + x_wheels, y + y_wheels
+    return x + (s * y_whole - versine * x_whole), y - (s * x_whole + versine * y_whole)
 
 
 def _about(axis: int, angle: float) -> Quaternion:

@@ -1,12 +1,12 @@
 """The equations as the protocol hands them over, in plain arithmetic that every library can compile.
 
 They are written in scalars, without a loop or an array, so that numba compiles them, JAX traces them
-and Python runs them as they stand. Euler: H' = H x K H + M. Kirchhoff: x' = x x Omega + X and
+and Python runs them as they stand. Euler: H' = (H + r) x K H + M. Kirchhoff: x' = x x Omega + X and
 y' = y x Omega + x x U + L, with U = A x + B y and Omega = B^T x + C y. With the attitude
 q' = q (0, Omega) / 2, with the centre c' = R U.
 
 s  state: H, or x and y; then q, then c, as far as tracked (3, 6, 7, 10 or 13 numbers)
-p  parameters: K by rows and M (12), or A B C by rows, X and L (33)
+p  parameters: K by rows, M and the momentum r of wheels (15), or A B C by rows, X and L (33)
 q  attitude, scalar first, body to space       c  centre, in space axes
 """
 
@@ -25,10 +25,11 @@ def euler(s: Any, p: Any) -> tuple[Any, ...]:
     w1 = p[0] * s[0] + p[1] * s[1] + p[2] * s[2]
     w2 = p[3] * s[0] + p[4] * s[1] + p[5] * s[2]
     w3 = p[6] * s[0] + p[7] * s[1] + p[8] * s[2]
+    H1, H2, H3 = s[0] + p[12], s[1] + p[13], s[2] + p[14]
     return (
-        s[1] * w3 - s[2] * w2 + p[9],
-        s[2] * w1 - s[0] * w3 + p[10],
-        s[0] * w2 - s[1] * w1 + p[11],
+        H2 * w3 - H3 * w2 + p[9],
+        H3 * w1 - H1 * w3 + p[10],
+        H1 * w2 - H2 * w1 + p[11],
         w1,
         w2,
         w3,

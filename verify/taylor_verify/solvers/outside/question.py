@@ -141,7 +141,8 @@ def read(scene: Any) -> Question:
     if unknown := [name for name in columns if name not in known.split()]:
         raise SystemExit(f"expected columns among {known}, got {' '.join(unknown)} @ columns")
     if scene["model"] == "euler":
-        parameters = _flat(body["inverse_inertia"]) + floats(body["moment"])
+        wheels = floats(body["rotor"]) if "rotor" in body else [0.0, 0.0, 0.0]
+        parameters = _flat(body["inverse_inertia"]) + floats(body["moment"]) + wheels
         state = floats(initial["angular_momentum"])
     else:
         parameters = [v for key in ("linear", "coupling", "angular") for v in _flat(body[key])]

@@ -15,6 +15,7 @@
  *     model             "euler" or "kirchhoff"
  *     columns           what the answer must hold (q0 and c1 among it where they are tracked)
  *     inverse_inertia   K (9)            moment    M (3)      angular_momentum   H (3)   (euler)
+ *     rotor   the momentum of wheels (3), not part of H, where there are any
  *     linear coupling angular  A B C (9 each)   force couple  X L (3 each)               (kirchhoff)
  *     linear_impulse angular_impulse centre     x y c (3 each)                           (kirchhoff)
  *     attitude          quaternion q (4), of any length, scalar first, body to space
@@ -102,7 +103,7 @@ static int has(const char *scene, const char *key, const char *word, char stop)
 /* The equations. State: H, q (euler) or x, y, q, c (kirchhoff). */
 
 static int is_euler;
-static double K[9], M[3], A[9], B[9], B_transposed[9], C[9], X[3], L[3];
+static double K[9], M[3], wheels[3], A[9], B[9], B_transposed[9], C[9], X[3], L[3];
 
 static void apply(const double m[9], const double v[3], double out[3])
 {
@@ -138,9 +139,10 @@ static void to_space(const double q[4], const double v[3], double out[3])
 static void rates(const double *s, double *out)
 {
     double w[3], U[3], a[3], b[3];
-    if (is_euler) { /* H' = H x K H + M */
+    if (is_euler) { /* H' = (H + wheels) x K H + M */
         apply(K, s, w);
-        cross(s, w, a);
+        for (int i = 0; i < 3; i++) b[i] = s[i] + wheels[i];
+        cross(b, w, a);
         for (int i = 0; i < 3; i++) out[i] = a[i] + M[i];
         attitude_rate(s + 3, w, out + 3);
         return;
@@ -198,6 +200,7 @@ int main(int arguments, char **argument)
     if (is_euler) {
         read_numbers(scene, "inverse_inertia", K, 9);
         read_numbers(scene, "moment", M, 3);
+        if (strstr(scene, "\"rotor\":")) read_numbers(scene, "rotor", wheels, 3);
         read_numbers(scene, "angular_momentum", s, 3);
         q = s + 3;
     } else {

@@ -75,12 +75,13 @@ def to_space(q: Vector, v: Vector) -> Vector:
 
 
 def euler(body: Any) -> Free:
-    """Return the free motion H' = H x K H."""
+    """Return the free motion H' = (H + r) x K H, r the momentum of wheels."""
     K = floats(body["inverse_inertia"])
+    wheels = floats(body["rotor"]) if "rotor" in body else [0.0, 0.0, 0.0]
 
     def free(H: Vector) -> tuple[Vector, Vector, Vector]:
         w = apply(K, H)
-        return cross(H, w), w, []
+        return cross(add(H, wheels), w), w, []
 
     return free
 
