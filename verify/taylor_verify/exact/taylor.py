@@ -70,7 +70,7 @@ class _Enclosing(Solution):
         raise NotImplementedError
 
     def _before(self, times: Times, unreached: Fraction) -> Times:
-        """The times, all on one side of the start, that are reached without this one: none, unless stated."""
+        """The times on one side of the start that are reached without this one: none, unless stated."""
         return {}
 
     @cached_property
