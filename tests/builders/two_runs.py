@@ -56,7 +56,9 @@ def equations(scene: Scene) -> Equations:
     """Those of the state and, where it is tracked, of a quaternion and of the way in body axes."""
     system = posed_exactly(scene)
     n, with_centre = system.size, "centre" in scene.track
-    rates: list[Polynomial] = [polynomial(row, n) for row in system.equations.hessian.reshape(n, -1)]
+    rates: list[Polynomial] = [
+        polynomial(row, n) for row in system.equations.hessian.reshape(n, -1)
+    ]
     start, forms = list(system.start), list(system.equations.spin) if scene.track else []
     added: dict[int, int] = {}
     if scene.track:
