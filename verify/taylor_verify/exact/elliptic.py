@@ -14,25 +14,6 @@ from mpmath import mp, mpf
 Triple = tuple[mpf, mpf, mpf]
 
 
-def complete_k(m_prime: mpf) -> mpf:
-    """K = pi / (2 agm(1, k')), for m' > 0."""
-    return mp.pi / (2 * mp.agm(1, mp.sqrt(m_prime)))
-
-
-def jacobi(u: mpf, m: mpf, m_prime: mpf) -> Triple:
-    """(sn, cn, dn)(u | m) to the working precision, for real u and 0 <= m < 1.
-
-    Of m and m' the smaller one is taken as it stands and the other formed from it, so that the
-    answer is that of one parameter even where u spans so many periods that m needs more digits than
-    it has. Raises ValueError where m < 0 or m' <= 0.
-    """
-    u = mp.convert(u)
-    # u = 1e12 is some 1e12/4K periods: what is lost in reducing it is its magnitude.
-    with mp.extraprec(10 + mp.mag(1 + abs(u))):
-        values = Landen(*_complementary(m, m_prime)).jacobi(u)
-    return _rounded(values)
-
-
 class Landen:
     """The descending Landen chain of one parameter, at the precision at which it was made.
 
@@ -102,14 +83,3 @@ class Landen:
             sn = (sn + k * sn) / denominator
             dn = mp.sqrt(cn * cn + m_prime * sn * sn)  # 1 - m sn^2 would cancel where m' is small
         return sn, cn, dn
-
-
-def _complementary(m: mpf, m_prime: mpf) -> tuple[mpf, mpf]:
-    m, m_prime = mp.convert(m), mp.convert(m_prime)
-    return (m, 1 - m) if m <= m_prime else (1 - m_prime, m_prime)
-
-
-def _rounded(values: Triple) -> Triple:
-    """To the precision of the caller."""
-    sn, cn, dn = values
-    return +sn, +cn, +dn
