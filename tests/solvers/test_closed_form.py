@@ -176,5 +176,3 @@ def test_equal_moments_are_seen_in_any_axes() -> None:
     assert isinstance(nearly, RigidBody)
     assert not closed_form._has_distinct_moments(oblique.inverse_inertia)
     assert closed_form._has_distinct_moments(nearly.inverse_inertia)
-
-

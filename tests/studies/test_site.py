@@ -403,7 +403,7 @@ def test_a_fault_of_a_page_is_an_error(report: Path, tmp_path: Path) -> None:
 
 def test_what_is_not_installed_is_named(report: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A missing package is named as pip knows it, before anything is done."""
-    monkeypatch.setitem(builder._NEEDED, "no_such_module", "no-such-package")
+    monkeypatch.setattr(builder, "_NEEDED", ("no_such_package",))
     with pytest.raises(ImportError) as raised:
         contents(report)
     assert raised.value.name == "no-such-package"

@@ -70,10 +70,7 @@ class _Enclosing(Solution):
         raise NotImplementedError
 
     def _before(self, times: Times, unreached: Fraction) -> Times:
-        """The times that may be reached although this one is not; all lie on its side of the start.
-
-        None, unless stated.
-        """
+        """The times on one side of the start that are reached without this one: none, unless stated."""
         return {}
 
     @cached_property

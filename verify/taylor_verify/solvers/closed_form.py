@@ -57,7 +57,7 @@ class ClosedForm(Solver):
     def unsuited(self, problem: Problem) -> str:
         body = problem.given.body
         if not isinstance(body, RigidBody):
-            return f"{self.name} is made for Euler's equations, got {problem.scene.model}"
+            return f"{self.name} is made for a rigid body without wheels, got {problem.scene.model}"
         if "attitude" in problem.scene.track:
             return f"{self.name} gives omega and no attitude"
         for fits, made_for in (

@@ -5,6 +5,7 @@ from __future__ import annotations
 from difflib import get_close_matches
 from importlib import import_module
 from importlib.util import find_spec
+from itertools import chain
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 if TYPE_CHECKING:
@@ -57,10 +58,8 @@ FAMILIES = (
 
 def solver_names() -> tuple[str, ...]:
     """Return the names to choose from, NUMBER standing for what is to be chosen."""
-    found: list[str] = []
-    for family in FAMILIES:
-        found += _module(family).usages() if family.names is None else family.names
-    return tuple(found)
+    names = (_module(each).usages() if each.names is None else each.names for each in FAMILIES)
+    return tuple(chain.from_iterable(names))
 
 
 def remarks() -> dict[str, str]:

@@ -79,7 +79,9 @@ def _index(place: Path, verdicts: Sequence[Verdict], made: Collection[str] = ())
     """Return the pages that name all others: those that are there, and those about to be ``made``."""
     besides = entries(place, made)
     texts = {f"{TABLES}/README.md": page.readme(verdicts, besides)}
-    return texts | ({FRONT: front(verdicts, besides)} if _is_ours_or_new(place / FRONT) else {})
+    if not (place / FRONT).exists() or first_line(place / FRONT) == MADE_BY:
+        texts[FRONT] = front(verdicts, besides)
+    return texts
 
 
 def entries(place: Path, made: Collection[str] = ()) -> list[Page]:
@@ -94,10 +96,6 @@ def entries(place: Path, made: Collection[str] = ()) -> list[Page]:
 
 def _requote(place: Path, verdicts: Sequence[Verdict]) -> tuple[Path, ...]:
     return replace_files(place.resolve().parent, quoted.requoted(place, verdicts))
-
-
-def _is_ours_or_new(file: Path) -> bool:
-    return not file.exists() or first_line(file) == MADE_BY
 
 
 def _own_tables(target: Path) -> list[Path]:

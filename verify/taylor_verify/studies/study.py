@@ -115,10 +115,6 @@ class Bulk:
     make: Callable[[Path, Sequence[Any], Progress], Iterable[Path]]
 
 
-def _no_document(folder: Path) -> None:
-    del folder
-
-
 @dataclass(frozen=True)
 class Study(Generic[Document]):
     """Study that is measured and published.
@@ -150,7 +146,7 @@ class Study(Generic[Document]):
     title: str
     duration: str
     measure: Callable[..., Measured]
-    find: Callable[[Path], Document | None] = _no_document
+    find: Callable[[Path], Document | None] = lambda folder: None
     page: Callable[[Document, Path], str] | None = None
     sheet: Callable[[Document], str] | None = None
     beside: Mapping[str, Callable[[Document], str]] = field(default_factory=dict)

@@ -31,13 +31,16 @@ class FixedAxis:
         self._omega, self._gain = omega, gain
         self.axis = gain if any(gain) else omega
         self.axis_squared = tensors.dot(self.axis, self.axis)
+        self._pace, self._bend = tensors.dot(self.axis, omega), tensors.dot(self.axis, gain) / 2
 
     def omega(self, t: Fraction) -> Vector:
+        if not self._bend:
+            return self._omega
         return tensors.plus(self._omega, tensors.scaled(t, self._gain))
 
     def turned(self, t: Fraction) -> Fraction:
         """|n| theta."""
-        return t * tensors.dot(self.axis, self.omega(t / 2))
+        return t * (self._pace + self._bend * t)
 
     def lost(self, longest: Fraction, turned: bool) -> float:
         """The decimal digits before the point of the angle up to this time, and for roundings."""

@@ -20,7 +20,7 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.element import Element, Elements, settled
 from taylor_verify.exact.kirchhoff.degenerate import Carrier
-from taylor_verify.exact.kirchhoff.general import Words, conserved, recurring
+from taylor_verify.exact.kirchhoff.general import conserved, recurring
 from taylor_verify.exact.kirchhoff.jacobi import NutatingBody
 from taylor_verify.exact.kirchhoff.quartic import (
     Nutation,
@@ -40,14 +40,7 @@ _CONSERVED: Final = (
     "Conserved: the kinetic energy T, F^2 = x.x, FG = x.y and, for Clebsch's body, y3; in space "
     "axes the linear impulse and the moment of the impulses."
 )
-_WAVE: Final[Words] = {
-    "period": ("time", "period of nutation: x3 and the shape of (x, y) recur"),
-    "nutation_frequency": ("radians/time", "frequency of nutation"),
-    "rate": ("radians/time", "of the elliptic argument"),
-    "k": ("", "modulus of the elliptic functions"),
-    "m": ("", "parameter k^2; 0 for sines, 1 on the separatrix"),
-    "m_prime": ("", "1 - m, one measure of the separatrix's distance"),
-}
+_WAVE: Final = ("period", "nutation_frequency", "rate", "k", "m", "m_prime")
 # By the place of the first of A, B, C that is not zero, and its sign.
 _SPIN: Final[Mapping[tuple[int, int], str]] = {
     (0, -1): "stable: A < 0 in 49 (25)",
@@ -114,7 +107,8 @@ def _orbit(kind: str, nutation: Nutation, start: Impulse, working: int) -> Itera
         yield from _disturbance(nutation)
     elif kind != "rest":
         known = NutatingBody(kind, nutation, start).elements(working)
-        yield from recurring(known, _WAVE, _SOURCE)
+        period = "period of nutation: x3 and the shape of (x, y) recur"
+        yield from recurring(known, _WAVE, period, _SOURCE)
         if kind in ("hyperbolic", "heteroclinic"):
             yield _approach(kind, nutation)
         yield from _range(kind, nutation, working)

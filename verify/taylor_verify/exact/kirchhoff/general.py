@@ -7,7 +7,7 @@ screws beside it, which of them are stable.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -28,9 +28,6 @@ from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.precision import float_text
 from taylor_verify.scenes.scene import Scene
-
-Words = Mapping[str, tuple[str, str]]
-"""Unit and meaning of elements, by name and in their order."""
 
 _PENDULUM: Final = "(2 alpha)'' = -omega0^2 sin 2 alpha"
 _CURVE: Final = "H. Weber, Math. Ann. 14 (1878) 173"
@@ -55,8 +52,10 @@ _UNSOLVED: Final = (
     "The energy is not of Clebsch's form about a body axis: no closed form is built, and for a body "
     "with three invariants alone none is known."
 )
-_SWING: Final[Words] = {
-    "period": ("time", "x and y recur in body axes"),
+_SWING: Final = ("period", "rate", "m", "k", "m_prime")
+# Unit and meaning of the elements of a closed form.
+_WORDS: Final[Mapping[str, tuple[str, str]]] = {
+    "nutation_frequency": ("radians/time", "frequency of nutation"),
     "rate": ("radians/time", "of the elliptic argument"),
     "m": ("", "parameter k^2; 0 for sines, 1 on the separatrix"),
     "k": ("", "modulus of the elliptic functions"),
@@ -89,7 +88,8 @@ def elements(scene: Scene, digits: int) -> Elements:
     def numbers(working: int) -> list[Element]:
         swing = {} if place is None else Pendulum(kind, place, scene).elements(working)
         angles = [] if weber is None else _weber_rates(weber, working)
-        return [*recurring(swing, _SWING, _PENDULUM), *angles, *conserved(body, start)]
+        own = recurring(swing, _SWING, "x and y recur in body axes", _PENDULUM)
+        return [*own, *angles, *conserved(body, start)]
 
     told = [_STORY.get(kind, _UNSOLVED if fourth is None else _UNBUILT), _THREE]
     if fourth is not None:
@@ -99,17 +99,18 @@ def elements(scene: Scene, digits: int) -> Elements:
     return Elements(kind, settled(numbers, digits), (*told, *_screw_story(scene)))
 
 
-def recurring(known: Mapping[str, mpf], words: Words, source: str) -> Iterator[Element]:
-    """Yield period, rate and parameters of a closed form, as far as it has them."""
-    values = dict(known)
+def recurring(
+    known: Mapping[str, mpf], names: Sequence[str], period: str, source: str
+) -> Iterator[Element]:
+    """Yield these elements of a closed form, as far as it has them; ``period`` says what recurs."""
+    values, words = dict(known), {"period": ("time", period), **_WORDS}
     if "period" in known:
         values["nutation_frequency"] = 2 * mp.pi / known["period"]
     if "m" in known:
         values["k"] = mp.sqrt(known["m"])
-    for name, (unit, meaning) in words.items():
-        if name in values:
-            by = "2 pi/period" if name == "nutation_frequency" else source
-            yield Element(name, values[name], unit, meaning, by)
+    for name in (name for name in names if name in values):
+        by = "2 pi/period" if name == "nutation_frequency" else source
+        yield Element(name, values[name], *words[name], by)
 
 
 def conserved(body: ImmersedBody, start: Impulse) -> Iterator[Element]:

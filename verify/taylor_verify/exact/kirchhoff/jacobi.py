@@ -64,18 +64,21 @@ class Screw(Settled):
                 [(turn * transverse(v), mp.convert(v[2])) for turn in turns]
                 for v in (self._start.linear, self._start.angular)
             )
-            places = [self._place(t) for t in elapsed] if self._track else []
+            places = self._places(elapsed) if self._track else []
             return _quantities(x, y, places, self._track)
 
-    def _place(self, t: Fraction) -> tuple[Frame, list[mpf]]:
-        """The attitude and the centre."""
-        nu = [mp.convert(rate) for rate in self._nu]
+    def _places(self, elapsed: Sequence[Fraction]) -> list[tuple[Frame, list[mpf]]]:
+        """The attitude and the centre at every time."""
+        nu, centre = ([mp.convert(c) for c in vector] for vector in (self._nu, self._start.centre))
         rate = mp.sqrt(mp.convert(tensors.dot(self._nu, self._nu)))
         first = start_frame(self._start.attitude)
-        about_impulse = product(first, turn(nu, rate * mp.convert(t)))
-        about_axis = turn(_AXIS, -mp.convert(self._turn_rate * t))
-        moved = zip(self._start.centre, applied(first, self._moved(t, rate)), strict=True)
-        return product(about_impulse, about_axis), [mp.convert(c) + m for c, m in moved]
+        places = []
+        for t in elapsed:
+            about_impulse = product(first, turn(nu, rate * mp.convert(t)))
+            about_axis = turn(_AXIS, -mp.convert(self._turn_rate * t))
+            moved = zip(centre, applied(first, self._moved(t, rate)), strict=True)
+            places.append((product(about_impulse, about_axis), [c + m for c, m in moved]))
+        return places
 
     def _moved(self, t: Fraction, rate: mpf) -> list[mpf]:
         """int_0^t Rot(nu t) U0 dt: U0 along nu, and U0 across it on a circle."""

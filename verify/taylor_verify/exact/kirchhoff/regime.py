@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
+from typing import Final
 
 from taylor_verify.exact.kirchhoff.quartic import (
     Nutation,
@@ -20,7 +21,9 @@ from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.precision import floor_log2, power_of_two
 from taylor_verify.scenes.scene import Scene
 
-_NARROWINGS = 40
+_NARROWINGS: Final = 40
+# The kind of motion by the sign of the curvature of f where its root is repeated.
+_BY_CURVATURE: Final = {1: "hyperbolic", 0: "algebraic", -1: "trigonometric"}
 
 
 def nutation_of(scene: Scene) -> tuple[Nutation, Impulse]:
@@ -56,24 +59,15 @@ def regime(nutation: Nutation) -> str:
     if len(f) < 4:
         return "trigonometric"
     if len(sturm_chain(f)[-1]) > 1:
-        return _repeated(nutation)
+        root = repeated_root(f)
+        if root is None:
+            # Two repeated roots can only be the poles: f is a square, and f(+-F) <= 0.
+            return "heteroclinic"
+        curvature = value(derivative(derivative(f)), root)
+        return _BY_CURVATURE[(curvature > 0) - (curvature < 0)]
     if len(f) == 4:
         return "cubic"
     return "four-roots" if RealRoots(f).number == 4 else "two-roots"
-
-
-def _repeated(nutation: Nutation) -> str:
-    """The kind of motion by the curvature of f where its root is repeated.
-
-    Two repeated roots can only be the poles: f would be a square, and f(+-F) <= 0.
-    """
-    root = repeated_root(nutation.f)
-    if root is None:
-        return "heteroclinic"
-    curvature = value(derivative(derivative(nutation.f)), root)
-    if curvature == 0:
-        return "algebraic"
-    return "hyperbolic" if curvature > 0 else "trigonometric"
 
 
 @dataclass(frozen=True)

@@ -38,12 +38,9 @@ def contrast(one: str, other: str = PAPER) -> float:
 def for_text(colour: str) -> str:
     """Return the hue of a colour, as dark as text on paper has to be."""
     while contrast(colour) < TEXT_CONTRAST:
-        colour = _darker(colour)
+        parts = (int(colour[i : i + 2], 16) for i in (1, 3, 5))
+        colour = "#" + "".join(f"{part * 24 // 25:02X}" for part in parts)
     return colour
-
-
-def _darker(colour: str) -> str:
-    return "#" + "".join(f"{int(colour[i : i + 2], 16) * 24 // 25:02X}" for i in (1, 3, 5))
 
 
 def _linear(value: float) -> float:

@@ -158,7 +158,7 @@ class Outside(Solver):
             settings = [f"method={self.engine.method}", *settings]
         # Without what the user has set for another Python, and leaving no files beside the script.
         words = [python, "-B", "-E", "-s", str(self.engine.script.path), *settings]
-        return process.of(words, self.time_limit).solve(problem)
+        return process.program(words, self.time_limit).solve(problem)
 
 
 def named(name: str) -> Outside:

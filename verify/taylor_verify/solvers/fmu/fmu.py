@@ -74,7 +74,7 @@ class Fmu(Solver):
             # Without the folder of the script in the path: modules in it have the names of libraries.
             runner = [sys.executable, "-P", str(_RUNNER)]
             command = [*runner, str(self.file), folder, self.settings]
-            return process.of(command, self.time_limit).solve(problem)
+            return process.program(command, self.time_limit).solve(problem)
 
 
 def named(name: str) -> Fmu:

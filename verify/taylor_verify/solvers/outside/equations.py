@@ -91,33 +91,25 @@ def rates(columns: list[str], jit: Jit = _as_it_is) -> Rates:
     """Return the rates of all that an answer with these columns needs; ``jit`` compiles each function."""
     turn: Vectors = jit(attitude_rate)
     shift: Vectors = jit(to_space)
-    is_euler, turns, shifts = "w1" in columns, "q0" in columns, "c1" in columns
+    is_euler = "w1" in columns
     free: Rates = jit(euler if is_euler else kirchhoff)
+    # The size of the momentum; numba takes it for a constant.
+    n = 3 if is_euler else 6
 
-    def spin(s: Any, p: Any) -> tuple[Any, ...]:
-        return free(s, p)[:3]
+    def momentum(s: Any, p: Any) -> tuple[Any, ...]:
+        return free(s, p)[:n]
 
-    def spin_and_attitude(s: Any, p: Any) -> tuple[Any, ...]:
+    def with_attitude(s: Any, p: Any) -> tuple[Any, ...]:
         f = free(s, p)
-        return f[:3] + turn(s[3], s[4], s[5], s[6], f[3], f[4], f[5])
+        return f[:n] + turn(s[n], s[n + 1], s[n + 2], s[n + 3], f[n], f[n + 1], f[n + 2])
 
-    def impulse(s: Any, p: Any) -> tuple[Any, ...]:
-        return free(s, p)[:6]
-
-    def impulse_and_attitude(s: Any, p: Any) -> tuple[Any, ...]:
-        f = free(s, p)
-        return f[:6] + turn(s[6], s[7], s[8], s[9], f[6], f[7], f[8])
-
-    def impulse_attitude_and_centre(s: Any, p: Any) -> tuple[Any, ...]:
+    def with_attitude_and_centre(s: Any, p: Any) -> tuple[Any, ...]:
         f = free(s, p)
         turned = turn(s[6], s[7], s[8], s[9], f[6], f[7], f[8])
         return f[:6] + turned + shift(s[6], s[7], s[8], s[9], f[9], f[10], f[11])
 
-    if is_euler:
-        found = spin_and_attitude if turns else spin
-    elif turns:
-        found = impulse_attitude_and_centre if shifts else impulse_and_attitude
-    else:
-        found = impulse
-    compiled: Rates = jit(found)
+    asked = momentum
+    if "q0" in columns:
+        asked = with_attitude_and_centre if "c1" in columns else with_attitude
+    compiled: Rates = jit(asked)
     return compiled

@@ -82,7 +82,7 @@ def unavailable() -> str:
     )
 
 
-def of(words: Sequence[str], limit: float) -> Process:
+def program(words: Sequence[str], limit: float) -> Process:
     """Return the solver that is this command, word by word."""
     return Process(f"{PREFIX}{shlex.join(words)}", limit)
 

@@ -4,7 +4,8 @@ The question is one JSON document on the program's standard input. Every key but
 occurs once in it and has one meaning, whatever its table, so that a reader may search the text for
 ``"elapsed":`` and go on from there. None of them is a key of the answer.
 
-    protocol             1; 2 where there is `manufactured`, which a reader of 1 would not look for
+    protocol             1; 2 where there is `manufactured`, and 3 where there is `rotor`, which a reader of
+                         an earlier one would not look for
     scene, title         the name of the scene and its title
     model                "euler" or "kirchhoff"
     track                what the scene asks besides omega or impulse: "attitude", "centre"
@@ -14,13 +15,14 @@ occurs once in it and has one meaning, whatever its table, so that a reader may 
       inertia              I, 3x3                                (euler; its hex is rounded)
       inverse_inertia      K = I^-1, 3x3                         (euler)
       moment               M                                     (euler)
+      rotor                h, the momentum of wheels, where there are any (euler)
       linear               A, 3x3: T = x.A x/2 + x.B y + y.C y/2 (kirchhoff)
       coupling             B, 3x3, its row the index of x        (kirchhoff)
       angular              C, 3x3                                (kirchhoff)
       force, couple        X and L, 3 each                       (kirchhoff)
     initial              the state at the start
       omega                body axes                             (euler; its hex is rounded)
-      angular_momentum     H = I omega, body axes                (euler)
+      angular_momentum     H = I omega, without the wheels       (euler)
       linear_impulse       x, body axes                          (kirchhoff)
       angular_impulse      y, body axes                          (kirchhoff)
       attitude             quaternion q0..q3, scalar first, body to space, of any length but zero
@@ -37,7 +39,8 @@ occurs once in it and has one meaning, whatever its table, so that a reader may 
 Every number, vector or matrix is an object of two: ``text``, the exact value (a decimal, or "a/b"
 where no decimal is finite), and ``hex``, the hexadecimal float of the rung, as C's strtod reads it.
 They are equal but where the table says that hex is rounded: K and H are rounded once, and I = K^-1
-and omega = K H follow from them exactly. Whoever integrates H' = H x K H + M has exact data.
+and omega = K H follow from them exactly. Whoever integrates H' = H x K H + M has exact data; with wheels it is
+H' = (H + h) x K H + M.
 
 Loads that change with time are M = H*' - H* x K H*, or X = x*' - x* x Omega* and
 L = y*' - y* x Omega* - x* x U*, with Omega* and U* made of x* and y* as Omega and U are of x and y:
@@ -82,6 +85,8 @@ import gmpy2
 from taylor_verify.models.problem import Problem
 from taylor_verify.models.registry import mechanics
 from taylor_verify.records.quantities import COLUMNS
+from taylor_verify.scenes.bodies import Body
+from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.parts import Value
 from taylor_verify.scenes.precision import Rung, double_text, hexadecimal
 from taylor_verify.solvers.solver import columns
@@ -90,6 +95,8 @@ from taylor_verify.solvers.values import exact, named_once
 VERSION = 1
 # A program that knows constant loads alone has to be able to tell.
 VERSION_WITH_WAVES = 2
+# So has one that knows a rigid body alone.
+VERSION_WITH_WHEELS = 3
 
 # A time is read from a decimal, formed as start + k dt and printed again: three roundings, and one.
 _TIME_ROUNDINGS = 4
@@ -128,7 +135,7 @@ def question(problem: Problem) -> dict[str, Any]:
     """Return the document that a program is asked with."""
     scene = problem.scene
     return {
-        "protocol": VERSION if scene.body.manufactured is None else VERSION_WITH_WAVES,
+        "protocol": _version(scene.body),
         "scene": scene.name,
         "title": scene.title,
         "model": scene.model,
@@ -138,6 +145,13 @@ def question(problem: Problem) -> dict[str, Any]:
         "columns": column_names(problem),
         **_data(problem),
     }
+
+
+def _version(body: Body) -> int:
+    """Return the version of the protocol that a program has to know for this body."""
+    if isinstance(body, Gyrostat):
+        return VERSION_WITH_WHEELS
+    return VERSION if body.manufactured is None else VERSION_WITH_WAVES
 
 
 def column_names(problem: Problem) -> list[str]:

@@ -55,13 +55,6 @@ def _gates_lacking(report: Published) -> list[tuple[str, str]]:
     return lacking
 
 
-def _write_gates(
-    folder: Path, lacking: Sequence[tuple[str, str]], progress: Progress
-) -> tuple[Path, ...]:
-    del progress
-    return replace_files(folder, dict(lacking))
-
-
 def _runs_lacking(report: Published) -> tuple[Run, ...]:
     """Return the runs without a record, all of them where the records are those of other verdicts."""
     data = report.folder / store.FOLDER
@@ -103,7 +96,12 @@ STUDY: Final = Study(
         **_GATES,
     },
     bulk=(
-        Bulk("tables of gates", tuple(_GATES), _gates_lacking, _write_gates),
+        Bulk(
+            "tables of gates",
+            tuple(_GATES),
+            _gates_lacking,
+            lambda folder, lacking, progress: replace_files(folder, dict(lacking)),
+        ),
         Bulk("records of runs", ("data/records/",), _runs_lacking, _add_records),
     ),
 )

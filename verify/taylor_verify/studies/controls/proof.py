@@ -61,7 +61,10 @@ def _conservation_together(sights: Sequence[Sight]) -> str:
     blind = conserving(sights)
     if not blind:
         return "Every defect shows in some conserved quantity."
-    listed = [f"{title(sight)} ({_short(_worst_state(sight))})" for sight in blind]
+    listed = []
+    for sight in blind:
+        over = (sight.over_bound(name) for name in sight.state if sight.is_seen_by(name))
+        listed.append(f"{title(sight)} ({_short(max(map(or_infinite, over)))})")
     return (
         f"{bold(f'{len(blind)} pass every gate on a conserved quantity')} that their scene has, "
         "vectors in space included where there are any, and are wrong all the same, by so many "
@@ -81,10 +84,6 @@ def conserving(sights: Iterable[Sight]) -> list[Sight]:
 
 def _is_conserving(sight: Sight) -> bool:
     return all(sight.is_missed_by(name) for name in sight.conserved)
-
-
-def _worst_state(sight: Sight) -> float:
-    return max(or_infinite(sight.over_bound(n)) for n in sight.state if sight.is_seen_by(n))
 
 
 def _body_axes(sights: Sequence[Sight]) -> str:

@@ -20,16 +20,11 @@ MADE_BY: Final = "<!-- made by taylor-verify publish --site; do not edit -->"
 FRONT: Final = "index.html"
 
 _SCRIPT: Final = "plotly.min.js"
-# Modules to import, by the names that pip knows.
-_NEEDED: Final = {
-    "sphinx": "sphinx",
-    "myst_parser": "myst-parser",
-    "furo": "furo",
-    "sphinx_copybutton": "sphinx-copybutton",
-    "latex2mathml": "latex2mathml",
-    "matplotlib": "matplotlib",
-    "plotly": "plotly",
-}
+# Modules to import; pip knows them by these names with hyphens.
+_NEEDED: Final = (
+    *("sphinx", "myst_parser", "furo", "sphinx_copybutton"),
+    *("latex2mathml", "matplotlib", "plotly"),
+)
 # Other Markdown comes along as files.
 _PAGES: Final = ["index.md", "docs/**", "reports/**"]
 # Tables have tens of thousands of code spans and cells: a tenth of the site would be these marks.
@@ -58,8 +53,9 @@ def build(folder: Path, target: Path) -> list[Path]:
 
 def contents(folder: Path) -> dict[str, str | bytes]:
     """Return every file of the site by its place in it. The errors are those of `build`."""
-    for module, package in _NEEDED.items():
+    for module in _NEEDED:
         if find_spec(module) is None:
+            package = module.replace("_", "-")
             raise ImportError(f"expected {package}, got no such package", name=package)
     stage = staged(folder)
     with TemporaryDirectory(prefix="taylor-verify-site-") as place:

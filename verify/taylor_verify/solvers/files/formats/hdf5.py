@@ -36,11 +36,16 @@ def _arrays(content: Any, path: Path) -> Iterator[Array]:
     """Yield the datasets of the file; the fields of a table stand beside it, or below its name."""
     for name, dataset in datasets(content, path):
         if dataset.dtype.names is None:
-            yield _array(name, dataset, path)
+            yield _array(name, dataset, dataset.dtype, dataset)
             continue
         prefix = name.rpartition(".")[0] if name.endswith("table") else name
         for field in dataset.dtype.names:
-            yield _array(f"{prefix}.{field}".lstrip("."), dataset, path, field)
+            full = f"{prefix}.{field}".lstrip(".")
+            yield _array(full, dataset, dataset.dtype[field], dataset.fields(field))
+
+
+def _array(name: str, dataset: Any, dtype: Any, entries: Any) -> Array:
+    return Array(name, dataset.shape or (), dtype.kind, dtype.itemsize, lambda: entries[()])
 
 
 def datasets(content: Any, path: Path) -> Iterator[tuple[str, Any]]:
@@ -65,15 +70,6 @@ def datasets(content: Any, path: Path) -> Iterator[tuple[str, Any]]:
             elif isinstance(member, h5py.Dataset):
                 _check_stored(member, path)
                 yield f"{prefix}{name}", member
-
-
-def _array(name: str, dataset: Any, path: Path, field: str = "") -> Array:
-    dtype = dataset.dtype[field] if field else dataset.dtype
-
-    def load() -> Any:
-        return dataset.fields(field)[()] if field else dataset[()]
-
-    return Array(name, dataset.shape or (), dtype.kind, dtype.itemsize, load)
 
 
 def _check_stored(dataset: Any, path: Path) -> None:
