@@ -31,6 +31,7 @@ from flint import fmpq, fmpq_mat
 from taylor_verify.models.problem import Problem
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.solvers.geometric.fixed_step import Body
 from taylor_verify.solvers.options import options
@@ -56,8 +57,10 @@ class ClosedForm(Solver):
 
     def unsuited(self, problem: Problem) -> str:
         body = problem.given.body
+        if isinstance(body, Gyrostat):
+            return f"{self.name} is made for a body without wheels"
         if not isinstance(body, RigidBody):
-            return f"{self.name} is made for a rigid body without wheels, got {problem.scene.model}"
+            return f"{self.name} is made for Euler's equations, got {problem.scene.model}"
         if "attitude" in problem.scene.track:
             return f"{self.name} gives omega and no attitude"
         for fits, made_for in (

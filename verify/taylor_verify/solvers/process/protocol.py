@@ -39,8 +39,8 @@ occurs once in it and has one meaning, whatever its table, so that a reader may 
 Every number, vector or matrix is an object of two: ``text``, the exact value (a decimal, or "a/b"
 where no decimal is finite), and ``hex``, the hexadecimal float of the rung, as C's strtod reads it.
 They are equal but where the table says that hex is rounded: K and H are rounded once, and I = K^-1
-and omega = K H follow from them exactly. Whoever integrates H' = H x K H + M has exact data; with wheels it is
-H' = (H + h) x K H + M.
+and omega = K H follow from them exactly. Whoever integrates H' = H x K H + M has exact data; with wheels
+it is H' = (H + h) x K H + M.
 
 Loads that change with time are M = H*' - H* x K H*, or X = x*' - x* x Omega* and
 L = y*' - y* x Omega* - x* x U*, with Omega* and U* made of x* and y* as Omega and U are of x and y:
