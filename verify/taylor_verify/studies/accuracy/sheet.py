@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Container, Iterable
 from typing import Any, Final
 
 from taylor_verify.publish.cells import in_roundoffs, over_attainable, word
@@ -51,12 +51,18 @@ def conserved(verdicts: Iterable[Verdict]) -> str:
 
 
 def gates(
-    verdicts: Iterable[Verdict], more: Callable[[Verdict], dict[str, Any]] | None = None
+    verdicts: Iterable[Verdict],
+    more: Callable[[Verdict], dict[str, Any]] | None = None,
+    without: Container[str] = (),
 ) -> str:
-    """Return a row for every verdict; ``more`` has further columns of each, the same ones for all."""
+    """Return a row for every verdict; ``more`` has further columns of each, the same ones for all.
+
+    The columns ``without`` are left out.
+    """
     found = [v for run in runs(verdicts) for v in run.verdicts]
     further = [more(v) if more else {} for v in found]
-    names = [*_GATES, *(further[0] if further else ())]
+    names = [name for name in _GATES if name not in without]
+    names += further[0] if further else ()
     return sheet(names, (_fields(v) | own for v, own in zip(found, further, strict=True)))
 
 
