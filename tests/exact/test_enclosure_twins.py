@@ -19,7 +19,7 @@ from taylor_verify.exact.enclosure.box import Box, carried
 from taylor_verify.exact.enclosure.course import Course, _Step
 from taylor_verify.exact.enclosure.system import System, column
 from taylor_verify.exact.enclosure.tube import Tube
-from taylor_verify.exact.equations import Equations, exact
+from taylor_verify.exact.equations import Equations, exact, nothing
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Spin
@@ -28,7 +28,13 @@ from taylor_verify.scenes.tensors import diagonal
 ZERO = Fraction(0)
 # z' = z^2 from 1: z = z0/(1 - z0 t), whose derivative by z0 is 1/(1 - z0 t)^2.
 SQUARE = System(
-    Equations(exact([ZERO]), exact([[[Fraction(2)]]]), exact([[ZERO]] * 3), exact([[ZERO]])[:0]),
+    Equations(
+        exact([ZERO]),
+        nothing(1),
+        exact([[[Fraction(2)]]]),
+        exact([[ZERO]] * 3),
+        exact([[ZERO]])[:0],
+    ),
     blocks=(1,),
     start=(Fraction(1),),
 )

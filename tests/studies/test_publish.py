@@ -181,7 +181,7 @@ def test_two_unlike_records_of_one_run_are_refused(tmp_path: Path) -> None:
 def test_a_failure_half_way_leaves_the_old_files(report: Path, broken: str) -> None:
     """A disk that is full in the middle of writing leaves every old byte and nothing new."""
     before = contents(report)
-    whole = store._json if broken.endswith("_json") else Path.write_text
+    whole = store._json if broken.endswith("_json") else Path.write_bytes
     calls = 0
 
     def full(*arguments: Any, **named: Any) -> Any:

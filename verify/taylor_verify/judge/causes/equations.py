@@ -48,9 +48,8 @@ class Equations:
         """Return the right equations of a body whose loads are constant."""
         values = body.parts()
         loads = [entry for name in body.load_names() for entry in values[name]]
-        rotor = body.rotor if isinstance(body, Gyrostat) else ()
         found = cls(np.array(body.energy_matrix, dtype=float), np.array(loads, dtype=float))
-        return replace(found, rotor=tuple(map(float, rotor))) if rotor else found
+        return replace(found, rotor=tuple(map(float, values.get("rotor", found.rotor))))
 
     @property
     def is_rigid(self) -> bool:
