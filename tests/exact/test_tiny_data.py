@@ -94,6 +94,7 @@ def test_a_tiny_datum_starts_an_unstable_motion(kind: str, exponent: int) -> Non
             assert abs(abs(one[1]) / mp.norm(list(one)) - 1) > mpf("1e-4")
 
 
+@pytest.mark.slow
 def test_a_tiny_impulse_starts_an_unstable_motion() -> None:
     """A solid in a fluid, of which two runs in fixed point agreed that it never moves."""
     solid = ImmersedBody(diagonal(vector(1, 2, 3)), ZERO_MATRIX, diagonal(vector(1, "1.5", "2.5")))

@@ -90,6 +90,7 @@ def test_it_turns_back_as_the_taylor_motion_does() -> None:
     assert gap(solution(scene, "arb").motion(times, digits), expected) <= 2 * mpf(10) ** -digits
 
 
+@pytest.mark.slow
 def test_both_routes_agree_after_a_million_million_teeth() -> None:
     """The sum of Euler and Maclaurin in balls, and Hurwitz' zeta function of mpmath."""
     times = [Fraction(-(10**8), 3)]
@@ -140,6 +141,7 @@ def test_a_wrong_term_of_the_sum_over_teeth_is_caught(
 NARROW = axial(0, "-1e-9", vector("1/2", "3/5", "1/10"))
 
 
+@pytest.mark.slow
 def test_teeth_that_all_but_stop_the_body_are_summed_too() -> None:
     """By balls as by the recursion; F is small there by its second order."""
     times = [Fraction(0), Fraction(5)]
@@ -161,6 +163,7 @@ def test_a_start_too_many_teeth_from_its_turn_has_no_closed_form() -> None:
     assert solution(weak).route == "taylor"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("route", ROUTES)
 def test_a_time_too_many_teeth_away_is_not_waited_for(route: str) -> None:
     """The number of teeth grows with the square of the time: 1e23 units are refused in words."""

@@ -23,7 +23,15 @@ def _as_a_reader(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.delenv(name, raising=False)
 
 
-@pytest.mark.parametrize("page", TUTORIALS, ids=lambda page: page.stem)
+# It judges a dozen files of an engine, and looks for the cause of each error.
+LONG = ("judge-my-engine",)
+PAGES = [
+    pytest.param(page, id=page.stem, marks=[pytest.mark.slow] if page.stem in LONG else [])
+    for page in TUTORIALS
+]
+
+
+@pytest.mark.parametrize("page", PAGES)
 def test_a_tutorial_is_true(page: Path, tmp_path: Path) -> None:
     """Worked from top to bottom in an empty folder, every block does what the page says."""
     text = page.read_text(encoding="utf-8")

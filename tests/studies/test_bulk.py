@@ -163,6 +163,7 @@ def test_a_report_that_lacks_something_is_not_packed(
     assert "without 4 records of runs @ --archive" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_the_paper_draws_the_pictures_that_are_there() -> None:
     """Each SVG of a report that its data make has a PDF, and no other picture is drawn."""
     place = reports.folder()

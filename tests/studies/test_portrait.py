@@ -37,6 +37,9 @@ from taylor_verify.studies.portraits.measure import (
 from taylor_verify.studies.portraits.study import PORTRAITS
 
 ROOT = Path(__file__).resolve().parents[2]
+# Portraits of all scenes take most of a minute.
+pytestmark = pytest.mark.slow
+
 SCENES = names()
 # A full tensor, an axis of symmetry that is not the third, and time that runs backward.
 FRESH = ("euler/full-tensor", "kirchhoff/oblate-about-axis-1", "euler/backward")
@@ -58,7 +61,6 @@ def with_quartic() -> list[str]:
 # What is there
 
 
-@pytest.mark.slow
 def test_every_scene_has_its_portrait() -> None:
     """There is one for each scene of the standard set, made of the scene as it is now, and no other."""
     files = {file.stem for file in (every_portrait() / PORTRAITS.folder).glob("*.json")}
@@ -68,7 +70,6 @@ def test_every_scene_has_its_portrait() -> None:
     }
 
 
-@pytest.mark.slow
 def test_a_portrait_is_small() -> None:
     """No file has more than 120 kB, and all together less than 7 MB: a page can load them."""
     sizes = [file.stat().st_size for file in (every_portrait() / PORTRAITS.folder).glob("*.json")]

@@ -433,6 +433,7 @@ def rendered() -> dict[str, str]:
     return paper.renderings(REPORTS)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", paper.PAGES)
 def test_renderings_have_all_of_a_page(path: str) -> None:
     """No row or cell of a published page is lost in LaTeX or in HTML."""

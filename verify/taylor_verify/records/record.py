@@ -1,13 +1,12 @@
-"""A record: everything one run was judged by, for pages, for `explain`, and for a reader in doubt.
-
-Its many numbers are best held as Doubles, in eight bytes each.
-"""
+"""A record: everything one run was judged by, for pages, for `explain`, and for a reader in doubt."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
+
+from taylor_verify.records.doubles import Doubles
 
 
 @dataclass(frozen=True)
@@ -25,6 +24,9 @@ class GateRecord:
     attainable: Sequence[float]
     truth_radius: float
     shifts: Sequence[float] = ()
+
+    def __post_init__(self) -> None:
+        _pack(self, "errors", "attainable", "shifts")
 
     def document(self) -> dict[str, Any]:
         """Return the gate as JSON holds it."""
@@ -53,7 +55,18 @@ class Record:
     times: Sequence[float]
     gates: tuple[GateRecord, ...]
 
+    def __post_init__(self) -> None:
+        _pack(self, "times")
+
     def document(self) -> dict[str, Any]:
         """Return the record as JSON holds it."""
         gates = [gate.document() for gate in self.gates]
         return {**vars(self), "times": tuple(self.times), "gates": gates}
+
+
+def _pack(record: GateRecord | Record, *fields: str) -> None:
+    """Hold numbers of a record in eight bytes each, in whatever sequence they came."""
+    for field in fields:
+        numbers = getattr(record, field)
+        if not isinstance(numbers, Doubles):
+            object.__setattr__(record, field, Doubles(numbers))
