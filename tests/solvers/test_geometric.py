@@ -65,6 +65,11 @@ def short(scene: str) -> Scene:
 
 
 PRINCIPAL, FULL = short("euler/with-attitude"), short("euler/full-tensor")
+WHEELS = short("euler/gyrostat")
+# Its tensor is not diagonal, so that splitting turns the wheels into the principal axes.
+OBLIQUE_WHEELS = at("euler/gyrostat-momentum-bias", *range(0, 110, 10), track="attitude")
+# The methods that turn wheels.
+TURN_WHEELS = ["implicit-midpoint", "splitting"]
 STEPS = [0.1, 0.05, 0.025, 0.0125]
 
 
@@ -101,6 +106,14 @@ def test_a_method_is_of_its_order(name: str, scene: Scene) -> None:
     for quantity in ("omega", "attitude"):
         assert found.quantities[quantity].is_expected, found.quantities[quantity].reason
         assert found.quantities[quantity].level is None
+
+
+@pytest.mark.parametrize(("scene", "unit"), [(WHEELS, 1), (OBLIQUE_WHEELS, 10)])
+@pytest.mark.parametrize("name", TURN_WHEELS)
+def test_wheels_are_turned_at_the_order(name: str, scene: Scene, unit: int) -> None:
+    """The motion of a gyrostat is approached with the method's order, in any axes."""
+    found = sweep(scene, solving(method(name)), [unit * step for step in STEPS], expected=2)
+    assert found.reason.startswith("omega is 2nd order, attitude 2nd, ")
 
 
 def test_the_midpoint_takes_a_moment() -> None:
@@ -344,7 +357,24 @@ def test_an_untracked_attitude_is_not_followed() -> None:
     assert (bare.quantities["omega"] == solved(FULL, "splitting", "0.1").quantities["omega"]).all()
 
 
+@pytest.mark.parametrize("name", TURN_WHEELS)
+def test_the_whole_momentum_is_conserved_with_wheels(name: str) -> None:
+    """|I omega + h|^2 and R (I omega + h) stay within rounding at a coarse step, T where promised."""
+    found = verdicts(WHEELS, name, "0.2")
+    kept = {quantity for quantity, verdict in found.items() if verdict.verdict is Status.PASS}
+    assert kept == {INITIAL, "H2", "H_space"} | ({"T"} if name in KEEP_T else set())
+
+
 # How a run ends that is none.
+
+
+@pytest.mark.parametrize("name", sorted(set(METHODS) - set(TURN_WHEELS)))
+def test_wheels_are_refused(name: str) -> None:
+    """A method that is made for a body alone says so, and answers nothing."""
+    found = solved(WHEELS, name, "0.1")
+    assert found.outcome is Outcome.NOT_STARTED
+    assert "made for a body without wheels" in found.detail
+    assert not found.quantities
 
 
 @pytest.mark.parametrize("name", sorted(set(METHODS) - {"implicit-midpoint"}))

@@ -35,8 +35,8 @@ CHECKOUT = Path(__file__).resolve().parents[2]
 # Both models, each of the five states, backwards, loads, and instants that leave out the start.
 SCENES = [
     *("euler/generic", "euler/with-attitude", "euler/backward", "euler/constant-moment"),
-    *("kirchhoff/general-body", "kirchhoff/whole-motion", "kirchhoff/constant-loads"),
-    *("kirchhoff/screw", "kirchhoff/listed-times"),
+    *("euler/gyrostat", "kirchhoff/general-body", "kirchhoff/whole-motion"),
+    *("kirchhoff/constant-loads", "kirchhoff/screw", "kirchhoff/listed-times"),
 ]
 
 
