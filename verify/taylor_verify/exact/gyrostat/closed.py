@@ -1,4 +1,4 @@
-"""Which closed form answers a gyrostat: that of the free motion, in every regime.
+"""The closed forms of a gyrostat: of the free motion alone, in every regime.
 
 Each function imports what it needs: the two routes load different libraries.
 """

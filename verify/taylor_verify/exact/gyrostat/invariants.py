@@ -1,4 +1,4 @@
-"""What a gyrostat's free motion conserves: T, |H|^2 and, in space, H, with H = I omega + h.
+"""Conserved quantities of a gyrostat's free motion: T, |H|^2 and, in space, H, with H = I omega + h.
 
 Written from the definitions and independent of the equations of motion.
 """

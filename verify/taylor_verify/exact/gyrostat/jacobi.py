@@ -148,7 +148,7 @@ class Swing:
         return Place(self._root + above[2], -2 * ns**3 * cn * dn, above)
 
     def _one_root(self, g2: mpf, g3: mpf, discriminant: mpf) -> None:
-        """One real root e; 1/2 -+ 3 e/4 H are the parameters, of which the smaller from their product."""
+        """Set up one real root e: of the parameters 1/2 -+ 3 e/4 H the smaller comes from their product."""
         grown = mp.sqrt(-discriminant / 27)
         # Of the two cube roots in Cardano's formula the larger one, and the other from their product.
         larger = mp.cbrt((abs(g3) + grown) / 8)

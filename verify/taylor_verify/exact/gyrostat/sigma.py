@@ -47,7 +47,7 @@ _BALLS: Final = Arithmetic(ball, acb, lambda z: z.sqrt())
 
 
 class Course(Protocol):
-    """One motion, with numbers of one precision and to be used at that one."""
+    """A motion with numbers of one precision, to be used at that one."""
 
     def at(self, t: arb) -> Row:
         """omega in body axes, and R where it is tracked."""

@@ -77,13 +77,20 @@ def _conserved_row(run: Run, of_scene: Iterable[str]) -> dict[str, Any]:
 
 
 def _fields(verdict: Verdict) -> dict[str, Any]:
-    """Return a verdict's own fields, and errors in u; a word in place of a maximum that is none."""
+    """Return a verdict's own fields, and errors in u; a word in place of a maximum that is none.
+
+    What is a quotient of two other columns has six digits.
+    """
     row = verdict.row() | {
-        "mean_u": in_roundoffs(verdict, verdict.mean),
-        "attainable_u": in_roundoffs(verdict, verdict.attainable),
+        "mean_u": _short(in_roundoffs(verdict, verdict.mean)),
+        "attainable_u": _short(in_roundoffs(verdict, verdict.attainable)),
         "scene_sha256": verdict.provenance.get("scene"),
     }
     if verdict.max is None:
         return row | {"max": word(verdict), "max_u": word(verdict)}
     ratio = over_attainable(verdict) if verdict.is_compared else verdict.ratio
-    return row | {"max_u": in_roundoffs(verdict, verdict.max), "ratio": ratio}
+    return row | {"max_u": _short(in_roundoffs(verdict, verdict.max)), "ratio": _short(ratio)}
+
+
+def _short(number: float | None) -> float | None:
+    return None if number is None else float(f"{number:.6g}")
