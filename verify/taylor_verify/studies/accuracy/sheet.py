@@ -22,7 +22,7 @@ _ACCURACY: Final = (*_RUN, *_ERROR, "ratio", "ratio_at", "bound", "steps", "verd
 _ATTAINABLE: Final = (
     *_RUN,
     *("quantity", "max", "at", "attainable", "ratio", "ratio_at", "unit", "max_u", "attainable_u"),
-    *("roundoff", "verdict", "outcome"),
+    "verdict",
 )
 _GATES: Final = (
     *(*_RUN, *_ERROR, "ratio", "ratio_at", "bound", "attainable", "roundoff", "exponent"),
