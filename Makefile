@@ -22,11 +22,12 @@ verify verify-all: $(INSTALLED)
 		[ $$status -ne 130 ] || exit 130; \
 		$(BIN)/taylor-verify run extremes $(EXTREMES_ON) --out reports/local/extremes && exit $$status
 
+# What a file of tests shares is made once, in one process.
 test: lint  ## Check style and types, then run all but the slow tests
-	@$(BIN)/python -m pytest -n 2 -m 'not slow'
+	@$(BIN)/python -m pytest -n 2 --dist loadfile -m 'not slow'
 
 test-all: lint  ## The same with the slow tests
-	@$(BIN)/python -m pytest -n 2
+	@$(BIN)/python -m pytest -n 2 --dist loadfile
 
 docs: $(INSTALLED)  ## Build the pages of docs alone into docs/_build/html; a warning is an error
 	@$(BIN)/sphinx-build -W --keep-going -q -b html docs docs/_build/html

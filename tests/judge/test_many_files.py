@@ -525,7 +525,7 @@ def test_without_matplotlib_the_mend_is_said(
     scene: Path, files: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
 ) -> None:
     """Before anything is judged."""
-    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    monkeypatch.setattr("taylor_verify.cli.inputs.find_spec", lambda name: None)
     file = tmp_path / "order.svg"
     status, out, said = called(capsys, *files, "--scene", scene, "--picture", file)
     assert (status, out) == (2, "")

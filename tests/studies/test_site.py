@@ -409,6 +409,7 @@ def test_what_is_not_installed_is_named(report: Path, monkeypatch: pytest.Monkey
     assert raised.value.name == "no-such-package"
 
 
+@pytest.mark.slow
 def test_the_site_is_the_same_every_time(checkout: Path, site: dict[str, str | bytes]) -> None:
     """Made again from the same folder, no byte differs."""
     assert contents(checkout / "reports") == site
