@@ -34,6 +34,7 @@ TRIAXIAL = RigidBody(diagonal(vector(1, 2, 3)))
 TURN = rotation_matrix(QUATERNION)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [WIDE, Fraction(1, 10**12)], ids=["1e-6", "1e-12"])
 @pytest.mark.parametrize("name", CASES)
 def test_motions_from_a_box_of_starts_stay_in_its_balls(name: str, size: Fraction) -> None:

@@ -186,6 +186,7 @@ def test_obeys_the_equations_of_motion(solid: Clebsch, start: State, regime: str
         assert distance(slope(near, h), derivative(solid, near[4]), digits) <= AGREEMENT
 
 
+@pytest.mark.slow
 @by_case
 def test_agrees_with_a_taylor_series(solid: Clebsch, start: State, regime: str) -> None:
     """The closed form is the solution that starts there: a Taylor series finds the same state."""
@@ -267,6 +268,7 @@ def test_runs_backwards_as_forwards(solid: Clebsch, start: State, regime: str) -
     assert distance(backwards, forwards, DIGITS) <= AGREEMENT
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("solid", [SHARP, BLUNT, EVEN], ids=["four", "two", "cubic"])
 def test_a_billion_units_of_time_are_a_whole_number_of_nutations(solid: Clebsch) -> None:
     """At t = 1e9 the state is that of a Taylor series over one nutation, turned about axis 3.

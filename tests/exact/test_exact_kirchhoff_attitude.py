@@ -174,6 +174,7 @@ def crossing(w: Array) -> Array:
     return np.array([[zero, -w[2], w[1]], [w[2], zero, -w[0]], [-w[1], w[0], zero]], dtype=object)
 
 
+@pytest.mark.slow
 @by_motion
 def test_agrees_with_the_taylor_route(name: str) -> None:
     """Attitude and centre are those of the Taylor route, both ways in time."""
@@ -269,6 +270,7 @@ def test_a_new_start_goes_on(name: str) -> None:
         assert off(centre, through["centre"][1]) <= AGREEMENT
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [*GOING_ON, "planar, |x| irrational", "from the axis"])
 def test_a_million_nutations_are_a_power_of_one(name: str) -> None:
     """After n periods R and c are those of n equal screws, of which a Taylor series gives one.

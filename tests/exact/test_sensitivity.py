@@ -166,6 +166,7 @@ def deviation(found: Sensitivity, state: State, into: str, j: int, k: int) -> St
 FITS = mpf("1e-14")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SCENES)
 def test_derivatives_obey_the_linearised_equations(name: str) -> None:
     """By every component of the start and of the body, in every quantity, from the right start."""
