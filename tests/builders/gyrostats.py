@@ -20,7 +20,7 @@ TRIAXIAL = tensors.diagonal(vector(1, 2, 3))
 
 
 def turned(free: FreeGyrostat, matrix: Matrix = OBLIQUE) -> FreeGyrostat:
-    """The same motion in axes turned by an orthogonal matrix."""
+    """Return the motion in axes turned by an orthogonal matrix."""
     inertia = tensors.product(tensors.product(matrix, free.inertia), tensors.transpose(matrix))
     rotor, omega = (tensors.apply(matrix, v) for v in (free.rotor, free.omega))
     return FreeGyrostat(inertia, rotor, omega)

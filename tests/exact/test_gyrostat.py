@@ -106,7 +106,7 @@ def gyrostats(draw: st.DrawFn) -> FreeGyrostat:
 
 
 def slow(free: FreeGyrostat, instants: Sequence[Fraction]) -> list[Fraction]:
-    """The same instants in units of the time in which the motion turns by a radian or so."""
+    """Return the instants in units of the time in which the motion turns by a radian or so."""
     rates = [*free.omega, *free.g, *tensors.apply(free.K, free.momentum)]
     pace = max(abs(rate) for rate in rates)
     return [t / pace for t in instants] if pace else list(instants)
@@ -193,7 +193,7 @@ def _cross(a: Sequence[Any], b: Sequence[Any]) -> list[Any]:
 @given(st.tuples(*[st.integers(1, 20)] * 3), st.tuples(SMALL, SMALL, SMALL).filter(any))
 @settings(max_examples=30)
 def test_without_wheels_it_is_eulers_top(moments: tuple[int, ...], spin: tuple[int, ...]) -> None:
-    """One formula without regimes finds what theta functions find for a body without wheels."""
+    """Weierstrass's formula, without regimes, finds what theta functions find for a body without wheels."""
     inertia = tensors.diagonal(tuple(map(Fraction, moments)))
     omega = tuple(map(Fraction, spin))
     none = FreeGyrostat(inertia, vector(0, 0, 0), omega)

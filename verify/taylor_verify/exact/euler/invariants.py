@@ -1,4 +1,6 @@
-"""Conserved quantities of a free rigid body: T, |H|^2 and, in space, H, with H = I omega.
+"""Conserved quantities of a free rigid body: T, |H|^2 and, in space, H, with H = I omega + h.
+
+h is the momentum of wheels, zero for a body without them.
 
 Written from the definitions and independent of the equations of motion.
 """
@@ -8,14 +10,17 @@ from __future__ import annotations
 from taylor_verify.exact.invariant import Array, Invariant
 from taylor_verify.exact.rows import applied, dot, largest, norms, ones, squares, turned
 from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.motion import Motion
+from taylor_verify.scenes.mpfr import real
+from taylor_verify.scenes.tensors import Vector
 
 
-def energy(body: RigidBody) -> Invariant:
+def energy(body: RigidBody | Gyrostat) -> Invariant:
     """T = omega . I omega / 2, so that dT/dH = omega."""
 
     def value(motion: Motion) -> Array:
-        return dot(motion["omega"], _momentum(body, motion)) / 2
+        return dot(motion["omega"], applied(body.inertia, motion["omega"])) / 2
 
     return Invariant(
         "T",
@@ -25,32 +30,36 @@ def energy(body: RigidBody) -> Invariant:
     )
 
 
-def momentum(body: RigidBody) -> Invariant:
-    """H2 = |I omega|^2."""
+def momentum(body: RigidBody | Gyrostat, rotor: Vector) -> Invariant:
+    """H2 = |I omega + h|^2."""
 
     def value(motion: Motion) -> Array:
-        return squares(_momentum(body, motion))
+        return squares(whole(body, rotor, motion))
 
     return Invariant(
         "H2",
         value,
         lambda motion: largest(value(motion)),
-        lambda motion: {"momentum": 2 * _momentum(body, motion)},
+        lambda motion: {"momentum": 2 * whole(body, rotor, motion)},
     )
 
 
-def space_momentum(body: RigidBody) -> Invariant:
-    """R I omega; a small rotation d of the attitude adds d x (R I omega)."""
+def space_momentum(body: RigidBody | Gyrostat, rotor: Vector) -> Invariant:
+    """R H; a small rotation d of the attitude adds d x R H."""
     return Invariant(
         "H_space",
-        lambda motion: turned(motion["attitude"], _momentum(body, motion)),
-        lambda motion: largest(norms(_momentum(body, motion))),
+        lambda motion: turned(motion["attitude"], whole(body, rotor, motion)),
+        lambda motion: largest(norms(whole(body, rotor, motion))),
         lambda motion: {
             "momentum": ones(motion["omega"]),
-            "attitude": norms(_momentum(body, motion)),
+            "attitude": norms(whole(body, rotor, motion)),
         },
     )
 
 
-def _momentum(body: RigidBody, motion: Motion) -> Array:
-    return applied(body.inertia, motion["omega"])
+def whole(body: RigidBody | Gyrostat, rotor: Vector, motion: Motion) -> Array:
+    """H at every row."""
+    alone = applied(body.inertia, motion["omega"])
+    # Nothing is added for no wheels: a row of float64 meets no exact entry that it need not.
+    H: Array = alone + real((rotor,), alone) if any(rotor) else alone
+    return H

@@ -1,17 +1,22 @@
-"""A rigid body as the truth knows it: (I omega)' = (I omega) x omega + M, Heinbockel (2.2.72)."""
+"""A rigid body as the truth knows it: (I omega)' = (I omega + h) x omega + M, Heinbockel (2.2.72).
+
+h is the momentum of wheels, zero for a body without them.
+"""
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
-from typing import Final, final
+from typing import Final, TypeVar, final
 
 import numpy as np
 
 from taylor_verify.exact import clocks
-from taylor_verify.exact.equations import Equations, cross, exact, nothing
-from taylor_verify.exact.euler.invariants import energy, momentum, space_momentum
+from taylor_verify.exact.clocks import Exact
+from taylor_verify.exact.equations import Equations, cross, exact
+from taylor_verify.exact.euler.invariants import energy, momentum, space_momentum, whole
 from taylor_verify.exact.invariant import Array, Invariant
 from taylor_verify.exact.kind import Kind
 from taylor_verify.exact.parameters import Block, Parameters, entries
@@ -19,22 +24,27 @@ from taylor_verify.exact.rows import applied, norms
 from taylor_verify.exact.units import Units, exponent, halved, largest
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.motion import Motion, Spin
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix, Vector
 
+B = TypeVar("B", RigidBody, Gyrostat)
+
 _ONE: Final = tensors.diagonal((Fraction(1),) * 3)
 _NO_VELOCITY: Final = exact(_ONE)[:0]
 
 
-@final
-class Rigid(Kind[RigidBody, Spin]):
-    """z = omega, and the momentum H = I omega, with K = I^-1."""
+class Rotating(Kind[B, Spin]):
+    """z = omega. The momentum is I omega, without h, in which omega is linear; K = I^-1."""
 
     moving = ("omega",)
     momenta = ("momentum",)
-    room = "taylor_verify.exact.euler"
+
+    @abstractmethod
+    def rotor(self, body: B) -> Vector:
+        """Return h."""
 
     @property
     def components(self) -> Mapping[str, tuple[str, ...]]:
@@ -46,56 +56,74 @@ class Rigid(Kind[RigidBody, Spin]):
     def with_state(self, initial: Spin, z: Vector) -> Spin:
         return replace(initial, omega=z)
 
-    def energy(self, body: RigidBody) -> Matrix:
+    def energy(self, body: B) -> Matrix:
         return body.inertia
 
-    def equations(self, body: RigidBody) -> Equations:
-        """omega' = K M + K((I omega) x omega)."""
+    def equations(self, body: B) -> Equations:
+        """omega' = K M + K(h x omega) + K((I omega) x omega)."""
         K = exact(body.inverse_inertia)
+        linear = K @ _cross_matrix(self.rotor(body))
         turned = np.tensordot(K, cross(body.inertia, _ONE), 1)
-        return Equations(K @ exact(body.moment), nothing(3), turned, exact(_ONE), _NO_VELOCITY)
+        return Equations(K @ exact(body.moment), linear, turned, exact(_ONE), _NO_VELOCITY)
 
-    def units(self, body: RigidBody, z: Vector) -> Units:
-        """omega by its size, or what the moment makes of it; time by omega, or its fastest wave."""
-        spun, motion = tensors.apply(body.inverse_inertia, body.moment), body.manufactured
+    def units(self, body: B, z: Vector) -> Units:
+        """omega by its size, or what the moment makes of it; time by omega, its fastest wave or h."""
+        K, motion = body.inverse_inertia, body.manufactured
+        wheels = exponent(tensors.apply(K, self.rotor(body)))
         if motion is None:
-            omega = largest(exponent(z), halved(exponent(spun)), default=0)
-            return Units((omega,), 0, -omega)
+            spun = halved(exponent(tensors.apply(K, body.moment)))
+            omega = largest(exponent(z), spun, default=0)
+            return Units((omega,), 0, -largest(omega, wheels, default=0))
         omega = largest(exponent(motion.reach), default=0)
-        rate = largest(omega, clocks.exponent(motion), default=0)
-        return Units((omega,), 0, -rate)
+        return Units((omega,), 0, -largest(omega, clocks.exponent(motion), wheels, default=0))
 
-    def momentum(self, body: RigidBody, z: Vector) -> Vector:
+    def momentum(self, body: B, z: Vector) -> Vector:
         return tensors.apply(body.inertia, z)
 
-    def momentum_rows(self, body: RigidBody, motion: Motion) -> Array:
+    def momentum_rows(self, body: B, motion: Motion) -> Array:
         return applied(body.inertia, motion["omega"])
 
-    def of_momentum(self, body: RigidBody, momentum: Vector) -> Vector:
+    def of_momentum(self, body: B, momentum: Vector) -> Vector:
         return tensors.apply(body.inverse_inertia, momentum)
 
-    def momentum_energy(self, body: RigidBody) -> Matrix:
+    def momentum_energy(self, body: B) -> Matrix:
         return body.inverse_inertia
 
-    def momentum_equations(self, body: RigidBody) -> Equations:
-        """H' = M + H x K H."""
+    def momentum_equations(self, body: B) -> Equations:
+        """H' = M + h x K H + H x K H, for H = I omega."""
         K = body.inverse_inertia
-        return Equations(exact(body.moment), nothing(3), cross(_ONE, K), exact(K), _NO_VELOCITY)
+        linear = _cross_matrix(self.rotor(body)) @ exact(K)
+        return Equations(exact(body.moment), linear, cross(_ONE, K), exact(K), _NO_VELOCITY)
 
-    def manufactured_momentum(self, body: RigidBody) -> Manufactured | None:
+    def manufactured_momentum(self, body: B) -> Manufactured | None:
         return None if body.manufactured is None else body.manufactured.mapped(body.inertia)
 
     def invariants(self, scene: Scene) -> tuple[Invariant, ...]:
-        body = scene.body
-        assert isinstance(body, RigidBody)
-        in_body = energy(body), momentum(body)
-        return (*in_body, space_momentum(body)) if "attitude" in scene.track else in_body
+        body: B = scene.body  # type: ignore[assignment]
+        rotor = self.rotor(body)
+        in_body: tuple[Invariant, ...] = energy(body), momentum(body, rotor)
+        return (*in_body, space_momentum(body, rotor)) if "attitude" in scene.track else in_body
 
     def sizes(self, scene: Scene, motion: Motion) -> list[Array]:
-        body = scene.body
-        assert isinstance(body, RigidBody)
-        return [abs(energy(body).value(motion)), norms(applied(body.inertia, motion["omega"]))]
+        body: B = scene.body  # type: ignore[assignment]
+        return [abs(energy(body).value(motion)), norms(whole(body, self.rotor(body), motion))]
 
-    def parameters(self, body: RigidBody) -> Parameters:
+    def parameters(self, body: B) -> Parameters:
         sides = body.inertia, body.inertia
         return entries("inertia", body, [Block("I", "inertia", sides)])
+
+
+@final
+class Rigid(Rotating[RigidBody]):
+    """A body without wheels."""
+
+    room = "taylor_verify.exact.euler"
+
+    def rotor(self, body: RigidBody) -> Vector:
+        return tensors.ZERO_VECTOR
+
+
+def _cross_matrix(v: Vector) -> Exact:
+    """Return [v]x, so that [v]x u = v x u."""
+    zero = Fraction(0)
+    return exact(((zero, -v[2], v[1]), (v[2], zero, -v[0]), (-v[1], v[0], zero)))
