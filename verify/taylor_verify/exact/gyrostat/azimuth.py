@@ -17,7 +17,7 @@ from typing import Any, Final, NamedTuple
 
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.exact.gyrostat.point import PointMap
-from taylor_verify.exact.rotation import rotation_matrix
+from taylor_verify.exact.rotation import cross, rotation_matrix
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.tensors import Vector, dot
 
@@ -73,7 +73,7 @@ def poles(free: FreeGyrostat, place: PointMap, frame: Frame, numbers: Arithmetic
         for rho in _feet(free, frame, sigma, N, numbers):
             point = [sigma * N * p + rho * q for p, q in zip(c, f, strict=True)]
             omega = [_dot(row, point) - entry for row, entry in zip(K, g, strict=True)]
-            found.append(Pole(sigma, *place.at(point, _cross(point, omega))))
+            found.append(Pole(sigma, *place.at(point, cross(point, omega))))
     return found
 
 
@@ -107,7 +107,3 @@ def rate_at_start(free: FreeGyrostat, c: Vector, N: Any, real: Callable[[Fractio
 
 def _dot(a: Sequence[Any], b: Sequence[Any]) -> Any:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def _cross(a: Sequence[Any], b: Sequence[Any]) -> list[Any]:
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]

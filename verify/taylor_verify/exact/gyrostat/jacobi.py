@@ -36,6 +36,7 @@ from taylor_verify.exact.gyrostat.carlson import integral_j
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.exact.gyrostat.point import point_map
 from taylor_verify.exact.gyrostat.velocity import WeierstrassForm
+from taylor_verify.exact.rotation import cross
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.motion import Quaternion
 from taylor_verify.scenes.tensors import Vector
@@ -252,7 +253,7 @@ class Azimuth:
         across = [p - along * q for p, q in zip(self._c, m3, strict=True)]
         length = mp.norm(across)
         m1 = [component / length for component in across]
-        return [m1, _cross(m3, m1), m3]
+        return [m1, cross(m3, m1), m3]
 
 
 def _integral(place: Place, x: mpc) -> mpc:
@@ -281,7 +282,7 @@ def _rough_orbit(free: FreeGyrostat, period: mpf) -> list[list[mpf]]:
 
         def rate(G: list[mpf], step: list[mpf], size: mpf) -> list[mpf]:
             moved = [p + size * q for p, q in zip(G, step, strict=True)]
-            return _cross(moved, [q - c for q, c in zip(applied(K, moved), g, strict=True)])
+            return cross(moved, [q - c for q, c in zip(applied(K, moved), g, strict=True)])
 
         orbit = [G]
         for _ in range(_SAMPLES):
@@ -293,7 +294,3 @@ def _rough_orbit(free: FreeGyrostat, period: mpf) -> list[list[mpf]]:
             G = [p + h * (a + 2 * b + 2 * c + d) / 6 for p, a, b, c, d in slopes]
             orbit.append(G)
         return orbit
-
-
-def _cross(a: Sequence[mpf], b: Sequence[mpf]) -> list[mpf]:
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
