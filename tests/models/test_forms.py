@@ -217,14 +217,17 @@ def test_full_tensor_takes_a_sphere_away() -> None:
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_fastest_rate_is_the_spectral_radius(name: str) -> None:
-    """At random states it is that of the Jacobian by central differences, attitude and all."""
+def test_fastest_rate_is_a_close_bound_of_the_spectral_radius(name: str) -> None:
+    """At random states it is at least that of the Jacobian by central differences, attitude and all.
+
+    And at most a third more; that of all of them is the largest.
+    """
     problem = pose(tracking_all(load(name)), rung("f64"))
     linearised, random = Linearised(problem), np.random.default_rng(len(name))
     kept = [i for i, n in enumerate(problem.form.states) if n[0] != "c"]
     parameters = [float(value) for value in problem.parameters]
-    for _ in range(3):
-        state = random.normal(size=len(problem.form.states))
+    states = random.normal(size=(3, len(problem.form.states)))
+    for state in states:
 
         def rates(at: np.ndarray) -> np.ndarray:
             found = problem.form.rates(list(at), parameters)
@@ -233,7 +236,10 @@ def test_fastest_rate_is_the_spectral_radius(name: str) -> None:
         ends = [(rates(state + e) - rates(state - e)) / 2 for e in np.eye(len(state))[kept]]
         expected = max(abs(np.linalg.eigvals(np.array(ends).T)).max(), 2.0**-10)
         # Double eigenvalues are known to half the digits: 1e-8 of the largest.
-        assert abs(linearised.fastest(list(state)) - expected) <= 1e-6 * expected
+        assert (1 - 1e-6) * expected <= linearised.fastest(state) <= 1.35 * expected
+        assert linearised.fastest(state) <= linearised.fastest(state, squarings=2)
+    each = [linearised.fastest(state) for state in states]
+    assert max(each) <= linearised.fastest(states) * (1 + 1e-12)
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf])

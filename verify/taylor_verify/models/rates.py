@@ -5,17 +5,21 @@ s  state, in the problem's units       J(s)  the Jacobian of the rates
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator
 from functools import lru_cache
-from itertools import chain
-from math import acos, cbrt, cos, inf, isfinite, pi, sqrt
+from math import inf, isfinite, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
+from flint import Ordering, fmpq_mpoly_ctx
 
+from taylor_verify.models.algebra import is_absent
+from taylor_verify.models.form import Form
 from taylor_verify.models.problem import Problem
 
 _SLOWEST = 2.0**-10  # keeps a step finite for a body that is (almost) at rest
+_ENOUGH, _NEARLY = 4, 1.2
+_ONES = np.ones(4)
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 Indices = np.ndarray[Any, np.dtype[np.intp]]
@@ -24,118 +28,100 @@ Indices = np.ndarray[Any, np.dtype[np.intp]]
 class Linearised:
     """The linearised equations of one problem, made once and evaluated at many of its states.
 
-    The rates of (x, y, H) are quadratic in these, those of a quaternion linear in it and in these:
-    J(s) = J(0) + sum_k s_k dJ/ds_k exactly. Doubles suffice: the rate is used to within a few per
-    cent. The centre enters no rate, and its own row is the only one that is cubic: it is left out.
+    The rates of the momenta are quadratic in them, so that J(s) = J(0) + sum_k s_k dJ/ds_k exactly. Doubles
+    suffice: the rate is used to within some per cent. Momenta do not know the attitude, and the attitude
+    turns at |omega|/2, which is linear in the momenta. The centre enters no rate.
     """
 
     def __init__(self, problem: Problem) -> None:
-        names = problem.form.states
-        kept = [i for i, name in enumerate(names) if not name.startswith("c")]
-        self._impulses = sum(not name.startswith("e") for name in names[: len(kept)])
-        found = _values_at(problem, kept, _stencil(len(kept)).points)
-        self._kept = kept
-        self._constant, self._slopes = _derivatives(found)
-        self._linear = self._constant.tolist(), self._slopes.tolist()
+        self._momenta, terms = _linearised(problem.form)
+        n = self._momenta
+        parameters = np.array([1.0, *map(float, problem.parameters)])
+        values = terms.coefficients * parameters[terms.factors].prod(axis=0)
+        entries = np.bincount(terms.places, values, (n * n + 4) * (n + 1)).reshape(-1, n + 1)
+        self._constant, self._slopes = entries[:, 0], entries[:, 1:].T
+        self._shape, self._turns = (-1, n, n), "e0" in problem.form.states
 
-    def fastest(self, state: Sequence[float]) -> float:
-        """Return the spectral radius of J, in radians per unit of time; infinite where J is not finite.
+    def fastest(self, states: Any, squarings: int = _ENOUGH) -> float:
+        """Return the fastest rate at a state, or at all rows of an array; infinite where not finite.
 
-        A component too small for the error control to see grows or turns at one of these rates; they
-        do not depend on the units of the components. H or x, y do not know the attitude: J falls
-        into their block and that of the quaternion.
+        In radians per unit of time. A component too small for the error control to see grows or turns at
+        an eigenvalue of J, in any units. Their size is bounded by |J^N|^(1/N) with N = 2^squarings: for
+        N = 16 some tenths too much, or else the eigenvalues are taken. The attitude turns at |omega|/2.
         """
-        n, size = self._impulses, len(self._kept)
-        if not all(map(isfinite, state)):
+        rows = np.atleast_2d(states)[:, : self._momenta].astype(float)
+        with np.errstate(all="ignore"):
+            entries = rows @ self._slopes + self._constant
+            J, omega = entries[:, :-4].reshape(self._shape), entries[:, -4:]
+            bound = size = self._norm(J)
+            turned = sqrt(np.maximum.reduce(omega * omega @ _ONES)) if self._turns else 0.0
+        if not isfinite(size + turned):
             return inf
-        if n == size == 3:
-            return max(_SLOWEST, self._largest_of_three(state))
-        jacobian = self._constant + self._slopes @ [state[i] for i in self._kept]
-        if not np.isfinite(jacobian).all():
-            return inf
-        rate = max(_SLOWEST, float(np.abs(np.linalg.eigvals(jacobian[:n, :n])).max()))
-        if n < size:
-            # q' = q (0, omega)/2 turns the quaternion at the rate |omega|/2: every column has it.
-            rate = max(rate, sqrt(sum(entry * entry for entry in jacobian[n:, n].tolist())))
-        return rate
+        power, before = J / size if size else J, bound
+        for k in range(squarings):
+            power, before = power @ power, bound
+            bound = size * self._norm(power) ** (0.5 / 2**k)
+        # A norm may exceed a radius by a factor, of which the N-th root is left.
+        if squarings == _ENOUGH and not before <= _NEARLY * bound:
+            bound = float(np.abs(np.linalg.eigvals(J)).max())
+        return max(bound, turned, _SLOWEST)
 
-    def _largest_of_three(self, state: Sequence[float]) -> float:
-        """Return it by the cubic: LAPACK's way in and out takes longer than all of this."""
-        x, y, z = state
-        matrix = [
-            [c + p * x + q * y + r * z for c, (p, q, r) in zip(constants, slopes, strict=True)]
-            for constants, slopes in zip(*self._linear, strict=True)
-        ]
-        found = _largest_root(*_characteristic(matrix))
-        if isfinite(found) or not all(map(isfinite, chain.from_iterable(matrix))):
-            return found
-        return float(np.abs(np.linalg.eigvals(matrix)).max())
+    def _norm(self, matrices: Any) -> float:
+        """Return a bound of Frobenius's norm of each: the largest entry times the order."""
+        return self._shape[1] * float(np.maximum.reduce(np.abs(matrices), axis=None))
 
 
-class _Stencil(NamedTuple):
-    """Columns 0, then e_i and -e_i, then e_i + e_j for the pairs i < j; and these pairs."""
+class _Terms(NamedTuple):
+    """Terms c p_i p_j ... of a table: their places in it, row by row, c, and i, j, ... in columns.
 
-    points: Floats
-    first: Indices
-    second: Indices
-
-
-@lru_cache(maxsize=16)
-def _stencil(n: int) -> _Stencil:
-    e = np.eye(n)
-    first, second = np.triu_indices(n, 1)
-    return _Stencil(np.vstack([np.zeros(n), e, -e, e[first] + e[second]]).T, first, second)
-
-
-def _values_at(problem: Problem, kept: list[int], points: Floats) -> Floats:
-    """Return the rates of the kept states at each column of points, the other states zero."""
-    state = np.zeros((len(problem.form.states), points.shape[1]))
-    state[kept] = points
-    parameters = [float(value) for value in problem.parameters]
-    # All points at once: the equations work on rows as they do on numbers.
-    found = problem.form.rates(list(state), parameters)
-    rows = [np.broadcast_to(np.asarray(found[i], dtype=float), points.shape[1]) for i in kept]
-    return np.array(rows)
-
-
-def _derivatives(found: Floats) -> tuple[Floats, Floats]:
-    """Return J(0) and the second derivatives of a quadratic function, from its values on the stencil."""
-    n = len(found)
-    zero, ahead, behind = found[:, :1], found[:, 1 : n + 1], found[:, n + 1 : 2 * n + 1]
-    _, i, j = _stencil(n)
-    slopes, all_of = np.zeros((n, n, n)), np.arange(n)
-    slopes[:, all_of, all_of] = ahead + behind - 2 * zero
-    mixed = found[:, 2 * n + 1 :] - ahead[:, i] - ahead[:, j] + zero
-    slopes[:, i, j] = slopes[:, j, i] = mixed
-    return (ahead - behind) / 2, slopes
-
-
-def _characteristic(m: list[list[float]]) -> tuple[float, float, float]:
-    """Return t, s, d of the characteristic polynomial z^3 - t z^2 + s z - d."""
-    (a, b, c), (d, e, f), (g, h, i) = m
-    minors = (e * i - f * h) + (a * i - c * g) + (a * e - b * d)
-    return a + e + i, minors, a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
-
-
-def _largest_root(t: float, s: float, d: float) -> float:
-    """Return the largest |z| with z^3 - t z^2 + s z - d = 0, by Cardano's and Viète's formulas.
-
-    With z = t/3 + w: w^3 + 3 p w - 2 q = 0. Double roots it has to half the digits, and infinity
-    where a cube overflows.
+    p_0 is 1, and p_i the i-th parameter. The table has a row for each entry of J, by rows, and one for each
+    component of the attitude's rate; its columns are the constant and the factor of each s_k.
     """
-    shift = t / 3
-    p, q = (s - t * shift) / 3, (d - shift * (s - 2 * shift * shift)) / 2
-    discriminant = q * q + p * p * p
-    if not isfinite(discriminant):
-        return inf
-    if discriminant <= 0:
-        # Three real roots.
-        size = sqrt(max(0.0, -p))
-        cube = size * size * size
-        angle = acos(max(-1.0, min(1.0, q / cube))) / 3 if cube else 0.0
-        return max(abs(shift + 2 * size * cos(angle + 2 * pi * k / 3)) for k in range(3))
-    # One real root, and two that are conjugate. The larger of the two cube roots is not cancelled.
-    root = cbrt(abs(q) + sqrt(discriminant))
-    u, v = (root, -p / root) if q >= 0 else (-root, p / root)
-    real, pair = shift + u + v, complex(shift - (u + v) / 2, (u - v) * sqrt(3) / 2)
-    return max(abs(real), abs(pair))
+
+    places: Indices
+    coefficients: Floats
+    factors: Indices
+
+
+@lru_cache(maxsize=64)
+def _linearised(form: Form) -> tuple[int, _Terms]:
+    """Return the number of the momenta, which come first of all states, and the terms of J and omega/2."""
+    n = sum(name[0] not in "ec" for name in form.states)
+    terms = list[tuple[int, float, list[int]]]()
+    for i, c, variables, factors in _monomials(form):
+        if i < n:
+            entries = [
+                (n * i + k, variables[:p] + variables[p + 1 :]) for p, k in enumerate(variables)
+            ]
+        elif form.states[i][0] == "e" and n in variables:
+            # The factor of e0 in the rate of the quaternion is (0, omega)/2.
+            entries = [(n * n + i - n, [k for k in variables if k != n])]
+        else:
+            continue
+        terms += [((n + 1) * row + sum(k + 1 for k in of), c, factors) for row, of in entries]
+    degree = max((len(factors) for *_, factors in terms), default=0)
+    padded = [factors + [0] * (degree - len(factors)) for *_, factors in terms]
+    return n, _Terms(
+        np.array([place for place, *_ in terms], dtype=np.intp),
+        np.array([c for _, c, _ in terms], dtype=float),
+        np.array(padded, dtype=np.intp).reshape(len(terms), degree).T,
+    )
+
+
+def _monomials(form: Form) -> Iterator[tuple[int, float, list[int], list[int]]]:
+    """Yield the terms of every rate, multiplied out: the state's place, c, its variables, and parameters.
+
+    A variable stands as often as its power. Parameters are counted from 1.
+    """
+    names, n = [*form.states, *form.parameters], len(form.states)
+    symbols = fmpq_mpoly_ctx.get([f"v{i}" for i in range(len(names))], Ordering.lex).gens()
+    for place, rate in enumerate(form.rates(symbols[:n], symbols[n:])):
+        for powers, c in () if is_absent(rate) else rate.to_dict().items():
+            factors = [i for i, power in enumerate(powers) for _ in range(int(power))]
+            number = int(c.p) / int(c.q)
+            yield (
+                place,
+                number,
+                [i for i in factors if i < n],
+                [i - n + 1 for i in factors if i >= n],
+            )

@@ -14,11 +14,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from itertools import pairwise
 from math import ceil, isfinite
 from time import perf_counter
-from typing import Any, final
+from typing import Any, NamedTuple, final
 
 import numpy as np
 
@@ -38,8 +38,10 @@ from taylor_verify.solvers.trajectory import Outcome, Postponed, Trajectory
 # a start close to an unstable axis, where the step would grow with the logarithm of the distance,
 # is what the cap is for.
 LONGEST_STEP = 0.5
-# The rate is looked at again after so many radians, but no more and no less often than this along the
-# way, and the fastest seen so far counts. Each look costs heyoka a series and a step cut short.
+# heyoka is called once, since each call cuts a step short. If the rate, looked at afterwards, says that a
+# step was longer than this factor allows, the way is gone again with looks so many radians apart, no more
+# and no less often than this: a call leads from each to the next, and the fastest rate so far counts.
+_SLACK = 1.25
 _RADIANS_APART = 4
 _FEWEST_LOOKS, _MOST_LOOKS = 4, 24
 # A regular orbit takes three to five steps in the time of one radian, a close passage some more. Beyond
@@ -184,57 +186,121 @@ def _propagate(
 ) -> tuple[Outcome, int, Rows, float]:
     """Return the outcome, the number of steps, the rows, and the seconds that heyoka's own code took.
 
-    The outcome is FINISHED only if every row is there and finite.
+    The outcome is FINISHED only if every row is there and finite. Steps and seconds are those of the way
+    whose rows these are.
     """
     numbers = arithmetic(problem.rung)
-    zero = numbers.array([Fraction(0)])
-    integrator.time = zero[0]
-    integrator.state[:] = numbers.array(problem.initial_momenta)
     integrator.pars[:] = numbers.array(problem.parameters)
     linearised = Linearised(problem)
-    rate = linearised.fastest([float(value) for value in problem.initial_momenta])
+    start = numbers.array(problem.initial_momenta)
+    rate = linearised.fastest(start)
     if not isfinite(rate):
         return Outcome.NON_FINITE, 0, [], 0.0
     # In these units the motion is of size one, also one that is at rest when it begins.
-    pieces = _pieces(max(rate, 1.0) * abs(float(times[-1])), problem.rung)
-    grid, samples = _grid(problem, times, numbers, pieces)
-    # heyoka's tolerance is a part of the largest state, and the path has no bound: nothing depends on
-    # the centre, so that it may be counted from anywhere.
-    path = [i for i, name in enumerate(problem.form.states) if name.startswith("c")]
-    began_at = integrator.state[path]
-    rows, total_steps, inner = [integrator.state.copy()[None]], 0, 0.0
-    for first, last in _segments(len(grid), pieces):
-        if first:
-            rate = max(rate, linearised.fastest([float(value) for value in integrator.state]))
-            if not isfinite(rate):
-                return Outcome.NON_FINITE, total_steps, [], inner
-        radians = rate * abs(float(grid[last] - grid[first]))
-        if not radians <= MOST_RADIANS:
-            return Outcome.STEP_LIMIT, total_steps, [], inner
-        longest = numbers.double(LONGEST_STEP / rate)
-        instants = grid[first : last + 1]
-        integrator.state[path] = zero[0]
-        began = perf_counter()
-        status, _, _, steps, _, reached = integrator.propagate_grid(
-            instants,
-            max_delta_t=longest,
-            max_steps=LEAST_STEPS + int(STEPS_PER_RADIAN * radians),
-            callback=None if problem.rung.name in _RADIANS_AT_ONCE else _go_on,
-        )
-        inner += perf_counter() - began
-        if path:
-            reached[:, path] += began_at
-            began_at = reached[-1, path]
-        rows.append(reached[1:])
-        total_steps += int(steps)
-        outcome = outcome_of(status)
-        if outcome is Outcome.FINISHED and not np.isfinite(reached).all():
-            outcome = Outcome.NON_FINITE
-        if outcome is not Outcome.FINISHED:
-            return outcome, total_steps, [], inner
-    if sum(map(len, rows)) != len(grid):
-        return Outcome.INTERRUPTED, total_steps, [], inner
-    return Outcome.FINISHED, total_steps, [np.concatenate(rows)[samples]], inner
+    radians = max(rate, 1.0) * abs(float(times[-1]))
+    looks = _looks(radians, problem.rung)
+    grid, samples = _grid(problem, times, numbers, looks)
+    way = _Way(integrator, problem, linearised, start, grid)
+    calls = looks if way.path else _calls(radians, problem.rung)
+    ran = way.run(_segments(len(grid), calls), rate)
+    if way.was_too_fast(ran, rate):
+        ran = way.run(_segments(len(grid), looks), rate, is_watched=True)
+    if ran.outcome is not Outcome.FINISHED:
+        return ran.outcome, ran.steps, [], ran.seconds
+    rows = np.concatenate(ran.rows)
+    if len(rows) != len(grid):
+        return Outcome.INTERRUPTED, ran.steps, [], ran.seconds
+    return ran.outcome, ran.steps, [rows[samples]], ran.seconds
+
+
+class _Ran(NamedTuple):
+    """A way as far as it went: its longest step, its steps, and the seconds of heyoka's own code."""
+
+    outcome: Outcome
+    rows: Rows
+    longest: float
+    steps: int
+    seconds: float
+
+
+@final
+@dataclass(frozen=True)
+class _Way:
+    """A problem on its way over a grid of instants, stretch by stretch, from its start."""
+
+    integrator: Any
+    problem: Problem
+    linearised: Linearised
+    start: np.ndarray[Any, Any]
+    grid: np.ndarray[Any, Any]
+
+    @cached_property
+    def path(self) -> list[int]:
+        """The places of the centre among the states.
+
+        heyoka's tolerance is a part of the largest state, and the path has no bound: nothing depends on the
+        centre, so that it may be counted from anywhere.
+        """
+        return [i for i, name in enumerate(self.problem.form.states) if name.startswith("c")]
+
+    def run(
+        self, stretches: Sequence[tuple[int, int]], rate: float, is_watched: bool = False
+    ) -> _Ran:
+        """Go the whole way, from one index of the grid to the next, in steps that suit the rate.
+
+        Where it is watched, the rate is looked at after each stretch, and the fastest so far counts.
+        """
+        integrator, path, grid = self.integrator, self.path, self.grid
+        zero = grid[0]
+        integrator.time = zero
+        integrator.state[:] = self.start
+        rows, longest, steps, seconds = [self.start[None]], 0.0, 0, 0.0
+        began_at = self.start[path]
+        for first, last in stretches:
+            radians = rate * abs(float(grid[last] - grid[first]))
+            if not radians <= MOST_RADIANS:
+                outcome = Outcome.STEP_LIMIT if isfinite(rate) else Outcome.NON_FINITE
+                return _Ran(outcome, rows, longest, steps, seconds)
+            integrator.state[path] = zero
+            began = perf_counter()
+            status, _, max_h, taken, _, reached = integrator.propagate_grid(
+                grid[first : last + 1], **self._limits(rate, radians)
+            )
+            seconds += perf_counter() - began
+            longest, steps = max(longest, float(max_h)), steps + int(taken)
+            if path:
+                reached[:, path] += began_at
+                began_at = reached[-1, path]
+            rows.append(reached[1:])
+            if is_watched:
+                rate = max(rate, self.linearised.fastest(reached[-1]))
+            outcome = outcome_of(status)
+            if outcome is Outcome.FINISHED and not np.isfinite(reached).all():
+                outcome = Outcome.NON_FINITE
+            if outcome is not Outcome.FINISHED:
+                return _Ran(outcome, rows, longest, steps, seconds)
+        return _Ran(Outcome.FINISHED, rows, longest, steps, seconds)
+
+    def was_too_fast(self, ran: _Ran, rate: float) -> bool:
+        """Return True where the rate has grown, and steps were too long for it or ran out for it."""
+        rows = np.concatenate(ran.rows)
+        some = rows[:: -ceil(len(rows) / _MOST_LOOKS)]
+        if ran.outcome is Outcome.FINISHED:
+            # A bound that is soon found is nearly always enough.
+            return all(
+                self.linearised.fastest(some, squarings) * ran.longest > _SLACK * LONGEST_STEP
+                for squarings in (2, 4)
+            )
+        return self.linearised.fastest(some) > rate
+
+    def _limits(self, rate: float, radians: float) -> dict[str, Any]:
+        """Return the longest step, the number of steps, and what listens to an interrupt."""
+        rung = self.problem.rung
+        return {
+            "max_delta_t": arithmetic(rung).double(LONGEST_STEP / rate),
+            "max_steps": LEAST_STEPS + int(STEPS_PER_RADIAN * radians),
+            "callback": None if rung.name in _RADIANS_AT_ONCE else _go_on,
+        }
 
 
 def outcome_of(status: Any) -> Outcome:
@@ -249,13 +315,18 @@ def outcome_of(status: Any) -> Outcome:
     return known.get(status, Outcome.INTERRUPTED)
 
 
-def _pieces(radians: float, rung: Rung) -> int:
+def _looks(radians: float, rung: Rung) -> int:
     """Return how often the rate is looked at on a way so long, and an interrupt heard."""
     if not radians <= MOST_RADIANS:
         return _MOST_LOOKS
     looks = min(max(_FEWEST_LOOKS, ceil(radians / _RADIANS_APART)), _MOST_LOOKS)
+    return max(looks, _calls(radians, rung))
+
+
+def _calls(radians: float, rung: Rung) -> int:
+    """Return how often heyoka is called on a way so long, that an interrupt may be heard."""
     at_once = _RADIANS_AT_ONCE.get(rung.name)
-    return looks if at_once is None else max(looks, ceil(radians / at_once))
+    return 1 if at_once is None or not radians <= MOST_RADIANS else max(1, ceil(radians / at_once))
 
 
 def _grid(
