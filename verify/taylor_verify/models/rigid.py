@@ -22,7 +22,6 @@ from taylor_verify.scenes.parts import MOMENT, MOMENTUM, Dimension, Part, Shape,
 from taylor_verify.scenes.precision import Rung, floor_log2, power_of_two
 from taylor_verify.scenes.tensors import Matrix, Vector
 
-_AXES: Final = tensors.diagonal((Fraction(1),) * 3)
 _PRODUCTS: Final = ("K12", "K13", "K23")
 _DEVIATIONS: Final = {"D11": "K11 - K33", "D22": "K22 - K33"}
 _DIFFERENCES: Final = {"D1": "K33 - K22", "D2": "K11 - K33", "D3": "K22 - K11"}
@@ -83,15 +82,11 @@ def _nutation(K: Matrix, H: Vector) -> Fraction:
     The trace of J = [H]x K - [K H]x vanishes, so that its eigenvalues are the roots of
     z^3 + s z - d with s = -tr(J^2)/2, d = det J: not above twice the larger of |s|^(1/2), |d|^(1/3).
     """
-    omega = tensors.apply(K, H)
-    columns = (
-        tensors.minus(tensors.cross(H, column), tensors.cross(omega, e))
-        for column, e in zip(K, _AXES, strict=True)
+    swept, turned = (
+        tensors.product(tensors.cross_matrix(H), K),
+        tensors.cross_matrix(tensors.apply(K, H)),
     )
-    J = tensors.transpose(tuple(columns))
-    square = tensors.product(J, J)
-    s = (square[0][0] + square[1][1] + square[2][2]) / 2
-    d = tensors.dot(J[0], tensors.cross(J[1], J[2]))
+    d, s, *_ = tensors.characteristic(tuple(map(tensors.minus, swept, turned)))
     by_s = root(abs(s)) if s else Fraction(0)
     by_d = power_of_two(floor_log2(abs(d)) // 3) if d else Fraction(0)
     return max(by_s, by_d)

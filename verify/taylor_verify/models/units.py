@@ -39,17 +39,28 @@ class Units:
 
     def of(self, dimension: Dimension) -> Fraction:
         """Return the unit of any quantity."""
-        return self.mass**dimension.mass * self.length**dimension.length * self.time**dimension.time
+        time, momentum, impulse = map(_exponent, (self.time, self.momentum, self.impulse))
+        length = momentum - impulse
+        mass = impulse + time - length
+        return power_of_two(
+            mass * dimension.mass + length * dimension.length + time * dimension.time
+        )
 
     def counted(self, part: Part, value: Value) -> Value:
         """Return a part of a body or a state, counted in its unit."""
-        unit = self.of(part.dimension)
-        return entrywise(lambda entry: entry / unit, value)
+        return _scaled(1 / self.of(part.dimension), value)
 
     def physical(self, part: Part, value: Value) -> Value:
         """Return the part that is so much in its unit."""
-        unit = self.of(part.dimension)
-        return entrywise(lambda entry: entry * unit, value)
+        return _scaled(self.of(part.dimension), value)
+
+
+def _scaled(factor: Fraction, value: Value) -> Value:
+    return entrywise(lambda entry: entry * factor if entry else entry, value)
+
+
+def _exponent(power: Fraction) -> int:
+    return power.numerator.bit_length() - power.denominator.bit_length()
 
 
 def largest(matrix: Iterable[Vector]) -> Fraction:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
+from itertools import pairwise
 
 import flint
 
@@ -39,6 +40,11 @@ def cross(a: Vector, b: Vector) -> Vector:
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
+def cross_matrix(a: Vector) -> Matrix:
+    """Return [a]x, so that [a]x b = a x b."""
+    return ((_ZERO, -a[2], a[1]), (a[2], _ZERO, -a[0]), (-a[1], a[0], _ZERO))
+
+
 def plus(a: Vector, b: Vector) -> Vector:
     return tuple(p + q for p, q in zip(a, b, strict=True))
 
@@ -62,7 +68,7 @@ def product(a: Matrix, b: Matrix) -> Matrix:
 
 
 def is_diagonal(matrix: Matrix) -> bool:
-    return all(entry == 0 for i, row in enumerate(matrix) for j, entry in enumerate(row) if i != j)
+    return not any(entry for i, row in enumerate(matrix) for j, entry in enumerate(row) if i != j)
 
 
 def is_symmetric(matrix: Matrix) -> bool:
@@ -83,13 +89,27 @@ def leading_minors(matrix: Matrix) -> Iterator[Fraction]:
 
 
 def is_positive_definite(matrix: Matrix) -> bool:
-    """Return True if a symmetric matrix is positive definite: all its leading minors are positive."""
-    return all(minor > 0 for minor in leading_minors(matrix))
+    """Return True if a symmetric matrix is positive definite.
+
+    Its eigenvalues are real: all are positive where the characteristic polynomial changes sign with each
+    coefficient, by Descartes' rule.
+    """
+    if is_diagonal(matrix):
+        return all(row[i] > 0 for i, row in enumerate(matrix))
+    coefficients = characteristic(matrix)
+    return all(a * b < 0 for a, b in pairwise(coefficients))
 
 
 def inverse(matrix: Matrix) -> Matrix:
     """Return the inverse; ZeroDivisionError if the matrix is singular."""
+    if is_diagonal(matrix):
+        return diagonal(tuple(1 / row[i] for i, row in enumerate(matrix)))
     return tuple(tuple(map(_fraction, row)) for row in _flint(matrix).inv().tolist())
+
+
+def characteristic(matrix: Matrix) -> tuple[Fraction, ...]:
+    """Return the coefficients of det(z - matrix), that of z^0 first."""
+    return tuple(map(_fraction, _flint(matrix).charpoly().coeffs()))
 
 
 def _flint(matrix: Matrix) -> flint.fmpq_mat:

@@ -43,7 +43,7 @@ class Link:
     @property
     def rigid_matrix(self) -> Matrix:
         """[[m 1, -m [c]x], [m [c]x, I - m [c]x [c]x]], so that (x, y) = it (U, Omega) without a fluid."""
-        m, c = self.mass, cross_matrix(self.centre)
+        m, c = self.mass, tensors.cross_matrix(self.centre)
         offset = tuple(tensors.scaled(-m, row) for row in c)
         steiner = tensors.product(offset, c)
         angular = tuple(map(tensors.plus, self.inertia, steiner))
@@ -55,12 +55,6 @@ class Link:
         if self.added_mass is None:
             return self.rigid_matrix
         return tuple(map(tensors.plus, self.rigid_matrix, self.added_mass))
-
-
-def cross_matrix(c: Vector) -> Matrix:
-    """Return [c]x, so that [c]x v = c x v."""
-    zero = Fraction(0)
-    return ((zero, -c[2], c[1]), (c[2], zero, -c[0]), (-c[1], c[0], zero))
 
 
 class Format(NamedTuple):
