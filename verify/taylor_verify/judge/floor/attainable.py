@@ -24,6 +24,7 @@ import numpy as np
 from mpmath import mp
 
 from taylor_verify.exact.conditioning.condition import Path, path, transition
+from taylor_verify.exact.damping import growths, without_damping
 from taylor_verify.exact.invariants import Invariant
 from taylor_verify.judge.errors.state import Errors
 from taylor_verify.judge.floor.magnitude import roundings
@@ -31,7 +32,7 @@ from taylor_verify.records.quantities import UNIT_QUATERNION
 from taylor_verify.records.reason import Carried, Reason, RoundoffFloor, shown
 from taylor_verify.scenes.instants import chosen, evenly
 from taylor_verify.scenes.motion import Motion
-from taylor_verify.scenes.mpfr import precision, to_mpfr
+from taylor_verify.scenes.mpfr import alike, precision, to_mpfr
 from taylor_verify.scenes.scene import Scene
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
@@ -82,13 +83,18 @@ class Floor:
 
         The motion ``at_nodes`` is in numbers of MPFR.
         """
-        nodes = self.nodes
+        nodes, scene = self.nodes, self.orbit.scene
+        elapsed = [scene.clock.elapsed[k] for k in nodes]
         ends = np.searchsorted(self._path_times(), self.times[nodes], side="right")
         injected = np.zeros(len(nodes))
         with precision():
             (whole,) = to_mpfr(np.array([mp.convert(scale)], dtype=object))
-            gradients = invariant.sensitivity(at_nodes)
+            gradients = invariant.sensitivity(without_damping(scene, at_nodes, elapsed))
+            factors = growths(scene, elapsed)
             for block, gradient in gradients.items():
+                if factors is not None and block in self.orbit.flow.momenta:
+                    # Of the momenta, of which the invariant has e^{ct} times as much.
+                    gradient = (alike(factors, gradient) * gradient.T).T
                 (unit,) = to_mpfr(np.array([mp.convert(self.orbit.units[block])], dtype=object))
                 # Divided before it is a float: the square of a small motion would be none.
                 relative = (gradient * unit / whole).astype(float)
