@@ -93,7 +93,7 @@ class Derivatives:
             return max(midpoint(abs(_balls(D).det() / arb(v) - 1).upper()) for D, v in pairs)
 
     def steps(self, flow: Flow) -> tuple[Steps, float]:
-        """The steps between the times in the flow's units, and the largest |D^-1|.
+        """The steps between the times in the flow's units, and the largest |D^-1|, over its volume's root.
 
         With D, A, C the derivatives of momentum, attitude and centre by the initial momentum, and c the
         centre, the derivatives by the initial state are
@@ -132,7 +132,9 @@ class Derivatives:
 
             steps = np.array([carried(k, k + 1) for k in range(n - 1)]).reshape(-1, d + 6, d + 6)
             whole = np.array([carried(0, i) for i in range(n)])
-            sizes = [float(np.linalg.norm(_floats(inverse), 2)) for inverse in inverses]
+            roots = [arb(mp.root(v, d)) for v in self.volumes]
+            pairs = zip(inverses, roots, strict=True)
+            sizes = [float(np.linalg.norm(_floats(one * root), 2)) for one, root in pairs]
             found = Steps(steps, whole, self.state.astype(float), path.astype(float))
         return found, max(sizes)
 

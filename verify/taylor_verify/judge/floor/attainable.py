@@ -32,7 +32,7 @@ from taylor_verify.records.quantities import UNIT_QUATERNION
 from taylor_verify.records.reason import Carried, Reason, RoundoffFloor, shown
 from taylor_verify.scenes.instants import chosen, evenly
 from taylor_verify.scenes.motion import Motion
-from taylor_verify.scenes.mpfr import alike, precision, to_mpfr
+from taylor_verify.scenes.mpfr import precision, to_mpfr
 from taylor_verify.scenes.scene import Scene
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
@@ -90,11 +90,7 @@ class Floor:
         with precision():
             (whole,) = to_mpfr(np.array([mp.convert(scale)], dtype=object))
             gradients = invariant.sensitivity(without_damping(scene, at_nodes, elapsed))
-            factors = growths(scene, elapsed)
             for block, gradient in gradients.items():
-                if factors is not None and block in self.orbit.flow.momenta:
-                    # Of the momenta, of which the invariant has e^{ct} times as much.
-                    gradient = (alike(factors, gradient) * gradient.T).T
                 (unit,) = to_mpfr(np.array([mp.convert(self.orbit.units[block])], dtype=object))
                 # Divided before it is a float: the square of a small motion would be none.
                 relative = (gradient * unit / whole).astype(float)
@@ -147,6 +143,10 @@ class Floor:
         """The sums over the steps so far of squared roundings of a block, component by component."""
         first = 3 * self.orbit.blocks.index(block)
         rows = self.rounded[:, first : first + 3]
+        factors = growths(self.orbit.scene, self.orbit.elapsed)
+        if factors is not None and block in self.orbit.flow.momenta:
+            # An invariant has e^{ct} times the momenta.
+            rows = rows * factors.astype(float)[:, None]
         return np.cumsum(self.steps_at[:, None] * rows**2, axis=0)
 
     def _path_times(self) -> Floats:
