@@ -44,6 +44,13 @@ class Equations(NamedTuple):
         """The difference, entry by entry."""
         return Equations(*(one - two for one, two in zip(self, other, strict=True)))
 
+    def damped(self, damping: Fraction) -> Equations:
+        """The equations with -c z more."""
+        if not damping:
+            return self
+        decay = np.diag([damping] * len(self.constant)) + nothing(len(self.constant))
+        return self._replace(linear=self.linear - decay)
+
     def driven(self, motion: Manufactured | None) -> Equations:
         """The equations without linear terms, and with the loads and the clock of a manufactured motion.
 

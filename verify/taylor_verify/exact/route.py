@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from fractions import Fraction
 from typing import Final, final
 
 from taylor_verify.exact.balls import Enclosed
+from taylor_verify.exact.damping import NOT_QUADRATIC, Damped
 from taylor_verify.exact.registry import function_at, kind_of
 from taylor_verify.exact.solution import NoClosedForm, Quantities, Solution, Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
@@ -85,8 +87,19 @@ def solution(scene: Scene, route: str | None = None) -> Solution:
 
 
 def _closed_form(scene: Scene, route: str) -> Solution:
+    if scene.body.damping:
+        return _damped(scene, route)
     module = f"{kind_of(scene.body).room}.closed"
     if scene.body.manufactured is not None:
         module = "taylor_verify.exact.manufactured"
     found: Solution = function_at(f"{module}:{_FUNCTIONS[route]}")(scene)
     return found
+
+
+def _damped(scene: Scene, route: str) -> Solution:
+    """The closed form of a damped body, by that of the body without damping."""
+    free = scene.body.undamped
+    equations = kind_of(free).equations(free)
+    if equations.constant.any() or equations.linear.any():
+        raise NoClosedForm(NOT_QUADRATIC)
+    return Damped(scene, _closed_form(replace(scene, body=free), route))

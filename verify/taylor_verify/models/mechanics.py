@@ -11,7 +11,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import ClassVar, Generic, TypeVar
+from typing import Generic, TypeVar
 
 from taylor_verify.models.choice import Choice
 from taylor_verify.models.form import Equations
@@ -76,9 +76,9 @@ class Mechanics(ABC, Generic[B, S]):
     ``inverse`` makes the loads of a manufactured motion.
     """
 
-    body_letters: ClassVar[tuple[Part, ...]]
-    momenta: ClassVar[tuple[Part, ...]]
-    inverse: ClassVar[Inverse]
+    body_letters: tuple[Part, ...]
+    momenta: tuple[Part, ...]
+    inverse: Inverse
 
     @property
     @abstractmethod

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Final
 
+from taylor_verify.models.damping import Damped
 from taylor_verify.models.gyrostat import Wheeled
 from taylor_verify.models.immersed import Immersed
 from taylor_verify.models.mechanics import Mechanics
@@ -23,7 +24,8 @@ _MECHANICS: Final[Mapping[type[Body], Mechanics[Any, Any]]] = {
 
 def mechanics(body: Body) -> Mechanics[Any, Any]:
     """Return the mechanics of a body."""
-    return _MECHANICS[type(body)]
+    found = _MECHANICS[type(body)]
+    return Damped(found) if body.damping else found
 
 
 def natural_units(scene: Scene) -> Units:

@@ -12,11 +12,12 @@ from taylor_verify.scenes import tensors
 from taylor_verify.scenes.ellipsoid import inverse_inertias
 from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.motion import Impulse, Spin, State
-from taylor_verify.scenes.parts import FORCE, MOMENT, Dimension, Part, Parted, Shape, Value
+from taylor_verify.scenes.parts import FORCE, MOMENT, RATE, Dimension, Part, Parted, Shape, Value
 from taylor_verify.scenes.tensors import ZERO_MATRIX, ZERO_VECTOR, Matrix, Vector
 
 # Irrational coefficients become rationals of so many bits: 120 digits.
 COEFFICIENT_BITS: Final = 400
+DAMPING: Final = Part("damping", Shape.NUMBER, RATE)
 
 
 class Body(Parted):
@@ -25,6 +26,8 @@ class Body(Parted):
     The numbers are the PARTS. ``MODEL`` is the word of a scene's key ``model``, ``STATE`` the kind of
     its initial state, and ``ENERGY`` what ``energy_matrix`` is called in messages. A new kind of body is
     a class like those below; each room that has its physics has one table by these classes.
+
+    ``damping`` c takes c z from the rate of every momentum z; of either sign, and a part where it is not 0.
     """
 
     MODEL: ClassVar[str]
@@ -32,6 +35,19 @@ class Body(Parted):
     ENERGY: ClassVar[str]
 
     manufactured: Manufactured | None
+    damping: Fraction
+
+    @property
+    def listed(self) -> tuple[Part, ...]:
+        """PARTS, and the damping of a body that has one."""
+        return (*self.PARTS, DAMPING) if self.damping else self.PARTS
+
+    @property
+    def undamped(self) -> Self:
+        """The same body without damping."""
+        return (
+            cast("Self", replace(cast("Any", self), damping=Fraction(0))) if self.damping else self
+        )
 
     @property
     def energy_matrix(self) -> Matrix:
@@ -53,6 +69,11 @@ class Body(Parted):
         """Return the same body with this manufactured motion, or with none."""
         changed: Self = replace(cast("Any", self), manufactured=motion)
         return changed
+
+    @property
+    def is_conservative(self) -> bool:
+        """True if the energy and the momenta are conserved, of a damped body times powers of e^{ct}."""
+        return self.is_free
 
     @property
     def is_integrable(self) -> bool:
@@ -77,6 +98,7 @@ class RigidBody(Body):
     inertia: Matrix
     moment: Vector = ZERO_VECTOR
     manufactured: Manufactured | None = None
+    damping: Fraction = Fraction(0)
 
     MODEL = "euler"
     STATE = Spin
@@ -120,6 +142,7 @@ class ImmersedBody(Body):
     couple: Vector = ZERO_VECTOR
     ellipsoid: Ellipsoid | None = None
     manufactured: Manufactured | None = None
+    damping: Fraction = Fraction(0)
 
     MODEL = "kirchhoff"
     STATE = Impulse
@@ -135,7 +158,7 @@ class ImmersedBody(Body):
     def with_parts(self, values: Mapping[str, Value]) -> Self:
         """Return the same with other values; other coefficients are no longer those of the ellipsoid."""
         other = super().with_parts(values)
-        keeps_shape = values.keys() <= set(self.load_names())
+        keeps_shape = values.keys() <= {*self.load_names(), DAMPING.name}
         return other if keeps_shape else replace(other, ellipsoid=None)
 
     @property
@@ -249,6 +272,7 @@ class Ellipsoid:
 
 __all__ = [
     "COEFFICIENT_BITS",
+    "DAMPING",
     "ZERO_MATRIX",
     "ZERO_VECTOR",
     "Body",

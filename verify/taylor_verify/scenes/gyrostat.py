@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 
 from taylor_verify.scenes import tensors
@@ -25,6 +26,7 @@ class Gyrostat(Body):
     rotor: Vector
     moment: Vector = ZERO_VECTOR
     manufactured: Manufactured | None = None
+    damping: Fraction = Fraction(0)
 
     MODEL = "euler"
     STATE = Spin
@@ -34,6 +36,11 @@ class Gyrostat(Body):
         Part("rotor", Shape.VECTOR, MOMENTUM),
         Part("moment", Shape.VECTOR, MOMENT, is_load=True),
     )
+
+    @property
+    def is_conservative(self) -> bool:
+        """True without loads and without damping, under which the wheels do work."""
+        return self.is_free and not self.damping
 
     @property
     def energy_matrix(self) -> Matrix:

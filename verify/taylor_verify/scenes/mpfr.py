@@ -48,6 +48,11 @@ def real(values: Any, like: Array) -> Array:
     return _each(gmpy2.mpfr if _is_mpfr(like) else mp.convert, np.array(values, dtype=object))
 
 
+def alike(values: Array, like: Array) -> Array:
+    """Return numbers of mpmath as those of the kind that an array holds."""
+    return to_mpfr(values) if _is_mpfr(like) else values
+
+
 def sqrt(values: Array) -> Array:
     """Return the root of each, of either kind."""
     return _each(gmpy2.sqrt if _is_mpfr(values) else mp.sqrt, values)

@@ -74,9 +74,14 @@ class Parted:
 
     PARTS: ClassVar[tuple[Part, ...]] = ()
 
+    @property
+    def listed(self) -> tuple[Part, ...]:
+        """The parts that this one has: PARTS, unless stated."""
+        return self.PARTS
+
     def parts(self) -> dict[str, Value]:
         """Return the value of every part by its name."""
-        return {part.name: self.part(part) for part in self.PARTS}
+        return {part.name: self.part(part) for part in self.listed}
 
     def part(self, part: Part) -> Value:
         """Return the value of one part."""
@@ -84,12 +89,12 @@ class Parted:
 
     def with_parts(self, values: Mapping[str, Value]) -> Self:
         """Return the same with other values for the parts of these names."""
-        changes = {part.key: values[part.name] for part in self.PARTS if part.name in values}
+        changes = {part.key: values[part.name] for part in self.listed if part.name in values}
         return replace(self, **changes)
 
     def changed(self, change: Callable[[Part, Value], Value]) -> Self:
         """Return the same with every part changed, whatever its shape."""
-        return self.with_parts({part.name: change(part, self.part(part)) for part in self.PARTS})
+        return self.with_parts({part.name: change(part, self.part(part)) for part in self.listed})
 
 
 def entrywise(change: Callable[[Fraction], Any], value: Value) -> Value:

@@ -65,6 +65,7 @@ class ClosedForm(Solver):
             return f"{self.name} gives omega and no attitude"
         for fits, made_for in (
             (body.is_free, "a body without a moment"),
+            (not body.damping, "a body without damping"),
             (any(problem.initial_momenta), "a body that turns"),
             (_has_distinct_moments(body.inverse_inertia), "three distinct principal moments"),
         ):

@@ -30,10 +30,13 @@ from taylor_verify.exact.conditioning.inputs import momentum
 from taylor_verify.exact.conditioning.variation import integrated
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import Unsettled
 from taylor_verify.scenes.instants import chosen
-from taylor_verify.scenes.precision import floor_log2
+from taylor_verify.scenes.precision import float_text, floor_log2
 from taylor_verify.scenes.scene import Scene
 
+# float64 has e^700, and what is formed of the errors has their squares.
+_MOST_DECAY: Final = 300
 # A derivative that outgrows 1 + rate x time by more than this comes from a passage of an unstable
 # motion: it matters then at which moments of it an error is made, and where it is looked at.
 _REGULAR: Final = 8.0
@@ -124,9 +127,15 @@ class Path:
 
     @property
     def growth(self) -> Floats:
-        """|d momentum(t) / d momentum(0)| at each time, in units."""
+        """|d momentum(t) / d momentum(0)| at each time, in units, over the root of the volume.
+
+        So what damping does to every error alike is left out.
+        """
         d = self.momentum.shape[1]
-        return _spectral_norms(self.carried.since_first[:, :d, :d])
+        elapsed = np.array([float(t / self.flow.time) for t in self.elapsed])
+        alike = np.exp(-self.flow.expansion / d * elapsed)
+        found: Floats = _spectral_norms(self.carried.since_first[:, :d, :d]) * alike
+        return found
 
     @property
     def rate(self) -> float:
@@ -177,6 +186,7 @@ def transition(scene: Scene, elapsed: Sequence[Fraction]) -> Path:
 
     Raises Unsettled where the derivatives of the motion cannot be had.
     """
+    _refuse_far_decay(scene, elapsed)
     flow = Flow.of(scene)
     if differs_dearly(scene):
         found = integrated(scene, flow, elapsed)
@@ -192,6 +202,7 @@ def path(scene: Scene) -> Path:
     Raises Unsettled where the derivatives of the motion cannot be had.
     """
     elapsed, flow = scene.clock.elapsed, Flow.of(scene)
+    _refuse_far_decay(scene, elapsed)
     found = _along(scene, flow, few(elapsed))
     if found.is_regular:
         return found
@@ -204,6 +215,16 @@ def path(scene: Scene) -> Path:
         if steps is not None:
             return Path(scene, flow, points, steps)
     return sharp(scene, flow, points, found.exponent)
+
+
+def _refuse_far_decay(scene: Scene, elapsed: Sequence[Fraction]) -> None:
+    """Raise Unsettled where damping takes the errors out of the range of float64."""
+    exponent = abs(scene.body.damping * elapsed[-1])
+    if exponent > _MOST_DECAY:
+        raise Unsettled(
+            f"damping changes the momenta by e^{float_text(exponent)}: beyond e^{_MOST_DECAY} it is not "
+            "known what becomes of an error"
+        )
 
 
 def differs_dearly(scene: Scene) -> bool:

@@ -18,6 +18,7 @@ from taylor_verify.exact.balls import midpoint
 from taylor_verify.exact.clocks import Floats
 from taylor_verify.exact.conditioning.flow import Flow, Steps
 from taylor_verify.exact.conditioning.inputs import momentum
+from taylor_verify.exact.damping import decayed
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.rows import cross_matrices
@@ -70,7 +71,8 @@ class Derivatives:
 
     They are differences of 10^-``exponent`` units, formed with ``digits`` digits.
     ``momentum`` (n, d, d), d = 3 or 6, ``others`` (n, 3, d) by name (attitude, centre as tracked), the
-    momenta themselves in ``state`` (n, d) and the ``centre`` (n, 3), empty where untracked. Momenta are
+    momenta themselves in ``state`` (n, d) and the ``centre`` (n, 3), empty where untracked. The flow turns
+    a volume of 1 into ``volumes`` (n,), of which damping alone makes less or more. Momenta are
     measured in ``units``, one power of two near the size of each component's block, in ``momentum`` and
     ``state``; everything else is in the scene's units. The centre counts from its place at the start.
     """
@@ -82,14 +84,16 @@ class Derivatives:
     others: Mapping[str, Array]
     state: Array
     centre: Array
+    volumes: Array
 
     def volume_error(self) -> mpf:
-        """The largest |det D - 1|; infinite where a derivative is not finite."""
+        """The largest |det D/volume - 1|; infinite where a derivative is not finite."""
         with mp.workdps(self.digits), ctx.workprec(_SHARPER * mp.prec):
-            return max(midpoint(abs(_balls(D).det() - 1).upper()) for D in self.momentum)
+            pairs = zip(self.momentum, self.volumes, strict=True)
+            return max(midpoint(abs(_balls(D).det() / arb(v) - 1).upper()) for D, v in pairs)
 
     def steps(self, flow: Flow) -> tuple[Steps, float]:
-        """The steps between the times in the flow's units, and the largest |D^-1|.
+        """The steps between the times in the flow's units, and the largest |D^-1|, over its volume's root.
 
         With D, A, C the derivatives of momentum, attitude and centre by the initial momentum, and c the
         centre, the derivatives by the initial state are
@@ -128,7 +132,9 @@ class Derivatives:
 
             steps = np.array([carried(k, k + 1) for k in range(n - 1)]).reshape(-1, d + 6, d + 6)
             whole = np.array([carried(0, i) for i in range(n)])
-            sizes = [float(np.linalg.norm(_floats(inverse), 2)) for inverse in inverses]
+            roots = [arb(mp.root(v, d)) for v in self.volumes]
+            pairs = zip(inverses, roots, strict=True)
+            sizes = [float(np.linalg.norm(_floats(one * root), 2)) for one, root in pairs]
             found = Steps(steps, whole, self.state.astype(float), path.astype(float))
         return found, max(sizes)
 
@@ -139,6 +145,7 @@ def derivatives(
     """One-sided differences at ``digits`` digits, each momentum changed by 10^-exponent units."""
     start, kind = momentum(scene), kind_of(scene.body)
     step = Fraction(1, 10**exponent)
+    expansion = Fraction(np.trace(kind.momentum_equations(scene.body).linear))
     with mp.workdps(digits):
         here = solution(scene).evaluate(elapsed, digits)
         columns = []
@@ -163,6 +170,7 @@ def derivatives(
             },
             state=kind.momentum_rows(scene.body, here) / units,
             centre=path,
+            volumes=np.array([decayed(-expansion * t, mp.convert) for t in elapsed], dtype=object),
         )
 
 

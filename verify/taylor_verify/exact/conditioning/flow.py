@@ -106,6 +106,11 @@ class Flow:
         found: Floats = z @ self.equations.hessian.reshape(d * d, d).T
         return found.reshape(*z.shape, d) + self.equations.linear
 
+    @property
+    def expansion(self) -> float:
+        """The rate at which volume grows: the trace of J, to which the quadratic terms add nothing."""
+        return float(np.trace(self.equations.linear))
+
     def free(self, z: Floats) -> Floats:
         """z' (..., d) at z (..., d) without loads: J counts half, and its linear part whole."""
         return applied(self.jacobian(z) + self.equations.linear, z) / 2

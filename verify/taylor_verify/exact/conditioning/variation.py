@@ -87,8 +87,9 @@ def _steps(
     clock = clocks.floats(scene.body.manufactured, points)
     nothing, one = np.zeros((n - 1, 3, d)), np.tile(np.eye(d), (n - 1, 1, 1))
     arcs = _Arcs(clock[:-1], z[:-1], R[:-1], one, nothing, nothing)
-    reached = _followed(flow, arcs, np.diff([float(t / flow.time) for t in points]))
-    if reached is None or not _arrive(reached, z[1:]):
+    spans = np.diff([float(t / flow.time) for t in points])
+    reached = _followed(flow, arcs, spans)
+    if reached is None or not _arrive(reached, z[1:], np.exp(flow.expansion * spans)):
         return None
     steps = np.tile(np.eye(d + 6), (n - 1, 1, 1))
     steps[:, :, :d] = np.concatenate([reached.by_momentum, reached.turn, reached.shift], axis=1)
@@ -97,12 +98,12 @@ def _steps(
     return steps, z, centre
 
 
-def _arrive(reached: _Arcs, truth: Floats) -> bool:
-    """Return True if the arcs came to the truth, and their steps conserve volume as the flow does."""
+def _arrive(reached: _Arcs, truth: Floats, volumes: Floats) -> bool:
+    """Return True if the arcs came to the truth, and their steps change volume as the flow does."""
     missed = np.linalg.norm(reached.momentum - truth, axis=1)
     volume = np.linalg.det(reached.by_momentum)
     close = missed <= _TOLERANCE * np.linalg.norm(truth, axis=1)
-    return bool((close & (abs(volume - 1) <= _TOLERANCE * 10)).all())
+    return bool((close & (abs(volume / volumes - 1) <= _TOLERANCE * 10)).all())
 
 
 # Many arcs of one body at once, each in its own steps.

@@ -59,20 +59,21 @@ class Rotating(Kind[B, Spin]):
         return body.inertia
 
     def equations(self, body: B) -> Equations:
-        """omega' = K M + K(h x omega) + K((I omega) x omega)."""
+        """omega' = K M + K(h x omega) + K((I omega) x omega) - c omega."""
         K = exact(body.inverse_inertia)
         linear = K @ exact(tensors.cross_matrix(self.rotor(body)))
         turned = np.tensordot(K, cross(body.inertia, _ONE), 1)
-        return Equations(K @ exact(body.moment), linear, turned, exact(_ONE), _NO_VELOCITY)
+        found = Equations(K @ exact(body.moment), linear, turned, exact(_ONE), _NO_VELOCITY)
+        return found.damped(body.damping)
 
     def units(self, body: B, z: Vector) -> Units:
-        """omega by its size, or what the moment makes of it; time by omega, its fastest wave or h."""
+        """omega by its size, or what the moment makes of it; time by omega, its fastest wave, h or c."""
         K, motion = body.inverse_inertia, body.manufactured
         wheels = exponent(tensors.apply(K, self.rotor(body)))
         if motion is None:
             spun = halved(exponent(tensors.apply(K, body.moment)))
             omega = largest(exponent(z), spun, default=0)
-            return Units((omega,), 0, -largest(omega, wheels, default=0))
+            return Units((omega,), 0, -largest(omega, wheels, exponent((body.damping,)), default=0))
         omega = largest(exponent(motion.reach), default=0)
         return Units((omega,), 0, -largest(omega, clocks.exponent(motion), wheels, default=0))
 
@@ -89,10 +90,11 @@ class Rotating(Kind[B, Spin]):
         return body.inverse_inertia
 
     def momentum_equations(self, body: B) -> Equations:
-        """H' = M + h x K H + H x K H, for H = I omega."""
+        """H' = M + h x K H + H x K H - c H, for H = I omega."""
         K = body.inverse_inertia
         linear = exact(tensors.cross_matrix(self.rotor(body))) @ exact(K)
-        return Equations(exact(body.moment), linear, cross(_ONE, K), exact(K), _NO_VELOCITY)
+        found = Equations(exact(body.moment), linear, cross(_ONE, K), exact(K), _NO_VELOCITY)
+        return found.damped(body.damping)
 
     def manufactured_momentum(self, body: B) -> Manufactured | None:
         return None if body.manufactured is None else body.manufactured.mapped(body.inertia)

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from taylor_verify.exact.carried import carried
 from taylor_verify.exact.kirchhoff import jacobi, weierstrass
-from taylor_verify.exact.kirchhoff.carried import carried
 from taylor_verify.exact.kirchhoff.displaced import centred, moved_back
 from taylor_verify.exact.kirchhoff.pendulum import Pendulum
 from taylor_verify.exact.kirchhoff.plane import in_plane, of_revolution, plane

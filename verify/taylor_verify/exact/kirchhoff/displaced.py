@@ -15,9 +15,10 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
-from taylor_verify.exact.kirchhoff.carried import Back, Number
+from taylor_verify.exact.carried import Back
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.rotation import rotation_matrix
+from taylor_verify.exact.solution import Number, Time
 from taylor_verify.scenes.bodies import Clebsch
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.scene import Scene
@@ -51,7 +52,7 @@ def centred(scene: Scene) -> tuple[Scene, Fraction]:
 def moved_back(distance: Fraction, start: Impulse) -> Back:
     """Return the way back from ``centred`` to the scene's own origin."""
 
-    def back(rows: dict[str, Any], elapsed: Sequence[Fraction], number: Number) -> None:
+    def back(rows: dict[str, Any], elapsed: Sequence[Time], number: Number) -> None:
         far = number(distance)
         x, y = rows["linear_impulse"], rows["angular_impulse"].copy()
         y[:, 0], y[:, 1] = y[:, 0] - far * x[:, 1], y[:, 1] + far * x[:, 0]
@@ -63,9 +64,9 @@ def moved_back(distance: Fraction, start: Impulse) -> Back:
     return back
 
 
-def _as_given(rows: Any, start: Vector, elapsed: Sequence[Fraction], number: Number) -> Any:
+def _as_given(rows: Any, start: Vector, elapsed: Sequence[Time], number: Number) -> Any:
     """The rows with the start itself where no time has gone: a zero there has no digits but exact ones."""
     for row, t in zip(rows, elapsed, strict=True):
-        if not t:
+        if t == 0:
             row[:] = [number(entry) for entry in start]
     return rows

@@ -54,9 +54,9 @@ class Immersed(Kind[ImmersedBody, Impulse]):
     def equations(self, body: ImmersedBody) -> Equations:
         U, Omega = body.energy_matrix[:3], body.energy_matrix[3:]
         hessian = np.concatenate([cross(_X, Omega), cross(_Y, Omega) + cross(_X, U)])
-        return Equations(
-            exact(body.force + body.couple), nothing(6), hessian, exact(Omega), exact(U)
-        )
+        loads = exact(body.force + body.couple)
+        found = Equations(loads, nothing(6), hessian, exact(Omega), exact(U))
+        return found.damped(body.damping)
 
     def units(self, body: ImmersedBody, z: Vector) -> Units:
         """Each block by its size, or by what the loads, and x x U, make of it in the unit of time."""
@@ -71,7 +71,7 @@ class Immersed(Kind[ImmersedBody, Impulse]):
             halved(exponent(driven[3:])),
             default=0,
         )
-        time = -omega
+        time = -largest(omega, exponent((body.damping,)), default=0)
         velocity = largest(
             exponent(tensors.apply(a, x)),
             exponent(tensors.apply(b, y)),
@@ -128,7 +128,7 @@ def _six(body: ImmersedBody, six: Clebsch) -> Parameters:
 
     def changed(j: int, amount: Fraction) -> ImmersedBody:
         other = replace(six, **{names[j]: components[names[j]] + amount})
-        return other.body(body.force, body.couple)
+        return replace(other.body(body.force, body.couple), damping=body.damping)
 
     p, p_prime, _, _, r, r_prime = components.values()
     # q may be zero; T > 0 keeps q^2 below p r.

@@ -8,6 +8,9 @@ two samples,
 Without loads Q(flow(state)) = Q(state) and the sum telescopes to Q(state_n) - Q(start). With loads
 Q(flow(state)) - Q(state) is the work, or impulse, done along the arc, and the sum is the balance.
 
+Of a damped body without loads Q is taken at e^{ct} times the momenta: T e^{2ct}, |H|^2 e^{2ct} and so on
+are conserved. With loads or wheels nothing of the kind is, and Q itself has a balance.
+
 Of a manufactured motion it is likewise, and each arc takes up the loads of the time at which it begins.
 A solver integrates the clock of these loads with the rest; what rounding does to it does work, which adds
 up from step to step, and which the bound of the balance has to hold (judge.balances).
@@ -23,6 +26,7 @@ from typing import Any
 import numpy as np
 from mpmath import mp
 
+from taylor_verify.exact.damping import without_damping
 from taylor_verify.exact.invariants import Invariant, decisive, invariants
 from taylor_verify.exact.taylor import arcs
 from taylor_verify.judge.errors.state import Errors, Series, joined
@@ -80,12 +84,14 @@ class Drifts:
         held: Mapping[str, Column],
     ) -> None:
         """Take in the next rows. Raises Unsettled where an arc cannot be had."""
-        quick = in_mpfr(answer)
-        is_free = self._scene.body.is_free
+        scene, quick = self._scene, in_mpfr(answer)
+        is_free = scene.body.is_conservative
         self._is_lost = self._is_lost or not (is_free or _is_finite(answer))
         ends = None if is_free or self._is_lost else in_mpfr(self._arc_ends(elapsed, held))
         with precision():
-            self._widen(in_mpfr(truth))
+            if is_free:
+                quick = without_damping(scene, quick, elapsed)
+            self._widen(without_damping(scene, in_mpfr(truth), elapsed))
             assert self._largest is not None
             for invariant in self._found:
                 if is_free:

@@ -72,7 +72,7 @@ def partial_judgement(
         for group in _CARRIED
         if group in own and group not in one_row.quantities
     ]
-    if "attitude" in filled and not given.body.is_free:
+    if "attitude" in filled and not given.body.is_conservative:
         # The balances of a loaded body start an arc of the exact motion from every row, for which a
         # matrix that is no rotation to the last digit will not do. States alone are compared.
         apart += _states_apart(run, exact, filled)

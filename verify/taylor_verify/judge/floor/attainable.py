@@ -24,6 +24,7 @@ import numpy as np
 from mpmath import mp
 
 from taylor_verify.exact.conditioning.condition import Path, path, transition
+from taylor_verify.exact.damping import growths, without_damping
 from taylor_verify.exact.invariants import Invariant
 from taylor_verify.judge.errors.state import Errors
 from taylor_verify.judge.floor.magnitude import roundings
@@ -82,12 +83,13 @@ class Floor:
 
         The motion ``at_nodes`` is in numbers of MPFR.
         """
-        nodes = self.nodes
+        nodes, scene = self.nodes, self.orbit.scene
+        elapsed = [scene.clock.elapsed[k] for k in nodes]
         ends = np.searchsorted(self._path_times(), self.times[nodes], side="right")
         injected = np.zeros(len(nodes))
         with precision():
             (whole,) = to_mpfr(np.array([mp.convert(scale)], dtype=object))
-            gradients = invariant.sensitivity(at_nodes)
+            gradients = invariant.sensitivity(without_damping(scene, at_nodes, elapsed))
             for block, gradient in gradients.items():
                 (unit,) = to_mpfr(np.array([mp.convert(self.orbit.units[block])], dtype=object))
                 # Divided before it is a float: the square of a small motion would be none.
@@ -141,6 +143,10 @@ class Floor:
         """The sums over the steps so far of squared roundings of a block, component by component."""
         first = 3 * self.orbit.blocks.index(block)
         rows = self.rounded[:, first : first + 3]
+        factors = growths(self.orbit.scene, self.orbit.elapsed)
+        if factors is not None and block in self.orbit.flow.momenta:
+            # An invariant has e^{ct} times the momenta.
+            rows = rows * factors.astype(float)[:, None]
         return np.cumsum(self.steps_at[:, None] * rows**2, axis=0)
 
     def _path_times(self) -> Floats:

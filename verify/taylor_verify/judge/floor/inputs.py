@@ -25,6 +25,7 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp
 
+from taylor_verify.exact.damping import without_damping
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
@@ -95,13 +96,15 @@ def input_rounding(given: Scene, rung: Rung, asked: Scene | None = None) -> Inpu
 def _squares(scene: Scene, here: Motion, there: Motion) -> dict[str, Floats]:
     """The squares of what one move does to every gate, in the units of the gates."""
     found = {e.quantity: e.values for e in state_errors(scene, here, there)}
+    both = here, there
+    here, there = (without_damping(scene, each, scene.clock.elapsed) for each in (here, there))
     for invariant in invariants(scene):
         change = invariant.value(there) - invariant.value(here)
         sizes = norms(change) if change.ndim > 1 else abs(change)
         found[invariant.name] = sizes / invariant.scale(here)
     if has_velocities(scene.body):
         for group in VELOCITIES:
-            one, other = (velocity(group, scene.body, m.quantities) for m in (here, there))
+            one, other = (velocity(group, scene.body, m.quantities) for m in both)
             found[GROUPS[group].quantity] = norms(other - one) / (max(norms(one)) or 1)
     return {name: values.astype(float) ** 2 for name, values in found.items()}
 

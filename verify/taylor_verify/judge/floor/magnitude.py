@@ -30,6 +30,7 @@ from taylor_verify.exact.conditioning.condition import Path
 from taylor_verify.judge.velocities import has_velocities
 from taylor_verify.models.algebra import is_absent
 from taylor_verify.models.problem import Problem, pose
+from taylor_verify.records.precisions import FORMATS
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Body
@@ -96,6 +97,10 @@ def roundings(given: Scene, path: Path, bits: int, steps: int, velocities: bool 
     span = abs(float(given.clock.elapsed[-1] / problem.units.time))
     h = min(span / max(steps, 1), _largest(sizes, moving) / (_largest(rates, moving) or 1.0))
     rounded = {name: size + h * rates[name] for name, size in sizes.items()}
+    if given.body.damping:
+        # What has decayed below the least normal number has an absolute rounding.
+        for name in moving:
+            rounded[name] = np.where(sizes[name] > 0, np.maximum(rounded[name], _least(bits)), 0.0)
     columns = []
     for block in path.blocks:
         if block == "attitude":
@@ -156,6 +161,13 @@ def _rates(problem: Problem, sizes: Mapping[str, Floats]) -> dict[str, Floats]:
         if name in found and not is_absent(rate):
             found[name] = found[name] + _size(rate)
     return found
+
+
+def _least(bits: int) -> float:
+    """The least normal number of the format with so many bits; 0 of MPFR's numbers."""
+    return next(
+        (2.0 ** max(each.emin, -1074) for each in FORMATS.values() if each.bits == bits), 0.0
+    )
 
 
 def _largest(columns: Mapping[str, Floats], names: Sequence[str]) -> float:

@@ -14,7 +14,7 @@ from fractions import Fraction
 from typing import Final
 
 from taylor_verify.scenes import tensors
-from taylor_verify.scenes.bodies import Body, Clebsch, Ellipsoid, ImmersedBody, RigidBody
+from taylor_verify.scenes.bodies import DAMPING, Body, Clebsch, Ellipsoid, ImmersedBody, RigidBody
 from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.precision import float_text
 from taylor_verify.scenes.reading.faults import shown
@@ -29,9 +29,12 @@ def rigid_body(table: Table) -> RigidBody | Gyrostat | None:
     inertia = _inertia(table)
     moment = table.vector("moment", default=ZERO_VECTOR)
     rotor = table.vector("rotor", default=ZERO_VECTOR)
-    if inertia is None or moment is None or rotor is None:
+    damping = table.number(DAMPING.name, default=Fraction(0))
+    if inertia is None or moment is None or rotor is None or damping is None:
         return None
-    return Gyrostat(inertia, rotor, moment) if any(rotor) else RigidBody(inertia, moment)
+    if any(rotor):
+        return Gyrostat(inertia, rotor, moment, damping=damping)
+    return RigidBody(inertia, moment, damping=damping)
 
 
 def _inertia(table: Table) -> Matrix | None:
@@ -83,11 +86,12 @@ def immersed_body(table: Table) -> ImmersedBody | None:
     """Return the body of model kirchhoff; None beside a fault."""
     force = table.vector("force", default=ZERO_VECTOR)
     couple = table.vector("couple", default=ZERO_VECTOR)
+    damping = table.number(DAMPING.name, default=Fraction(0))
     form = _form(table)
     body = form(table) if form else None
-    if body is None or force is None or couple is None:
+    if body is None or force is None or couple is None or damping is None:
         return None
-    return replace(body, force=force, couple=couple)
+    return replace(body, force=force, couple=couple, damping=damping)
 
 
 def _form(table: Table) -> Callable[[Table], ImmersedBody | None] | None:

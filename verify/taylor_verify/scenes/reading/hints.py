@@ -35,8 +35,8 @@ torque torques couple moments_applied: write `moment`, constant in body axes
 force: a force does not turn a body; write its moment, constant in body axes, as `moment`
 mass_matrix added_mass fluid_added_mass fluid_density: a body in a fluid is `model = "kirchhoff"`, there
   as `mass_matrix`
-damping: not modelled yet
 wheels reaction_wheels: write `rotor`, the momentum of all wheels
+angular_damping linear_damping damping_coefficient: write `damping`, the rate at which the momentum decays
 drag friction viscosity: not modelled: drag has no exact motion to compare with
 omega angular_velocity attitude quaternion: it stands in [initial]
 """
@@ -50,7 +50,7 @@ gravity g weight buoyancy centre_of_buoyancy cob volume: not modelled: weight an
   origin; loads that are constant in body axes are `force` and `couple`
 drag lift friction viscosity linear_drag quadratic_drag current circulation: not modelled: the fluid is
   ideal, and an exact motion with viscous forces is not known
-damping: not modelled yet
+angular_damping linear_damping damping_coefficient: write `damping`, the rate at which both impulses decay
 rotor wheels reaction_wheels: not modelled: wheels turn in a body of the model euler
 torque torques moment: write `couple`, constant in body axes
 thrust forces wrench propeller: write `force` and `couple`, constant in body axes

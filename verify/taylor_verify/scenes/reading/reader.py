@@ -16,7 +16,7 @@ from typing import Final, NamedTuple, TypeVar
 
 from taylor_verify.records.quantities import MAIN, TRACKED, with_needs
 from taylor_verify.scenes import library
-from taylor_verify.scenes.bodies import Body, ImmersedBody, RigidBody
+from taylor_verify.scenes.bodies import DAMPING, Body, ImmersedBody, RigidBody
 from taylor_verify.scenes.motion import State
 from taylor_verify.scenes.names import escaped
 from taylor_verify.scenes.reading.body import immersed_body, rigid_body, warnings
@@ -213,4 +213,7 @@ def _manufactured(top: Table, model: Model, body: Body | None) -> tuple[Body | N
         if any(load):
             expected = "no load beside a manufactured motion, which determines its own"
             top.fault(expected, shown(list(load)), f"body.{name}", f"remove `{name}`")
+    if body is not None and body.damping:
+        expected, mend = "no damping beside a manufactured motion", f"remove `{DAMPING.name}`"
+        top.fault(expected, shown(body.damping), f"body.{DAMPING.name}", mend)
     return (None if body is None else body.with_motion(motion)), initial

@@ -3,7 +3,7 @@
 H  angular momentum, body axes        K  inverse inertia tensor, omega = K H
 r  momentum of wheels, not part of H
 M  constant moment, body axes         q  attitude quaternion, body to space
-h  step
+d  damping, -d H in the rate of H     h  step
 
 All is in the problem's own units, powers of two in which K, H and the rates are of size one. The
 equations are autonomous, so no time is ever summed up.
@@ -54,11 +54,12 @@ Step = Callable[[Vector], Stepped]
 
 @dataclass(frozen=True)
 class Body:
-    """A problem's body in float64; r is the momentum of its wheels."""
+    """A problem's body in float64; r is the momentum of its wheels, d its damping."""
 
     K: Matrix
     M: Vector
     r: Vector = (0.0, 0.0, 0.0)
+    d: float = 0.0
 
     @classmethod
     def of(cls, problem: Problem) -> Self:
@@ -70,7 +71,7 @@ class Body:
         K1, K2, K3 = ((entry(i, 1), entry(i, 2), entry(i, 3)) for i in (1, 2, 3))
         M1, M2, M3 = (float(named.get(f"M{i}", 0)) for i in (1, 2, 3))
         r1, r2, r3 = (float(named.get(f"r{i}", 0)) for i in (1, 2, 3))
-        return cls((K1, K2, K3), (M1, M2, M3), (r1, r2, r3))
+        return cls((K1, K2, K3), (M1, M2, M3), (r1, r2, r3), float(named.get("d", 0)))
 
     @property
     def is_diagonal(self) -> bool:
@@ -92,6 +93,7 @@ class FixedStep(Solver):
 
     takes_moment: ClassVar[bool] = False
     takes_wheels: ClassVar[bool] = False
+    takes_damping: ClassVar[bool] = False
     in_principal_axes: ClassVar[bool] = False
 
     @abstractmethod
@@ -110,6 +112,8 @@ class FixedStep(Solver):
             return f"{self.name} is made for Euler's equations, got {problem.scene.model}"
         if any(Body.of(problem).r) and not self.takes_wheels:
             return f"{self.name} is made for a body without wheels"
+        if problem.given.body.damping and not self.takes_damping:
+            return f"{self.name} is made for a body without damping"
         if problem.given.body.manufactured is not None:
             return f"{self.name} is made for a body without a moment that changes with time"
         if any(Body.of(problem).M) and not self.takes_moment:

@@ -4,7 +4,8 @@
     dexp^-1 w = w + theta x w/2 + theta x (theta x w)/12 + O(theta^4 w)
 
 The classical Runge-Kutta method for theta, from step to step: H moves by rotations, so that |H|^2 and
-R H are conserved whatever the step. T drifts.
+R H are conserved whatever the step. T drifts. With damping d, H(t) has the factor e^{-dt} besides,
+exactly, and |H| e^{dt} is conserved.
 
 H. Munthe-Kaas, Runge-Kutta methods on Lie groups, BIT 38 (1998) 92-111.
 """
@@ -12,7 +13,8 @@ H. Munthe-Kaas, Runge-Kutta methods on Lie groups, BIT 38 (1998) 92-111.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import final
+from math import exp
+from typing import ClassVar, final
 
 from taylor_verify.solvers.geometric.fixed_step import Body, FixedStep, Step, Stepped
 from taylor_verify.solvers.geometric.vectors import (
@@ -33,22 +35,23 @@ class MuntheKaas(FixedStep):
     """Any tensor; the series of dexp^-1 ends where what is left out is of fifth order in a step."""
 
     name: str = "geometric:lie-rk4"
+    takes_damping: ClassVar[bool] = True
 
     def stepping(self, body: Body, H: Vector, h: float) -> Step:
         del H
-        K = body.K
+        K, half, whole = body.K, exp(-body.d * h / 2), exp(-body.d * h)
 
         def step(H: Vector) -> Stepped:
-            def rate(theta: Vector) -> Vector:
-                return _inverse_dexp(theta, apply(K, turned_back(theta, H)))
+            def rate(theta: Vector, decay: float) -> Vector:
+                return _inverse_dexp(theta, scaled(decay, apply(K, turned_back(theta, H))))
 
             first = apply(K, H)
-            second = rate(scaled(h / 2, first))
-            third = rate(scaled(h / 2, second))
-            fourth = rate(scaled(h, third))
+            second = rate(scaled(h / 2, first), half)
+            third = rate(scaled(h / 2, second), half)
+            fourth = rate(scaled(h, third), whole)
             ends, middle = ahead(first, 1.0, fourth), ahead(second, 1.0, third)
             theta = scaled(h / 6, ahead(ends, 2.0, middle))
-            return Stepped(turned_back(theta, H), theta, 4)
+            return Stepped(scaled(whole, turned_back(theta, H)), theta, 4)
 
         return step
 

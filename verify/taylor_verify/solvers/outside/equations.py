@@ -2,11 +2,12 @@
 
 They are written in scalars, without a loop or an array, so that numba compiles them, JAX traces them
 and Python runs them as they stand. Euler: H' = (H + r) x K H + M. Kirchhoff: x' = x x Omega + X and
-y' = y x Omega + x x U + L, with U = A x + B y and Omega = B^T x + C y. With the attitude
+y' = y x Omega + x x U + L, with U = A x + B y and Omega = B^T x + C y. Damping d takes d H, or d x and d y,
+from these. With the attitude
 q' = q (0, Omega) / 2, with the centre c' = R U.
 
 s  state: H, or x and y; then q, then c, as far as tracked (3, 6, 7, 10 or 13 numbers)
-p  parameters: K by rows, M and the momentum r of wheels (15), or A B C by rows, X and L (33)
+p  parameters: K by rows, M and the momentum r of wheels (15), or A B C by rows, X and L (33); last d
 q  attitude, scalar first, body to space       c  centre, in space axes
 """
 
@@ -27,9 +28,9 @@ def euler(s: Any, p: Any) -> tuple[Any, ...]:
     w3 = p[6] * s[0] + p[7] * s[1] + p[8] * s[2]
     H1, H2, H3 = s[0] + p[12], s[1] + p[13], s[2] + p[14]
     return (
-        H2 * w3 - H3 * w2 + p[9],
-        H3 * w1 - H1 * w3 + p[10],
-        H1 * w2 - H2 * w1 + p[11],
+        H2 * w3 - H3 * w2 + p[9] - p[15] * s[0],
+        H3 * w1 - H1 * w3 + p[10] - p[15] * s[1],
+        H1 * w2 - H2 * w1 + p[11] - p[15] * s[2],
         w1,
         w2,
         w3,
@@ -46,12 +47,12 @@ def kirchhoff(s: Any, p: Any) -> tuple[Any, ...]:
     w2 = p[10] * x1 + p[13] * x2 + p[16] * x3 + p[21] * y1 + p[22] * y2 + p[23] * y3
     w3 = p[11] * x1 + p[14] * x2 + p[17] * x3 + p[24] * y1 + p[25] * y2 + p[26] * y3
     return (
-        x2 * w3 - x3 * w2 + p[27],
-        x3 * w1 - x1 * w3 + p[28],
-        x1 * w2 - x2 * w1 + p[29],
-        y2 * w3 - y3 * w2 + x2 * U3 - x3 * U2 + p[30],
-        y3 * w1 - y1 * w3 + x3 * U1 - x1 * U3 + p[31],
-        y1 * w2 - y2 * w1 + x1 * U2 - x2 * U1 + p[32],
+        x2 * w3 - x3 * w2 + p[27] - p[33] * x1,
+        x3 * w1 - x1 * w3 + p[28] - p[33] * x2,
+        x1 * w2 - x2 * w1 + p[29] - p[33] * x3,
+        y2 * w3 - y3 * w2 + x2 * U3 - x3 * U2 + p[30] - p[33] * y1,
+        y3 * w1 - y1 * w3 + x3 * U1 - x1 * U3 + p[31] - p[33] * y2,
+        y1 * w2 - y2 * w1 + x1 * U2 - x2 * U1 + p[32] - p[33] * y3,
         w1,
         w2,
         w3,

@@ -148,6 +148,7 @@ def read(scene: Any) -> Question:
         parameters = [v for key in ("linear", "coupling", "angular") for v in _flat(body[key])]
         parameters += floats(body["force"]) + floats(body["couple"])
         state = floats(initial["linear_impulse"]) + floats(initial["angular_impulse"])
+    parameters.append(floats(body["damping"]) if "damping" in body else 0.0)
     if "q0" in columns:
         state += _unit(floats(initial["attitude"]))
     if "c1" in columns:

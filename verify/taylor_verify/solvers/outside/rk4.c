@@ -18,6 +18,7 @@
  *     rotor   the momentum of wheels (3), not part of H, where there are any
  *     linear coupling angular  A B C (9 each)   force couple  X L (3 each)               (kirchhoff)
  *     linear_impulse angular_impulse centre     x y c (3 each)                           (kirchhoff)
+ *     damping           d (1), where there is any: -d H, or -d x and -d y, in the rates
  *     attitude          quaternion q (4), of any length, scalar first, body to space
  *     elapsed times     as many as there are samples
  */
@@ -103,7 +104,7 @@ static int has(const char *scene, const char *key, const char *word, char stop)
 /* The equations. State: H, q (euler) or x, y, q, c (kirchhoff). */
 
 static int is_euler;
-static double K[9], M[3], wheels[3], A[9], B[9], B_transposed[9], C[9], X[3], L[3];
+static double K[9], M[3], wheels[3], A[9], B[9], B_transposed[9], C[9], X[3], L[3], damping;
 
 static void apply(const double m[9], const double v[3], double out[3])
 {
@@ -143,7 +144,7 @@ static void rates(const double *s, double *out)
         apply(K, s, w);
         for (int i = 0; i < 3; i++) b[i] = s[i] + wheels[i];
         cross(b, w, a);
-        for (int i = 0; i < 3; i++) out[i] = a[i] + M[i];
+        for (int i = 0; i < 3; i++) out[i] = a[i] + M[i] - damping * s[i];
         attitude_rate(s + 3, w, out + 3);
         return;
     }
@@ -153,9 +154,9 @@ static void rates(const double *s, double *out)
     apply(B_transposed, x, a), apply(C, y, b);
     for (int i = 0; i < 3; i++) w[i] = a[i] + b[i];
     cross(x, w, a); /* x' = x x Omega + X */
-    for (int i = 0; i < 3; i++) out[i] = a[i] + X[i];
+    for (int i = 0; i < 3; i++) out[i] = a[i] + X[i] - damping * x[i];
     cross(y, w, a), cross(x, U, b); /* y' = y x Omega + x x U + L */
-    for (int i = 0; i < 3; i++) out[3 + i] = a[i] + b[i] + L[i];
+    for (int i = 0; i < 3; i++) out[3 + i] = a[i] + b[i] + L[i] - damping * y[i];
     attitude_rate(q, w, out + 6);
     to_space(q, U, out + 10); /* c' = R U */
 }
@@ -215,6 +216,7 @@ int main(int arguments, char **argument)
         for (int i = 0; i < 9; i++) B_transposed[i] = B[3 * (i % 3) + i / 3];
         q = s + 6;
     }
+    if (strstr(scene, "\"damping\":")) read_numbers(scene, "damping", &damping, 1);
     read_numbers(scene, "attitude", q, 4);
     double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     for (int i = 0; i < 4; i++) q[i] /= length;

@@ -14,6 +14,7 @@ H  angular momentum   K  inverse inertia    M     moment            omega = K H
 x  linear impulse     y  angular impulse    A B C  T = x.A x/2 + x.B y + y.C y/2
 U = A x + B y         Omega = B^T x + C y   X L   force and couple  all in body axes
 q  attitude, scalar first, body to space    c     centre, in space axes
+d  damping, which takes d z from the rate of z, that is H, or x and y
 z* the motion H*, or x* and y*, that loads which change with time are made for (rk4.c knows none)
 """
 
@@ -100,14 +101,21 @@ def kirchhoff(body: Any) -> Free:
     return free
 
 
-def rates_of(free: Free, constant: Vector, load: Callable[[float], Vector]) -> Rates:
+def rates_of(
+    free: Free, constant: Vector, load: Callable[[float], Vector], damping: float
+) -> Rates:
     """Return the rates of the momentum z, the attitude q and, where there is a U, of c' = R U."""
     n = len(constant)
 
     def rates(t: float, state: Vector) -> Vector:
         q = state[n : n + 4]
         rate, w, U = free(state[:n])
-        return add(rate, constant, load(t)) + attitude_rate(q, w) + (to_space(q, U) if U else [])
+        decay = [-damping * z for z in state[:n]]
+        return (
+            add(rate, constant, load(t), decay)
+            + attitude_rate(q, w)
+            + (to_space(q, U) if U else [])
+        )
 
     return rates
 
@@ -178,7 +186,8 @@ def main() -> None:
         start = floats(initial["linear_impulse"]) + floats(initial["angular_impulse"])
         constant = floats(body["force"]) + floats(body["couple"])
         free, centre = kirchhoff(body), floats(initial["centre"])
-    rates = rates_of(free, constant, loads_of(scene.get("manufactured"), start, free))
+    damping = floats(body["damping"]) if "damping" in body else 0.0
+    rates = rates_of(free, constant, loads_of(scene.get("manufactured"), start, free), damping)
     state = start + q + centre
 
     rows, steps, now = [], 0, 0.0

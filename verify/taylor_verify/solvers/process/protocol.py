@@ -4,8 +4,8 @@ The question is one JSON document on the program's standard input. Every key but
 occurs once in it and has one meaning, whatever its table, so that a reader may search the text for
 ``"elapsed":`` and go on from there. None of them is a key of the answer.
 
-    protocol             1; 2 where there is `manufactured`, and 3 where there is `rotor`, which a reader of
-                         an earlier one would not look for
+    protocol             1; 2 where there is `manufactured`, 3 where there is `rotor`, and 4 where there is
+                         `damping`, which a reader of an earlier one would not look for
     scene, title         the name of the scene and its title
     model                "euler" or "kirchhoff"
     track                what the scene asks besides omega or impulse: "attitude", "centre"
@@ -20,6 +20,7 @@ occurs once in it and has one meaning, whatever its table, so that a reader may 
       coupling             B, 3x3, its row the index of x        (kirchhoff)
       angular              C, 3x3                                (kirchhoff)
       force, couple        X and L, 3 each                       (kirchhoff)
+      damping              d, a number, where there is any: -d H, or -d x and -d y, in the rates
     initial              the state at the start
       omega                body axes                             (euler; its hex is rounded)
       angular_momentum     H = I omega, without the wheels       (euler)
@@ -40,7 +41,7 @@ Every number, vector or matrix is an object of two: ``text``, the exact value (a
 where no decimal is finite), and ``hex``, the hexadecimal float of the rung, as C's strtod reads it.
 They are equal but where the table says that hex is rounded: K and H are rounded once, and I = K^-1
 and omega = K H follow from them exactly. Whoever integrates H' = H x K H + M has exact data; with wheels
-it is H' = (H + h) x K H + M.
+it is H' = (H + h) x K H + M, and with damping -d H more.
 
 Loads that change with time are M = H*' - H* x K H*, or X = x*' - x* x Omega* and
 L = y*' - y* x Omega* - x* x U*, with Omega* and U* made of x* and y* as Omega and U are of x and y:
@@ -97,6 +98,8 @@ VERSION = 1
 VERSION_WITH_WAVES = 2
 # So has one that knows a rigid body alone.
 VERSION_WITH_WHEELS = 3
+# And one that knows no damping.
+VERSION_WITH_DAMPING = 4
 
 # A time is read from a decimal, formed as start + k dt and printed again: three roundings, and one.
 _TIME_ROUNDINGS = 4
@@ -149,6 +152,8 @@ def question(problem: Problem) -> dict[str, Any]:
 
 def _version(body: Body) -> int:
     """Return the version of the protocol that a program has to know for this body."""
+    if body.damping:
+        return VERSION_WITH_DAMPING
     if isinstance(body, Gyrostat):
         return VERSION_WITH_WHEELS
     return VERSION if body.manufactured is None else VERSION_WITH_WAVES

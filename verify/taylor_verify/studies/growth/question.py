@@ -50,9 +50,10 @@ class Question:
     seed: int = 1
 
     def __post_init__(self) -> None:
-        if not self.scene.body.is_free:
+        if not self.scene.body.is_free or self.scene.body.damping:
+            got = "damping" if self.scene.body.damping else "loads"
             raise ValueError(
-                f"expected a free body, whose conserved quantities are conserved, got loads "
+                f"expected a free body, whose conserved quantities are conserved, got {got} "
                 f"@ {self.scene.name}"
             )
         if not self.periods >= LEAST_PERIODS * (1 - _SLACK):

@@ -75,7 +75,7 @@ class Truth:
             most = {name: float(largest(values)) for name, values in bounds.items()}
             final = {name: float(values[-1]) for name, values in bounds.items()}
             own = (self._start, self._motion, answer, trajectory.quantities, self._digits)
-            conserved = drifts(given, *own) if given.body.is_free else ()
+            conserved = drifts(given, *own) if given.body.is_conservative else ()
             drift = [(float(largest(one.values)), name.name) for name, one in conserved]
         # NaN is larger than any.
         worst = max(drift, key=lambda one: (isnan(one[0]), one[0]), default=(None, ""))
