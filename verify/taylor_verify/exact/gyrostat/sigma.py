@@ -27,7 +27,7 @@ from taylor_verify.exact.gyrostat.azimuth import (
 )
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.exact.gyrostat.point import PointMap, point_map
-from taylor_verify.exact.gyrostat.velocity import WeierstrassForm
+from taylor_verify.exact.gyrostat.velocity import momentum_form
 from taylor_verify.exact.kirchhoff.lattice import Lattice, lattice
 from taylor_verify.exact.rotation import (
     conjugate,
@@ -113,7 +113,7 @@ class Tumbling:
     """omega and R of a motion that is not a uniform turning."""
 
     def __init__(self, free: FreeGyrostat, attitude: Quaternion | None, frame: Frame) -> None:
-        self._form = WeierstrassForm.of(free).converted(ball)
+        self._form = momentum_form(free).converted(ball)
         self._K = arb_mat([balls(row) for row in free.K])
         self._g = arb_mat(3, 1, balls(free.g))
         self._lattice = lattice(*free.invariants)
