@@ -1,6 +1,6 @@
 """The free motion of a gyrostat in balls: omega by Weierstrass's p, the attitude by sigma quotients.
 
-Legend: as in pencil and azimuth; s is the odd function of exact.kirchhoff.lattice, alpha_j the argument of
+Legend: as in pencil and azimuth; s is the odd function of exact.lattice, alpha_j the argument of
 a pole of phi' and sigma_j its sign. With k such that the rate at the start is phi'(0),
 
     e^{i phi} = e^{i k t} prod (q_j/|q_j|)^sigma_j,    q_j = s(t - alpha_j)/s(-alpha_j):
@@ -28,7 +28,7 @@ from taylor_verify.exact.gyrostat.azimuth import (
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.exact.gyrostat.point import PointMap, point_map
 from taylor_verify.exact.gyrostat.velocity import momentum_form
-from taylor_verify.exact.kirchhoff.lattice import Lattice, lattice
+from taylor_verify.exact.lattice import Lattice, lattice
 from taylor_verify.exact.rotation import (
     conjugate,
     cross,
