@@ -36,9 +36,9 @@ from taylor_verify.exact.kirchhoff import course as course_module
 from taylor_verify.exact.kirchhoff import lattice as lattice_module
 from taylor_verify.exact.kirchhoff.closed import closed_form, enclosed
 from taylor_verify.exact.kirchhoff.course import Course, course
-from taylor_verify.exact.kirchhoff.lattice import Periods
 from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.kirchhoff.weierstrass import NutatingBody, Orbit
+from taylor_verify.exact.lattice import Periods
 from taylor_verify.exact.solution import NoClosedForm, Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody

@@ -12,7 +12,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from taylor_verify.exact.balls import Undecidable, ball
-from taylor_verify.exact.kirchhoff.lattice import Lattice, lattice
+from taylor_verify.exact.lattice import Lattice, lattice
 
 BITS = 400
 # Balls that overlap say nothing unless they are narrow: a quarter of the bits may be lost, half of

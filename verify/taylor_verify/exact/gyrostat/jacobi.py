@@ -35,7 +35,7 @@ from taylor_verify.exact.gyrostat.azimuth import (
 from taylor_verify.exact.gyrostat.carlson import integral_j
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.exact.gyrostat.point import point_map
-from taylor_verify.exact.gyrostat.velocity import WeierstrassForm
+from taylor_verify.exact.gyrostat.velocity import momentum_form
 from taylor_verify.exact.rotation import cross
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.motion import Quaternion
@@ -59,11 +59,19 @@ def free_rotation(free: FreeGyrostat, attitude: Quaternion | None) -> Rotation:
 
 
 def _lost_digits(free: FreeGyrostat, longest: Fraction, turned: bool) -> float:
-    """The decimal digits lost to the angle turned in a time; whether that is all, two precisions tell."""
+    """The decimal digits lost to the angle turned in a time, and beside a double root of the pencil.
+
+    There a pole of phi' is all but at the double point, and too few digits put it there: two precisions
+    would agree, and be wrong by its share of the angle.
+    """
     del turned
     rates = (free.omega, free.g, tensors.apply(free.K, free.momentum))
     angle = longest * sum(abs(c) for v in rates for c in v)
-    return _GUARD_DIGITS + decades(1 + angle)
+    digits = _GUARD_DIGITS + decades(1 + angle)
+    if not free.discriminant:
+        return digits
+    g2, g3 = free.invariants
+    return digits + decades((abs(g2) ** 3 + 27 * g3**2) / abs(free.discriminant))
 
 
 @final
@@ -194,7 +202,7 @@ class Tumbling:
 
     def __init__(self, free: FreeGyrostat) -> None:
         self._free, self._swing = free, Swing(free)
-        self._form = WeierstrassForm.of(free).converted(mp.convert)
+        self._form = momentum_form(free).converted(mp.convert)
         self._K, self._g = [converted(row) for row in free.K], converted(free.g)
         self._omega = converted(free.omega)
 

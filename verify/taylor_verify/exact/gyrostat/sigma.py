@@ -1,6 +1,6 @@
 """The free motion of a gyrostat in balls: omega by Weierstrass's p, the attitude by sigma quotients.
 
-Legend: as in pencil and azimuth; s is the odd function of exact.kirchhoff.lattice, alpha_j the argument of
+Legend: as in pencil and azimuth; s is the odd function of exact.lattice, alpha_j the argument of
 a pole of phi' and sigma_j its sign. With k such that the rate at the start is phi'(0),
 
     e^{i phi} = e^{i k t} prod (q_j/|q_j|)^sigma_j,    q_j = s(t - alpha_j)/s(-alpha_j):
@@ -27,8 +27,8 @@ from taylor_verify.exact.gyrostat.azimuth import (
 )
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.exact.gyrostat.point import PointMap, point_map
-from taylor_verify.exact.gyrostat.velocity import WeierstrassForm
-from taylor_verify.exact.kirchhoff.lattice import Lattice, lattice
+from taylor_verify.exact.gyrostat.velocity import momentum_form
+from taylor_verify.exact.lattice import Lattice, lattice
 from taylor_verify.exact.rotation import (
     conjugate,
     cross,
@@ -113,7 +113,7 @@ class Tumbling:
     """omega and R of a motion that is not a uniform turning."""
 
     def __init__(self, free: FreeGyrostat, attitude: Quaternion | None, frame: Frame) -> None:
-        self._form = WeierstrassForm.of(free).converted(ball)
+        self._form = momentum_form(free).converted(ball)
         self._K = arb_mat([balls(row) for row in free.K])
         self._g = arb_mat(3, 1, balls(free.g))
         self._lattice = lattice(*free.invariants)

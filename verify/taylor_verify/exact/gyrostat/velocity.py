@@ -8,6 +8,11 @@ Legend: as in pencil; P = p(t), P' = p'(t), and G has the four poles p_k. With c
 
 It is the sum over the poles of c_k (P' + p'(p_k))/2 (P - p(p_k)), c_k the residues of G, in which the
 principal axes and every square root have cancelled.
+
+On a circle two of the poles are at the double point, which a separatrix approaches for ever: there both
+parts of the quotient go to zero. With r = mu.d/nu.d as in point, and mu = G'(0), the circle itself gives
+
+    G = G(0) - 2 (nu.G(0)) (r mu + (mu.mu/nu.nu) nu)/(r^2 nu.nu + mu.mu).
 """
 
 from __future__ import annotations
@@ -18,6 +23,7 @@ from fractions import Fraction
 from typing import Any, final
 
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
+from taylor_verify.exact.gyrostat.point import OnCircle, point_map
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.tensors import Vector, cross, dot
 
@@ -112,6 +118,41 @@ class WeierstrassForm:
         return [
             G + (V * _value(gamma, X) + _value(kappa, X)) / below for G, gamma, kappa in components
         ]
+
+
+@final
+@dataclass(frozen=True)
+class CircleForm:
+    """G(t) on a circle where p + 2 e >= 0 is the square of c = k coth(k t)."""
+
+    place: OnCircle
+
+    def converted(self, convert: Callable[[Fraction], Any]) -> CircleForm:
+        """Return the same constants in another arithmetic."""
+        return CircleForm(self.place.converted(convert))
+
+    def at(self, P: Any, slope: Any) -> list[Any]:
+        """G where p = P and p' = slope, which has the sign of -c."""
+        start, mu, nu = self.place.start, self.place.mu, self.place.nu
+        c = (P + 2 * self.place.double_root) ** 0.5
+        r = ((-c if slope > 0 else c) - self.place.constant) / self.place.scale
+        size, across, height = (_dot(*pair) for pair in ((mu, mu), (nu, nu), (nu, start)))
+        factor = -2 * height / (r * r * across + size)
+        components = zip(start, mu, nu, strict=True)
+        return [G + factor * (r * p + size / across * q) for G, p, q in components]
+
+
+def momentum_form(free: FreeGyrostat) -> WeierstrassForm | CircleForm:
+    """Return the exact constants of G(t), a motion that is not steady."""
+    if free.is_circle and free.double_root >= 0:
+        place = point_map(free)
+        assert isinstance(place, OnCircle)
+        return CircleForm(place)
+    return WeierstrassForm.of(free)
+
+
+def _dot(a: Sequence[Any], b: Sequence[Any]) -> Any:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def _bracket(K: Any, a: Vector, b: Vector) -> Vector:

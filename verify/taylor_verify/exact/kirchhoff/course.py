@@ -16,7 +16,6 @@ from typing import final
 from flint import acb, arb
 
 from taylor_verify.exact.balls import ball
-from taylor_verify.exact.kirchhoff.lattice import Lattice, lattice
 from taylor_verify.exact.kirchhoff.quartic import (
     Nutation,
     Polynomial,
@@ -24,6 +23,7 @@ from taylor_verify.exact.kirchhoff.quartic import (
     invariants,
     value,
 )
+from taylor_verify.exact.lattice import Lattice, lattice
 
 
 class Course(ABC):

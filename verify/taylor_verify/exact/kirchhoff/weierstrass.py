@@ -26,8 +26,8 @@ from flint import acb, arb, arb_mat
 
 from taylor_verify.exact.balls import Enclosed, Enclosure, ball, ball_matrix, balls
 from taylor_verify.exact.kirchhoff.course import QuarticCourse, course
-from taylor_verify.exact.kirchhoff.lattice import Lattice
 from taylor_verify.exact.kirchhoff.quartic import Nutation, repeated_root
+from taylor_verify.exact.lattice import Lattice
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Time
 from taylor_verify.scenes.motion import Impulse

@@ -22,6 +22,7 @@ from taylor_verify.exact import rotation
 from taylor_verify.exact.balls import ball, balls
 from taylor_verify.exact.euler.moments.kummer import KummerTurn
 from taylor_verify.exact.euler.moments.regime import Line, LoadedSpin, MomentRegime
+from taylor_verify.exact.euler.moments.series import SeriesTurn
 from taylor_verify.exact.euler.rotations import RotationBalls
 from taylor_verify.scenes import motion, tensors
 
@@ -53,7 +54,7 @@ class _Course:
             self._factor = arb.pi().sqrt() / (2 * self._root)
         if line is not None:
             self._axis = [component / length for component in balls(spin.free.axis)]
-            self._turn = KummerTurn(line)
+            self._turn = SeriesTurn(line) if line.is_weak else KummerTurn(line)
 
     def at(self, t: Fraction, turned: bool) -> tuple[list[arb], list[arb]]:
         phi = ball(self._spin.phi(t)) / self._length

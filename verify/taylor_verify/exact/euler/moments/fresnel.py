@@ -52,9 +52,16 @@ def _angle_digits(spin: LoadedSpin, longest: Fraction) -> float:
 
 
 def _turn_digits(line: Line, longest: Fraction) -> float:
-    """The decimal digits before the point of |z| = |b| s^2/2: e^(z/2) turns by no larger angle."""
+    """The decimal digits before the point of |z| = |b| s^2/2: e^(z/2) turns by no larger angle.
+
+    Under a weak moment those of |a|/|across|, by which h may exceed its first slope, and of the angle.
+    """
+    if line.is_weak:
+        size, across = (tensors.dot(v, v) for v in (line.a, line.across))
+        angle = size * longest**2 + line.pace * longest**4
+        return decades((1 + angle) * (1 + (size / across if across else 0))) / 2
     furthest = longest + abs(line.lead)
-    return decades(1 + tensors.dot(line.b, line.b) * furthest**4 / 4) / 2
+    return decades(1 + line.pace * furthest**4 / 4) / 2
 
 
 class _Course:

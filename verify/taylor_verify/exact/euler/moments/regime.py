@@ -27,7 +27,7 @@ from functools import cached_property
 from typing import Final
 
 from taylor_verify.exact.euler.regime import FreeSpin
-from taylor_verify.exact.solution import NoClosedForm
+from taylor_verify.exact.solution import NoClosedForm, Unsettled
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.tensors import Matrix, Vector
 
@@ -36,6 +36,8 @@ from taylor_verify.scenes.tensors import Matrix, Vector
 _MOST_TURNS: Final = 256
 # Angles since the instant at which the spin, or omega, would be least: each of their digits is lost.
 _LARGEST_ANGLE: Final = 10**600
+# Each of two parts of half the angle under a weak moment: a power series takes seconds for so many radians.
+_LARGEST_HALF_ANGLE: Final = 2**17
 
 
 class MomentRegime(StrEnum):
@@ -60,11 +62,41 @@ class Line:
 
     @cached_property
     def lead(self) -> Fraction:
-        return tensors.dot(self.a, self.b) / tensors.dot(self.b, self.b)
+        return tensors.dot(self.a, self.b) / self.pace
 
     @cached_property
     def across(self) -> Vector:
         return tensors.minus(self.a, tensors.scaled(self.lead, self.b))
+
+    @cached_property
+    def pace(self) -> Fraction:
+        """|b|^2."""
+        return tensors.dot(self.b, self.b)
+
+    @cached_property
+    def is_weak(self) -> bool:
+        """True if b is too small beside a for Kummer's functions."""
+        across = tensors.dot(self.across, self.across)
+        # Squares of |across|^2/8|b|, the size of Kummer's parameter, and of |b| lead^2/2, his argument's.
+        is_moderate = across**2 <= _MOST_TURNS**2 * 64 * self.pace
+        return not (is_moderate and self.pace * self.lead**4 <= 4 * _LARGEST_ANGLE**2)
+
+    def restarted(self, t: Fraction) -> Line:
+        """The same line with its times counted from t."""
+        return Line(tensors.plus(self.a, tensors.scaled(t, self.b)), self.b)
+
+    def is_short(self, t: Fraction, most: int) -> bool:
+        """True if neither |a| t/2 nor |b| t^2/4 is more than ``most``."""
+        size = tensors.dot(self.a, self.a)
+        return size * t**2 <= 4 * most**2 and self.pace * t**4 <= 16 * most**2
+
+    def check_reach(self, t: Fraction) -> None:
+        """Raise Unsettled where power series up to the time t would take minutes."""
+        if not self.is_short(t, _LARGEST_HALF_ANGLE):
+            raise Unsettled(
+                f"the attitude under a weak moment: expected at most {_LARGEST_HALF_ANGLE} radians up to "
+                "the times asked for"
+            )
 
 
 @dataclass(frozen=True)
@@ -133,10 +165,7 @@ class LoadedSpin:
 
     @cached_property
     def line(self) -> Line:
-        """The straight line a + b t that omega is for the frame A.
-
-        Raises NoClosedForm where there is none, or where its closed form is out of reach.
-        """
+        """The straight line a + b t that omega is for the frame A; NoClosedForm where there is none."""
         if self.regime not in (MomentRegime.SPHERICAL, MomentRegime.AXIAL):
             raise NoClosedForm(
                 "the attitude of an axisymmetric body under a moment that is not along its axis"
@@ -144,13 +173,4 @@ class LoadedSpin:
         free = self.free
         gyration = tensors.scaled(free.ratio, free.along(self.omega))
         b = tensors.scaled(1 / free.double_moment, self.moment)
-        found = Line(tensors.plus(self.omega, gyration), b)
-        across, pace = tensors.dot(found.across, found.across), tensors.dot(found.b, found.b)
-        # Squares of |across|^2/8|b|, the size of Kummer's parameter, and of |b| lead^2/2, his argument's.
-        if not across**2 <= _MOST_TURNS**2 * 64 * pace:
-            raise NoClosedForm(
-                f"Kummer's parameter of the attitude exceeds {_MOST_TURNS}: the moment is too weak"
-            )
-        if not pace * found.lead**4 <= 4 * _LARGEST_ANGLE**2:
-            raise NoClosedForm("the attitude under a moment that is too weak beside omega")
-        return found
+        return Line(tensors.plus(self.omega, gyration), b)
