@@ -11,11 +11,9 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.models.problem import pose
 from taylor_verify.records.json_text import complete, parsed
 from taylor_verify.records.store import laid_out
 from taylor_verify.run import solve
-from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.engines.engine import PREFIX, engines
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
@@ -77,11 +75,10 @@ def answered(asked: Asked) -> Answer:
     standing = _STANDINGS.get(trajectory.outcome, Standing.FAILED)
     if standing is not Standing.JUDGED:
         return Answer(row_of(asked, standing, detail=_reason(trajectory)))
-    problem = pose(load(asked.scene), rung_named(asked.rung))
-    states, steps = states_of(problem, trajectory), trajectory.steps
+    states, steps = states_of(load(asked.scene), trajectory), trajectory.steps
     found = errors_of(judged(asked.scene, asked.rung, asked.solver, states, steps))
     bits = 8 * states.dtype.itemsize
-    row = row_of(asked, standing, steps=steps, bits=bits, **vars(found))
+    row = row_of(asked, standing, steps=steps, bits=bits, detail=trajectory.detail, **vars(found))
     return Answer(row, trajectory.seconds, states)
 
 

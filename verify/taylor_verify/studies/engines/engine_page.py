@@ -56,6 +56,8 @@ def _section(board: Board, own: Sequence[Setting], scene: str) -> Iterator[str]:
     knob = rows[0].knob
     columns = ["version", "setting", f"{knob}:", *numbers, "digits:", "time:", "cause"]
     yield table(columns, [_cells(board, row, states, conserved) for row in rows])
+    if remarks := dict.fromkeys(f"{row.version}: {row.detail}" for row in rows if row.detail):
+        yield bullets(prose(f"Remark on {remark}.") for remark in remarks)
     if orders := [_order(one, scene, states) for one in own if len(one.on(scene)) > 2]:
         yield bullets(filter(None, orders))
 

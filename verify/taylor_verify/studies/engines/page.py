@@ -53,8 +53,9 @@ _FAIRNESS: Final = (
     "[sheet](engines.csv) has its error.",
     "Every engine gets the same numbers, each rounded once to the precision of its arithmetic, and is "
     "compared with the exact motion of the rounded ones.",
-    "An engine that takes principal moments alone is not run on `engines/full-tensor`. Its row on "
-    "`engines/oblique` is that of the same motion: the two scenes differ in the choice of body axes only.",
+    "An engine that takes principal moments alone is given the principal axes of `engines/full-tensor`, "
+    "and its answer is turned back; the remark on its page says so. In space that is the motion of "
+    "`engines/oblique`.",
     "A surprising finding is published where a second demonstration stands beside it that does not use our "
     "adapter: the engine's own data, its source or its changelog, and a script of few lines that runs with "
     "the engine alone. A finding that rests on our adapter alone is not published.",
@@ -66,7 +67,7 @@ _OBJECT: Final = (
     "A better adapter is one file, [with_NAME](../../cases/README.md#to-add-an-engine); a new setting or "
     "version is a word in the engine's row of `verify/taylor_verify/studies/engines/entries.toml`.",
     "An engine of your own needs no adapter here to be judged: "
-    "[bring your engine](../../docs/tutorials/bring-your-engine.md).",
+    "[bring your engine](../../docs/bring-your-engine.md).",
 )
 
 

@@ -13,12 +13,14 @@ from mpmath import mp
 from taylor_verify.judge.causes.answers import with_causes
 from taylor_verify.judge.initial import with_initial
 from taylor_verify.judge.judgement import Judgement, judgement
-from taylor_verify.models.problem import Problem, pose
+from taylor_verify.models.problem import Problem
 from taylor_verify.records.answers import LikelyCause
-from taylor_verify.records.quantities import INITIAL
+from taylor_verify.records.quantities import INITIAL, state_groups
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.registry import solver_named
 from taylor_verify.solvers.solver import Solver, columns
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.studies.engines.document import STATES
@@ -59,12 +61,12 @@ class Errors:
     cause: str
 
 
-def states_of(problem: Problem, trajectory: Trajectory) -> States:
+def states_of(scene: Scene, trajectory: Trajectory) -> States:
     """Return a trajectory as an array of the smallest floats that hold it: float32, else float64.
 
     Its numbers are the engine's own: what is no double is rounded to one, which no engine here needs.
     """
-    parts = [trajectory.quantities[name] for name, _ in columns(problem)]
+    parts = [trajectory.quantities[name] for name in state_groups(scene.model, scene.track)]
     doubles = np.array(
         [[float(v) for part in parts for v in part[k]] for k in range(len(parts[0]))]
     )
@@ -76,9 +78,10 @@ def states_of(problem: Problem, trajectory: Trajectory) -> States:
 def judged(scene: str, rung: str, solver: str, states: States, steps: int) -> Judgement:
     """Return the judgement of stored states, with the likely causes of what failed.
 
-    No time limits the steps that are counted: a judgement is the same on every machine.
+    The problem is that of the data which the solver takes. No time limits the steps that are counted: a
+    judgement is the same on every machine.
     """
-    problem = pose(load(scene), rung_named(rung))
+    problem = solver_named(solver).problem(load(scene), rung_named(rung))
     stored = Stored(solver, states, steps)
     trajectory = stored.solve(problem)
     found = with_initial(judgement(problem, stored, trajectory), float(problem.given.clock.start))
