@@ -96,10 +96,11 @@ def test_an_engine_with_the_right_equations_converges_to_the_exact_motion(
     """The error falls with the fourth power of the step, whatever the tensor and the instants."""
     problem = posed(inertia, time)
     truth = Truth(problem)
+    remark = "" if inertia == DIAGONAL else "solved in principal axes, and turned back"
     errors = []
     for step in (0.1, 0.05):
         found = solved(engine, problem, step)
-        assert (found.outcome, found.detail) == (Outcome.FINISHED, "")
+        assert (found.outcome, found.detail) == (Outcome.FINISHED, remark)
         assert found.steps == round(4 / step)
         assert found.seconds > 0
         errors.append(truth.accuracy(found).worst)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from taylor_verify.models.problem import Problem, pose
+from taylor_verify.models.problem import Problem, pose_as_stored
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import read
 from taylor_verify.solvers.engines.engine import prepare
@@ -53,10 +53,10 @@ def solved(monkeypatch: pytest.MonkeyPatch) -> Rows:
             prepare(library)
         except NotMade as reason:
             pytest.skip(str(reason))
-        problem = pose(read(SCENE.format(inertia=inertia), "oblique"), posed_on(name))
+        problem = pose_as_stored(read(SCENE.format(inertia=inertia), "oblique"), posed_on(name))
         query = "&".join(filter(None, (settings, f"step={step}")))
         found = solver_named(f"outside:{library}?{query}").solve(problem)
-        assert (found.outcome, found.detail) == (Outcome.FINISHED, "")
+        assert found.outcome is Outcome.FINISHED, found.detail
         return problem, found
 
     return solve

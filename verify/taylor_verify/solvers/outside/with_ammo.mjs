@@ -5,6 +5,8 @@
 // title = "ammo.js, Bullet 2.82 in float32"
 // models = ["euler"]
 // rungs = ["f32"]
+// loads = false
+// data = "tensor"
 // [tool.taylor-verify.settings]
 // flags = ["2", "0", "4", "8"]
 // build = ["javascript", "wasm"]

@@ -4,6 +4,8 @@
 // [tool.taylor-verify]
 // title = "cannon-es, rigid bodies in float64"
 // models = ["euler"]
+// loads = false
+// data = "tensor"
 // [tool.taylor-verify.settings]
 // defaults = ["off", "shipped"]
 // step = 0.01

@@ -5,6 +5,8 @@
 // title = "Havok, rigid bodies in float32"
 // models = ["euler"]
 // rungs = ["f32"]
+// loads = false
+// data = "tensor"
 // [tool.taylor-verify.settings]
 // defaults = ["off", "shipped"]
 // step = 0.01

@@ -5,6 +5,8 @@
 // title = "Jolt Physics, rigid bodies in float32"
 // models = ["euler"]
 // rungs = ["f32"]
+// loads = false
+// data = "tensor"
 // [tool.taylor-verify.settings]
 // gyroscopic = ["on", "off"]
 // defaults = ["off", "shipped"]

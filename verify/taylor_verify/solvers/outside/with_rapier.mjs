@@ -5,6 +5,8 @@
 // title = "Rapier, rigid bodies in float32"
 // models = ["euler"]
 // rungs = ["f32"]
+// loads = false
+// data = "tensor"
 // [tool.taylor-verify.settings]
 // iterations = 4
 // defaults = ["off", "shipped"]
