@@ -12,7 +12,7 @@ from taylor_verify.judge.judgement import Judgement
 from taylor_verify.run import run
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.engines import environment
+from taylor_verify.solvers.engines import python
 from taylor_verify.solvers.engines.engine import SCRIPTS, Engine, Outside
 from taylor_verify.solvers.engines.script import read_script
 
@@ -67,7 +67,7 @@ FLOAT32 = 2.0**-24
 
 def twin(folder: Path, data: str, monkeypatch: pytest.MonkeyPatch) -> Outside:
     """The script as an engine that runs in this interpreter."""
-    monkeypatch.setattr(environment, "interpreter", lambda *_: sys.executable)
+    monkeypatch.setattr(python, "interpreter", lambda *_: sys.executable)
     for module in ("equations.py", "free_body.py", "question.py"):
         shutil.copy(SCRIPTS / module, folder)
     path = folder / "with_twin.py"

@@ -24,9 +24,9 @@ from taylor_verify.run import run
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import load, read
-from taylor_verify.solvers.engines import environment
+from taylor_verify.solvers.engines import python
 from taylor_verify.solvers.engines.engine import SCRIPTS, Engine, engines, named, prepare
-from taylor_verify.solvers.engines.environment import NotMade
+from taylor_verify.solvers.engines.launcher import NotMade
 from taylor_verify.solvers.engines.script import read_script
 from taylor_verify.solvers.engines.script import scripts as read_scripts
 from taylor_verify.solvers.process import protocol
@@ -158,8 +158,8 @@ def test_no_script_hides_a_library() -> None:
 
 def test_a_list_says_what_each_is(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each has a title, with the reason beside it where it is unavailable; no environment is made."""
-    monkeypatch.setattr(environment, "_uv_says", None)
-    monkeypatch.setattr(environment, "_uv", lambda: "uv")
+    monkeypatch.setattr(python, "_uv_says", None)
+    monkeypatch.setattr(python, "_uv", lambda: "uv")
     told = remarks()
     for name in engines():
         (remark,) = [
@@ -167,7 +167,7 @@ def test_a_list_says_what_each_is(monkeypatch: pytest.MonkeyPatch) -> None:
         ]
         assert remark
         assert ("unavailable" in remark) is name.startswith("numbalsoda")
-    monkeypatch.setattr(environment, "_uv", lambda: None)
+    monkeypatch.setattr(python, "_uv", lambda: None)
     assert "pip install 'taylor-verify[engines]'" in remarks()[engines()["cvode-bdf"].usage]
 
 

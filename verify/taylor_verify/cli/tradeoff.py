@@ -22,7 +22,7 @@ from taylor_verify.cli.streams import say
 from taylor_verify.records.replacement import replace_files
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines.engine import engines, prepare
-from taylor_verify.solvers.engines.environment import NotMade
+from taylor_verify.solvers.engines.launcher import NotMade
 from taylor_verify.studies.tradeoff.cold import cold
 from taylor_verify.studies.tradeoff.document import label
 from taylor_verify.studies.tradeoff.recommendation import OutOfReach, check_target, recommended

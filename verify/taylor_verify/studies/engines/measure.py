@@ -16,7 +16,7 @@ from taylor_verify.batch.runs import run_all
 from taylor_verify.judge.provenance import machine, packages
 from taylor_verify.scenes.reading.reader import load as load_scene
 from taylor_verify.solvers.engines.engine import PREFIX, prepare
-from taylor_verify.solvers.engines.environment import NotMade
+from taylor_verify.solvers.engines.launcher import NotMade
 from taylor_verify.studies.engines import trajectories
 from taylor_verify.studies.engines.answer import Answer, answered, made_of, row_of
 from taylor_verify.studies.engines.document import (
