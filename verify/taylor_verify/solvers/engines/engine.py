@@ -15,8 +15,10 @@ from functools import cache
 from pathlib import Path
 from typing import Final, final
 
-from taylor_verify.models.problem import Problem
+from taylor_verify.models.problem import Problem, pose, pose_as_stored
+from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.precision import Rung
+from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines import environment
 from taylor_verify.solvers.engines.environment import NotMade, Tell
 from taylor_verify.solvers.engines.script import Script, scripts
@@ -143,9 +145,17 @@ class Outside(Solver):
         models = self.engine.script.about.models
         if problem.given.model not in models:
             return f"{self.name} is made for {' and '.join(models)} alone"
-        if problem.given.body.manufactured is not None:
+        body = problem.given.body
+        if body.manufactured is not None:
             return f"{self.name} is made for constant loads, and not for a manufactured motion"
+        if not self.engine.script.about.loads and (isinstance(body, Gyrostat) or not body.is_free):
+            return f"{self.name} is made for free bodies without wheels"
         return ""
+
+    def problem(self, scene: Scene, rung: Rung) -> Problem:
+        # The truth starts from the numbers that the engine is given.
+        takes_tensor = self.engine.script.about.data == "tensor"
+        return pose_as_stored(scene, rung) if takes_tensor else pose(scene, rung)
 
     def solve(self, problem: Problem) -> Trajectory:
         if reason := self.unavailable(problem.rung):

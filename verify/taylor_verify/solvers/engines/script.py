@@ -7,6 +7,8 @@ title = "SUNDIALS CVODE, by scikit-sundae"
 package = "scikit-sundae"              optional: whose pin `version` replaces; else the first
 rungs = ["f64"]                        optional
 models = ["euler", "kirchhoff"]        optional
+loads = false                          optional: takes no constant loads and no wheels
+data = "tensor"                        optional: takes I and omega as they stand; else I^-1 and I omega
 unavailable = "..."                    optional: why nothing can install it
 [tool.taylor-verify.methods]           optional: each method is a solver, with its title
 bdf = "BDF, order 1 to 5"
@@ -24,7 +26,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import inf
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 import msgspec
 
@@ -43,6 +45,8 @@ class About(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     package: str = ""
     rungs: tuple[str, ...] = ("f64",)
     models: tuple[str, ...] = ("euler", "kirchhoff")
+    loads: bool = True
+    data: Literal["inverse", "tensor"] = "inverse"
     unavailable: str = ""
     methods: Mapping[str, str] = {}
     settings: Mapping[str, float | str | list[str]] = {}
