@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -119,9 +120,14 @@ class FreeBody:
 
 
 def answer(solve: Callable[[FreeBody, Settings], Solved]) -> None:
-    """Read the question on stdin, solve it as the arguments say, write the answer on stdout."""
+    """Read the question on stdin, solve it as the arguments say, write the answer on stdout.
+
+    What an engine prints goes to stderr, at its exit and from C too.
+    """
     settings, body = arguments(), free_body(json.load(sys.stdin))
-    json.dump(document(body.question, solve(body, settings)), sys.stdout)
+    with os.fdopen(os.dup(1), "w", encoding="ascii") as stdout:
+        os.dup2(2, 1)
+        json.dump(document(body.question, solve(body, settings)), stdout)
 
 
 def free_body(scene: Any) -> FreeBody:
