@@ -58,14 +58,14 @@ def _take(
     if (best := best_of(scores)) is None:
         return
     yield (
-        f"For free rotation take {named(best.setting, names)} and {_step(best)}: omega and attitude are "
+        f"For free rotation take {named(best.setting, names)}{_step(best)}: omega and attitude are "
         f"right to {figure(best.error)} on all of {_listed(scenes)}, the most that an engine reaches here."
     )
     paced = [(pace, s) for s in scores if s.error <= ENOUGH and (pace := board.pace(s.row))]
     if paced:
         pace, cheap = min(paced, key=lambda pair: pair[0])
         yield (
-            f"Where {figure(ENOUGH)} is enough, {named(cheap.setting, names)} and {_step(cheap)} is the "
+            f"Where {figure(ENOUGH)} is enough, {named(cheap.setting, names)}{_step(cheap)} is the "
             f"cheapest: {figure(1e6 * pace)} microseconds for each second of the motion."
         )
 
@@ -130,7 +130,7 @@ def _too_fine(
     for engine, group in groupby(engines, key=lambda one: one.engine):
         found = [one for one in group if best_of(one.scores(scenes)) is not None]
         best = best_of(score for one in found for score in one.scores(scenes))
-        if best is None or best.setting.knob != "step":
+        if best is None or not best.value or best.setting.knob != "step":
             continue
         finest = best.setting.scores(scenes)[-1]
         if finest.error > WORSE_BELOW * best.error:
@@ -141,8 +141,11 @@ def _too_fine(
 
 
 def _step(score: Score) -> str:
+    """Return the step behind an "and"; empty for a solver without one."""
+    if not score.value:
+        return ""
     knob = score.setting.knob
-    return f"a step of {score.value}" if knob == "step" else f"{knob} {score.value}"
+    return f" and a step of {score.value}" if knob == "step" else f" and {knob} {score.value}"
 
 
 def _listed(scenes: Sequence[str]) -> str:

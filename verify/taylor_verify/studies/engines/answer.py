@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -28,6 +29,8 @@ _STANDINGS: Final = {
     Outcome.UNSUITED: Standing.UNSUITED,
 }
 _MOST_WORDS: Final = 300
+# As pip and npm have it: numpy==2.4.6, @scope/name@1.0.0.
+_PINNED: Final = re.compile(r"(.+?)(?:==|@)(\d[^@=]*)")
 
 
 @dataclass(frozen=True)
@@ -123,9 +126,9 @@ def made_of(scene: str, solver: str) -> str:
 def _pinned(solver: str) -> str:
     engine = engines().get(solver.removeprefix(PREFIX)) if solver.startswith(PREFIX) else None
     for requirement in engine.script.requirements if engine else ():
-        package, _, pin = requirement.partition("==")
-        if engine and package == engine.script.package:
-            return pin
+        pinned = _PINNED.fullmatch(requirement)
+        if engine and pinned and pinned[1] == engine.script.package:
+            return pinned[2]
     return ""
 
 

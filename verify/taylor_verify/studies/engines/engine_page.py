@@ -70,7 +70,7 @@ def _cells(
     return [
         prose(row.version) or NOTHING,
         prose(", ".join(filter(None, words))) or NOTHING,
-        row.value,
+        row.value or NOTHING,
         *(figure(row.errors.get(name)) for name in (*states, *conserved)),
         f"{digits(row.worst):.1f}",
         figure(None if pace is None else 1e6 * pace),
@@ -111,12 +111,12 @@ def _commands(own: Iterable[Setting]) -> str:
     """Return a command for each setting, as a block: with the first of its steps."""
     lines = []
     for one in own:
-        steps = dict.fromkeys(row.value for row in one.rows)
+        steps = " ".join(filter(None, dict.fromkeys(row.value for row in one.rows)))
         scenes = dict.fromkeys(row.scene for row in one.rows)
         rung = f" --rung {one.rung}" if one.rung != "f64" else ""
         first = one.rows[0]
         lines += [
-            f"# {one.knob} {' '.join(steps)}; {' '.join(scenes)}",
+            f"# {f'{one.knob} {steps}; ' if steps else ''}{' '.join(scenes)}",
             f'taylor-verify run {first.scene} --solver "{first.solver}"{rung}',
         ]
     return "```sh\n" + "\n".join(lines) + "\n```"

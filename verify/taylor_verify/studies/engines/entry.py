@@ -48,7 +48,7 @@ class Entry:
     name: str
     title: str
     solver: str
-    values: tuple[str, ...]
+    values: tuple[str, ...] = ()
     versions: tuple[str, ...] = ()
     settings: Mapping[str, tuple[str, ...]] | None = None
     knob: str = "step"
@@ -80,8 +80,8 @@ class Entry:
         scene: BoardScene,
         shipped: bool = False,
     ) -> Iterator[Asked]:
-        for value in self.values:
-            if self.knob != "step" or float(value) >= scene.least:
+        for value in self.values or ("",):
+            if not value or self.knob != "step" or float(value) >= scene.least:
                 yield Asked(self, version, tuple(words.items()), value, rung, scene.name, shipped)
 
     def _words(self) -> list[dict[str, str]]:
@@ -109,8 +109,9 @@ class Asked:
     def solver(self) -> str:
         """The whole name of the solver, as `--solver` takes it."""
         versions = [("version", self.version)] if self.version else []
-        settings = [*versions, *self.words, (self.entry.knob, self.value)]
-        return f"{self.entry.solver}?{'&'.join(f'{key}={value}' for key, value in settings)}"
+        finer = [(self.entry.knob, self.value)] if self.value else []
+        settings = "&".join(f"{key}={word}" for key, word in (*versions, *self.words, *finer))
+        return "?".join(filter(None, (self.entry.solver, settings)))
 
     @property
     def variant(self) -> str:

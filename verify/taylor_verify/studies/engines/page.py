@@ -145,6 +145,8 @@ def _cells(board: Board, setting: Setting, row: EngineRow) -> list[str]:
 
 
 def _knob(row: EngineRow) -> str:
+    if not row.value:
+        return NOTHING
     return row.value if row.knob == "step" else f"{row.knob} {row.value}"
 
 

@@ -45,7 +45,7 @@ class Setting:
 
     def order(self, scene: str, quantity: str) -> Convergence | None:
         """Return the order of a quantity over the steps of a scene; None for what has no steps."""
-        rows = self.on(scene) if self.knob == "step" else ()
+        rows = [row for row in self.on(scene) if row.value and row.knob == "step"]
         if not rows:
             return None
         return convergence(

@@ -100,7 +100,7 @@ def _best(group: Sequence[Setting], scene: str) -> Setting | None:
 
 
 def _step(row: EngineRow) -> float | None:
-    return float(row.value) if row.knob == "step" else None
+    return float(row.value) if row.value and row.knob == "step" else None
 
 
 def _picture(scene: str, what: str, axis: str, drawn: Sequence[Panel]) -> Picture:
