@@ -7,7 +7,7 @@ PIP = $(BIN)/python -m pip --quiet --disable-pip-version-check
 INSTALLED = .venv/.installed
 
 .PHONY: help verify verify-all test test-all docs site test-site bench reports traps release-data tradeoff
-.PHONY: check-reports lint clean
+.PHONY: engines check-reports lint clean
 
 help:  ## Print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
@@ -67,6 +67,10 @@ release-data: $(INSTALLED)  ## Pack everything published, what is not committed 
 # Apart from the reports: a time is another one in every run, and nothing is ever compared with it.
 tradeoff: $(INSTALLED)  ## Measure the published speed against accuracy anew (minutes, on a quiet machine)
 	@$(BIN)/taylor-verify publish tradeoff
+
+# Each engine runs in an environment of its own, which is made when it is first asked for.
+engines: $(INSTALLED)  ## Measure the engine board: what is not stored, or all of ENGINE=mujoco anew
+	@$(BIN)/taylor-verify publish engines $(if $(ENGINE),--anew --only $(ENGINE)) > /dev/null
 
 # The rungs of hardware: they differ most between processors, and the wider ones take longer.
 check-reports: $(INSTALLED)  ## Run part of what is published anew: has a number left its rounding class?

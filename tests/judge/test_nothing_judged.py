@@ -17,7 +17,7 @@ from taylor_verify.records.reason import Cause
 from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.solvers import scipy as solver
-from taylor_verify.solvers.engines import engine, environment
+from taylor_verify.solvers.engines import engine, python
 from taylor_verify.solvers.trajectory import Outcome
 
 SCENE = "euler/generic"
@@ -43,7 +43,7 @@ def with_broken_scipy(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def without_uv(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(environment, "_uv", lambda: None)
+    monkeypatch.setattr(python, "_uv", lambda: None)
 
 
 def without_heyoka(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -103,11 +103,11 @@ def test_an_environment_that_cannot_be_made_is_a_missing_package(
     """From the first scene on: unavailable with the reason, exit status 2."""
 
     def refuse(name: str, block: str, tell: object) -> str:
-        raise environment.NotMade("uv: no network")
+        raise python.NotMade("uv: no network")
 
-    monkeypatch.setattr(environment, "_uv", lambda: "uv")
-    monkeypatch.setattr(environment, "interpreter", refuse)
-    monkeypatch.setattr(engine, "_interpreters", {})
+    monkeypatch.setattr(python, "_uv", lambda: "uv")
+    monkeypatch.setattr(python, "interpreter", refuse)
+    monkeypatch.setattr(engine, "_commands", {})
     for _ in range(2):
         assert main(["run", SCENE, "--solver", "outside:cvode-bdf"]) == 2
         told = last_line(capsys.readouterr().out)

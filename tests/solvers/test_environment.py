@@ -15,9 +15,9 @@ from builders.scenes import THREE_INSTANTS
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import read
-from taylor_verify.solvers.engines import engine, environment
+from taylor_verify.solvers.engines import engine, python
 from taylor_verify.solvers.engines.engine import engines, named, prepare
-from taylor_verify.solvers.engines.environment import NotMade
+from taylor_verify.solvers.engines.launcher import NotMade
 from taylor_verify.solvers.engines.script import read_script
 from taylor_verify.solvers.registry import solver_named
 from taylor_verify.solvers.trajectory import Outcome
@@ -68,7 +68,7 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("XDG_CACHE_HOME", str(folder))
     monkeypatch.setenv("UV_CACHE_DIR", str(folder / "uv"))
     monkeypatch.setenv("UV_OFFLINE", "1")
-    monkeypatch.setattr(engine, "_interpreters", {})
+    monkeypatch.setattr(engine, "_commands", {})
     return folder
 
 
@@ -92,7 +92,7 @@ def script(cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iter
 def interpreter(name: str = NAME) -> Path:
     """The Python of the environment, made if it is not there."""
     block = named(name).block
-    return Path(environment.interpreter("tiny", block, lambda line: None))
+    return Path(python.interpreter("tiny", block, lambda line: None))
 
 
 def test_an_engine_runs_in_an_environment_of_its_own(script: Script, cache: Path) -> None:
@@ -194,14 +194,14 @@ def test_uv_beside_the_interpreter_is_enough(
     script: Script, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Where no uv is on the PATH, that of the package beside this interpreter makes it."""
-    monkeypatch.setattr(environment.shutil, "which", lambda name: None)
+    monkeypatch.setattr(python.shutil, "which", lambda name: None)
     script()
     assert interpreter().exists()
 
 
 def test_without_uv_it_is_unavailable(script: Script, monkeypatch: pytest.MonkeyPatch) -> None:
     """A missing uv is a missing package: never a failure, and with the command that mends it."""
-    monkeypatch.setattr(environment, "_uv", lambda: None)
+    monkeypatch.setattr(python, "_uv", lambda: None)
     script()
     solver = solver_named(NAME)
     reason = solver.unavailable(rung("f64"))
@@ -315,7 +315,7 @@ def test_a_uv_that_cannot_be_started_is_told(
     """A broken uv is a reason like any other."""
     uv = tmp_path / "uv"
     uv.write_text("no program")
-    monkeypatch.setattr(environment, "_uv", lambda: str(uv))
+    monkeypatch.setattr(python, "_uv", lambda: str(uv))
     script()
     with pytest.raises(NotMade, match="uv: Permission denied"):
         prepare("tiny-still")

@@ -16,14 +16,18 @@ from typing import Any
 import pytest
 from builders.programs import imported_tops
 from builders.scenes import THREE_INSTANTS
+from packaging.specifiers import SpecifierSet
 
 from taylor_verify.models.problem import Problem, pose
+from taylor_verify.records.quantities import INITIAL, STATES
+from taylor_verify.records.status import Status
+from taylor_verify.run import run
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import load, read
-from taylor_verify.solvers.engines import environment
+from taylor_verify.solvers.engines import python
 from taylor_verify.solvers.engines.engine import SCRIPTS, Engine, engines, named, prepare
-from taylor_verify.solvers.engines.environment import NotMade
+from taylor_verify.solvers.engines.launcher import NotMade
 from taylor_verify.solvers.engines.script import read_script
 from taylor_verify.solvers.engines.script import scripts as read_scripts
 from taylor_verify.solvers.process import protocol
@@ -115,12 +119,23 @@ def scripts() -> list[Path]:
 
 @pytest.mark.parametrize("file", scripts(), ids=lambda file: file.stem)
 def test_every_requirement_is_pinned(file: Path) -> None:
-    """A script names exact versions, and fits every Python that the project fits."""
+    """A script names exact versions, and fits every Python that the project fits, or says why not."""
     script = read_script(file)
     for requirement in script.requirements:
         assert re.fullmatch(r"[A-Za-z0-9_.-]+==\d+(\.\d+)*", requirement)
     project = tomllib.loads((CHECKOUT / "pyproject.toml").read_text())["project"]
-    assert tomllib.loads(script.block)["requires-python"] == project["requires-python"]
+    wanted = set(pythons(project["requires-python"]))
+    fitting = set(pythons(tomllib.loads(script.block)["requires-python"]))
+    assert fitting
+    assert fitting <= wanted
+    if fitting < wanted:
+        # uv takes another interpreter then, and the docstring names it.
+        assert f"Python {max(fitting)}" in str(ast.get_docstring(ast.parse(file.read_text())))
+
+
+def pythons(requirement: str) -> list[str]:
+    """The versions of Python that fit a requirement."""
+    return [f"3.{minor}" for minor in range(40) if f"3.{minor}.99" in SpecifierSet(requirement)]
 
 
 @pytest.mark.parametrize("file", scripts(), ids=lambda file: file.stem)
@@ -138,7 +153,7 @@ def test_a_script_has_the_methods_it_names(file: Path) -> None:
     # One without methods is a single solver.
     table = tables[0] if about.methods else {}
     assert list(about.methods) == list(table)
-    siblings = {"equations", "question"}
+    siblings = {"equations", "free_body", "question"}
     for node in tree.body:
         if isinstance(node, ast.Import):
             assert {alias.name for alias in node.names} <= sys.stdlib_module_names
@@ -150,13 +165,13 @@ def test_no_script_hides_a_library() -> None:
     """No file has the name of a module that a script imports, which Python would find first."""
     own = {file.stem for file in SCRIPTS.glob("*.py")}
     imported = set().union(*(imported_tops(file.read_text()) for file in scripts()))
-    assert own & imported == {"equations", "question"}
+    assert own & imported <= {"equations", "free_body", "question"}
 
 
 def test_a_list_says_what_each_is(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each has a title, with the reason beside it where it is unavailable; no environment is made."""
-    monkeypatch.setattr(environment, "_uv_says", None)
-    monkeypatch.setattr(environment, "_uv", lambda: "uv")
+    monkeypatch.setattr(python, "_uv_says", None)
+    monkeypatch.setattr(python, "_uv", lambda: "uv")
     told = remarks()
     for name in engines():
         (remark,) = [
@@ -164,7 +179,7 @@ def test_a_list_says_what_each_is(monkeypatch: pytest.MonkeyPatch) -> None:
         ]
         assert remark
         assert ("unavailable" in remark) is name.startswith("numbalsoda")
-    monkeypatch.setattr(environment, "_uv", lambda: None)
+    monkeypatch.setattr(python, "_uv", lambda: None)
     assert "pip install 'taylor-verify[engines]'" in remarks()[engines()["cvode-bdf"].usage]
 
 
@@ -255,13 +270,15 @@ def test_the_first_propagation_is_what_compiles(sibling: Callable[[str], Any]) -
 # The libraries themselves, where their environments are.
 
 
-def ready() -> list[Engine]:
-    return [one for one in engines().values() if not one.script.about.unavailable]
+def ready(setting: str) -> list[Engine]:
+    """The engines that can be had here and have this setting."""
+    every = [one for one in engines().values() if not one.script.about.unavailable]
+    return [one for one in every if setting in one.script.about.settings]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("scene", ["euler/backward", "kirchhoff/whole-motion"])
-@pytest.mark.parametrize("one", ready(), ids=lambda one: one.name)
+@pytest.mark.parametrize("one", ready("rtol"), ids=lambda one: one.name)
 def test_a_library_keeps_near_its_tolerance(
     one: Engine, scene: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -286,6 +303,34 @@ def test_a_library_keeps_near_its_tolerance(
         assert errors[tolerance] <= tolerance * found.steps * 30
     # A thousandth of the tolerance is at least a tenth of the error, for the lowest of orders.
     assert errors[1e-9] <= errors[1e-6] / 10
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("one", ready("step"), ids=lambda one: one.name)
+def test_an_engine_begins_with_the_start_and_comes_nearer_with_the_step(
+    one: Engine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The first row is the state that the engine was given, with an oblique attitude, and half the step
+    leaves an error that is smaller: of the first order at least."""
+    monkeypatch.setenv("UV_OFFLINE", "1")
+    try:
+        prepare(one.name)
+    except NotMade as reason:
+        pytest.skip(str(reason))
+    about = one.script.about
+    scene = load(
+        "euler/with-attitude" if "euler" in about.models else "kirchhoff/ellipsoid-triaxial"
+    )
+    on = rung(about.rungs[-1])
+    errors = []
+    for step in (2.0**-6, 2.0**-7):
+        verdicts = {
+            v.quantity: v for v in run(scene, f"outside:{one.name}?step={step}", on).verdicts
+        }
+        assert verdicts[INITIAL].verdict is Status.PASS
+        errors.append(max(v.max or 0 for v in verdicts.values() if v.quantity in STATES))
+    # Half the error is the first order, to which rounding adds its part on the coarsest rung.
+    assert errors[1] <= 0.6 * errors[0]
 
 
 def written(folder: Path, metadata: str) -> Path:

@@ -227,6 +227,7 @@ MISANSWERS = [
     ({"seconds": 1e300}, "@ seconds"),
     ({"seconds": 0, "compile_seconds": -1}, "@ compile_seconds"),
     ({"compile_seconds": 1}, "expected seconds beside compile_seconds"),
+    ({"remark": 1}, "expected a sentence, got 1 @ remark"),
 ]
 
 
@@ -302,6 +303,12 @@ def test_a_program_may_time_itself(tmp_path: Path) -> None:
     found = solve(tmp_path, f"import time; time.sleep(3e-3)\n{told}")
     assert found.outcome is Outcome.FINISHED
     assert (found.seconds, found.compile_seconds) == (2e-3, 1e-3)
+
+
+def test_a_remark_of_a_program_is_the_detail_of_its_trajectory(tmp_path: Path) -> None:
+    """A sentence on how an answer was had stays with it, without what is not for a terminal."""
+    found = solve(tmp_path, f"{SOUND}found.update(remark='in principal\\x1b axes'); {TELL}")
+    assert (found.outcome, found.detail) == (Outcome.FINISHED, "in principal  axes")
 
 
 def test_a_program_that_does_not_time_itself_is_timed_as_a_whole(tmp_path: Path) -> None:

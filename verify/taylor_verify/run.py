@@ -121,7 +121,7 @@ def solve(
 
 def _posed(scene: Scene, solver: Solver, rung: Rung) -> Problem | Trajectory:
     """Return the problem, or a trajectory whose outcome is the reason why there is none."""
-    from taylor_verify.models.problem import NotRepresentable, pose
+    from taylor_verify.models.problem import NotRepresentable
     from taylor_verify.solvers.solver import Lack
     from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
@@ -129,7 +129,7 @@ def _posed(scene: Scene, solver: Solver, rung: Rung) -> Problem | Trajectory:
         lack = missing.outcome if isinstance(missing, Lack) else Outcome.UNSUITED
         return Trajectory(lack, detail=str(missing))
     try:
-        problem = pose(scene, rung)
+        problem = solver.problem(scene, rung)
     except NotRepresentable as reason:
         return Trajectory(Outcome.NOT_REPRESENTABLE, detail=str(reason))
     if unsuited := solver.unsuited(problem):

@@ -9,7 +9,7 @@ from functools import partial
 from taylor_verify.cli.answer import PASS, Answer
 from taylor_verify.cli.console import Page, bold
 from taylor_verify.records.precisions import LADDER
-from taylor_verify.scenes.library import EXTREMES, GUIDE, WORST, names
+from taylor_verify.scenes.library import ENGINES, EXTREMES, GUIDE, WORST, names
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.files.formats.reading import FORMATS
 from taylor_verify.solvers.registry import remarks, solver_names
@@ -19,6 +19,7 @@ def answer(options: argparse.Namespace) -> Answer:
     """Name the scenes, solvers, rungs and formats of files, each with a sentence."""
     del options
     scenes = {"scenes": list(names()), "extremes": list(names(EXTREMES, WORST))}
+    scenes["engines"] = list(names(ENGINES))
     titles = {name: load(name).title for group in scenes.values() for name in group}
     formats = {suffix: form.sentence for suffix, form in FORMATS.items()}
     found = {

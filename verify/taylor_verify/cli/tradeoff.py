@@ -21,12 +21,19 @@ from taylor_verify.cli.progress import working
 from taylor_verify.cli.streams import say
 from taylor_verify.records.replacement import replace_files
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.engines.engine import engines, prepare
-from taylor_verify.solvers.engines.environment import NotMade
+from taylor_verify.solvers.engines.engine import prepare
+from taylor_verify.solvers.engines.launcher import NotMade
 from taylor_verify.studies.tradeoff.cold import cold
 from taylor_verify.studies.tradeoff.document import label
 from taylor_verify.studies.tradeoff.recommendation import OutOfReach, check_target, recommended
-from taylor_verify.studies.tradeoff.setting import RUNGS, Setting, chosen, outside, settings
+from taylor_verify.studies.tradeoff.setting import (
+    RUNGS,
+    Setting,
+    chosen,
+    outside,
+    settings,
+    toleranced,
+)
 from taylor_verify.studies.tradeoff.timing import cold_caches
 from taylor_verify.studies.tradeoff.trade_off import TradeOff, sound_points, trade_off
 
@@ -100,7 +107,7 @@ def _make_environments() -> None:
 
     The solve in one that cannot be made says so.
     """
-    for name in engines():
+    for name in toleranced():
         with suppress(NotMade):
             prepare(name, say)
 

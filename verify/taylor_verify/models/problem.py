@@ -128,22 +128,32 @@ def _rounded_times(clock: Clock, units: Units, rung: Rung) -> Sequence[Fraction]
     return times
 
 
+def pose_as_stored(scene: Scene, rung: Rung) -> Problem:
+    """Return the problem of a solver that stores I and omega0, as physics engines do.
+
+    Whatever it makes of I^-1 is its own affair: so I and omega0 are rounded to the rung, the 21
+    coefficients and x, y likewise, and I^-1 is exact. Of a manufactured motion it stores what the
+    scene writes, the frequencies and coefficients of omega, or of x and y; it begins where the rounded
+    ones say, and the loads are those of the rounded body. The rest is as `pose` would have it. Raises
+    NotRepresentable where the rounded data are no body.
+    """
+    posed = pose(scene, rung)
+    body, initial = _stored(scene, _Rounding(rung))
+    return replace(posed, given=replace(posed.given, body=body, initial=initial))
+
+
 def adopt(scene: Scene, rung: Rung, instants: Sequence[Fraction]) -> Problem:
     """Return the problem that somebody else's answer solves, at the times it has rows for.
 
-    Others store I and omega0, and whatever they make of I^-1 is theirs: so I and omega0 are rounded
-    to the rung, the 21 coefficients and x, y likewise, and I^-1 is exact. Of a manufactured motion they
-    store what the scene writes, the frequencies and coefficients of omega, or of x and y; it begins where
-    the rounded ones say, and the loads are those of the rounded body. The instants are exact. The rest is
-    as `pose` would have it. Raises NotRepresentable where the rounded data are no body.
+    The data are as they are stored, and the instants are exact. Raises NotRepresentable where the
+    rounded data are no body.
     """
-    posed, clock = pose(scene, rung), Clock(scene.clock.start, instants)
-    body, initial = _stored(scene, _Rounding(rung))
+    posed, clock = pose_as_stored(scene, rung), Clock(scene.clock.start, instants)
     return replace(
         posed,
         scene=replace(scene, clock=clock),
         times=Instants(len(instants), lambda: (t / posed.units.time for t in clock.elapsed)),
-        given=replace(scene, body=body, initial=initial, clock=clock),
+        given=replace(posed.given, clock=clock),
     )
 
 

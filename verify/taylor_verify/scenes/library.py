@@ -15,6 +15,8 @@ STANDARD_SET: Final = ("euler", "kirchhoff", "manufactured")
 EXTREMES: Final = "extremes"
 # What a hunt has found; it runs with the extremes.
 WORST: Final = "extremes/worst"
+# The questions of the engine board, whose samples are multiples of every step of it.
+ENGINES: Final = "engines"
 # The few scenes to begin with, and the purpose of each.
 GUIDE: Final[Mapping[str, str]] = MappingProxyType(
     {
@@ -70,7 +72,7 @@ def names(*folders: str) -> tuple[str, ...]:
 def named(scene: str) -> tuple[str, ...]:
     """Return what a word of the command line stands for: all scenes of a folder (``extremes``), or one."""
     folders = (EXTREMES, WORST) if scene == EXTREMES else (scene,)
-    is_folder = scene in (*STANDARD_SET, EXTREMES, WORST)
+    is_folder = scene in (*STANDARD_SET, EXTREMES, WORST, ENGINES)
     return (names(*folders) if is_folder else ()) or (scene,)
 
 
@@ -97,7 +99,7 @@ def find(scene: str | os.PathLike[str]) -> Path:
 
 
 def _near(scene: str) -> str:
-    known = names(*STANDARD_SET, EXTREMES, WORST)
+    known = names(*STANDARD_SET, EXTREMES, WORST, ENGINES)
     close = difflib.get_close_matches(scene, known, n=_MOST_SUGGESTED, cutoff=0.5)
     # The part after the slash is often all that somebody remembers.
     close += [name for name in known if scene and scene in name and name not in close]

@@ -13,9 +13,10 @@ from typing import Any, ClassVar, final
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.models.problem import Problem
+from taylor_verify.models.problem import Problem, pose
 from taylor_verify.records.quantities import COLUMNS, state_groups
 from taylor_verify.scenes.precision import Rung
+from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.solvers.values import Value, exact, held
 
@@ -50,6 +51,13 @@ class Solver(ABC):
     setting: str = ""
     carries_velocities: bool = False
     counts_steps: ClassVar[bool] = False
+
+    def problem(self, scene: Scene, rung: Rung) -> Problem:
+        """Return the problem that the solver is asked, with the data that it takes, rounded once.
+
+        Raises NotRepresentable where the rung cannot hold them.
+        """
+        return pose(scene, rung)
 
     @abstractmethod
     def solve(self, problem: Problem) -> Trajectory:

@@ -12,6 +12,7 @@ from taylor_verify.studies.accuracy.study import STUDY as ACCURACY
 from taylor_verify.studies.claims.study import STUDY as CLAIMS
 from taylor_verify.studies.controls.study import STUDY as CONTROLS
 from taylor_verify.studies.enclosure.study import STUDY as ENCLOSURE
+from taylor_verify.studies.engines.study import STUDY as ENGINES
 from taylor_verify.studies.extremes.study import STUDY as EXTREMES
 from taylor_verify.studies.gallery.study import STUDY as GALLERY
 from taylor_verify.studies.growth.study import STUDY as GROWTH
@@ -27,6 +28,7 @@ STUDIES: Final[list[Study[Any]]] = [
     ACCURACY,
     CONTROLS,
     TRADEOFF,
+    ENGINES,
     PRICES,
     REACH,
     GROWTH,

@@ -136,6 +136,8 @@ class Study(Generic[Document]):
         Makes the sheet of a document, with every digit.
     beside
         Further pages and sheets, by their paths below the folder.
+    parts
+        Makes further pages whose number is the document's, by their paths.
     draw
         Returns the pictures made of a document.
     place
@@ -150,6 +152,7 @@ class Study(Generic[Document]):
     page: Callable[[Document, Path], str] | None = None
     sheet: Callable[[Document], str] | None = None
     beside: Mapping[str, Callable[[Document], str]] = field(default_factory=dict)
+    parts: Callable[[Document], Mapping[str, str]] = lambda document: {}
     draw: Callable[[Document], Iterable[Picture]] = lambda document: ()
     place: str = ""
     needs_heyoka: bool = True
@@ -196,6 +199,7 @@ class Study(Generic[Document]):
         place = file if file.exists() else data
         with store.expecting(f"what `publish {self.name}` writes", place):
             texts = {path: made(document) for path, made in self.beside.items()}
+            texts |= self.parts(document)
             if self.sheet:
                 texts = {f"tables/{self.name}.csv": self.sheet(document), **texts}
             page = self.page(document, folder) if self.page else ""

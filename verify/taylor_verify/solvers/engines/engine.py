@@ -15,10 +15,11 @@ from functools import cache
 from pathlib import Path
 from typing import Final, final
 
-from taylor_verify.models.problem import Problem
+from taylor_verify.models.problem import Problem, pose, pose_as_stored
+from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.precision import Rung
-from taylor_verify.solvers.engines import environment
-from taylor_verify.solvers.engines.environment import NotMade, Tell
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.engines.launcher import NotMade, Tell
 from taylor_verify.solvers.engines.script import Script, scripts
 from taylor_verify.solvers.options import Options, options
 from taylor_verify.solvers.process import process
@@ -30,8 +31,8 @@ SCRIPTS: Final = Path(__file__).parents[1] / "outside"
 _VERSION: Final = "version"
 
 _log = logging.getLogger(__name__)
-# The interpreter of each block of metadata, or why there is none: not tried again for every scene.
-_interpreters: dict[str, str | Lack] = {}
+# The words that start the script of each block, or why there are none: not tried again for every scene.
+_commands: dict[str, list[str] | Lack] = {}
 
 
 @dataclass(frozen=True)
@@ -62,7 +63,11 @@ class Engine:
     @property
     def unavailable(self) -> str:
         """The reason why nothing here can run it; empty where it is ready, or would be after a download."""
-        return self.script.about.unavailable or process.unavailable() or environment.unavailable()
+        return (
+            self.script.about.unavailable
+            or process.unavailable()
+            or self.script.launcher.unavailable()
+        )
 
 
 @cache
@@ -99,20 +104,21 @@ def prepare(name: str, tell: Tell = _log.warning) -> None:
     solver = named(name if name.startswith(PREFIX) else f"{PREFIX}{name}")
     if reason := solver.engine.unavailable:
         raise NotMade(reason)
-    _interpreters.pop(solver.block, None)
-    if isinstance(answer := _interpreter(solver, tell), Lack):
+    _commands.pop(solver.block, None)
+    if isinstance(answer := _command(solver, tell), Lack):
         raise NotMade(answer)
 
 
-def _interpreter(solver: Outside, tell: Tell) -> str | Lack:
-    if solver.block not in _interpreters:
-        library = solver.engine.script.library
+def _command(solver: Outside, tell: Tell) -> list[str] | Lack:
+    if solver.block not in _commands:
+        script = solver.engine.script
         try:
-            _interpreters[solver.block] = environment.interpreter(library, solver.block, tell)
+            words = script.launcher.command(script.library, script.path, solver.block, tell)
+            _commands[solver.block] = words
         except NotMade as reason:
-            sentence = f"the environment of {library} could not be made: {reason}"
-            _interpreters[solver.block] = Lack(sentence, Outcome.NO_PACKAGE)
-    return _interpreters[solver.block]
+            sentence = f"the environment of {script.library} could not be made: {reason}"
+            _commands[solver.block] = Lack(sentence, Outcome.NO_PACKAGE)
+    return _commands[solver.block]
 
 
 @final
@@ -136,29 +142,35 @@ class Outside(Solver):
             return reason
         if rung.name not in rungs:
             return f"{self.name} is made for {' and '.join(rungs)} alone"
-        answer = _interpreters.get(self.block)
+        answer = _commands.get(self.block)
         return answer if isinstance(answer, Lack) else ""
 
     def unsuited(self, problem: Problem) -> str:
         models = self.engine.script.about.models
         if problem.given.model not in models:
             return f"{self.name} is made for {' and '.join(models)} alone"
-        if problem.given.body.manufactured is not None:
+        body = problem.given.body
+        if body.manufactured is not None:
             return f"{self.name} is made for constant loads, and not for a manufactured motion"
+        if not self.engine.script.about.loads and (isinstance(body, Gyrostat) or not body.is_free):
+            return f"{self.name} is made for free bodies without wheels"
         return ""
+
+    def problem(self, scene: Scene, rung: Rung) -> Problem:
+        # The truth starts from the numbers that the engine is given.
+        takes_tensor = self.engine.script.about.data == "tensor"
+        return pose_as_stored(scene, rung) if takes_tensor else pose(scene, rung)
 
     def solve(self, problem: Problem) -> Trajectory:
         if reason := self.unavailable(problem.rung):
             return not_started(reason)
-        python = _interpreter(self, _log.warning)
-        if isinstance(python, Lack):
-            return not_started(python)
+        command = _command(self, _log.warning)
+        if isinstance(command, Lack):
+            return not_started(command)
         settings = [f"{key}={value}" for key, value in self.settings]
         if self.engine.method:
             settings = [f"method={self.engine.method}", *settings]
-        # Without what the user has set for another Python, and leaving no files beside the script.
-        words = [python, "-B", "-E", "-s", str(self.engine.script.path), *settings]
-        return process.program(words, self.time_limit).solve(problem)
+        return process.program([*command, *settings], self.time_limit).solve(problem)
 
 
 def named(name: str) -> Outside:

@@ -1,5 +1,8 @@
 """A script in solvers/outside, and what its block of inline metadata (PEP 723) says.
 
+In with_NAME.mjs the lines begin with // instead of #, packages are pinned as "cannon-es@0.20.0", and
+requires-node = ">=20" says which node is needed.
+
 requires-python = ">=3.11,<3.15"
 dependencies = ["scikit-sundae==1.2.0", "numpy==2.4.6"]
 [tool.taylor-verify]
@@ -7,6 +10,8 @@ title = "SUNDIALS CVODE, by scikit-sundae"
 package = "scikit-sundae"              optional: whose pin `version` replaces; else the first
 rungs = ["f64"]                        optional
 models = ["euler", "kirchhoff"]        optional
+loads = false                          optional: takes no constant loads and no wheels
+data = "tensor"                        optional: takes I and omega as they stand; else I^-1 and I omega
 unavailable = "..."                    optional: why nothing can install it
 [tool.taylor-verify.methods]           optional: each method is a solver, with its title
 bdf = "BDF, order 1 to 5"
@@ -24,15 +29,17 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import inf
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 import msgspec
 
 from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.solvers.engines.launcher import Launcher
+from taylor_verify.solvers.engines.node import Node
+from taylor_verify.solvers.engines.python import Python
 
-_BLOCK: Final = re.compile(r"^# /// script\n((?:#(?: .*)?\n)+)# ///$", re.MULTILINE)
-_VERSION: Final = re.compile(r"\d+(\.\d+)*((a|b|rc)\d+)?(\.(post|dev)\d+)*")
-_PINNED: Final = re.compile(r"([A-Za-z0-9_.-]+)(==\d+(\.\d+)*| @ \S+)")
+# The launcher of scripts by the ending of their names.
+_LAUNCHERS: Final[Mapping[str, Launcher]] = {".py": Python(), ".mjs": Node()}
 _PREFIX: Final = "with_"
 
 
@@ -43,6 +50,8 @@ class About(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     package: str = ""
     rungs: tuple[str, ...] = ("f64",)
     models: tuple[str, ...] = ("euler", "kirchhoff")
+    loads: bool = True
+    data: Literal["inverse", "tensor"] = "inverse"
     unavailable: str = ""
     methods: Mapping[str, str] = {}
     settings: Mapping[str, float | str | list[str]] = {}
@@ -58,30 +67,35 @@ class Script:
     about: About
 
     @property
+    def launcher(self) -> Launcher:
+        return _LAUNCHERS[self.path.suffix]
+
+    @property
     def library(self) -> str:
         return self.path.stem.removeprefix(_PREFIX)
 
     @property
     def package(self) -> str:
         """The package whose version can be chosen; empty for a script that needs none."""
-        first = _PINNED.match(self.requirements[0]) if self.requirements else None
+        first = self.launcher.pinned.match(self.requirements[0]) if self.requirements else None
         return self.about.package or (first[1] if first else "")
 
     def at_version(self, version: str) -> str:
         """Return the block with another version of the package; ValueError for text that is none."""
-        if not _VERSION.fullmatch(version):
+        pin = self.launcher.pin
+        if not self.launcher.version.fullmatch(version):
             raise ValueError(f"expected a version such as 1.2.0, got {version!r:.60} @ version")
         if not self.package:
             raise ValueError(f"expected no version: {self.path.name} has no library @ version")
-        return re.sub(
-            rf'"{re.escape(self.package)}==[^"]*"', f'"{self.package}=={version}"', self.block
-        )
+        pinned = re.escape(self.package + pin)
+        return re.sub(rf'"{pinned}[^"]*"', f'"{self.package}{pin}{version}"', self.block)
 
 
 def scripts(folder: Path) -> list[Script]:
     """Read the scripts of a folder that answer for a library, by name; Refused with the faults of all."""
     found, faults = list[Script](), list[str]()
-    for path in sorted(folder.glob(f"{_PREFIX}*.py")):
+    files = (file for file in folder.glob(f"{_PREFIX}*") if file.suffix in _LAUNCHERS)
+    for path in sorted(files):
         try:
             found.append(read_script(path))
         except ValueError as error:
@@ -93,10 +107,12 @@ def scripts(folder: Path) -> list[Script]:
 
 def read_script(path: Path) -> Script:
     """Read the metadata of a script; ValueError where there is none or it is not as above."""
-    blocks = _BLOCK.findall(path.read_text(encoding="utf-8"))
+    mark = _LAUNCHERS[path.suffix].comment
+    block_lines = rf"^{mark} /// script\n((?:{mark}(?: .*)?\n)+){mark} ///$"
+    blocks = re.findall(block_lines, path.read_text(encoding="utf-8"), re.MULTILINE)
     if len(blocks) != 1:
         raise ValueError(f"expected one block of script metadata, got {len(blocks)} @ {path.name}")
-    block = re.sub("^# ?", "", blocks[0], flags=re.MULTILINE)
+    block = re.sub(f"^{mark} ?", "", blocks[0], flags=re.MULTILINE)
     try:
         metadata: dict[str, Any] = tomllib.loads(block)
         about = msgspec.convert(metadata.get("tool", {}).get("taylor-verify", {}), About)
@@ -115,10 +131,10 @@ def _faults(script: Script) -> Iterator[str]:
     """Yield a sentence for each requirement without its version and each default that is none."""
     pinned: set[str] = set()
     for requirement in script.requirements:
-        if match := _PINNED.fullmatch(requirement):
+        if match := script.launcher.pinned.fullmatch(requirement):
             pinned.add(match[1])
         else:
-            yield f"expected a dependency pinned with ==, got {requirement!r}"
+            yield f"expected a dependency pinned with {script.launcher.pin}, got {requirement!r}"
     if script.about.package and script.about.package not in pinned:
         yield f"expected a package among the dependencies, got {script.package!r}"
     known: set[str] = set()

@@ -17,7 +17,7 @@ import math
 import sys
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -54,21 +54,30 @@ class Question:
 
 @dataclass(frozen=True)
 class Solved:
-    """The states at the instants of the question, and the work they took; times in seconds."""
+    """The states at the instants of the question, and the work they took; times in seconds.
+
+    A ``remark`` is a sentence on how they were had, such as the axes that an engine has worked in.
+    """
 
     states: Sequence[Row]
     steps: int
     evaluations: int
     seconds: float
     compile_seconds: float
+    remark: str = ""
 
 
 def answer(solve: Callable[[Question, Settings], Solved]) -> None:
     """Read the question on stdin, solve it as the arguments say, write the answer on stdout."""
-    settings = Settings(**dict(map(_setting, sys.argv[1:])))
+    settings = arguments()
     question = read(json.load(sys.stdin))
     solved = solve(question, settings)
     json.dump(_written(question, solved), sys.stdout)
+
+
+def arguments() -> Settings:
+    """Return the settings of the command line."""
+    return Settings(**dict(map(_setting, sys.argv[1:])))
 
 
 def _setting(argument: str) -> tuple[str, str | float]:
@@ -150,7 +159,7 @@ def read(scene: Any) -> Question:
         state = floats(initial["linear_impulse"]) + floats(initial["angular_impulse"])
     parameters.append(floats(body["damping"]) if "damping" in body else 0.0)
     if "q0" in columns:
-        state += _unit(floats(initial["attitude"]))
+        state += unit(floats(initial["attitude"]))
     if "c1" in columns:
         state += floats(initial["centre"])
     elapsed = floats(clock["elapsed"])
@@ -171,7 +180,7 @@ def _flat(matrix: Any) -> list[float]:
     return [entry for row in floats(matrix) for entry in row]
 
 
-def _unit(q: list[float]) -> list[float]:
+def unit(q: Row) -> list[float]:
     """Return the unit quaternion: the protocol gives one of any length."""
     length = math.sqrt(sum(entry * entry for entry in q))
     return [entry / length for entry in q]
@@ -181,27 +190,33 @@ def _unit(q: list[float]) -> list[float]:
 
 
 def _written(question: Question, solved: Solved) -> dict[str, Any]:
-    states = [[float(value) for value in row] for row in solved.states]
-    if not question.asks_start:
-        states = states[1:]
     if "w1" in question.columns:
-        states = [_with_omega(question.parameters, state) for state in states]
-    found = zip(*states, strict=True)
+        states = [_with_omega(question.parameters, state) for state in solved.states]
+        solved = replace(solved, states=states)
+    return document(question, solved)
+
+
+def document(question: Question, solved: Solved) -> dict[str, Any]:
+    """Return the answer, whose states are rows of the columns that the question asks for."""
+    states = solved.states if question.asks_start else solved.states[1:]
+    columns = zip(*states, strict=True)
     return {
         "t": question.times,
         "steps": int(solved.steps),
         "evaluations": int(solved.evaluations),
         "seconds": solved.seconds,
         "compile_seconds": solved.compile_seconds,
+        **({"remark": solved.remark} if solved.remark else {}),
         # Hexadecimal floats are exact.
         **{
-            name: [value.hex() for value in column]
-            for name, column in zip(question.columns, found, strict=True)
+            name: [float(value).hex() for value in column]
+            for name, column in zip(question.columns, columns, strict=True)
         },
     }
 
 
-def _with_omega(p: Row, state: list[float]) -> list[float]:
+def _with_omega(p: Row, state: Row) -> Row:
     """Return the state with omega = K H in place of H."""
+    state = [float(value) for value in state]
     H = state[:3]
     return [sum(p[3 * i + j] * H[j] for j in range(3)) for i in range(3)] + state[3:]

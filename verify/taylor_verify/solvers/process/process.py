@@ -64,7 +64,7 @@ class Process(Solver):
             return Trajectory(ended.outcome, detail=ended.detail(), seconds=seconds)
         try:
             found = _trajectory(ended.answer, problem, ended.seconds)
-            return replace(found, detail=ended.left)
+            return replace(found, detail="; ".join(filter(None, (found.detail, ended.left))))
         except protocol.Misanswer as fault:
             outcome, what = Outcome.MISANSWERED, str(fault)
         except protocol.NotFinite as fault:
@@ -134,4 +134,5 @@ def _trajectory(answer: bytes, problem: Problem, waited: float) -> Trajectory:
         evaluations=found.evaluations,
         seconds=seconds,
         compile_seconds=found.compile_seconds,
+        detail="; ".join(filter(None, (trajectory.detail, found.remark))),
     )

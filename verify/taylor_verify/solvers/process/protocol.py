@@ -41,7 +41,9 @@ Every number, vector or matrix is an object of two: ``text``, the exact value (a
 where no decimal is finite), and ``hex``, the hexadecimal float of the rung, as C's strtod reads it.
 They are equal but where the table says that hex is rounded: K and H are rounded once, and I = K^-1
 and omega = K H follow from them exactly. Whoever integrates H' = H x K H + M has exact data; with wheels
-it is H' = (H + h) x K H + M, and with damping -d H more.
+it is H' = (H + h) x K H + M, and with damping -d H more. An engine whose script says
+``data = "tensor"`` is asked the other way round: I and omega are rounded once, their text and hex are equal,
+and K and H follow from them.
 
 Loads that change with time are M = H*' - H* x K H*, or X = x*' - x* x Omega* and
 L = y*' - y* x Omega* - x* x U*, with Omega* and U* made of x* and y* as Omega and U are of x and y:
@@ -65,6 +67,7 @@ The answer is one JSON object on standard output, and the exit status 0: a list 
     seconds              optional: the propagation alone, by the program's own clock. Believed only if
                          the whole run, as it is measured from outside, took no less
     compile_seconds      optional, beside seconds: what went before the propagation
+    remark               optional: a sentence on how the answer was had, kept with the trajectory
 
 An entry in quotes, "0x1.8p-3", "0.1" or "1/3", is taken exactly. A bare JSON number is on f32 and
 f64 the double nearest to it, because that is what the program held and printed, and on wider rungs
@@ -105,6 +108,7 @@ VERSION_WITH_DAMPING = 4
 _TIME_ROUNDINGS = 4
 _DOUBLE_BITS = 53
 _PLACES = 30
+_LONGEST_REMARK = 300
 # Seconds, of the order of a century: a double holds it, and no program was waited for so long.
 _LONGEST = 10**10
 
@@ -129,6 +133,7 @@ class Answer:
     evaluations: int
     seconds: float | None = None
     compile_seconds: float = 0.0
+    remark: str = ""
 
 
 # The question.
@@ -248,7 +253,7 @@ def read(text: bytes, problem: Problem) -> Answer:
     _check_times(times, problem)
     rows = [list(row) for row in zip(*states, strict=True)]
     work = _count(document, "steps"), _count(document, "evaluations")
-    return Answer(rows, *work, *_durations(document))
+    return Answer(rows, *work, *_durations(document), _remark(document))
 
 
 def _parsed(text: bytes) -> Mapping[str, Any]:
@@ -311,6 +316,14 @@ def _durations(document: Mapping[str, Any]) -> tuple[float | None, float]:
     if stated and "seconds" not in stated:
         raise Misanswer("expected seconds beside compile_seconds, got none @ seconds")
     return stated.get("seconds"), stated.get("compile_seconds", 0.0)
+
+
+def _remark(document: Mapping[str, Any]) -> str:
+    """Return the remark of a program, in printable characters: it is shown to people."""
+    remark = document.get("remark", "")
+    if not isinstance(remark, str):
+        raise Misanswer(f"expected a sentence, got {_json(remark)} @ remark")
+    return "".join(c if c.isprintable() else " " for c in remark[:_LONGEST_REMARK])
 
 
 def _number(value: Any, as_double: bool, place: str) -> Fraction | float:

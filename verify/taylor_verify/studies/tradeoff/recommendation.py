@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from os import PathLike
 from typing import Any, Final
 
-from taylor_verify.models.problem import NotRepresentable, pose
+from taylor_verify.models.problem import NotRepresentable
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.reading.positive import positive
 from taylor_verify.scenes.reading.reader import as_scene
@@ -36,8 +36,9 @@ class OutOfReach(Exception):  # noqa: N818 (it names what the target is)
 
 @dataclass(frozen=True)
 class Recommendation:
-    """A setting ready to run: ``solver.solve(pose(scene, rung))``, ``taylor_verify.run``, or ``command``.
+    """A setting ready to run: by ``taylor_verify.run``, by ``command``, or by ``solver`` itself.
 
+    ``solver.solve(solver.problem(scene, rung))`` returns a trajectory that nothing has judged.
     ``error`` is the largest over the scene's own start and ``starts`` - 1 others; ``margin`` times
     it is not above ``target``. ``seconds`` is the best time of a solve, nothing compiled. ``left_out``
     names the rungs that were not measured, because no arithmetic of theirs can reach the target.
@@ -138,7 +139,7 @@ def _largest(p: Point, scenes: Sequence[Scene], truths: Truths, target: float) -
     setting, worst = p.timed.setting, p.error
     for scene in scenes:
         try:
-            problem = pose(scene, setting.rung)
+            problem = setting.solver.problem(scene, setting.rung)
         except NotRepresentable:
             return None
         found = truths.accuracy(problem, setting.solver.solve(problem))

@@ -117,15 +117,19 @@ def outside(
     They are on f64, which all have: none where the ``rungs`` are without it. One that cannot be had
     says so when it is asked to run.
     """
-    from taylor_verify.solvers.engines.engine import engines
-
     if "f64" not in rungs:
         return ()
-    # An engine of fixed steps has no tolerance to choose.
-    toleranced = [name for name, one in engines().items() if "rtol" in one.script.about.settings]
-    wanted = toleranced if only is None else set(only)
-    names = [f"outside:{name}" for name in toleranced if name in wanted]
+    known = toleranced()
+    wanted = known if only is None else set(only)
+    names = [f"outside:{name}" for name in known if name in wanted]
     return tuple(library(names, tolerances, rung_named("f64")))
+
+
+def toleranced() -> list[str]:
+    """Return the names of the engines with a tolerance to choose: one of fixed steps has none."""
+    from taylor_verify.solvers.engines.engine import engines
+
+    return [name for name, one in engines().items() if "rtol" in one.script.about.settings]
 
 
 def setting(name: str, rung: Rung) -> Setting:

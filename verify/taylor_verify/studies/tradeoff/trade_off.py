@@ -8,7 +8,7 @@ from time import perf_counter
 from typing import Any
 
 from taylor_verify.judge.provenance import provenance
-from taylor_verify.models.problem import NotRepresentable, Problem, pose
+from taylor_verify.models.problem import NotRepresentable, Problem
 from taylor_verify.records.json_text import finite
 from taylor_verify.records.standing import Standing
 from taylor_verify.scenes.scene import Scene
@@ -101,7 +101,7 @@ def _posed(scene: Scene, setting: Setting) -> Problem | str:
     if reason := setting.withheld or setting.solver.unavailable(setting.rung):
         return reason
     try:
-        problem = pose(scene, setting.rung)
+        problem = setting.solver.problem(scene, setting.rung)
     except NotRepresentable as fault:
         return str(fault)
     return setting.solver.unsuited(problem) or problem

@@ -1,0 +1,115 @@
+"""The data that an engine takes: the truth starts from the numbers that it was given."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from pathlib import Path
+
+import pytest
+
+from taylor_verify.judge.judgement import Judgement
+from taylor_verify.run import run
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.engines import python
+from taylor_verify.solvers.engines.engine import SCRIPTS, Engine, Outside
+from taylor_verify.solvers.engines.script import read_script
+
+# RK4 in doubles, on I and omega as the question has them: its own error is beyond float32.
+TWIN = """\
+# /// script
+# dependencies = []
+# [tool.taylor-verify]
+# title = "RK4 on I and omega"
+# rungs = ["f32"]
+# loads = false
+# {data}
+# ///
+from equations import attitude_rate
+from free_body import answer, principal, stepped
+
+STEP = 0.0625 / 8
+
+
+def solve(body, settings):
+    A, B, C = body.moments
+
+    def rates(s):
+        p, q, r = s[:3]
+        gyration = ((B - C) / A * q * r, (C - A) / B * r * p, (A - B) / C * p * q)
+        return (*gyration, *attitude_rate(*s[3:], p, q, r))
+
+    def ahead(s, h, k):
+        return [a + h * b for a, b in zip(s, k)]
+
+    def start():
+        state = [*body.omega, *body.attitude]
+
+        def advance(steps):
+            for _ in range(steps):
+                k1 = rates(state)
+                k2 = rates(ahead(state, STEP / 2, k1))
+                k3 = rates(ahead(state, STEP / 2, k2))
+                k4 = rates(ahead(state, STEP, k3))
+                for i in range(7):
+                    state[i] += STEP / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i])
+
+        return advance, lambda: body.row(state[:3], state[3:])
+
+    return stepped(body, STEP, start)
+
+
+answer(solve)
+"""
+FLOAT32 = 2.0**-24
+
+
+def twin(folder: Path, data: str, monkeypatch: pytest.MonkeyPatch) -> Outside:
+    """The script as an engine that runs in this interpreter."""
+    monkeypatch.setattr(python, "interpreter", lambda *_: sys.executable)
+    for module in ("equations.py", "free_body.py", "question.py"):
+        shutil.copy(SCRIPTS / module, folder)
+    path = folder / "with_twin.py"
+    path.write_text(TWIN.format(data=data), encoding="utf-8")
+    script = read_script(path)
+    return Outside(Engine(script), f"outside:twin-{script.about.data}", script.block, ())
+
+
+def judged(folder: Path, data: str, monkeypatch: pytest.MonkeyPatch) -> Judgement:
+    return run(scene(), twin(folder, data, monkeypatch), "f32")
+
+
+def scene() -> Scene:
+    return load("euler/with-attitude")
+
+
+def errors(found: Judgement) -> dict[str, float]:
+    return {v.quantity: v.max for v in found.verdicts if v.max is not None}
+
+
+def test_an_engine_that_takes_the_tensor_is_judged_on_the_tensor(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What float32 makes of I and omega is in the truth, and no error of the engine remains of it."""
+    found = errors(judged(tmp_path, 'data = "tensor"', monkeypatch))
+    # Doubles throughout, and twenty units of time: far below one rounding of float32.
+    assert found["omega"] <= FLOAT32 / 10
+    assert found["attitude"] <= FLOAT32
+
+
+def test_the_same_engine_on_the_other_data_has_their_rounding_for_an_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Posed on I^-1 and I omega, omega0 is rounded on its way, and the error shows it."""
+    assert errors(judged(tmp_path, "", monkeypatch))["omega"] >= FLOAT32 / 4
+
+
+@pytest.mark.parametrize("name", ["euler/constant-moment", "euler/gyrostat"])
+def test_an_engine_for_free_bodies_is_not_asked_for_others(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A moment and wheels make no failure of an engine that says `loads = false`: it is unavailable."""
+    found = run(name, twin(tmp_path, 'data = "tensor"', monkeypatch), "f32")
+    assert {str(v.verdict) for v in found.verdicts} == {"unavailable"}
+    assert "free bodies without wheels" in str(found.verdicts[0].reason)

@@ -1,0 +1,172 @@
+"""The reader of a free rigid body that the scripts of physics engines share, under an engine of our own."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterator
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+import pytest
+
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.reader import load, read
+from taylor_verify.solvers.engines.engine import SCRIPTS
+from taylor_verify.solvers.process import protocol
+from taylor_verify.solvers.solver import Callback
+from taylor_verify.studies.tradeoff.accuracy import Truth
+
+# A full tensor, an oblique attitude, and a motion backwards in time.
+OBLIQUE = """
+title = "Oblique"
+model = "euler"
+source = "none"
+track = ["omega", "attitude"]
+[body]
+inertia = [[1.2, 0.1, -0.2], [0.1, 2.1, 0.3], [-0.2, 0.3, 2.7]]
+[initial]
+omega = [0.9, -0.3, 0.5]
+attitude = [1, 2, -1, 3]
+[time]
+end = -4
+samples = 5
+"""
+
+
+@pytest.fixture
+def shared(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
+    """The module as the scripts import it, from their own folder."""
+    monkeypatch.syspath_prepend(str(SCRIPTS))
+    yield import_module("free_body")
+    for name in ("free_body", "equations", "question"):
+        sys.modules.pop(name, None)
+
+
+def asked(problem: Problem, shared: Any) -> Any:
+    return shared.free_body(json.loads(json.dumps(protocol.question(problem))))
+
+
+def runge_kutta(shared: Any, body: Any, step: float, read: Callable[..., Any]) -> Any:
+    """Return how to start an engine by RK4 on omega and attitude; ``read`` makes a row of the two."""
+    inertia = np.array(body.inertia)
+
+    def rates(state: Any) -> Any:
+        omega, attitude = state[:3], state[3:]
+        gyration = np.linalg.solve(inertia, np.cross(inertia @ omega, omega))
+        return np.array([*gyration, *shared.product(attitude, (0.0, *(omega / 2)))])
+
+    def start() -> Any:
+        state = np.array([*body.omega, *body.attitude])
+
+        def advance(steps: int) -> None:
+            for _ in range(steps):
+                k1 = rates(state)
+                k2 = rates(state + step / 2 * k1)
+                k3 = rates(state + step / 2 * k2)
+                k4 = rates(state + step * k3)
+                state[:] += step / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+
+        return advance, lambda: read(state[:3], state[3:])
+
+    return start
+
+
+def in_body_axes(shared: Any, body: Any, step: float) -> Any:
+    """An engine with a full tensor, whose omega is in body axes."""
+    return runge_kutta(shared, body, step, body.row)
+
+
+def in_space_axes(shared: Any, body: Any, step: float) -> Any:
+    """An engine that takes principal moments alone, whose omega is in space axes."""
+    turned = body.in_principal_axes()
+    assert min(turned.moments) > 0
+
+    def read(omega: Any, attitude: Any) -> Any:
+        return turned.row_from_space(shared.to_space(attitude, omega), attitude)
+
+    return runge_kutta(shared, turned, step, read)
+
+
+def errors(problem: Problem, shared: Any, engine: Any, step: float) -> tuple[float, float]:
+    """The largest error of the first row, and of all rows, after a way through the protocol."""
+    body = asked(problem, shared)
+    solved = shared.stepped(body, step, engine(shared, body, step))
+    assert solved.steps == round(4 / step)
+    answer = protocol.read(json.dumps(shared.document(body.question, solved)).encode(), problem)
+    truth = Truth(problem)
+    first, *_ = np.array(answer.states, dtype=float)
+    start = problem.given.initial
+    expected = [float(w) for w in start.omega] + shared.unit([float(q) for q in start.attitude])
+    found = Callback(lambda _: answer.states).solve(problem)
+    return float(np.max(np.abs(first - expected))), truth.accuracy(found).worst
+
+
+@pytest.mark.parametrize("engine", [in_body_axes, in_space_axes])
+def test_an_engine_with_the_right_equations_converges_to_the_exact_motion(
+    engine: Any, shared: Any
+) -> None:
+    """The first row is the start, and the error falls with the fourth power of the step: full
+    tensor, oblique attitude, backwards in time, in the axes of the question."""
+    problem = pose(read(OBLIQUE, "oblique"), rung("f64"))
+    first, coarse = errors(problem, shared, engine, 0.1)
+    # A dozen products of numbers below three, each rounded.
+    assert first <= 40 * 2**-53
+    _, fine = errors(problem, shared, engine, 0.05)
+    assert fine <= coarse / 8
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_principal_axes_lead_back_to_the_tensor(seed: int, shared: Any) -> None:
+    """The moments are the eigenvalues, and the turned axes give the tensor back, to a few roundings."""
+    random = np.random.default_rng(seed)
+    factor = random.normal(size=(3, 3))
+    tensor = factor @ factor.T
+    moments, turn = shared.principal(tensor.tolist())
+    axes = np.array([shared.to_space(turn, axis) for axis in np.eye(3)]).T
+    few = 60 * 2**-53 * np.max(tensor)
+    assert np.linalg.det(axes) > 0
+    assert np.max(np.abs(np.sort(moments) - np.linalg.eigvalsh(tensor))) <= few
+    assert np.max(np.abs(axes @ np.diag(moments) @ axes.T - tensor)) <= few
+
+
+def test_a_diagonal_tensor_keeps_its_axes(shared: Any) -> None:
+    """Principal axes in any order are left as they are, and no remark is made of them."""
+    body = asked(pose(load("euler/with-attitude"), rung("f64")), shared)
+    assert body.in_principal_axes() == body
+    assert body.in_principal_axes().remark == ""
+    assert asked(pose(read(OBLIQUE, "oblique"), rung("f64")), shared).in_principal_axes().remark
+
+
+def test_full_axes_have_no_moments(shared: Any) -> None:
+    """The moments of a body in other than principal axes are refused."""
+    body = asked(pose(read(OBLIQUE, "oblique"), rung("f64")), shared)
+    with pytest.raises(SystemExit, match="expected principal axes, got products of inertia"):
+        _ = body.moments
+
+
+def test_a_step_that_divides_no_instant_is_refused(shared: Any) -> None:
+    """Samples are multiples of the step, and the first instant that is none is named."""
+    body = asked(pose(load("euler/with-attitude"), rung("f64")), shared)
+    assert body.steps(0.01)[:3] == [0, 50, 100]
+    with pytest.raises(
+        SystemExit, match=r"expected a step that divides t = 0\.5, got 0\.03 @ step"
+    ):
+        body.steps(0.03)
+    with pytest.raises(SystemExit, match=r"divides t = 0\.5, got 7\.0 @ step"):
+        body.steps(7.0)
+
+
+def test_a_step_of_float32_divides_instants_of_float32(shared: Any) -> None:
+    """Instants that are rounded to the rung are multiples of a decimal step all the same."""
+    body = asked(pose(load("euler/with-attitude"), rung("f32")), shared)
+    assert body.steps(0.01)[:3] == [0, 50, 100]
+
+
+@pytest.mark.parametrize("scene", ["euler/constant-moment", "euler/gyrostat", "kirchhoff/screw"])
+def test_a_body_that_is_not_free_is_refused(scene: str, shared: Any) -> None:
+    """A moment, wheels and a fluid end a script of a physics engine with a sentence."""
+    with pytest.raises(SystemExit, match="expected a free rigid body"):
+        asked(pose(load(scene), rung("f64")), shared)

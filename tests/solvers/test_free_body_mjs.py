@@ -1,0 +1,142 @@
+"""The reader of a free rigid body that the scripts in JavaScript share, under an engine of our own."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.reader import load, read
+from taylor_verify.solvers.engines.engine import SCRIPTS
+from taylor_verify.solvers.process import process
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
+from taylor_verify.studies.tradeoff.accuracy import Truth
+
+pytestmark = pytest.mark.skipif(not shutil.which("node"), reason="node is not installed")
+
+# A full tensor, an oblique attitude, a motion backwards in time, and instants that leave out the start.
+SCENE = """
+title = "Oblique"
+model = "euler"
+track = ["omega", "attitude"]
+[body]
+inertia = {inertia}
+[initial]
+omega = [0.9, -0.3, 0.5]
+attitude = [1, 2, -1, 3]
+[time]
+{time}
+"""
+FULL = "[[1.2, 0.1, -0.2], [0.1, 2.1, 0.3], [-0.2, 0.3, 2.7]]"
+# Two equal moments, and 45 degrees to the principal axes.
+EQUAL = "[[2, 0.5, 0], [0.5, 2, 0], [0, 0, 1.5]]"
+DIAGONAL = "[2.7, 1.2, 2.1]"
+BACKWARDS = "end = -4\nsamples = 5"
+LISTED = "at = [0.5, 1, 4]"
+
+# An engine by RK4, in principal axes, which hands on omega in space axes as physics engines do. What it
+# prints would spoil an answer on the same stream.
+ENGINE = """\
+import { answer, stepped } from "./free_body.mjs";
+console.log("an engine may say what it likes");
+const cross = ([a, b, c], [d, e, f]) => [b * f - c * e, c * d - a * f, a * e - b * d];
+const times = ([px, py, pz, pw], [qx, qy, qz]) => [
+  pw * qx + py * qz - pz * qy, pw * qy + pz * qx - px * qz, pw * qz + px * qy - py * qx,
+  -px * qx - py * qy - pz * qz];
+const add = (u, h, v) => u.map((entry, i) => entry + h * v[i]);
+answer((body, settings) => stepped(body, settings.step, () => {
+  const I = body.moments, h = settings.step;
+  const rates = (s) => {
+    const omega = s.slice(0, 3);
+    const turning = cross(omega.map((w, i) => I[i] * w), omega).map((m, i) => m / I[i]);
+    return [...turning, ...times(s.slice(3), omega.map((w) => w / 2))];
+  };
+  let s = [...body.omega, ...body.attitude];
+  const toSpace = (q, v) => {
+    const twice = cross(q, v).map((c) => 2 * c);
+    return add(add(v, q[3], twice), 1, cross(q, twice));
+  };
+  return {
+    advance() {
+      const k1 = rates(s), k2 = rates(add(s, h / 2, k1)), k3 = rates(add(s, h / 2, k2));
+      const k4 = rates(add(s, h, k3));
+      s = [[1, k1], [2, k2], [2, k3], [1, k4]].reduce((sum, [b, k]) => add(sum, (b * h) / 6, k), s);
+    },
+    row: () => body.rowFromSpace(toSpace(s.slice(3), s.slice(0, 3)), s.slice(3)),
+  };
+}));
+"""
+
+
+@pytest.fixture
+def engine(tmp_path: Path) -> list[str]:
+    """The command of the engine, which stands beside the shared file."""
+    shutil.copy(SCRIPTS / "free_body.mjs", tmp_path)
+    (tmp_path / "engine.mjs").write_text(ENGINE)
+    return [shutil.which("node") or "", str(tmp_path / "engine.mjs")]
+
+
+def posed(inertia: str = FULL, time: str = BACKWARDS, on: str = "f64") -> Problem:
+    return pose(read(SCENE.format(inertia=inertia, time=time), "oblique"), rung(on))
+
+
+def solved(engine: list[str], problem: Problem, step: float) -> Trajectory:
+    return process.program([*engine, f"step={step}"], 60).solve(problem)
+
+
+@pytest.mark.parametrize("inertia", [FULL, EQUAL, DIAGONAL])
+@pytest.mark.parametrize("time", [BACKWARDS, LISTED])
+def test_an_engine_with_the_right_equations_converges_to_the_exact_motion(
+    inertia: str, time: str, engine: list[str]
+) -> None:
+    """The error falls with the fourth power of the step, whatever the tensor and the instants."""
+    problem = posed(inertia, time)
+    truth = Truth(problem)
+    remark = "" if inertia == DIAGONAL else "solved in principal axes, and turned back"
+    errors = []
+    for step in (0.1, 0.05):
+        found = solved(engine, problem, step)
+        assert (found.outcome, found.detail) == (Outcome.FINISHED, remark)
+        assert found.steps == round(4 / step)
+        assert found.seconds > 0
+        errors.append(truth.accuracy(found).worst)
+    assert errors[1] <= errors[0] / 8
+
+
+@pytest.mark.parametrize("inertia", [FULL, EQUAL, DIAGONAL])
+def test_the_first_row_is_the_start(inertia: str, engine: list[str]) -> None:
+    """Before any step the row has omega and the attitude of the scene, in the axes of the scene."""
+    problem = posed(inertia)
+    found = solved(engine, problem, 0.5)
+    start = problem.given.initial
+    attitude = np.array([float(q) for q in start.attitude])
+    expected = [*(float(w) for w in start.omega), *(attitude / np.linalg.norm(attitude))]
+    first = [float(v) for name in ("omega", "quaternion") for v in found.quantities[name][0]]
+    # Two dozen products of numbers below three, each rounded.
+    assert np.max(np.abs(np.subtract(first, expected))) <= 80 * 2**-53
+
+
+def test_instants_of_float32_are_multiples_of_a_decimal_step(engine: list[str]) -> None:
+    """Instants that are rounded to the rung are multiples of a decimal step all the same."""
+    problem = posed(time="at = [0, 0.1, 0.7]", on="f32")
+    assert solved(engine, problem, 0.1).outcome is Outcome.FINISHED
+
+
+def test_a_step_that_divides_no_instant_is_refused(engine: list[str]) -> None:
+    """The first instant that is no multiple of the step is named, also where the step is longer."""
+    for step in (0.3, 7):
+        found = solved(engine, posed(), step)
+        assert found.outcome is Outcome.CRASHED
+        assert f"expected a step that divides t = 1, got {step} @ step" in found.detail
+
+
+@pytest.mark.parametrize("scene", ["euler/constant-moment", "euler/gyrostat", "kirchhoff/screw"])
+def test_a_body_that_is_not_free_is_refused(scene: str, engine: list[str]) -> None:
+    """A moment, wheels and a fluid end a script of a physics engine with a sentence."""
+    found = solved(engine, pose(load(scene), rung("f64")), 0.1)
+    assert found.outcome is Outcome.CRASHED
+    assert "expected a free rigid body" in found.detail

@@ -1,0 +1,335 @@
+"""The environments of scripts in JavaScript: made by npm when they are asked for, whole, and never half."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from builders.scenes import THREE_INSTANTS
+
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.reader import read
+from taylor_verify.solvers.engines import engine
+from taylor_verify.solvers.engines.engine import SCRIPTS, engines, named, prepare
+from taylor_verify.solvers.engines.launcher import NotMade
+from taylor_verify.solvers.engines.node import lock
+from taylor_verify.solvers.engines.script import read_script
+from taylor_verify.solvers.registry import solver_named
+from taylor_verify.solvers.trajectory import Outcome
+
+# What stands for npm: it notes how it was called, and installs what package.json asks for. It has 1.0.0 in
+# its cache once it was allowed to download.
+NPM = """\
+#!{python}
+import json, pathlib, sys
+notes, cache = pathlib.Path({notes!r}), pathlib.Path({cache!r})
+with notes.open("a") as file:
+    file.write(" ".join(sys.argv[1:]) + chr(10))
+package = json.loads(pathlib.Path("package.json").read_text())
+if "--offline" in sys.argv and not cache.exists():
+    sys.exit("npm error code ENOTCACHED" + chr(10) + "npm error nothing is cached")
+if "9.9.9" in package["dependencies"].values():
+    sys.exit("npm error code ETARGET" + chr(10) + "npm error notarget No version 9.9.9")
+if "--package-lock-only" in sys.argv:
+    pathlib.Path("package-lock.json").write_text(json.dumps({{"packages": {{"": package}}}}))
+    sys.exit()
+cache.touch()
+for name in package["dependencies"]:
+    place = pathlib.Path("node_modules", name)
+    place.mkdir(parents=True)
+    (place / "package.json").write_text("{{}}")
+"""
+
+# What stands for node: it answers with the state at rest, if the script is where node would find packages.
+NODE = """\
+#!{python}
+import json, pathlib, sys
+script, *settings = sys.argv[1:]
+script = pathlib.Path(script)
+assert (script.parent / "free_body.mjs").exists()
+assert (script.parents[1] / "node_modules/tiny/package.json").exists()
+scene = json.load(sys.stdin)
+found = {{"t": scene["time"]["times"]["hex"], "steps": len(settings), "seconds": 0}}
+for i, name in enumerate(("w1", "w2", "w3")):
+    found[name] = [scene["initial"]["omega"]["hex"][i]] * len(found["t"])
+json.dump(found, sys.stdout)
+"""
+
+TINY = """\
+// /// script
+// requires-node = ">=20"
+// dependencies = ["tiny@1.0.0"]
+// [tool.taylor-verify]
+// title = "Tiny"
+// [tool.taylor-verify.settings]
+// flags = ["2", "0"]
+// step = 0.01
+// ///
+import "tiny";
+"""
+NAME = "outside:tiny?flags=0&step=0.1"
+
+Script = Callable[..., Path]
+Calls = Callable[[], list[str]]
+
+
+def problem() -> Problem:
+    return pose(read(THREE_INSTANTS, "short"), rung("f64"))
+
+
+@pytest.fixture
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The user's cache folder for environments, empty."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setattr(engine, "_commands", {})
+    return tmp_path / "cache" / "taylor-verify" / "outside"
+
+
+@pytest.fixture
+def calls(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Calls:
+    """What npm was called with, a line for each call; npm and node are programs of our own."""
+    programs, notes = tmp_path / "bin", tmp_path / "notes"
+    programs.mkdir()
+    filled = {"python": sys.executable, "notes": str(notes), "cache": str(tmp_path / "cached")}
+    for name, text in (("npm", NPM), ("node", NODE)):
+        (programs / name).write_text(text.format(**filled))
+        (programs / name).chmod(0o700)
+    monkeypatch.setenv("PATH", str(programs))
+    return lambda: notes.read_text().splitlines() if notes.exists() else []
+
+
+@pytest.fixture
+def script(
+    cache: Path, calls: Calls, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> Iterator[Script]:
+    """Writes the one script there is, in place of those that are shipped, beside a shared file."""
+    folder = tmp_path / "scripts"
+    folder.mkdir()
+    monkeypatch.setattr(engine, "SCRIPTS", folder)
+    (folder / "free_body.mjs").write_text("export const x = 1;\n")
+
+    def write(text: str = TINY) -> Path:
+        (folder / "with_tiny.mjs").write_text(text)
+        engines.cache_clear()
+        return folder / "with_tiny.mjs"
+
+    yield write
+    engines.cache_clear()
+
+
+def test_a_script_runs_in_an_environment_of_its_own(script: Script, calls: Calls) -> None:
+    """Asked to solve, it has its environment made without running a script of a package, and answers."""
+    script()
+    found = solver_named(NAME).solve(problem())
+    assert (found.outcome, found.detail, found.steps) == (Outcome.FINISHED, "", 2)
+    assert calls()
+    assert all("--ignore-scripts" in call.split() for call in calls())
+
+
+def test_to_name_and_to_list_makes_no_environment(
+    script: Script, calls: Calls, cache: Path
+) -> None:
+    """A list of the engines, a name and the question whether one can be had touch nothing."""
+    script()
+    assert engine.usages() == ("outside:tiny?flags=2|0&step=NUMBER",)
+    assert engine.remarks() == {engine.usages()[0]: "Tiny"}
+    assert solver_named(NAME).unavailable(rung("f64")) == ""
+    assert not cache.exists()
+    assert calls() == []
+
+
+def test_a_cache_is_asked_before_the_network(script: Script, calls: Calls) -> None:
+    """npm is first called without a network; a download is told, and is not needed a second time."""
+    script()
+    said: list[str] = []
+    prepare("tiny", said.append)
+    assert said == ["making the environment of tiny, once: a download"]
+    assert ["--offline" in call for call in calls()] == [True, False]
+    script(TINY.replace("Tiny", "Another title"))
+    shutil.rmtree(environment())
+    prepare("tiny", said.append)
+    assert len(said) == 1
+    assert ["--offline" in call for call in calls()] == [True, False, True]
+
+
+def environment(name: str = NAME) -> Path:
+    """The folder of the environment, made if it is not there."""
+    solver = named(name)
+    about = solver.engine.script
+    words = about.launcher.command("tiny", about.path, solver.block, lambda line: None)
+    return Path(words[1]).parents[1]
+
+
+def test_an_environment_is_made_once(script: Script, calls: Calls) -> None:
+    """One that is there is not made again, whatever the text of the script; one that lost a package is."""
+    script()
+    first = environment()
+    made = calls()
+    script(TINY + "// changed\n")
+    assert environment() == first
+    assert calls() == made
+    copies = [file.read_text() for file in first.glob("*/with_tiny.mjs")]
+    assert sorted(copies) == [TINY, TINY + "// changed\n"]
+    shutil.rmtree(first / "node_modules" / "tiny")
+    assert (environment() / "node_modules" / "tiny").exists()
+    assert len(calls()) > len(made)
+
+
+def test_two_at_once_make_it_together(script: Script) -> None:
+    """Two that ask for an environment at once have the same one, and nothing is left beside it."""
+    script()
+    found: list[Path] = []
+    start = threading.Barrier(2)
+
+    def make() -> None:
+        start.wait()
+        found.append(environment())
+
+    both = [threading.Thread(target=make) for _ in range(2)]
+    for one in both:
+        one.start()
+    for one in both:
+        one.join(60)
+    assert len(found) == 2
+    assert found[0] == found[1]
+    assert list(found[0].parent.iterdir()) == [found[0]]
+
+
+def test_a_lock_holds_for_its_own_versions_alone(script: Script, calls: Calls) -> None:
+    """The pinned version is installed as the lock says; another one is not in it, and is without it."""
+    file = script()
+    assert lock(file, read_script(file).block) == file.with_name("with_tiny.lock.json")
+    pinned = environment()
+    assert (pinned / "package-lock.json").read_text() == lock_of(file).read_text()
+    assert calls()[-1].startswith("ci ")
+    other = environment(f"{NAME}&version=2.0.0")
+    assert other != pinned
+    assert not (other / "package-lock.json").exists()
+    assert calls()[-1].startswith("install --no-package-lock ")
+    package = json.loads((other / "package.json").read_text())
+    assert package["dependencies"] == {"tiny": "2.0.0"}
+    assert package["engines"] == {"node": ">=20"}
+
+
+def lock_of(file: Path) -> Path:
+    return file.with_suffix(".lock.json")
+
+
+def test_what_cannot_be_installed_is_told_in_one_line(script: Script, cache: Path) -> None:
+    """A failed installation is an outcome with its reason, and leaves nothing behind."""
+    script()
+    found = solver_named(f"{NAME}&version=9.9.9").solve(problem())
+    assert found.outcome is Outcome.NO_PACKAGE
+    reason = "npm: code ETARGET notarget No version 9.9.9"
+    assert found.detail == f"the environment of tiny could not be made: {reason}"
+    assert list(cache.iterdir()) == []
+    with pytest.raises(NotMade, match="No version"):
+        prepare(f"{NAME}&version=9.9.9")
+
+
+@pytest.mark.parametrize("missing", ["node", "npm"])
+def test_without_node_or_npm_it_is_unavailable(
+    missing: str, script: Script, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A missing program is a missing package: never a failure, and with the command that mends it."""
+    script()
+    Path(os.environ["PATH"], missing).unlink()
+    solver = solver_named(NAME)
+    reason = solver.unavailable(rung("f64"))
+    assert reason == f"{missing} is not installed: conda install -c conda-forge nodejs"
+    found = solver.solve(problem())
+    assert (found.outcome, found.detail) == (Outcome.NO_PACKAGE, reason)
+    with pytest.raises(NotMade, match="is not installed"):
+        prepare("tiny")
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
+def test_a_cache_that_cannot_be_written_is_told(script: Script, cache: Path) -> None:
+    """A folder without permission is a reason like any other."""
+    script()
+    cache.mkdir(parents=True, mode=0o500)
+    found = solver_named(NAME).solve(problem())
+    assert found.outcome is Outcome.NO_PACKAGE
+    assert "Permission denied" in found.detail
+
+
+def test_a_cache_that_is_a_file_is_told(script: Script, cache: Path) -> None:
+    """So is a file where the folder should be."""
+    script()
+    cache.parent.mkdir(parents=True)
+    cache.write_text("")
+    found = solver_named(NAME).solve(problem())
+    assert found.outcome is Outcome.NO_PACKAGE
+    assert str(cache) in found.detail
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"tiny@1.0.0": "tiny"}, "expected a dependency pinned with @, got 'tiny'"),
+        ({"tiny@1.0.0": "tiny@^1.0.0"}, r"expected a dependency pinned with @, got 'tiny@\^1.0.0'"),
+        ({"// /// script": "# /// script"}, "expected one block of script metadata, got 0"),
+    ],
+)
+def test_metadata_that_is_wrong_is_refused(
+    changed: dict[str, str], words: str, script: Script
+) -> None:
+    """A block is written in comments of JavaScript, and pins one version of a package."""
+    text = TINY
+    for old, new in changed.items():
+        text = text.replace(old, new, 1)
+    with pytest.raises(ValueError, match=f"{words} @ with_tiny.mjs"):
+        read_script(script(text))
+
+
+@pytest.mark.parametrize("version", ["latest", "1.0", "1.0.0 || 2.0.0", "1.0.0;x"])
+def test_a_version_is_that_of_npm(version: str, script: Script) -> None:
+    """One version can be asked for, and no range and no tag."""
+    script()
+    with pytest.raises(ValueError, match=r"expected a version such as 1\.2\.0"):
+        named(f"{NAME}&version={version}")
+
+
+# The scripts that are shipped.
+
+
+def shipped() -> list[Path]:
+    return sorted(SCRIPTS.glob("with_*.mjs"))
+
+
+@pytest.mark.parametrize("file", shipped(), ids=lambda file: file.stem)
+def test_a_script_has_a_lock_of_what_it_pins(file: Path) -> None:
+    """Each lock has the versions of its script, a hash for every package, and no address."""
+    script, text = read_script(file), lock_of(file).read_text()
+    packages = json.loads(text)["packages"]
+    assert packages.pop("")["dependencies"] == dict(p.rsplit("@", 1) for p in script.requirements)
+    assert all(package["integrity"].startswith("sha512-") for package in packages.values())
+    assert "resolved" not in text
+    assert "://" not in text
+
+
+@pytest.mark.parametrize("file", shipped(), ids=lambda file: file.stem)
+def test_a_script_imports_what_it_pins(file: Path) -> None:
+    """A script needs node, the shared file and its own packages alone."""
+    script = read_script(file)
+    imported = re.findall(r'^import .*? from "(.*)";$', file.read_text(), re.MULTILINE)
+    assert "./free_body.mjs" in imported
+    packages = {requirement.rsplit("@", 1)[0] for requirement in script.requirements}
+    rest = {name for name in imported if not name.startswith("node:")} - {"./free_body.mjs"}
+    assert rest <= packages
+
+
+def test_every_lock_has_its_script() -> None:
+    """No lock is left behind, and the list knows every script."""
+    assert shipped()
+    assert {lock_of(file) for file in shipped()} == set(SCRIPTS.glob("*.lock.json"))
+    libraries = {one.script.path for one in engines().values()}
+    assert libraries >= set(shipped())

@@ -1,0 +1,199 @@
+"""Physics engines as solvers: each begins where the scene does, and comes nearer with a smaller step."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+import pytest
+
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.reader import read
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.engines.engine import SCRIPTS, Engine, engines, prepare
+from taylor_verify.solvers.engines.launcher import NotMade
+from taylor_verify.solvers.process import protocol
+from taylor_verify.solvers.registry import solver_named
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
+from taylor_verify.studies.tradeoff.accuracy import Truth
+
+# A full tensor and an oblique attitude: axes that are mixed up show at the start.
+OBLIQUE = """
+title = "Oblique"
+model = "euler"
+source = "none"
+track = ["omega", "attitude"]
+[body]
+inertia = [[1.2, 0.1, -0.2], [0.1, 2.1, 0.3], [-0.2, 0.3, 2.7]]
+[initial]
+omega = [0.9, -0.3, 0.5]
+attitude = [1, 2, -1, 3]
+[time]
+end = 4
+samples = 5
+"""
+STEP = 1 / 32
+# Settings that exclude each other: the explicit methods of Exudyn have no constraint.
+BESIDE = {"coordinates=EulerParameters": "integrator=GeneralizedAlpha"}
+
+
+def oblique() -> Scene:
+    return read(OBLIQUE, "oblique")
+
+
+@pytest.fixture
+def sibling(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[str], Any]]:
+    """Imports a script as it imports its siblings, from their own folder."""
+    monkeypatch.syspath_prepend(str(SCRIPTS))
+    loaded = set(sys.modules)
+    yield import_module
+    for name in set(sys.modules) - loaded:
+        if str(getattr(sys.modules[name], "__file__", "")).startswith(str(SCRIPTS)):
+            del sys.modules[name]
+
+
+def takes_tensor() -> list[Engine]:
+    return [one for one in engines().values() if one.script.about.data == "tensor"]
+
+
+def each_setting() -> list[str]:
+    """The engines by name, with each word of each of their settings."""
+    names = []
+    for one in takes_tensor():
+        words = [
+            f"{key}={word}"
+            for key, default in one.script.about.settings.items()
+            if isinstance(default, list)
+            for word in default
+        ]
+        queries = ["&".join(filter(None, (word, BESIDE.get(word)))) for word in words]
+        names += [f"outside:{one.name}?{query}".rstrip("?") for query in queries or [""]]
+    return names
+
+
+def problem_of(name: str, monkeypatch: pytest.MonkeyPatch) -> Problem:
+    """The problem as the engine is asked it; without its environment the test is skipped."""
+    # A test downloads nothing.
+    monkeypatch.setenv("UV_OFFLINE", "1")
+    solver = solver_named(name)
+    try:
+        prepare(name)
+    except NotMade as reason:
+        pytest.skip(str(reason))
+    on = next(on for on in ("f64", "f32") if not solver.unavailable(rung(on)))
+    return solver.problem(oblique(), rung(on))
+
+
+def solved(name: str, problem: Problem, **settings: float) -> Trajectory:
+    for key, value in settings.items():
+        name += f"{'&' if '?' in name else '?'}{key}={value}"
+    found = solver_named(name).solve(problem)
+    assert found.outcome is Outcome.FINISHED, found.detail
+    return found
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", each_setting())
+def test_an_engine_begins_where_the_scene_does(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first row is the start, in the axes of the question, under every setting."""
+    problem = problem_of(name, monkeypatch)
+    found = np.array([[float(x) for x in row] for row in solved(name, problem).states])[0]
+    start = problem.given.initial
+    attitude = np.array([float(q) for q in start.attitude])
+    expected = [*(float(w) for w in start.omega), *attitude / np.linalg.norm(attitude)]
+    # A quaternion and its negative are one attitude.
+    found[3:] *= np.sign(found[3:] @ expected[3:])
+    # A few dozen products of numbers of about 1, each rounded.
+    assert np.max(np.abs(found - expected)) <= 100 * 2.0**-problem.rung.bits
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "name", [name for name in each_setting() if "defaults=shipped" not in name]
+)
+def test_an_engine_converges_to_the_exact_motion(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Half the step leaves two thirds of the error or less, until roundoff; no step, roundoff alone."""
+    problem = problem_of(name, monkeypatch)
+    truth = Truth(problem)
+    # Steps carry on a rounding each; these orbits carry an error on thirtyfold at most.
+    roundoff = 30 * 2.0**-problem.rung.bits * 4 / STEP
+    if "step" not in solver_named(name).engine.script.about.settings:
+        assert truth.accuracy(solved(name, problem)).worst <= roundoff
+        return
+    coarse, fine = (
+        truth.accuracy(solved(name, problem, step=step)).worst for step in (STEP, STEP / 2)
+    )
+    assert fine <= max(coarse / 1.5, roundoff)
+
+
+# What the scripts do themselves.
+
+
+@pytest.mark.parametrize("attitude", [(0.5, 0.5, -0.5, 0.5), (-0.6, 0.0, 0.8, 0.0), (-1, 0, 0, 0)])
+def test_rodrigues_parameters_are_the_attitude(
+    attitude: tuple[float, ...], sibling: Callable[[str], Any]
+) -> None:
+    """The parameters are at most 1 long, and lead back to the quaternion or its negative."""
+    basilisk = sibling("with_basilisk")
+    sigma = np.array(basilisk.rodrigues(attitude))
+    assert sigma @ sigma <= 1
+    back = np.array(basilisk.quaternion(sigma))
+    assert abs(abs(back @ attitude) - 1) <= 4 * 2**-53
+
+
+def test_a_step_of_basilisk_is_whole_nanoseconds(sibling: Callable[[str], Any]) -> None:
+    """A decimal step is counted in nanoseconds, and one between two of them is refused."""
+    basilisk = sibling("with_basilisk")
+    assert basilisk.nanoseconds(0.003) == 3_000_000
+    for step in (1 / 3, 4e-10):
+        with pytest.raises(SystemExit, match="expected a step of whole nanoseconds"):
+            basilisk.nanoseconds(step)
+
+
+def test_explicit_methods_of_exudyn_take_no_constraint(sibling: Callable[[str], Any]) -> None:
+    """Euler parameters with an explicit method are refused before anything is loaded."""
+    settings = sibling("free_body").Settings(
+        coordinates="EulerParameters", integrator="RK44", step=0.1
+    )
+    with pytest.raises(SystemExit, match="got RK44 @ integrator"):
+        sibling("with_exudyn").solve(None, settings)
+
+
+NOISY = """
+import json, os, sys
+sys.path.insert(0, {folder!r})
+from free_body import Solved, answer
+
+def solve(body, settings):
+    print("noise of Python")
+    os.system("echo noise of C")
+    rows = [body.row(body.omega, body.attitude) for _ in body.instants]
+    return Solved(rows, 0, 0, 0.0, 0.0)
+
+answer(solve)
+print("noise at the end")
+"""
+
+
+def test_what_an_engine_prints_is_not_in_the_answer() -> None:
+    """Standard output has the answer alone; what an engine prints there goes to stderr."""
+    question = json.dumps(protocol.question(pose(oblique(), rung("f64"))))
+    done = subprocess.run(
+        [sys.executable, "-c", NOISY.format(folder=str(SCRIPTS))],
+        input=question,
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=60,
+    )
+    assert len(json.loads(done.stdout)["w1"]) == 5
+    for noise in ("noise of Python", "noise of C", "noise at the end"):
+        assert noise in done.stderr

@@ -1,0 +1,59 @@
+"""The findings about engines: each script is a report by itself, short, and free of this project."""
+
+from __future__ import annotations
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+from taylor_verify.studies.engines.findings import FOLDER, PARTS, findings, read
+
+REPORTS = Path(__file__).resolve().parents[2] / "reports"
+SCRIPTS = sorted((REPORTS / FOLDER).glob("*.py"))
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
+def test_a_script_is_a_report(script: Path) -> None:
+    """It has its title, versions, expectation, finding and evidence by address, in at most 40 lines."""
+    found = read(script)
+    assert found.title
+    assert set(found.parts) == set(PARTS)
+    assert re.search(r"https://\S+\d", found.parts["Evidence"])
+    assert re.search(r"\d+\.\d+", found.parts["Versions"])
+    assert len(script.read_text(encoding="utf-8").splitlines()) <= 40
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
+def test_a_script_needs_its_engine_alone(script: Path) -> None:
+    """It imports the pinned packages of its first lines and the standard library, and nothing of ours."""
+    text = script.read_text(encoding="utf-8")
+    (pinned,) = re.findall(r"^# dependencies = \[(.*)\]$", text, re.MULTILINE)
+    packages = {re.split("[=><]", name.strip(' "'))[0] for name in pinned.split(",")}
+    imported = {
+        name.name.partition(".")[0]
+        for node in ast.walk(ast.parse(text))
+        if isinstance(node, ast.Import)
+        for name in node.names
+    }
+    assert "numpy" in packages
+    assert re.search(r'"[\w-]+==[\d.]+"', pinned)
+    assert imported - packages <= {"sys", "math"}
+    assert not any(isinstance(node, ast.ImportFrom) for node in ast.walk(ast.parse(text)))
+
+
+def test_the_list_of_scripts_is_whole() -> None:
+    """The README has a row for each script, and the page of the board a line."""
+    readme = (REPORTS / FOLDER / "README.md").read_text(encoding="utf-8")
+    assert re.findall(r"^\| \[(\w+\.py)\]", readme, re.MULTILINE) == [s.name for s in SCRIPTS]
+    page = "\n".join(findings(REPORTS))
+    assert all(f"../{FOLDER}/{script.name})" in page for script in SCRIPTS)
+
+
+def test_a_script_without_a_part_is_named(tmp_path: Path) -> None:
+    """The fault has the parts that lack, and the file."""
+    file = tmp_path / "it.py"
+    file.write_text('"""A title.\n\nVersions: 1.0.\n\nCame: 2.\n"""\n', encoding="utf-8")
+    with pytest.raises(ValueError, match=r"paragraphs Expected, Evidence, got none @ it\.py"):
+        read(file)

@@ -1,0 +1,88 @@
+"""The contract of what runs the scripts of one language, each in an environment of its own."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import ClassVar, Final
+
+from platformdirs import user_cache_path
+
+# Seconds. The largest of them is some 600 MB, which at a megabyte a second take ten minutes.
+_LONGEST_INSTALL: Final = 3600.0
+_LONGEST_REASON: Final = 300
+# What begins a line of an error, of uv and of npm.
+_MARKS: Final = re.compile(r"^(error: |npm (error|ERR!) ?)", re.MULTILINE)
+
+Tell = Callable[[str], object]
+
+
+class NotMade(Exception):
+    """The environment could not be made; the text is the reason, in one line."""
+
+
+class Launcher(ABC):
+    """Maker of environments for scripts in one language.
+
+    ``comment`` begins a line of their metadata, and ``pin`` stands between a package and its version.
+    ``pinned`` matches a requirement with a version, and its first group is the package; ``version``
+    matches a version that may take the place of the pinned one.
+    """
+
+    comment: ClassVar[str]
+    pin: ClassVar[str]
+    pinned: ClassVar[re.Pattern[str]]
+    version: ClassVar[re.Pattern[str]]
+
+    @abstractmethod
+    def unavailable(self) -> str:
+        """Return the reason why no environment can be made here; empty where one can."""
+
+    @abstractmethod
+    def command(self, name: str, script: Path, block: str, tell: Tell) -> list[str]:
+        """Return the words that start a script in the environment that its block of metadata asks for.
+
+        The environment is made if it is not there; ``tell`` hears of a download, which may take
+        minutes. Raises NotMade.
+        """
+
+
+def cache_folder() -> Path:
+    """Return the folder of the user's cache that environments are made in, or made from."""
+    return user_cache_path("taylor-verify") / "outside"
+
+
+def output(
+    words: Sequence[str], folder: Path | None = None, settings: Mapping[str, str] | None = None
+) -> str:
+    """Return the standard output of a program that installs; NotMade with what a failed one said."""
+    name = Path(words[0]).name
+    try:
+        done = subprocess.run(
+            words,
+            check=False,
+            cwd=folder,
+            env={**os.environ, **(settings or {})},
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            timeout=_LONGEST_INSTALL,
+        )
+    except OSError as error:
+        raise NotMade(f"{name}: {error.strerror or error}") from None
+    except subprocess.TimeoutExpired:
+        raise NotMade(f"{name}: no end after {_LONGEST_INSTALL:g} s") from None
+    if done.returncode:
+        said = _one_line(done.stderr.decode(errors="replace"))
+        raise NotMade(f"{name}: {said or f'exit status {done.returncode}'}")
+    return done.stdout.decode()
+
+
+def _one_line(said: str) -> str:
+    """Return the words of an error and of its causes, each of which uv and npm give a line."""
+    said = _MARKS.sub("", said)
+    words = "".join(c if c.isascii() and c.isprintable() else " " for c in said).split()
+    return " ".join(words).replace(" cause: ", ": ")[:_LONGEST_REASON]

@@ -1,0 +1,160 @@
+// Reader of a free rigid body for physics engines in JavaScript, and writer of its motion.
+//
+// It is question.py and free_body.py for scripts with_NAME.mjs, in the same words. A script calls
+// answer(solve), whose solve(body, settings) returns what stepped(body, step, start) returns:
+//
+//     node with_rapier.mjs step=0.01 < question.json > answer.json
+//
+// start() builds the engine at the initial state, and returns { advance, row }. advance() makes one step,
+// row() reads the present state by body.rowFromSpace. The first row is read before any step, so that it
+// shows the state that the engine really begins with. Quaternions are [x, y, z, w], as in these engines.
+
+import { readFileSync } from "node:fs";
+
+// Standard output belongs to the answer, whatever an engine says.
+console.log = console.info = console.error;
+
+export async function answer(solve) {
+  const settings = Object.fromEntries(process.argv.slice(2).map(setting));
+  const body = freeBody(JSON.parse(readFileSync(0, "utf8")));
+  const { rows, ...work } = await solve(body, settings);
+  const states = body.asksStart ? rows : rows.slice(1);
+  // JSON has the decimal to which the number is the nearest double.
+  const columns = body.columns.map((name, i) => [name, states.map((row) => row[i])]);
+  process.stdout.write(JSON.stringify({ t: body.times, ...work, ...Object.fromEntries(columns) }));
+}
+
+function setting(argument) {
+  const [name, value] = argument.split("=");
+  return [name, Number.isNaN(Number(value)) ? value : Number(value)];
+}
+
+// End the script with a sentence.
+export function refuse(sentence) {
+  console.error(sentence);
+  process.exit(1);
+}
+
+// The motion by a fixed step. The propagation is done twice, and the second is timed.
+export function stepped(body, step, start) {
+  const counts = body.steps(step);
+  const [first] = propagated(counts, start);
+  const [seconds, rows] = propagated(counts, start);
+  const compile_seconds = Math.max(0, first - seconds);
+  return { rows, steps: counts.at(-1), seconds, compile_seconds, ...body.remark };
+}
+
+function propagated(counts, start) {
+  const { advance, row } = start();
+  const began = performance.now();
+  const rows = [row()];
+  for (let k = 1, done = 0; k < counts.length; k++) {
+    for (; done < counts[k]; done++) advance();
+    rows.push(row());
+  }
+  return [(performance.now() - began) / 1000, rows];
+}
+
+// Moments, omega and attitude in principal axes, as doubles: these engines store principal moments. `turn`
+// leads from these axes to those of the question. A motion backwards in time is the motion forwards with
+// omega reversed, and is given as that one.
+function freeBody({ model, bits, columns, body, initial, time }) {
+  if (model !== "euler" || "rotor" in body || doubles(body.moment).some((m) => m !== 0))
+    refuse("expected a free rigid body, got a moment, wheels or a fluid @ body");
+  const elapsed = doubles(time.elapsed);
+  const sign = elapsed.at(-1) < 0 ? -1 : 1;
+  const asksStart = elapsed[0] === 0;
+  const instants = [...(asksStart ? [] : [0]), ...elapsed.map(Math.abs)];
+  const { moments, turn } = principal(doubles(body.inertia));
+  const isTurned = turn[3] !== 1;
+  const [w, x, y, z] = doubles(initial.attitude);
+  const attitude = product(unit([x, y, z, w]), turn);
+  const omega = toBody(turn, doubles(initial.omega)).map((rate) => sign * rate);
+
+  return {
+    ...{ moments, attitude, omega, asksStart, columns: columns.slice(1), times: time.times.hex },
+    omegaInSpace: toSpace(attitude, omega),
+    remark: isTurned ? { remark: "solved in principal axes, and turned back" } : {},
+
+    // The steps to each instant. The instants are rounded to the rung, and so is the step in the engine.
+    steps(step) {
+      return instants.map((instant) => {
+        const count = Math.round(instant / step);
+        if (!(Math.abs(instant / step - count) <= 4 * 0.5 ** bits * count))
+          refuse(`expected a step that divides t = ${instant}, got ${step} @ step`);
+        return count;
+      });
+    },
+
+    // A row of the answer, of omega in space axes and the attitude that an engine has.
+    rowFromSpace(omega, attitude) {
+      const inBody = toBody(attitude, omega).map((rate) => sign * rate);
+      const [x, y, z, w] = isTurned ? product(attitude, conjugate(turn)) : attitude;
+      return [...(isTurned ? toSpace(turn, inBody) : inBody), w, x, y, z];
+    },
+  };
+}
+
+// The doubles of a number, vector or matrix: each is there as `text` and as `hex`.
+function doubles(number) {
+  if (Array.isArray(number)) return number.map(doubles);
+  if (typeof number === "object") return doubles(number.hex);
+  const parts = /^(-?)0x([0-9a-f]+)\.?([0-9a-f]*)p([+-]?\d+)$/.exec(number);
+  const [, sign, whole, fraction, exponent] = parts;
+  // Two factors, so that neither leaves the range of a double.
+  const power = Number(exponent) - 4 * fraction.length;
+  const half = Math.trunc(power / 2);
+  const size = Number(`0x${whole}${fraction}`) * 2 ** half * 2 ** (power - half);
+  return sign ? -size : size;
+}
+
+// Axes.
+
+export const vector = ([x, y, z]) => ({ x, y, z });
+export const quaternion = ([x, y, z, w]) => ({ x, y, z, w });
+
+const conjugate = ([x, y, z, w]) => [-x, -y, -z, w];
+
+function unit(q) {
+  const length = Math.hypot(...q);
+  return q.map((entry) => entry / length);
+}
+
+function product([px, py, pz, pw], [qx, qy, qz, qw]) {
+  return [
+    pw * qx + px * qw + py * qz - pz * qy,
+    pw * qy + py * qw + pz * qx - px * qz,
+    pw * qz + pz * qw + px * qy - py * qx,
+    pw * qw - px * qx - py * qy - pz * qz,
+  ];
+}
+
+// Turn a vector from body to space axes; the quaternion of an engine need not be quite unit.
+function toSpace(attitude, v) {
+  const q = unit(attitude);
+  return product(product(q, [...v, 0]), conjugate(q)).slice(0, 3);
+}
+
+// Turn a vector from space to body axes.
+const toBody = (attitude, v) => toSpace(conjugate(attitude), v);
+
+// The principal moments, and the quaternion from the principal axes to the given ones. Jacobi's method: a
+// turn about an axis takes away one product of inertia. The axes keep their order as far as they can.
+function principal(inertia) {
+  let [tensor, turn] = [inertia, [0, 0, 0, 1]];
+  // Each turn squares what is left of the products, once they are small: a few of them reach the roundoff.
+  for (let turns = 0; turns < 15; turns++) {
+    const sizes = [0, 1, 2].map((k) => Math.abs(tensor[(k + 1) % 3][(k + 2) % 3]));
+    const k = sizes.indexOf(Math.max(...sizes));
+    if (sizes[k] === 0) break;
+    const [i, j] = [(k + 1) % 3, (k + 2) % 3];
+    const difference = tensor[i][i] - tensor[j][j];
+    const angle = difference ? Math.atan((2 * tensor[i][j]) / difference) / 2 : Math.PI / 4;
+    const about = [0, 0, 0, Math.cos(angle / 2)];
+    about[k] = Math.sin(angle / 2);
+    turn = unit(product(turn, about));
+    const columns = [0, 1, 2].map((c) => toBody(turn, inertia.map((row) => row[c])));
+    tensor = [0, 1, 2].map((r) => toBody(turn, columns.map((column) => column[r])));
+  }
+  return { moments: tensor.map((row, i) => row[i]), turn };
+}

@@ -1,0 +1,218 @@
+"""Reader of a free rigid body for physics engines, and writer of its motion, shared by their scripts.
+
+A script has a function ``solve(body, settings) -> Solved`` and ends with ``answer(solve)``. Each of its
+states is made by ``body.row`` or ``body.row_from_space``: omega in body axes, then the attitude.
+An engine with a fixed step leaves the loop over the samples to `stepped`:
+
+    def solve(body, settings):
+        def start():
+            ...build the engine at the initial state...
+            return advance, row
+
+        return stepped(body, settings.step, start)
+
+``advance(steps)`` goes on by that many steps, and ``row()`` reads the present state. The first row is
+read before any step, so that it shows the state that the engine really begins with.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import sys
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any
+
+import equations
+from question import Question, Row, Settings, Solved, arguments, document, floats, read, unit
+
+Vector = Sequence[float]
+Quaternion = Sequence[float]
+Matrix = Sequence[Vector]
+# How to go on by a number of steps, and how to read the state as a row.
+Engine = tuple[Callable[[int], Any], Callable[[], Row]]
+
+_IDENTITY = (1.0, 0.0, 0.0, 0.0)
+# Each squares what is left of the products, once they are small: a few of them reach the roundoff.
+_TURNS = 15
+
+
+@dataclass(frozen=True)
+class FreeBody:
+    """Inertia, omega in body axes and attitude (unit, scalar first, body to space), as doubles.
+
+    A motion backwards in time is the motion forwards with omega reversed, and is given as that one.
+    ``turn`` leads from the axes given here to those of the question: they differ in principal axes.
+    """
+
+    inertia: Matrix
+    omega: Vector
+    attitude: Quaternion
+    question: Question
+    turn: Quaternion = _IDENTITY
+
+    @property
+    def instants(self) -> Sequence[float]:
+        instants: Sequence[float] = self.question.instants
+        return instants
+
+    @property
+    def moments(self) -> Vector:
+        """The principal moments; exit with a sentence where the axes are not principal ones."""
+        if any(self.inertia[i][j] for i in range(3) for j in range(3) if i != j):
+            raise SystemExit("expected principal axes, got products of inertia @ inertia")
+        return [self.inertia[i][i] for i in range(3)]
+
+    @property
+    def remark(self) -> str:
+        """A sentence on the axes, where the engine is given others than the question."""
+        return "" if self.turn == _IDENTITY else "solved in principal axes, and turned back"
+
+    @property
+    def omega_in_space(self) -> Vector:
+        return to_space(self.attitude, self.omega)
+
+    def in_principal_axes(self) -> FreeBody:
+        """Return the same body in principal axes, for engines that take three moments alone.
+
+        A diagonal tensor stays as it is. Rows come back in the axes of the question.
+        """
+        moments, turn = principal(self.inertia)
+        if turn == _IDENTITY:
+            return self
+        return replace(
+            self,
+            inertia=[[moments[i] if i == j else 0.0 for j in range(3)] for i in range(3)],
+            omega=to_body(turn, self.omega),
+            attitude=product(self.attitude, turn),
+            turn=turn,
+        )
+
+    def steps(self, step: float) -> list[int]:
+        """Return the number of steps to each instant; exit with a sentence if one is no multiple."""
+        counts = [round(instant / step) for instant in self.instants]
+        # The instants are rounded to the rung, and so is the step in the engine.
+        roundoff = 4 * 0.5**self.question.bits
+        for instant, count in zip(self.instants, counts, strict=True):
+            if not abs(instant / step - count) <= roundoff * count:
+                raise SystemExit(
+                    f"expected a step that divides t = {instant!r}, got {step!r} @ step"
+                )
+        return counts
+
+    def row(self, omega: Vector, attitude: Quaternion) -> Row:
+        """Return a row of the answer, of omega in body axes and the attitude that an engine has."""
+        sign, turn = self.question.sign, self.turn
+        omega = [sign * float(w) for w in omega]
+        attitude = [float(q) for q in attitude]
+        if turn != _IDENTITY:
+            omega, attitude = to_space(turn, omega), product(attitude, conjugate(turn))
+        row = [*omega, *attitude]
+        return row[: len(self.question.columns)]
+
+    def row_from_space(self, omega: Vector, attitude: Quaternion) -> Row:
+        """Return a row of the answer, of omega in space axes and the attitude."""
+        return self.row(to_body(attitude, omega), attitude)
+
+
+def answer(solve: Callable[[FreeBody, Settings], Solved]) -> None:
+    """Read the question on stdin, solve it as the arguments say, write the answer on stdout.
+
+    What an engine prints goes to stderr, at its exit and from C too.
+    """
+    settings, body = arguments(), free_body(json.load(sys.stdin))
+    with os.fdopen(os.dup(1), "w", encoding="ascii") as stdout:
+        os.dup2(2, 1)
+        json.dump(document(body.question, solve(body, settings)), stdout)
+
+
+def free_body(scene: Any) -> FreeBody:
+    """Return the body of a question; exit with a sentence where it is not free."""
+    question = read(scene)
+    if (
+        scene["model"] != "euler"
+        or "rotor" in scene["body"]
+        or any(floats(scene["body"]["moment"]))
+    ):
+        raise SystemExit("expected a free rigid body, got a moment, wheels or a fluid @ body")
+    return FreeBody(
+        inertia=floats(scene["body"]["inertia"]),
+        omega=[question.sign * w for w in floats(scene["initial"]["omega"])],
+        attitude=unit(floats(scene["initial"]["attitude"])),
+        question=question,
+    )
+
+
+def stepped(body: FreeBody, step: float, start: Callable[[], Engine], remark: str = "") -> Solved:
+    """Return the motion by a fixed step; ``start`` builds the engine anew and is not timed.
+
+    The propagation is done twice, and the second is timed, as by `question.twice`.
+    """
+    counts = body.steps(step)
+
+    def seconds_and_rows() -> tuple[float, list[Row]]:
+        advance, row = start()
+        began = time.perf_counter()
+        rows = [row()]
+        for before, count in pairwise(counts):
+            advance(count - before)
+            rows.append(row())
+        return time.perf_counter() - began, rows
+
+    first, _ = seconds_and_rows()
+    second, rows = seconds_and_rows()
+    compiling = max(0.0, first - second)
+    return Solved(rows, counts[-1], 0, second, compiling, remark or body.remark)
+
+
+# Axes.
+
+
+def conjugate(q: Quaternion) -> Quaternion:
+    return (q[0], -q[1], -q[2], -q[3])
+
+
+def product(p: Quaternion, q: Quaternion) -> Quaternion:
+    return (
+        p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
+        p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
+        p[0] * q[2] + p[2] * q[0] + p[3] * q[1] - p[1] * q[3],
+        p[0] * q[3] + p[3] * q[0] + p[1] * q[2] - p[2] * q[1],
+    )
+
+
+def to_space(attitude: Quaternion, vector: Vector) -> Vector:
+    """Turn a vector from body to space axes; the quaternion of an engine need not be quite unit."""
+    turned: Vector = equations.to_space(*unit(attitude), *map(float, vector))
+    return turned
+
+
+def to_body(attitude: Quaternion, vector: Vector) -> Vector:
+    """Turn a vector from space to body axes."""
+    return to_space(conjugate(attitude), vector)
+
+
+def principal(inertia: Matrix) -> tuple[Vector, Quaternion]:
+    """Return the principal moments, and the quaternion from the principal axes to the given ones.
+
+    Jacobi's method, as not every engine brings a library that has eigenvectors: each turn about an axis
+    takes away one product of inertia. The axes keep their order as far as they can.
+    """
+    tensor, turn = inertia, _IDENTITY
+    for _ in range(_TURNS):
+        k = max(range(3), key=lambda k: abs(tensor[(k + 1) % 3][(k + 2) % 3]))
+        i, j = (k + 1) % 3, (k + 2) % 3
+        if not tensor[i][j]:
+            break
+        twice_product, difference = 2 * tensor[i][j], tensor[i][i] - tensor[j][j]
+        angle = math.atan(twice_product / difference) / 2 if difference else math.pi / 4
+        about = [math.cos(angle / 2), 0.0, 0.0, 0.0]
+        about[1 + k] = math.sin(angle / 2)
+        turn = tuple(unit(product(turn, about)))
+        columns = [to_body(turn, column) for column in zip(*inertia, strict=True)]
+        tensor = [to_body(turn, row) for row in zip(*columns, strict=True)]
+    return [tensor[i][i] for i in range(3)], turn

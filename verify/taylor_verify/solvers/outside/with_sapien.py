@@ -1,0 +1,81 @@
+# /// script
+# requires-python = ">=3.11,<3.15"
+# dependencies = [
+#   "sapien==3.0.3",
+#   "numpy==2.4.6",
+# ]
+# [tool.taylor-verify]
+# title = "PhysX 5, by SAPIEN"
+# models = ["euler"]
+# loads = false
+# data = "tensor"
+# rungs = ["f32"]
+# [tool.taylor-verify.settings]
+# solver = ["TGS", "PGS"]
+# defaults = ["off", "shipped"]
+# step = 0.01
+# ///
+"""PhysX on the CPU, in float32: a rigid dynamic body by either of its solvers; TGS is what SAPIEN takes.
+
+It takes principal moments, has omega in space axes and the quaternion scalar first.
+``defaults=shipped`` leaves angular damping, sleep and the cap of the angular velocity as SAPIEN sets them.
+"""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+from free_body import Engine, FreeBody, Settings, Solved, answer, stepped
+
+NO_CAP = 1e18
+
+
+def solve(body: FreeBody, settings: Settings) -> Solved:
+    turned = body.in_principal_axes()
+
+    def start() -> Engine:
+        # The scene keeps its system going.
+        scene, made = scene_of(turned, settings)
+
+        def advance(steps: int) -> None:
+            for _ in range(steps):
+                scene.physx_system.step()
+
+        def row() -> Any:
+            return turned.row_from_space(made.angular_velocity, made.entity.pose.q)
+
+        return advance, row
+
+    return stepped(turned, settings.step, start)
+
+
+def scene_of(turned: FreeBody, settings: Settings) -> tuple[Any, Any]:
+    # SAPIEN warns that there is no Vulkan to draw with.
+    warnings.simplefilter("ignore")
+    import numpy
+    import sapien
+
+    config = sapien.physx.PhysxSceneConfig()
+    config.gravity = numpy.zeros(3)
+    config.enable_tgs = settings.solver == "TGS"
+    sapien.physx.set_scene_config(config)
+    system = sapien.physx.PhysxCpuSystem()
+    system.timestep = settings.step
+    made = sapien.physx.PhysxRigidDynamicComponent()
+    made.mass, made.inertia = 1.0, numpy.array(turned.moments)
+    if settings.defaults == "off":
+        made.linear_damping = made.angular_damping = 0.0
+        made.sleep_threshold = 0.0
+        made.max_angular_velocity = NO_CAP
+    entity = sapien.Entity()
+    entity.add_component(made)
+    scene = sapien.Scene([system])
+    scene.add_entity(entity)
+    entity.pose = sapien.Pose(q=turned.attitude)
+    made.angular_velocity = numpy.array(turned.omega_in_space)
+    return scene, made
+
+
+if __name__ == "__main__":
+    answer(solve)

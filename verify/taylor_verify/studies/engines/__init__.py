@@ -1,0 +1,1 @@
+"""The engine board: physics engines measured against the exact motion, and published."""

@@ -1,0 +1,137 @@
+"""The answer of one run of the board: its row, its trajectory and its time."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib.metadata import PackageNotFoundError, version
+from typing import Any, Final
+
+import numpy as np
+
+from taylor_verify.records.json_text import complete, parsed
+from taylor_verify.records.store import laid_out
+from taylor_verify.run import solve
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.solvers.engines.engine import PREFIX, engines
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
+from taylor_verify.studies.engines.document import EngineRow, Standing
+from taylor_verify.studies.engines.entry import Asked
+from taylor_verify.studies.engines.replay import States, errors_of, judged, states_of
+
+_STANDINGS: Final = {
+    Outcome.FINISHED: Standing.JUDGED,
+    Outcome.NO_PACKAGE: Standing.UNAVAILABLE,
+    Outcome.NO_FORMAT: Standing.UNAVAILABLE,
+    Outcome.UNSUITED: Standing.UNSUITED,
+}
+_MOST_WORDS: Final = 300
+# As pip and npm have it: numpy==2.4.6, @scope/name@1.0.0.
+_PINNED: Final = re.compile(r"(.+?)(?:==|@)(\d[^@=]*)")
+
+
+@dataclass(frozen=True)
+class Answer:
+    """A row with the seconds of its propagation, and its states, None where there are none."""
+
+    row: EngineRow
+    seconds: float = 0.0
+    states: States | None = None
+
+    def to_bytes(self) -> bytes:
+        """Return the answer as JSON: floats read back to the last bit."""
+        states = None if self.states is None else self.states.tolist()
+        kind = "" if self.states is None else self.states.dtype.str
+        stored = _Stored(complete(self.row), self.seconds, kind, states)
+        return laid_out(complete(stored)).encode()
+
+    @classmethod
+    def from_bytes(cls, content: bytes) -> Answer:
+        """Return the answer that JSON holds; ValueError for anything else."""
+        stored = parsed(content, _Read)
+        states = None if stored.states is None else np.array(stored.states, dtype=stored.kind)
+        return cls(stored.row, stored.seconds, states)
+
+
+@dataclass(frozen=True)
+class _Stored:
+    row: Mapping[str, Any]
+    seconds: float
+    kind: str
+    states: list[list[float]] | None
+
+
+@dataclass(frozen=True)
+class _Read:
+    row: EngineRow
+    seconds: float
+    kind: str = ""
+    states: list[list[float]] | None = None
+
+
+def answered(asked: Asked) -> Answer:
+    """Run one engine on one scene and judge what it answers."""
+    trajectory = solve(asked.scene, asked.solver, asked.rung)
+    standing = _STANDINGS.get(trajectory.outcome, Standing.FAILED)
+    if standing is not Standing.JUDGED:
+        return Answer(row_of(asked, standing, detail=_reason(trajectory)))
+    states, steps = states_of(load(asked.scene), trajectory), trajectory.steps
+    found = errors_of(judged(asked.scene, asked.rung, asked.solver, states, steps))
+    bits = 8 * states.dtype.itemsize
+    row = row_of(asked, standing, steps=steps, bits=bits, detail=trajectory.detail, **vars(found))
+    return Answer(row, trajectory.seconds, states)
+
+
+def row_of(asked: Asked, standing: Standing, **numbers: Any) -> EngineRow:
+    """Return the row of a run."""
+    return EngineRow(
+        engine=asked.entry.name,
+        version=version_of(asked),
+        variant=asked.variant,
+        knob=asked.entry.knob,
+        value=asked.value,
+        scene=asked.scene,
+        rung=asked.rung,
+        solver=asked.solver,
+        standing=standing,
+        made_of=made_of(asked.scene, asked.entry.solver),
+        shipped=asked.shipped,
+        **numbers,
+    )
+
+
+def version_of(asked: Asked) -> str:
+    """Return the version of an engine: the one asked for, the pin of its script, or what is installed."""
+    if asked.version or not asked.entry.package:
+        return asked.version or _pinned(asked.entry.solver)
+    try:
+        return version(asked.entry.package)
+    except PackageNotFoundError:
+        return ""
+
+
+@cache
+def made_of(scene: str, solver: str) -> str:
+    """Return a digest of the scene and of the script of the engine: another one is another run."""
+    digest = hashlib.sha256(load(scene).digest.encode())
+    if solver.startswith(PREFIX):
+        engine = engines()[solver.removeprefix(PREFIX)]
+        digest.update(engine.script.path.read_bytes())
+    return digest.hexdigest()[:12]
+
+
+def _pinned(solver: str) -> str:
+    engine = engines().get(solver.removeprefix(PREFIX)) if solver.startswith(PREFIX) else None
+    for requirement in engine.script.requirements if engine else ():
+        pinned = _PINNED.fullmatch(requirement)
+        if engine and pinned and pinned[1] == engine.script.package:
+            return pinned[2]
+    return ""
+
+
+def _reason(trajectory: Trajectory) -> str:
+    words = trajectory.outcome.value
+    return f"{words}: {trajectory.detail}"[:_MOST_WORDS] if trajectory.detail else words

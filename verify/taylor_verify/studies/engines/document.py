@@ -1,0 +1,107 @@
+"""What the board stores: a row for each run, apart from the time that it took and the machine."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Final
+
+from taylor_verify.records.provenance import Machine
+
+# What an engine answers, as far as a scene tracks it.
+STATES: Final = ("omega", "impulse", "attitude", "centre")
+
+
+class Standing(StrEnum):
+    """The end of a run."""
+
+    JUDGED = "judged"
+    FAILED = "failed"
+    UNAVAILABLE = "unavailable"
+    UNSUITED = "unsuited"
+
+
+@dataclass(frozen=True)
+class EngineRow:
+    """A run: what was asked, and what the judge says of the stored trajectory.
+
+    ``errors`` are the largest of all samples by quantity, relative or in radians, to four digits; a
+    quantity whose error is no finite number is not among them. ``floors`` are what perfect rounding would
+    leave of the states. ``start`` is the error of the first row. ``cause`` is the judge's hypothesis about
+    the dynamics that explains nearly all of the error. ``bits`` are those of the floats that hold the
+    trajectory, and ``place`` is its place in the array of its scene. ``made_of`` is the digest of the scene
+    and the adapter.
+    """
+
+    engine: str
+    version: str
+    variant: str
+    value: str
+    scene: str
+    rung: str
+    solver: str
+    standing: Standing
+    made_of: str
+    knob: str = "step"
+    shipped: bool = False
+    detail: str = ""
+    steps: int = 0
+    start: float | None = None
+    errors: dict[str, float] = field(default_factory=dict)
+    floors: dict[str, float] = field(default_factory=dict)
+    cause: str = ""
+    bits: int = 64
+    place: int = 0
+
+    @property
+    def key(self) -> str:
+        """The text that no other run has."""
+        return f"{self.solver} {self.rung} {self.scene}"
+
+    @property
+    def array(self) -> str:
+        """The name of the array of its scene in the file of the trajectories."""
+        return f"{self.scene.rpartition('/')[2]}-f{self.bits}"
+
+    @property
+    def is_judged(self) -> bool:
+        """True if the run came to a trajectory that was compared."""
+        return self.standing is Standing.JUDGED
+
+    @property
+    def worst(self) -> float:
+        """The largest error of the states; infinite where one is missing or no finite number."""
+        found = [self.errors[name] for name in STATES if name in self.errors]
+        lost = [name for name in self.floors if name not in self.errors]
+        return float("inf") if lost or not found else max(found)
+
+
+@dataclass(frozen=True)
+class EnginesTimings:
+    """Seconds of the propagation of each run by its key, and the machine; ``workers`` went at a time."""
+
+    workers: int
+    machine: Machine
+    seconds: dict[str, float]
+
+
+@dataclass(frozen=True)
+class EnginesStudy:
+    """All rows, in the order of the entry list; ``spans`` are the times that the scenes last."""
+
+    versions: dict[str, str]
+    spans: dict[str, float]
+    rows: tuple[EngineRow, ...]
+
+
+@dataclass(frozen=True)
+class Board:
+    """The document of the study: rows and, where they are stored, their times."""
+
+    study: EnginesStudy
+    timings: EnginesTimings
+
+    def pace(self, row: EngineRow) -> float | None:
+        """Return the seconds of a unit of the scene's time; None where they are not known."""
+        seconds = self.timings.seconds.get(row.key, 0.0)
+        return seconds / self.study.spans[row.scene] if seconds > 0 else None

@@ -1,0 +1,122 @@
+"""The page of one engine: all of its settings on every scene, and the commands that measure them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from taylor_verify.publish.cells import NOTHING, figure
+from taylor_verify.publish.markdown import bullets, code, prose, table
+from taylor_verify.publish.page import whole
+from taylor_verify.studies.engines.document import STATES, Board, EngineRow, Standing
+from taylor_verify.studies.engines.entry import EntryList
+from taylor_verify.studies.engines.ranking import Setting, digits, settings
+
+# Conserved quantities of a rigid body, and of a solid in a fluid.
+_CONSERVED = ("T", "H2", "H_space", "F2", "FG", "x_space", "y_space")
+_HEADINGS = {"T": "energy", "H2": "H²", "F2": "F²", "H_space": "H in space"}
+
+
+def place(engine: str) -> str:
+    """Return the path of the page of an engine below the report folder."""
+    return f"tables/engines-{engine}.md"
+
+
+def pages(board: Board, entries: EntryList) -> dict[str, str]:
+    """Return the page of every engine that has rows, by its path."""
+    names = dict.fromkeys(row.engine for row in board.study.rows)
+    titles = {row.name: row.title for row in entries.entry}
+    return {place(name): page(board, name, titles.get(name, name)) for name in names}
+
+
+def page(board: Board, engine: str, title: str) -> str:
+    """Return the page of one engine."""
+    own = [one for one in settings(board.study) if one.engine == engine]
+    scenes = dict.fromkeys(row.scene for one in own for row in one.rows)
+    return whole(
+        f"{title} on the engine board",
+        "Every setting that was measured, against the exact motion; [the board](engines.md) says what the "
+        "columns mean and compares it with the others. Errors are the largest of all samples: relative, "
+        "and in radians for the attitude.",
+        *(block for scene in scenes for block in _section(board, own, scene)),
+        *_not_judged(own),
+        "## The commands",
+        "Each row is one call; the first makes the engine's environment.",
+        _commands(own),
+    )
+
+
+def _section(board: Board, own: Sequence[Setting], scene: str) -> Iterator[str]:
+    rows = [row for one in own for row in one.on(scene)]
+    if not rows:
+        return
+    yield f"## {scene}"
+    states = [name for name in STATES if any(name in row.floors for row in rows)]
+    conserved = [name for name in _CONSERVED if any(name in row.errors for row in rows)]
+    numbers = (f"{_HEADINGS.get(name, name)}:" for name in (*states, *conserved))
+    knob = rows[0].knob
+    columns = ["version", "setting", f"{knob}:", *numbers, "digits:", "time:", "cause"]
+    yield table(columns, [_cells(board, row, states, conserved) for row in rows])
+    if remarks := dict.fromkeys(f"{row.version}: {row.detail}" for row in rows if row.detail):
+        yield bullets(prose(f"Remark on {remark}.") for remark in remarks)
+    if orders := [_order(one, scene, states) for one in own if len(one.on(scene)) > 2]:
+        yield bullets(filter(None, orders))
+
+
+def _cells(
+    board: Board, row: EngineRow, states: Sequence[str], conserved: Sequence[str]
+) -> list[str]:
+    words = [row.variant, row.rung if row.rung != "f64" else "", "as shipped" * row.shipped]
+    pace = board.pace(row)
+    return [
+        prose(row.version) or NOTHING,
+        prose(", ".join(filter(None, words))) or NOTHING,
+        row.value or NOTHING,
+        *(figure(row.errors.get(name)) for name in (*states, *conserved)),
+        f"{digits(row.worst):.1f}",
+        figure(None if pace is None else 1e6 * pace),
+        prose(row.cause) or NOTHING,
+    ]
+
+
+def _order(setting: Setting, scene: str, states: Sequence[str]) -> str:
+    """Return the orders of one setting in a line; empty where a setting has no steps."""
+    found = {name: setting.order(scene, name) for name in states}
+    said = [f"{name}: {prose(order.reason)}" for name, order in found.items() if order]
+    words = [setting.version, setting.words, "as shipped" * setting.shipped]
+    named = prose(" ".join(filter(None, words)))
+    return f"{named}. {'. '.join(said)}." if said else ""
+
+
+def _not_judged(own: Iterable[Setting]) -> Iterator[str]:
+    """Yield what was asked for and has no numbers, each reason once."""
+    reasons: dict[str, list[EngineRow]] = {}
+    for one in own:
+        for row in one.rows:
+            if not row.is_judged:
+                reasons.setdefault(f"{row.standing}: {row.detail}", []).append(row)
+    if not reasons:
+        return
+    yield "## Without a number"
+    yield bullets(
+        f"{code(rows[0].solver)} on {code(rows[0].scene)}"
+        + (f" and {len(rows) - 1} more" if len(rows) > 1 else "")
+        + f": {prose(reason)}"
+        for reason, rows in reasons.items()
+    )
+    if any(row.standing is Standing.UNAVAILABLE for rows in reasons.values() for row in rows):
+        yield "An engine that is unavailable could not be installed on the machine of the measurement."
+
+
+def _commands(own: Iterable[Setting]) -> str:
+    """Return a command for each setting, as a block: with the first of its steps."""
+    lines = []
+    for one in own:
+        steps = " ".join(filter(None, dict.fromkeys(row.value for row in one.rows)))
+        scenes = dict.fromkeys(row.scene for row in one.rows)
+        rung = f" --rung {one.rung}" if one.rung != "f64" else ""
+        first = one.rows[0]
+        lines += [
+            f"# {f'{one.knob} {steps}; ' if steps else ''}{' '.join(scenes)}",
+            f'taylor-verify run {first.scene} --solver "{first.solver}"{rung}',
+        ]
+    return "```sh\n" + "\n".join(lines) + "\n```"

@@ -1,0 +1,157 @@
+"""The entry list of the board, entries.toml, and the runs that it asks for.
+
+name       the engine: of its page, and of `--only`; several rows may share it
+title      the engine as its authors write it
+solver     the name of a solver, without settings
+versions   optional: oldest first. The last one is run on every scene, the others where `sweep` says so
+settings   optional: each setting with the words that are run, in all combinations
+knob       the setting that is made finer, `step` unless given
+values     its values, from coarse to fine, as text
+rungs      optional: the precisions of the arithmetic, f64 unless given
+only       optional: the scenes that are run; without them all scenes that the solver takes
+without    optional: scenes that are not run
+shipped    optional: the settings that bring back what the engine does unless it is told
+warning    optional: what an engine as shipped lacks, in words
+package    optional: the installed package whose version is shown, for a solver that runs here
+plain      true for a solver of differential equations that is no engine
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+from itertools import product
+from pathlib import Path
+from typing import Final
+
+from taylor_verify.records.json_text import converted
+
+FILE: Final = Path(__file__).with_name("entries.toml")
+
+
+@dataclass(frozen=True)
+class BoardScene:
+    """A scene of the board; no step below ``least`` is run on it."""
+
+    name: str
+    least: float = 0.0
+    sweep: bool = False
+    shipped: bool = False
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A row of the list."""
+
+    name: str
+    title: str
+    solver: str
+    values: tuple[str, ...] = ()
+    versions: tuple[str, ...] = ()
+    settings: Mapping[str, tuple[str, ...]] | None = None
+    knob: str = "step"
+    rungs: tuple[str, ...] = ("f64",)
+    only: tuple[str, ...] = ()
+    without: tuple[str, ...] = ()
+    shipped: Mapping[str, str] | None = None
+    warning: str = ""
+    package: str = ""
+    plain: bool = False
+
+    def runs(self, scenes: tuple[BoardScene, ...]) -> Iterator[Asked]:
+        """Yield the runs of this row: each version, setting, value and rung on the scenes it is for."""
+        newest = self.versions[-1] if self.versions else ""
+        for version in reversed(self.versions or ("",)):
+            for words, rung, scene in product(self._words(), self.rungs, scenes):
+                if self._is_asked(scene) and (version == newest or scene.sweep):
+                    yield from self._at_values(version, words, rung, scene)
+        if self.shipped:
+            for words, rung, scene in product(self._words(), self.rungs, scenes):
+                if self._is_asked(scene) and scene.shipped:
+                    yield from self._at_values(newest, {**words, **self.shipped}, rung, scene, True)
+
+    def _at_values(
+        self,
+        version: str,
+        words: Mapping[str, str],
+        rung: str,
+        scene: BoardScene,
+        shipped: bool = False,
+    ) -> Iterator[Asked]:
+        for value in self.values or ("",):
+            if not value or self.knob != "step" or float(value) >= scene.least:
+                yield Asked(self, version, tuple(words.items()), value, rung, scene.name, shipped)
+
+    def _words(self) -> list[dict[str, str]]:
+        """Return every combination of the words of the settings."""
+        settings = self.settings or {}
+        return [dict(zip(settings, words, strict=True)) for words in product(*settings.values())]
+
+    def _is_asked(self, scene: BoardScene) -> bool:
+        return scene.name not in self.without and (not self.only or scene.name in self.only)
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A run that the list asks for: one setting of an engine on one scene."""
+
+    entry: Entry
+    version: str
+    words: tuple[tuple[str, str], ...]
+    value: str
+    rung: str
+    scene: str
+    shipped: bool = False
+
+    @property
+    def solver(self) -> str:
+        """The whole name of the solver, as `--solver` takes it."""
+        versions = [("version", self.version)] if self.version else []
+        finer = [(self.entry.knob, self.value)] if self.value else []
+        settings = "&".join(f"{key}={word}" for key, word in (*versions, *self.words, *finer))
+        return "?".join(filter(None, (self.entry.solver, settings)))
+
+    @property
+    def variant(self) -> str:
+        """The method and the words that are set, as tables name them."""
+        method = self.entry.solver.partition(":")[2].removeprefix(self.entry.name).lstrip("-")
+        # A number says nothing without its key.
+        words = [word if word[:1].isalpha() else f"{key}={word}" for key, word in self.words]
+        return ", ".join(filter(None, [method, *words]))
+
+    @property
+    def key(self) -> str:
+        """The text that no other run has."""
+        return f"{self.solver} {self.rung} {self.scene}"
+
+    def __str__(self) -> str:
+        return f"{self.scene} by {self.solver} on {self.rung}"
+
+
+@dataclass(frozen=True)
+class EntryList:
+    """All scenes and rows."""
+
+    scene: tuple[BoardScene, ...]
+    entry: tuple[Entry, ...]
+
+    @property
+    def engines(self) -> tuple[str, ...]:
+        """The names of the engines in the order of the list, each once."""
+        return tuple(dict.fromkeys(row.name for row in self.entry))
+
+    def runs(self) -> list[Asked]:
+        """Return every run, each once."""
+        every = (run for row in self.entry for run in row.runs(self.scene))
+        return list({run.key: run for run in every}.values())
+
+
+@cache
+def entry_list(file: Path = FILE) -> EntryList:
+    """Return the list in a file. Raises ValueError for one that is none, with the place in it."""
+    try:
+        return converted(tomllib.loads(file.read_text(encoding="utf-8")), EntryList)
+    except ValueError as error:
+        raise ValueError(f"{error} @ {file.name}") from error

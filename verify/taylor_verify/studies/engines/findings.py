@@ -1,0 +1,53 @@
+"""The findings about engines that are proven: scripts below reports/upstream/engines, told on the board.
+
+The docstring of a script begins with its title. Then come paragraphs, each behind a word of `PARTS`.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from taylor_verify.publish.markdown import bullets, prose
+
+FOLDER: Final = "upstream/engines"
+PARTS: Final = ("Versions", "Expected", "Came", "Evidence")
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A script, its title, and its paragraphs by the word that each begins with."""
+
+    script: str
+    title: str
+    parts: dict[str, str]
+
+
+def read(file: Path) -> Finding:
+    """Return the finding of a script. Raises ValueError for one without a part of it."""
+    words = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
+    title, *paragraphs = [" ".join(each.split()) for each in re.split(r"\n\s*\n", words)]
+    parts = {word: text.strip() for each in paragraphs for word, _, text in [each.partition(":")]}
+    if lost := [word for word in PARTS if not parts.get(word)]:
+        raise ValueError(f"expected paragraphs {', '.join(lost)}, got none @ {file.name}")
+    return Finding(file.name, title.removesuffix("."), parts)
+
+
+def findings(folder: Path) -> Iterator[str]:
+    """Yield the section of the findings of a report folder; nothing where there are none."""
+    found = [read(file) for file in sorted((folder / FOLDER).glob("*.py"))]
+    if found:
+        yield "## Findings"
+        yield (
+            "Each has a script that runs with the engine and NumPy alone, and evidence beside our adapter "
+            f"([all of them](../{FOLDER}/README.md))."
+        )
+        yield bullets(
+            f"[{prose(one.title)}](../{FOLDER}/{one.script}): {prose(one.parts['Came'])} "
+            f"({prose(one.parts['Versions'])})"
+            for one in found
+        )

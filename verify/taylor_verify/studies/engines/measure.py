@@ -1,0 +1,156 @@
+"""The runs of the entry list, each in processes of its own, and the board that they make.
+
+A run that is stored already, with the same scene, setting, version and adapter, is not run again. What an
+engine that cannot be installed would have answered is a row `unavailable`, and is asked for anew next time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Final
+
+from taylor_verify.batch.pool import available_cores
+from taylor_verify.batch.runs import run_all
+from taylor_verify.judge.provenance import machine, packages
+from taylor_verify.scenes.reading.reader import load as load_scene
+from taylor_verify.solvers.engines.engine import PREFIX, prepare
+from taylor_verify.solvers.engines.launcher import NotMade
+from taylor_verify.studies.engines import trajectories
+from taylor_verify.studies.engines.answer import Answer, answered, made_of, row_of
+from taylor_verify.studies.engines.document import (
+    Board,
+    EnginesStudy,
+    EnginesTimings,
+    Standing,
+)
+from taylor_verify.studies.engines.entry import Asked, EntryList
+from taylor_verify.studies.engines.replay import errors_of, judged
+from taylor_verify.studies.engines.unfinished import Unfinished
+
+# Below the folder that is published: what is local there is nobody else's.
+UNFINISHED: Final = "local/engines"
+
+Say = Callable[[str], None]
+Known = Mapping[str, Answer]
+
+
+def measure(
+    entries: EntryList,
+    known: Known,
+    store: Unfinished,
+    say: Say,
+    only: Collection[str] = (),
+    workers: int | None = None,
+) -> list[Answer]:
+    """Return an answer for each run of the list that is known or asked for, in the order of the list.
+
+    ``known`` are answers by their key. With ``only`` no other engine is run. Each answer is stored as it
+    comes.
+    """
+    every = entries.runs()
+    answers = {
+        key: answer for key, answer in known.items() if answer.row.is_judged or _is_final(answer)
+    }
+    answers |= {answer.row.key: answer for answer in store.answers()}
+    waiting = [
+        run
+        for run in every
+        if (not only or run.entry.name in only) and not _is_current(run, answers.get(run.key))
+    ]
+    lacking = _prepared(waiting, say)
+    for run in waiting:
+        if reason := lacking.get(_environment(run), ""):
+            answers[run.key] = _unavailable(run, reason)
+    waiting = [run for run in waiting if not lacking.get(_environment(run), "")]
+    done = 0
+
+    def ended(run: Asked, answer: Answer) -> None:
+        nonlocal done
+        done += 1
+        store.keep(answer)
+        say(f"{done}/{len(waiting)} {run}: {answer.row.standing}")
+
+    made = run_all(answered, waiting, workers=workers or available_cores(), ended=ended)
+    answers |= {answer.row.key: answer for answer in made}
+    return [answers[run.key] for run in every if run.key in answers]
+
+
+def _is_final(answer: Answer) -> bool:
+    return answer.row.standing is not Standing.UNAVAILABLE
+
+
+def _is_current(run: Asked, answer: Answer | None) -> bool:
+    """Return True for an answer to this scene by this adapter, which need not be asked for again."""
+    return (
+        answer is not None
+        and _is_final(answer)
+        and answer.row.made_of == made_of(run.scene, run.entry.solver)
+    )
+
+
+def _environment(run: Asked) -> str:
+    """Return the name of the environment that a run needs; empty for a solver of this process."""
+    if not run.entry.solver.startswith(PREFIX):
+        return ""
+    return run.entry.solver + (f"?version={run.version}" if run.version else "")
+
+
+def _prepared(runs: Iterable[Asked], say: Say) -> dict[str, str]:
+    """Make the environments of runs, and return the reasons why some of them cannot be had."""
+    lacking = {}
+    names = [name for name in dict.fromkeys(map(_environment, runs)) if name]
+    for place, name in enumerate(names, 1):
+        try:
+            prepare(name, say)
+        except NotMade as reason:
+            lacking[name] = str(reason)
+            say(f"environment {place}/{len(names)} {name}: unavailable: {reason}")
+    return lacking
+
+
+def _unavailable(run: Asked, reason: str) -> Answer:
+    return Answer(row_of(run, Standing.UNAVAILABLE, detail=reason))
+
+
+def judged_again(answers: Iterable[Answer], say: Say, workers: int | None = None) -> list[Answer]:
+    """Return the answers with the errors that the judge finds today in their stored trajectories."""
+    asked, done = [*answers], 0
+
+    def ended(answer: Answer, again: Answer) -> None:
+        nonlocal done
+        done += 1
+        say(f"{done}/{len(asked)} {answer.row.key}")
+
+    return run_all(_judged_again, asked, workers=workers or available_cores(), ended=ended)
+
+
+def _judged_again(answer: Answer) -> Answer:
+    row, states = answer.row, answer.states
+    if states is None:
+        return answer
+    found = errors_of(judged(row.scene, row.rung, row.solver, states, row.steps))
+    return replace(answer, row=replace(row, **vars(found)))
+
+
+def board_of(answers: Sequence[Answer], workers: int | None) -> tuple[Board, bytes]:
+    """Return the document of answers, and the file of their trajectories."""
+    rows, file = trajectories.packed(answers)
+    seconds = {a.row.key: float(f"{a.seconds:.3g}") for a in answers if a.row.is_judged}
+    spans = {scene: _span(scene) for scene in dict.fromkeys(row.scene for row in rows)}
+    timings = EnginesTimings(workers or available_cores(), machine(), seconds)
+    return Board(EnginesStudy(packages(), spans, tuple(rows)), timings), file
+
+
+def answers_of(board: Board, folder: Path) -> list[Answer]:
+    """Return the answers that a report folder holds. Raises OSError and ValueError for a broken one."""
+    arrays, seconds = trajectories.load(folder), board.timings.seconds
+    return [
+        Answer(row, seconds.get(row.key, 0.0), trajectories.states_of(arrays, row))
+        for row in board.study.rows
+    ]
+
+
+def _span(scene: str) -> float:
+    return float(max(abs(t) for t in load_scene(scene).clock.elapsed))

@@ -1,0 +1,280 @@
+"""The page of the engine board: first what a user should do, then the tables and pictures it rests on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import groupby
+from math import inf
+from pathlib import Path
+from typing import Any, Final
+
+from taylor_verify.publish.cells import NOTHING, figure
+from taylor_verify.publish.markdown import bullets, code, prose, table
+from taylor_verify.publish.page import made_with, whole
+from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.publish.sheet import sheet as csv_sheet
+from taylor_verify.studies import figures
+from taylor_verify.studies.engines import trajectories
+from taylor_verify.studies.engines.advice import advice
+from taylor_verify.studies.engines.document import Board, EngineRow
+from taylor_verify.studies.engines.engine_page import place
+from taylor_verify.studies.engines.entry import EntryList, entry_list
+from taylor_verify.studies.engines.findings import findings
+from taylor_verify.studies.engines.pictures import sweeps, work
+from taylor_verify.studies.engines.ranking import (
+    Setting,
+    digits,
+    newest,
+    settings,
+    shared_scenes,
+)
+from taylor_verify.studies.engines.stored import ENGINES, TIMINGS
+
+_WHAT: Final = (
+    "Each engine turns a free body, and its answer is compared with the exact motion of the same numbers. "
+    "Energy and angular momentum are compared too: they say nothing of where the body is. We sell no "
+    "engine. Every trajectory behind these tables is stored, and anybody can judge it again."
+)
+_LEGEND: Final = (
+    "*omega* is the largest error of all samples relative to the largest omega, *attitude* the largest "
+    "angle in radians, *energy* and *H in space* the largest relative drift.",
+    "*order* is the observed order of the error over the steps, of omega and of the attitude; a dash where "
+    "the steps show none.",
+    "*time* is the processor's time for a second of the motion, in microseconds: of the call of the engine "
+    "alone, without starting it.",
+    "*best step* is the coarsest of the steps with the least error. Steps are decimal, and every sample is "
+    "at a whole number of steps.",
+    "Adapters switch sleeping, damping and caps on the velocity off wherever an engine has them. The table "
+    "*as shipped* shows what an engine does where nobody does that.",
+)
+_FAIRNESS: Final = (
+    "The first row of every trajectory is the start of the scene, from an oblique attitude: axes, order of "
+    "the quaternion and units are right before anything else is believed. The column *start* of the "
+    "[sheet](engines.csv) has its error.",
+    "Every engine gets the same numbers, each rounded once to the precision of its arithmetic, and is "
+    "compared with the exact motion of the rounded ones.",
+    "An engine that takes principal moments alone is given the principal axes of `engines/full-tensor`, "
+    "and its answer is turned back; the remark on its page says so. In space that is the motion of "
+    "`engines/oblique`.",
+    "A surprising finding is published where a second demonstration stands beside it that does not use our "
+    "adapter: the engine's own data, its source or its changelog, and a script of few lines that runs with "
+    "the engine alone. A finding that rests on our adapter alone is not published.",
+)
+_OBJECT: Final = (
+    "A row that is unfair to an engine is a fault of this project. Name the row, and say which call of the "
+    'engine would do better: `taylor-verify run SCENE --solver "outside:NAME?..."` of the engine\'s page '
+    "shows it as we see it.",
+    "A better adapter is one file, [with_NAME](../../cases/README.md#to-add-an-engine); a new setting or "
+    "version is a word in the engine's row of `verify/taylor_verify/studies/engines/entries.toml`.",
+    "An engine of your own needs no adapter here to be judged: "
+    "[bring your engine](../../docs/bring-your-engine.md).",
+)
+
+
+def page(board: Board, folder: Path) -> str:
+    """Return the whole page, with the pictures that are in ``folder``/figures."""
+    entries = entry_list()
+    every = settings(board.study)
+    return whole(
+        "The engine board",
+        bullets(advice(board, entries)) or "No engine is measured yet.",
+        _WHAT,
+        "## What each engine achieves",
+        _best(board, entries, every),
+        bullets(_LEGEND),
+        figures.shown(folder, pictures(board)),
+        *_scenes(board, entries, every),
+        *_as_shipped(board, entries, every),
+        *_unavailable(board.study.rows),
+        "## Fairness",
+        bullets(_FAIRNESS),
+        *findings(folder),
+        "## To object, and to send a better adapter",
+        bullets(_OBJECT),
+        "## To remake this",
+        bullets(_remake(board)),
+    )
+
+
+def pictures(board: Board) -> list[Picture]:
+    """Return the pictures of the board: error against time and step, and error against version."""
+    entries = entry_list()
+    return [*work.pictures(board, entries), *sweeps.pictures(board, entries)]
+
+
+def _best(board: Board, entries: EntryList, every: Sequence[Setting]) -> str:
+    """Return a line for each engine: its best setting on the scenes that all of them take."""
+    scenes = shared_scenes(board.study) or ["engines/oblique"]
+    titles, rows = {row.name: row.title for row in entries.entry}, []
+    for engine, group in groupby(newest(every), key=lambda one: one.engine):
+        scores = [score for one in group for score in one.scores(scenes[:1])]
+        best = min(scores, key=lambda score: score.error, default=None)
+        if best is not None:
+            name = f"[{prose(titles.get(engine, engine))}]({place(engine).removeprefix('tables/')})"
+            rows.append(
+                [f"{name} {best.setting.version}".strip(), *_cells(board, best.setting, best.row)]
+            )
+    if not rows:
+        return "Nothing was judged."
+    columns = [
+        "engine",
+        "setting",
+        "best step:",
+        "omega:",
+        "attitude:",
+        "order:",
+        "energy:",
+        "time:",
+    ]
+    return f"On {code(scenes[0])}, each engine with its best setting:\n\n{table(columns, rows)}"
+
+
+def _cells(board: Board, setting: Setting, row: EngineRow) -> list[str]:
+    orders = [setting.order(row.scene, name) for name in ("omega", "attitude")]
+    said = [f"{o.order:.1f}" if o and o.order is not None else NOTHING for o in orders]
+    pace = board.pace(row)
+    return [
+        prose(setting.words) or NOTHING,
+        _knob(row),
+        figure(row.errors.get("omega")),
+        figure(row.errors.get("attitude")),
+        ", ".join(said),
+        figure(row.errors.get("T")),
+        figure(None if pace is None else 1e6 * pace),
+    ]
+
+
+def _knob(row: EngineRow) -> str:
+    if not row.value:
+        return NOTHING
+    return row.value if row.knob == "step" else f"{row.knob} {row.value}"
+
+
+def _scenes(board: Board, entries: EntryList, every: Sequence[Setting]) -> Iterator[str]:
+    """Yield a section for each scene: every engine with its best setting there."""
+    titles = {row.name: row.title for row in entries.entry}
+    for scene in dict.fromkeys(row.scene for row in board.study.rows):
+        rows = []
+        for engine, group in groupby(newest(every), key=lambda one: one.engine):
+            found = [row for one in group if (row := one.best(scene)) is not None]
+            best = min(found, key=lambda row: row.worst, default=None)
+            if best is not None:
+                rows.append(_scene_row(best, titles.get(engine, engine)))
+        if rows:
+            states = (
+                ("omega", "attitude") if "omega" in _states(board, scene) else ("impulse", "centre")
+            )
+            space = "H in space:" if "omega" in states else "momentum in space:"
+            numbers = (*(f"{name}:" for name in states), "energy:", space, "digits:")
+            yield f"## {scene}"
+            yield table(["engine", "setting", "best step:", *numbers, "cause"], rows)
+
+
+def _scene_row(row: EngineRow, title: str) -> list[str]:
+    is_rotation = "omega" in row.floors
+    names = (
+        ("omega", "attitude", "T", "H_space")
+        if is_rotation
+        else ("impulse", "centre", "T", "x_space")
+    )
+    words = ", ".join(filter(None, [row.variant, row.rung if row.rung != "f64" else ""]))
+    return [
+        prose(title),
+        prose(words) or NOTHING,
+        _knob(row),
+        *(figure(row.errors.get(name)) for name in names),
+        f"{digits(row.worst):.1f}",
+        prose(row.cause) or NOTHING,
+    ]
+
+
+def _states(board: Board, scene: str) -> set[str]:
+    return {name for row in board.study.rows if row.scene == scene for name in row.floors}
+
+
+def _as_shipped(board: Board, entries: EntryList, every: Sequence[Setting]) -> Iterator[str]:
+    """Yield the table of the engines as people get them, beside what the board sets."""
+    titles, rows = {row.name: row.title for row in entries.entry}, []
+    measured = {(r.engine, r.scene, r.value, r.rung, r.variant): r for r in board.study.rows}
+    bare = {row.name: dict(row.shipped or {}) for row in entries.entry if row.shipped}
+    for one in newest(every, shipped=True):
+        for scene, group in groupby(one.rows, key=lambda row: row.scene):
+            judged = [row for row in group if row.is_judged]
+            for row in judged[:1]:
+                like = _without(row.variant, bare.get(row.engine, {}).values())
+                set_row = measured.get((row.engine, scene, row.value, row.rung, like))
+                rows.append(
+                    [
+                        prose(titles.get(one.engine, one.engine)),
+                        prose(like) or NOTHING,
+                        code(scene.rpartition("/")[2]),
+                        row.value,
+                        *(figure(row.errors.get(name)) for name in ("omega", "attitude", "T")),
+                        figure(None if set_row is None or set_row.worst == inf else set_row.worst),
+                        prose(row.cause) or NOTHING,
+                    ]
+                )
+    if rows:
+        numbers = ("step:", "omega:", "attitude:", "energy:", "set by us:")
+        yield "## As shipped"
+        yield (
+            "Sleeping, damping and caps are left as an engine ships them; *set by us* is the error with "
+            "what the adapter sets, at the same step."
+        )
+        yield table(["engine", "setting", "scene", *numbers, "cause"], rows)
+
+
+def _without(variant: str, words: Iterable[str]) -> str:
+    """Return the words of a setting without those that only tell that it is as shipped."""
+    left_out = set(words)
+    return ", ".join(word for word in variant.split(", ") if word not in left_out)
+
+
+def _unavailable(rows: Iterable[EngineRow]) -> Iterator[str]:
+    lost = {
+        (row.engine, row.version, row.standing, row.detail): row
+        for row in rows
+        if not row.is_judged
+    }
+    if lost:
+        yield "## Without a number"
+        yield bullets(
+            f"{code(row.solver)} on {code(row.scene)}: {row.standing}, {prose(row.detail)}"
+            for row in lost.values()
+        )
+
+
+def _remake(board: Board) -> list[str]:
+    machine, count = board.timings.machine, sum(row.is_judged for row in board.study.rows)
+    return [
+        "`make engines` runs what is not stored yet, and `make engines ENGINE=mujoco` one engine again; "
+        "with `taylor-verify publish engines --anew` everything is run. It may be killed, and goes on.",
+        f"`taylor-verify publish engines --rejudge` runs nothing: it judges the {count} stored "
+        f"trajectories again, in [trajectories.npz](../{trajectories.NAME}), and writes "
+        f"[engines.json](../{ENGINES.name}) and this page. Errors are the same on every machine.",
+        f"Times are in [engines-timings.json](../{TIMINGS.name}), {board.timings.workers} runs at a time "
+        f"on {prose(machine.processor)}; no number but a time depends on the machine.",
+        f"The [sheet](engines.csv) has every run. {made_with(board.study.versions)}",
+    ]
+
+
+def sheet(board: Board) -> str:
+    """Return a row for every run, with every quantity."""
+    quantities = dict.fromkeys(name for row in board.study.rows for name in row.errors)
+    names = [
+        *("engine", "version", "variant", "knob", "value", "scene", "rung", "shipped", "standing"),
+        *("steps", "start", *quantities, "microseconds", "cause", "array", "place", "solver"),
+    ]
+    return csv_sheet(names, (_sheet_row(board, row) for row in board.study.rows))
+
+
+def _sheet_row(board: Board, row: EngineRow) -> dict[str, Any]:
+    pace = board.pace(row)
+    return {
+        **vars(row),
+        **row.errors,
+        "array": row.array if row.is_judged else "",
+        "microseconds": None if pace is None else f"{1e6 * pace:.3g}",
+        "standing": row.standing.value,
+        "shipped": "yes" if row.shipped else "no",
+    }

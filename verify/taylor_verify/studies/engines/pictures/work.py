@@ -1,0 +1,144 @@
+"""Error against time and against step: each engine's best setting, the plain solvers on the same axes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from itertools import groupby
+from math import inf
+from typing import TYPE_CHECKING, Final
+
+from taylor_verify.publish.pictures.log_axes import number_axes, widened
+from taylor_verify.publish.pictures.named import Named
+from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.publish.pictures.sheet import sheet
+from taylor_verify.publish.pictures.style import DASHED, Look, look_of_line
+from taylor_verify.publish.pictures.wording import plain
+from taylor_verify.studies.engines.document import Board, EngineRow
+from taylor_verify.studies.engines.entry import EntryList
+from taylor_verify.studies.engines.ranking import Setting, newest, settings, shared_scenes
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_HEIGHT: Final = 3.9
+_ERROR: Final = "largest error of omega and attitude"
+_DOUBLE, _SINGLE = "float64", "float32"
+
+
+@dataclass(frozen=True)
+class Line:
+    """An engine in a picture: its points from coarse to fine, where both numbers are above zero."""
+
+    name: str
+    look: Look
+    points: tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True)
+class Panel:
+    """The engines of one precision; the plain solvers stand in both panels."""
+
+    heading: str
+    lines: tuple[Line, ...]
+
+
+def pictures(board: Board, entries: EntryList) -> list[Picture]:
+    """Return error against time and error against step; none without a judged run above zero."""
+    scenes = shared_scenes(board.study)
+    if not scenes:
+        return []
+    time = panels(board, entries, scenes[0], board.pace, 1e6)
+    step = panels(board, entries, scenes[0], _step, 1.0)
+    found = []
+    if time:
+        axis = "processor time for a second of the motion (µs)"
+        found.append(_picture(scenes[0], "time", axis, time))
+    if step:
+        found.append(_picture(scenes[0], "step", "step (s)", step))
+    return found
+
+
+def panels(
+    board: Board,
+    entries: EntryList,
+    scene: str,
+    work: Callable[[EngineRow], float | None],
+    unit: float,
+) -> list[Panel]:
+    """Return a panel for each precision that has an engine, with a line for each engine in it."""
+    titles = {row.name: row.title for row in entries.entry}
+    plain_ones = {row.name for row in entries.entry if row.plain}
+    lines: dict[str, list[Line]] = {_DOUBLE: [], _SINGLE: []}
+    for number, (engine, group) in enumerate(
+        groupby(newest(settings(board.study)), key=lambda one: one.engine)
+    ):
+        best = _best([*group], scene)
+        if best is None:
+            continue
+        dashes = DASHED if engine in plain_ones else ()
+        look = look_of_line(number)
+        found = [(work(row), row.worst) for row in best.on(scene)]
+        points = tuple((unit * x, y) for x, y in found if x and 0 < y < inf)
+        line = Line(titles.get(engine, engine), Look(look.colour, look.marker, dashes), points)
+        if points and engine in plain_ones:
+            lines[_DOUBLE].append(line)
+            lines[_SINGLE].append(line)
+        elif points:
+            lines[_SINGLE if best.rung == "f32" else _DOUBLE].append(line)
+    known = {titles.get(name, name) for name in plain_ones}
+    if all(line.name in known for line in lines[_SINGLE]):
+        lines[_SINGLE] = []
+    return [Panel(heading, tuple(own)) for heading, own in lines.items() if own]
+
+
+def _best(group: Sequence[Setting], scene: str) -> Setting | None:
+    """Return the setting of an engine with the smallest error of the scene."""
+    found = [(row.worst, one) for one in group if (row := one.best(scene)) is not None]
+    return min(found, key=lambda pair: pair[0])[1] if found else None
+
+
+def _step(row: EngineRow) -> float | None:
+    return float(row.value) if row.value and row.knob == "step" else None
+
+
+def _picture(scene: str, what: str, axis: str, drawn: Sequence[Panel]) -> Picture:
+    every = [
+        (line.name, *point) for panel in drawn for line in panel.lines for point in line.points
+    ]
+    name, x, y = min(every, key=lambda point: point[2])
+    names = ", ".join(dict.fromkeys(line.name for panel in drawn for line in panel.lines))
+    alt = (
+        f"Largest error of omega and attitude against {axis} on {scene}, both logarithmic, for the best "
+        f"setting of {names}. The smallest error is {plain(y)}, of {name} at {plain(x)}."
+    )
+    stem = f"engines-{what}"
+    return Picture(
+        stem, f"Error against {what}: {scene}", alt, partial(_figure, axis, tuple(drawn))
+    )
+
+
+def _figure(axis: str, drawn: Sequence[Panel]) -> Figure:
+    from taylor_verify.publish.pictures.labels import write_names
+
+    entries = [
+        ({"color": "#1A1A1A", "linewidth": 1.1}, "engine, its best setting"),
+        ({"color": "#1A1A1A", "linewidth": 1.1, "linestyle": (0, DASHED)}, "plain solver, float64"),
+    ]
+    figure, places = sheet(len(drawn), entries, height=_HEIGHT)
+    spots = [point for panel in drawn for line in panel.lines for point in line.points]
+    limits = {
+        "xlim": widened([x for x, _ in spots], 0.08, 0.12),
+        "ylim": widened([y for _, y in spots], 0.06, 0.06),
+    }
+    for axes, panel in zip(places, drawn, strict=True):
+        axes.set_title(panel.heading, pad=4)
+        axes.set(xscale="log", yscale="log", xlabel=axis, ylabel=_ERROR, **limits)
+        number_axes(axes)
+        for line in panel.lines:
+            axes.plot(*zip(*line.points, strict=True), gid=line.name, zorder=3, **line.look.line)
+        write_names(
+            axes, [Named(line.name, line.look.colour, [line.points]) for line in panel.lines]
+        )
+    return figure

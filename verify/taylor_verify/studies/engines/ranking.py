@@ -1,0 +1,137 @@
+"""The settings of the board beside each other: orders, best steps, and the worst of several scenes.
+
+An engine, a version, the words that are set and a precision are one setting; its rows differ in the step
+and the scene.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from math import inf, log10
+
+from taylor_verify.judge.series.convergence import Convergence, convergence
+from taylor_verify.studies.engines.document import EngineRow, EnginesStudy
+
+
+@dataclass(frozen=True)
+class Setting:
+    """The rows of one setting, in the order of the list: scene by scene, from coarse to fine."""
+
+    engine: str
+    version: str
+    variant: str
+    rung: str
+    shipped: bool
+    rows: tuple[EngineRow, ...]
+
+    @property
+    def knob(self) -> str:
+        """The name of what is made finer from row to row."""
+        return self.rows[0].knob
+
+    @property
+    def words(self) -> str:
+        """The words that tell it from the other settings of its engine and version."""
+        return ", ".join(filter(None, [self.variant, self.rung if self.rung != "f64" else ""]))
+
+    def on(self, scene: str) -> tuple[EngineRow, ...]:
+        """Return the rows of a scene that were judged."""
+        return tuple(row for row in self.rows if row.scene == scene and row.is_judged)
+
+    def best(self, scene: str) -> EngineRow | None:
+        """Return the row with the smallest error of a scene, the coarsest of several; None without one."""
+        return min(self.on(scene), key=lambda row: row.worst, default=None)
+
+    def order(self, scene: str, quantity: str) -> Convergence | None:
+        """Return the order of a quantity over the steps of a scene; None for what has no steps."""
+        rows = [row for row in self.on(scene) if row.value and row.knob == "step"]
+        if not rows:
+            return None
+        return convergence(
+            [float(row.value) for row in rows],
+            [row.errors.get(quantity) for row in rows],
+            [row.floors.get(quantity, 0.0) for row in rows],
+        )
+
+    def at(self, value: str, scenes: Iterable[str]) -> Score | None:
+        """Return the worst of several scenes at one step; None where one of them was not judged."""
+        rows = {row.scene: row for row in self.rows if row.value == value and row.is_judged}
+        asked = [*scenes]
+        if not asked or any(scene not in rows for scene in asked):
+            return None
+        return Score(self, value, max((rows[scene] for scene in asked), key=lambda row: row.worst))
+
+    def scores(self, scenes: Sequence[str]) -> list[Score]:
+        """Return the scores at every step at which all of the scenes were judged."""
+        values = dict.fromkeys(row.value for row in self.rows)
+        return [score for value in values if (score := self.at(value, scenes)) is not None]
+
+
+@dataclass(frozen=True)
+class Score:
+    """A setting at one step: ``row`` is that of the scene on which it is worst."""
+
+    setting: Setting
+    value: str
+    row: EngineRow
+
+    @property
+    def error(self) -> float:
+        """The largest error of the states on its worst scene."""
+        return self.row.worst
+
+
+def settings(study: EnginesStudy) -> list[Setting]:
+    """Return all settings, in the order of the list."""
+    rows: dict[tuple[str, str, str, str, bool], list[EngineRow]] = {}
+    for row in study.rows:
+        key = (row.engine, row.version, row.variant, row.rung, row.shipped)
+        rows.setdefault(key, []).append(row)
+    return [Setting(*key, tuple(each)) for key, each in rows.items()]
+
+
+def newest(every: Iterable[Setting], shipped: bool = False) -> list[Setting]:
+    """Return the settings of the version of each engine that the list names last, which is run first."""
+    first: dict[str, str] = {}
+    found = []
+    for setting in every:
+        if setting.version == first.setdefault(setting.engine, setting.version):
+            found += [setting] if setting.shipped == shipped else []
+    return found
+
+
+def best_of(scores: Iterable[Score]) -> Score | None:
+    """Return the score with the smallest finite error; None where there is none."""
+    finite = [score for score in scores if score.error < inf]
+    return min(finite, key=lambda score: score.error, default=None)
+
+
+def digits(error: float) -> float:
+    """Return the decimal digits that are right; none of an error as large as the motion, or no number."""
+    return max(0.0, -log10(error)) if 0 < error < inf else (0.0 if error else inf)
+
+
+def free_scenes(study: EnginesStudy) -> list[str]:
+    """Return the scenes of free rotation, in the order of the list."""
+    scenes = dict.fromkeys(row.scene for row in study.rows)
+    rotating = {row.scene for row in study.rows if "omega" in row.floors}
+    return [scene for scene in scenes if scene in rotating]
+
+
+def shared_scenes(study: EnginesStudy) -> list[str]:
+    """Return the scenes of free rotation on which every engine was judged at every step of its rows.
+
+    These compare all engines; a scene that some engines do not take, or not with every step, is apart.
+    """
+    every = newest(settings(study))
+    judged = [one for one in every if any(row.is_judged for row in one.rows)]
+    return [
+        scene
+        for scene in free_scenes(study)
+        if all(
+            {row.value for row in one.on(scene)} >= {row.value for row in one.rows if row.is_judged}
+            for one in judged
+            if any("omega" in row.floors for row in one.rows)
+        )
+    ]

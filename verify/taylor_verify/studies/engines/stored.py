@@ -1,0 +1,42 @@
+"""The files of the board in a report folder: rows, times with their machine, and trajectories."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Final
+
+from taylor_verify.records.json_text import complete, plain
+from taylor_verify.records.replacement import replace_files
+from taylor_verify.studies.engines import trajectories
+from taylor_verify.studies.engines.document import Board, EnginesStudy, EnginesTimings
+from taylor_verify.studies.stored import Stored
+
+
+def _fields(study: EnginesStudy) -> Mapping[str, Any]:
+    """Return the keys of the rows, fields at their default left out: there are some thousand rows."""
+    rows = [plain(row) for row in study.rows]
+    return {"versions": study.versions, "spans": study.spans, "rows": rows}
+
+
+ENGINES: Final = Stored(EnginesStudy, "engines", _fields)
+TIMINGS: Final = Stored(EnginesTimings, "engines", complete, stem="engines-timings")
+
+
+def write(folder: Path, board: Board, file: bytes) -> list[Path]:
+    """Store a board and the file of its trajectories below a report folder. Raises OSError."""
+    # The rows come last: once they are in place, what they speak of is there.
+    return [
+        *replace_files(folder, {trajectories.NAME: file}),
+        *TIMINGS.write(folder, board.timings),
+        *ENGINES.write(folder, board.study),
+    ]
+
+
+def find(folder: Path) -> Board | None:
+    """Return the board that is stored below a report folder; None where there is none.
+
+    Raises OSError for files that cannot be read and ValueError for files that hold something else.
+    """
+    study = ENGINES.find(folder)
+    return None if study is None else Board(study, TIMINGS.load(folder))
