@@ -39,6 +39,11 @@ def cross(a: Vector, b: Vector) -> Vector:
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
+def cross_matrix(v: Vector) -> Matrix:
+    """Return [v]x, so that [v]x u = v x u."""
+    return ((_ZERO, -v[2], v[1]), (v[2], _ZERO, -v[0]), (-v[1], v[0], _ZERO))
+
+
 def plus(a: Vector, b: Vector) -> Vector:
     return tuple(p + q for p, q in zip(a, b, strict=True))
 

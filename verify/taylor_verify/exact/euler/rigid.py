@@ -14,7 +14,6 @@ from typing import Final, TypeVar, final
 import numpy as np
 
 from taylor_verify.exact import clocks
-from taylor_verify.exact.clocks import Exact
 from taylor_verify.exact.equations import Equations, cross, exact
 from taylor_verify.exact.euler.invariants import energy, momentum, space_momentum, whole
 from taylor_verify.exact.invariant import Array, Invariant
@@ -62,7 +61,7 @@ class Rotating(Kind[B, Spin]):
     def equations(self, body: B) -> Equations:
         """omega' = K M + K(h x omega) + K((I omega) x omega)."""
         K = exact(body.inverse_inertia)
-        linear = K @ _cross_matrix(self.rotor(body))
+        linear = K @ exact(tensors.cross_matrix(self.rotor(body)))
         turned = np.tensordot(K, cross(body.inertia, _ONE), 1)
         return Equations(K @ exact(body.moment), linear, turned, exact(_ONE), _NO_VELOCITY)
 
@@ -92,7 +91,7 @@ class Rotating(Kind[B, Spin]):
     def momentum_equations(self, body: B) -> Equations:
         """H' = M + h x K H + H x K H, for H = I omega."""
         K = body.inverse_inertia
-        linear = _cross_matrix(self.rotor(body)) @ exact(K)
+        linear = exact(tensors.cross_matrix(self.rotor(body))) @ exact(K)
         return Equations(exact(body.moment), linear, cross(_ONE, K), exact(K), _NO_VELOCITY)
 
     def manufactured_momentum(self, body: B) -> Manufactured | None:
@@ -121,9 +120,3 @@ class Rigid(Rotating[RigidBody]):
 
     def rotor(self, body: RigidBody) -> Vector:
         return tensors.ZERO_VECTOR
-
-
-def _cross_matrix(v: Vector) -> Exact:
-    """Return [v]x, so that [v]x u = v x u."""
-    zero = Fraction(0)
-    return exact(((zero, -v[2], v[1]), (v[2], zero, -v[0]), (-v[1], v[0], zero)))

@@ -19,6 +19,7 @@ from taylor_verify.exact.kirchhoff.solid import velocities
 from taylor_verify.exact.kirchhoff.space import Axial, transverse
 from taylor_verify.exact.solution import Quantities, Settled
 from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.precision import floor_log2
 
@@ -35,9 +36,10 @@ _ORBITS: Final[Mapping[str, type[ElementaryOrbit | Front]]] = {
 
 @final
 class Screw(Settled):
-    """Rest, steady motion and Euler's top: x3 is constant, and x and y turn about axis 3 together.
+    """Motions in which x and y turn about axis 3 together, or stay as they are.
 
-    Seen from axes that turn with them, at the rate tau, the body's U and its Omega do not change:
+    These are steady screws of any body, tau = 0; rest and steady motion of Clebsch's body, and its Euler's
+    top. Seen from axes that turn with them, at the rate tau, the body's U and its Omega do not change:
 
         R = R0 Rot(nu t) Rz(-tau t),    centre = c0 + R0 int Rot(nu t) U0 dt,    nu = Omega0 + tau e3,
 
@@ -47,12 +49,17 @@ class Screw(Settled):
     route = "mpmath"
 
     def __init__(
-        self, kind: str, nutation: Nutation, start: Impulse, track: frozenset[str]
+        self,
+        kind: str,
+        body: ImmersedBody,
+        start: Impulse,
+        track: frozenset[str],
+        rate: Fraction = Fraction(0),
     ) -> None:
         self.regime = kind
         self._start, self._track = start, track
-        self._turn_rate = nutation.turn_rate
-        self._U, Omega = velocities(nutation.body.body(), start)
+        self._turn_rate = rate
+        self._U, Omega = velocities(body, start)
         self._nu = (*Omega[:2], Omega[2] + self._turn_rate)
 
     def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:

@@ -1,0 +1,67 @@
+"""Euler's top in a free solid: motions in which y turns by y' = y x C y, whatever x does.
+
+Where A = p 1 and B = b 1 about some origin, or x = 0, U does not enter the equation of y. Less these
+multiples of 1 the motion is that of a rigid body with I = C^-1 and H = y, of attitude S:
+
+    y = S^T Y0,   x = S^T X0,   R = S,   centre = c0,
+
+with X0 = R x and Y0 = R y at the start. Without a linear impulse x and R need no condition, and the centre
+needs B = b 1 alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from taylor_verify.exact.euler.regime import FreeSpin
+from taylor_verify.exact.kirchhoff.carried import Back, Number
+from taylor_verify.exact.kirchhoff.isotropic import less_coupling, less_linear, multiple
+from taylor_verify.exact.kirchhoff.reduced import Reduced
+from taylor_verify.exact.kirchhoff.solid import solid
+from taylor_verify.exact.rotation import rotation_matrix
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.motion import Impulse
+
+
+def top(found: Reduced) -> tuple[Reduced, FreeSpin] | None:
+    """Return the spin of Euler's top in a free body, less multiples of 1 in B and in A; else None."""
+    body, start = solid(found.scene)
+    b, p = multiple(body.coupling), multiple(body.linear)
+    if any(start.linear):
+        if b is None or p is None:
+            return None
+        found = less_linear(less_coupling(found, b), p)
+    elif "centre" in found.scene.track:
+        if b is None:
+            return None
+        found = less_coupling(found, b)
+    return found, FreeSpin(
+        tensors.inverse(body.angular), tensors.apply(body.angular, start.angular)
+    )
+
+
+def with_impulses(start: Impulse, track: frozenset[str]) -> Back:
+    """Return the way from the motion of the top, omega and S, to that of the solid."""
+    to_space = rotation_matrix(start.attitude)
+    impulses = {
+        "linear_impulse": tensors.apply(to_space, start.linear),
+        "angular_impulse": tensors.apply(to_space, start.angular),
+    }
+
+    def back(rows: dict[str, Any], elapsed: Sequence[Fraction], number: Number) -> None:
+        frames = rows["attitude"]
+        rows.clear()
+        for name, in_space in impulses.items():
+            # v.R is R^T v, row by row.
+            rows[name] = np.array([number(entry) for entry in in_space], dtype=object) @ frames
+        if "attitude" in track:
+            rows["attitude"] = frames
+        if "centre" in track:
+            centre = [number(entry) for entry in start.centre]
+            rows["centre"] = np.array([centre for _ in elapsed], dtype=object)
+
+    return back
