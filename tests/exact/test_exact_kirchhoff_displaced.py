@@ -7,9 +7,9 @@ from fractions import Fraction
 import pytest
 from mpmath import mp, mpf
 
+from taylor_verify.exact.carried import Back
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.kirchhoff import displaced
-from taylor_verify.exact.kirchhoff.carried import Back
 from taylor_verify.exact.kirchhoff.displaced import moved, moved_back, symmetric_origin
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.route import solution

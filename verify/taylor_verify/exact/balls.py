@@ -17,7 +17,7 @@ import numpy as np
 from flint import arb, arb_mat, ctx, fmpq
 from mpmath import libmp, mp, mpf
 
-from taylor_verify.exact.solution import Solution, Unsettled
+from taylor_verify.exact.solution import Solution, Time, Unsettled
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.tensors import Matrix
 
@@ -45,8 +45,10 @@ class Enclosed(Solution):
     route = "arb"
 
     @abstractmethod
-    def enclose(self, elapsed: Sequence[Fraction], bits: int) -> Enclosure:
+    def enclose(self, elapsed: Sequence[Time], bits: int) -> Enclosure:
         """Balls that contain the tracked quantities, computed with ``bits`` bits (already set).
+
+        The times are rational or balls.
 
         Raises Undecidable where a branch cannot be told at this precision.
         """
@@ -140,8 +142,10 @@ def max_or_nan(a: mpf, b: mpf) -> mpf:
 # Between rationals, balls and mpmath.
 
 
-def ball(value: Fraction | int) -> arb:
-    """The smallest ball about a rational at the ambient precision."""
+def ball(value: Fraction | int | arb) -> arb:
+    """The smallest ball about a rational at the ambient precision; a ball as it is."""
+    if isinstance(value, arb):
+        return value
     value = Fraction(value)
     return arb(fmpq(value.numerator, value.denominator))
 

@@ -6,7 +6,7 @@ The truth is independent of what it judges: nothing here imports models, solvers
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, Final, final
 
@@ -14,8 +14,15 @@ import numpy as np
 from mpmath import mp, mpf
 
 from taylor_verify.scenes.motion import Motion
+from taylor_verify.scenes.precision import power_of_two
 
 Quantities = Mapping[str, np.ndarray[Any, Any]]
+
+Time = Any
+"""A time since the start: a rational, or a number of the route, which is a ball or an mpf."""
+
+Number = Callable[[Any], Any]
+"""Makes a ball or an mpf of a rational, at the ambient precision; leaves what is one as it is."""
 
 NO_CLOSED_FORM: Final = "no closed form"
 
@@ -91,8 +98,8 @@ class Settled(Solution):
     """A solution that is believed when two evaluations at different precisions agree."""
 
     @abstractmethod
-    def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
-        """The tracked quantities at one precision."""
+    def evaluate(self, elapsed: Sequence[Time], digits: int) -> Quantities:
+        """The tracked quantities at one precision, at times that are rational or mpf."""
 
     @final
     def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:
@@ -123,6 +130,19 @@ class Settled(Solution):
             f"{digits} digits"
         )
         raise Unsettled.beside(because, Motion(poorer, radius, radii), digits)
+
+
+def longest(elapsed: Iterable[Time]) -> Fraction:
+    """Return the longest of these times; of an mpf, the power of two above it."""
+    return max(
+        (abs(t) if isinstance(t, Fraction) else power_of_two(mp.mag(t)) for t in elapsed if t != 0),
+        default=Fraction(0),
+    )
+
+
+def beside(time: Time, number: Number) -> Number:
+    """Return what makes rationals fit to be combined with a time: nothing where it is rational too."""
+    return Fraction if isinstance(time, Fraction) else number
 
 
 def _differences(poorer: Quantities, better: Quantities) -> Quantities:

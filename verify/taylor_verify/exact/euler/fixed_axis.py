@@ -8,7 +8,7 @@ omega = w0 + a t with a along w0, or either of them zero. With a vector n along 
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Final, final
+from typing import Any, Final, final
 
 from flint import arb
 from mpmath import mp, mpf
@@ -18,6 +18,7 @@ from taylor_verify.exact.balls import ball, balls
 from taylor_verify.exact.euler.orbit import converted
 from taylor_verify.exact.euler.rotations import decades
 from taylor_verify.exact.frames import Frame, turn
+from taylor_verify.exact.solution import Number, Time, beside
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.tensors import ZERO_VECTOR, Vector
 
@@ -33,14 +34,17 @@ class FixedAxis:
         self.axis_squared = tensors.dot(self.axis, self.axis)
         self._pace, self._bend = tensors.dot(self.axis, omega), tensors.dot(self.axis, gain) / 2
 
-    def omega(self, t: Fraction) -> Vector:
+    def omega(self, t: Time, number: Number) -> list[Any]:
+        """omega in these numbers, from its exact value where the time is rational."""
         if not self._bend:
-            return self._omega
-        return tensors.plus(self._omega, tensors.scaled(t, self._gain))
+            return [number(w) for w in self._omega]
+        like = beside(t, number)
+        return [number(like(w) + like(a) * t) for w, a in zip(self._omega, self._gain, strict=True)]
 
-    def turned(self, t: Fraction) -> Fraction:
-        """|n| theta."""
-        return t * (self._pace + self._bend * t)
+    def turned(self, t: Time, number: Number = Fraction) -> Any:
+        """|n| theta, likewise."""
+        like = beside(t, number)
+        return number(t * (like(self._pace) + like(self._bend) * t))
 
     def lost(self, longest: Fraction, turned: bool) -> float:
         """The decimal digits before the point of the angle up to this time, and for roundings."""
@@ -58,8 +62,8 @@ class FixedAxisBalls:
         self._exact, self._length = exact, ball(exact.axis_squared or 1).sqrt()
         self._axis = [entry / self._length for entry in balls(exact.axis)]
 
-    def at(self, t: Fraction, turned: bool) -> tuple[list[arb], list[arb]]:
-        omega, angle = balls(self._exact.omega(t)), ball(self._exact.turned(t)) / self._length
+    def at(self, t: Time, turned: bool) -> tuple[list[arb], list[arb]]:
+        omega, angle = self._exact.omega(t, ball), self._exact.turned(t, ball) / self._length
         return omega, rotation.turn(self._axis, angle / 2) if turned else []
 
 
@@ -71,6 +75,6 @@ class FixedAxisFloats:
         self._exact, self._length = exact, mp.sqrt(mp.convert(exact.axis_squared or 1))
         self._axis = converted(exact.axis)
 
-    def at(self, t: Fraction, turned: bool) -> tuple[list[mpf], Frame]:
-        omega, angle = converted(self._exact.omega(t)), mp.convert(self._exact.turned(t))
+    def at(self, t: Time, turned: bool) -> tuple[list[mpf], Frame]:
+        omega, angle = self._exact.omega(t, mp.convert), self._exact.turned(t, mp.convert)
         return omega, turn(self._axis, angle / self._length) if turned else []

@@ -24,6 +24,7 @@ from taylor_verify.exact.euler.orbit import Orbit, converted
 from taylor_verify.exact.euler.regime import CONSTANT, FreeSpin, Regime
 from taylor_verify.exact.euler.rotations import Course, Rotation, decades
 from taylor_verify.exact.frames import Frame, product, transposed, turn
+from taylor_verify.exact.solution import Time
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.motion import Quaternion
 
@@ -94,7 +95,7 @@ class Precession:
         momentum = mp.sqrt(mp.convert(spin.momentum_squared))
         self._momentum_rate = momentum / mp.convert(spin.double_moment)
 
-    def at(self, t: Fraction, turned: bool) -> tuple[list[mpf], Frame]:
+    def at(self, t: Time, turned: bool) -> tuple[list[mpf], Frame]:
         """omega in body axes, and the rotation since the start, at the precision of the set-up."""
         time = mp.convert(t)
         cos, sin = mp.cos_sin(self.rate * time)
@@ -124,7 +125,7 @@ class Triaxial:
         self._at_start = self._integral(mpf(0), start)
         self._tilted_back = product(transposed(self._axes), transposed(self._tilt(start)))
 
-    def at(self, t: Fraction, turned: bool) -> tuple[list[mpf], Frame]:
+    def at(self, t: Time, turned: bool) -> tuple[list[mpf], Frame]:
         """omega in body axes, and the rotation since the start, at the precision of the set-up."""
         time = mp.convert(t)
         functions = self._orbit.functions(time)

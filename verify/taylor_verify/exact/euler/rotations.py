@@ -19,7 +19,7 @@ from mpmath import mp
 from taylor_verify.exact import rotation
 from taylor_verify.exact.balls import Enclosed, Enclosure
 from taylor_verify.exact.frames import product, start_frame
-from taylor_verify.exact.solution import Quantities, Settled
+from taylor_verify.exact.solution import Quantities, Settled, Time, longest
 from taylor_verify.scenes import motion
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.precision import floor_log2
@@ -32,7 +32,7 @@ _STEP_DIGITS: Final = 10
 class Course(Protocol):
     """A motion at one precision: numbers of flint, or of mpmath."""
 
-    def at(self, t: Fraction, turned: bool) -> tuple[list[Any], list[Any]]:
+    def at(self, t: Time, turned: bool) -> tuple[list[Any], list[Any]]:
         """omega, and the turn since the start in body axes, empty unless it is asked for.
 
         The turn is a unit quaternion in balls, which is 1 at the start and whose sign never jumps; or the
@@ -53,7 +53,7 @@ class RotationBalls(Enclosed):
     answer: tuple[str, Callable[[list[Any]], Any]] = ("attitude", rotation.rotation_rows)
     _courses: dict[int, Course] = field(default_factory=dict, init=False)
 
-    def enclose(self, elapsed: Sequence[Fraction], bits: int) -> Enclosure:
+    def enclose(self, elapsed: Sequence[Time], bits: int) -> Enclosure:
         """``omega``, rows of 3, and ``attitude``, rows of 3x3, where it is tracked."""
         with ctx.workprec(-(-bits // _STEP_BITS) * _STEP_BITS):
             course = self.course()
@@ -97,10 +97,10 @@ class Rotation(Settled):
 
     route = "mpmath"
 
-    def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
+    def evaluate(self, elapsed: Sequence[Time], digits: int) -> Quantities:
         """``omega`` (n, 3) and ``attitude`` (n, 3, 3), to about ``digits`` significant digits."""
-        attitude, longest = self.attitude, max(map(abs, elapsed), default=Fraction(0))
-        lost = self.lost(longest, attitude is not None)
+        attitude = self.attitude
+        lost = self.lost(longest(elapsed), attitude is not None)
         working = math.ceil((digits + lost) / _STEP_DIGITS) * _STEP_DIGITS
         with mp.workdps(working):
             if working not in self._courses:

@@ -11,7 +11,6 @@ The spherical angle of h about c never winds, because h_a > 0: all the winding i
 
 from __future__ import annotations
 
-from fractions import Fraction
 from functools import cached_property
 
 from flint import arb, arb_mat
@@ -23,6 +22,7 @@ from taylor_verify.exact.euler.moduli import Moduli, Triple
 from taylor_verify.exact.euler.phase import Periodic, Separatrix
 from taylor_verify.exact.euler.regime import CONSTANT, FreeSpin, Regime
 from taylor_verify.exact.euler.rotations import Course, RotationBalls
+from taylor_verify.exact.solution import Time
 from taylor_verify.scenes import motion, tensors
 
 
@@ -55,7 +55,7 @@ class _Precession:
         self._momentum_axis = [component / momentum for component in balls(spin.momentum)]
         self._momentum_rate = momentum / ball(spin.double_moment)
 
-    def at(self, t: Fraction, turned: bool) -> tuple[list[arb], list[arb]]:
+    def at(self, t: Time, turned: bool) -> tuple[list[arb], list[arb]]:
         time = ball(t)
         sin, cos = (self._rate * time).sin_cos()
         parts = zip(self._along, self._across, self._ahead, strict=True)
@@ -76,7 +76,7 @@ class Tumbling:
         self._functions = Separatrix(moduli) if is_separatrix else Periodic(moduli)
         self._to_body = arb_mat([list(row) for row in zip(*moduli.axes, strict=True)])
 
-    def at(self, t: Fraction, turned: bool) -> tuple[list[arb], list[arb]]:
+    def at(self, t: Time, turned: bool) -> tuple[list[arb], list[arb]]:
         time = ball(t)
         functions = self._functions.at(time)
         parts = zip(self._moduli.amplitudes, functions, strict=True)

@@ -11,11 +11,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
+from taylor_verify.exact.carried import carried
 from taylor_verify.exact.euler import jacobi as tops
 from taylor_verify.exact.euler import theta
 from taylor_verify.exact.euler.regime import FreeSpin
 from taylor_verify.exact.kirchhoff import jacobi, weierstrass
-from taylor_verify.exact.kirchhoff.carried import carried
 from taylor_verify.exact.kirchhoff.displaced import centred
 from taylor_verify.exact.kirchhoff.isotropic import less_coupling, multiple
 from taylor_verify.exact.kirchhoff.pendulum import Pendulum

@@ -22,11 +22,12 @@ from typing import Any
 
 import numpy as np
 
+from taylor_verify.exact.carried import Back
 from taylor_verify.exact.equations import exact
-from taylor_verify.exact.kirchhoff.carried import Back, Number
 from taylor_verify.exact.kirchhoff.reduced import Reduced
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.rotation import rotation_matrix
+from taylor_verify.exact.solution import Number, Time
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
@@ -85,7 +86,7 @@ def moved(scene: Scene, d: Vector) -> Scene:
 def moved_back(d: Vector, start: Impulse) -> Back:
     """Return the way back from ``moved`` to the origin of this start."""
 
-    def back(rows: dict[str, Any], elapsed: Sequence[Fraction], number: Number) -> None:
+    def back(rows: dict[str, Any], elapsed: Sequence[Time], number: Number) -> None:
         far = np.array([number(entry) for entry in d], dtype=object)
         moment = np.cross(far, rows["linear_impulse"])
         rows["angular_impulse"] = as_given(
@@ -98,10 +99,10 @@ def moved_back(d: Vector, start: Impulse) -> Back:
     return back
 
 
-def as_given(rows: Any, start: Vector, elapsed: Sequence[Fraction], number: Number) -> Any:
+def as_given(rows: Any, start: Vector, elapsed: Sequence[Time], number: Number) -> Any:
     """The rows with the start itself where no time has gone: a zero there has no digits but exact ones."""
     for row, t in zip(rows, elapsed, strict=True):
-        if not t:
+        if t == 0:
             row[:] = [number(entry) for entry in start]
     return rows
 

@@ -20,11 +20,12 @@ import numpy as np
 from flint import arb
 from mpmath import mp
 
-from taylor_verify.exact.kirchhoff.carried import Back, Number
+from taylor_verify.exact.carried import Back
 from taylor_verify.exact.kirchhoff.displaced import as_given
 from taylor_verify.exact.kirchhoff.reduced import Reduced
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.rotation import rotation_matrix
+from taylor_verify.exact.solution import Number, Time
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
@@ -88,7 +89,7 @@ def _turned(b: Fraction, start: Impulse) -> Back:
     across = tensors.minus(Y0, along)
     sweep = [tensors.scaled(b, v) for v in (along, across, tensors.cross(w, across))]
 
-    def back(rows: dict[str, Any], elapsed: Sequence[Fraction], number: Number) -> None:
+    def back(rows: dict[str, Any], elapsed: Sequence[Time], number: Number) -> None:
         if "attitude" not in rows:
             return
         one, once, twice, ahead, around, aside = (_numbers(v, number) for v in (*turn, *sweep))
@@ -121,7 +122,7 @@ def _drifted(p: Fraction, start: Impulse) -> Back:
     """Return the way back to a body with p 1 more in A."""
     drift = tensors.scaled(p, tensors.apply(rotation_matrix(start.attitude), start.linear))
 
-    def back(rows: dict[str, Any], elapsed: Sequence[Fraction], number: Number) -> None:
+    def back(rows: dict[str, Any], elapsed: Sequence[Time], number: Number) -> None:
         if "centre" not in rows:
             return
         first, rate = _numbers(start.centre, number), _numbers(drift, number)

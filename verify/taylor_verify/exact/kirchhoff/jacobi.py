@@ -17,7 +17,7 @@ from taylor_verify.exact.kirchhoff.orbit import EllipticOrbit, Orbit
 from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.kirchhoff.solid import velocities
 from taylor_verify.exact.kirchhoff.space import Axial, transverse
-from taylor_verify.exact.solution import Quantities, Settled
+from taylor_verify.exact.solution import Quantities, Settled, Time, beside, longest
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
@@ -62,11 +62,10 @@ class Screw(Settled):
         self._U, Omega = velocities(body, start)
         self._nu = (*Omega[:2], Omega[2] + self._turn_rate)
 
-    def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
-        longest = max((abs(t) for t in elapsed), default=Fraction(0))
+    def evaluate(self, elapsed: Sequence[Time], digits: int) -> Quantities:
         rates = abs(self._turn_rate) + sum(abs(rate) for rate in self._nu)
-        with mp.workdps(digits + _GUARD_DIGITS + len(str(int(rates * longest)))):
-            turns = [mp.expj(mp.convert(self._turn_rate * t)) for t in elapsed]
+        with mp.workdps(digits + _GUARD_DIGITS + len(str(int(rates * longest(elapsed))))):
+            turns = [mp.expj(_times(self._turn_rate, t)) for t in elapsed]
             x, y = (
                 [(turn * transverse(v), mp.convert(v[2])) for turn in turns]
                 for v in (self._start.linear, self._start.angular)
@@ -74,7 +73,7 @@ class Screw(Settled):
             places = self._places(elapsed) if self._track else []
             return _quantities(x, y, places, self._track)
 
-    def _places(self, elapsed: Sequence[Fraction]) -> list[tuple[Frame, list[mpf]]]:
+    def _places(self, elapsed: Sequence[Time]) -> list[tuple[Frame, list[mpf]]]:
         """The attitude and the centre at every time."""
         nu, centre = ([mp.convert(c) for c in vector] for vector in (self._nu, self._start.centre))
         rate = mp.sqrt(mp.convert(tensors.dot(self._nu, self._nu)))
@@ -82,15 +81,15 @@ class Screw(Settled):
         places = []
         for t in elapsed:
             about_impulse = product(first, turn(nu, rate * mp.convert(t)))
-            about_axis = turn(_AXIS, -mp.convert(self._turn_rate * t))
+            about_axis = turn(_AXIS, -_times(self._turn_rate, t))
             moved = zip(centre, applied(first, self._moved(t, rate)), strict=True)
             places.append((product(about_impulse, about_axis), [c + m for c, m in moved]))
         return places
 
-    def _moved(self, t: Fraction, rate: mpf) -> list[mpf]:
+    def _moved(self, t: Time, rate: mpf) -> list[mpf]:
         """int_0^t Rot(nu t) U0 dt: U0 along nu, and U0 across it on a circle."""
         if rate == 0:
-            return [mp.convert(t * u) for u in self._U]
+            return [_times(u, t) for u in self._U]
         share = tensors.dot(self._nu, self._U) / tensors.dot(self._nu, self._nu)
         along = tensors.scaled(share, self._nu)
         across = tensors.plus(self._U, tensors.scaled(Fraction(-1), along))
@@ -98,7 +97,7 @@ class Screw(Settled):
         half = mp.convert(t) * rate / 2
         sine, versed = mp.sin(2 * half) / rate, 2 * (mp.sin(half) / rate) ** 2
         return [
-            mp.convert(t * along[i]) + sine * mp.convert(across[i]) + versed * mp.convert(aside[i])
+            _times(along[i], t) + sine * mp.convert(across[i]) + versed * mp.convert(aside[i])
             for i in range(3)
         ]
 
@@ -115,10 +114,9 @@ class NutatingBody(Settled):
     track: frozenset[str] = frozenset()
     _orbits: dict[int, Orbit] = field(default_factory=dict, init=False)
 
-    def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
-        longest = max((abs(t) for t in elapsed), default=Fraction(0))
+    def evaluate(self, elapsed: Sequence[Time], digits: int) -> Quantities:
         with mp.workdps(_ROUGH_DIGITS):
-            losses = self._orbit().losses(mp.convert(longest))
+            losses = self._orbit().losses(mp.convert(longest(elapsed)))
             lost = sum(max(0, int(mp.ceil(mp.log10(loss)))) for loss in losses)
         if "centre" in self.track:
             lost += self._short_digits(elapsed)
@@ -141,16 +139,21 @@ class NutatingBody(Settled):
             self._orbits[mp.dps] = make(self.nutation, self.start)
         return self._orbits[mp.dps]
 
-    def _short_digits(self, elapsed: Sequence[Fraction]) -> int:
+    def _short_digits(self, elapsed: Sequence[Time]) -> int:
         """The digits by which |y|/F, whose change is the way across F, exceeds the centre itself."""
         start = self.start
-        shortest = min((abs(t) for t in elapsed if t != 0), default=Fraction(1))
+        shortest = min((longest([t]) for t in elapsed if t != 0), default=Fraction(1))
         U, _ = velocities(self.nutation.body.body(), start)
         reached = tensors.dot(start.centre, start.centre) + tensors.dot(U, U) * shortest**2
         lever = tensors.dot(start.angular, start.angular) / self.nutation.F2
         if not 0 < reached < lever:
             return 0
         return math.ceil(floor_log2(lever / reached) * math.log10(2) / 2)
+
+
+def _times(rate: Fraction, t: Time) -> mpf:
+    """The product of a rational and a time."""
+    return mp.convert(beside(t, mp.convert)(rate) * t)
 
 
 def _quantities(

@@ -15,7 +15,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Final, final
 
 import numpy as np
@@ -25,7 +24,7 @@ from taylor_verify.exact.elliptic import Landen
 from taylor_verify.exact.frames import start_frame
 from taylor_verify.exact.kirchhoff.plane import Plane
 from taylor_verify.exact.kirchhoff.solid import solid
-from taylor_verify.exact.solution import Quantities, Settled
+from taylor_verify.exact.solution import Quantities, Settled, Time, longest
 from taylor_verify.scenes.scene import Scene
 
 _GUARD_DIGITS: Final = 12
@@ -51,10 +50,9 @@ class Pendulum(Settled):
         self._plane, self._track = found, scene.track
         _, self._start = solid(scene)
 
-    def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
-        longest = max((abs(t) for t in elapsed), default=Fraction(0))
+    def evaluate(self, elapsed: Sequence[Time], digits: int) -> Quantities:
         fastest = max(self._plane.omega0_squared, self._plane.h)
-        swept = math.isqrt(math.ceil(fastest * longest**2))
+        swept = math.isqrt(math.ceil(fastest * longest(elapsed) ** 2))
         with mp.workdps(digits + _GUARD_DIGITS + len(str(swept))):
             course = _COURSES.get(self.regime, Even)(self._plane)
             return self._quantities([course.at(t) for t in elapsed], elapsed)
@@ -64,7 +62,7 @@ class Pendulum(Settled):
         with mp.workdps(digits + _GUARD_DIGITS):
             return _COURSES.get(self.regime, Even)(self._plane).elements()
 
-    def _quantities(self, rows: Sequence[Swept], elapsed: Sequence[Fraction]) -> Quantities:
+    def _quantities(self, rows: Sequence[Swept], elapsed: Sequence[Time]) -> Quantities:
         place = self._plane
         F, r = mp.sqrt(mp.convert(place.F2)), mp.convert(place.r)
         x, y, path = (np.full((len(rows), 3), mpf(0), dtype=object) for _ in range(3))
@@ -90,7 +88,7 @@ class Pendulum(Settled):
             found["centre"] = centre + path @ first.T
         return found
 
-    def _way(self, row: Swept, t: Fraction) -> mpc:
+    def _way(self, row: Swept, t: Time) -> mpc:
         """The way of the centre since the start, along F and across it."""
         place = self._plane
         F = mp.sqrt(mp.convert(place.F2))
@@ -117,7 +115,7 @@ class Even:
     def __init__(self, place: Plane) -> None:
         self._start, self._speed = _direction(place), mp.convert(place.rate)
 
-    def at(self, t: Fraction) -> Swept:
+    def at(self, t: Time) -> Swept:
         time = mp.convert(t)
         # The integral enters where p_a = p_b, with no weight, or where alpha is constant.
         squares = self._start.imag**2 * time
@@ -138,7 +136,7 @@ class Front:
             mp.convert(place.omega0_squared)
         )
 
-    def at(self, t: Fraction) -> Swept:
+    def at(self, t: Time) -> Swept:
         u = self._u0 + self._speed * mp.convert(t)
         tanh, sech = mp.tanh(u), mp.sech(u)
         squares = mp.convert(t) - (tanh - mp.tanh(self._u0)) / self._speed
@@ -177,7 +175,7 @@ class Elliptic:
         self._u0 = u0 if onward else 2 * K - u0
         self._first = self._landen.squared_sine(self._u0)
 
-    def at(self, t: Fraction) -> Swept:
+    def at(self, t: Time) -> Swept:
         u = self._u0 + self._speed * mp.convert(t)
         sn, cn, dn = self._landen.jacobi(u)
         squares = (self._landen.squared_sine(u) - self._first) / self._speed

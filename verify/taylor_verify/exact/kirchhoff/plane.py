@@ -17,12 +17,13 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-from taylor_verify.exact.kirchhoff.carried import Back, Number
+from taylor_verify.exact.carried import Back
 from taylor_verify.exact.kirchhoff.displaced import about, moved, symmetric_origin
 from taylor_verify.exact.kirchhoff.integrable import CYCLIC
 from taylor_verify.exact.kirchhoff.isotropic import less_coupling
 from taylor_verify.exact.kirchhoff.reduced import Reduced
 from taylor_verify.exact.kirchhoff.solid import solid
+from taylor_verify.exact.solution import Number, Time
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.scene import Scene
@@ -163,7 +164,7 @@ def of_revolution(scene: Scene, found: Plane) -> Scene:
 def in_plane(found: Plane) -> Back:
     """Return the way back from ``of_revolution``, by the zeros that the plane makes, exactly."""
 
-    def back(rows: dict[str, Any], elapsed: Sequence[Fraction], number: Number) -> None:
+    def back(rows: dict[str, Any], elapsed: Sequence[Time], number: Number) -> None:
         rows["linear_impulse"][:, found.k] = number(Fraction(0))
         rows["angular_impulse"][:, [found.a, found.b]] = number(Fraction(0))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from taylor_verify.exact.kirchhoff.carried import Back, carried
+from taylor_verify.exact.carried import Back, carried
 from taylor_verify.exact.solution import Solution
 from taylor_verify.scenes.scene import Scene
 

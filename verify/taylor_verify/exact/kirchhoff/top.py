@@ -12,17 +12,17 @@ needs B = b 1 alone.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
+from taylor_verify.exact.carried import Back
 from taylor_verify.exact.euler.regime import FreeSpin
-from taylor_verify.exact.kirchhoff.carried import Back, Number
 from taylor_verify.exact.kirchhoff.isotropic import less_coupling, less_linear, multiple
 from taylor_verify.exact.kirchhoff.reduced import Reduced
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.rotation import rotation_matrix
+from taylor_verify.exact.solution import Number, Time
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.motion import Impulse
 
@@ -52,7 +52,7 @@ def with_impulses(start: Impulse, track: frozenset[str]) -> Back:
         "angular_impulse": tensors.apply(to_space, start.angular),
     }
 
-    def back(rows: dict[str, Any], elapsed: Sequence[Fraction], number: Number) -> None:
+    def back(rows: dict[str, Any], elapsed: Sequence[Time], number: Number) -> None:
         frames = rows["attitude"]
         rows.clear()
         for name, in_space in impulses.items():

@@ -14,10 +14,11 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.exact.kirchhoff.carried import Back, Number
+from taylor_verify.exact.carried import Back
 from taylor_verify.exact.kirchhoff.displaced import centred
 from taylor_verify.exact.kirchhoff.reduced import Reduced
 from taylor_verify.exact.kirchhoff.solid import solid
+from taylor_verify.exact.solution import Number, Time
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse, Quaternion
@@ -67,7 +68,7 @@ def put_back(axis: int) -> Back:
     # Where the component i of the body's own axes stands in the other ones.
     places = [_order(axis).index(i) for i in range(3)]
 
-    def back(rows: dict[str, Any], elapsed: Sequence[Fraction], number: Number) -> None:
+    def back(rows: dict[str, Any], elapsed: Sequence[Time], number: Number) -> None:
         for name in _BODY_AXES & rows.keys():
             rows[name] = np.take(rows[name], places, axis=-1)
 

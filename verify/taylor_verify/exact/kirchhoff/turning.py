@@ -18,6 +18,7 @@ from flint import acb, arb, arb_mat
 from taylor_verify.exact.balls import Enclosed, Enclosure, ball, ball_matrix, balls
 from taylor_verify.exact.kirchhoff.solid import velocities
 from taylor_verify.exact.rotation import rotation_matrix
+from taylor_verify.exact.solution import Time, beside
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
@@ -42,13 +43,13 @@ class TurningBody(Enclosed):
         self._axis = tensors.plus(Omega, (Fraction(0), Fraction(0), self._rate))
         self._to_space = rotation_matrix(start.attitude)
 
-    def enclose(self, elapsed: Sequence[Fraction], bits: int) -> Enclosure:
+    def enclose(self, elapsed: Sequence[Time], bits: int) -> Enclosure:
         rows = [self._at(t) for t in elapsed]
         names = ("linear_impulse", "angular_impulse", *sorted(self._track))
         return {name: [row[name] for row in rows] for name in names}
 
-    def _at(self, t: Fraction) -> dict[str, Any]:
-        turn = acb(0, ball(self._rate * t)).exp()
+    def _at(self, t: Time) -> dict[str, Any]:
+        turn = acb(0, ball(beside(t, ball)(self._rate) * t)).exp()
         found: dict[str, Any] = {
             "linear_impulse": _turned(turn, balls(self._start.linear)),
             "angular_impulse": _turned(turn, balls(self._start.angular)),
@@ -62,7 +63,7 @@ class TurningBody(Enclosed):
                 found["centre"] = self._centre(t, to_space * swept)
         return found
 
-    def _exponential(self, t: Fraction) -> tuple[arb_mat, arb_mat]:
+    def _exponential(self, t: Time) -> tuple[arb_mat, arb_mat]:
         """exp(t [a]x) and its integral from 0 to t, polynomials of [a]x."""
         a1, a2, a3 = balls(self._axis)
         once = arb_mat([[0, -a3, a2], [a3, 0, -a1], [-a2, a1, 0]])
@@ -77,11 +78,12 @@ class TurningBody(Enclosed):
             one * time + once * versed + twice * ((time - sine) / a**2),
         )
 
-    def _centre(self, t: Fraction, swept: arb_mat) -> list[arb]:
+    def _centre(self, t: Time, swept: arb_mat) -> list[arb]:
         if not any(tensors.cross(self._axis, self._U)):
             # A straight path is rational, and may pass through the origin of space exactly.
-            path = tensors.apply(self._to_space, tensors.scaled(t, self._U))
-            return balls(tensors.plus(self._start.centre, path))
+            velocity, number = tensors.apply(self._to_space, self._U), beside(t, ball)
+            pairs = zip(self._start.centre, velocity, strict=True)
+            return [ball(number(c) + number(v) * t) for c, v in pairs]
         moved = (swept * arb_mat(3, 1, balls(self._U))).entries()
         return [c + v for c, v in zip(balls(self._start.centre), moved, strict=True)]
 

@@ -19,7 +19,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from fractions import Fraction
 from math import prod
 from typing import Any, Final, final
 
@@ -30,6 +29,7 @@ from taylor_verify.exact.kirchhoff.course import QuarticCourse, course
 from taylor_verify.exact.kirchhoff.lattice import Lattice
 from taylor_verify.exact.kirchhoff.quartic import Nutation, repeated_root
 from taylor_verify.exact.rotation import rotation_matrix
+from taylor_verify.exact.solution import Time
 from taylor_verify.scenes.motion import Impulse
 
 _I: Final = acb(0, 1)
@@ -48,7 +48,7 @@ class NutatingBody(Enclosed):
     track: frozenset[str]
     _orbits: dict[int, Orbit] = field(default_factory=dict, init=False)
 
-    def enclose(self, elapsed: Sequence[Fraction], bits: int) -> Enclosure:
+    def enclose(self, elapsed: Sequence[Time], bits: int) -> Enclosure:
         if bits not in self._orbits:
             heteroclinic = self.regime == "heteroclinic"
             self._orbits[bits] = Orbit(self.nutation, self.start, self.track, heteroclinic)

@@ -15,7 +15,6 @@ said of the error is proven, given the theorems. FLINT encloses the theta functi
 from __future__ import annotations
 
 from collections.abc import Sequence
-from fractions import Fraction
 from math import ceil, log2
 from typing import Final, final
 
@@ -27,7 +26,7 @@ from taylor_verify.exact.kirchhoff.integrable import CYCLIC
 from taylor_verify.exact.kirchhoff.weber.characteristics import HALF_PERIODS, at_branches
 from taylor_verify.exact.kirchhoff.weber.curve import REGIME, Curve
 from taylor_verify.exact.kirchhoff.weber.integrals import Jacobian, branch_points, jacobian
-from taylor_verify.exact.solution import Unsettled
+from taylor_verify.exact.solution import Time, Unsettled
 
 _DOUBLINGS: Final = 8
 
@@ -41,11 +40,11 @@ class WeberBalls(Enclosed):
     def __init__(self, found: Curve) -> None:
         self._curve = found
 
-    def enclose(self, elapsed: Sequence[Fraction], bits: int) -> Enclosure:
+    def enclose(self, elapsed: Sequence[Time], bits: int) -> Enclosure:
         motion, start = Quotients(self._curve), self._curve.start
         # As told: a y that starts from zero has no digits but exact ones.
         told = (balls(start.linear), balls(start.angular))
-        found = [motion.at(ball(t)) if t else told for t in elapsed]
+        found = [told if t == 0 else motion.at(ball(t)) for t in elapsed]
         return {
             "linear_impulse": [x for x, _ in found],
             "angular_impulse": [y for _, y in found],

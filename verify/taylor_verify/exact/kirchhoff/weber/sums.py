@@ -25,7 +25,7 @@ from taylor_verify.exact.kirchhoff.weber.characteristics import HALF_PERIODS, at
 from taylor_verify.exact.kirchhoff.weber.curve import REGIME, Curve
 from taylor_verify.exact.kirchhoff.weber.quadrature import branch_points, narrowness, real_jacobian
 from taylor_verify.exact.kirchhoff.weber.riemann import Thetas
-from taylor_verify.exact.solution import Quantities, Settled
+from taylor_verify.exact.solution import Quantities, Settled, Time, longest
 from taylor_verify.scenes.precision import exact_value
 
 _GUARD_DIGITS: Final = 12
@@ -48,15 +48,14 @@ class WeberSums(Settled):
     def __init__(self, found: Curve) -> None:
         self._curve = found
 
-    def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
-        longest = max((abs(t) for t in elapsed), default=Fraction(0))
+    def evaluate(self, elapsed: Sequence[Time], digits: int) -> Quantities:
         narrow, faster = self._difficulty
-        turns = len(str(math.ceil(faster * longest)))
+        turns = len(str(math.ceil(faster * longest(elapsed))))
         start = self._curve.start
         with mp.workdps(digits + _GUARD_DIGITS + narrow + turns):
             series = Sums(self._curve)
             told = [[mp.convert(c) for c in vector] for vector in (start.linear, start.angular)]
-            rows = [series.at(t) if t else told for t in elapsed]
+            rows = [told if t == 0 else series.at(t) for t in elapsed]
             return {
                 name: np.array([row[n] for row in rows], dtype=object).reshape(-1, 3)
                 for n, name in enumerate(("linear_impulse", "angular_impulse"))
@@ -94,7 +93,7 @@ class Sums:
         heights = _sizes_of_y(found, constants)
         self._d = [sign * size for sign, size in zip(self._signs_of_y(), heights, strict=True)]
 
-    def at(self, t: Fraction) -> list[list[mpf]]:
+    def at(self, t: Time) -> list[list[mpf]]:
         """x and y, this long after the start."""
         place = self._jacobian
         time = mp.convert(t)

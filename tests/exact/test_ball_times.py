@@ -1,0 +1,106 @@
+"""Closed forms at times that are balls, or numbers of mpmath, instead of rationals."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+import pytest
+from flint import arb, ctx
+from mpmath import mp
+
+from taylor_verify.exact.balls import Enclosed, ball
+from taylor_verify.exact.carried import carried
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import NoClosedForm, Solution, longest
+from taylor_verify.scenes.library import names
+from taylor_verify.scenes.motion import Spin
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+
+DIGITS = 25
+FRAME = (Fraction(1), Fraction(-2), Fraction(1, 3), Fraction(2))
+PLACE = (Fraction(1), Fraction(-2), Fraction(1, 3))
+
+
+def free_forms() -> list[str]:
+    """The shipped scenes without loads and wheels that have a closed form."""
+    found = []
+    for name in names():
+        scene = load(name)
+        if scene.body.is_free and scene.body.manufactured is None and "gyrostat" not in name:
+            try:
+                solution(scene, "arb")
+            except NoClosedForm:
+                continue
+            found.append(name)
+    return found
+
+
+def everything(scene: Scene) -> Scene:
+    """The scene with all that its closed form knows."""
+    if scene.name == "kirchhoff/weber":
+        return scene
+    if isinstance(scene.initial, Spin):
+        turned = replace(scene.initial, attitude=FRAME)
+        return replace(scene, track=frozenset({"attitude"}), initial=turned)
+    moved = replace(scene.initial, attitude=FRAME, centre=PLACE)
+    return replace(scene, track=frozenset({"attitude", "centre"}), initial=moved)
+
+
+def as_it_is(rows: dict[str, Any], elapsed: Any, number: Any) -> None:
+    """Leave every quantity as it is."""
+
+
+def at_numbers(inner: Solution) -> Solution:
+    """The motion at times that are numbers of its route, each within a rounding of the rational."""
+    return carried(inner, as_it_is, clock=lambda t, number: number(t))
+
+
+@pytest.mark.parametrize("route", ["arb", "mpmath"])
+@pytest.mark.parametrize("name", free_forms())
+def test_a_ball_of_a_rational_gives_the_motion_at_the_rational(name: str, route: str) -> None:
+    """To within both radii, before the start, at it and beyond the end, attitude and centre included."""
+    inner = solution(everything(load(name)), route)
+    end = load(name).clock.elapsed[-1]
+    times = [end / 7, Fraction(0), -end / 3, 5 * end]
+    here, there = (found.motion(times, DIGITS) for found in (inner, at_numbers(inner)))
+    assert set(here.quantities) == set(there.quantities)
+    with mp.workdps(DIGITS + 20):
+        for name, rows in here.quantities.items():
+            for k in range(len(times)):
+                size = mp.norm(list(rows[k].flat)) or 1
+                apart = mp.norm(list((rows[k] - there[name][k]).flat))
+                assert apart <= (here.radius[k] + there.radius[k]) * size
+                assert there.radius[k] <= mp.mpf(10) ** -DIGITS
+
+
+@pytest.mark.parametrize("name", free_forms())
+def test_a_wide_ball_of_time_contains_the_motion_at_its_ends(name: str) -> None:
+    """The enclosure at the ball 1/3 +- 1/1000 overlaps those at both of its ends and at its middle."""
+    inner = solution(everything(load(name)), "arb")
+    assert isinstance(inner, Enclosed)
+    middle, reach = Fraction(1, 3), Fraction(1, 1000)
+    with ctx.workprec(160):
+        wide = inner.enclose([ball(middle) + arb(0, ball(reach))], 160)
+        for t in (middle - reach, middle, middle + reach):
+            narrow = inner.enclose([t], 160)
+            for name, rows in narrow.items():
+                pairs = zip(flat(wide[name][0]), flat(rows[0]), strict=True)
+                assert all(one.is_finite() and one.overlaps(other) for one, other in pairs)
+
+
+def flat(row: Any) -> list[Any]:
+    """The entries of a vector or a matrix."""
+    return [entry for part in row for entry in flat(part)] if hasattr(row, "__len__") else [row]
+
+
+def test_a_ball_and_an_mpf_stay_as_they_are() -> None:
+    """ball() returns a ball that it is given, and the longest time is bounded by a power of two."""
+    wide = arb(1, 0.25)
+    assert ball(wide) is wide
+    with mp.workdps(30):
+        assert longest([mp.mpf(-5), Fraction(3), mp.mpf(0)]) == 8
+    assert longest([Fraction(-5), Fraction(3)]) == 5
+    assert longest([]) == 0

@@ -1,0 +1,82 @@
+"""Solutions found in other coordinates or at another time, carried back to those of the scene."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, Final, final
+
+import numpy as np
+from mpmath import mp
+
+from taylor_verify.exact.balls import Enclosed, Enclosure, ball
+from taylor_verify.exact.solution import Number, Quantities, Settled, Solution, Time
+
+_GUARD_DIGITS: Final = 6
+# Digits of an inner time before its point that cost no second evaluation.
+_TIME_DIGITS: Final = 30
+
+Back = Callable[[dict[str, Any], Sequence[Time], Number], None]
+"""Puts the object arrays of every quantity, at these times, into the coordinates of the scene."""
+
+Clock = Callable[[Time, Number], Time]
+"""Maps a time since the start of the scene to that of the inner motion; zero to zero, exactly."""
+
+
+def carried(
+    inner: Solution, back: Back, regime: str | None = None, clock: Clock | None = None
+) -> Solution:
+    """Return the solution in the coordinates and the time of the scene, by the route of the inner one."""
+    kind = regime or inner.regime
+    if isinstance(inner, Enclosed):
+        return CarriedBalls(inner, back, kind, clock)
+    return Carried(inner, back, kind, clock)
+
+
+@final
+class CarriedBalls(Enclosed):
+    """A solution in balls: what cancels on the way back widens them, and the precision rises."""
+
+    def __init__(
+        self, inner: Enclosed, back: Back, regime: str, clock: Clock | None = None
+    ) -> None:
+        self.regime, self.by_quadrature = regime, inner.by_quadrature
+        self._inner, self._back, self._clock = inner, back, clock
+
+    def enclose(self, elapsed: Sequence[Time], bits: int) -> Enclosure:
+        clock = self._clock
+        times = elapsed if clock is None else [clock(t, ball) for t in elapsed]
+        rows: dict[str, Any] = dict(self._inner.enclose(times, bits))
+        for name, entries in rows.items():
+            rows[name] = np.array(entries, dtype=object)
+        self._back(rows, elapsed, ball)
+        return rows
+
+
+@final
+class Carried(Settled):
+    """A solution in mpmath, believed when two evaluations agree after the way back."""
+
+    route = "mpmath"
+
+    def __init__(
+        self, inner: Solution, back: Back, regime: str, clock: Clock | None = None
+    ) -> None:
+        self.regime, self.by_quadrature = regime, inner.by_quadrature
+        self._inner, self._back, self._clock = inner, back, clock
+
+    def evaluate(self, elapsed: Sequence[Time], digits: int) -> Quantities:
+        rows: dict[str, Any] = dict(self._inner.evaluate(self._times(elapsed, digits), digits))
+        with mp.workdps(digits + _GUARD_DIGITS):
+            self._back(rows, elapsed, mp.convert)
+        return rows
+
+    def _times(self, elapsed: Sequence[Time], digits: int) -> Sequence[Time]:
+        """The times of the inner motion, to more digits than a phase has before its point.
+
+        A motion too fast for that agrees with itself at a higher precision only.
+        """
+        clock = self._clock
+        if clock is None:
+            return elapsed
+        with mp.workdps(2 * digits + _TIME_DIGITS):
+            return [clock(t, mp.convert) for t in elapsed]
