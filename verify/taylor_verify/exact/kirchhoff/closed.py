@@ -29,6 +29,7 @@ from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.kirchhoff.top import top, with_impulses
 from taylor_verify.exact.kirchhoff.turned import upright
 from taylor_verify.exact.kirchhoff.turning import TurningBody
+from taylor_verify.exact.kirchhoff.vacuum import at_own_pace
 from taylor_verify.exact.kirchhoff.weber.curve import REGIME as WEBER
 from taylor_verify.exact.kirchhoff.weber.curve import Curve, curve
 from taylor_verify.exact.kirchhoff.weber.enclosure import WeberBalls
@@ -73,6 +74,7 @@ def case(scene: Scene) -> Case:
         if found is None:
             raise NoClosedForm("a force or a couple acts on the body")
         return found
+    whole = at_own_pace(whole)
     for find in CASES:
         found = find(whole)
         if found is not None:

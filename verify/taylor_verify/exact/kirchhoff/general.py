@@ -7,7 +7,8 @@ beside it, which of them are stable.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Final
 
 from mpmath import mp, mpf
@@ -19,6 +20,7 @@ from taylor_verify.exact.kirchhoff.closed import Case
 from taylor_verify.exact.kirchhoff.integrable import fourth_integral
 from taylor_verify.exact.kirchhoff.pendulum import Pendulum
 from taylor_verify.exact.kirchhoff.plane import Plane
+from taylor_verify.exact.kirchhoff.reduced import Reduced
 from taylor_verify.exact.kirchhoff.screws import Screw, Stability, is_steady, screws_beside
 from taylor_verify.exact.kirchhoff.solid import solid, velocities
 from taylor_verify.exact.kirchhoff.weber.curve import REGIME as WEBER
@@ -105,7 +107,7 @@ def elements(scene: Scene, found: Case | None, kind: str, digits: int) -> Elemen
     fourth = fourth_integral(scene)
 
     def numbers(working: int) -> list[Element]:
-        own = [] if found is None else _own(found, working)
+        own = [] if found is None else _paced(found.reduced, _own(found, working))
         return [*own, *conserved(body, start)]
 
     unsolved = _UNSOLVED if fourth is None else _UNBUILT
@@ -132,6 +134,18 @@ def _own(found: Case, working: int) -> list[Element]:
             body, _ = solid(found.reduced.scene)
             return _screw(*velocities(body, start))
     return []
+
+
+def _paced(found: Reduced, numbers: Iterable[Element]) -> list[Element]:
+    """Return the elements of a motion in the time of the scene."""
+    if found.pace is None:
+        return [*numbers]
+    k = found.pace(mp.convert)
+
+    def factor(unit: str) -> mpf:
+        return 1 / k if unit == "time" else k if unit.endswith("/time") else mpf(1)
+
+    return [replace(e, value=e.value * factor(e.unit)) for e in numbers]
 
 
 def _screw(U: Vector, Omega: Vector) -> list[Element]:
