@@ -143,7 +143,7 @@ def steady(whole: Reduced) -> Case | None:
 
 def turning(whole: Reduced) -> Case | None:
     """Euler's top: a body with A = p 1 and B = b 1 about some origin, or without linear impulse."""
-    found = top(centred(whole))
+    found = top(whole)
     if found is None:
         return None
     reduced, spin = found

@@ -35,6 +35,8 @@ def elements(scene: Scene, digits: int) -> Elements:
         found = clebsch_elements.elements(impulses.reduced.scene, digits)
         axis = axis_of_revolution(scene)
         found = found if axis == 3 else _about(axis, found)
+        if body.axis_of_symmetry is None:
+            found = _beside(found, f"y{axis}")
     else:
         kind = NO_CLOSED_FORM if whole is None else whole.regime
         found = general.elements(scene, impulses, kind, digits)
@@ -53,6 +55,14 @@ def _case(scene: Scene) -> Case | None:
 def _reductions(words: Sequence[str]) -> list[str]:
     """A sentence on the coordinates in which a motion is solved; none where they are its own."""
     return [f"Solved {'; '.join(words)}."] if words else []
+
+
+def _beside(found: Elements, y: str) -> Elements:
+    """The elements of a body whose axis does not pass through the origin of the scene."""
+    told = (
+        line.replace(f"body, {y};", f"body, {y} about that origin;") for line in found.sentences
+    )
+    return replace(found, sentences=tuple(told))
 
 
 def _about(axis: int | None, found: Elements) -> Elements:

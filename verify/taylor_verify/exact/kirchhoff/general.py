@@ -205,7 +205,7 @@ def _weber_rates(found: Curve, working: int) -> list[Element]:
 def _screw_story(scene: Scene) -> list[str]:
     """The stability of the three screws beside the motion, and whether the start is one of them."""
     body, start = solid(scene)
-    if not any(start.linear):
+    if not body.is_free or not any(start.linear):
         return []
     told = ["The start is itself a steady screw."] if is_steady(body, start) else []
     found = screws_beside(scene)

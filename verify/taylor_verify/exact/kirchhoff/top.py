@@ -18,30 +18,34 @@ import numpy as np
 
 from taylor_verify.exact.carried import Back
 from taylor_verify.exact.euler.regime import FreeSpin
+from taylor_verify.exact.kirchhoff.displaced import centred
 from taylor_verify.exact.kirchhoff.isotropic import less_coupling, less_linear, multiple
 from taylor_verify.exact.kirchhoff.reduced import Reduced
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Number, Time
 from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
 
 
-def top(found: Reduced) -> tuple[Reduced, FreeSpin] | None:
-    """Return the spin of Euler's top in a free body, less multiples of 1 in B and in A; else None."""
+def top(whole: Reduced) -> tuple[Reduced, FreeSpin] | None:
+    """Return the spin of Euler's top in a free body, about the origin where B is symmetric; else None."""
+    body, start = solid(whole.scene)
+    if not any(start.linear) and "centre" not in whole.scene.track:
+        # y is the same about every origin, and nothing else is asked for.
+        return whole, _spin(body, start)
+    found = centred(whole)
     body, start = solid(found.scene)
     b, p = multiple(body.coupling), multiple(body.linear)
-    if any(start.linear):
-        if b is None or p is None:
-            return None
-        found = less_linear(less_coupling(found, b), p)
-    elif "centre" in found.scene.track:
-        if b is None:
-            return None
-        found = less_coupling(found, b)
-    return found, FreeSpin(
-        tensors.inverse(body.angular), tensors.apply(body.angular, start.angular)
-    )
+    if b is None or (p is None and any(start.linear)):
+        return None
+    found = less_coupling(found, b)
+    return found if p is None else less_linear(found, p), _spin(body, start)
+
+
+def _spin(body: ImmersedBody, start: Impulse) -> FreeSpin:
+    return FreeSpin(tensors.inverse(body.angular), tensors.apply(body.angular, start.angular))
 
 
 def with_impulses(start: Impulse, track: frozenset[str]) -> Back:
