@@ -179,7 +179,7 @@ DECLINED = {
     "only the motions with FG = 0": built(
         vector(1, "1/2", 1), vector(1, 1, 1), *BODIES["theta > 0"]
     ),
-    "of Clebsch's form": built(vector(1, 0, 1), vector(0, 1, 0), vector(1, 2, 3), vector(1, 2, 4)),
+    "of Clebsch's form": built(vector(1, 0, 1), vector(1, 1, -1), vector(1, 2, 3), vector(1, 2, 4)),
 }
 
 

@@ -15,8 +15,8 @@ from builders.reports import every_portrait, portrait_without_run
 from latex2mathml.converter import convert
 
 from taylor_verify.cli import main
-from taylor_verify.exact.kirchhoff.displaced import centred
-from taylor_verify.exact.kirchhoff.turned import upright
+from taylor_verify.exact.kirchhoff.displaced import symmetric_origin
+from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.printed import document
 from taylor_verify.exact.route import solution
 from taylor_verify.explain.explanation import explanation
@@ -205,7 +205,7 @@ def test_the_axial_impulse_follows_the_quartic() -> None:
         coefficients = found["potential"]["coefficients"]
         value = np.polyval(coefficients, x[axis])
         largest = np.polyval(np.abs(coefficients), np.abs(x[axis]))
-        _, distance = centred(upright(load(name))[0])
+        distance = symmetric_origin(solid(load(name))[0])[axis]
         moment = x[i] * y[k] - x[k] * y[i] - float(distance) * (x[i] ** 2 + x[k] ** 2)
         gap = np.abs(value - moment**2)
         assert (gap <= 1e-7 * largest.max()).all()

@@ -11,6 +11,7 @@ from taylor_verify.exact.euler.moments.regime import LoadedSpin
 from taylor_verify.exact.euler.moments.washboard.board import Washboard
 from taylor_verify.exact.euler.regime import FreeSpin
 from taylor_verify.exact.solution import NoClosedForm, Solution
+from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Quaternion, Spin
 from taylor_verify.scenes.scene import Scene
@@ -53,7 +54,7 @@ def _solved(
     spin = FreeSpin(body.inertia, start.omega)
     if body.is_free:
         return free(spin, attitude)
-    if spin.discriminant == 0:
+    if spin.discriminant == 0 and any(tensors.plus(spin.torque, body.moment)):
         return loaded(LoadedSpin(body.inertia, body.moment, start.omega), attitude)
     board = Washboard(body.inertia, body.moment, start.omega)
     if attitude is not None and not board.keeps_axis:

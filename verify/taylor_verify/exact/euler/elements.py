@@ -105,15 +105,24 @@ def elements(scene: Scene, digits: int) -> Elements:
     if not body.is_free:
         return _loaded(body, start.omega, digits)
     spin = FreeSpin(body.inertia, start.omega)
-    found = settled(lambda _: _numbers(spin), digits)
-    story = _steady_story(spin) if spin.regime is Regime.STEADY else _STORY[spin.regime]
-    return Elements(spin.regime.value, found, (story, _CONSERVED))
+    kept = spin.twice_energy / 2, spin.momentum_squared
+
+    def numbers(_: int) -> list[Element]:
+        return [*orbit(spin), *described(_KEPT, map(mp.convert, kept))]
+
+    return Elements(spin.regime.value, settled(numbers, digits), (story(spin), _CONSERVED))
+
+
+def story(spin: FreeSpin) -> str:
+    """What a free body does, in a sentence."""
+    return _steady_story(spin) if spin.regime is Regime.STEADY else _STORY[spin.regime]
 
 
 def _loaded(body: RigidBody, omega: tensors.Vector, digits: int) -> Elements:
     """Under a constant moment T' = M.omega and nothing of the free orbit is left."""
     try:
-        if FreeSpin(body.inertia, omega).discriminant:
+        free = FreeSpin(body.inertia, omega)
+        if free.discriminant or not any(tensors.plus(free.torque, body.moment)):
             return _washboard(Washboard(body.inertia, body.moment, omega), digits)
         spin = LoadedSpin(body.inertia, body.moment, omega)
     except NoClosedForm:
@@ -170,7 +179,8 @@ _KEPT: Final = """
 """
 
 
-def _numbers(spin: FreeSpin) -> list[Element]:
+def orbit(spin: FreeSpin) -> list[Element]:
+    """The numbers of a free orbit at the ambient precision, without what is conserved."""
     own: Mapping[Regime, Callable[[FreeSpin], list[Element]]] = {
         Regime.SPHERICAL: _turn,
         Regime.STEADY: _steady,
@@ -179,9 +189,7 @@ def _numbers(spin: FreeSpin) -> list[Element]:
         Regime.MAX_AXIS: _triaxial,
         Regime.MIN_AXIS: _triaxial,
     }
-    found = own[spin.regime](spin) if spin.regime in own else []
-    kept = spin.twice_energy / 2, spin.momentum_squared
-    return [*found, *described(_KEPT, map(mp.convert, kept))]
+    return own[spin.regime](spin) if spin.regime in own else []
 
 
 _TURN: Final = "turn_period :: time :: one turn about the constant omega ::"

@@ -1,66 +1,178 @@
-"""The choice of the closed form for a solid in a fluid without loads, in exact rationals.
+"""The choice of the closed form for a solid in a fluid, in exact rationals.
 
-In this order: Weber's motion of a body without symmetry; a motion in one of its planes; the motion of a
-body of revolution, solved about axis 3 and the point of it that Clebsch's form is about. The two routes
-share no formula.
+A free motion is reduced first: to the origin where B is symmetric, and by multiples of 1 in B and in A
+where the case has them. Then it is the first of the cases below that fits. The reductions, the ways back
+and the decisions are shared; the two routes of a case share no formula.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
 
 from taylor_verify.exact.carried import carried
+from taylor_verify.exact.euler import jacobi as tops
+from taylor_verify.exact.euler import theta
+from taylor_verify.exact.euler.regime import FreeSpin
 from taylor_verify.exact.kirchhoff import jacobi, weierstrass
-from taylor_verify.exact.kirchhoff.displaced import centred, moved_back
+from taylor_verify.exact.kirchhoff.displaced import centred
+from taylor_verify.exact.kirchhoff.isotropic import less_coupling, multiple
 from taylor_verify.exact.kirchhoff.pendulum import Pendulum
-from taylor_verify.exact.kirchhoff.plane import in_plane, of_revolution, plane
+from taylor_verify.exact.kirchhoff.plane import Plane, in_plane, of_revolution, planar
 from taylor_verify.exact.kirchhoff.plane import regime as regime_in_plane
 from taylor_verify.exact.kirchhoff.quartic import Nutation
+from taylor_verify.exact.kirchhoff.reduced import Reduced
 from taylor_verify.exact.kirchhoff.regime import nutation_of, regime
+from taylor_verify.exact.kirchhoff.screws import is_steady
 from taylor_verify.exact.kirchhoff.solid import solid
-from taylor_verify.exact.kirchhoff.turned import put_back, upright
+from taylor_verify.exact.kirchhoff.top import top, with_impulses
+from taylor_verify.exact.kirchhoff.turned import upright
 from taylor_verify.exact.kirchhoff.turning import TurningBody
-from taylor_verify.exact.kirchhoff.weber.curve import curve
+from taylor_verify.exact.kirchhoff.vacuum import at_own_pace
+from taylor_verify.exact.kirchhoff.weber.curve import REGIME as WEBER
+from taylor_verify.exact.kirchhoff.weber.curve import Curve, curve
 from taylor_verify.exact.kirchhoff.weber.enclosure import WeberBalls
 from taylor_verify.exact.kirchhoff.weber.sums import WeberSums
-from taylor_verify.exact.solution import Solution
+from taylor_verify.exact.solution import NoClosedForm, Solution
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.scene import Scene
 
-Maker = Callable[[str, Nutation, Impulse, frozenset[str]], Solution]
-"""A solution of Clebsch's body, from its regime, its constants, its start and what is tracked."""
+Subject = Nutation | Plane | Impulse | FreeSpin | Curve
+"""The exact numbers of a case: of a body of revolution, a plane, a steady motion, a top, Weber's curve."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """A motion that has a closed form: what is left after the reductions, and its two routes."""
+
+    regime: str
+    reduced: Reduced
+    subject: Subject
+    balls: Callable[[], Solution]
+    floats: Callable[[], Solution]
 
 
 def enclosed(scene: Scene) -> Solution:
     """The motion in balls; raises NoClosedForm, with the reason, where it has none."""
-    genus_two = curve(scene)
-    if genus_two is not None:
-        return WeberBalls(genus_two)
-    place = plane(scene)
-    alike = scene if place is None else of_revolution(scene, place)
-    found = _of_revolution(alike, TurningBody, weierstrass.NutatingBody)
-    return found if place is None else carried(found, in_plane(place), regime_in_plane(place))
+    found = case(scene)
+    return found.reduced.carried_back(found.balls())
 
 
 def closed_form(scene: Scene) -> Solution:
     """The motion in mpmath; raises NoClosedForm likewise."""
-    genus_two = curve(scene)
-    if genus_two is not None:
-        return WeberSums(genus_two)
-    place = plane(scene)
-    if place is not None:
-        return Pendulum(regime_in_plane(place), place, scene)
-    return _of_revolution(scene, jacobi.Screw, jacobi.NutatingBody)
+    found = case(scene)
+    return found.reduced.carried_back(found.floats())
 
 
-def _of_revolution(scene: Scene, turning: Maker, nutating: Maker) -> Solution:
-    """The solution of a body of revolution about any body axis, from that of Clebsch's form."""
-    named_anew, axis = upright(scene)
-    moved, distance = centred(named_anew)
-    nutation, start = nutation_of(moved)
-    kind = regime(nutation)
-    make = turning if kind in ("rest", "steady", "euler-top") else nutating
-    found = make(kind, nutation, start, moved.track)
-    if distance:
-        found = carried(found, moved_back(distance, solid(named_anew)[1]))
-    return found if axis == 3 else carried(found, put_back(axis))
+def case(scene: Scene) -> Case:
+    """The case of a motion; raises NoClosedForm, with the reason, where there is none."""
+    body, _ = solid(scene)
+    whole = Reduced(scene)
+    if not body.is_free:
+        found = steady(whole) if body.manufactured is None else None
+        if found is None:
+            raise NoClosedForm("a force or a couple acts on the body")
+        return found
+    whole = at_own_pace(whole)
+    for find in CASES:
+        found = find(whole)
+        if found is not None:
+            return found
+    raise NoClosedForm(
+        "the energy is not of Clebsch's form about a body axis, and the motion is of no other family "
+        "that is solved"
+    )
+
+
+def revolution(whole: Reduced) -> Case | None:
+    """A body of revolution about a body axis: Clebsch's, in axes of which the third is that one."""
+    found = upright(centred(whole))
+    scene = found.scene
+    body, _ = solid(scene)
+    if body.clebsch is None:
+        return None
+    nutation, start = nutation_of(scene)
+    kind, rate = regime(nutation), nutation.turn_rate
+    if kind in ("rest", "steady", "euler-top"):
+        return Case(
+            kind,
+            found,
+            nutation,
+            lambda: TurningBody(kind, body, start, scene.track, rate),
+            lambda: jacobi.Screw(kind, body, start, scene.track, rate),
+        )
+    return Case(
+        kind,
+        found,
+        nutation,
+        lambda: weierstrass.NutatingBody(kind, nutation, start, scene.track),
+        lambda: jacobi.NutatingBody(kind, nutation, start, scene.track),
+    )
+
+
+def flat(whole: Reduced) -> Case | None:
+    """A motion in a plane of the body: in balls that of the body of revolution that moves alike."""
+    found = planar(whole)
+    if found is None:
+        return None
+    reduced, place = found
+    kind = regime_in_plane(place)
+
+    def balls() -> Solution:
+        alike = case(of_revolution(reduced.scene, place))
+        return carried(alike.reduced.carried_back(alike.balls()), in_plane(place), kind)
+
+    return Case(kind, reduced, place, balls, lambda: Pendulum(kind, place, reduced.scene))
+
+
+def steady(whole: Reduced) -> Case | None:
+    """A motion with constant x and y, of any body and under any constant loads: a screw."""
+    body, start = solid(whole.scene)
+    if not is_steady(body, start):
+        return None
+    kind, track = "steady" if any(start.moving) else "rest", whole.scene.track
+    return Case(
+        kind,
+        whole,
+        start,
+        lambda: TurningBody(kind, body, start, track),
+        lambda: jacobi.Screw(kind, body, start, track),
+    )
+
+
+def turning(whole: Reduced) -> Case | None:
+    """Euler's top: a body with A = p 1 and B = b 1 about some origin, or without linear impulse."""
+    found = top(whole)
+    if found is None:
+        return None
+    reduced, spin = found
+    _, start = solid(reduced.scene)
+    back = with_impulses(start, reduced.scene.track)
+    return Case(
+        spin.regime.value,
+        reduced,
+        spin,
+        lambda: carried(theta.free_rotation(spin, start.attitude), back),
+        lambda: carried(tops.free_rotation(spin, start.attitude), back),
+    )
+
+
+def weber(whole: Reduced) -> Case | None:
+    """Weber's motion, less the common b; raises NoClosedForm for what is degenerate in his family."""
+    found = centred(whole)
+    body, _ = solid(found.scene)
+    b = multiple(body.coupling)
+    if b is None:
+        return None
+    found = less_coupling(found, b)
+    genus_two = curve(found.scene)
+    if genus_two is None:
+        return None
+    return Case(
+        WEBER, found, genus_two, lambda: WeberBalls(genus_two), lambda: WeberSums(genus_two)
+    )
+
+
+# Bodies of revolution and planes have words of their own for their steady motions.
+CASES: Final = (revolution, flat, steady, turning, weber)

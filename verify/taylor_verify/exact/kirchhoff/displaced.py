@@ -1,11 +1,16 @@
-"""A body of revolution whose origin is not the point of its axis that Clebsch's form is about.
+"""A free solid about another origin, such as the one where B is symmetric.
 
-That every turn about axis 3 leaves T as it is allows one term more than Hydromechanics 49 (1) has,
-beta (x1 y2 - x2 y1). About the origin moved by a e3, a = -beta/r, it is gone:
+Legend: d the displacement in body axes, D = [d]x, so that D v = d x v; about the origin moved by d
 
-    x' = x,   y' = y - a e3 x x,   p_moved = p - beta^2/r,   centre' = centre + a R e3,
+    B1 = B - D C,   A1 = A + B1 D + (B1 D)^T - D^T C D,   C1 = C,
+    x1 = x,   y1 = y - d x x,   R1 = R,   centre1 = centre + R d,
 
-and Kirchhoff's equations, the attitude, T, F^2, FG and y3 are what they were.
+and Kirchhoff's equations, T, F^2 and FG are what they were. B1 is symmetric for
+
+    d = (tr C - C)^-1 (B32 - B23, B13 - B31, B21 - B12)
+
+alone, for tr C - C is positive definite. There T of a body of revolution is of Clebsch's form,
+Hydromechanics 49 (1).
 """
 
 from __future__ import annotations
@@ -15,58 +20,92 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
+import numpy as np
+
 from taylor_verify.exact.carried import Back
+from taylor_verify.exact.equations import exact
+from taylor_verify.exact.kirchhoff.reduced import Reduced
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Number, Time
-from taylor_verify.scenes.bodies import Clebsch
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
+from taylor_verify.scenes.precision import float_text
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Vector
+from taylor_verify.scenes.tensors import Matrix, Vector
 
 
-def centred(scene: Scene) -> tuple[Scene, Fraction]:
-    """The scene about the point of axis 3 where T is of Clebsch's form, and how far along it that is.
+def centred(found: Reduced) -> Reduced:
+    """Return the motion of a free body about the origin where B is symmetric."""
+    body, _ = solid(found.scene)
+    return about(found, symmetric_origin(body), "where B is symmetric")
 
-    A body that is there already, one that axis 3 is no axis of symmetry of, and one that loads act
-    on keep their origin.
-    """
+
+def symmetric_origin(body: ImmersedBody) -> Vector:
+    """Return the displacement to the one origin about which B is symmetric."""
+    B, C = body.coupling, body.angular
+    askew = (B[2][1] - B[1][2], B[0][2] - B[2][0], B[1][0] - B[0][1])
+    if not any(askew):
+        return tensors.ZERO_VECTOR
+    trace = sum((C[i][i] for i in range(3)), Fraction(0))
+    rest = tuple(map(tensors.minus, tensors.diagonal((trace,) * 3), C))
+    return tensors.apply(tensors.inverse(rest), askew)
+
+
+def about(found: Reduced, d: Vector, where: str) -> Reduced:
+    """Return the motion about the origin moved by d; ``where`` says what that origin is."""
+    if not any(d):
+        return found
+    _, start = solid(found.scene)
+    place = ", ".join(map(float_text, d))
+    words = f"about the origin moved by ({place}), {where}"
+    return found.then(moved(found.scene, d), moved_back(d, start), words)
+
+
+def moved(scene: Scene, d: Vector) -> Scene:
+    """Return the same motion of a free body about the origin moved by d."""
     body, start = solid(scene)
-    beta, r = body.coupling[0][1], body.angular[0][0]
-    if not beta or body.axis_of_symmetry != 3 or not body.is_free:
-        return scene, Fraction(0)
-    distance = -beta / r
-    p, q = body.linear[0][0] + beta * distance, body.coupling[0][0]
-    x1, x2, _ = start.linear
-    y1, y2, y3 = start.angular
-    along = (row[2] for row in rotation_matrix(start.attitude))
-    moved = replace(
-        start,
-        angular=(y1 + distance * x2, y2 - distance * x1, y3),
-        centre=tuple(c + distance * e for c, e in zip(start.centre, along, strict=True)),
+    D, C = exact(tensors.cross_matrix(d)), exact(body.angular)
+    B = exact(body.coupling) - D @ C
+    turned = B @ D
+    A = exact(body.linear) + turned + turned.T - D.T @ C @ D
+    moment = tensors.cross(d, start.linear)
+    arm = tensors.apply(rotation_matrix(start.attitude), d)
+    return replace(
+        scene,
+        body=ImmersedBody(_matrix(A), _matrix(B), body.angular),
+        initial=replace(
+            start,
+            angular=tensors.minus(start.angular, moment),
+            centre=tensors.plus(start.centre, arm),
+        ),
     )
-    six = Clebsch(p, body.linear[2][2], q, body.coupling[2][2], r, body.angular[2][2])
-    return replace(scene, body=six.body(), initial=moved), distance
 
 
-def moved_back(distance: Fraction, start: Impulse) -> Back:
-    """Return the way back from ``centred`` to the scene's own origin."""
+def moved_back(d: Vector, start: Impulse) -> Back:
+    """Return the way back from ``moved`` to the origin of this start."""
 
     def back(rows: dict[str, Any], elapsed: Sequence[Time], number: Number) -> None:
-        far = number(distance)
-        x, y = rows["linear_impulse"], rows["angular_impulse"].copy()
-        y[:, 0], y[:, 1] = y[:, 0] - far * x[:, 1], y[:, 1] + far * x[:, 0]
-        rows["angular_impulse"] = _as_given(y, start.angular, elapsed, number)
+        far = np.array([number(entry) for entry in d], dtype=object)
+        moment = np.cross(far, rows["linear_impulse"])
+        rows["angular_impulse"] = as_given(
+            rows["angular_impulse"] + moment, start.angular, elapsed, number
+        )
         if "centre" in rows:
-            centre = rows["centre"] - far * rows["attitude"][:, :, 2]
-            rows["centre"] = _as_given(centre, start.centre, elapsed, number)
+            centre = rows["centre"] - rows["attitude"] @ far
+            rows["centre"] = as_given(centre, start.centre, elapsed, number)
 
     return back
 
 
-def _as_given(rows: Any, start: Vector, elapsed: Sequence[Time], number: Number) -> Any:
+def as_given(rows: Any, start: Vector, elapsed: Sequence[Time], number: Number) -> Any:
     """The rows with the start itself where no time has gone: a zero there has no digits but exact ones."""
     for row, t in zip(rows, elapsed, strict=True):
         if t == 0:
             row[:] = [number(entry) for entry in start]
     return rows
+
+
+def _matrix(entries: Any) -> Matrix:
+    return tuple(map(tuple, entries))

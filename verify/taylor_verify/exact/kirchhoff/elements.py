@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
 from taylor_verify.exact.element import Elements
 from taylor_verify.exact.kirchhoff import clebsch_elements, general
-from taylor_verify.exact.kirchhoff.displaced import centred
+from taylor_verify.exact.kirchhoff.closed import Case, case
+from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.kirchhoff.solid import solid
-from taylor_verify.exact.kirchhoff.turned import upright
+from taylor_verify.exact.kirchhoff.turned import axis_of_revolution
 from taylor_verify.exact.manufactured import MANUFACTURED, REGIME
-from taylor_verify.exact.solution import NO_CLOSED_FORM
-from taylor_verify.scenes.precision import float_text
+from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
 from taylor_verify.scenes.scene import Scene
 
 _LOADED: Final = (
@@ -27,23 +28,44 @@ def elements(scene: Scene, digits: int) -> Elements:
     body, _ = solid(scene)
     if body.manufactured is not None:
         return Elements(REGIME, (), MANUFACTURED)
-    if not body.is_free:
+    impulses, whole = _case(replace(scene, track=frozenset())), _case(scene)
+    if impulses is None and not body.is_free:
         return Elements(NO_CLOSED_FORM, (), _LOADED)
-    if body.axis_of_symmetry is None:
-        return general.elements(scene, digits)
-    named_anew, axis = upright(scene)
-    moved, distance = centred(named_anew)
-    found = clebsch_elements.elements(moved, digits)
-    if distance:
-        place = (
-            "T is of Clebsch's form about the point of axis 3 at "
-            f"{float_text(distance)} from the origin: the body is solved there."
-        )
-        found = replace(found, sentences=(place, *found.sentences))
-    return found if axis == 3 else _about(axis, found)
+    if impulses is not None and isinstance(impulses.subject, Nutation):
+        found = clebsch_elements.elements(impulses.reduced.scene, digits)
+        axis = axis_of_revolution(scene)
+        found = found if axis == 3 else _about(axis, found)
+        if body.axis_of_symmetry is None:
+            found = _beside(found, f"y{axis}")
+    else:
+        kind = NO_CLOSED_FORM if whole is None else whole.regime
+        found = general.elements(scene, impulses, kind, digits)
+    solved = whole or impulses
+    words = () if solved is None else solved.reduced.words
+    return replace(found, sentences=(*_reductions(words), *found.sentences))
 
 
-def _about(axis: int, found: Elements) -> Elements:
+def _case(scene: Scene) -> Case | None:
+    try:
+        return case(scene)
+    except NoClosedForm:
+        return None
+
+
+def _reductions(words: Sequence[str]) -> list[str]:
+    """A sentence on the coordinates in which a motion is solved; none where they are its own."""
+    return [f"Solved {'; '.join(words)}."] if words else []
+
+
+def _beside(found: Elements, y: str) -> Elements:
+    """The elements of a body whose axis does not pass through the origin of the scene."""
+    told = (
+        line.replace(f"body, {y};", f"body, {y} about that origin;") for line in found.sentences
+    )
+    return replace(found, sentences=tuple(told))
+
+
+def _about(axis: int | None, found: Elements) -> Elements:
     """The elements with x3, y3 and axis 3 renamed to those of the axis of symmetry."""
 
     def renamed(text: str) -> str:

@@ -1,33 +1,38 @@
-"""The elements of the orbit of a free solid without an axis of symmetry, and those of every free solid.
+"""The elements of the orbit of a solid that is not Clebsch's body, and those of every free solid.
 
-Three numbers at least, T, F and G; a fourth integral where the body is of an integrable family; a
-period where the motion stays in a plane of the body, two rates in Weber's case; and of the steady
-screws beside it, which of them are stable.
+Three numbers at least, T, F and G; a fourth integral where the body is of an integrable family; the
+numbers of the case that the motion is, such as a period, two rates or a pitch; and of the steady screws
+beside it, which of them are stable.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Final
 
 from mpmath import mp, mpf
 
-from taylor_verify.exact.element import Element, Elements, settled
+from taylor_verify.exact.element import Element, Elements, described, settled
+from taylor_verify.exact.euler import elements as tops
+from taylor_verify.exact.euler.regime import FreeSpin
+from taylor_verify.exact.kirchhoff.closed import Case
 from taylor_verify.exact.kirchhoff.integrable import fourth_integral
 from taylor_verify.exact.kirchhoff.pendulum import Pendulum
-from taylor_verify.exact.kirchhoff.plane import plane, regime
+from taylor_verify.exact.kirchhoff.plane import Plane
+from taylor_verify.exact.kirchhoff.reduced import Reduced
 from taylor_verify.exact.kirchhoff.screws import Screw, Stability, is_steady, screws_beside
-from taylor_verify.exact.kirchhoff.solid import solid
+from taylor_verify.exact.kirchhoff.solid import solid, velocities
 from taylor_verify.exact.kirchhoff.weber.curve import REGIME as WEBER
-from taylor_verify.exact.kirchhoff.weber.curve import Curve, curve
+from taylor_verify.exact.kirchhoff.weber.curve import Curve
 from taylor_verify.exact.kirchhoff.weber.enclosure import rates
-from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
+from taylor_verify.exact.solution import NO_CLOSED_FORM
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.precision import float_text
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Vector
 
 _PENDULUM: Final = "(2 alpha)'' = -omega0^2 sin 2 alpha"
 _CURVE: Final = "H. Weber, Math. Ann. 14 (1878) 173"
@@ -52,6 +57,20 @@ _UNSOLVED: Final = (
     "The energy is not of Clebsch's form about a body axis: no closed form is built, and for a body "
     "with three invariants alone none is known."
 )
+_BALANCED: Final = (
+    "The loads balance the gyroscopic terms. Not conserved: the linear impulse in space axes and the "
+    "moment of the impulses turn with the body."
+)
+_TOP: Final = (
+    "What is left is Euler's top of the inertia C^-1: y moves as its angular momentum H, Omega as its "
+    "omega, and x stands still in the space of the top."
+)
+_STRAIGHT: Final = "speed :: length/time :: of the origin, along a straight line :: |U|"
+_SCREW: Final = """
+    turn_period :: time :: one turn about the axis of the screw :: 2 pi/|Omega|
+    advance :: length/time :: velocity along the axis of the screw :: U.Omega/|Omega|
+    pitch :: length :: the advance in one turn :: 2 pi U.Omega/Omega^2
+"""
 _SWING: Final = ("period", "rate", "m", "k", "m_prime")
 # Unit and meaning of the elements of a closed form.
 _WORDS: Final[Mapping[str, tuple[str, str]]] = {
@@ -62,6 +81,11 @@ _WORDS: Final[Mapping[str, tuple[str, str]]] = {
     "m_prime": ("", "1 - m, one measure of the separatrix's distance"),
 }
 _STORY: Final[Mapping[str, str]] = {
+    "rest": "Both impulses are zero: the body is at rest.",
+    "steady": (
+        "x and y are constant: the body turns about one line, fixed in it and in space, and advances "
+        "along it, as a screw."
+    ),
     "planar-steady": "x and y are constant: the body moves straight on, or not at all.",
     "planar-uniform": "The body turns in a plane at a constant rate.",
     "planar-swing": "The body swings in a plane about the position broadside on, as a pendulum.",
@@ -77,26 +101,69 @@ _STORY: Final[Mapping[str, str]] = {
 }
 
 
-def elements(scene: Scene, digits: int) -> Elements:
-    """The elements of a free body without an axis of symmetry."""
+def elements(scene: Scene, found: Case | None, kind: str, digits: int) -> Elements:
+    """The elements of a body that is not Clebsch's; ``found`` is the case of x and y, if they have one."""
     body, start = solid(scene)
-    place, weber, fourth = plane(scene), _weber_curve(scene), fourth_integral(scene)
-    kind = NO_CLOSED_FORM if place is None else regime(place)
-    if weber is not None and not scene.track:
-        kind = WEBER
+    fourth = fourth_integral(scene)
 
     def numbers(working: int) -> list[Element]:
-        swing = {} if place is None else Pendulum(kind, place, scene).elements(working)
-        angles = [] if weber is None else _weber_rates(weber, working)
-        own = recurring(swing, _SWING, "x and y recur in body axes", _PENDULUM)
-        return [*own, *angles, *conserved(body, start)]
+        own = [] if found is None else _paced(found.reduced, _own(found, working))
+        return [*own, *conserved(body, start)]
 
-    told = [_STORY.get(kind, _UNSOLVED if fourth is None else _UNBUILT), _THREE]
+    unsolved = _UNSOLVED if fourth is None else _UNBUILT
+    told = [*(_top_story(found, kind) or [_STORY.get(kind, unsolved)])]
+    told.append(_THREE if body.is_free else _BALANCED)
     if fourth is not None:
         told.append(
             f"Conserved too: {fourth.name}, the fourth integral of {_FAMILIES[fourth.name]}."
         )
     return Elements(kind, settled(numbers, digits), (*told, *_screw_story(scene)))
+
+
+def _own(found: Case, working: int) -> list[Element]:
+    """The elements of x and y in one of the cases."""
+    match found.subject:
+        case Plane() as place:
+            swing = Pendulum(found.regime, place, found.reduced.scene).elements(working)
+            return [*recurring(swing, _SWING, "x and y recur in body axes", _PENDULUM)]
+        case Curve() as curve:
+            return _weber_rates(curve, working)
+        case FreeSpin() as spin:
+            return tops.orbit(spin)
+        case Impulse() as start:
+            body, _ = solid(found.reduced.scene)
+            return _screw(*velocities(body, start))
+    return []
+
+
+def _paced(found: Reduced, numbers: Iterable[Element]) -> list[Element]:
+    """Return the elements of a motion in the time of the scene."""
+    if found.pace is None:
+        return [*numbers]
+    k = found.pace(mp.convert)
+
+    def factor(unit: str) -> mpf:
+        return 1 / k if unit == "time" else k if unit.endswith("/time") else mpf(1)
+
+    return [replace(e, value=e.value * factor(e.unit)) for e in numbers]
+
+
+def _screw(U: Vector, Omega: Vector) -> list[Element]:
+    """The numbers of a steady motion: one turn, and the way of the origin along the axis of the screw."""
+    if not any(Omega):
+        speed = mp.sqrt(mp.convert(tensors.dot(U, U)))
+        return described(_STRAIGHT, [speed]) if speed else []
+    rate = mp.sqrt(mp.convert(tensors.dot(Omega, Omega)))
+    advance, period = mp.convert(tensors.dot(U, Omega)) / rate, 2 * mp.pi / rate
+    return described(_SCREW, (period, advance, advance * period))
+
+
+def _top_story(found: Case | None, kind: str) -> list[str]:
+    """Sentences on a motion in which y is that of Euler's top; none on another."""
+    if found is None or not isinstance(found.subject, FreeSpin):
+        return []
+    pathless = [] if kind != NO_CLOSED_FORM else ["The path of the origin has no closed form."]
+    return [_TOP, tops.story(found.subject), *pathless]
 
 
 def recurring(
@@ -126,14 +193,6 @@ def conserved(body: ImmersedBody, start: Impulse) -> Iterator[Element]:
         yield Element("G", G, "angular impulse", meaning, "Hydromechanics 48 (iii)")
 
 
-def _weber_curve(scene: Scene) -> Curve | None:
-    """Weber's curve of the motion of x and y, where it has one that is not degenerate."""
-    try:
-        return curve(replace(scene, track=frozenset()))
-    except NoClosedForm:
-        return None
-
-
 def _weber_rates(found: Curve, working: int) -> list[Element]:
     """The rates of the two angles."""
     meaning = "of the {} of two angles of which x and y are functions, of period 2 pi in each"
@@ -146,7 +205,7 @@ def _weber_rates(found: Curve, working: int) -> list[Element]:
 def _screw_story(scene: Scene) -> list[str]:
     """The stability of the three screws beside the motion, and whether the start is one of them."""
     body, start = solid(scene)
-    if not any(start.linear):
+    if not body.is_free or not any(start.linear):
         return []
     told = ["The start is itself a steady screw."] if is_steady(body, start) else []
     found = screws_beside(scene)

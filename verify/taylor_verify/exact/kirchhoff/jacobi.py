@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -15,12 +14,12 @@ from taylor_verify.exact.frames import Frame, applied, product, start_frame, tur
 from taylor_verify.exact.kirchhoff.degenerate import ElementaryOrbit, Front
 from taylor_verify.exact.kirchhoff.orbit import EllipticOrbit, Orbit
 from taylor_verify.exact.kirchhoff.quartic import Nutation
-from taylor_verify.exact.kirchhoff.solid import velocities
+from taylor_verify.exact.kirchhoff.solid import short_digits, velocities
 from taylor_verify.exact.kirchhoff.space import Axial, transverse
 from taylor_verify.exact.solution import Quantities, Settled, Time, beside, longest
 from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
-from taylor_verify.scenes.precision import floor_log2
 
 _GUARD_DIGITS: Final = 12
 _ROUGH_DIGITS: Final = 20
@@ -35,9 +34,10 @@ _ORBITS: Final[Mapping[str, type[ElementaryOrbit | Front]]] = {
 
 @final
 class Screw(Settled):
-    """Rest, steady motion and Euler's top: x3 is constant, and x and y turn about axis 3 together.
+    """Motions in which x and y turn about axis 3 together, or stay as they are.
 
-    Seen from axes that turn with them, at the rate tau, the body's U and its Omega do not change:
+    These are steady screws of any body, tau = 0; rest and steady motion of Clebsch's body, and its Euler's
+    top. Seen from axes that turn with them, at the rate tau, the body's U and its Omega do not change:
 
         R = R0 Rot(nu t) Rz(-tau t),    centre = c0 + R0 int Rot(nu t) U0 dt,    nu = Omega0 + tau e3,
 
@@ -47,12 +47,17 @@ class Screw(Settled):
     route = "mpmath"
 
     def __init__(
-        self, kind: str, nutation: Nutation, start: Impulse, track: frozenset[str]
+        self,
+        kind: str,
+        body: ImmersedBody,
+        start: Impulse,
+        track: frozenset[str],
+        rate: Fraction = Fraction(0),
     ) -> None:
         self.regime = kind
         self._start, self._track = start, track
-        self._turn_rate = nutation.turn_rate
-        self._U, Omega = velocities(nutation.body.body(), start)
+        self._turn_rate = rate
+        self._U, Omega = velocities(body, start)
         self._nu = (*Omega[:2], Omega[2] + self._turn_rate)
 
     def evaluate(self, elapsed: Sequence[Time], digits: int) -> Quantities:
@@ -112,7 +117,8 @@ class NutatingBody(Settled):
             losses = self._orbit().losses(mp.convert(longest(elapsed)))
             lost = sum(max(0, int(mp.ceil(mp.log10(loss)))) for loss in losses)
         if "centre" in self.track:
-            lost += self._short_digits(elapsed)
+            U, _ = velocities(self.nutation.body.body(), self.start)
+            lost += short_digits(U, self.start, elapsed)
         with mp.workdps(digits + _GUARD_DIGITS + lost):
             orbit = self._orbit()
             poses = [orbit.pose(mp.convert(t)) for t in elapsed]
@@ -131,17 +137,6 @@ class NutatingBody(Settled):
             make = _ORBITS.get(self.regime, EllipticOrbit)
             self._orbits[mp.dps] = make(self.nutation, self.start)
         return self._orbits[mp.dps]
-
-    def _short_digits(self, elapsed: Sequence[Time]) -> int:
-        """The digits by which |y|/F, whose change is the way across F, exceeds the centre itself."""
-        start = self.start
-        shortest = min((longest([t]) for t in elapsed if t != 0), default=Fraction(1))
-        U, _ = velocities(self.nutation.body.body(), start)
-        reached = tensors.dot(start.centre, start.centre) + tensors.dot(U, U) * shortest**2
-        lever = tensors.dot(start.angular, start.angular) / self.nutation.F2
-        if not 0 < reached < lever:
-            return 0
-        return math.ceil(floor_log2(lever / reached) * math.log10(2) / 2)
 
 
 def _times(rate: Fraction, t: Time) -> mpf:

@@ -22,8 +22,9 @@ from mpmath import mp, mpc, mpf
 
 from taylor_verify.exact.elliptic import Landen
 from taylor_verify.exact.frames import start_frame
+from taylor_verify.exact.kirchhoff.displaced import as_given
 from taylor_verify.exact.kirchhoff.plane import Plane
-from taylor_verify.exact.kirchhoff.solid import solid
+from taylor_verify.exact.kirchhoff.solid import short_digits, solid, velocities
 from taylor_verify.exact.solution import Quantities, Settled, Time, longest
 from taylor_verify.scenes.scene import Scene
 
@@ -48,12 +49,16 @@ class Pendulum(Settled):
     def __init__(self, kind: str, found: Plane, scene: Scene) -> None:
         self.regime = kind
         self._plane, self._track = found, scene.track
-        _, self._start = solid(scene)
+        body, self._start = solid(scene)
+        self._velocity, _ = velocities(body, self._start)
 
     def evaluate(self, elapsed: Sequence[Time], digits: int) -> Quantities:
         fastest = max(self._plane.omega0_squared, self._plane.h)
         swept = math.isqrt(math.ceil(fastest * longest(elapsed) ** 2))
-        with mp.workdps(digits + _GUARD_DIGITS + len(str(swept))):
+        lost = len(str(swept))
+        if "centre" in self._track and self._plane.F2:
+            lost += short_digits(self._velocity, self._start, elapsed)
+        with mp.workdps(digits + _GUARD_DIGITS + lost):
             course = _COURSES.get(self.regime, Even)(self._plane)
             return self._quantities([course.at(t) for t in elapsed], elapsed)
 
@@ -85,7 +90,11 @@ class Pendulum(Settled):
         if self._track:
             found["attitude"] = first @ frames
         if "centre" in self._track:
-            found["centre"] = centre + path @ first.T
+            found["centre"] = as_given(
+                centre + path @ first.T, self._start.centre, elapsed, mp.convert
+            )
+        # A y that starts from zero has no digits but exact ones, as has a centre.
+        as_given(y, self._start.angular, elapsed, mp.convert)
         return found
 
     def _way(self, row: Swept, t: Time) -> mpc:

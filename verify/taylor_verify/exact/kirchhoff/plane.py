@@ -18,6 +18,10 @@ from fractions import Fraction
 from typing import Any
 
 from taylor_verify.exact.carried import Back
+from taylor_verify.exact.kirchhoff.displaced import about, moved, symmetric_origin
+from taylor_verify.exact.kirchhoff.integrable import CYCLIC
+from taylor_verify.exact.kirchhoff.isotropic import less_coupling
+from taylor_verify.exact.kirchhoff.reduced import Reduced
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.solution import Number, Time
 from taylor_verify.scenes import tensors
@@ -69,16 +73,38 @@ class Plane:
         return self.spread * self.x[0] ** 2 - self.rate**2
 
 
+def planar(found: Reduced) -> tuple[Reduced, Plane] | None:
+    """Return the plane in which a free body moves, about a point of it and less a multiple of 1 in B.
+
+    Where B is symmetric, a motion across k may have Omega_k = r y_k + B_ik x_i + B_jk x_j. About the point
+    of the plane at (-B_jk, B_ik)/r from there these terms of x are gone. None for any other motion.
+    """
+    body, _ = solid(found.scene)
+    centre = symmetric_origin(body)
+    middle, start = solid(moved(found.scene, centre))
+    for i, j, k in CYCLIC:
+        if any((start.linear[k], start.angular[i], start.angular[j])):
+            continue
+        B, r = middle.coupling, middle.angular[k][k]
+        rest = dict(zip((i, j, k), (-B[j][k] / r, B[i][k] / r, Fraction(0)), strict=True))
+        place = tensors.plus(centre, tuple(rest[n] for n in range(3)))
+        inner = about(found, place, "the point of its plane where Omega is r y")
+        inner = less_coupling(inner, B[k][k])
+        flat = plane(inner.scene)
+        if flat is not None:
+            return inner, flat
+    return None
+
+
 def plane(scene: Scene) -> Plane | None:
-    """The plane in which a free body without an axis of symmetry moves, or None if there is none.
+    """The plane in which a free body without an axis of symmetry moves about its own origin, or None.
 
     Decided in rationals: nothing of the start points out of the plane, and nothing of T leads out.
     """
     body, start = solid(scene)
     if not body.is_free or body.axis_of_symmetry is not None:
         return None
-    for k in range(3):
-        i, j = (k + 1) % 3, (k + 2) % 3
+    for i, j, k in CYCLIC:
         outside = (start.linear[k], start.angular[i], start.angular[j])
         if not any(outside) and _keeps_to_plane(body, i, j, k):
             swapped = body.linear[i][i] > body.linear[j][j]

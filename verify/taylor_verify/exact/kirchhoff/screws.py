@@ -93,11 +93,12 @@ def turn_of(body: ImmersedBody, start: Impulse) -> Fraction:
 
 
 def is_steady(body: ImmersedBody, start: Impulse) -> bool:
-    """Return True if x and y stay as they are at the start, exactly."""
+    """Return True if x and y stay as they are at the start, exactly, under the constant loads."""
     x, y = start.linear, start.angular
     U, Omega = velocities(body, start)
+    force = tensors.plus(tensors.cross(x, Omega), body.force)
     torque = tensors.plus(tensors.cross(y, Omega), tensors.cross(x, U))
-    return not any(tensors.cross(x, Omega) + torque)
+    return not any(force + tensors.plus(torque, body.couple))
 
 
 def screws_beside(scene: Scene) -> tuple[Screw, ...]:

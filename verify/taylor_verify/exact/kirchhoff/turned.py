@@ -15,6 +15,8 @@ from typing import Any, Final
 import numpy as np
 
 from taylor_verify.exact.carried import Back
+from taylor_verify.exact.kirchhoff.displaced import centred
+from taylor_verify.exact.kirchhoff.reduced import Reduced
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.solution import Number, Time
 from taylor_verify.scenes import tensors
@@ -26,23 +28,29 @@ from taylor_verify.scenes.tensors import Matrix
 _BODY_AXES: Final = {"linear_impulse", "angular_impulse", "attitude"}
 
 
-def upright(scene: Scene) -> tuple[Scene, int]:
-    """The scene in axes of which the third is the axis of symmetry, and that axis as it was.
+def axis_of_revolution(scene: Scene) -> int | None:
+    """Return the body axis along which a free solid is of revolution; 3 where there is a choice."""
+    body, _ = solid(centred(Reduced(scene)).scene)
+    return body.axis_of_symmetry
 
-    A body without one keeps its axes, as does one with a choice that includes the third, and one
-    that loads act on.
+
+def upright(found: Reduced) -> Reduced:
+    """Return the motion in axes of which the third is the axis of symmetry.
+
+    A body without one keeps its axes, as does one with a choice that includes the third.
     """
+    scene = found.scene
     body, start = solid(scene)
     axis = body.axis_of_symmetry or 3
-    if axis == 3 or not body.is_free:
-        return scene, 3
+    if axis == 3:
+        return found
     unit = tensors.diagonal((Fraction(1),) * 3)
     change = tuple(unit[i] for i in _order(axis))
 
     def renamed(matrix: Matrix) -> Matrix:
         return tensors.product(tensors.product(change, matrix), tensors.transpose(change))
 
-    return replace(
+    named_anew = replace(
         scene,
         body=ImmersedBody(renamed(body.linear), renamed(body.coupling), renamed(body.angular)),
         initial=Impulse(
@@ -51,7 +59,8 @@ def upright(scene: Scene) -> tuple[Scene, int]:
             _third_of_a_turn(start.attitude, 1 if axis == 1 else -1),
             start.centre,
         ),
-    ), axis
+    )
+    return found.then(named_anew, put_back(axis))
 
 
 def put_back(axis: int) -> Back:

@@ -1,8 +1,8 @@
-"""Motions of Clebsch's body in which x and y only turn about its axis, in balls.
+"""Motions in which x and y only turn about body axis 3, or stay as they are, in balls.
 
-Rest, steady motion and, where x = 0, Euler's top: x3 is constant, x and y (so also U and Omega) turn
-about body axis 3 at a constant rate n. Seen from the frame that turns with them everything is
-constant, and with a = Omega(0) + n e3,
+Steady screws of any body, n = 0; rest and steady motion of Clebsch's body and, where x = 0, Euler's top:
+x and y (so also U and Omega) turn about axis 3 at a constant rate n. Seen from the frame that turns with
+them everything is constant, and with a = Omega(0) + n e3,
 
     R(t) = R(0) exp(t [a]x) exp(-n t [e3]x),    centre(t) = centre(0) + R(0) int exp(t [a]x) U(0) dt.
 """
@@ -16,11 +16,11 @@ from typing import Any, final
 from flint import acb, arb, arb_mat
 
 from taylor_verify.exact.balls import Enclosed, Enclosure, ball, ball_matrix, balls
-from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.kirchhoff.solid import velocities
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Time, beside
 from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
 
 
@@ -29,12 +29,17 @@ class TurningBody(Enclosed):
     """A motion whose x and y turn about axis 3 together, at a rate that is rational."""
 
     def __init__(
-        self, kind: str, nutation: Nutation, start: Impulse, track: frozenset[str]
+        self,
+        kind: str,
+        body: ImmersedBody,
+        start: Impulse,
+        track: frozenset[str],
+        rate: Fraction = Fraction(0),
     ) -> None:
         self.regime = kind
         self._start, self._track = start, track
-        self._rate = nutation.turn_rate
-        self._U, Omega = velocities(nutation.body.body(), start)
+        self._rate = rate
+        self._U, Omega = velocities(body, start)
         self._axis = tensors.plus(Omega, (Fraction(0), Fraction(0), self._rate))
         self._to_space = rotation_matrix(start.attitude)
 

@@ -20,9 +20,10 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.elements import Elements, elements
 from taylor_verify.exact.ellipsoid import formed_to
-from taylor_verify.exact.kirchhoff.displaced import centred
+from taylor_verify.exact.kirchhoff.closed import revolution
 from taylor_verify.exact.kirchhoff.quartic import Nutation
-from taylor_verify.exact.kirchhoff.turned import upright
+from taylor_verify.exact.kirchhoff.reduced import Reduced
+from taylor_verify.exact.kirchhoff.turned import axis_of_revolution
 from taylor_verify.exact.printed import document, shortest_text
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution, Unsettled
@@ -31,7 +32,6 @@ from taylor_verify.records.quantities import MAIN, TRACKED
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.library import find
-from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix
 from taylor_verify.studies.portraits.equations import equations
@@ -202,18 +202,14 @@ def _potential(scene: Scene, orbit: Elements) -> Document | None:
     body = scene.body
     if not isinstance(body, ImmersedBody) or not body.is_free:
         return None
-    named_anew, axis = upright(scene)
-    moved, _ = centred(named_anew)
-    solid, start = moved.body, moved.initial
-    assert isinstance(solid, ImmersedBody)
-    assert isinstance(start, Impulse)
-    if solid.clebsch is None:
+    found = revolution(Reduced(scene))
+    if found is None or not isinstance(found.subject, Nutation):
         return None
-    nutation = Nutation.of(solid.clebsch, start)
+    nutation = found.subject
     X3 = [coefficient / nutation.body.r**2 for coefficient in nutation.f]  # noqa: N806 (as in 49)
     if nutation.F2 == 0 or len(X3) < 2:
         return None
-    variable = f"x{axis}"
+    variable = f"x{axis_of_revolution(scene)}"
     ends = [orbit[name].value for name in (f"{variable}_low", f"{variable}_high") if name in orbit]
     with mp.workdps(DIGITS):
         interval = ends or [mp.convert(nutation.z)] * 2
