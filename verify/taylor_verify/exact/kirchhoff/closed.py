@@ -1,8 +1,8 @@
 """The choice of the closed form for a solid in a fluid without loads, in exact rationals.
 
 In this order: Weber's motion of a body without symmetry; a motion in one of its planes; the motion of a
-body of revolution, solved about axis 3 and the point of it that Clebsch's form is about. The two routes
-share no formula.
+body of revolution, solved in axes about its own and about the point of it that Clebsch's form is about.
+The two routes share no formula.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from taylor_verify.exact.kirchhoff import jacobi, weierstrass
+from taylor_verify.exact.kirchhoff.axes import at_rest_in_space, out_of
 from taylor_verify.exact.kirchhoff.carried import carried
 from taylor_verify.exact.kirchhoff.displaced import centred, moved_back
 from taylor_verify.exact.kirchhoff.pendulum import Pendulum
@@ -54,13 +55,18 @@ def closed_form(scene: Scene) -> Solution:
 
 
 def _of_revolution(scene: Scene, turning: Maker, nutating: Maker) -> Solution:
-    """The solution of a body of revolution about any body axis, from that of Clebsch's form."""
+    """The solution of a body of revolution about any direction, from that of Clebsch's form."""
     named_anew, axis = upright(scene)
     moved, distance = centred(named_anew)
     nutation, start = nutation_of(moved)
     kind = regime(nutation)
-    make = turning if kind in ("rest", "steady", "euler-top") else nutating
-    found = make(kind, nutation, start, moved.track)
+    if kind in ("rest", "steady", "euler-top"):
+        found = turning(kind, nutation, start, moved.track)
+    elif nutation.axes.is_upright:
+        found = nutating(kind, nutation, start, moved.track)
+    else:
+        found = nutating(kind, nutation, at_rest_in_space(start), moved.track)
+        found = carried(found, out_of(nutation.axes, start))
     if distance:
         found = carried(found, moved_back(distance, solid(named_anew)[1]))
     return found if axis == 3 else carried(found, put_back(axis))

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Final
 
 from taylor_verify.exact.element import Elements
 from taylor_verify.exact.kirchhoff import clebsch_elements, general
+from taylor_verify.exact.kirchhoff.axes import Axes, clebsch_about
 from taylor_verify.exact.kirchhoff.displaced import centred
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.kirchhoff.turned import upright
@@ -30,7 +32,10 @@ def elements(scene: Scene, digits: int) -> Elements:
     if not body.is_free:
         return Elements(NO_CLOSED_FORM, (), _LOADED)
     if body.axis_of_symmetry is None:
-        return general.elements(scene, digits)
+        oblique = clebsch_about(body)
+        if oblique is None:
+            return general.elements(scene, digits)
+        return _oblique(oblique[1], clebsch_elements.elements(scene, digits))
     named_anew, axis = upright(scene)
     moved, distance = centred(named_anew)
     found = clebsch_elements.elements(moved, digits)
@@ -45,10 +50,24 @@ def elements(scene: Scene, digits: int) -> Elements:
 
 def _about(axis: int, found: Elements) -> Elements:
     """The elements with x3, y3 and axis 3 renamed to those of the axis of symmetry."""
+    return _renamed(found, {third: f"{third[:-1]}{axis}" for third in ("x3", "y3", "axis 3")})
 
+
+def _oblique(axes: Axes, found: Elements) -> Elements:
+    """The elements with x3, y3 and axis 3 renamed to those of an axis that is no body axis."""
+    direction = ", ".join(map(str, axes.n))
+    place = (
+        f"T is of Clebsch's form about the direction e along ({direction}): a body of revolution."
+    )
+    names = {"x3_": "xe_", "x3": "x.e", "y3": "y.e", "axis 3": "the axis e"}
+    renamed = _renamed(found, names)
+    return replace(renamed, sentences=(place, *renamed.sentences))
+
+
+def _renamed(found: Elements, names: Mapping[str, str]) -> Elements:
     def renamed(text: str) -> str:
-        for third in ("x3", "y3", "axis 3"):
-            text = text.replace(third, f"{third[:-1]}{axis}")
+        for old, new in names.items():
+            text = text.replace(old, new)
         return text
 
     numbers = tuple(

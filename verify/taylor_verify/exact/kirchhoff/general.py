@@ -47,9 +47,9 @@ _NOT_THREE: Final = (
     "Of the steady screws that turn as the start does two have the same mu: every axis of a plane "
     "is one."
 )
-_UNBUILT: Final = "The energy is not of Clebsch's form about a body axis: no closed form is built."
+_UNBUILT: Final = "The energy is not of Clebsch's form about any axis: no closed form is built."
 _UNSOLVED: Final = (
-    "The energy is not of Clebsch's form about a body axis: no closed form is built, and for a body "
+    "The energy is not of Clebsch's form about any axis: no closed form is built, and for a body "
     "with three invariants alone none is known."
 )
 _SWING: Final = ("period", "rate", "m", "k", "m_prime")
