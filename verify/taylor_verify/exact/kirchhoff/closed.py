@@ -21,8 +21,8 @@ from taylor_verify.exact.kirchhoff.regime import nutation_of, regime
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.kirchhoff.turned import put_back, upright
 from taylor_verify.exact.kirchhoff.turning import TurningBody
+from taylor_verify.exact.kirchhoff.weber.course import WeberBalls
 from taylor_verify.exact.kirchhoff.weber.curve import curve
-from taylor_verify.exact.kirchhoff.weber.enclosure import WeberBalls
 from taylor_verify.exact.kirchhoff.weber.sums import WeberSums
 from taylor_verify.exact.solution import Solution
 from taylor_verify.scenes.motion import Impulse
@@ -36,7 +36,7 @@ def enclosed(scene: Scene) -> Solution:
     """The motion in balls; raises NoClosedForm, with the reason, where it has none."""
     genus_two = curve(scene)
     if genus_two is not None:
-        return WeberBalls(genus_two)
+        return WeberBalls(genus_two, solid(scene)[0], scene.track)
     place = plane(scene)
     alike = scene if place is None else of_revolution(scene, place)
     found = _of_revolution(alike, TurningBody, weierstrass.NutatingBody)
@@ -47,7 +47,7 @@ def closed_form(scene: Scene) -> Solution:
     """The motion in mpmath; raises NoClosedForm likewise."""
     genus_two = curve(scene)
     if genus_two is not None:
-        return WeberSums(genus_two)
+        return WeberSums(genus_two, solid(scene)[0], scene.track)
     place = plane(scene)
     if place is not None:
         return Pendulum(regime_in_plane(place), place, scene)

@@ -8,7 +8,6 @@ screws beside it, which of them are stable.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from typing import Final
 
 from mpmath import mp, mpf
@@ -72,7 +71,7 @@ _STORY: Final[Mapping[str, str]] = {
     ),
     WEBER: (
         "x and y are functions of two angles that grow evenly, by theta functions of two variables "
-        "(Weber's case): there is no period."
+        "(Weber's case): there is no period. Attitude and path are integrals of such functions."
     ),
 }
 
@@ -82,7 +81,7 @@ def elements(scene: Scene, digits: int) -> Elements:
     body, start = solid(scene)
     place, weber, fourth = plane(scene), _weber_curve(scene), fourth_integral(scene)
     kind = NO_CLOSED_FORM if place is None else regime(place)
-    if weber is not None and not scene.track:
+    if weber is not None:
         kind = WEBER
 
     def numbers(working: int) -> list[Element]:
@@ -127,9 +126,9 @@ def conserved(body: ImmersedBody, start: Impulse) -> Iterator[Element]:
 
 
 def _weber_curve(scene: Scene) -> Curve | None:
-    """Weber's curve of the motion of x and y, where it has one that is not degenerate."""
+    """Weber's curve of the motion, where it has one that is not degenerate."""
     try:
-        return curve(replace(scene, track=frozenset()))
+        return curve(scene)
     except NoClosedForm:
         return None
 
