@@ -21,8 +21,10 @@ from taylor_verify.exact.balls import midpoint
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.kirchhoff import closed
 from taylor_verify.exact.kirchhoff.integrable import fourth_integral
+from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.kirchhoff.weber import enclosure
 from taylor_verify.exact.kirchhoff.weber.characteristics import HALF_PERIODS
+from taylor_verify.exact.kirchhoff.weber.course import WeberBalls
 from taylor_verify.exact.kirchhoff.weber.curve import curve
 from taylor_verify.exact.kirchhoff.weber.sums import Sums
 from taylor_verify.exact.route import solution
@@ -175,7 +177,6 @@ def test_what_is_nearly_webers_is_not() -> None:
 DEGENERATE = built(vector("1/2", 0, "1/2"), vector(1, "-1/2", -1), vector(1, 1, 1), vector(1, 2, 3))
 DECLINED = {
     "two branch points of Weber's curve coincide": DEGENERATE,
-    "not attitude and centre": replace(shipped(), track=frozenset({"attitude"})),
     "only the motions with FG = 0": built(
         vector(1, "1/2", 1), vector(1, 1, 1), *BODIES["theta > 0"]
     ),
@@ -186,7 +187,7 @@ DECLINED = {
 @pytest.mark.parametrize("route", ["arb", "mpmath"])
 @pytest.mark.parametrize("reason", DECLINED)
 def test_other_motions_are_declined_with_the_reason(reason: str, route: str) -> None:
-    """A degenerate curve, a tracked attitude, FG that is not zero, another body: Taylor's, then."""
+    """A degenerate curve, FG that is not zero, another body: Taylor's, then."""
     with pytest.raises(NoClosedForm, match=reason):
         solution(DECLINED[reason], route)
     assert solution(DECLINED[reason]).route == "taylor"
@@ -259,7 +260,7 @@ def midpoints(scene: Scene) -> Motion:
     """What the balls say at one precision, however wide they are."""
     found = curve_of(scene)
     with ctx.workprec(200):
-        rows = enclosure.WeberBalls(found).enclose(TIMES[1:], 200)
+        rows = WeberBalls(found, solid(scene)[0], scene.track).enclose(TIMES[1:], 200)
     centre = np.frompyfunc(midpoint, 1, 1)
     quantities = {name: centre(np.array(balls, dtype=object)) for name, balls in rows.items()}
     return Motion(quantities, np.zeros(len(TIMES) - 1))

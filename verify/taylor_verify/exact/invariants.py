@@ -14,10 +14,10 @@ def invariants(scene: Scene) -> tuple[Invariant, ...]:
     """The conserved quantities that the tracked quantities of a scene determine.
 
     Euler: ``T``, ``H2``, and ``H_space`` with attitude. Kirchhoff: ``T``, ``F2``, ``FG``, ``y3``
-    for a body of Clebsch's form (``y1`` or ``y2`` where that is its axis) or the fourth integral of
-    another family, by its word (without loads alone), ``x_space`` with attitude, ``y_space`` with
-    centre. Under loads they change, by the work and impulse of the loads; their values are defined
-    all the same.
+    for a body of Clebsch's form (``y1`` or ``y2`` where that is its axis, ``y_axis`` about any other
+    direction) or the fourth integral of another family, by its word (without loads alone), ``x_space``
+    with attitude, ``y_space`` with centre. Under loads they change, by the work and impulse of the
+    loads; their values are defined all the same.
     """
     return kind_of(scene.body).invariants(scene)
 

@@ -117,7 +117,7 @@ CONSERVED_QUANTITIES: Final[Mapping[str, Conserved]] = {
         Conserved("H2", is_positive=True),
         Conserved("H_space", ("attitude",)),
         Conserved("F2", is_positive=True),
-        *map(Conserved, ("FG", "y1", "y2", "y3")),
+        *map(Conserved, ("FG", "y1", "y2", "y3", "y_axis")),
         *map(Conserved, ("clebsch2", "neumann", "steklov", "lyapunov", "chaplygin", "sokolov")),
         Conserved("x_space", ("attitude",)),
         Conserved("y_space", ("attitude", "centre")),

@@ -81,7 +81,7 @@ _STORY: Final[Mapping[str, str]] = {
 def elements(scene: Scene, digits: int) -> Elements:
     """The elements of a free body of Clebsch's form."""
     nutation, start = nutation_of(scene)
-    body, kind = nutation.body.body(), regime(nutation)
+    body, kind = nutation.solid, regime(nutation)
 
     def numbers(working: int) -> list[Element]:
         own = _orbit(kind, nutation, start, working)
@@ -124,7 +124,7 @@ def _orbit(kind: str, nutation: Nutation, start: Impulse, working: int) -> Itera
 
 def _turning(nutation: Nutation) -> Iterator[Element]:
     """Yield period and rate of x and y about axis 3."""
-    rate = abs(mp.convert(nutation.turn_rate))
+    rate = abs(mp.convert(nutation.turn_rate)) * mp.sqrt(mp.convert(nutation.axes.nu))
     if rate:
         meaning = "x and y recur in body axes: one turn about axis 3"
         yield Element("period", 2 * mp.pi / rate, "time", meaning, "2 pi/rate")
@@ -173,7 +173,9 @@ def _range(kind: str, nutation: Nutation, working: int) -> Iterator[Element]:
         ends = [mp.convert(points.z1), mp.convert(points.z2)]
     else:
         ends = _elementary_ends(Carrier.of(nutation))
-    low, high = (_exact_zero(nutation, F, end) for end in sorted(ends))
+    unit = mp.sqrt(mp.convert(nutation.axes.nu))
+    low, high = (_exact_zero(nutation, F, end) / unit for end in sorted(ends))
+    F /= unit
     yield Element("x3_low", low, "impulse", "x3 is never less", "root of f", F)
     yield Element("x3_high", high, "impulse", "x3 is never more", "root of f", F)
 
@@ -223,7 +225,8 @@ def stability(nutation: Nutation) -> tuple[Fraction, Fraction, Fraction]:
 
     The spin at the other pole, x3 = -F and y3 = -G, has the same: only F^2 and FG enter.
     """
-    body, F2, FG = nutation.body, nutation.F2, nutation.FG
+    body, nu = nutation.body, nutation.axes.nu
+    F2, FG = nutation.F2 / nu, nutation.FG / nu
     kappa = (body.p_prime - body.p) / body.r
     lam = (body.q_prime - body.q) / body.r
     return 4 * kappa * F2 + 4 * lam * FG - FG**2 / F2, 2 * kappa * F2 + lam * FG, kappa

@@ -16,6 +16,7 @@ from taylor_verify.exact.euler import jacobi as tops
 from taylor_verify.exact.euler import theta
 from taylor_verify.exact.euler.regime import FreeSpin
 from taylor_verify.exact.kirchhoff import jacobi, weierstrass
+from taylor_verify.exact.kirchhoff.axes import at_rest_in_space, clebsch_about, out_of
 from taylor_verify.exact.kirchhoff.displaced import centred
 from taylor_verify.exact.kirchhoff.isotropic import less_coupling, multiple
 from taylor_verify.exact.kirchhoff.pendulum import Pendulum
@@ -30,9 +31,9 @@ from taylor_verify.exact.kirchhoff.top import top, with_impulses
 from taylor_verify.exact.kirchhoff.turned import upright
 from taylor_verify.exact.kirchhoff.turning import TurningBody
 from taylor_verify.exact.kirchhoff.vacuum import at_own_pace
+from taylor_verify.exact.kirchhoff.weber.course import WeberBalls
 from taylor_verify.exact.kirchhoff.weber.curve import REGIME as WEBER
 from taylor_verify.exact.kirchhoff.weber.curve import Curve, curve
-from taylor_verify.exact.kirchhoff.weber.enclosure import WeberBalls
 from taylor_verify.exact.kirchhoff.weber.sums import WeberSums
 from taylor_verify.exact.solution import NoClosedForm, Solution
 from taylor_verify.scenes.motion import Impulse
@@ -80,34 +81,36 @@ def case(scene: Scene) -> Case:
         if found is not None:
             return found
     raise NoClosedForm(
-        "the energy is not of Clebsch's form about a body axis, and the motion is of no other family "
+        "the energy is not of Clebsch's form about any axis, and the motion is of no other family "
         "that is solved"
     )
 
 
 def revolution(whole: Reduced) -> Case | None:
-    """A body of revolution about a body axis: Clebsch's, in axes of which the third is that one."""
+    """A body of revolution about any direction: Clebsch's, in axes of which the third is that one."""
     found = upright(centred(whole))
     scene = found.scene
-    body, _ = solid(scene)
-    if body.clebsch is None:
+    if clebsch_about(solid(scene)[0]) is None:
         return None
     nutation, start = nutation_of(scene)
-    kind, rate = regime(nutation), nutation.turn_rate
+    kind, rate, axes, track = regime(nutation), nutation.turn_rate, nutation.axes, scene.track
     if kind in ("rest", "steady", "euler-top"):
+        body = nutation.solid
         return Case(
             kind,
             found,
             nutation,
-            lambda: TurningBody(kind, body, start, scene.track, rate),
-            lambda: jacobi.Screw(kind, body, start, scene.track, rate),
+            lambda: TurningBody(kind, body, start, track, rate, axes.n),
+            lambda: jacobi.Screw(kind, body, start, track, rate, axes.n),
         )
+    if not axes.is_upright:
+        found, start = found.then(scene, out_of(axes, start)), at_rest_in_space(start)
     return Case(
         kind,
         found,
         nutation,
-        lambda: weierstrass.NutatingBody(kind, nutation, start, scene.track),
-        lambda: jacobi.NutatingBody(kind, nutation, start, scene.track),
+        lambda: weierstrass.NutatingBody(kind, nutation, start, track),
+        lambda: jacobi.NutatingBody(kind, nutation, start, track),
     )
 
 
@@ -169,8 +172,13 @@ def weber(whole: Reduced) -> Case | None:
     genus_two = curve(found.scene)
     if genus_two is None:
         return None
+    body, track = solid(found.scene)[0], whole.scene.track
     return Case(
-        WEBER, found, genus_two, lambda: WeberBalls(genus_two), lambda: WeberSums(genus_two)
+        WEBER,
+        found,
+        genus_two,
+        lambda: WeberBalls(genus_two, body, track),
+        lambda: WeberSums(genus_two, body, track),
     )
 
 

@@ -23,7 +23,7 @@ from mpmath import mp, mpc, mpf
 
 from taylor_verify.exact.kirchhoff.orbit import Orbit, distances, pulls
 from taylor_verify.exact.kirchhoff.quartic import Nutation, derivative, repeated_root, value
-from taylor_verify.exact.kirchhoff.space import CayleyKlein, Pose, transverse
+from taylor_verify.exact.kirchhoff.space import CayleyKlein, Pose
 from taylor_verify.scenes.motion import Impulse
 
 
@@ -92,10 +92,8 @@ class ElementaryOrbit(Orbit):
         self._rate = mp.sqrt(abs(self._A))
         self._FG = mp.convert(nutation.FG)
         self._drift = mp.convert(nutation.drift(nutation.z if carrier.d is None else carrier.d))
-        self._origin = transverse(start.linear)
-        if self._origin == 0:
-            # xi' = i r x3 eta on the axis, and the factor 2 sh has the slope 1.
-            self._origin = 1j * self._r * mp.convert(nutation.z) * transverse(start.angular)
+        # xi' = i r x3 eta on the axis, and the factor 2 sh has the slope 1.
+        self._origin = self._xi or 1j * self._r * mp.convert(nutation.z) * self._eta
         self._face_poles(nutation, carrier)
         self._spin = self._r * self._y3 + self._up_rate - self._down_rate
         self._a, self._b = self._first_parameters(nutation)
@@ -232,7 +230,7 @@ class Front(Orbit):
         super().__init__(nutation, start)
         self._minus, self._plus = distances(nutation.F2, nutation.z)
         self._c = mp.sqrt(mp.convert(nutation.f[0])) * (-1 if nutation.speed < 0 else 1)
-        self._origin = transverse(start.linear)
+        self._origin = self._xi
         # r F Z' = drift + c^2 (z^2 - F^2), and z' = c (F^2 - z^2).
         self._drift = mp.convert(
             nutation.drift(nutation.z) + nutation.f[0] * (nutation.F2 - nutation.z**2)

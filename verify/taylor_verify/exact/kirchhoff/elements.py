@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Final
 
 from taylor_verify.exact.element import Elements
 from taylor_verify.exact.kirchhoff import clebsch_elements, general
+from taylor_verify.exact.kirchhoff.axes import Axes
 from taylor_verify.exact.kirchhoff.closed import Case, case
 from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.kirchhoff.solid import solid
@@ -33,10 +34,14 @@ def elements(scene: Scene, digits: int) -> Elements:
         return Elements(NO_CLOSED_FORM, (), _LOADED)
     if impulses is not None and isinstance(impulses.subject, Nutation):
         found = clebsch_elements.elements(impulses.reduced.scene, digits)
-        axis = axis_of_revolution(scene)
-        found = found if axis == 3 else _about(axis, found)
-        if body.axis_of_symmetry is None:
-            found = _beside(found, f"y{axis}")
+        axes = impulses.subject.axes
+        if axes.is_upright:
+            axis = axis_of_revolution(scene)
+            found = found if axis == 3 else _about(axis, found)
+            if body.axis_of_symmetry is None:
+                found = _beside(found, f"y{axis}")
+        else:
+            found = _oblique(axes, found)
     else:
         kind = NO_CLOSED_FORM if whole is None else whole.regime
         found = general.elements(scene, impulses, kind, digits)
@@ -67,10 +72,24 @@ def _beside(found: Elements, y: str) -> Elements:
 
 def _about(axis: int | None, found: Elements) -> Elements:
     """The elements with x3, y3 and axis 3 renamed to those of the axis of symmetry."""
+    return _renamed(found, {third: f"{third[:-1]}{axis}" for third in ("x3", "y3", "axis 3")})
 
+
+def _oblique(axes: Axes, found: Elements) -> Elements:
+    """The elements with x3, y3 and axis 3 renamed to those of an axis that is no body axis."""
+    direction = ", ".join(map(str, axes.n))
+    place = (
+        f"T is of Clebsch's form about the direction e along ({direction}): a body of revolution."
+    )
+    names = {"x3_": "xe_", "x3": "x.e", "y3": "y.e", "axis 3": "the axis e"}
+    renamed = _renamed(found, names)
+    return replace(renamed, sentences=(place, *renamed.sentences))
+
+
+def _renamed(found: Elements, names: Mapping[str, str]) -> Elements:
     def renamed(text: str) -> str:
-        for third in ("x3", "y3", "axis 3"):
-            text = text.replace(third, f"{third[:-1]}{axis}")
+        for old, new in names.items():
+            text = text.replace(old, new)
         return text
 
     numbers = tuple(

@@ -52,9 +52,9 @@ _NOT_THREE: Final = (
     "Of the steady screws that turn as the start does two have the same mu: every axis of a plane "
     "is one."
 )
-_UNBUILT: Final = "The energy is not of Clebsch's form about a body axis: no closed form is built."
+_UNBUILT: Final = "The energy is not of Clebsch's form about any axis: no closed form is built."
 _UNSOLVED: Final = (
-    "The energy is not of Clebsch's form about a body axis: no closed form is built, and for a body "
+    "The energy is not of Clebsch's form about any axis: no closed form is built, and for a body "
     "with three invariants alone none is known."
 )
 _BALANCED: Final = (
@@ -96,7 +96,7 @@ _STORY: Final[Mapping[str, str]] = {
     ),
     WEBER: (
         "x and y are functions of two angles that grow evenly, by theta functions of two variables "
-        "(Weber's case): there is no period."
+        "(Weber's case): there is no period. Attitude and path are integrals of such functions."
     ),
 }
 

@@ -15,8 +15,9 @@ from taylor_verify.exact import clocks
 from taylor_verify.exact.equations import Equations, cross, exact, nothing
 from taylor_verify.exact.invariant import Array, Invariant
 from taylor_verify.exact.kind import Kind
+from taylor_verify.exact.kirchhoff.axes import clebsch_about
 from taylor_verify.exact.kirchhoff.integrable import fourth_integral
-from taylor_verify.exact.kirchhoff.invariants import F2, FG, X_SPACE, Y_SPACE, axial, energy
+from taylor_verify.exact.kirchhoff.invariants import F2, FG, X_SPACE, Y_SPACE, along, axial, energy
 from taylor_verify.exact.parameters import Block, Parameters, entries
 from taylor_verify.exact.rows import norms
 from taylor_verify.exact.units import Units, exponent, halved, largest, later
@@ -89,8 +90,11 @@ class Immersed(Kind[ImmersedBody, Impulse]):
         body = scene.body
         assert isinstance(body, ImmersedBody)
         found = [energy(body), F2, FG]
+        about = clebsch_about(body)
         if body.axis_of_symmetry is not None:
             found.append(axial(body.axis_of_symmetry))
+        elif about is not None:
+            found.append(along(about[1].n))
         fourth = fourth_integral(scene)
         if fourth is not None:
             found.append(Invariant(fourth.name, fourth.value, fourth.scale, fourth.sensitivity))

@@ -28,6 +28,8 @@ from taylor_verify.exact.rows import (
 )
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Motion
+from taylor_verify.scenes.mpfr import real
+from taylor_verify.scenes.tensors import Vector
 
 _BLOCKS: Final = ("linear_impulse", "angular_impulse")
 
@@ -75,6 +77,28 @@ def axial(axis: int) -> Invariant:
         lambda motion: motion["angular_impulse"][:, axis - 1],
         lambda motion: nonzero(size(motion["angular_impulse"])),
         lambda motion: {"angular_impulse": ones(motion["angular_impulse"])},
+    )
+
+
+def along(n: Vector) -> Invariant:
+    """n.y, where T is Clebsch's about a direction that is no body axis."""
+
+    def length(rows: Array) -> Any:
+        return norms(real([n], rows))[0]
+
+    def sensitivity(motion: Motion) -> Mapping[str, Array]:
+        y = motion["angular_impulse"]
+        return {"angular_impulse": ones(y) * length(y)}
+
+    def scale(motion: Motion) -> Any:
+        y = motion["angular_impulse"]
+        return nonzero(size(y) * length(y))
+
+    return Invariant(
+        "y_axis",
+        lambda motion: applied((n,), motion["angular_impulse"])[:, 0],
+        scale,
+        sensitivity,
     )
 
 

@@ -10,20 +10,21 @@ from typing import Any, Final, final
 import numpy as np
 from mpmath import mp, mpf
 
-from taylor_verify.exact.frames import Frame, applied, product, start_frame, turn
+from taylor_verify.exact.frames import Frame, applied, product, start_frame, transposed, turn
 from taylor_verify.exact.kirchhoff.degenerate import ElementaryOrbit, Front
 from taylor_verify.exact.kirchhoff.orbit import EllipticOrbit, Orbit
 from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.kirchhoff.solid import short_digits, velocities
-from taylor_verify.exact.kirchhoff.space import Axial, transverse
+from taylor_verify.exact.kirchhoff.space import Axial
 from taylor_verify.exact.solution import Quantities, Settled, Time, beside, longest
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
+from taylor_verify.scenes.tensors import Vector
 
 _GUARD_DIGITS: Final = 12
 _ROUGH_DIGITS: Final = 20
-_AXIS: Final = (0, 0, 1)
+_UNIT: Final = tensors.diagonal((Fraction(1),) * 3)
 _ORBITS: Final[Mapping[str, type[ElementaryOrbit | Front]]] = {
     "hyperbolic": ElementaryOrbit,
     "trigonometric": ElementaryOrbit,
@@ -34,14 +35,14 @@ _ORBITS: Final[Mapping[str, type[ElementaryOrbit | Front]]] = {
 
 @final
 class Screw(Settled):
-    """Motions in which x and y turn about axis 3 together, or stay as they are.
+    """Motions in which x and y turn about a body axis n together, or stay as they are.
 
     These are steady screws of any body, tau = 0; rest and steady motion of Clebsch's body, and its Euler's
-    top. Seen from axes that turn with them, at the rate tau, the body's U and its Omega do not change:
+    top. Seen from axes that turn with them, at the rate tau |n|, the body's U and its Omega do not change:
 
-        R = R0 Rot(nu t) Rz(-tau t),    centre = c0 + R0 int Rot(nu t) U0 dt,    nu = Omega0 + tau e3,
+        R = R0 Rot(nu t) Rot(-tau n t),    centre = c0 + R0 int Rot(nu t) U0 dt,    nu = Omega0 + tau n,
 
-    all in rationals but for |nu|.
+    all in rationals but for |nu| and |n|.
     """
 
     route = "mpmath"
@@ -53,35 +54,40 @@ class Screw(Settled):
         start: Impulse,
         track: frozenset[str],
         rate: Fraction = Fraction(0),
+        axis: Vector = _UNIT[2],
     ) -> None:
         self.regime = kind
         self._start, self._track = start, track
-        self._turn_rate = rate
+        self._turn_rate, self._axis = rate, axis
         self._U, Omega = velocities(body, start)
-        self._nu = (*Omega[:2], Omega[2] + self._turn_rate)
+        self._nu = tensors.plus(Omega, tensors.scaled(rate, axis))
 
     def evaluate(self, elapsed: Sequence[Time], digits: int) -> Quantities:
-        rates = abs(self._turn_rate) + sum(abs(rate) for rate in self._nu)
+        length = sum(map(abs, self._axis))
+        rates = abs(self._turn_rate) * length + sum(abs(rate) for rate in self._nu)
         with mp.workdps(digits + _GUARD_DIGITS + len(str(int(rates * longest(elapsed))))):
-            turns = [mp.expj(_times(self._turn_rate, t)) for t in elapsed]
+            axis = [mp.convert(entry) for entry in self._axis]
+            size = mp.norm(axis)
+            turns = [turn(axis, size * _times(self._turn_rate, t)) for t in elapsed]
             x, y = (
-                [(turn * transverse(v), mp.convert(v[2])) for turn in turns]
+                [applied(forward, [mp.convert(entry) for entry in v]) for forward in turns]
                 for v in (self._start.linear, self._start.angular)
             )
-            places = self._places(elapsed) if self._track else []
+            places = self._places(elapsed, turns) if self._track else []
             return _quantities(x, y, places, self._track)
 
-    def _places(self, elapsed: Sequence[Time]) -> list[tuple[Frame, list[mpf]]]:
+    def _places(
+        self, elapsed: Sequence[Time], turns: Sequence[Frame]
+    ) -> list[tuple[Frame, list[mpf]]]:
         """The attitude and the centre at every time."""
         nu, centre = ([mp.convert(c) for c in vector] for vector in (self._nu, self._start.centre))
         rate = mp.sqrt(mp.convert(tensors.dot(self._nu, self._nu)))
         first = start_frame(self._start.attitude)
         places = []
-        for t in elapsed:
+        for t, forward in zip(elapsed, turns, strict=True):
             about_impulse = product(first, turn(nu, rate * mp.convert(t)))
-            about_axis = turn(_AXIS, -_times(self._turn_rate, t))
             moved = zip(centre, applied(first, self._moved(t, rate)), strict=True)
-            places.append((product(about_impulse, about_axis), [c + m for c, m in moved]))
+            places.append((product(about_impulse, transposed(forward)), [c + m for c, m in moved]))
         return places
 
     def _moved(self, t: Time, rate: mpf) -> list[mpf]:
@@ -123,7 +129,7 @@ class NutatingBody(Settled):
             orbit = self._orbit()
             poses = [orbit.pose(mp.convert(t)) for t in elapsed]
             places = [orbit.axes.place(pose) for pose in poses] if self.track else []
-            x, y = [pose.x for pose in poses], [pose.y for pose in poses]
+            x, y = [_entries(pose.x) for pose in poses], [_entries(pose.y) for pose in poses]
             return _quantities(x, y, places, self.track)
 
     def elements(self, digits: int) -> dict[str, mpf]:
@@ -144,16 +150,21 @@ def _times(rate: Fraction, t: Time) -> mpf:
     return mp.convert(beside(t, mp.convert)(rate) * t)
 
 
+def _entries(vector: Axial) -> list[mpf]:
+    across, along = vector
+    return [across.real, across.imag, along]
+
+
 def _quantities(
-    x: Sequence[Axial],
-    y: Sequence[Axial],
+    x: Sequence[Sequence[mpf]],
+    y: Sequence[Sequence[mpf]],
     places: Sequence[tuple[Frame, list[mpf]]],
     track: frozenset[str],
 ) -> Quantities:
     """x and y (n, 3), and as far as they are tracked the attitude (n, 3, 3) and the centre (n, 3)."""
     shapes: dict[str, tuple[list[Any], tuple[int, ...]]] = {
-        "linear_impulse": ([[across.real, across.imag, along] for across, along in x], (-1, 3)),
-        "angular_impulse": ([[across.real, across.imag, along] for across, along in y], (-1, 3)),
+        "linear_impulse": (list(x), (-1, 3)),
+        "angular_impulse": (list(y), (-1, 3)),
         "attitude": ([frame for frame, _ in places], (-1, 3, 3)),
         "centre": ([centre for _, centre in places], (-1, 3)),
     }

@@ -34,14 +34,17 @@ class Orbit(ABC):
     """A nutating motion, with numbers of one precision; to be used at that precision."""
 
     def __init__(self, nutation: Nutation, start: Impulse) -> None:
-        body = nutation.body
+        body, axes = nutation.body, nutation.axes
         self._start = start
         self._F = mp.sqrt(mp.convert(nutation.F2))
-        self._r, self._y3 = mp.convert(body.r), mp.convert(nutation.y3)
+        self._y3, root = mp.convert(nutation.y3), mp.sqrt(mp.convert(axes.nu))
+        self._r = mp.convert(body.r) / root
         # L' is linear + screw z, and the phase of both parameters grows at half of glide.
-        self._linear = mp.convert((body.r - body.r_prime) * nutation.y3)
-        self._screw = mp.convert(body.q - body.q_prime)
-        self._glide = mp.convert(body.q) * self._F
+        self._linear = mp.convert((body.r - body.r_prime) * nutation.y3) / root
+        self._screw = mp.convert(body.q - body.q_prime) / root
+        self._glide = mp.convert(body.q) / root * self._F
+        # x1 + i x2 and y1 + i y2 at the start.
+        self._xi, self._eta = (transverse(v, axes) for v in (start.linear, start.angular))
 
     @abstractmethod
     def pose(self, t: mpf) -> Pose:
@@ -63,7 +66,7 @@ class Orbit(ABC):
     @cached_property
     def axes(self) -> SpaceAxes:
         """The scene's space axes."""
-        return SpaceAxes(self._start, self.pose(mpf(0)))
+        return SpaceAxes(self._start, self.pose(mpf(0)), self._F)
 
 
 @dataclass(frozen=True)
@@ -157,8 +160,8 @@ class EllipticOrbit(Orbit):
         self._z1, self._width = mp.convert(points.z1), mp.convert(points.z2 - points.z1)
         self._poles = _poles(nutation, points)
         self._phases = self._spin_phase(), *map(self._pole_phase, self._poles)
-        self._rise = Rise(nutation, points.z1, self._wave)
-        self._turn = self._first_turn(start)
+        self._rise = Rise(nutation, points.z1, self._wave, self._r * self._F)
+        self._turn = self._first_turn()
 
     def pose(self, t: mpf) -> Pose:
         place = self._wave.place(self._wave.start + self._wave.rate * t)
@@ -217,16 +220,15 @@ class EllipticOrbit(Orbit):
             radial = (bottom.pull_on(down) - self._y3 * down) / up
         return up, down, z, mpc(radial, slope * up_slope * down_slope / self._r)
 
-    def _first_turn(self, start: Impulse) -> mpc:
+    def _first_turn(self) -> mpc:
         """e^{i chi} at the start: from x, or from y near a pole that the orbit passes.
 
         There the sign of A is that of a number that vanishes on the way, and y does not vanish.
         """
         place = self._wave.place(self._wave.start)
         up, down, _, partner = self._shape(place)
-        x = transverse(start.linear)
         vanishing = zip(self._poles, (place.root_b, place.root_a), strict=True)
         is_near = any(pole.reached and abs(root) < _NEAR_POLE for pole, root in vanishing)
-        from_y = x == 0 or is_near
-        turn = transverse(start.angular) / partner if from_y else x * mp.sign(up * down)
+        from_y = self._xi == 0 or is_near
+        turn = self._eta / partner if from_y else self._xi * mp.sign(up * down)
         return turn / abs(turn)

@@ -2,6 +2,9 @@
 
 Legend, Hydromechanics 49: z = x3, F^2 = x.x and FG = x.y; p, p', q, q', r, r' are the
 coefficients of T, f = r^2 X3. A polynomial is a tuple of Fractions, the highest power first.
+
+About an axis n of another length than 1, nu = n.n, all of this is of sqrt(nu) x and sqrt(nu) y and of the
+coefficients over sqrt(nu), as axes.py says: z = n.x, and F^2, FG and m1 are nu times as large.
 """
 
 from __future__ import annotations
@@ -11,7 +14,9 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
 
-from taylor_verify.scenes.bodies import Clebsch
+from taylor_verify.exact.kirchhoff.axes import UPRIGHT, Axes, body_about
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import Clebsch, ImmersedBody
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.precision import floor_log2, power_of_two
 from taylor_verify.scenes.tensors import dot
@@ -33,20 +38,23 @@ class Nutation:
     FG: Fraction
     y3: Fraction
     m1: Fraction
+    axes: Axes = UPRIGHT
 
     @classmethod
-    def of(cls, body: Clebsch, start: Impulse) -> Nutation:
+    def of(cls, body: Clebsch, start: Impulse, axes: Axes = UPRIGHT) -> Nutation:
         """The constants from the initial state; m1 from r (y1^2 + y2^2) at the start."""
-        x, y = start.linear, start.angular
+        x, y, nu = start.linear, start.angular, axes.nu
+        z, y3 = dot(axes.n, x), dot(axes.n, y)
         linear, screw = body.p - body.p_prime, body.q - body.q_prime
         return cls(
             body=body,
-            z=x[2],
-            speed=body.r * (x[0] * y[1] - x[1] * y[0]),
-            F2=dot(x, x),
-            FG=dot(x, y),
-            y3=y[2],
-            m1=body.r * (y[0] ** 2 + y[1] ** 2) - linear * x[2] ** 2 - 2 * screw * x[2] * y[2],
+            z=z,
+            speed=body.r * dot(axes.n, tensors.cross(x, y)),
+            F2=nu * dot(x, x),
+            FG=nu * dot(x, y),
+            y3=y3,
+            m1=body.r * (nu * dot(y, y) - y3**2) - linear * z**2 - 2 * screw * z * y3,
+            axes=axes,
         )
 
     @cached_property
@@ -55,29 +63,33 @@ class Nutation:
         r, F2, FG, y3, m1 = self.body.r, self.F2, self.FG, self.y3, self.m1
         linear = self.body.p - self.body.p_prime
         screw = 2 * (self.body.q - self.body.q_prime) * y3
-        return stripped(
-            (
-                -r * linear,
-                -r * screw,
-                r * (F2 * linear - m1) - (r * y3) ** 2,
-                r * F2 * screw + 2 * r**2 * FG * y3,
-                r * F2 * m1 - (r * FG) ** 2,
-            )
+        of_body = (
+            -r * linear,
+            -r * screw,
+            r * (F2 * linear - m1) - (r * y3) ** 2,
+            r * F2 * screw + 2 * r**2 * FG * y3,
+            r * F2 * m1 - (r * FG) ** 2,
         )
+        return stripped(tensors.scaled(1 / self.axes.nu, of_body))
+
+    @cached_property
+    def solid(self) -> ImmersedBody:
+        """The body in the axes of the scene."""
+        return body_about(self.body, self.axes.n)
 
     @cached_property
     def turn_rate(self) -> Fraction:
         """The rate at which (x1, x2) turns about axis 3 at the start; zero where it vanishes.
 
-        If all of x is zero, the rate at which (y1, y2) does.
+        If all of x is zero, the rate at which (y1, y2) does. In multiples of n: its rate over sqrt(nu).
         """
-        body, z = self.body, self.z
+        body, z, nu = self.body, self.z, self.axes.nu
         if self.F2 == 0:
-            return (body.r - body.r_prime) * self.y3
+            return (body.r - body.r_prime) * self.y3 / nu
         if self.is_axial:
             return Fraction(0)
         pull = body.r * (self.FG * z - self.F2 * self.y3) / (self.F2 - z**2)
-        return (body.r - body.r_prime) * self.y3 - (body.q_prime - body.q) * z + pull
+        return ((body.r - body.r_prime) * self.y3 - (body.q_prime - body.q) * z + pull) / nu
 
     @property
     def is_axial(self) -> bool:
@@ -89,7 +101,7 @@ class Nutation:
         body = self.body
         steady = body.p * self.F2 + body.q * self.FG
         screw = (body.q_prime - body.q) * self.y3
-        return body.r * (steady + (body.p_prime - body.p) * z**2 + screw * z)
+        return body.r * (steady + (body.p_prime - body.p) * z**2 + screw * z) / self.axes.nu
 
     def touches_pole(self, side: int) -> bool:
         """Return True if f vanishes at x3 = F (side 1) or x3 = -F (side -1), that is G = side y3."""

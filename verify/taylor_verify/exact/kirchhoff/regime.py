@@ -7,6 +7,7 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import Final
 
+from taylor_verify.exact.kirchhoff.axes import clebsch_about
 from taylor_verify.exact.kirchhoff.quartic import (
     Nutation,
     RealRoots,
@@ -34,9 +35,10 @@ def nutation_of(scene: Scene) -> tuple[Nutation, Impulse]:
     body, start = solid(scene)
     if not body.is_free:
         raise NoClosedForm("a force or a couple acts on the body")
-    if body.clebsch is None:
-        raise NoClosedForm("the energy is not of Clebsch's form about a body axis")
-    return Nutation.of(body.clebsch, start), start
+    found = clebsch_about(body)
+    if found is None:
+        raise NoClosedForm("the energy is not of Clebsch's form about any axis")
+    return Nutation.of(found[0], start, found[1]), start
 
 
 def regime(nutation: Nutation) -> str:

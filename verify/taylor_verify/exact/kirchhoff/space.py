@@ -27,15 +27,15 @@ from typing import final
 from mpmath import mp, mpc, mpf
 
 from taylor_verify.exact.frames import Frame, applied, product, start_frame, transposed
-from taylor_verify.scenes import tensors
+from taylor_verify.exact.kirchhoff.axes import Axes
 from taylor_verify.scenes.motion import Impulse
 
 Axial = tuple[mpc, mpf]  # (v1 + i v2, v3) of a vector v in body axes
 
 
-def transverse(vector: Sequence[Fraction]) -> mpc:
-    """v1 + i v2."""
-    return mpc(mp.convert(vector[0]), mp.convert(vector[1]))
+def transverse(vector: Sequence[Fraction], axes: Axes) -> mpc:
+    """v1 + i v2, in the units of these axes."""
+    return mpc(*axes.across(tuple(vector), mp.convert))
 
 
 @dataclass(frozen=True)
@@ -82,13 +82,12 @@ class Pose:
 class SpaceAxes:
     """The scene's space axes, from those with Z along F in which an orbit is given."""
 
-    def __init__(self, start: Impulse, first: Pose) -> None:
-        """``first`` is the pose at the start in the orbit's axes."""
+    def __init__(self, start: Impulse, first: Pose, F: mpf) -> None:
+        """``first`` is the pose at the start in the orbit's axes, F = |x| in its units."""
         to_space = start_frame(start.attitude)
         self._axes = product(to_space, transposed(first.turned.frame()))
         self._centre = [mp.convert(c) for c in start.centre]
-        self._F = mp.sqrt(mp.convert(tensors.dot(start.linear, start.linear)))
-        self._moment = first.moment
+        self._F, self._moment = F, first.moment
 
     def place(self, pose: Pose) -> tuple[Frame, list[mpf]]:
         """R, body to space, and the centre."""

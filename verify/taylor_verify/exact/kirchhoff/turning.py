@@ -1,19 +1,19 @@
-"""Motions in which x and y only turn about body axis 3, or stay as they are, in balls.
+"""Motions in which x and y only turn about a body axis, or stay as they are, in balls.
 
-Steady screws of any body, n = 0; rest and steady motion of Clebsch's body and, where x = 0, Euler's top:
-x and y (so also U and Omega) turn about axis 3 at a constant rate n. Seen from the frame that turns with
-them everything is constant, and with a = Omega(0) + n e3,
+Steady screws of any body, tau = 0; rest and steady motion of Clebsch's body and, where x = 0, Euler's top:
+x and y (so also U and Omega) turn about the axis at the constant rate tau |n|, n being along it. Seen from
+the frame that turns with them everything is constant, and with a = Omega(0) + tau n,
 
-    R(t) = R(0) exp(t [a]x) exp(-n t [e3]x),    centre(t) = centre(0) + R(0) int exp(t [a]x) U(0) dt.
+    R(t) = R(0) exp(t [a]x) exp(-tau t [n]x),    centre(t) = centre(0) + R(0) int exp(t [a]x) U(0) dt.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import Any, final
+from typing import Any, Final, final
 
-from flint import acb, arb, arb_mat
+from flint import arb, arb_mat
 
 from taylor_verify.exact.balls import Enclosed, Enclosure, ball, ball_matrix, balls
 from taylor_verify.exact.kirchhoff.solid import velocities
@@ -22,11 +22,14 @@ from taylor_verify.exact.solution import Time, beside
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
+from taylor_verify.scenes.tensors import Vector
+
+_UNIT: Final = tensors.diagonal((Fraction(1),) * 3)
 
 
 @final
 class TurningBody(Enclosed):
-    """A motion whose x and y turn about axis 3 together, at a rate that is rational."""
+    """A motion whose x and y turn about the axis together; tau and n are rational."""
 
     def __init__(
         self,
@@ -35,12 +38,13 @@ class TurningBody(Enclosed):
         start: Impulse,
         track: frozenset[str],
         rate: Fraction = Fraction(0),
+        axis: Vector = _UNIT[2],
     ) -> None:
         self.regime = kind
         self._start, self._track = start, track
-        self._rate = rate
+        self._rate, self._n = rate, axis
         self._U, Omega = velocities(body, start)
-        self._axis = tensors.plus(Omega, (Fraction(0), Fraction(0), self._rate))
+        self._axis = tensors.plus(Omega, tensors.scaled(rate, axis))
         self._to_space = rotation_matrix(start.attitude)
 
     def enclose(self, elapsed: Sequence[Time], bits: int) -> Enclosure:
@@ -49,19 +53,31 @@ class TurningBody(Enclosed):
         return {name: [row[name] for row in rows] for name in names}
 
     def _at(self, t: Time) -> dict[str, Any]:
-        turn = acb(0, ball(beside(t, ball)(self._rate) * t)).exp()
+        length = ball(tensors.dot(self._n, self._n)).sqrt()
+        sine, cosine = (ball(beside(t, ball)(self._rate) * t) * length).sin_cos()
+
+        def turned(v: Vector) -> list[arb]:
+            parts = zip(*self._parts(v), strict=True)
+            return [ball(a) + cosine * ball(b) + sine / length * ball(c) for a, b, c in parts]
+
         found: dict[str, Any] = {
-            "linear_impulse": _turned(turn, balls(self._start.linear)),
-            "angular_impulse": _turned(turn, balls(self._start.angular)),
+            "linear_impulse": turned(self._start.linear),
+            "angular_impulse": turned(self._start.angular),
         }
         if self._track:
             to_space, (rotation, swept) = ball_matrix(self._to_space), self._exponential(t)
-            cos, sin = turn.real, turn.imag
-            back = arb_mat([[cos, sin, 0], [-sin, cos, 0], [0, 0, 1]])
+            # The rows of the inverse are the images of e1, e2, e3.
+            back = arb_mat([turned(unit) for unit in _UNIT])
             found["attitude"] = (to_space * rotation * back).tolist()
             if "centre" in self._track:
                 found["centre"] = self._centre(t, to_space * swept)
         return found
+
+    def _parts(self, v: Vector) -> tuple[Vector, Vector, Vector]:
+        """The part of v along n, the rest, and n x v."""
+        share = tensors.dot(self._n, v) / tensors.dot(self._n, self._n)
+        along = tensors.scaled(share, self._n)
+        return along, tensors.minus(v, along), tensors.cross(self._n, v)
 
     def _exponential(self, t: Time) -> tuple[arb_mat, arb_mat]:
         """exp(t [a]x) and its integral from 0 to t, polynomials of [a]x."""
@@ -86,8 +102,3 @@ class TurningBody(Enclosed):
             return [ball(number(c) + number(v) * t) for c, v in pairs]
         moved = (swept * arb_mat(3, 1, balls(self._U))).entries()
         return [c + v for c, v in zip(balls(self._start.centre), moved, strict=True)]
-
-
-def _turned(turn: acb, v: Sequence[arb]) -> list[arb]:
-    across = turn * acb(v[0], v[1])
-    return [across.real, across.imag, v[2]]

@@ -221,10 +221,10 @@ class Rise:
                           + j rate d/dt [n root_a root_b dn/(b + w a) + m int sn^2 du].
     """
 
-    def __init__(self, nutation: Nutation, z1: Fraction, wave: Wave) -> None:
+    def __init__(self, nutation: Nutation, z1: Fraction, wave: Wave, scale: mpf) -> None:
+        """``scale`` is r F."""
         self._wave, self._bend = wave, 1 - wave.weight
         pace = 4 * wave.rate / wave.quarters
-        scale = mp.convert(nutation.body.r) * mp.sqrt(mp.convert(nutation.F2))
         self._linear = (mp.convert(nutation.drift(z1)) - pace**2 * self._bend / 2) / scale
         self._pace = pace / scale
         self._at_start = self._swung(wave.place(wave.start))

@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from fractions import Fraction
 from math import prod
 from typing import Any, Final, final
 
@@ -90,9 +91,10 @@ class Orbit:
     ) -> None:
         self._nutation, self._track = nutation, track
         body = nutation.body
-        self._F, self._y3, self._r = ball(nutation.F2).sqrt(), ball(nutation.y3), ball(body.r)
-        self._FG, self._screw = ball(nutation.FG), ball(body.q_prime - body.q)
-        self._spin = ball(body.r_prime * nutation.y3)
+        self._root = ball(nutation.axes.nu).sqrt()
+        self._F, self._y3 = ball(nutation.F2).sqrt(), ball(nutation.y3)
+        self._r, self._screw = self._rate(body.r), self._rate(body.q_prime - body.q)
+        self._FG, self._spin = ball(nutation.FG), self._rate(body.r_prime * nutation.y3)
         self._course = course(nutation, heteroclinic)
         self._needs_integral = not self._screw.is_zero()
         # 1 where the derivatives of the poles' factors enter, else 0.
@@ -103,9 +105,10 @@ class Orbit:
         self._find_amplitudes(start)
         # The start as given: a centre or a y that is zero has no other narrow ball.
         attitude = ball_matrix(rotation_matrix(start.attitude))
+        xi, eta = self._start_xi, self._start_eta
         self._at_start: dict[str, Any] = {
-            "linear_impulse": balls(start.linear),
-            "angular_impulse": balls(start.angular),
+            "linear_impulse": [xi.real, xi.imag, ball(nutation.z)],
+            "angular_impulse": [eta.real, eta.imag, self._y3],
             "attitude": attitude.tolist(),
             "centre": balls(start.centre),
         }
@@ -150,6 +153,10 @@ class Orbit:
 
     # The numbers of the whole orbit.
 
+    def _rate(self, rational: Fraction) -> arb:
+        """A coefficient of T, or a multiple of one, in the units of the orbit."""
+        return ball(rational) / self._root
+
     def _find_factors(self) -> None:
         """alpha where (z, z') = (-F, s-), beta where it is (F, -s+), and the poles of z."""
         lattice, F = self._course.lattice, self._F
@@ -183,7 +190,7 @@ class Orbit:
         down_back = acb(0) if self._starts_on_axis(-1) else (speed + self._s_minus) / (z + F)
         alpha, beta = self._alpha.start_rate(), self._beta.start_rate()
         poles = self._course.order * sum((pole.start_rate() for pole in self._poles), acb(0))
-        ahead, spin = ball(body.q) * F, ball((body.r - body.r_prime) * y3)
+        ahead, spin = self._rate(body.q) * F, self._rate((body.r - body.r_prime) * y3)
         self._xi_rate = (up + down) / 2 + _I * spin - alpha.conjugate() - beta + poles
         self._one_rate = down_back + _I * (ahead - spin) - 2 * alpha + poles
         self._two_rate = up + _I * (ahead + spin) - 2 * beta + poles
@@ -194,8 +201,9 @@ class Orbit:
         The zero of psi is free: of D1 and D2 the larger one begins real, and D1 D2 = -D1^2 xi^2/(F + z)^2.
         """
         z, F = self._course.z, self._F
-        self._start_xi = acb(ball(start.linear[0]), ball(start.linear[1]))
-        self._start_eta = acb(ball(start.angular[0]), ball(start.angular[1]))
+        axes = self._nutation.axes
+        self._start_xi = acb(*axes.across(start.linear, ball))
+        self._start_eta = acb(*axes.across(start.angular, ball))
         self._xi = self._start_xi
         if self._starts_on_axis(1) or self._starts_on_axis(-1):
             self._xi = _I * self._r * z * self._start_eta  # xi = xi'(0) u + ...
@@ -214,8 +222,8 @@ class Orbit:
         self._to_space = attitude * frame.transpose()
         self._start_moment = self._moment(frame, self._start_eta)
         body, F2 = self._nutation.body, self._nutation.F2
-        self._ahead = ball(body.p * F2 + body.q * self._nutation.FG)
-        self._ahead_by_square = ball(body.p_prime - body.p)
+        self._ahead = self._rate(body.p * F2 + body.q * self._nutation.FG)
+        self._ahead_by_square = self._rate(body.p_prime - body.p)
 
     # The numbers of one time.
 

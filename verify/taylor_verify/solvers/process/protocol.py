@@ -42,8 +42,8 @@ where no decimal is finite), and ``hex``, the hexadecimal float of the rung, as 
 They are equal but where the table says that hex is rounded: K and H are rounded once, and I = K^-1
 and omega = K H follow from them exactly. Whoever integrates H' = H x K H + M has exact data; with wheels
 it is H' = (H + h) x K H + M, and with damping -d H more. An engine whose script says
-``data = "tensor"`` is asked the other way round: I and omega are rounded once, their text and hex are equal,
-and K and H follow from them.
+``data = "tensor"`` is asked the other way round: I and omega are rounded once, their text and hex are
+equal, and K and H follow from them.
 
 Loads that change with time are M = H*' - H* x K H*, or X = x*' - x* x Omega* and
 L = y*' - y* x Omega* - x* x U*, with Omega* and U* made of x* and y* as Omega and U are of x and y:

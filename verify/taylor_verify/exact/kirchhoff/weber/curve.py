@@ -45,7 +45,6 @@ _ORTHOGONAL: Final = (
     "of the bodies with r_1 = r_2 = r_3, and of Clebsch's second case, only the motions with FG = 0 "
     "are solved (Weber's)"
 )
-_TRACKED: Final = "of Weber's motions only x and y are solved, not attitude and centre"
 _DEGENERATE: Final = (
     "two branch points of Weber's curve coincide: the theta functions of genus two degenerate"
 )
@@ -177,8 +176,6 @@ def curve(scene: Scene) -> Curve | None:
         return None
     if tensors.dot(start.linear, start.angular) != 0:
         raise NoClosedForm(_ORTHOGONAL)
-    if scene.track:
-        raise NoClosedForm(_TRACKED)
     found = _curve(body, start, *family)
     if found is None or found.is_degenerate:
         raise NoClosedForm(_DEGENERATE)

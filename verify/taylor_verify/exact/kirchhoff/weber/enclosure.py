@@ -16,39 +16,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import ceil, log2
-from typing import Final, final
+from typing import Any, Final, NamedTuple
 
 from flint import acb, acb_mat, arb, ctx
 from mpmath import mpf
 
-from taylor_verify.exact.balls import Enclosed, Enclosure, Undecidable, ball, balls, midpoint, sign
+from taylor_verify.exact.balls import Undecidable, ball, midpoint, sign
 from taylor_verify.exact.kirchhoff.integrable import CYCLIC
 from taylor_verify.exact.kirchhoff.weber.characteristics import HALF_PERIODS, at_branches
-from taylor_verify.exact.kirchhoff.weber.curve import REGIME, Curve
+from taylor_verify.exact.kirchhoff.weber.curve import Curve
 from taylor_verify.exact.kirchhoff.weber.integrals import Jacobian, branch_points, jacobian
-from taylor_verify.exact.solution import Time, Unsettled
+from taylor_verify.exact.solution import Unsettled
 
 _DOUBLINGS: Final = 8
-
-
-@final
-class WeberBalls(Enclosed):
-    """x and y of one motion of Weber's."""
-
-    regime = REGIME
-
-    def __init__(self, found: Curve) -> None:
-        self._curve = found
-
-    def enclose(self, elapsed: Sequence[Time], bits: int) -> Enclosure:
-        motion, start = Quotients(self._curve), self._curve.start
-        # As told: a y that starts from zero has no digits but exact ones.
-        told = (balls(start.linear), balls(start.angular))
-        found = [told if t == 0 else motion.at(ball(t)) for t in elapsed]
-        return {
-            "linear_impulse": [x for x, _ in found],
-            "angular_impulse": [y for _, y in found],
-        }
 
 
 def rates(found: Curve, digits: int) -> tuple[mpf, mpf]:
@@ -68,16 +48,24 @@ def rates(found: Curve, digits: int) -> tuple[mpf, mpf]:
     raise Unsettled("the periods of Weber's curve do not settle")
 
 
+class Jet(NamedTuple):
+    """A theta function, its rate along Neumann's time, and its rate in time."""
+
+    value: Any
+    along: Any
+    rate: Any
+
+
 class Quotients:
     """The motion set up at the ambient precision of flint, and good only there."""
 
     def __init__(self, found: Curve) -> None:
-        self._jacobian = jacobian(found)
+        self.jacobian = jacobian(found)
         self._places = found.places
-        self._F, self._rho = ball(found.F2).sqrt(), ball(found.rho)
-        sizes = _sizes(found, self._jacobian)
+        self.F, self._rho = ball(found.F2).sqrt(), ball(found.rho)
+        sizes = _sizes(found, self.jacobian)
         self._c = [arb(1)] * 3
-        n, rate = self._direction(arb(0))
+        n, rate = self._direction(self.jets(arb(0)))
         self._c = [
             size * sign(ball(x) * entry + ball(x_rate) * slope)
             for size, entry, slope, (x, x_rate) in zip(sizes, n, rate, found.told, strict=True)
@@ -85,27 +73,47 @@ class Quotients:
 
     def at(self, t: arb) -> tuple[list[arb], list[arb]]:
         """x and y, this long after the start."""
-        n, rate = self._direction(t)
+        n, y = self.impulses(self.jets(t))
+        return [self.F * entry for entry in n], y
+
+    def jets(self, t: arb | acb) -> list[Jet]:
+        """theta[0] and those of x_1, x_2 and x_3 at a time, which may be complex."""
+        found = self.jacobian
+        pairs = zip(found.phase, found.rate, strict=True)
+        Z = [acb(start) + acb(rate) * acb(t) for start, rate in pairs]
+        jets = found.tau.theta_jets(acb_mat(2, 1, Z), 1)
+
+        def jet(which: int) -> Jet:
+            row = (jets[which, order] for order in range(3))
+            # In real time the theta functions are real.
+            value, first, second = (entry.real if isinstance(t, arb) else entry for entry in row)
+            along, rate = (
+                direction[0] * first + direction[1] * second
+                for direction in (found.neumann, found.rate)
+            )
+            return Jet(value, along, rate)
+
+        return [jet(which) for which in self.characteristics]
+
+    @property
+    def characteristics(self) -> list[int]:
+        """Those of ``jets``."""
+        return [0, *(HALF_PERIODS[place] for place in self._places)]
+
+    def impulses(self, jets: Sequence[Jet]) -> tuple[list[Any], list[Any]]:
+        """n = x/F and y."""
+        n, rate = self._direction(jets)
         y = [(rate[j] * n[k] - rate[k] * n[j]) / self._rho for _, j, k in CYCLIC]
-        return [self._F * entry for entry in n], y
+        return n, y
 
-    def _direction(self, t: arb) -> tuple[list[arb], list[arb]]:
+    def _direction(self, jets: Sequence[Jet]) -> tuple[list[Any], list[Any]]:
         """n, and its rate along Neumann's time."""
-        found = self._jacobian
-        Z = [acb(start + rate * t) for start, rate in zip(found.phase, found.rate, strict=True)]
-        jets, along = found.tau.theta_jets(acb_mat(2, 1, Z), 1), found.neumann
-
-        def jet(which: int) -> tuple[arb, arb]:
-            # The theta functions are real here.
-            value, first, second = (jets[which, order].real for order in range(3))
-            return value, along[0] * first + along[1] * second
-
-        below, below_rate = jet(0)
+        below, *above = jets
         n, rate = [], []
-        for c, place in zip(self._c, self._places, strict=True):
-            value, slope = jet(HALF_PERIODS[place])
-            n.append(c * value / below)
-            rate.append(c * (slope * below - value * below_rate) / below**2)
+        for c, jet in zip(self._c, above, strict=True):
+            n.append(c * jet.value / below.value)
+            slope = jet.along * below.value - jet.value * below.along
+            rate.append(c * slope / below.value**2)
         return n, rate
 
 

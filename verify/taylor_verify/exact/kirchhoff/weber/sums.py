@@ -15,17 +15,20 @@ import math
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
-from typing import Final, final
+from typing import Any, Final, final
 
 import numpy as np
 from mpmath import mp, mpf
 
+from taylor_verify.exact.frames import start_frame
 from taylor_verify.exact.kirchhoff.integrable import CYCLIC
 from taylor_verify.exact.kirchhoff.weber.characteristics import HALF_PERIODS, at_branches, of_pair
 from taylor_verify.exact.kirchhoff.weber.curve import REGIME, Curve
+from taylor_verify.exact.kirchhoff.weber.path import Path
 from taylor_verify.exact.kirchhoff.weber.quadrature import branch_points, narrowness, real_jacobian
 from taylor_verify.exact.kirchhoff.weber.riemann import Thetas
-from taylor_verify.exact.solution import Quantities, Settled, Time, longest
+from taylor_verify.exact.solution import SETTLING_STEP_DIGITS, Quantities, Settled, Time, longest
+from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.precision import exact_value
 
 _GUARD_DIGITS: Final = 12
@@ -40,26 +43,50 @@ _PLACES: Final = tuple(
 
 @final
 class WeberSums(Settled):
-    """x and y of one motion of Weber's."""
+    """One motion of Weber's."""
 
     route = "mpmath"
     regime = REGIME
 
-    def __init__(self, found: Curve) -> None:
-        self._curve = found
+    def __init__(self, found: Curve, body: ImmersedBody, track: frozenset[str]) -> None:
+        self._curve, self._body, self._track = found, body, track
+        self.by_quadrature = bool(track)
+        self._paths: dict[int, tuple[Sums, Path]] = {}
 
     def evaluate(self, elapsed: Sequence[Time], digits: int) -> Quantities:
         narrow, faster = self._difficulty
         turns = len(str(math.ceil(faster * longest(elapsed))))
-        start = self._curve.start
         with mp.workdps(digits + _GUARD_DIGITS + narrow + turns):
+            series, path = self._set_up(digits)
+            rows = [self._row(series, path, t) for t in elapsed]
+            names = ("linear_impulse", "angular_impulse", *sorted(self._track))
+            return {name: _stacked([row[name] for row in rows], name) for name in names}
+
+    def _set_up(self, digits: int) -> tuple[Sums, Path]:
+        """The motion at the ambient precision, and its frames so far."""
+        if mp.dps not in self._paths:
             series = Sums(self._curve)
-            told = [[mp.convert(c) for c in vector] for vector in (start.linear, start.angular)]
-            rows = [told if t == 0 else series.at(t) for t in elapsed]
+            # Panels of another width at every other precision that is compared.
+            wider = digits // SETTLING_STEP_DIGITS % 2
+            width = mpf(2 + wider) / (4 * mp.convert(self._difficulty[1]))
+            self._paths[mp.dps] = series, Path(series.at, self._body, self._curve.start, width)
+        return self._paths[mp.dps]
+
+    def _row(self, series: Sums, path: Path, t: Fraction) -> Mapping[str, Any]:
+        start = self._curve.start
+        if t == 0:
             return {
-                name: np.array([row[n] for row in rows], dtype=object).reshape(-1, 3)
-                for n, name in enumerate(("linear_impulse", "angular_impulse"))
+                "linear_impulse": list(map(mp.convert, start.linear)),
+                "angular_impulse": list(map(mp.convert, start.angular)),
+                "attitude": start_frame(start.attitude),
+                "centre": list(map(mp.convert, start.centre)),
             }
+        time = mp.convert(t)
+        x, y = series.at(time)
+        row: dict[str, Any] = {"linear_impulse": x, "angular_impulse": y}
+        if self._track:
+            row["attitude"], row["centre"] = path.at(time, x, y)
+        return row
 
     @cached_property
     def _difficulty(self) -> tuple[int, Fraction]:
@@ -68,6 +95,11 @@ class WeberSums(Settled):
         with mp.workdps(_FEW_DIGITS + narrow):
             faster = max(abs(rate) for rate in real_jacobian(self._curve).rate)
             return narrow, exact_value(faster)
+
+
+def _stacked(rows: Sequence[Any], name: str) -> np.ndarray[Any, Any]:
+    shape = (-1, 3, 3) if name == "attitude" else (-1, 3)
+    return np.array(rows, dtype=object).reshape(shape)
 
 
 class Sums:
@@ -93,7 +125,7 @@ class Sums:
         heights = _sizes_of_y(found, constants)
         self._d = [sign * size for sign, size in zip(self._signs_of_y(), heights, strict=True)]
 
-    def at(self, t: Time) -> list[list[mpf]]:
+    def at(self, t: Time) -> tuple[list[mpf], list[mpf]]:
         """x and y, this long after the start."""
         place = self._jacobian
         time = mp.convert(t)
@@ -101,7 +133,8 @@ class Sums:
         values = self._thetas.values(Z)
         x = [self._F * c * values[which] for c, which in zip(self._c, self._x, strict=True)]
         y = [d * values[which] for d, which in zip(self._d, self._y, strict=True)]
-        return [[entry / values[_ORIGIN] for entry in vector] for vector in (x, y)]
+        below = values[_ORIGIN]
+        return [entry / below for entry in x], [entry / below for entry in y]
 
     def _signs_of_y(self) -> list[mpf]:
         """The signs of d_k, each where its theta is the largest of a few places."""

@@ -1,0 +1,314 @@
+"""Clebsch's body about directions that are no body axes, by both routes and against Taylor."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+from builders.numbers import apart
+from builders.scenes import vector
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from mpmath import mp, mpf
+
+from taylor_verify.exact.elements import elements
+from taylor_verify.exact.invariants import invariants
+from taylor_verify.exact.kirchhoff import quartic
+from taylor_verify.exact.kirchhoff.axes import Axes, body_about, clebsch_about
+from taylor_verify.exact.kirchhoff.closed import closed_form, enclosed
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import Clebsch, ImmersedBody
+from taylor_verify.scenes.motion import Clock, Impulse
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Matrix, Vector
+
+DIGITS = 30
+TIMES = [Fraction(-3, 2), Fraction(0), Fraction(7, 2)]
+WHOLE = frozenset({"attitude", "centre"})
+GENERIC = vector("0.6", "-0.4", "0.5"), vector("0.2", "0.3", "0.8")
+# p p' q q' r r' about the axis.
+SIX = {
+    "four-roots": vector(1, 2, "0.2", "0.5", "1.1", "0.7"),
+    "two-roots": vector("1.5", "0.8", "0.1", "0.4", 1, "1.25"),
+    "cubic": vector("1.2", "1.2", "0.1", "0.3", "0.9", "0.8"),
+    "trigonometric": vector("1.2", "1.2", "0.3", "0.3", "0.9", "0.8"),
+}
+# The length of the second is rational.
+DIRECTIONS = [vector(1, 1, 0), vector(1, 2, 2), vector(1, -2, 3)]
+
+
+def about(n: Vector, six: Vector, x: Vector, y: Vector) -> Scene:
+    """A body of these six coefficients about n, with attitude and path."""
+    attitude = (Fraction(1), Fraction(2), Fraction(-1), Fraction(3))
+    start = Impulse(x, y, attitude, vector(2, -1, "0.5"))
+    body = body_about(Clebsch(*six), n)
+    return Scene("test", "test", "kirchhoff", WHOLE, body, start, Clock(Fraction(0), tuple(TIMES)))
+
+
+def is_solved(scene: Scene, kind: str, times: list[Fraction]) -> None:
+    """Both routes have this regime and, like Taylor's series, 30 digits of every vector and matrix."""
+    truth = TaylorSolution(scene).motion(times, DIGITS)
+    for route in ("arb", "mpmath"):
+        found = solution(scene, route)
+        assert (found.regime, found.route) == (kind, route)
+        with mp.workdps(2 * DIGITS):
+            assert apart(truth, found.motion(times, DIGITS)) <= 2 * mpf(10) ** -DIGITS
+
+
+@pytest.mark.parametrize("n", DIRECTIONS)
+@pytest.mark.parametrize("kind", SIX)
+def test_generic_motions_are_those_of_the_taylor_recursion(kind: str, n: Vector) -> None:
+    """Impulses, attitude and path about rational and irrational directions, forward and backward."""
+    is_solved(about(n, SIX[kind], *GENERIC), kind, TIMES)
+
+
+# Degenerate motions about (1, 1, 0)/sqrt 2. Beside axes.py, z = n.x, h = n.y and a = nu y.y - h^2, and
+# with l = p - p', s = q - q', F^2 = nu x.x and FG = nu x.y,
+#     nu f = r (F^2 - z^2) (l z^2 + 2 s h z + m) - r^2 (FG - h z)^2,
+# where m = r a - l z^2 - 2 s h z at the start.
+
+
+def drop_of_p(kind: str, n: Vector, x: Vector, y: Vector, r: Fraction, s: Fraction) -> Fraction:
+    """The l that makes the motion steady, homoclinic at z = F, or heteroclinic."""
+    nu, z, h = tensors.dot(n, n), tensors.dot(n, x), tensors.dot(n, y)
+    F2, FG, a = (
+        nu * tensors.dot(x, x),
+        nu * tensors.dot(x, y),
+        nu * tensors.dot(y, y) - h**2,
+    )
+    if kind == "steady":
+        rest = 2 * r * z * a - 2 * (F2 - z**2) * s * h - 2 * r * h * (FG - h * z)
+        return rest / (2 * (F2 - z**2) * z)
+    if kind == "heteroclinic":
+        assert FG == h == 0
+        return -r * a / (F2 - z**2)
+    F = Fraction(2)
+    assert F2 == F**2
+    assert FG == F * h
+    return -(r * a + 2 * s * h * (F - z)) / (F2 - z**2)
+
+
+N, TOWARDS = vector(1, 1, 0), (vector(1, 0, 1), vector("1/5", "1/3", "1/3"))
+R, TWIST = Fraction(1), Fraction(1, 4)
+
+
+def triple() -> tuple[Fraction, Fraction]:
+    """(l, s) such that z = F is a triple root: 4 F (l F + s h) = -r h^2 beside the double root."""
+    x, y = TOWARDS
+    F, z, h = Fraction(2), tensors.dot(N, x), tensors.dot(N, y)
+    a = 2 * tensors.dot(y, y) - h**2
+    by_h = R * h**2 / (4 * F)
+    s = (-R * a / (F - z) + by_h * (F + z) / F) / (2 * h - h * (F + z) / F)
+    return (-by_h - s * h) / F, s
+
+
+def degenerate() -> Iterator[tuple[str, Fraction, Fraction, Vector, Vector]]:
+    """Yield the regime, l, s and the start."""
+    nothing, across = vector(0, 0, 0), vector(1, -1, 0)
+    swing = vector(1, "1/2", "1/3"), tensors.cross(N, vector(1, "1/2", "1/3"))
+    level = vector("4/5", "1/5", 0), vector("1/3", "-1/7", 0)
+    yield "rest", Fraction(-1), TWIST, nothing, nothing
+    yield "euler-top", Fraction(-1), TWIST, nothing, vector(1, "1/2", "1/3")
+    yield "steady", Fraction(-1), TWIST, N, vector("1/3", "1/3", 0)
+    yield "steady", drop_of_p("steady", N, *level, R, TWIST), TWIST, *level
+    yield "hyperbolic", drop_of_p("hyperbolic", N, *TOWARDS, R, TWIST), TWIST, *TOWARDS
+    yield "algebraic", *triple(), *TOWARDS
+    yield "heteroclinic", drop_of_p("heteroclinic", N, *swing, R, TWIST), TWIST, *swing
+    # A start on the axis that leaves it, and G = n.y = 0: through both poles.
+    yield "four-roots", Fraction(-1), TWIST, N, vector("1/2", "1/4", "1/3")
+    yield (
+        "four-roots",
+        Fraction(-1),
+        Fraction(0),
+        vector(1, 1, "1/9"),
+        tensors.scaled(Fraction(3), across),
+    )
+
+
+@pytest.mark.parametrize(("kind", "l", "s", "x", "y"), list(degenerate()))
+def test_degenerate_motions_about_an_irrational_axis_are_decided_and_solved(
+    kind: str, l: Fraction, s: Fraction, x: Vector, y: Vector
+) -> None:
+    """Every equality that makes a motion special is one of rationals, though the axis is irrational."""
+    six = (Fraction(4), 4 - l, Fraction(1, 5), Fraction(1, 5) - s, R, Fraction(1, 2))
+    is_solved(about(N, six, x, y), kind, TIMES)
+
+
+entries = st.integers(min_value=-9, max_value=9)
+
+
+@settings(max_examples=12, deadline=None)
+@given(
+    n=st.tuples(entries, entries, entries).filter(any),
+    x=st.tuples(entries, entries, entries).filter(any),
+    y=st.tuples(entries, entries, entries),
+    kind=st.sampled_from(sorted(SIX)),
+)
+def test_both_routes_agree_about_any_direction(
+    n: tuple[int, ...], x: tuple[int, ...], y: tuple[int, ...], kind: str
+) -> None:
+    """Two formulas that share nothing but the axes, from starts in any direction."""
+    start = tuple(Fraction(entry, 9) for entry in x), tuple(Fraction(entry, 9) for entry in y)
+    scene = about(tuple(map(Fraction, n)), SIX[kind], *start)
+    one, other = enclosed(scene).motion(TIMES, 20), closed_form(scene).motion(TIMES, 20)
+    with mp.workdps(40):
+        assert apart(one, other) <= 2 * mpf(10) ** -20
+
+
+def test_far_times_cost_no_digit() -> None:
+    """After 10^12 units of time the routes agree as after one."""
+    scene = about(DIRECTIONS[2], SIX["two-roots"], *GENERIC)
+    far = [Fraction(10**12), Fraction(-(10**12))]
+    with mp.workdps(2 * DIGITS):
+        one, other = enclosed(scene).motion(far, DIGITS), closed_form(scene).motion(far, DIGITS)
+        assert apart(one, other) <= 2 * mpf(10) ** -DIGITS
+
+
+@pytest.mark.parametrize("route", ["arb", "mpmath"])
+def test_the_start_is_the_scenes_own(route: str) -> None:
+    """At time 0 every component is the one that the scene wrote, and a zero is a zero."""
+    x, y = vector("1/3", 0, "-1/7"), vector(0, "2/3", 0)
+    scene = replace(about(DIRECTIONS[2], SIX["cubic"], x, y))
+    scene = replace(scene, initial=replace(scene.initial, centre=vector(0, "1/3", 0)))
+    found = solution(scene, route).motion([Fraction(0)], 30)
+    with mp.workdps(30):
+        given_start = {"linear_impulse": x, "angular_impulse": y, "centre": vector(0, "1/3", 0)}
+        for name, start in given_start.items():
+            for entry, told in zip(found[name][0], start, strict=True):
+                assert abs(entry - mp.convert(told)) <= mpf(10) ** -30 * abs(mp.convert(told))
+
+
+# The axis.
+
+
+fractions = st.fractions(min_value=-3, max_value=3, max_denominator=7)
+
+
+@given(
+    n=st.tuples(entries, entries, entries).filter(any),
+    six=st.tuples(*[fractions] * 6),
+)
+def test_the_six_coefficients_come_back(n: tuple[int, ...], six: tuple[Fraction, ...]) -> None:
+    """T about any direction is recognised, with its coefficients and an axis along that direction."""
+    direction = tuple(map(Fraction, n))
+    body = body_about(Clebsch(*six), direction)
+    found = clebsch_about(body)
+    assert found is not None
+    assert body_about(found[0], found[1].n) == body
+    if six[0::2] != six[1::2]:
+        assert found[0] == Clebsch(*six)
+        assert not any(tensors.cross(found[1].n, direction))
+
+
+@given(n=st.tuples(entries, entries, entries).filter(any), v=st.tuples(*[fractions] * 3))
+def test_the_axes_about_a_direction_are_a_right_handed_orthonormal_triad(
+    n: tuple[int, ...], v: tuple[Fraction, ...]
+) -> None:
+    """Components of sqrt(nu) v along the columns are those of ``across`` and n.v."""
+    axes = Axes.about(tuple(map(Fraction, n)))
+    with mp.workdps(30):
+        e1, e2, e = axes.columns(mp.convert)
+        turned = [e1[i - 2] * e2[i - 1] - e1[i - 1] * e2[i - 2] for i in range(3)]
+        assert all(abs(a - b) <= mpf(10) ** -28 for a, b in zip(turned, e, strict=True))
+        assert abs(mp.fdot(e1, e1) - 1) <= mpf(10) ** -28
+        assert abs(mp.fdot(e1, e2)) <= mpf(10) ** -28
+        scaled = [mp.sqrt(mp.convert(axes.nu)) * mp.convert(entry) for entry in v]
+        expected = *axes.across(v, mp.convert), mp.convert(tensors.dot(axes.n, v))
+        for column, entry in zip((e1, e2, e), expected, strict=True):
+            assert abs(mp.fdot(column, scaled) - entry) <= mpf(10) ** -25
+
+
+LITTLE = Fraction(1, 10**60)
+
+
+def moved(matrix: Matrix, i: int, k: int) -> Matrix:
+    return tuple(
+        tuple(entry + LITTLE * (sorted((a, b)) == [i, k]) for b, entry in enumerate(row))
+        for a, row in enumerate(matrix)
+    )
+
+
+@pytest.mark.parametrize("block", ["linear", "coupling", "angular"])
+@pytest.mark.parametrize(("i", "k"), [(0, 0), (0, 1), (1, 2), (2, 2)])
+def test_what_is_nearly_of_revolution_is_not(block: str, i: int, k: int) -> None:
+    """One entry of one matrix off by 10^-60, and no closed form is claimed."""
+    scene = about(DIRECTIONS[0], SIX["four-roots"], *GENERIC)
+    assert isinstance(scene.body, ImmersedBody)
+    other = scene.body.with_parts({block: moved(getattr(scene.body, block), i, k)})
+    assert clebsch_about(other) is None
+    assert solution(replace(scene, body=other)).regime == NO_CLOSED_FORM
+    for solve in (enclosed, closed_form):
+        with pytest.raises(NoClosedForm, match="about any axis"):
+            solve(replace(scene, body=other))
+
+
+def test_two_matrices_with_different_axes_are_no_body_of_revolution() -> None:
+    """A about one direction, C about another."""
+    body = body_about(Clebsch(*SIX["cubic"]), DIRECTIONS[0])
+    other = body_about(Clebsch(*SIX["four-roots"]), DIRECTIONS[1])
+    assert clebsch_about(replace(body, linear=other.linear)) is None
+
+
+# What is said of it.
+
+
+def test_the_elements_are_those_of_the_body_about_axis_3() -> None:
+    """The period and the range do not depend on the axes in which a body is written."""
+    n = DIRECTIONS[1]
+    turn = tuple(
+        tensors.scaled(Fraction(1, 3), row) for row in (vector(2, 1, -2), vector(-2, 2, -1), n)
+    )
+    scene = about(n, SIX["four-roots"], *GENERIC)
+    upright = about(vector(0, 0, 1), SIX["four-roots"], *(tensors.apply(turn, v) for v in GENERIC))
+    found, other = elements(scene), elements(upright)
+    for name in ("period", "m", "F", "G", "T", "A", "discriminant"):
+        assert abs(found[name].value / other[name].value - 1) <= mpf(10) ** -14
+    for end in ("low", "high"):
+        assert abs(found[f"xe_{end}"].value / other[f"x3_{end}"].value - 1) <= mpf(10) ** -14
+    told = " ".join([*found.sentences, *(element.meaning for element in found.values())])
+    assert "about the direction e along (1, 2, 2)" in told
+    assert not any(word in told for word in ("x3", "y3", "axis 3"))
+
+
+def test_the_period_of_an_irrational_axis_is_a_period() -> None:
+    """After it x.e is what it was, and at half of it, it is not."""
+    scene = about(DIRECTIONS[0], SIX["four-roots"], *GENERIC)
+    period = elements(scene, 40)["period"].value
+    with mp.workdps(40):
+        whole = Fraction(int(mp.floor(period * 10**30)), 10**30)
+        x = solution(scene).motion([Fraction(0), whole, whole / 2], 30)["linear_impulse"]
+        along = [row[0] + row[1] for row in x]
+        assert abs(along[1] - along[0]) <= mpf(10) ** -28
+        assert abs(along[2] - along[0]) >= mpf("0.01")
+
+
+def test_y_along_an_oblique_axis_is_conserved() -> None:
+    """The invariant y_axis is n.y, and Taylor's motion has it; that of another direction varies."""
+    scene = about(DIRECTIONS[2], SIX["two-roots"], *GENERIC)
+    (fourth,) = (i for i in invariants(scene) if i.name == "y_axis")
+    motion = TaylorSolution(scene).motion(TIMES, DIGITS)
+    with mp.workdps(40):
+        values = fourth.value(motion)
+        told = mp.convert(tensors.dot(DIRECTIONS[2], GENERIC[1]))
+        assert all(abs(value - told) <= 10 * mpf(10) ** -DIGITS for value in values)
+        assert max(abs(row[0] - row[1]) for row in motion["angular_impulse"]) >= mpf("0.01")
+        assert fourth.scale(motion) >= max(abs(value) for value in values)
+
+
+def test_a_drift_in_the_wrong_unit_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    """F Z' without its factor 1/nu: the centre misses Taylor's by far, the attitude does not."""
+    scene = about(DIRECTIONS[0], SIX["four-roots"], *GENERIC)
+    truth = TaylorSolution(scene).motion(TIMES[2:], 20)
+    right = quartic.Nutation.drift
+    monkeypatch.setattr(quartic.Nutation, "drift", lambda self, z: self.axes.nu * right(self, z))
+    found = closed_form(scene).evaluate(TIMES[2:], 20)
+    with mp.workdps(30):
+        for name, is_wrong in {"attitude": False, "centre": True}.items():
+            missed = mp.norm(list((found[name] - truth[name]).flat))
+            assert (missed > mpf("0.01")) is is_wrong
+            assert is_wrong or missed <= mpf(10) ** -18
