@@ -21,25 +21,14 @@ from taylor_verify.scenes.scene import Scene
 
 __all__ = ["Element", "Elements", "elements"]
 
-
-def elements(scene: Scene, digits: int = 15) -> Elements:
-    """Every element that the orbit of this scene has, to ``digits`` significant digits.
-
-    Where there is no closed form it says so, and holds only what is exact without one. Raises
-    exact.solution.Unsettled where the digits cannot be had.
-    """
-    if scene.body.damping:
-        return _damped(scene, digits)
-    found: Elements = function_at(f"{kind_of(scene.body).room}.elements:elements")(scene, digits)
-    return found
-
-
 _SLOWED: Final = (
-    "Damped: the momenta are e^{-ct} times those of the body without damping at the time "
-    "tau = (1 - e^{-ct})/c since the start, and attitude and centre are its own. Every time and rate here is "
-    "counted in tau."
+    "Damped: the momenta are e^{-ct} times those of the body without damping at the time tau, and "
+    "attitude and centre are its own, with tau = (1 - e^{-ct})/c since the start. Every time and rate here "
+    "is counted in tau."
 )
-_FAR: Final = "Not conserved: T and the momenta change by the work and impulse of the damping, and of the loads."
+_FAR: Final = (
+    "Not conserved: T and the momenta change by the work and impulse of the damping and the loads."
+)
 
 
 def elements(scene: Scene, digits: int = 15) -> Elements:
@@ -52,13 +41,6 @@ def elements(scene: Scene, digits: int = 15) -> Elements:
         return _damped(scene, digits)
     found: Elements = function_at(f"{kind_of(scene.body).room}.elements:elements")(scene, digits)
     return found
-
-
-_SLOWED: Final = (
-    "Damped: the momenta are e^{-ct} times, and attitude and centre are, those of the body without damping at "
-    "the time tau = (1 - e^{-ct})/c since the start. Every time and rate here is counted in tau."
-)
-_FAR: Final = "Damping acts: T and the momenta change by its work and impulse, and by those of the loads or wheels."
 
 
 def _damped(scene: Scene, digits: int) -> Elements:
