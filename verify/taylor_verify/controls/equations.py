@@ -12,11 +12,13 @@ its own energy and nobody's but its own.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any, Final
 
 from taylor_verify.controls.defect import BRICK, SCREW, Defect
 from taylor_verify.models.algebra import add, apply, cross, minus
+from taylor_verify.models.damping import WithDamping
 from taylor_verify.models.euler import angular_velocity, euler_equations
 from taylor_verify.models.form import Named, labelled
 from taylor_verify.models.general import in_general_form
@@ -70,7 +72,35 @@ def _damped(problem: Problem) -> Problem:
     return problem.with_equations(equations)
 
 
+def _without_damping(problem: Problem) -> Problem:
+    """The equations of a damped body without its damping."""
+    equations = problem.form.equations
+    assert isinstance(equations, WithDamping)
+    return problem.with_equations(equations.body)
+
+
+def _with_damping_of_omega(problem: Problem) -> Problem:
+    """H' = H x K H - c K H, where it is H x K H - c H."""
+    equations, units = problem.form.equations, problem.units
+    assert isinstance(equations, WithDamping)
+    free, damping = equations.body, float(problem.given.body.damping / units.momentum)
+
+    def changed(n: Named) -> Mapping[str, Any]:
+        rates = dict(free(n))
+        omega = labelled("H", angular_velocity(n.vector("H"), n.symmetric("K")))
+        return rates | {k: minus(rates[k], damping * omega[k]) for k in omega}
+
+    return problem.with_equations(changed)
+
+
 # Kirchhoff.
+
+
+def _with_damping_of_x_alone(problem: Problem) -> Problem:
+    """y' without -c y."""
+    equations = problem.form.equations
+    assert isinstance(equations, WithDamping)
+    return problem.with_equations(replace(equations, momenta=("x1", "x2", "x3")))
 
 
 def in_21_coefficients(problem: Problem) -> Problem:
@@ -178,6 +208,33 @@ EQUATIONS: Final = (
         why="H shrinks by exp(-1e-6 t), and everything made of it shrinks likewise",
         recast=_damped,
         told=True,
+    ),
+    Defect(
+        "damping-left-out",
+        "euler/damped",
+        "T",
+        what="the damping of the scene left out",
+        why="T, H and everything made of them stay, where they are to shrink by e^{-2ct} and e^{-ct}",
+        recast=_without_damping,
+        told=True,
+    ),
+    Defect(
+        "damping-of-omega",
+        "euler/damped",
+        "H2",
+        what="a moment -c omega, where it is -c I omega",
+        why="each component of H shrinks at a rate of its own, and H turns in space",
+        recast=_with_damping_of_omega,
+        told=True,
+    ),
+    Defect(
+        "damping-of-one-impulse",
+        "kirchhoff/damped",
+        "FG",
+        passes=frozenset({"F2", "x_space"}),
+        what="damping of the linear impulse alone",
+        why="x shrinks as it is to do, and R x with it, whatever the body turns like; y does not",
+        recast=_with_damping_of_x_alone,
     ),
     Defect(
         "munk-moment-sign",

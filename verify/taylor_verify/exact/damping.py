@@ -41,6 +41,14 @@ _MOST_DIGITS: Final = 2000
 NOT_QUADRATIC: Final = "damping together with a constant load or with wheels"
 
 
+def is_solved(scene: Scene) -> bool:
+    """Return True if the rates of the body without damping are quadratic: no loads and no wheels act."""
+    free = scene.body.undamped
+    equations = kind_of(free).equations(free)
+    quadratic = not equations.constant.any() and not equations.linear.any()
+    return quadratic and free.manufactured is None
+
+
 def decayed(exponent: Fraction, number: Number) -> Any:
     """Return e^{-x} for a rational x, as a ball or in mpmath."""
     if number is ball:

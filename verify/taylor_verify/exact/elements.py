@@ -8,11 +8,27 @@ centre add nothing to them.
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Final
+
+from mpmath import mp
+
+from taylor_verify.exact.damping import NOT_QUADRATIC, is_solved
 from taylor_verify.exact.element import Element, Elements
 from taylor_verify.exact.registry import function_at, kind_of
+from taylor_verify.exact.solution import NO_CLOSED_FORM
 from taylor_verify.scenes.scene import Scene
 
 __all__ = ["Element", "Elements", "elements"]
+
+_SLOWED: Final = (
+    "Damped: the momenta are e^{-ct} times those of the body without damping at the time tau, and "
+    "attitude and centre are its own, with tau = (1 - e^{-ct})/c since the start. Every time and rate here "
+    "is counted in tau."
+)
+_FAR: Final = (
+    "Not conserved: T and the momenta change by the work and impulse of the damping and the loads."
+)
 
 
 def elements(scene: Scene, digits: int = 15) -> Elements:
@@ -21,5 +37,38 @@ def elements(scene: Scene, digits: int = 15) -> Elements:
     Where there is no closed form it says so, and holds only what is exact without one. Raises
     exact.solution.Unsettled where the digits cannot be had.
     """
+    if scene.body.damping:
+        return _damped(scene, digits)
     found: Elements = function_at(f"{kind_of(scene.body).room}.elements:elements")(scene, digits)
     return found
+
+
+def _damped(scene: Scene, digits: int) -> Elements:
+    """The elements of the motion without damping, and how much of it there is."""
+    damping = scene.body.damping
+    if not is_solved(scene):
+        story = f"No closed form is built for {NOT_QUADRATIC}."
+        return Elements(NO_CLOSED_FORM, (), (story, _FAR))
+    free = elements(replace(scene, body=scene.body.undamped), digits)
+    numbers = [replace(one, meaning=_at_the_start(one)) for one in free.numbers]
+    if damping > 0:
+        with mp.workdps(digits):
+            horizon = 1 / mp.convert(damping)
+            meaning = "tau never reaches it: the motion without damping up to here is all there is"
+            numbers.append(Element("horizon", horizon, "time", meaning, "1/c"))
+            if "period" in free:
+                meaning = "periods of the motion without damping until the body is at rest"
+                turns = horizon / free["period"].value
+                numbers.append(Element("periods_to_rest", turns, "", meaning, "1/(c period)"))
+    told = (
+        one.replace("Conserved:", "Conserved, of e^{ct} times the momenta:")
+        for one in free.sentences
+    )
+    return Elements(free.regime, tuple(numbers), (_SLOWED, *told))
+
+
+def _at_the_start(element: Element) -> str:
+    """The meaning of what is conserved but for damping: its value at the start."""
+    return element.meaning.replace(
+        ", conserved", " at the start, of e^{ct} times the momenta conserved"
+    )

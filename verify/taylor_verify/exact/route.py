@@ -9,7 +9,7 @@ from fractions import Fraction
 from typing import Final, final
 
 from taylor_verify.exact.balls import Enclosed
-from taylor_verify.exact.damping import NOT_QUADRATIC, Damped
+from taylor_verify.exact.damping import NOT_QUADRATIC, Damped, is_solved
 from taylor_verify.exact.registry import function_at, kind_of
 from taylor_verify.exact.solution import NoClosedForm, Quantities, Solution, Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
@@ -98,8 +98,6 @@ def _closed_form(scene: Scene, route: str) -> Solution:
 
 def _damped(scene: Scene, route: str) -> Solution:
     """The closed form of a damped body, by that of the body without damping."""
-    free = scene.body.undamped
-    equations = kind_of(free).equations(free)
-    if equations.constant.any() or equations.linear.any():
+    if not is_solved(scene):
         raise NoClosedForm(NOT_QUADRATIC)
-    return Damped(scene, _closed_form(replace(scene, body=free), route))
+    return Damped(scene, _closed_form(replace(scene, body=scene.body.undamped), route))

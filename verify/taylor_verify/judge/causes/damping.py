@@ -2,7 +2,8 @@
 
 With z' = Q(z, z) - c z the size of the momentum decays as exp(-c t), whatever the body, and the motion is
 exp(-c t) Z((1 - exp(-c t))/c), Z the motion without damping. An engine that multiplies by 1 - c h or by
-1/(1 + c h) in each step has the same law with a slightly different c.
+1/(1 + c h) in each step has the same law with a slightly different c; where the scene has damping, its step
+is sought in damping_step.py.
 """
 
 from __future__ import annotations
@@ -41,8 +42,8 @@ def damping(material: Material) -> Iterator[Candidate]:
     # A moment of inertia, or a mass, makes a coefficient of drag of a rate.
     sizes = np.linalg.eigvalsh(right.tensor)
     inertia = float(np.mean(sizes if right.is_rigid else 1 / sizes))
-    tried = [("damping left on", right)]
-    if right.is_rigid:
+    tried = [("another damping" if right.damping else "damping left on", right)]
+    if right.is_rigid and not right.damping:
         tried += [("no gyroscopic term and damping left on", replace(right, gyroscopic=0.0))]
     for name, equations in tried:
         for key, words in (_RIGID if right.is_rigid else _FLUID).items():

@@ -49,7 +49,12 @@ class Equations:
         values = body.parts()
         loads = [entry for name in body.load_names() for entry in values[name]]
         found = cls(np.array(body.energy_matrix, dtype=float), np.array(loads, dtype=float))
-        return replace(found, rotor=tuple(map(float, values.get("rotor", found.rotor))))
+        rotor = tuple(map(float, values.get("rotor", found.rotor)))
+        return replace(found, rotor=rotor, damping=float(body.damping))
+
+    def slowed(self, factor: float) -> Equations:
+        """Return the equations with this factor at all that is quadratic in the state."""
+        return replace(self, gyroscopic=factor, munk=factor, turning=factor)
 
     @property
     def is_rigid(self) -> bool:

@@ -40,8 +40,9 @@ def gyroscopic_step(material: Material) -> Iterator[Candidate]:
 
 
 def _torque(body: Equations, omega: Floats) -> Floats:
-    """M - omega x I omega for every row."""
-    return body.load - np.cross(omega, omega @ body.tensor)
+    """M - omega x I omega - c I omega for every row."""
+    momentum = omega @ body.tensor
+    return body.load - np.cross(omega, momentum) - body.damping * momentum
 
 
 def _explicit(body: Equations, omega: Floats, h: Floats) -> Floats:

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Final
 
 from taylor_verify.judge.causes.damping import damping
+from taylor_verify.judge.causes.damping_step import damping_step, wrong_damping
 from taylor_verify.judge.causes.gyroscopic import gyroscopic_step
 from taylor_verify.judge.causes.kinematics import kinematics
 from taylor_verify.judge.causes.material import Candidate, Material
@@ -31,8 +32,8 @@ _NOTHING: Final = 1e-3
 
 # Those about the states' own equations, those with no number to fit first.
 DYNAMICS: Final[tuple[Hypothesis, ...]] = (
-    *(other_tensors, loads, space_loads, wrong_terms),
-    *(gyroscopic_step, damping, another_body),
+    *(other_tensors, loads, space_loads, wrong_terms, wrong_damping),
+    *(gyroscopic_step, damping, damping_step, another_body),
 )
 # Those about rows, attitudes and numbers.
 OTHERS: Final[tuple[Hypothesis, ...]] = (other_rows, kinematics, single_precision)

@@ -53,21 +53,25 @@ def _euler_equations(body: RigidBody) -> list[str]:
     loaded = "" if body.is_free else r" + \mathbf M"
     if body.manufactured is not None:
         return [f"{_EULER}{loaded}(t)", _MOMENTUM, *_MADE_OMEGA]
-    return [f"{_EULER}{loaded}", _MOMENTUM]
+    damped = r" - c \mathbf H" if body.damping else ""
+    return [f"{_EULER}{damped}{loaded}", _MOMENTUM]
 
 
 def _kirchhoff_equations(body: ImmersedBody) -> list[str]:
     if body.manufactured is not None:
         linear, angular = rf"{_LINEAR} + \mathbf X(t)", rf"{_ANGULAR} + \mathbf L(t)"
         return [linear, angular, _VELOCITIES, _ENERGY, *_MADE_IMPULSE]
-    force = r" + \mathbf X" if any(body.force) else ""
-    couple = r" + \mathbf L" if any(body.couple) else ""
+    force = r" - c \mathbf x" if body.damping else ""
+    couple = r" - c \mathbf y" if body.damping else ""
+    force += r" + \mathbf X" if any(body.force) else ""
+    couple += r" + \mathbf L" if any(body.couple) else ""
     return [f"{_LINEAR}{force}", f"{_ANGULAR}{couple}", _VELOCITIES, _ENERGY]
 
 
 def _gyrostat_equations(body: Gyrostat) -> list[str]:
     loaded = "" if body.is_free else r" + \mathbf M"
-    return [f"{_EULER}{loaded}", r"\mathbf H = \mathsf I \boldsymbol\omega + \mathbf h"]
+    damped = r" - c \mathsf I \boldsymbol\omega" if body.damping else ""
+    return [f"{_EULER}{damped}{loaded}", r"\mathbf H = \mathsf I \boldsymbol\omega + \mathbf h"]
 
 
 # For each kind of body its equations, and what its angular velocity is called in them.
