@@ -31,9 +31,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
+from taylor_verify.exact import lattice as lattice_module
 from taylor_verify.exact.balls import Undecidable, ball
 from taylor_verify.exact.kirchhoff import course as course_module
-from taylor_verify.exact.kirchhoff import lattice as lattice_module
 from taylor_verify.exact.kirchhoff.closed import closed_form, enclosed
 from taylor_verify.exact.kirchhoff.course import Course, course
 from taylor_verify.exact.kirchhoff.quartic import Nutation

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import ceil
 from typing import Final
 
 from mpmath import mp
 
 from taylor_verify.exact.element import Element, Elements, settled
 from taylor_verify.exact.gyrostat.closed import free_gyrostat
-from taylor_verify.exact.gyrostat.jacobi import Azimuth, Swing
+from taylor_verify.exact.gyrostat.jacobi import Azimuth, Swing, digits_beside_double_root
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat, Regime
 from taylor_verify.exact.gyrostat.spins import steady_spins
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
@@ -62,7 +63,8 @@ def _numbers(free: FreeGyrostat) -> list[Element]:
     if free.regime is Regime.CUSP:
         return []
     # R recurs but for a turn about H: phi of any body axis, which differ by whole turns.
-    turned = Azimuth(free, swing).per_period
+    with mp.workdps(mp.dps + ceil(digits_beside_double_root(free))):
+        turned = Azimuth(free, Swing(free)).per_period
     angle = turned - 2 * mp.pi * mp.floor(turned / (2 * mp.pi))
     meaning = "angle about H by which the attitude differs after a period, less whole turns"
     found = [

@@ -59,19 +59,23 @@ def free_rotation(free: FreeGyrostat, attitude: Quaternion | None) -> Rotation:
 
 
 def _lost_digits(free: FreeGyrostat, longest: Fraction, turned: bool) -> float:
-    """The decimal digits lost to the angle turned in a time, and beside a double root of the pencil.
-
-    There a pole of phi' is all but at the double point, and too few digits put it there: two precisions
-    would agree, and be wrong by its share of the angle.
-    """
+    """The decimal digits lost to the angle turned in a time, and beside a double root of the pencil."""
     del turned
     rates = (free.omega, free.g, tensors.apply(free.K, free.momentum))
     angle = longest * sum(abs(c) for v in rates for c in v)
-    digits = _GUARD_DIGITS + decades(1 + angle)
+    return _GUARD_DIGITS + decades(1 + angle) + digits_beside_double_root(free)
+
+
+def digits_beside_double_root(free: FreeGyrostat) -> float:
+    """Return the decimal digits that two nearly equal roots of the pencil cost.
+
+    A pole of phi' may be all but at the double point there, and too few digits put it on that point: two
+    precisions would agree, and be wrong by the share of the pole in the angle.
+    """
     if not free.discriminant:
-        return digits
+        return 0
     g2, g3 = free.invariants
-    return digits + decades((abs(g2) ** 3 + 27 * g3**2) / abs(free.discriminant))
+    return decades((abs(g2) ** 3 + 27 * g3**2) / abs(free.discriminant))
 
 
 @final

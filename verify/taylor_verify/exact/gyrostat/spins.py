@@ -6,16 +6,22 @@ in a spin goes as e^{s t} with s^2 = -G.adj(K - mu) G.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from contextlib import suppress
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
-from flint import ctx, fmpq, fmpq_poly
+from flint import arb, ctx, fmpq, fmpq_poly
 from mpmath import mp, mpf
 
-from taylor_verify.exact.balls import midpoint
+from taylor_verify.exact.balls import Undecidable, ball, balls, midpoint, sign
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
+from taylor_verify.exact.solution import Unsettled
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.tensors import Matrix, Vector, cross, dot
+
+_GUARD_BITS: Final = 40
+_ATTEMPTS: Final = 8
 
 
 class SteadySpin(NamedTuple):
@@ -28,7 +34,22 @@ class SteadySpin(NamedTuple):
 def steady_spins(free: FreeGyrostat) -> list[SteadySpin]:
     """Return the steady spins with this |G|, by their rates; a circle of them counts as none.
 
-    Their mu are roots of rational polynomials: how many there are is decided exactly.
+    Each number is right to mpmath's precision, and so is each sign: the working precision rises until balls
+    are narrow enough. Raises Unsettled where some thousand digits are not enough.
+    """
+    bits = mp.prec + _GUARD_BITS
+    for _ in range(_ATTEMPTS):
+        with ctx.workprec(bits), suppress(Undecidable, ZeroDivisionError):
+            return sorted(SteadySpin(*map(midpoint, spin)) for spin in _spins(free, mp.prec))
+        bits *= 2
+    raise Unsettled(f"the steady spins of the gyrostat do not come apart with {bits // 2} bits")
+
+
+def _spins(free: FreeGyrostat, precision: int) -> list[tuple[arb, arb]]:
+    """The spins in balls; raises Undecidable where one of them is too wide.
+
+    Their mu are roots of rational polynomials: how many there are is decided exactly, and which of them are
+    at the border of stability, since d|G|^2/d mu = -2 s^2/det(K - mu).
     """
     n, determinant = free.n, _polynomial(*_determinant(free))
     images = [_polynomial(*row) for row in zip(*_adjugate(free), strict=True)]
@@ -46,48 +67,64 @@ def steady_spins(free: FreeGyrostat) -> list[SteadySpin]:
     regular = condition
     while (common := regular.gcd(determinant)).degree() > 0:
         regular //= common
-    N = mp.sqrt(mp.convert(n))
-    spins = [_regular(free, mu, N) for mu in _real_roots(regular)]
+    multiple = regular.gcd(regular.derivative())
+    simple = regular
+    while (common := simple.gcd(multiple)).degree() > 0:
+        simple //= common
+    found = [(mu, _regular(free, mu)) for mu in _real_roots(simple)]
     for mu in _real_roots(axial // tangent):
-        spins += _axial(free, mu, N)
-    spins += [SteadySpin(mu * N, mpf(0)) for mu in _real_roots(tangent)]
-    return sorted(spins)
+        found += _axial(free, mu)
+    found += [(mu, arb(0)) for border in (multiple, tangent) for mu in _real_roots(border)]
+    N, pace = ball(n).sqrt(), ball(free.trace)
+    if not all(
+        _is_narrow(mu, pace, precision) and _is_narrow(square, abs(square), precision)
+        for mu, square in found
+    ):
+        raise Undecidable
+    return [(mu * N, square) for mu, square in found]
 
 
-def _regular(free: FreeGyrostat, mu: mpf, N: mpf) -> SteadySpin:
-    """The spin with G = (K - mu)^-1 g."""
-    images = [
-        _value([mp.convert(c) for c in row], mu) for row in zip(*_adjugate(free), strict=True)
-    ]
-    determinant = _value([mp.convert(c) for c in _determinant(free)], mu)
-    return SteadySpin(mu * N, -_adjugate_form(free, mu, [G / determinant for G in images]))
+def _is_narrow(value: arb, size: arb, bits: int) -> bool:
+    """True if the ball has so many bits of a number of this size; exact zeros have."""
+    return bool(value.is_exact() or value.rad() < size.lower() * arb(2) ** -bits)
 
 
-def _axial(free: FreeGyrostat, mu: mpf, N: mpf) -> list[SteadySpin]:
+def _regular(free: FreeGyrostat, mu: arb) -> arb:
+    """s^2 of the spin with G = (K - mu)^-1 g."""
+    images = [_value(balls(row), mu) for row in zip(*_adjugate(free), strict=True)]
+    determinant = _value(balls(_determinant(free)), mu)
+    return -_adjugate_form(free, mu, [G / determinant for G in images])
+
+
+def _axial(free: FreeGyrostat, mu: arb) -> list[tuple[arb, arb]]:
     """The two spins with G along the axis of the moment 1/mu, if |G| is large enough for them."""
-    g = [mp.convert(c) for c in free.g]
+    g = balls(free.g)
     moved = [
-        [mp.convert(c) - mu * (i == j) for j, c in enumerate(row)] for i, row in enumerate(free.K)
+        [entry - mu * (i == j) for j, entry in enumerate(balls(row))]
+        for i, row in enumerate(free.K)
     ]
-    trace = sum(moved[i][i] for i in range(3))
+    trace = sum((moved[i][i] for i in range(3)), arb(0))
     pairs = ((0, 1), (1, 2), (2, 0))
-    minors = sum(moved[i][i] * moved[j][j] - moved[i][j] ** 2 for i, j in pairs)
+    minors = sum((moved[i][i] * moved[j][j] - moved[i][j] ** 2 for i, j in pairs), arb(0))
     # M^2 - (tr M) M + minors = 0 across the axis, where M = K - mu is regular.
-    across = [(trace * p - mp.fdot(row, g)) / minors for p, row in zip(g, moved, strict=True)]
-    along = mp.convert(free.n) - mp.fdot(across, across)
-    return [SteadySpin(mu * N, -minors * along)] * 2 if along > 0 else []
+    across = [(trace * p - _dot(row, g)) / minors for p, row in zip(g, moved, strict=True)]
+    along = ball(free.n) - _dot(across, across)
+    return [(mu, -minors * along)] * 2 if sign(along) > 0 else []
 
 
-def _adjugate_form(free: FreeGyrostat, mu: mpf, G: list[mpf]) -> mpf:
+def _adjugate_form(free: FreeGyrostat, mu: arb, G: list[arb]) -> arb:
     """G.adj(K - mu) G, with adj(K - mu) = K^2 - S K + c2 - mu (S - K) + mu^2."""
 
-    def form(matrix: Matrix) -> mpf:
-        rows = [[mp.convert(c) for c in row] for row in matrix]
-        return mp.fdot(G, [mp.fdot(row, G) for row in rows])
+    def form(matrix: Matrix) -> arb:
+        return _dot(G, [_dot(balls(row), G) for row in matrix])
 
-    S, c2 = mp.convert(free.trace), mp.convert(free.minors)
-    n, first = mp.fdot(G, G), form(free.K)
+    S, c2 = ball(free.trace), ball(free.minors)
+    n, first = _dot(G, G), form(free.K)
     return form(free.square) - S * first + c2 * n - mu * (S * n - first) + mu**2 * n
+
+
+def _dot(a: Sequence[arb], b: Sequence[arb]) -> arb:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def _adjugate(free: FreeGyrostat) -> tuple[Vector, Vector, Vector]:
@@ -105,9 +142,9 @@ def _determinant(free: FreeGyrostat) -> tuple[Fraction, ...]:
     return dot(k1, cross(k2, k3)), -free.minors, free.trace, Fraction(-1)
 
 
-def _value(coefficients: list[mpf], mu: mpf) -> mpf:
+def _value(coefficients: list[arb], mu: arb) -> arb:
     """The polynomial of these coefficients, the constant one first."""
-    total = mpf(0)
+    total = arb(0)
     for coefficient in reversed(coefficients):
         total = total * mu + coefficient
     return total
@@ -118,10 +155,9 @@ def _polynomial(*coefficients: Fraction) -> fmpq_poly:
     return fmpq_poly([fmpq(c.numerator, c.denominator) for c in coefficients])
 
 
-def _real_roots(polynomial: fmpq_poly) -> list[mpf]:
-    """The distinct real roots, at mpmath's precision."""
+def _real_roots(polynomial: fmpq_poly) -> list[arb]:
+    """The distinct real roots."""
     if polynomial.degree() < 1:
         return []
-    with ctx.workprec(mp.prec):
-        roots: Any = polynomial.numer().complex_roots()
-        return [midpoint(root.real) for root, _ in roots if root.imag.is_zero()]
+    roots: Any = polynomial.numer().complex_roots()
+    return [root.real for root, _ in roots if root.imag.is_zero()]
