@@ -19,6 +19,9 @@ from builders.scenes import THREE_INSTANTS
 from packaging.specifiers import SpecifierSet
 
 from taylor_verify.models.problem import Problem, pose
+from taylor_verify.records.quantities import STATES
+from taylor_verify.records.status import Status
+from taylor_verify.run import run
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import load, read
@@ -267,18 +270,15 @@ def test_the_first_propagation_is_what_compiles(sibling: Callable[[str], Any]) -
 # The libraries themselves, where their environments are.
 
 
-def ready() -> list[Engine]:
-    """The integrators of the equations; a physics engine has a step and no tolerance."""
-    return [
-        one
-        for one in engines().values()
-        if not one.script.about.unavailable and "rtol" in one.script.about.settings
-    ]
+def ready(setting: str) -> list[Engine]:
+    """The engines that can be had here and have this setting."""
+    every = [one for one in engines().values() if not one.script.about.unavailable]
+    return [one for one in every if setting in one.script.about.settings]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("scene", ["euler/backward", "kirchhoff/whole-motion"])
-@pytest.mark.parametrize("one", ready(), ids=lambda one: one.name)
+@pytest.mark.parametrize("one", ready("rtol"), ids=lambda one: one.name)
 def test_a_library_keeps_near_its_tolerance(
     one: Engine, scene: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -303,6 +303,34 @@ def test_a_library_keeps_near_its_tolerance(
         assert errors[tolerance] <= tolerance * found.steps * 30
     # A thousandth of the tolerance is at least a tenth of the error, for the lowest of orders.
     assert errors[1e-9] <= errors[1e-6] / 10
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("one", ready("step"), ids=lambda one: one.name)
+def test_an_engine_begins_with_the_start_and_comes_nearer_with_the_step(
+    one: Engine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The first row is the state that the engine was given, with an oblique attitude, and half the step
+    leaves an error that is smaller: of the first order at least."""
+    monkeypatch.setenv("UV_OFFLINE", "1")
+    try:
+        prepare(one.name)
+    except NotMade as reason:
+        pytest.skip(str(reason))
+    about = one.script.about
+    scene = load(
+        "euler/with-attitude" if "euler" in about.models else "kirchhoff/ellipsoid-triaxial"
+    )
+    on = rung(about.rungs[-1])
+    errors = []
+    for step in (2.0**-6, 2.0**-7):
+        verdicts = {
+            v.quantity: v for v in run(scene, f"outside:{one.name}?step={step}", on).verdicts
+        }
+        assert verdicts["initial"].verdict is Status.PASS
+        errors.append(max(v.max or 0 for v in verdicts.values() if v.quantity in STATES))
+    # Half the error is the first order, to which rounding adds its part on the coarsest rung.
+    assert errors[1] <= 0.6 * errors[0]
 
 
 def written(folder: Path, metadata: str) -> Path:

@@ -147,7 +147,7 @@ def free_body(scene: Any) -> FreeBody:
     )
 
 
-def stepped(body: FreeBody, step: float, start: Callable[[], Engine]) -> Solved:
+def stepped(body: FreeBody, step: float, start: Callable[[], Engine], remark: str = "") -> Solved:
     """Return the motion by a fixed step; ``start`` builds the engine anew and is not timed.
 
     The propagation is done twice, and the second is timed, as by `question.twice`.
@@ -166,7 +166,7 @@ def stepped(body: FreeBody, step: float, start: Callable[[], Engine]) -> Solved:
     first, _ = seconds_and_rows()
     second, rows = seconds_and_rows()
     compiling = max(0.0, first - second)
-    return Solved(rows, counts[-1], 0, second, compiling, remark=body.remark)
+    return Solved(rows, counts[-1], 0, second, compiling, remark or body.remark)
 
 
 # Axes.

@@ -17,7 +17,8 @@ from taylor_verify.judge.errors.drifts import drifts
 from taylor_verify.judge.errors.state import largest, state_errors
 from taylor_verify.judge.floor.arithmetic import MORE_DIGITS, truth_digits, working_bits
 from taylor_verify.models.problem import Problem
-from taylor_verify.scenes.motion import Motion
+from taylor_verify.scenes.bodies import Body
+from taylor_verify.scenes.motion import Motion, State
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
@@ -86,13 +87,14 @@ class Truths:
     """The truth of each scene and rung, evaluated once."""
 
     def __init__(self) -> None:
-        self._known: dict[tuple[Scene, Rung], Truth | None] = {}
+        self._known: dict[tuple[Scene, Rung, Body, State], Truth | None] = {}
 
     def accuracy(self, problem: Problem, trajectory: Trajectory) -> Accuracy | None:
         """Return the accuracy; None for a run that did not finish, and where the truth cannot be had."""
         if trajectory.outcome is not Outcome.FINISHED:
             return None
-        key = problem.scene, problem.rung
+        # Solvers may take other data of one scene, rounded elsewhere.
+        key = problem.scene, problem.rung, problem.given.body, problem.given.initial
         if key not in self._known:
             self._known[key] = None
             with suppress(Unsettled):

@@ -1,0 +1,93 @@
+# /// script
+# requires-python = ">=3.11,<3.15"
+# dependencies = [
+#   "mujoco==4.0.0",
+#   "numpy==2.4.6",
+# ]
+# [tool.taylor-verify]
+# title = "MuJoCo"
+# models = ["euler"]
+# loads = false
+# data = "tensor"
+# [tool.taylor-verify.settings]
+# step = 0.002
+# integrator = ["Euler", "implicit", "implicitfast", "RK4"]
+# inertia = ["full", "principal"]
+# ///
+"""MuJoCo: a body with a free joint, without gravity, geometry and damping.
+
+`inertia=full` hands over the tensor as `fullinertia`, and MuJoCo's compiler finds the principal axes.
+`inertia=principal` hands over ours, as `diaginertia` and `quat`, and tells the compiler's error from
+that of the integrator. The remark says how far the compiled tensor is from the one that was given.
+
+qvel[3:6] is omega in body axes, qpos[3:7] the attitude, scalar first.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from free_body import Engine, FreeBody, Settings, Solved, answer, principal, stepped
+
+
+def solve(body: FreeBody, settings: Settings) -> Solved:
+    import mujoco
+
+    model = mujoco.MjModel.from_xml_string(mjcf(body, settings))
+
+    def start() -> Engine:
+        data = mujoco.MjData(model)
+        data.qpos[3:7] = body.attitude
+        data.qvel[3:6] = body.omega
+        mujoco.mj_forward(model, data)
+        return (
+            lambda steps: mujoco.mj_step(model, data, steps),
+            lambda: body.row(data.qvel[3:6], data.qpos[3:7]),
+        )
+
+    return stepped(body, settings.step, start, remark(body, compiled_inertia(model)))
+
+
+def mjcf(body: FreeBody, settings: Settings) -> str:
+    """Return the model in MuJoCo's own format; repr of a double is read back as that double."""
+    (a, d, e), (_, b, f), (_, _, c) = body.inertia
+    inertia = f'fullinertia="{numbers([a, b, c, d, e, f])}"'
+    if settings.inertia == "principal":
+        moments, turn = principal(body.inertia)
+        inertia = f'diaginertia="{numbers(moments)}" quat="{numbers(turn)}"'
+    return f"""
+        <mujoco>
+          <option timestep="{settings.step!r}" integrator="{settings.integrator}" gravity="0 0 0"/>
+          <worldbody><body>
+            <freejoint/>
+            <inertial pos="0 0 0" mass="1" {inertia}/>
+          </body></worldbody>
+        </mujoco>"""
+
+
+def numbers(values: Any) -> str:
+    return " ".join(repr(float(value)) for value in values)
+
+
+def compiled_inertia(model: Any) -> list[list[float]]:
+    """Return the tensor in body axes that the compiler has made of the one in the model."""
+    import mujoco
+    import numpy
+
+    axes = numpy.zeros(9)
+    mujoco.mju_quat2Mat(axes, model.body_iquat[1])
+    R = axes.reshape(3, 3)
+    tensor: list[list[float]] = (R @ numpy.diag(model.body_inertia[1]) @ R.T).tolist()
+    return tensor
+
+
+def remark(body: FreeBody, compiled: list[list[float]]) -> str:
+    """Return a sentence on how far the compiled tensor is from the one that was given."""
+    given = [entry for row in body.inertia for entry in row]
+    has = [entry for row in compiled for entry in row]
+    error = max(abs(a - b) for a, b in zip(given, has, strict=True)) / max(map(abs, given))
+    return f"the compiled inertia is off by {error:.1e} of its largest entry"
+
+
+if __name__ == "__main__":
+    answer(solve)
