@@ -19,7 +19,7 @@ from builders.scenes import THREE_INSTANTS
 from packaging.specifiers import SpecifierSet
 
 from taylor_verify.models.problem import Problem, pose
-from taylor_verify.records.quantities import STATES
+from taylor_verify.records.quantities import INITIAL, STATES
 from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.scenes.precision import rung
@@ -327,7 +327,7 @@ def test_an_engine_begins_with_the_start_and_comes_nearer_with_the_step(
         verdicts = {
             v.quantity: v for v in run(scene, f"outside:{one.name}?step={step}", on).verdicts
         }
-        assert verdicts["initial"].verdict is Status.PASS
+        assert verdicts[INITIAL].verdict is Status.PASS
         errors.append(max(v.max or 0 for v in verdicts.values() if v.quantity in STATES))
     # Half the error is the first order, to which rounding adds its part on the coarsest rung.
     assert errors[1] <= 0.6 * errors[0]
