@@ -19,7 +19,7 @@ console.log = console.info = console.error;
 export async function answer(solve) {
   const settings = Object.fromEntries(process.argv.slice(2).map(setting));
   const body = freeBody(JSON.parse(readFileSync(0, "utf8")));
-  const { rows, ...work } = await solve(body, settings).catch(refuse);
+  const { rows, ...work } = await (async () => solve(body, settings))().catch(refuse);
   const states = body.asksStart ? rows : rows.slice(1);
   // JSON has the decimal to which the number is the nearest double.
   const columns = body.columns.map((name, i) => [name, states.map((row) => row[i])]);
