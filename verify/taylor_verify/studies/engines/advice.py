@@ -16,13 +16,12 @@ from taylor_verify.studies.engines.ranking import (
     best_of,
     newest,
     settings,
-    shared_scenes,
 )
 
 # What most uses of an engine ask for: a milliradian, or a thousandth of omega.
 ENOUGH: Final = 1e-3
-# An error as large as this part of the motion is no answer.
-LOST: Final = 0.5
+# A body that is off by so much is somewhere else.
+LOST: Final = 0.05
 # A setting is warned of where another one of the same engine has an error so many times smaller.
 FAR_WORSE: Final = 10.0
 # Errors that smaller steps make so many times larger.
@@ -34,7 +33,7 @@ def advice(board: Board, entries: EntryList) -> list[str]:
     names = {row.name: row.title for row in entries.entry}
     plain = {row.name for row in entries.entry if row.plain}
     warnings = {row.name: row.warning for row in entries.entry if row.shipped}
-    every, scenes = settings(board.study), shared_scenes(board.study)
+    every, scenes = settings(board.study), entries.advised
     engines = [one for one in newest(every) if one.engine not in plain]
     shipped = [one for one in newest(every, shipped=True) if one.engine not in plain]
     return [
@@ -73,26 +72,33 @@ def _take(
 def _never(
     engines: Sequence[Setting], scenes: Sequence[str], names: dict[str, str]
 ) -> Iterator[str]:
-    """Yield the methods that lose the motion at every step, beside one of the same engine that does not."""
-    for _, group in groupby(engines, key=lambda one: one.engine):
-        own = [(one, best) for one in group if (best := best_of(one.scores(scenes))) is not None]
-        least = min((best.error for _, best in own), default=0.0)
-        lost = [(one, best) for one, best in own if best.error >= LOST]
-        for one, best in lost:
-            drift = best.row.errors.get("T")
-            energy = (
-                f" while it conserves the energy to {figure(drift)}" if drift is not None else ""
+    """Yield a sentence for each engine with methods that lose the motion at every step."""
+    for engine, group in groupby(engines, key=lambda one: one.engine):
+        own = [best for one in group if (best := best_of(one.scores(scenes))) is not None]
+        lost = [best for best in own if best.error >= LOST]
+        sound = best_of(best for best in own if best.error < LOST)
+        if not lost:
+            continue
+        least = min(lost, key=lambda best: best.error)
+        name = bold(prose(f"{names[engine]} {least.setting.version}".strip()))
+        at_best = f"at its best step {_energy(least)}"
+        if sound is None:
+            yield (
+                f"Never {name} for free rotation: no setting of it that was measured follows the motion; "
+                f"the least error is {figure(least.error)}, {at_best}."
             )
-            if least * FAR_WORSE <= best.error:
-                yield (
-                    f"Never {named(one, names)}: at no step measured here is its error below "
-                    f"{figure(best.error)}{energy}."
-                )
-            elif one is lost[0][0]:
-                yield (
-                    f"Never {named(one, names)} for free rotation: no setting of it that was measured "
-                    f"has an error below {figure(least)}{energy}."
-                )
+        elif sound.error * FAR_WORSE <= least.error:
+            words = " or ".join(prose(best.setting.words) for best in lost)
+            better = prose(sound.setting.words)
+            yield (
+                f"Never {name} with {words}: the least error is {figure(least.error)}, {at_best}; "
+                f"{better} has {figure(sound.error)}."
+            )
+
+
+def _energy(score: Score) -> str:
+    drift = score.row.errors.get("T")
+    return f"with a drift of the energy of {figure(drift)}"
 
 
 def _as_shipped(

@@ -33,10 +33,15 @@ FILE: Final = Path(__file__).with_name("entries.toml")
 
 @dataclass(frozen=True)
 class BoardScene:
-    """A scene of the board; no step below ``least`` is run on it."""
+    """A scene of the board; no step below ``least`` is run on it.
+
+    The advice rests on the scenes that say so, older versions are run on those of a ``sweep``, and
+    ``shipped`` ones are those of the table "as shipped".
+    """
 
     name: str
     least: float = 0.0
+    advice: bool = False
     sweep: bool = False
     shipped: bool = False
 
@@ -141,6 +146,11 @@ class EntryList:
     def engines(self) -> tuple[str, ...]:
         """The names of the engines in the order of the list, each once."""
         return tuple(dict.fromkeys(row.name for row in self.entry))
+
+    @property
+    def advised(self) -> list[str]:
+        """The scenes that the advice rests on."""
+        return [scene.name for scene in self.scene if scene.advice]
 
     def runs(self) -> list[Asked]:
         """Return every run, each once."""

@@ -1,7 +1,7 @@
 """The runs of the entry list, each in processes of its own, and the board that they make.
 
-A run that is stored already, with the same scene, setting, version and adapter, is not run again. What an
-engine that cannot be installed would have answered is a row `unavailable`, and is asked for anew next time.
+A run that is stored already, with the same scene, setting, version and adapter, is not run again. Runs that
+failed, and those of an engine that could not be installed, are asked for again by the next measurement.
 """
 
 from __future__ import annotations
@@ -50,14 +50,13 @@ def measure(
     comes.
     """
     every = entries.runs()
-    answers = {
-        key: answer for key, answer in known.items() if answer.row.is_judged or _is_final(answer)
-    }
-    answers |= {answer.row.key: answer for answer in store.answers()}
+    ended_before = {answer.row.key: answer for answer in store.answers()}
+    done_with = {key: answer for key, answer in known.items() if _is_final(answer)} | ended_before
+    answers = {**known, **ended_before}
     waiting = [
         run
         for run in every
-        if (not only or run.entry.name in only) and not _is_current(run, answers.get(run.key))
+        if (not only or run.entry.name in only) and not _is_current(run, done_with.get(run.key))
     ]
     lacking = _prepared(waiting, say)
     for run in waiting:
@@ -78,16 +77,13 @@ def measure(
 
 
 def _is_final(answer: Answer) -> bool:
-    return answer.row.standing is not Standing.UNAVAILABLE
+    return answer.row.standing in (Standing.JUDGED, Standing.UNSUITED)
 
 
 def _is_current(run: Asked, answer: Answer | None) -> bool:
     """Return True for an answer to this scene by this adapter, which need not be asked for again."""
-    return (
-        answer is not None
-        and _is_final(answer)
-        and answer.row.made_of == made_of(run.scene, run.entry.solver)
-    )
+    digest = made_of(run.scene, run.entry.solver)
+    return answer is not None and answer.row.made_of == digest
 
 
 def _environment(run: Asked) -> str:

@@ -26,7 +26,6 @@ from taylor_verify.studies.engines.ranking import (
     digits,
     newest,
     settings,
-    shared_scenes,
 )
 from taylor_verify.studies.engines.stored import ENGINES, TIMINGS
 
@@ -104,10 +103,10 @@ def pictures(board: Board) -> list[Picture]:
 
 def _best(board: Board, entries: EntryList, every: Sequence[Setting]) -> str:
     """Return a line for each engine: its best setting on the scenes that all of them take."""
-    scenes = shared_scenes(board.study) or ["engines/oblique"]
+    scene = entries.advised[0]
     titles, rows = {row.name: row.title for row in entries.entry}, []
     for engine, group in groupby(newest(every), key=lambda one: one.engine):
-        scores = [score for one in group for score in one.scores(scenes[:1])]
+        scores = [score for one in group for score in one.scores([scene])]
         best = min(scores, key=lambda score: score.error, default=None)
         if best is not None:
             name = f"[{prose(titles.get(engine, engine))}]({place(engine).removeprefix('tables/')})"
@@ -126,7 +125,7 @@ def _best(board: Board, entries: EntryList, every: Sequence[Setting]) -> str:
         "energy:",
         "time:",
     ]
-    return f"On {code(scenes[0])}, each engine with its best setting:\n\n{table(columns, rows)}"
+    return f"On {code(scene)}, each engine with its best setting:\n\n{table(columns, rows)}"
 
 
 def _cells(board: Board, setting: Setting, row: EngineRow) -> list[str]:

@@ -110,28 +110,3 @@ def best_of(scores: Iterable[Score]) -> Score | None:
 def digits(error: float) -> float:
     """Return the decimal digits that are right; none of an error as large as the motion, or no number."""
     return max(0.0, -log10(error)) if 0 < error < inf else (0.0 if error else inf)
-
-
-def free_scenes(study: EnginesStudy) -> list[str]:
-    """Return the scenes of free rotation, in the order of the list."""
-    scenes = dict.fromkeys(row.scene for row in study.rows)
-    rotating = {row.scene for row in study.rows if "omega" in row.floors}
-    return [scene for scene in scenes if scene in rotating]
-
-
-def shared_scenes(study: EnginesStudy) -> list[str]:
-    """Return the scenes of free rotation on which every engine was judged at every step of its rows.
-
-    These compare all engines; a scene that some engines do not take, or not with every step, is apart.
-    """
-    every = newest(settings(study))
-    judged = [one for one in every if any(row.is_judged for row in one.rows)]
-    return [
-        scene
-        for scene in free_scenes(study)
-        if all(
-            {row.value for row in one.on(scene)} >= {row.value for row in one.rows if row.is_judged}
-            for one in judged
-            if any("omega" in row.floors for row in one.rows)
-        )
-    ]

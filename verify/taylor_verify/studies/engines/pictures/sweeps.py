@@ -107,13 +107,15 @@ def _figure(drawn: Sequence[Sweep]) -> Figure:
         axes.set_title(f"{sweep.title}, step {sweep.step}", pad=4)
         errors = [e for line in sweep.lines.values() for e in line if e is not None]
         axes.set(yscale="log", ylabel="largest error", ylim=widened(errors, 0.1, 0.1))
-        axes.set(xlim=(-0.4, len(sweep.versions) - 0.3))
+        positions = range(1, len(sweep.versions) + 1)
+        axes.set(xlim=(0.6, len(sweep.versions) + 0.7))
         number_axes(axes)
-        axes.set_xticks(range(len(sweep.versions)), sweep.versions, rotation=45, ha="right")
+        axes.set_xticks(positions, sweep.versions, rotation=45, ha="right")
         named = []
         for number, (name, line) in enumerate(sweep.lines.items()):
             look = look_of_line(number)
-            points = [(float(k), e) for k, e in enumerate(line) if e is not None]
+            pairs = zip(positions, line, strict=True)
+            points = [(float(k), e) for k, e in pairs if e is not None]
             axes.plot(*zip(*points, strict=True), gid=name, zorder=3, **look.line)
             named.append(Named(name, look.colour, [points]))
         write_names(axes, named)

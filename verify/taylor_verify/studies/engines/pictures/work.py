@@ -17,7 +17,7 @@ from taylor_verify.publish.pictures.style import DASHED, Look, look_of_line
 from taylor_verify.publish.pictures.wording import plain
 from taylor_verify.studies.engines.document import Board, EngineRow
 from taylor_verify.studies.engines.entry import EntryList
-from taylor_verify.studies.engines.ranking import Setting, newest, settings, shared_scenes
+from taylor_verify.studies.engines.ranking import Setting, newest, settings
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -46,17 +46,15 @@ class Panel:
 
 def pictures(board: Board, entries: EntryList) -> list[Picture]:
     """Return error against time and error against step; none without a judged run above zero."""
-    scenes = shared_scenes(board.study)
-    if not scenes:
-        return []
-    time = panels(board, entries, scenes[0], board.pace, 1e6)
-    step = panels(board, entries, scenes[0], _step, 1.0)
+    scene = entries.advised[0]
+    time = panels(board, entries, scene, board.pace, 1e6)
+    step = panels(board, entries, scene, _step, 1.0)
     found = []
     if time:
         axis = "processor time for a second of the motion (µs)"
-        found.append(_picture(scenes[0], "time", axis, time))
+        found.append(_picture(scene, "time", axis, time))
     if step:
-        found.append(_picture(scenes[0], "step", "step (s)", step))
+        found.append(_picture(scene, "step", "step (s)", step))
     return found
 
 
