@@ -194,8 +194,7 @@ def test_the_principal_frame_makes_the_tensor_again() -> None:
 def test_the_axial_impulse_follows_the_quartic() -> None:
     """X3(x3) = (x1 y2 - x2 y1)^2 all along the course: Hydromechanics 49 (9), with the axes renamed.
 
-    y is about the point of the axis where T is of Clebsch's form: a distance a from the origin takes
-    a (x1^2 + x2^2) from x1 y2 - x2 y1.
+    y is about the point where T is of Clebsch's form: y - d x x, with d from the origin to it.
     """
     for name in with_quartic():
         found = stored(name)
@@ -205,8 +204,9 @@ def test_the_axial_impulse_follows_the_quartic() -> None:
         coefficients = found["potential"]["coefficients"]
         value = np.polyval(coefficients, x[axis])
         largest = np.polyval(np.abs(coefficients), np.abs(x[axis]))
-        distance = symmetric_origin(solid(load(name))[0])[axis]
-        moment = x[i] * y[k] - x[k] * y[i] - float(distance) * (x[i] ** 2 + x[k] ** 2)
+        d = [float(entry) for entry in symmetric_origin(solid(load(name))[0])]
+        y = y - np.cross(d, x.T).T
+        moment = x[i] * y[k] - x[k] * y[i]
         gap = np.abs(value - moment**2)
         assert (gap <= 1e-7 * largest.max()).all()
     assert len(with_quartic()) >= 20

@@ -1,0 +1,494 @@
+"""The reductions of a free solid, and the cases that they lead to: exact conditions, two routes, Taylor."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+from builders.numbers import apart
+from builders.scenes import COUPLE, FORCE, GENERAL, IMPULSE, one_instant, vector
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from mpmath import mp, mpf
+
+from taylor_verify.exact.carried import Back
+from taylor_verify.exact.elements import elements
+from taylor_verify.exact.kirchhoff import isotropic
+from taylor_verify.exact.kirchhoff.displaced import about, centred, moved, symmetric_origin
+from taylor_verify.exact.kirchhoff.isotropic import less_coupling, less_linear
+from taylor_verify.exact.kirchhoff.reduced import Reduced
+from taylor_verify.exact.kirchhoff.solid import solid, velocities
+from taylor_verify.exact.rotation import rotation_matrix
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import NO_CLOSED_FORM, Number, Time
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.models.problem import pose
+from taylor_verify.records.precisions import LADDER
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
+from taylor_verify.scenes.motion import Impulse, Spin
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Matrix, Vector
+
+DIGITS = 25
+TIMES = [Fraction(0), Fraction(5, 4), Fraction(-2, 3)]
+LITTLE = Fraction(1, 10**60)
+AWAY = vector("0.5", "-0.25", "0.75")
+FRAME = (Fraction(1), Fraction(2), Fraction(-1), Fraction(3))
+PLACE = vector("1", "-2", "0.5")
+C = (vector(1.25, 0.125, -0.25), vector(0.125, 0.75, 0.125), vector(-0.25, 0.125, 0.5))
+X, Y = vector("0.5", "-0.25", "0.75"), vector("0.5", "-0.75", "0.25")
+
+
+def multiple(value: str) -> Matrix:
+    return tensors.diagonal((Fraction(value),) * 3)
+
+
+def whole(body: ImmersedBody, x: Vector = X, y: Vector = Y) -> Scene:
+    """A scene with attitude and centre, neither of them the usual one."""
+    return one_instant(body, Impulse(x, y, FRAME, PLACE), "attitude", "centre")
+
+
+def isotropic_body() -> Scene:
+    return whole(ImmersedBody(multiple("1.5"), multiple("0.25"), C))
+
+
+def impulse_free() -> Scene:
+    """No linear impulse, and A as it likes: the centre needs B = b 1."""
+    return whole(ImmersedBody(GENERAL.linear, multiple("0.25"), C), x=vector(0, 0, 0))
+
+
+def pendulum() -> Scene:
+    """A motion across axis 2 with B = b 1, but for what stands outside the plane."""
+    B = (vector("0.25", 0, 0), vector("0.125", "0.25", "-0.125"), vector(0, 0, "0.25"))
+    angular = (vector("0.75", 0, "0.125"), vector(0, 1, 0), vector("0.125", 0, "1.25"))
+    body = ImmersedBody(tensors.diagonal(vector(1, "1.5", "1.75")), B, angular)
+    return whole(body, vector("0.75", 0, "-0.5"), vector(0, "0.25", 0))
+
+
+def revolved() -> Scene:
+    six = ("1", "1", "1.5"), ("0.125", "0.125", "0.25"), ("0.75", "0.75", "1.25")
+    return whole(ImmersedBody(*(tensors.diagonal(vector(*entries)) for entries in six)))
+
+
+def held_screw() -> Scene:
+    """All 21 coefficients, and the loads that keep x and y as they are."""
+    U, Omega = velocities(GENERAL, Impulse(X, Y))
+    force = tensors.cross(Omega, X)
+    couple = tensors.plus(tensors.cross(Omega, Y), tensors.cross(U, X))
+    return whole(replace(GENERAL, force=force, couple=couple))
+
+
+CASES: dict[str, tuple[Callable[[], Scene], str]] = {
+    "isotropic": (isotropic_body, "max-axis"),
+    "impulse-free": (impulse_free, "max-axis"),
+    "pendulum": (pendulum, "planar-swing"),
+    "revolved": (revolved, "four-roots"),
+}
+
+
+def found_by_both(scene: Scene, times: list[Fraction] = TIMES) -> list[Any]:
+    return [solution(scene, route).motion(times, DIGITS) for route in ("arb", "mpmath")]
+
+
+# The reductions themselves.
+
+
+def integrals(scene: Scene) -> tuple[Any, ...]:
+    """T, F^2, FG, and in space the impulse and the moment of the impulses, in rationals."""
+    body, start = solid(scene)
+    x, y, R = start.linear, start.angular, rotation_matrix(start.attitude)
+    T = tensors.dot(x + y, tensors.apply(body.energy_matrix, x + y)) / 2
+    X0 = tensors.apply(R, x)
+    moment = tensors.plus(tensors.apply(R, y), tensors.cross(start.centre, X0))
+    return T, tensors.dot(x, x), tensors.dot(x, y), X0, moment
+
+
+def test_another_origin_changes_no_integral() -> None:
+    """T, F^2, FG and both momenta in space are the same numbers about every origin."""
+    scene = one_instant(GENERAL, IMPULSE)
+    assert integrals(moved(scene, AWAY)) == integrals(scene)
+
+
+def test_another_origin_has_its_own_velocity() -> None:
+    """About the origin moved by d it is U + Omega x d, and Omega is the same."""
+    scene = one_instant(GENERAL, IMPULSE)
+    U, Omega = velocities(*solid(scene))
+    there = velocities(*solid(moved(scene, AWAY)))
+    assert there == (tensors.plus(U, tensors.cross(Omega, AWAY)), Omega)
+
+
+def test_to_another_origin_and_back_is_nothing() -> None:
+    """The displacements by d and by -d undo each other, coefficient by coefficient."""
+    scene = one_instant(GENERAL, IMPULSE)
+    assert moved(moved(scene, AWAY), tensors.scaled(Fraction(-1), AWAY)) == scene
+
+
+def test_b_is_symmetric_about_one_origin() -> None:
+    """There the displacement to it is zero, and it is found again from any other origin."""
+    scene = one_instant(GENERAL, IMPULSE)
+    d = symmetric_origin(GENERAL)
+    there = moved(scene, d)
+    body, _ = solid(there)
+    assert tensors.is_symmetric(body.coupling)
+    assert tensors.is_symmetric(body.linear)
+    assert not any(symmetric_origin(body))
+    back = symmetric_origin(solid(moved(there, AWAY))[0])
+    assert back == tensors.scaled(Fraction(-1), AWAY)
+
+
+REDUCTIONS: dict[str, Callable[[Reduced], Reduced]] = {
+    "centred": centred,
+    "moved": lambda found: about(found, AWAY, "somewhere"),
+    "less b": lambda found: less_coupling(found, Fraction(-1, 3)),
+    "less p": lambda found: less_linear(found, Fraction(3, 10)),
+    "all": lambda found: less_linear(less_coupling(centred(found), Fraction(1, 7)), Fraction(1, 5)),
+}
+
+
+@pytest.mark.parametrize("name", REDUCTIONS)
+def test_the_way_back_leads_to_the_motion_of_the_scene(name: str) -> None:
+    """A body of 21 coefficients, reduced, integrated and carried back, moves as it does unreduced."""
+    scene = whole(GENERAL)
+    reduced = REDUCTIONS[name](Reduced(scene))
+    inner = TaylorSolution(reduced.scene)
+    expected = TaylorSolution(scene).motion(TIMES, DIGITS)
+    found = reduced.carried_back(inner).motion(TIMES, DIGITS)
+    with mp.workdps(DIGITS + 20):
+        assert apart(found, expected) <= 3 * mpf(10) ** -DIGITS
+
+
+def test_without_linear_impulse_a_multiple_in_b_is_a_straight_drift() -> None:
+    """x = 0: space does not turn, and the centre gains b Y0 t."""
+    scene = whole(GENERAL, x=vector(0, 0, 0))
+    reduced = less_coupling(Reduced(scene), Fraction(1, 9))
+    expected = TaylorSolution(scene).motion(TIMES, DIGITS)
+    found = reduced.carried_back(TaylorSolution(reduced.scene)).motion(TIMES, DIGITS)
+    with mp.workdps(DIGITS + 20):
+        assert apart(found, expected) <= 3 * mpf(10) ** -DIGITS
+
+
+def wrongly(change: Callable[[dict[str, Any], dict[str, Any]], None], right: Back) -> Back:
+    """A way back that is changed after the event, given what came in and what went out."""
+
+    def back(rows: dict[str, Any], elapsed: list[Time], number: Number) -> None:
+        before = {name: entries.copy() for name, entries in rows.items()}
+        right(rows, elapsed, number)
+        change(before, rows)
+
+    return back
+
+
+def on_the_right(before: dict[str, Any], rows: dict[str, Any]) -> None:
+    """R' Q for Q R'."""
+    turns = rows["attitude"] @ before["attitude"].transpose(0, 2, 1)
+    rows["attitude"] = before["attitude"] @ turns
+
+
+def not_turned(before: dict[str, Any], rows: dict[str, Any]) -> None:
+    """centre' for Q centre'."""
+    turns = rows["attitude"] @ before["attitude"].transpose(0, 2, 1)
+    path = before["centre"][:, :, None]
+    rows["centre"] = rows["centre"] + (path - turns @ path)[:, :, 0]
+
+
+@pytest.mark.parametrize("twin", [on_the_right, not_turned])
+@pytest.mark.parametrize("route", ["arb", "mpmath"])
+def test_a_space_that_turns_on_the_wrong_side_is_seen(
+    twin: Callable[..., None], route: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The broken twins of the way back from a body with b 1 less in B."""
+    right = isotropic._turned
+    monkeypatch.setattr(isotropic, "_turned", lambda b, start: wrongly(twin, right(b, start)))
+    scene = pendulum()
+    found = solution(scene, route).motion(TIMES, DIGITS)
+    with mp.workdps(DIGITS + 20):
+        assert apart(found, TaylorSolution(scene).motion(TIMES, DIGITS)) > 1e-3
+
+
+# The cases, by both routes and against Taylor.
+
+
+@pytest.mark.parametrize("away", [vector(0, 0, 0), AWAY], ids=["centred", "displaced"])
+@pytest.mark.parametrize("name", CASES)
+def test_both_routes_are_the_taylor_motion(name: str, away: Vector) -> None:
+    """Impulses, attitude and centre, about the special origin and beside it."""
+    build, word = CASES[name]
+    scene = moved(build(), away)
+    expected = TaylorSolution(scene).motion(TIMES, DIGITS)
+    for route in ("arb", "mpmath"):
+        exact = solution(scene, route)
+        assert exact.regime == word
+        found = exact.motion(TIMES, DIGITS)
+        assert set(found.quantities) == set(expected.quantities)
+        with mp.workdps(DIGITS + 20):
+            assert apart(found, expected) <= 2 * mpf(10) ** -DIGITS
+
+
+def test_a_screw_held_by_loads_is_the_taylor_motion() -> None:
+    """x and y stay as they are, exactly; the body turns about one line and advances along it."""
+    scene = held_screw()
+    expected = TaylorSolution(scene).motion(TIMES, DIGITS)
+    for route in ("arb", "mpmath"):
+        exact = solution(scene, route)
+        assert exact.regime == "steady"
+        found = exact.motion(TIMES, DIGITS)
+        assert np.all(found["linear_impulse"] == found["linear_impulse"][0])
+        with mp.workdps(DIGITS + 20):
+            assert apart(found, expected) <= 2 * mpf(10) ** -DIGITS
+
+
+@pytest.mark.parametrize("x", [vector(0, 0, 0), X], ids=["at rest", "drifting"])
+def test_a_body_that_does_not_turn_goes_straight_on(x: Vector) -> None:
+    """Omega = 0 under no loads: U is constant, and the path is rational."""
+    body = ImmersedBody(multiple("1.5"), tensors.ZERO_MATRIX, C)
+    scene = whole(body, x, vector(0, 0, 0))
+    assert solution(scene).regime in ("steady", "planar-steady", "rest")
+    one, other = found_by_both(scene)
+    way = tensors.scaled(Fraction(15, 8), tensors.apply(rotation_matrix(FRAME), x))
+    with mp.workdps(DIGITS + 20):
+        assert apart(one, other) <= 2 * mpf(10) ** -DIGITS
+        for c, first, step in zip(one["centre"][1], PLACE, way, strict=True):
+            assert abs(c - mp.convert(first + step)) <= mpf(10) ** (1 - DIGITS)
+
+
+@pytest.mark.parametrize("track", [frozenset(), frozenset({"attitude"})])
+def test_without_linear_impulse_impulse_and_attitude_are_always_closed(track: set[str]) -> None:
+    """A and B are as they like; with the centre there is no closed form."""
+    start = Impulse(vector(0, 0, 0), Y, FRAME, PLACE)
+    scene = one_instant(GENERAL, start, *track)
+    expected = TaylorSolution(scene).motion(TIMES, DIGITS)
+    with mp.workdps(DIGITS + 20):
+        for found in found_by_both(scene):
+            assert apart(found, expected) <= 2 * mpf(10) ** -DIGITS
+    pathless = one_instant(GENERAL, start, "attitude", "centre")
+    assert solution(pathless).regime == NO_CLOSED_FORM
+    assert elements(pathless).regime == NO_CLOSED_FORM
+    assert "The path of the origin has no closed form." in elements(pathless).sentences
+
+
+# The conditions are exact.
+
+
+def with_entry(body: ImmersedBody, block: str, i: int, j: int, amount: Fraction) -> ImmersedBody:
+    rows = [list(row) for row in getattr(body, block)]
+    rows[i][j] += amount
+    if block != "coupling" and i != j:
+        rows[j][i] += amount
+    return replace(body, **{block: tuple(map(tuple, rows))})
+
+
+ENTRIES = [
+    *(("linear", i, j) for i in range(3) for j in range(i, 3)),
+    *(("coupling", i, j) for i in range(3) for j in range(i, 3)),
+]
+
+
+@pytest.mark.parametrize(("block", "i", "j"), ENTRIES)
+def test_what_is_nearly_isotropic_is_not(block: str, i: int, j: int) -> None:
+    """One entry of A or B, 10^-60 off about the origin where B is symmetric: no closed form."""
+    scene = isotropic_body()
+    body = with_entry(solid(scene)[0], block, i, j, LITTLE)
+    if block == "coupling" and i != j:
+        body = with_entry(body, block, j, i, LITTLE)
+    near = moved(replace(scene, body=body), AWAY)
+    assert solution(moved(scene, AWAY)).regime == "max-axis"
+    assert solution(near).regime == NO_CLOSED_FORM
+
+
+@pytest.mark.parametrize("k", range(3))
+def test_a_part_of_b_that_is_not_symmetric_is_only_another_origin(k: int) -> None:
+    """B and A made so by a displacement of 10^-60: closed, for it is the same body."""
+    d = tuple(LITTLE * (n == k) for n in range(3))
+    assert solution(moved(isotropic_body(), d)).regime == "max-axis"
+
+
+@pytest.mark.parametrize("k", range(3))
+def test_a_linear_impulse_of_1e_60_is_one(k: int) -> None:
+    """Of a body without symmetry nothing is closed any more."""
+    x = tuple(LITTLE * (n == k) for n in range(3))
+    assert solution(one_instant(GENERAL, Impulse(x, Y))).regime == NO_CLOSED_FORM
+
+
+@pytest.mark.parametrize("name", ["force", "couple"])
+@pytest.mark.parametrize("k", range(3))
+def test_a_screw_that_is_nearly_held_is_not_steady(name: str, k: int) -> None:
+    """A load 10^-60 off, and the motion leaves: an unstable screw must not look like a steady one."""
+    scene = held_screw()
+    body, _ = solid(scene)
+    little = tuple(LITTLE * (n == k) for n in range(3))
+    near = replace(body, **{name: tensors.plus(getattr(body, name), little)})
+    assert solution(scene).regime == "steady"
+    assert solution(replace(scene, body=near)).regime == NO_CLOSED_FORM
+
+
+@pytest.mark.parametrize("k", range(6))
+def test_a_start_that_is_nearly_steady_is_not(k: int) -> None:
+    """The shipped unstable screw of a free body with a seed of 10^-60 in one component."""
+    scene = load("kirchhoff/steady-screw")
+    body, start = solid(scene)
+    seed = tuple(LITTLE * (n == k) for n in range(6))
+    moving = tensors.plus(start.moving, seed)
+    assert solution(scene).regime == "steady"
+    near = replace(start, linear=moving[:3], angular=moving[3:])
+    assert solution(replace(scene, initial=near, body=body)).regime == NO_CLOSED_FORM
+
+
+@pytest.mark.parametrize(
+    ("block", "i", "j"), [("coupling", 0, 0), ("coupling", 1, 1), ("coupling", 0, 2)]
+)
+def test_a_pendulum_whose_b_is_nearly_common_is_none(block: str, i: int, j: int) -> None:
+    """An entry of B in the plane 10^-60 off, about the symmetric origin or any other."""
+    scene = pendulum()
+    near = replace(scene, body=with_entry(solid(scene)[0], block, i, j, LITTLE))
+    assert solution(moved(scene, AWAY)).regime == "planar-swing"
+    assert solution(moved(near, AWAY)).regime == NO_CLOSED_FORM
+
+
+def test_the_other_origins_of_a_pendulum_are_found() -> None:
+    """Terms of x in Omega across the plane are those of an origin beside: closed, and the same motion."""
+    scene = pendulum()
+    body = with_entry(solid(scene)[0], "coupling", 0, 1, Fraction(1, 8))
+    askew = replace(scene, body=body)
+    exact = solution(askew)
+    assert exact.regime.startswith("planar-")
+    expected = TaylorSolution(askew).motion(TIMES, DIGITS)
+    with mp.workdps(DIGITS + 20):
+        for found in found_by_both(askew):
+            assert apart(found, expected) <= 2 * mpf(10) ** -DIGITS
+
+
+def test_under_loads_nothing_else_is_closed() -> None:
+    """Each case has none under a force or a couple that does not hold it."""
+    for build, _ in CASES.values():
+        scene = build()
+        body, _ = solid(scene)
+        for loaded in (replace(body, force=FORCE), replace(body, couple=COUPLE)):
+            assert solution(replace(scene, body=loaded)).regime == NO_CLOSED_FORM
+
+
+# Weber's family beside other origins.
+
+
+def test_weber_is_found_beside_its_origin() -> None:
+    """A common b and another origin leave theta functions: the impulses, carried back, by both routes."""
+    scene = load("kirchhoff/weber")
+    body, _ = solid(scene)
+    screwed = replace(scene, body=replace(body, coupling=multiple("0.125")))
+    aside = moved(screwed, AWAY)
+    assert solution(aside).regime == "weber"
+    expected = TaylorSolution(aside).motion(TIMES, DIGITS)
+    with mp.workdps(DIGITS + 20):
+        for found in found_by_both(aside):
+            assert apart(found, expected) <= 2 * mpf(10) ** -DIGITS
+
+
+# Bodies drawn at random: small and large, and nearly degenerate.
+
+entries = st.integers(-12, 12).map(lambda n: Fraction(n, 8))
+vectors = st.tuples(entries, entries, entries)
+sizes = st.sampled_from([0, 0, -20, -40, 6]).map(lambda e: Fraction(10) ** e)
+starts = st.builds(
+    lambda x, y, a, b: Impulse(tensors.scaled(a, x), tensors.scaled(b, y), FRAME, PLACE),
+    *(vectors, vectors, sizes, sizes),
+)
+places = st.builds(tensors.scaled, sizes, vectors)
+
+
+@st.composite
+def inertias(draw: st.DrawFn) -> Matrix:
+    """Positive definite matrices, some with two eigenvalues that agree, or agree to 10^-40."""
+    if draw(st.booleans()):
+        gap = draw(st.sampled_from([Fraction(0), LITTLE, Fraction(1, 10**12)]))
+        return tensors.diagonal((Fraction(1), 1 + gap, Fraction(draw(st.integers(1, 9)), 4)))
+    a, b, c = draw(vectors), draw(vectors), draw(vectors)
+    rows = tuple(
+        tensors.plus(row, unit) for row, unit in zip((a, b, c), multiple("4"), strict=True)
+    )
+    return tensors.product(rows, tensors.transpose(rows))
+
+
+@given(inertias(), starts, places, entries)
+@settings(max_examples=40, deadline=None)
+def test_the_routes_overlap_on_tops(C: Matrix, start: Impulse, d: Vector, b: Fraction) -> None:
+    """Isotropic linear parts of every size about every origin, in every regime."""
+    body = ImmersedBody(multiple("9"), tensors.diagonal((b / 20,) * 3), C)
+    scene = moved(one_instant(body, start, "attitude", "centre"), d)
+    one, other = found_by_both(scene, [Fraction(0), Fraction(1, 3), Fraction(-400)])
+    with mp.workdps(DIGITS + 20):
+        assert apart(one, other) <= 2 * mpf(10) ** -DIGITS
+
+
+# What ships, and what is said of it.
+
+SHIPPED = {
+    "axis-beside-the-origin": "four-roots",
+    "displaced-origin": "max-axis",
+    "no-linear-impulse": "min-axis",
+    "steady-screw-under-loads": "steady",
+    "wound-pendulum": "planar-swing",
+}
+
+
+@pytest.mark.parametrize("step", LADDER)
+@pytest.mark.parametrize("name", SHIPPED)
+def test_what_ships_is_of_its_case_on_every_rung(name: str, step: str) -> None:
+    """The conditions survive the rounding of each rung."""
+    given = pose(load(f"kirchhoff/{name}"), rung(step)).given
+    assert solution(given).regime == SHIPPED[name]
+
+
+def test_the_reductions_are_told_in_order() -> None:
+    """Where B is symmetric, and the multiples of 1 that it and A have there."""
+    first = elements(load("kirchhoff/displaced-origin")).sentences[0]
+    assert first == (
+        "Solved about the origin moved by (0.5, -0.75, -0.25), where B is symmetric; less b = 0.25 in B, "
+        "which only turns space about the impulse; less p = 1.5 in A, which only drifts along the impulse."
+    )
+
+
+def test_the_elements_are_those_of_the_inner_motion() -> None:
+    """y of a displaced top recurs about its own origin after the period of the top, x.y as ever."""
+    scene = moved(isotropic_body(), AWAY)
+    assert elements(scene)["period"].value == elements(isotropic_body())["period"].value
+    axis = elements(load("kirchhoff/axis-beside-the-origin")).sentences
+    assert any("y3 about that origin" in line for line in axis)
+
+
+def test_the_pitch_of_a_screw_is_its_way_in_one_turn() -> None:
+    """After one turn the attitude is back, and the centre has gone the pitch along the axis."""
+    scene = held_screw()
+    found = elements(scene, 30)
+    period = Fraction(str(mp.nstr(found["turn_period"].value, 30)))
+    motion = solution(scene).motion([Fraction(0), period], DIGITS)
+    with mp.workdps(40):
+        turned = motion["attitude"][1] - motion["attitude"][0]
+        assert max(abs(entry) for entry in turned.flat) <= mpf(10) ** -23
+        way = mp.norm(list(motion["centre"][1] - motion["centre"][0]))
+        assert abs(way - abs(found["pitch"].value)) <= mpf(10) ** -23
+    assert not any("beside" in line or "screws with" in line for line in found.sentences)
+
+
+# A rigid body under a moment that its own rotation balances.
+
+
+@pytest.mark.parametrize("moments", [(1, 2, 3), (1, 1, 3), (2, 1, 1)], ids=str)
+def test_a_balanced_rotation_is_steady_with_its_attitude(moments: tuple[int, ...]) -> None:
+    """I w0 x w0 + M = 0 holds for bodies with equal moments too; 10^-60 off it does not."""
+    inertia, omega = tensors.diagonal(tuple(map(Fraction, moments))), vector("0.5", "-0.75", 1)
+    moment = tensors.cross(omega, tensors.apply(inertia, omega))
+    scene = one_instant(RigidBody(inertia, moment), Spin(omega, FRAME), "attitude")
+    expected = TaylorSolution(scene).motion(TIMES, DIGITS)
+    for route in ("arb", "mpmath"):
+        exact = solution(scene, route)
+        assert exact.regime == elements(scene).regime == "steady-moment"
+        with mp.workdps(DIGITS + 20):
+            assert apart(exact.motion(TIMES, DIGITS), expected) <= 2 * mpf(10) ** -DIGITS
+    near = replace(scene, body=RigidBody(inertia, (moment[0] + LITTLE, *moment[1:])))
+    assert solution(near).regime == NO_CLOSED_FORM
