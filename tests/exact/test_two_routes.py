@@ -37,13 +37,9 @@ def everything(scene: Scene) -> Scene:
     return replace(scene, track=frozenset({"attitude", "centre"}), initial=moved)
 
 
-<<<<<<< HEAD
-# No closed form of the attitude: under a moment that is not along an axis of symmetry. Weber's scene is
-# asked for the impulses alone, at all times; with the path it costs time in proportion to t.
-=======
-# No closed form of the attitude: under a moment that is not along an axis of symmetry, in Weber's case; and
-# of the path without linear impulse.
->>>>>>> reduce
+# No closed form of the attitude: under a moment that is not along an axis of symmetry; nor of the path
+# without linear impulse. Weber's scene is asked for the impulses alone, at all times; with the path it costs
+# time in proportion to t.
 STATE_ALONE = {
     *("euler/moment-across-axis", "euler/moment-across-no-spin"),
     *("euler/moment-oblique", "euler/moment-backward"),
