@@ -38,7 +38,7 @@ def everything(scene: Scene) -> Scene:
 
 
 # No closed form of the attitude: under a moment that is not along an axis of symmetry; nor of the path
-# without linear impulse. Weber's scene is asked for the impulses alone, at all times; with the path it costs
+# without linear impulse. Weber's scene is asked for the impulses alone; with the path it costs
 # time in proportion to t.
 STATE_ALONE = {
     *("euler/moment-across-axis", "euler/moment-across-no-spin"),
