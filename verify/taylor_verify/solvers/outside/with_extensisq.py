@@ -43,7 +43,7 @@ def solve(question: Question, settings: Settings) -> Solved:
     method = getattr(extensisq, METHODS[settings.method])
     steps = 0
 
-    class Counted(method):  # type: ignore[misc, valid-type]
+    class Counted(method):  # type: ignore[valid-type]
         """The method with its steps counted: solve_ivp counts evaluations alone."""
 
         def step(self) -> Any:
