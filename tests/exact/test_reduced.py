@@ -425,6 +425,28 @@ def test_the_routes_overlap_on_tops(C: Matrix, start: Impulse, d: Vector, b: Fra
         assert apart(one, other) <= 2 * mpf(10) ** -DIGITS
 
 
+@given(starts, places, entries, st.sampled_from([0, 1, 2]), entries)
+@settings(max_examples=40, deadline=None)
+def test_the_routes_overlap_on_pendulums(
+    start: Impulse, d: Vector, b: Fraction, k: int, gap: Fraction
+) -> None:
+    """Across every axis, with a common b, nearly equal p, tiny impulses, about every origin."""
+    p = [Fraction(9)] * 3
+    p[k - 1] += gap * LITTLE if b > 1 else gap
+    across = tuple(Fraction(n == k) for n in range(3))
+    body = ImmersedBody(tensors.diagonal(tuple(p)), tensors.diagonal((b / 20,) * 3), multiple("1"))
+    flat = replace(
+        start,
+        linear=tensors.minus(start.linear, tensors.scaled(start.linear[k], across)),
+        angular=tensors.scaled(start.angular[k], across),
+    )
+    broken = with_entry(body, "angular", k - 1, k - 1, Fraction(1, 3))
+    scene = moved(one_instant(broken, flat, "attitude", "centre"), d)
+    one, other = found_by_both(scene, [Fraction(0), Fraction(1, 3), Fraction(-400)])
+    with mp.workdps(DIGITS + 20):
+        assert apart(one, other) <= 2 * mpf(10) ** -DIGITS
+
+
 # What ships, and what is said of it.
 
 SHIPPED = {

@@ -22,6 +22,7 @@ from taylor_verify.records.reason import Reason
 _UNITS = {
     "time": "time units",
     "1/time": "per time unit",
+    "length/time": "length per time unit",
     "radians/time": "radians per time unit",
 }
 
