@@ -37,7 +37,8 @@ package = json.loads(pathlib.Path("package.json").read_text())
 if "--offline" in sys.argv and not cache.exists():
     sys.exit("npm error code ENOTCACHED" + chr(10) + "npm error nothing is cached")
 if "9.9.9" in package["dependencies"].values():
-    sys.exit("npm error code ETARGET" + chr(10) + "npm error notarget No version 9.9.9")
+    said = ["code ETARGET", "notarget No version 9.9.9", "Log files were not written"]
+    sys.exit(chr(10).join(f"npm error {{line}} " for line in said))
 if "--package-lock-only" in sys.argv:
     pathlib.Path("package-lock.json").write_text(json.dumps({{"packages": {{"": package}}}}))
     sys.exit()

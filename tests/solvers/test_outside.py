@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import json
 import re
+import shutil
 import sys
 import threading
 import tomllib
@@ -174,6 +175,7 @@ def test_a_list_says_what_each_is(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each has a title, with the reason beside it where it is unavailable; no environment is made."""
     monkeypatch.setattr(python, "_uv_says", None)
     monkeypatch.setattr(python, "_uv", lambda: "uv")
+    monkeypatch.setattr(shutil, "which", lambda program: program)
     told = remarks()
     for name in engines():
         (remark,) = [

@@ -15,8 +15,8 @@ from platformdirs import user_cache_path
 # Seconds. The largest of them is some 600 MB, which at a megabyte a second take ten minutes.
 _LONGEST_INSTALL: Final = 3600.0
 _LONGEST_REASON: Final = 300
-# What begins a line of an error, of uv and of npm.
-_MARKS: Final = re.compile(r"^(error: |npm (error|ERR!) ?)", re.MULTILINE)
+# What begins a line of an error, of uv and of npm, and what npm ends with.
+_MARKS: Final = re.compile(r"^(error: |npm error Log files .*|npm (error|ERR!) ?)", re.MULTILINE)
 
 Tell = Callable[[str], object]
 

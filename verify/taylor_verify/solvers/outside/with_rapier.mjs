@@ -21,7 +21,7 @@
 import { answer, quaternion, refuse, stepped, vector } from "./free_body.mjs";
 
 answer(async (body, settings) => {
-  const { default: RAPIER } = await import("@dimforge/rapier3d-compat");
+  const { default: RAPIER } = await imported();
   await RAPIER.init();
   return stepped(body, settings.step, () => {
     const world = new RAPIER.World(vector([0, 0, 0]));
@@ -45,3 +45,10 @@ answer(async (body, settings) => {
     };
   });
 });
+
+// The package of 0.17.3 says that it is a module, and names a file that is none.
+function imported() {
+  return import("@dimforge/rapier3d-compat").catch(
+    () => import("@dimforge/rapier3d-compat/rapier.es.js"),
+  );
+}
