@@ -15,9 +15,10 @@
 # ///
 """Pinocchio, which has no integrator: its accelerations and its step on the group are what is judged.
 
-`aba` and `integrate` are these. The integrators are ours, and as thin as they can be. ``semi-implicit`` turns by the new velocity, as
-simulators on Pinocchio do. ``RK4`` is Munthe-Kaas' form of the classical method, by `dIntegrate`. A free
-flyer takes a full tensor, has omega in body axes and the quaternion scalar last, in doubles.
+These are `aba` and `integrate`. The integrators are ours, and as thin as they can be. ``semi-implicit``
+turns by the new velocity, as simulators on Pinocchio do. ``RK4`` is Munthe-Kaas' form of the classical
+method, by `dIntegrate`. A free flyer takes a full tensor, has omega in body axes and the quaternion
+scalar last, in doubles.
 """
 
 from __future__ import annotations
