@@ -36,6 +36,7 @@ class Numbers:
         q = np.array(start.attitude, dtype=float)
         self.q = q / np.linalg.norm(q)
         self.rotor = np.zeros(3)
+        self.damping = float(body.damping)
         if isinstance(body, RigidBody | Gyrostat):
             assert isinstance(start, Spin)
             self.tensor = np.array(body.inertia, dtype=float)
@@ -52,13 +53,14 @@ class Numbers:
 
 
 def euler(w: Array, q: Array, n: Numbers) -> Array:
-    return np.linalg.solve(n.tensor, np.cross(n.tensor @ w + n.rotor, w) + n.load)
+    return np.linalg.solve(n.tensor, np.cross(n.tensor @ w + n.rotor, w) + n.load) - n.damping * w
 
 
 def kirchhoff(z: Array, q: Array, n: Numbers) -> Array:
     x, y, velocity = z[:3], z[3:], n.tensor @ z
     U, W = velocity[:3], velocity[3:]
-    return np.concatenate([np.cross(x, W), np.cross(y, W) + np.cross(x, U)]) + n.load
+    free = np.concatenate([np.cross(x, W), np.cross(y, W) + np.cross(x, U)])
+    return free + n.load - n.damping * z
 
 
 def turned(q: Array, w: Array) -> Array:
@@ -115,11 +117,24 @@ def columns_of(times: Array, rows: Array) -> Columns:
     return columns | named(QUATERNION, q / np.linalg.norm(q, axis=1, keepdims=True))
 
 
-def runge_kutta(scene: Scene, h: float, every: int, single: bool = False) -> Columns:
-    """The classical method at a fixed step; with ``single`` its state is kept in float32."""
+def runge_kutta(
+    scene: Scene,
+    h: float,
+    every: int,
+    single: bool = False,
+    factor: Callable[[float], float] | None = None,
+    factor_first: bool = False,
+) -> Columns:
+    """The classical method at a fixed step; with ``single`` its state is kept in float32.
+
+    With ``factor`` the damping is applied once in a step: to the momenta, after the motion or first.
+    """
     n = Numbers(scene)
     count = len(n.state)
     made = euler if count == 3 else kirchhoff
+    once = 1.0
+    if factor is not None:
+        once, n.damping = factor(n.damping * h), 0.0
 
     def derivative(z: Array) -> Array:
         state, q = z[:count], z[count:]
@@ -130,10 +145,14 @@ def runge_kutta(scene: Scene, h: float, every: int, single: bool = False) -> Col
     steps = round((n.times[-1] - n.start) / h)
     rows = [z]
     for step in range(1, steps + 1):
+        if factor_first:
+            z = np.concatenate([once * z[:count], z[count:]])
         k1 = derivative(z)
         k2 = derivative(z + h / 2 * k1)
         k3 = derivative(z + h / 2 * k2)
         z = z + h / 6 * (k1 + 2 * k2 + 2 * k3 + derivative(z + h * k3))
+        if not factor_first:
+            z = np.concatenate([once * z[:count], z[count:]])
         if single:
             z = z.astype(np.float32).astype(float)
         if step % every == 0:

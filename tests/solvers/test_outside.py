@@ -42,6 +42,7 @@ SCENES = [
     *("euler/generic", "euler/with-attitude", "euler/backward", "euler/constant-moment"),
     *("euler/gyrostat", "kirchhoff/general-body", "kirchhoff/whole-motion"),
     *("kirchhoff/constant-loads", "kirchhoff/screw", "kirchhoff/listed-times"),
+    *("euler/damped", "kirchhoff/damped"),
 ]
 
 

@@ -45,10 +45,12 @@ SCENES = [
     "kirchhoff/whole-motion",
     "kirchhoff/general-body",
     "kirchhoff/constant-loads",
+    "euler/damped",
+    "kirchhoff/damped",
 ]
 # Those that one rounding made, so that text and hex are the same number.
 ROUNDED_ONCE = {
-    *("inverse_inertia", "moment", "angular_momentum", "attitude", "elapsed"),
+    *("inverse_inertia", "moment", "angular_momentum", "attitude", "elapsed", "damping"),
     *("linear", "coupling", "angular", "force", "couple"),
     *("linear_impulse", "angular_impulse", "centre"),
 }

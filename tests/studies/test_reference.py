@@ -242,7 +242,7 @@ def _kirchhoff(row: dict[str, str], body: Any) -> dict[str, tuple[list[Fraction]
     return found
 
 
-FREE = [name for name in names() if load(name).body.is_free]
+FREE = [name for name in names() if load(name).body.is_free and not load(name).body.damping]
 # Two rows, each with at most four factors (c, R, x and R y) that are off by 5.1e-32, and the sizes
 # of R: ‖R‖ = 3^(1/2). In all below 10^-30.
 THIRTY_DIGITS = 1e-30
