@@ -14,7 +14,7 @@
 # callback = "the exact load, by a passive force of ours"
 # [tool.taylor-verify.settings]
 # step = 0.002
-# integrator = ["Euler", "implicit", "implicitfast", "RK4"]
+# integrator = ["Euler", "implicit", "implicitfast", "RK4", "discrete"]
 # ///
 """MuJoCo in a fluid: a body with a free joint, without gravity, contact, drag and lift.
 
@@ -35,6 +35,7 @@ from typing import Any
 
 from free_body import Engine, Settings, Solved, answer, stepped, to_body, to_space
 from immersed_body import ImmersedBody, immersed_body
+from with_mujoco import require_integrator
 
 METHODS = {"ellipsoid": "ellipsoid", "callback": "callback"}
 Force = Callable[[Any, Any], None]
@@ -43,6 +44,7 @@ Force = Callable[[Any, Any], None]
 def solve(body: ImmersedBody, settings: Settings) -> Solved:
     import mujoco
 
+    require_integrator(settings)
     sphere = mean(body.mass, 0), mean(body.mass, 3)
     if settings.method == "callback":
         m, j = sphere
