@@ -160,7 +160,7 @@ def test_a_script_has_the_methods_it_names(file: Path) -> None:
         if isinstance(node, ast.Import):
             assert {alias.name for alias in node.names} <= sys.stdlib_module_names
         elif isinstance(node, ast.ImportFrom):
-            assert node.module in siblings | sys.stdlib_module_names
+            assert str(node.module).partition(".")[0] in siblings | sys.stdlib_module_names
 
 
 def test_no_script_hides_a_library() -> None:
@@ -310,8 +310,8 @@ def test_a_library_keeps_near_its_tolerance(
     assert errors[1e-9] <= errors[1e-6] / 10
 
 
-# Engines whose equations lack omega x I omega: no step brings them nearer.
-WITHOUT_GYRATION = {"brax-spring", "brax-positional"}
+# No step brings them nearer: two lack omega x I omega, one what of the added mass goes with accelerations.
+OTHER_EQUATIONS = {"brax-spring", "brax-positional", "mujoco_fluid-ellipsoid"}
 
 
 @pytest.mark.slow
@@ -338,8 +338,8 @@ def test_an_engine_begins_with_the_start_and_comes_nearer_with_the_step(
         }
         assert verdicts[INITIAL].verdict is Status.PASS
         errors.append(max(v.max or 0 for v in verdicts.values() if v.quantity in STATES))
-    # Half the error is the first order.
-    assert (errors[1] <= 0.6 * errors[0]) is (one.name not in WITHOUT_GYRATION)
+    # The first order is half the error.
+    assert (errors[1] <= 0.6 * errors[0]) is (one.name not in OTHER_EQUATIONS)
 
 
 def written(folder: Path, metadata: str) -> Path:

@@ -17,17 +17,30 @@ ORIGIN = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
+class Ellipsoid:
+    """A homogeneous ellipsoid, its semi-axes along body axes 1, 2, 3."""
+
+    semi_axes: Vector
+    density: float
+    fluid_density: float
+
+
+@dataclass(frozen=True)
 class ImmersedBody(Body):
     """Mass matrix (linear before angular), velocities in body axes, attitude and centre, as doubles.
 
+    ``energy`` is the inverse of the mass matrix, by the coefficients of the question. ``ellipsoid`` is
+    there for a solid that was given as one; its coefficients are the exact ones, rounded.
     A motion backwards in time is the motion forwards with the velocities reversed.
     """
 
     mass: Matrix
+    energy: Matrix
     velocity: Vector
     omega: Vector
     attitude: Quaternion
     centre: Vector = ORIGIN
+    ellipsoid: Ellipsoid | None = None
 
     @property
     def velocity_in_space(self) -> Vector:
@@ -62,14 +75,18 @@ def immersed_body(scene: Any) -> ImmersedBody:
     A, B, C = (numpy.array(floats(body[key])) for key in ("linear", "coupling", "angular"))
     energy = numpy.block([[A, B], [B.T, C]])
     impulses = floats(initial["linear_impulse"]) + floats(initial["angular_impulse"])
+    shape = [floats(body[key]) for key in ("semi_axes", "density", "fluid_density") if key in body]
+    ellipsoid = Ellipsoid(*shape) if shape else None
     moving = (question.sign * energy @ impulses).tolist()
     return ImmersedBody(
         question=question,
         mass=numpy.linalg.inv(energy).tolist(),
+        energy=energy.tolist(),
         velocity=moving[:3],
         omega=moving[3:],
         attitude=unit(floats(initial["attitude"])),
         centre=floats(initial["centre"]),
+        ellipsoid=ellipsoid,
     )
 
 

@@ -36,7 +36,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from free_body import Engine, FreeBody, Settings, Solved, answer, stepped
-from question import unit
+from question import Row, unit
 from with_mujoco import compiled_inertia, mjcf, remark
 
 METHODS = {"generalized": "generalized", "spring": "spring", "positional": "positional"}
@@ -60,12 +60,13 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
     system = reader.load_model(model)
     no_actuators = numpy.zeros(0)
 
-    @jax.jit
-    def stretch(state: Any, steps: Any) -> Any:
+    def steps_of(state: Any, steps: Any) -> Any:
         def one(_: Any, now: Any) -> Any:
             return pipeline.step(system, now, no_actuators)
 
         return jax.lax.fori_loop(0, steps, one, state)
+
+    stretch = jax.jit(steps_of)
 
     def start() -> Engine:
         places = numpy.array([0.0, 0.0, 0.0, *body.attitude])
@@ -75,7 +76,7 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
             nonlocal state
             state = jax.block_until_ready(stretch(state, steps))
 
-        def row() -> list[float]:
+        def row() -> Row:
             attitude = unit(state.x.rot[0].tolist())
             return body.row_from_space(state.xd.ang[0].tolist(), attitude)
 

@@ -22,6 +22,7 @@ from __future__ import annotations
 
 from free_body import Engine, FreeBody, Settings, Solved, answer, stepped
 from immersed_body import ORIGIN, ImmersedBody, any_body
+from question import Row
 
 
 def solve(body: FreeBody | ImmersedBody, settings: Settings) -> Solved:
@@ -56,7 +57,7 @@ def solve(body: FreeBody | ImmersedBody, settings: Settings) -> Solved:
             for _ in range(steps):
                 world.step()
 
-        def row() -> list[float]:
+        def row() -> Row:
             moving, place = node.getSpatialVelocity(), node.getWorldTransform()
             attitude = place.quaternion().wxyz()
             if is_immersed:

@@ -35,7 +35,7 @@ reads a rotation of it as if it were unit: so do we. Velocities are in space axe
 from __future__ import annotations
 
 from free_body import Engine, FreeBody, Settings, Solved, answer, stepped
-from question import unit
+from question import Row, unit
 
 
 def solve(body: FreeBody, settings: Settings) -> Solved:
@@ -72,7 +72,7 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
             done += steps
             simulator.AdvanceTo(done * settings.step)
 
-        def row() -> list[float]:
+        def row() -> Row:
             attitude = unit(plant.GetPositions(context)[:4])
             return body.row_from_space(plant.GetVelocities(context)[:3], attitude)
 
