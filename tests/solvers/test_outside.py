@@ -153,7 +153,7 @@ def test_a_script_has_the_methods_it_names(file: Path) -> None:
     # One without methods is a single solver.
     table = tables[0] if about.methods else {}
     assert list(about.methods) == list(table)
-    siblings = {"equations", "free_body", "question"}
+    siblings = {file.stem for file in SCRIPTS.glob("*.py")}
     for node in tree.body:
         if isinstance(node, ast.Import):
             assert {alias.name for alias in node.names} <= sys.stdlib_module_names
@@ -165,7 +165,9 @@ def test_no_script_hides_a_library() -> None:
     """No file has the name of a module that a script imports, which Python would find first."""
     own = {file.stem for file in SCRIPTS.glob("*.py")}
     imported = set().union(*(imported_tops(file.read_text()) for file in scripts()))
-    assert own & imported <= {"equations", "free_body", "question"}
+    shared = {"equations", "free_body", "immersed_body", "question"}
+    # MJX and Brax take the model that MuJoCo compiles.
+    assert own & imported == {*shared, "with_mujoco"}
 
 
 def test_a_list_says_what_each_is(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -305,13 +307,17 @@ def test_a_library_keeps_near_its_tolerance(
     assert errors[1e-9] <= errors[1e-6] / 10
 
 
+# No step brings them nearer: two lack omega x I omega, one what of the added mass goes with accelerations.
+OTHER_EQUATIONS = {"brax-spring", "brax-positional", "mujoco_fluid-ellipsoid"}
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("one", ready("step"), ids=lambda one: one.name)
 def test_an_engine_begins_with_the_start_and_comes_nearer_with_the_step(
     one: Engine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The first row is the state that the engine was given, with an oblique attitude, and half the step
-    leaves an error that is smaller: of the first order at least."""
+    leaves an error of half the size at most, but where the engine has other equations."""
     monkeypatch.setenv("UV_OFFLINE", "1")
     try:
         prepare(one.name)
@@ -329,8 +335,8 @@ def test_an_engine_begins_with_the_start_and_comes_nearer_with_the_step(
         }
         assert verdicts[INITIAL].verdict is Status.PASS
         errors.append(max(v.max or 0 for v in verdicts.values() if v.quantity in STATES))
-    # Half the error is the first order, to which rounding adds its part on the coarsest rung.
-    assert errors[1] <= 0.6 * errors[0]
+    # The first order is half the error.
+    assert (errors[1] <= 0.6 * errors[0]) is (one.name not in OTHER_EQUATIONS)
 
 
 def written(folder: Path, metadata: str) -> Path:

@@ -48,7 +48,7 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
     return stepped(body, settings.step, start, remark(body, compiled_inertia(model)))
 
 
-def mjcf(body: FreeBody, settings: Settings) -> str:
+def mjcf(body: FreeBody, settings: Settings, geom: str = "") -> str:
     """Return the model in MuJoCo's own format; repr of a double is read back as that double."""
     (a, d, e), (_, b, f), (_, _, c) = body.inertia
     inertia = f'fullinertia="{numbers([a, b, c, d, e, f])}"'
@@ -61,6 +61,7 @@ def mjcf(body: FreeBody, settings: Settings) -> str:
           <worldbody><body>
             <freejoint/>
             <inertial pos="0 0 0" mass="1" {inertia}/>
+            {geom}
           </body></worldbody>
         </mujoco>"""
 

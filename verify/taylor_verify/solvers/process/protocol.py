@@ -20,6 +20,7 @@ occurs once in it and has one meaning, whatever its table, so that a reader may 
       coupling             B, 3x3, its row the index of x        (kirchhoff)
       angular              C, 3x3                                (kirchhoff)
       force, couple        X and L, 3 each                       (kirchhoff)
+      semi_axes, density, fluid_density    of a solid that was given as an ellipsoid (their hex is rounded)
     initial              the state at the start
       omega                body axes                             (euler; its hex is rounded)
       angular_momentum     H = I omega, without the wheels       (euler)
@@ -77,7 +78,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any
@@ -87,7 +88,7 @@ import gmpy2
 from taylor_verify.models.problem import Problem
 from taylor_verify.models.registry import mechanics
 from taylor_verify.records.quantities import COLUMNS
-from taylor_verify.scenes.bodies import Body
+from taylor_verify.scenes.bodies import Body, ImmersedBody
 from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.parts import Value
 from taylor_verify.scenes.precision import Rung, double_text, hexadecimal
@@ -171,6 +172,9 @@ def _data(problem: Problem) -> dict[str, Any]:
         "body": _merged(body.parts(), derived.get("body", {})),
         "initial": _merged(initial.parts(), derived.get("initial", {})),
     }
+    shape = problem.scene.body
+    if isinstance(shape, ImmersedBody) and (ellipsoid := shape.ellipsoid):
+        numbers["body"] |= asdict(ellipsoid)
     if body.manufactured is not None:
         # The motion of what a program integrates: of H = I omega, or of x and y as it stands.
         motion = mechanics(body).change(body).motion_of_momenta(body.manufactured)
