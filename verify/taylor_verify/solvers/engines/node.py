@@ -30,7 +30,8 @@ from taylor_verify.solvers.trajectory import Outcome
 INSTALL: Final = "conda install -c conda-forge nodejs"
 # engine-strict: a node that does not fit `requires-node` is an error.
 _OPTIONS: Final = (
-    "--ignore-scripts --engine-strict --no-audit --no-fund --no-update-notifier --logs-max=0"
+    "--ignore-scripts --engine-strict --no-audit --no-fund --no-update-notifier "
+    "--loglevel=error --logs-max=0"
 )
 _PACKAGE: Final = "package.json"
 _LOCK: Final = "package-lock.json"

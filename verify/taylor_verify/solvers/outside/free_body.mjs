@@ -5,6 +5,8 @@
 //
 //     node with_rapier.mjs step=0.01 < question.json > answer.json
 //
+// The engine is imported in solve, so that what is wrong with it ends the script with a sentence.
+//
 // start() builds the engine at the initial state, and returns { advance, row }. advance() makes one step,
 // row() reads the present state by body.rowFromSpace. The first row is read before any step, so that it
 // shows the state that the engine really begins with. Quaternions are [x, y, z, w], as in these engines.
@@ -17,7 +19,7 @@ console.log = console.info = console.error;
 export async function answer(solve) {
   const settings = Object.fromEntries(process.argv.slice(2).map(setting));
   const body = freeBody(JSON.parse(readFileSync(0, "utf8")));
-  const { rows, ...work } = await solve(body, settings);
+  const { rows, ...work } = await (async () => solve(body, settings))().catch(refuse);
   const states = body.asksStart ? rows : rows.slice(1);
   // JSON has the decimal to which the number is the nearest double.
   const columns = body.columns.map((name, i) => [name, states.map((row) => row[i])]);
@@ -29,9 +31,9 @@ function setting(argument) {
   return [name, Number.isNaN(Number(value)) ? value : Number(value)];
 }
 
-// End the script with a sentence.
-export function refuse(sentence) {
-  console.error(sentence);
+// End the script with a sentence, or with that of an error.
+export function refuse(reason) {
+  console.error(String(reason));
   process.exit(1);
 }
 

@@ -14,11 +14,11 @@
 // cannon-es, written in JavaScript. It has no gyroscopic term: torques alone change omega in space axes.
 // As shipped it damps omega by a hundredth in a unit of time; no body falls asleep, and there is no cap.
 
-import { Body, World } from "cannon-es";
 import { answer, stepped } from "./free_body.mjs";
 
-answer((body, settings) =>
-  stepped(body, settings.step, () => {
+answer(async (body, settings) => {
+  const { Body, World } = await import("cannon-es");
+  return stepped(body, settings.step, () => {
     const world = new World();
     const spun = new Body({ mass: 1 });
     if (settings.defaults === "off") spun.angularDamping = 0;
@@ -33,5 +33,5 @@ answer((body, settings) =>
       advance: () => world.step(settings.step),
       row: () => body.rowFromSpace(spun.angularVelocity.toArray(), spun.quaternion.toArray()),
     };
-  }),
-);
+  });
+});

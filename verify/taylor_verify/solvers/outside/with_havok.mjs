@@ -17,15 +17,15 @@
 // 100, and lets a body fall asleep. It is given moments for a mass of 1.
 
 import { readFileSync } from "node:fs";
-import HavokPhysics from "@babylonjs/havok";
 import { answer, stepped } from "./free_body.mjs";
 
 const NO_CAP = 1e18;
 
 answer(async (body, settings) => {
-  // By itself it would fetch its code, which node does not do from files.
-  const code = new URL(import.meta.resolve("@babylonjs/havok/lib/esm/HavokPhysics.wasm"));
-  const havok = await HavokPhysics({ wasmBinary: readFileSync(code) });
+  const { default: load } = await import("@babylonjs/havok");
+  // It would fetch its code, which node does not do from a file.
+  const code = new URL("HavokPhysics.wasm", import.meta.resolve("@babylonjs/havok"));
+  const havok = await load({ wasmBinary: readFileSync(code) });
   return stepped(body, settings.step, () => {
     const [, world] = havok.HP_World_Create();
     const [, spun] = havok.HP_Body_Create();

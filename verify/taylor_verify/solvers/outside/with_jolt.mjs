@@ -16,13 +16,13 @@
 // Jolt Physics, a C++ library compiled to WebAssembly. As shipped it has no gyroscopic term, damps omega by
 // a twentieth in a unit of time, caps it at 15 pi, and lets a body fall asleep.
 
-import initJolt from "jolt-physics";
 import { answer, stepped } from "./free_body.mjs";
 
 const NO_CAP = 1e18;
 
 answer(async (body, settings) => {
-  const Jolt = await initJolt();
+  const { default: load } = await import("jolt-physics");
+  const Jolt = await load();
   return stepped(body, settings.step, () => {
     const system = world(Jolt);
     system.GetPhysicsSystem().SetGravity(new Jolt.Vec3(0, 0, 0));

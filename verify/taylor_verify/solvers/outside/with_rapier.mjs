@@ -18,10 +18,10 @@
 // it lift the cap that came with 0.20.0, a turn of 45 degrees in a step. As shipped there is no damping, and
 // a body may fall asleep.
 
-import RAPIER from "@dimforge/rapier3d-compat";
 import { answer, quaternion, refuse, stepped, vector } from "./free_body.mjs";
 
 answer(async (body, settings) => {
+  const { default: RAPIER } = await import("@dimforge/rapier3d-compat");
   await RAPIER.init();
   return stepped(body, settings.step, () => {
     const world = new RAPIER.World(vector([0, 0, 0]));
