@@ -23,8 +23,8 @@ GeneralizedAlpha is what Exudyn takes where nothing is set. With the coordinates
 integrator works on the group; the explicit ones refuse EulerParameters, which have a constraint. The
 two with an error estimate, DOPRI5 and ODE23, take the given step too: their tolerances are lifted. There
 is no damping, no sleep and no cap to switch off. The start is the reference configuration: in 1.13.6 an
-``initialRotationMatrix`` with Euler parameters begins at another rate of turn. One run has all samples,
-as sensors, because to go on after a stop begins GeneralizedAlpha anew.
+``initialRotationMatrix`` makes another omega of the one that is given. One run has all samples, as
+sensors, because to go on after a stop begins GeneralizedAlpha anew.
 """
 
 from __future__ import annotations

@@ -15,10 +15,11 @@
 # defaults = ["off", "shipped"]
 # step = 0.01
 # ///
-"""PhysX on the CPU, in float32: a rigid dynamic body by either of its solvers; TGS is what SAPIEN takes.
+"""PhysX on the CPU, in float32: a rigid dynamic body by either of its solvers, TGS or PGS.
 
-It takes principal moments, has omega in space axes and the quaternion scalar first.
-``defaults=shipped`` leaves angular damping, sleep and the cap of the angular velocity as SAPIEN sets them.
+TGS is what SAPIEN takes. SAPIEN switches the gyroscopic forces on, which PhysX leaves off. A body takes
+principal moments, has omega in space axes and the quaternion scalar first. ``defaults=shipped`` leaves
+angular damping, sleep and the cap of the angular velocity as SAPIEN sets them.
 """
 
 from __future__ import annotations

@@ -1,0 +1,98 @@
+# /// script
+# requires-python = ">=3.11,<3.15"
+# dependencies = [
+#   "pin==4.1.0",
+#   "numpy==2.4.6",
+# ]
+# [tool.taylor-verify]
+# title = "Pinocchio's dynamics, under a thin integrator of ours"
+# models = ["euler"]
+# loads = false
+# data = "tensor"
+# [tool.taylor-verify.settings]
+# integrator = ["RK4", "semi-implicit"]
+# step = 0.01
+# ///
+"""Pinocchio, which has no integrator: its accelerations and its step on the group are what is judged.
+
+These are `aba` and `integrate`. The integrators are ours, and as thin as they can be. ``semi-implicit``
+turns by the new velocity, as simulators on Pinocchio do. ``RK4`` is Munthe-Kaas' form of the classical
+method, by `dIntegrate`. A free flyer takes a full tensor, has omega in body axes and the quaternion
+scalar last, in doubles.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from free_body import Engine, FreeBody, Settings, Solved, answer, stepped
+
+
+def solve(body: FreeBody, settings: Settings) -> Solved:
+    step = {"RK4": runge_kutta, "semi-implicit": semi_implicit}[settings.integrator]
+    model = model_of(body)
+    x, y, z = body.attitude[1:]
+
+    def start() -> Engine:
+        import numpy
+
+        data = model.createData()
+        place = numpy.array([0.0, 0.0, 0.0, x, y, z, body.attitude[0]])
+        velocity = numpy.array([0.0, 0.0, 0.0, *body.omega])
+
+        def accelerations(place: Any, velocity: Any) -> Any:
+            import pinocchio
+
+            return pinocchio.aba(model, data, place, velocity, numpy.zeros(6))
+
+        def advance(steps: int) -> None:
+            for _ in range(steps):
+                place[:], velocity[:] = step(model, accelerations, place, velocity, settings.step)
+
+        return advance, lambda: body.row(velocity[3:], (place[6], *place[3:6]))
+
+    return stepped(body, settings.step, start)
+
+
+def model_of(body: FreeBody) -> Any:
+    import numpy
+    import pinocchio
+
+    model, here = pinocchio.Model(), pinocchio.SE3.Identity()
+    joint = model.addJoint(0, pinocchio.JointModelFreeFlyer(), here, "body")
+    inertia = pinocchio.Inertia(1.0, numpy.zeros(3), numpy.array(body.inertia))
+    model.appendBodyToJoint(joint, inertia, here)
+    model.gravity.linear = numpy.zeros(3)
+    return model
+
+
+Accelerations = Callable[[Any, Any], Any]
+
+
+def semi_implicit(model: Any, a: Accelerations, place: Any, velocity: Any, h: float) -> Any:
+    import pinocchio
+
+    velocity = velocity + h * a(place, velocity)
+    return pinocchio.integrate(model, place, h * velocity), velocity
+
+
+def runge_kutta(model: Any, a: Accelerations, place: Any, velocity: Any, h: float) -> Any:
+    import numpy
+    import pinocchio
+
+    def rates(u: Any, v: Any) -> Any:
+        """Return u', for the place that u leads to on the group, and v'."""
+        along = pinocchio.dIntegrate(model, place, u, pinocchio.ARG1)
+        return numpy.linalg.solve(along, v), a(pinocchio.integrate(model, place, u), v)
+
+    k1, l1 = rates(numpy.zeros(6), velocity)
+    k2, l2 = rates(h / 2 * k1, velocity + h / 2 * l1)
+    k3, l3 = rates(h / 2 * k2, velocity + h / 2 * l2)
+    k4, l4 = rates(h * k3, velocity + h * l3)
+    u = h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+    return pinocchio.integrate(model, place, u), velocity + h / 6 * (l1 + 2 * l2 + 2 * l3 + l4)
+
+
+if __name__ == "__main__":
+    answer(solve)
