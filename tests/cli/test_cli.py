@@ -65,6 +65,7 @@ def test_list_names_what_there_is(capsys: Captured) -> None:
     assert found == {
         "scenes": list(library.names()),
         "extremes": list(library.names(library.EXTREMES, library.WORST)),
+        "engines": list(library.names(library.ENGINES)),
         "solvers": list(registry.solver_names()),
         "rungs": list(LADDER),
         "guide": dict(GUIDE),

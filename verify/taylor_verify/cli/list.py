@@ -18,8 +18,11 @@ from taylor_verify.solvers.registry import remarks, solver_names
 def answer(options: argparse.Namespace) -> Answer:
     """Name the scenes, solvers, rungs and formats of files, each with a sentence."""
     del options
-    scenes = {"scenes": list(names()), "extremes": list(names(EXTREMES, WORST))}
-    scenes["engines"] = list(names(ENGINES))
+    scenes = {
+        "scenes": list(names()),
+        "extremes": list(names(EXTREMES, WORST)),
+        "engines": list(names(ENGINES)),
+    }
     titles = {name: load(name).title for group in scenes.values() for name in group}
     formats = {suffix: form.sentence for suffix, form in FORMATS.items()}
     found = {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import groupby
+from math import isfinite
 from typing import Final
 
 from taylor_verify.publish.cells import figure
@@ -42,6 +43,11 @@ def advice(board: Board, entries: EntryList) -> list[str]:
         *_as_shipped(engines, shipped, names, warnings),
         *_too_fine(engines, scenes, names),
     ]
+
+
+def error(size: float) -> str:
+    """Return an error in three digits, or the word for one that is no finite number."""
+    return figure(size) if isfinite(size) else "beyond every number"
 
 
 def named(setting: Setting, names: dict[str, str]) -> str:
@@ -112,13 +118,13 @@ def _as_shipped(
         own = [one for one in engines if one.engine == engine]
         pairs = [(row, _like(row, own)) for one in group for row in one.rows if row.is_judged]
         ratios = [(a.worst / b, a, b) for a, b in pairs if b]
-        ratio, row, error = max(ratios, key=lambda found: found[0], default=(0.0, None, 0.0))
+        ratio, row, least = max(ratios, key=lambda found: found[0], default=(0.0, None, 0.0))
         if row is None or ratio < FAR_WORSE:
             continue
         without = f" without {warnings[engine]}" if warnings[engine] else " as it is shipped"
         yield (
             f"Never {bold(prose(names[engine]))}{without}: on `{row.scene}` its error with "
-            f"{row.knob} {row.value} is {figure(row.worst)} instead of {figure(error)}."
+            f"{row.knob} {row.value} is {error(row.worst)} instead of {figure(least)}."
         )
 
 
@@ -142,7 +148,7 @@ def _too_fine(
         if finest.error > WORSE_BELOW * best.error:
             yield (
                 f"No smaller step than {best.value} in {bold(prose(names[engine]))}: with "
-                f"{finest.value} its error grows from {figure(best.error)} to {figure(finest.error)}."
+                f"{finest.value} its error grows from {figure(best.error)} to {error(finest.error)}."
             )
 
 

@@ -10,7 +10,8 @@ values     its values, from coarse to fine, as text
 rungs      optional: the precisions of the arithmetic, f64 unless given
 only       optional: the scenes that are run; without them all scenes that the solver takes
 without    optional: scenes that are not run
-shipped    optional: the settings that bring back what the engine does unless it is told
+shipped    optional: the settings that bring back what the engine does unless it is told; they are run
+           with the second of the values alone
 warning    optional: what an engine as shipped lacks, in words
 package    optional: the installed package whose version is shown, for a solver that runs here
 plain      true for a solver of differential equations that is no engine
@@ -75,7 +76,10 @@ class Entry:
         if self.shipped:
             for words, rung, scene in product(self._words(), self.rungs, scenes):
                 if self._is_asked(scene) and scene.shipped:
-                    yield from self._at_values(newest, {**words, **self.shipped}, rung, scene, True)
+                    bare = {**words, **self.shipped}
+                    every = self._at_values(newest, bare, rung, scene, True)
+                    # One step says what is lacking.
+                    yield from (run for run in every if run.value in self.values[1:2])
 
     def _at_values(
         self,
@@ -121,7 +125,8 @@ class Asked:
     @property
     def variant(self) -> str:
         """The method and the words that are set, as tables name them."""
-        method = self.entry.solver.partition(":")[2].removeprefix(self.entry.name).lstrip("-")
+        family, _, method = self.entry.solver.partition(":")
+        method = method.partition("-")[2] if family == "outside" else method
         # A number says nothing without its key.
         words = [word if word[:1].isalpha() else f"{key}={word}" for key, word in self.words]
         return ", ".join(filter(None, [method, *words]))

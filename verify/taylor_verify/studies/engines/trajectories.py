@@ -50,10 +50,10 @@ def load(folder: Path) -> Mapping[str, States]:
     try:
         with np.load(place, allow_pickle=False) as file:
             return {name: file[name] for name in file.files}
-    except (BadZipFile, EOFError, AttributeError) as error:
-        raise ValueError(
-            f"expected an NPZ of trajectories, got a fault: {error} @ {place}"
-        ) from error
+    except (BadZipFile, EOFError, AttributeError, ValueError) as error:
+        # numpy takes what is no NPZ for a pickle, which is not read.
+        expected = "expected an NPZ of trajectories, got another file"
+        raise ValueError(f"{expected} @ {place}") from error
 
 
 def states_of(arrays: Mapping[str, States], row: EngineRow) -> States | None:

@@ -1,0 +1,94 @@
+"""The entry list: what a row asks for, and that every row of the shipped list can be run."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from taylor_verify.scenes.library import ENGINES, names
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.solvers.registry import solver_named
+from taylor_verify.studies.engines.entry import BoardScene, Entry, entry_list
+
+SCENES = (
+    BoardScene("engines/oblique", sweep=True, shipped=True),
+    BoardScene("engines/ten-minutes", least=0.01),
+)
+ROW = Entry(
+    *("it", "It", "outside:it", ("0.02", "0.005")),
+    versions=("1.0", "2.0"),
+    settings={"integrator": ("euler", "rk4"), "flags": ("2",)},
+    shipped={"defaults": "shipped"},
+)
+
+
+def test_the_newest_version_is_run_on_every_scene() -> None:
+    """Older ones are run where the scene says `sweep`, and no step is below the least of a scene."""
+    runs = [run for run in ROW.runs(SCENES) if not run.shipped]
+    assert {(run.version, run.scene, run.value) for run in runs} == {
+        *(("2.0", "engines/oblique", value) for value in ("0.02", "0.005")),
+        *(("1.0", "engines/oblique", value) for value in ("0.02", "0.005")),
+        ("2.0", "engines/ten-minutes", "0.02"),
+    }
+
+
+def test_a_run_has_the_whole_name_of_its_solver() -> None:
+    """Version, words and step are in it, and a number among the words keeps its key in tables."""
+    first = next(ROW.runs(SCENES))
+    assert first.solver == "outside:it?version=2.0&integrator=euler&flags=2&step=0.02"
+    assert first.variant == "euler, flags=2"
+    assert str(first) == f"engines/oblique by {first.solver} on f64"
+
+
+def test_as_shipped_is_run_where_the_scene_asks_for_it() -> None:
+    """With the newest version and one step alone, its settings beside those of the row."""
+    runs = [run for run in ROW.runs(SCENES) if run.shipped]
+    assert {(run.version, run.scene) for run in runs} == {("2.0", "engines/oblique")}
+    assert len(runs) == 2
+    assert all(run.solver.endswith("defaults=shipped&step=0.005") for run in runs)
+
+
+def test_a_solver_without_steps_is_run_once() -> None:
+    """Its name has no setting then."""
+    (run,) = Entry("it", "It", "outside:it").runs(SCENES[:1])
+    assert run.solver == "outside:it"
+
+
+def test_every_run_of_the_list_is_a_solver() -> None:
+    """Each solver, setting and word is known, and each run is asked for once."""
+    runs = entry_list().runs()
+    assert len({run.key for run in runs}) == len(runs) > 500
+    for solver in {run.solver for run in runs}:
+        solver_named(solver)
+
+
+def test_the_scenes_of_the_list_are_those_of_the_folder() -> None:
+    """Each has 21 samples, all of them at whole numbers of every step that is run there."""
+    entries = entry_list()
+    assert sorted(scene.name for scene in entries.scene) == sorted(names(ENGINES))
+    for run in entries.runs():
+        if run.entry.knob == "step" and run.value:
+            elapsed = load(run.scene).clock.elapsed
+            assert len(elapsed) == 21
+            assert all((t / Fraction(run.value)).denominator == 1 for t in elapsed)
+
+
+def test_the_list_asks_for_what_a_comparison_needs() -> None:
+    """Six versions of MuJoCo, four of Rapier, four steps of each engine, and three plain solvers."""
+    entries = entry_list()
+    rows = {row.name: row for row in reversed(entries.entry)}
+    assert len(rows["mujoco"].versions) >= 6
+    assert len(rows["rapier"].versions) >= 4
+    assert all(len(row.values) in (0, *range(4, 9)) for row in entries.entry)
+    assert {row.name for row in entries.entry if row.plain} >= {"taylor", "scipy", "geometric"}
+    assert len(entries.advised) >= 2
+
+
+def test_a_fault_of_the_list_is_named(tmp_path: Path) -> None:
+    """With its place and the file."""
+    file = tmp_path / "list.toml"
+    file.write_text('[[scene]]\nname = "a"\n[[entry]]\nname = 3\n', encoding="utf-8")
+    with pytest.raises(ValueError, match=r"expected a text, got 3 @ entry\[0\]\.name @ list\.toml"):
+        entry_list(file)

@@ -1,0 +1,188 @@
+"""The measurement: nothing is run twice, nothing stops it, and what it stores is judged again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from builders.studies.engines import ENTRIES, SPINNER, answers, board
+
+from taylor_verify.solvers.engines.launcher import NotMade
+from taylor_verify.studies.engines import measure as measuring
+from taylor_verify.studies.engines import stored, trajectories
+from taylor_verify.studies.engines.answer import Answer, answered
+from taylor_verify.studies.engines.document import Standing
+from taylor_verify.studies.engines.entry import Asked, EntryList
+from taylor_verify.studies.engines.measure import answers_of, judged_again, measure
+from taylor_verify.studies.engines.unfinished import Unfinished
+
+KNOWN = {answer.row.key: answer for answer in answers()}
+
+
+@pytest.fixture
+def ran(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The keys of the runs that are made, in this process."""
+    made: list[str] = []
+
+    def run_all(
+        work: Callable[[Asked], Answer], asked: list[Asked], **options: Any
+    ) -> list[Answer]:
+        found = []
+        for one in asked:
+            made.append(one.key)
+            found.append(KNOWN.get(one.key) or work(one))
+            options["ended"](one, found[-1])
+        return found
+
+    monkeypatch.setattr(measuring, "run_all", run_all)
+    return made
+
+
+def test_what_is_stored_is_not_run_again(ran: list[str], tmp_path: Path) -> None:
+    """With every answer known nothing is run, and the answers stand in the order of the list."""
+    found = measure(ENTRIES, KNOWN, Unfinished(tmp_path), lambda words: None)
+    assert ran == []
+    assert [answer.row.key for answer in found] == [run.key for run in ENTRIES.runs()]
+
+
+def test_a_measurement_goes_on_after_a_kill(ran: list[str], tmp_path: Path) -> None:
+    """What had ended is in the store and is not run again; a damaged file is."""
+    store = Unfinished(tmp_path / "unfinished")
+    for answer in answers()[:4]:
+        store.keep(answer)
+    (damaged, *_) = sorted(store.folder.glob("*.json"))
+    damaged.write_text("{", encoding="utf-8")
+    found = measure(ENTRIES, {}, store, lambda words: None)
+    assert len(ran) == len(ENTRIES.runs()) - 3
+    assert len(store.answers()) == len(found) == len(ENTRIES.runs())
+    store.forget()
+    assert store.answers() == []
+
+
+def test_one_engine_is_measured_alone(ran: list[str], tmp_path: Path) -> None:
+    """The rows of the others stay as they are."""
+    others = {key: answer for key, answer in KNOWN.items() if answer.row.engine != "spinner"}
+    found = measure(ENTRIES, others, Unfinished(tmp_path), lambda words: None, only=["spinner"])
+    assert {key.partition("?")[0] for key in ran} == {SPINNER.solver}
+    assert len(found) == len(KNOWN)
+
+
+@pytest.mark.parametrize(
+    "change", [{"made_of": "another adapter"}, {"standing": Standing.FAILED}], ids=str
+)
+def test_another_adapter_is_another_run(
+    ran: list[str], tmp_path: Path, change: dict[str, Any]
+) -> None:
+    """So is a run that failed: it is asked for again."""
+    key, answer = next(iter(KNOWN.items()))
+    changed = {**KNOWN, key: replace(answer, row=replace(answer.row, **change))}
+    measure(ENTRIES, changed, Unfinished(tmp_path), lambda words: None)
+    assert ran == [key]
+
+
+def test_an_engine_that_cannot_be_installed_is_no_failure(
+    ran: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its rows are unavailable with the reason, the environment is asked for once, the rest is run."""
+    prepared: list[str] = []
+
+    def prepare(name: str, tell: object) -> None:
+        prepared.append(name)
+        raise NotMade("no such package")
+
+    monkeypatch.setattr(measuring, "prepare", prepare)
+    lost = replace(SPINNER, name="lost", solver="outside:mujoco", versions=("1.0",))
+    entries = EntryList(ENTRIES.scene, (*ENTRIES.entry, lost))
+    found = measure(entries, KNOWN, Unfinished(tmp_path), lambda words: None)
+    rows = [answer.row for answer in found if answer.row.engine == "lost"]
+    assert [row.standing for row in rows] == [Standing.UNAVAILABLE] * len(SPINNER.values)
+    assert {row.detail for row in rows} == {"no such package"}
+    assert prepared == ["outside:mujoco?version=1.0"]
+    assert ran == []
+
+
+def test_a_run_that_ends_early_is_a_row() -> None:
+    """It failed, with how it ended; there is no trajectory and no error."""
+    bad = replace(SPINNER, solver="process:false", values=())
+    found = answered(next(bad.runs(ENTRIES.scene)))
+    assert found.row.standing is Standing.FAILED
+    assert "exit status" in found.row.detail
+    assert (found.states, found.row.errors) == (None, {})
+
+
+# What is stored.
+
+
+def test_an_answer_reads_back_to_the_last_bit() -> None:
+    """Its states are of the kind of float that they were."""
+    for answer in answers():
+        assert answer.states is not None
+        for states in (answer.states, answer.states.astype(np.float32)):
+            read = Answer.from_bytes(replace(answer, states=states).to_bytes())
+            assert read.row == answer.row
+            assert read.states is not None
+            assert read.states.dtype == states.dtype
+            assert np.array_equal(read.states, states)
+
+
+def test_stored_trajectories_are_judged_to_the_same_errors(tmp_path: Path) -> None:
+    """Without an engine the errors, floors and causes are those of the measurement."""
+    document, file = board()
+    stored.write(tmp_path, document, file)
+    read = stored.find(tmp_path)
+    assert read == document
+    for answer in answers_of(read, tmp_path)[:2]:
+        assert measuring._judged_again(answer).row == answer.row
+
+
+def test_a_changed_trajectory_has_other_errors(tmp_path: Path) -> None:
+    """The errors are those of the states in the file, and of nothing else."""
+    answer = answers()[0]
+    assert answer.states is not None
+    states = answer.states.copy()
+    states[-1, 0] += 0.5
+    again = measuring._judged_again(replace(answer, states=states))
+    assert again.row.errors["omega"] > 0.1 > answer.row.errors["omega"]
+
+
+def test_the_file_of_trajectories_is_the_same_every_time() -> None:
+    """Its bytes depend on the numbers alone, and float32 takes half of the place."""
+    rows, file = trajectories.packed(answers())
+    assert trajectories.packed(answers())[1] == file
+    assert [row.place for row in rows] == list(range(len(rows)))
+    small = [
+        replace(a, row=replace(a.row, bits=32), states=a.states.astype(np.float32))
+        for a in answers()
+        if a.states is not None
+    ]
+    assert len(trajectories.packed(small)[1]) < 0.6 * len(file)
+
+
+def test_a_lost_trajectory_is_named(tmp_path: Path) -> None:
+    """A row whose trajectory is not in the file, and a file that is none, are told."""
+    document, file = board()
+    stored.write(tmp_path, document, file)
+    row = replace(document.study.rows[0], place=99)
+    with pytest.raises(ValueError, match=r"expected a trajectory oblique-f64\[99\], got none"):
+        trajectories.states_of(trajectories.load(tmp_path), row)
+    (tmp_path / trajectories.NAME).write_bytes(b"none")
+    with pytest.raises(ValueError, match="expected an NPZ of trajectories, got another file @ "):
+        trajectories.load(tmp_path)
+
+
+def test_all_are_judged_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The pool is given every answer, and says each as it ends."""
+    said: list[str] = []
+
+    def run_all(work: Any, asked: list[Answer], **options: Any) -> list[Answer]:
+        for one in asked:
+            options["ended"](one, one)
+        return list(asked)
+
+    monkeypatch.setattr(measuring, "run_all", run_all)
+    assert judged_again(answers(), said.append) == list(answers())
+    assert said[-1].startswith(f"{len(answers())}/{len(answers())} ")

@@ -1,0 +1,241 @@
+"""The page of the board: its advice is computed, and what was measured is on it."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from builders.studies.engines import (
+    ENTRIES,
+    PLAIN,
+    SCENE,
+    SPINNER,
+    WOBBLER,
+    answers,
+    board,
+    board_with,
+    made_up,
+)
+
+from taylor_verify.publish.pictures.picture import content
+from taylor_verify.studies.engines import page, stored
+from taylor_verify.studies.engines.advice import advice
+from taylor_verify.studies.engines.document import EngineRow, Standing
+from taylor_verify.studies.engines.engine_page import pages
+from taylor_verify.studies.engines.entry import Entry, EntryList
+from taylor_verify.studies.engines.pictures import sweeps, work
+from taylor_verify.studies.engines.ranking import digits, settings
+from taylor_verify.studies.engines.study import STUDY
+
+
+@pytest.fixture(autouse=True)
+def _small_list(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(page, "entry_list", lambda: ENTRIES)
+
+
+def advised(*rows: EngineRow, entries: EntryList = ENTRIES, **seconds: float) -> list[str]:
+    return advice(board_with(*rows, seconds=seconds or None), entries)
+
+
+def with_errors(entry: Entry, *errors: float) -> list[EngineRow]:
+    """Rows of an entry, each with an error of its own."""
+    rows = made_up(entry, {"omega": 1.0, "attitude": 1e-9, "T": 1e-7})
+    return [
+        replace(row, errors={**row.errors, "omega": error})
+        for row, error in zip(rows, errors, strict=True)
+    ]
+
+
+# The advice.
+
+
+def test_the_best_setting_is_advised() -> None:
+    """That engine and step whose error on the scenes is smallest; a plain solver is no engine."""
+    rows = with_errors(SPINNER, 1e-2, 1e-6, 1e-4), with_errors(WOBBLER, 1e-3, 1e-5, 1e-7)
+    first, *_ = advised(*rows[0], *rows[1], *with_errors(PLAIN, 1e-12))
+    assert first.startswith(
+        "For free rotation take **Wobbler** with splitting and a step of 0.025:"
+    )
+    assert "are right to 1.00e-7 on all of `engines/oblique`" in first
+    first, *_ = advised(*rows[0], *with_errors(WOBBLER, 1.0, 1.0, 1.0))
+    assert first.startswith("For free rotation take **Spinner** with lie-rk4 and a step of 0.05:")
+
+
+def test_the_cheapest_of_the_sufficient_is_advised() -> None:
+    """The time decides among those whose error is small enough."""
+    rows = [*with_errors(SPINNER, 1e-2, 1e-4, 1e-6), *with_errors(WOBBLER, 1e-4, 1e-5, 1e-9)]
+    seconds = dict(zip((row.key for row in rows), (1e-3, 0.5, 2.0, 0.2, 0.6, 5.0), strict=True))
+    said = advised(*rows, **seconds)
+    assert "**Wobbler** with splitting and a step of 0.1 is the cheapest: 1.00e4 micro" in said[1]
+
+
+def test_a_method_that_loses_the_motion_is_warned_of() -> None:
+    """With its least error, what it conserves, and the method of the same engine that follows it."""
+    other = replace(WOBBLER, name="spinner", title="Spinner")
+    entries = replace(ENTRIES, entry=(SPINNER, other))
+    rows = [*with_errors(SPINNER, 1e-2, 1e-4, 1e-6), *with_errors(other, 0.9, 0.8, 0.7)]
+    said = advised(*rows, entries=entries)
+    assert (
+        "Never **Spinner** with splitting: the least error is 0.700, at its best step with a drift of "
+        "the energy of 1.00e-7; lie-rk4 has 1.00e-6."
+    ) in said
+
+
+def test_an_engine_that_follows_no_motion_is_warned_of() -> None:
+    """Where none of its settings does."""
+    said = advised(*with_errors(SPINNER, 0.9, 0.8, 0.7))
+    assert any(s.startswith("Never **Spinner** for free rotation: no setting of it") for s in said)
+
+
+def test_what_is_shipped_is_warned_of() -> None:
+    """Where it is far worse than what the board sets, at the same step; the list says what it lacks."""
+    row = replace(SPINNER, shipped={"defaults": "shipped"}, warning="its damping switched off")
+    entries = replace(ENTRIES, entry=(row,))
+    usual = with_errors(SPINNER, 1e-3, 1e-4, 1e-5)
+    bare = [replace(one, shipped=True, variant="shipped", solver="x") for one in usual]
+    assert not any("without" in said for said in advised(*usual, *bare, entries=entries))
+    bare[1] = replace(bare[1], errors={"omega": 0.2, "attitude": 0.05})
+    said = advised(*usual, *bare, entries=entries)
+    assert (
+        "Never **Spinner** without its damping switched off: on `engines/oblique` its error with step "
+        "0.05 is 0.200 instead of 1.00e-4."
+    ) in said
+
+
+def test_steps_that_make_it_worse_are_warned_of() -> None:
+    """Below the best step errors grow again."""
+    said = advised(*with_errors(SPINNER, 1e-3, 1e-5, 1e-4))
+    assert (
+        "No smaller step than 0.05 in **Spinner**: with 0.025 its error grows from 1.00e-5"
+        in said[-1]
+    )
+
+
+def test_without_an_engine_there_is_no_advice() -> None:
+    """A board of plain solvers, or of runs that failed, advises nothing."""
+    assert advised(*with_errors(PLAIN, 1e-12)) == []
+    lost = made_up(SPINNER, {}, standing=Standing.UNAVAILABLE, floors={})
+    assert advised(*lost) == []
+
+
+# The pages.
+
+
+def test_the_page_has_what_was_measured(tmp_path: Path) -> None:
+    """Every engine with its best step, its orders and errors; a page for each; the sheet has all rows."""
+    document, file = board()
+    stored.write(tmp_path, document, file)
+    made = {path.name for path in STUDY.publish(tmp_path).written}
+    assert {"engines.md", "engines.csv", "engines-time.svg", "engines-step.svg"} <= made
+    assert {f"engines-{name}.md" for name in ("spinner", "wobbler", "scipy")} <= made
+    text = (tmp_path / "tables/engines.md").read_text(encoding="utf-8")
+    assert re.search(r"\[Spinner\]\(engines-spinner\.md\) +\| lie-rk4 +\| +0\.025 \|", text)
+    assert re.search(r"\| splitting .* 2\.0, 2\.0 \|", text)
+    assert "](../figures/engines-time.svg)" in text
+    sheet = (tmp_path / "tables/engines.csv").read_text(encoding="utf-8").splitlines()
+    assert len(sheet) == 1 + len(answers())
+    assert STUDY.pages(tmp_path)["tables/engines.md"] == text
+
+
+def test_an_error_that_changes_is_changed_on_the_page(tmp_path: Path) -> None:
+    """No number of the page is typed."""
+    rows = with_errors(SPINNER, 1e-3, 1e-4, 1.23e-5)
+    before = page.page(board_with(*rows), tmp_path)
+    after = page.page(
+        board_with(*rows[:2], replace(rows[2], errors={"omega": 4.56e-5, "attitude": 1e-9})),
+        tmp_path,
+    )
+    assert "1.23e-5" in before
+    assert "1.23e-5" not in after
+    assert "4.56e-5" in after
+
+
+def test_what_has_no_number_is_told_with_its_reason(tmp_path: Path) -> None:
+    """Unavailable and failed are no errors of zero: they stand in a list of their own, on both pages."""
+    lost = made_up(SPINNER, {}, standing=Standing.UNAVAILABLE, detail="no such package", floors={})
+    document = board_with(*lost, *with_errors(WOBBLER, 1e-3, 1e-4, 1e-5))
+    text = page.page(document, tmp_path)
+    assert "unavailable, no such package" in text
+    assert "[Spinner]" not in text
+    own = pages(document, ENTRIES)["tables/engines-spinner.md"]
+    assert "unavailable: no such package" in own
+
+
+def test_the_page_of_an_engine_has_its_commands() -> None:
+    """One for each setting, with all steps and scenes that it was run with."""
+    own = pages(board()[0], ENTRIES)["tables/engines-spinner.md"]
+    assert "# step 0.1 0.05 0.025; engines/oblique\n" in own
+    assert f'taylor-verify run {SCENE} --solver "geometric:lie-rk4?step=0.1"\n' in own
+    other = pages(board()[0], ENTRIES)["tables/engines-wobbler.md"]
+    assert re.search(r"splitting\. omega: order (1\.9|2\.0)", other)
+
+
+def test_a_table_as_shipped_stands_beside_what_is_set(tmp_path: Path) -> None:
+    """The error with what the adapter sets is in the same line."""
+    row = replace(SPINNER, shipped={"defaults": "shipped"})
+    page_entries = replace(ENTRIES, entry=(row,))
+    usual = with_errors(SPINNER, 1e-3, 1e-4, 1e-5)
+    bare = [
+        replace(one, shipped=True, variant=f"{one.variant}, shipped", errors={"omega": 0.25})
+        for one in usual
+    ]
+    document = board_with(*usual, *bare)
+    every = settings(document.study)
+    text = "\n".join(page._as_shipped(document, page_entries, every))
+    assert re.search(
+        r"\| Spinner \| lie-rk4 +\| `oblique` \| +0\.1 \| +0\.250 \| .* 1\.00e-3 \|", text
+    )
+
+
+def test_digits_are_those_of_the_largest_error() -> None:
+    """None is right of an error as large as the motion, nor of none that is a number."""
+    assert digits(1e-3) == pytest.approx(3)
+    assert digits(2.0) == digits(float("inf")) == 0
+
+
+# The pictures.
+
+
+def test_a_picture_has_a_line_for_each_engine() -> None:
+    """Its points are the rows of the best setting; plain solvers have no step."""
+    document = board()[0]
+    (panel,) = work.panels(document, ENTRIES, SCENE, document.pace, 1e6)
+    assert [line.name for line in panel.lines] == ["Spinner", "Wobbler", "SciPy"]
+    assert [y for _, y in panel.lines[0].points] == [
+        row.worst for row in document.study.rows if row.engine == "spinner"
+    ]
+    (steps,) = work.panels(document, ENTRIES, SCENE, work._step, 1.0)
+    assert [x for x, _ in steps.lines[0].points] == [0.1, 0.05, 0.025]
+    assert [line.name for line in steps.lines] == ["Spinner", "Wobbler"]
+
+
+def test_engines_in_float32_have_a_panel_of_their_own() -> None:
+    """The plain solvers stand in both."""
+    single = [replace(row, rung="f32") for row in with_errors(SPINNER, 1e-3, 1e-4, 1e-5)]
+    document = board_with(
+        *single, *with_errors(WOBBLER, 0.05, 0.01, 1e-3), *with_errors(PLAIN, 1e-9)
+    )
+    drawn = work.panels(document, ENTRIES, SCENE, document.pace, 1e6)
+    assert [panel.heading for panel in drawn] == ["float64", "float32"]
+    assert [[line.name for line in panel.lines] for panel in drawn] == [
+        ["Wobbler", "SciPy"],
+        ["Spinner", "SciPy"],
+    ]
+
+
+def test_a_sweep_shows_what_a_version_changed() -> None:
+    """Versions stand in their order, a version without a number leaves a gap, and the text says most."""
+    rows = [
+        replace(row, version=version, solver=f"{version}{row.value}")
+        for version, error in (("3.10", 1e-3), ("3.9", 1e-6), ("3.8", 1e-6))
+        for row in with_errors(SPINNER, error, error, error)
+    ]
+    (sweep,) = sweeps.sweeps(board_with(*rows), ENTRIES)
+    assert sweep.versions == ("3.8", "3.9", "3.10")
+    assert sweep.lines == {"lie-rk4": (1e-6, 1e-6, 1e-3)}
+    (picture,) = sweeps.pictures(board_with(*rows), ENTRIES)
+    assert "the largest change is that of lie-rk4 in 3.10, 1e-06 to 0.001." in picture.alt
+    assert content(picture, "svg") == content(picture, "svg")
+    assert sweeps.pictures(board_with(*rows[:6]), ENTRIES) == []
