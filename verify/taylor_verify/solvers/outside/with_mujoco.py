@@ -49,7 +49,6 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
     return stepped(body, settings.step, start, remark(body, compiled_inertia(model)))
 
 
-<<<<<<< HEAD
 def require_integrator(settings: Settings) -> None:
     """Exit with a sentence where this version of MuJoCo has no such integrator."""
     import mujoco
@@ -61,8 +60,6 @@ def require_integrator(settings: Settings) -> None:
         )
 
 
-=======
->>>>>>> board
 def mjcf(body: FreeBody, settings: Settings, geom: str = "") -> str:
     """Return the model in MuJoCo's own format; repr of a double is read back as that double."""
     (a, d, e), (_, b, f), (_, _, c) = body.inertia
