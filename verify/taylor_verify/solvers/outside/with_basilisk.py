@@ -78,6 +78,8 @@ def spacecraft_of(body: FreeBody, settings: Settings, step: int) -> tuple[Any, A
     if settings.integrator in ADAPTIVE and settings.defaults == "off":
         integrator.absTol = NO_TOLERANCE
     craft.setIntegrator(integrator)
+    # Older versions lose an integrator that nobody else holds.
+    simulation.integrator = integrator
     simulation.AddModelToTask("task", craft)
     simulation.InitializeSimulation()
     return simulation, craft

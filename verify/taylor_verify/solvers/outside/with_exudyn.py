@@ -104,8 +104,13 @@ def simulation_settings(step: float, steps: int, every: int) -> Any:
     settings.timeIntegration.adaptiveStep = False
     settings.timeIntegration.absoluteTolerance = NO_TOLERANCE
     settings.timeIntegration.relativeTolerance = NO_TOLERANCE
-    settings.solution.file.write = False
-    settings.solution.sensors.writePeriod = every * step
+    if hasattr(settings, "solution"):
+        settings.solution.file.write = False
+        settings.solution.sensors.writePeriod = every * step
+    else:
+        # The names before 1.13.
+        settings.solutionSettings.writeSolutionToFile = False
+        settings.solutionSettings.sensorsWritePeriod = every * step
     return settings
 
 

