@@ -10,12 +10,14 @@
 # data = "tensor"
 # [tool.taylor-verify.settings]
 # step = 0.001
+# defaults = ["off", "on"]
 # ///
 """DART: a body with a free joint, without gravity. Its world has one integrator, semi-implicit Euler.
 
 The inertia of a body is any symmetric 6x6 matrix, which is Kirchhoff's equations as they stand: the
 mass matrix of body and fluid together is handed over. DART has the angular part first. A body's
-spatial velocity is in its own axes; its transform leads from body to space.
+spatial velocity is in its own axes; its transform leads from body to space. `defaults=on` leaves what
+puts slow bodies to sleep as it comes, which is on.
 """
 
 from __future__ import annotations
@@ -42,6 +44,10 @@ def solve(body: FreeBody | ImmersedBody, settings: Settings) -> Solved:
         world = dartpy.simulation.World()
         world.setGravity([0, 0, 0])
         world.setTimeStep(settings.step)
+        if hasattr(world, "setDeactivationOptions"):
+            options = world.getDeactivationOptions()
+            options.mEnabled = settings.defaults == "on"
+            world.setDeactivationOptions(options)
         skeleton = dartpy.dynamics.Skeleton()
         joint, node = skeleton.createFreeJointAndBodyNodePair()
         node.setInertia(dartpy.dynamics.Inertia(tensor))
