@@ -33,7 +33,7 @@ def advice(board: Board, entries: EntryList) -> list[str]:
     """Return the sentences that say what a user should do, the most useful first."""
     names = {row.name: row.title for row in entries.entry}
     plain = {row.name for row in entries.entry if row.plain}
-    every, scenes = settings(board.study), entries.advised
+    every, scenes = settings(board.study), advised(board, entries)
     engines = [one for one in newest(every) if one.engine not in plain]
     shipped = [one for one in newest(every, shipped=True) if one.engine not in plain]
     return [
@@ -42,6 +42,12 @@ def advice(board: Board, entries: EntryList) -> list[str]:
         *_as_shipped(engines, shipped, names, entries),
         *_too_fine(engines, scenes, names),
     ]
+
+
+def advised(board: Board, entries: EntryList) -> list[str]:
+    """Return the scenes that the advice rests on, of those that were measured."""
+    measured = {row.scene for row in board.study.rows if row.is_judged}
+    return [scene for scene in entries.advised if scene in measured]
 
 
 def error(size: float) -> str:
