@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from taylor_verify.studies.engines.findings import FOLDER, PARTS, findings, read
+from taylor_verify.studies.engines.findings import FOLDER, PARTS, findings, read, scripts
 
 REPORTS = Path(__file__).resolve().parents[2] / "reports"
-SCRIPTS = sorted((REPORTS / FOLDER).glob("*.py"))
+SCRIPTS = scripts(REPORTS)
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
@@ -25,7 +25,9 @@ def test_a_script_is_a_report(script: Path) -> None:
     assert len(script.read_text(encoding="utf-8").splitlines()) <= 40
 
 
-@pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
+@pytest.mark.parametrize(
+    "script", [s for s in SCRIPTS if s.suffix == ".py"], ids=lambda script: script.stem
+)
 def test_a_script_needs_its_engine_alone(script: Path) -> None:
     """It imports the pinned packages of its first lines and the standard library, and nothing of ours."""
     text = script.read_text(encoding="utf-8")
@@ -46,9 +48,20 @@ def test_a_script_needs_its_engine_alone(script: Path) -> None:
 def test_the_list_of_scripts_is_whole() -> None:
     """The README has a row for each script, and the page of the board a line."""
     readme = (REPORTS / FOLDER / "README.md").read_text(encoding="utf-8")
-    assert re.findall(r"^\| \[(\w+\.py)\]", readme, re.MULTILINE) == [s.name for s in SCRIPTS]
+    assert re.findall(r"^\| \[(\w+\.\w+)\]", readme, re.MULTILINE) == [s.name for s in SCRIPTS]
     page = "\n".join(findings(REPORTS))
     assert all(f"../{FOLDER}/{script.name})" in page for script in SCRIPTS)
+
+
+def test_a_script_in_javascript_is_a_report_too(tmp_path: Path) -> None:
+    """Its first comment has the paragraphs; what follows is no part of them."""
+    file = tmp_path / "it.mjs"
+    words = ["A title", "", *(f"{part}: of {part}\n" for part in PARTS)]
+    comment = "\n".join(words).replace("\n", "\n// ")
+    file.write_text(f"// {comment}\nimport it from 'it';\n// Came: not this.\n", encoding="utf-8")
+    found = read(file)
+    assert found.title == "A title"
+    assert found.parts == {part: f"of {part}" for part in PARTS}
 
 
 def test_a_script_without_a_part_is_named(tmp_path: Path) -> None:

@@ -33,16 +33,21 @@ def advice(board: Board, entries: EntryList) -> list[str]:
     """Return the sentences that say what a user should do, the most useful first."""
     names = {row.name: row.title for row in entries.entry}
     plain = {row.name for row in entries.entry if row.plain}
-    warnings = {row.name: row.warning for row in entries.entry if row.shipped}
-    every, scenes = settings(board.study), entries.advised
+    every, scenes = settings(board.study), advised(board, entries)
     engines = [one for one in newest(every) if one.engine not in plain]
     shipped = [one for one in newest(every, shipped=True) if one.engine not in plain]
     return [
         *_take(board, engines, scenes, names),
         *_never(engines, scenes, names),
-        *_as_shipped(engines, shipped, names, warnings),
+        *_as_shipped(engines, shipped, names, entries),
         *_too_fine(engines, scenes, names),
     ]
+
+
+def advised(board: Board, entries: EntryList) -> list[str]:
+    """Return the scenes that the advice rests on, of those that were measured."""
+    measured = {row.scene for row in board.study.rows if row.is_judged}
+    return [scene for scene in entries.advised if scene in measured]
 
 
 def error(size: float) -> str:
@@ -70,7 +75,7 @@ def _take(
     if paced:
         pace, cheap = min(paced, key=lambda pair: pair[0])
         yield (
-            f"Where {figure(ENOUGH)} is enough, {named(cheap.setting, names)}{_step(cheap)} is the "
+            f"Where {ENOUGH} is enough, {named(cheap.setting, names)}{_step(cheap)} is the "
             f"cheapest: {figure(1e6 * pace)} microseconds for each second of the motion."
         )
 
@@ -78,7 +83,8 @@ def _take(
 def _never(
     engines: Sequence[Setting], scenes: Sequence[str], names: dict[str, str]
 ) -> Iterator[str]:
-    """Yield a sentence for each engine with methods that lose the motion at every step."""
+    """Yield the methods that lose the motion, and the engines of which every method does."""
+    methods, without = [], []
     for engine, group in groupby(engines, key=lambda one: one.engine):
         own = [best for one in group if (best := best_of(one.scores(scenes))) is not None]
         lost = [best for best in own if best.error >= LOST]
@@ -87,69 +93,91 @@ def _never(
             continue
         least = min(lost, key=lambda best: best.error)
         name = bold(prose(f"{names[engine]} {least.setting.version}".strip()))
-        at_best = f"at its best step {_energy(least)}"
         if sound is None:
-            yield (
-                f"Never {name} for free rotation: no setting of it that was measured follows the motion; "
-                f"the least error is {figure(least.error)}, {at_best}."
-            )
+            without.append(f"{name} ({figure(least.error)}, drift of the energy {_energy(least)})")
         elif sound.error * FAR_WORSE <= least.error:
-            words = " or ".join(prose(best.setting.words) for best in lost)
-            better = prose(sound.setting.words)
-            yield (
-                f"Never {name} with {words}: the least error is {figure(least.error)}, {at_best}; "
-                f"{better} has {figure(sound.error)}."
-            )
+            words = _either([prose(best.setting.words) for best in lost])
+            better = f"{prose(sound.setting.words)} has {figure(sound.error)}"
+            methods.append(f"{name} with {words} (least error {figure(least.error)}; {better})")
+    if methods:
+        yield f"Never {'; '.join(methods)}."
+    if without:
+        yield (
+            f"Not for free rotation, with the least error at any step measured here: {'; '.join(without)}."
+        )
 
 
 def _energy(score: Score) -> str:
-    drift = score.row.errors.get("T")
-    return f"with a drift of the energy of {figure(drift)}"
+    return figure(score.row.errors.get("T"))
+
+
+def _either(words: Sequence[str]) -> str:
+    """Return a list as a sentence has it."""
+    *others, last = words
+    return f"{', '.join(others)} or {last}" if others else last
 
 
 def _as_shipped(
     engines: Sequence[Setting],
     shipped: Sequence[Setting],
     names: dict[str, str],
-    warnings: dict[str, str],
+    entries: EntryList,
 ) -> Iterator[str]:
     """Yield the engines that are far worse as shipped than with what the board sets."""
+    found = []
     for engine, group in groupby(shipped, key=lambda one: one.engine):
-        own = [one for one in engines if one.engine == engine]
-        pairs = [(row, _like(row, own)) for one in group for row in one.rows if row.is_judged]
-        ratios = [(a.worst / b, a, b) for a, b in pairs if b]
-        ratio, row, least = max(ratios, key=lambda found: found[0], default=(0.0, None, 0.0))
-        if row is None or ratio < FAR_WORSE:
+        pairs = [(row, like(row, engines, entries)) for one in group for row in one.rows]
+        ratios = [(a.worst / b.worst, a, b) for a, b in pairs if a.is_judged and b and b.worst > 0]
+        ratio, row, usual = max(ratios, key=lambda one: one[0], default=(0.0, None, None))
+        if row is None or usual is None or ratio < FAR_WORSE:
             continue
-        without = f" without {warnings[engine]}" if warnings[engine] else " as it is shipped"
-        yield (
-            f"Never {bold(prose(names[engine]))}{without}: on `{row.scene}` its error with "
-            f"{row.knob} {row.value} is {error(row.worst)} instead of {figure(least)}."
+        warning = next((e.warning for e in entries.entry if e.name == engine and e.warning), "")
+        without = f" without {warning}" if warning else " as it is shipped"
+        found.append(
+            f"{bold(prose(names[engine]))}{without} ({error(row.worst)}, not {figure(usual.worst)})"
         )
+    if found:
+        yield f"Never {'; '.join(found)}."
 
 
-def _like(row: EngineRow, engines: Sequence[Setting]) -> float:
-    """Return the least error on the same scene at the same step with what the board sets; 0 for none."""
-    asked = (row.scene, row.value, row.rung)
-    same = (each for one in engines for each in one.rows if each.is_judged)
-    return min((r.worst for r in same if (r.scene, r.value, r.rung) == asked), default=0.0)
+def like(row: EngineRow, engines: Sequence[Setting], entries: EntryList) -> EngineRow | None:
+    """Return the row with what the board sets, all else being equal; None where there is none."""
+    bare = {
+        word
+        for entry in entries.entry
+        if entry.name == row.engine
+        for word in (entry.shipped or {}).values()
+    }
+    variant = ", ".join(word for word in row.variant.split(", ") if word not in bare)
+    asked = (row.engine, row.version, variant, row.scene, row.value, row.rung)
+    return next(
+        (
+            each
+            for one in engines
+            for each in one.rows
+            if each.is_judged
+            and (each.engine, each.version, each.variant, each.scene, each.value, each.rung)
+            == asked
+        ),
+        None,
+    )
 
 
 def _too_fine(
     engines: Sequence[Setting], scenes: Sequence[str], names: dict[str, str]
 ) -> Iterator[str]:
     """Yield the engines whose best step is not their smallest one."""
+    said = []
     for engine, group in groupby(engines, key=lambda one: one.engine):
-        found = [one for one in group if best_of(one.scores(scenes)) is not None]
-        best = best_of(score for one in found for score in one.scores(scenes))
-        if best is None or not best.value or best.setting.knob != "step":
+        best = best_of(score for one in group for score in one.scores(scenes))
+        if best is None or not best.value or best.error >= LOST or best.setting.knob != "step":
             continue
         finest = best.setting.scores(scenes)[-1]
         if finest.error > WORSE_BELOW * best.error:
-            yield (
-                f"No smaller step than {best.value} in {bold(prose(names[engine]))}: with "
-                f"{finest.value} its error grows from {figure(best.error)} to {error(finest.error)}."
-            )
+            growth = f"{figure(best.error)} becomes {error(finest.error)} with {finest.value}"
+            said.append(f"{best.value} in {bold(prose(names[engine]))} ({growth})")
+    if said:
+        yield f"No smaller step than {', '.join(said)}."
 
 
 def _step(score: Score) -> str:

@@ -1,6 +1,7 @@
 """The findings about engines that are proven: scripts below reports/upstream/engines, told on the board.
 
-The docstring of a script begins with its title. Then come paragraphs, each behind a word of `PARTS`.
+The docstring of a script in Python, and the first comment of one in JavaScript, begins with its title. Then
+come paragraphs, each behind a word of `PARTS`.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ import ast
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import takewhile
 from pathlib import Path
 from typing import Final
 
@@ -29,7 +31,7 @@ class Finding:
 
 def read(file: Path) -> Finding:
     """Return the finding of a script. Raises ValueError for one without a part of it."""
-    words = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
+    words = _report(file.read_text(encoding="utf-8"), file.suffix)
     title, *paragraphs = [" ".join(each.split()) for each in re.split(r"\n\s*\n", words)]
     parts = {word: text.strip() for each in paragraphs for word, _, text in [each.partition(":")]}
     if lost := [word for word in PARTS if not parts.get(word)]:
@@ -37,9 +39,23 @@ def read(file: Path) -> Finding:
     return Finding(file.name, title.removesuffix("."), parts)
 
 
+def scripts(folder: Path) -> list[Path]:
+    """Return the scripts of a report folder, in alphabetical order."""
+    place = folder / FOLDER
+    return sorted([*place.glob("*.py"), *place.glob("*.mjs")])
+
+
+def _report(text: str, suffix: str) -> str:
+    """Return the docstring, or the comment that begins a script; empty where there is none."""
+    if suffix == ".py":
+        return ast.get_docstring(ast.parse(text)) or ""
+    lines = takewhile(lambda line: line.startswith("//"), text.splitlines())
+    return "\n".join(line.removeprefix("//").strip() for line in lines)
+
+
 def findings(folder: Path) -> Iterator[str]:
     """Yield the section of the findings of a report folder; nothing where there are none."""
-    found = [read(file) for file in sorted((folder / FOLDER).glob("*.py"))]
+    found = [read(file) for file in scripts(folder)]
     if found:
         yield "## Findings"
         yield (

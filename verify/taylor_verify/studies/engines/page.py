@@ -15,7 +15,7 @@ from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.sheet import sheet as csv_sheet
 from taylor_verify.studies import figures
 from taylor_verify.studies.engines import trajectories
-from taylor_verify.studies.engines.advice import advice
+from taylor_verify.studies.engines.advice import advice, like
 from taylor_verify.studies.engines.document import Board, EngineRow
 from taylor_verify.studies.engines.engine_page import place
 from taylor_verify.studies.engines.entry import EntryList, entry_list
@@ -63,10 +63,9 @@ _OBJECT: Final = (
     "A row that is unfair to an engine is a fault of this project. Name the row, and say which call of the "
     'engine would do better: `taylor-verify run SCENE --solver "outside:NAME?..."` of the engine\'s page '
     "shows it as we see it.",
-    "A better adapter is one file, [with_NAME](../../cases/README.md#to-add-an-engine); a new setting or "
+    "A better adapter is one file, `cases/README.md` says how (To add an engine); a new setting or "
     "version is a word in the engine's row of `verify/taylor_verify/studies/engines/entries.toml`.",
-    "An engine of your own needs no adapter here to be judged: "
-    "[bring your engine](../../docs/bring-your-engine.md).",
+    "An engine of your own needs no adapter here to be judged: `docs/bring-your-engine.md`.",
 )
 
 
@@ -193,23 +192,19 @@ def _states(board: Board, scene: str) -> set[str]:
 
 def _as_shipped(board: Board, entries: EntryList, every: Sequence[Setting]) -> Iterator[str]:
     """Yield the table of the engines as people get them, beside what the board sets."""
-    titles, rows = {row.name: row.title for row in entries.entry}, []
-    measured = {(r.engine, r.scene, r.value, r.rung, r.variant): r for r in board.study.rows}
-    bare = {row.name: dict(row.shipped or {}) for row in entries.entry if row.shipped}
+    titles, rows, usual = {row.name: row.title for row in entries.entry}, [], newest(every)
     for one in newest(every, shipped=True):
-        for scene, group in groupby(one.rows, key=lambda row: row.scene):
-            judged = [row for row in group if row.is_judged]
-            for row in judged[:1]:
-                like = _without(row.variant, bare.get(row.engine, {}).values())
-                set_row = measured.get((row.engine, scene, row.value, row.rung, like))
+        for row in one.rows:
+            other = like(row, usual, entries)
+            if row.is_judged:
                 rows.append(
                     [
                         prose(titles.get(one.engine, one.engine)),
-                        prose(like) or NOTHING,
-                        code(scene.rpartition("/")[2]),
+                        prose(other.variant if other else row.variant) or NOTHING,
+                        code(row.scene.rpartition("/")[2]),
                         row.value,
                         *(figure(row.errors.get(name)) for name in ("omega", "attitude", "T")),
-                        figure(None if set_row is None or set_row.worst == inf else set_row.worst),
+                        figure(other.worst if other and other.worst < inf else None),
                         prose(row.cause) or NOTHING,
                     ]
                 )
@@ -221,12 +216,6 @@ def _as_shipped(board: Board, entries: EntryList, every: Sequence[Setting]) -> I
             "what the adapter sets, at the same step."
         )
         yield table(["engine", "setting", "scene", *numbers, "cause"], rows)
-
-
-def _without(variant: str, words: Iterable[str]) -> str:
-    """Return the words of a setting without those that only tell that it is as shipped."""
-    left_out = set(words)
-    return ", ".join(word for word in variant.split(", ") if word not in left_out)
 
 
 def _unavailable(rows: Iterable[EngineRow]) -> Iterator[str]:

@@ -51,7 +51,7 @@ def pictures(board: Board, entries: EntryList) -> list[Picture]:
     step = panels(board, entries, scene, _step, 1.0)
     found = []
     if time:
-        axis = "processor time for a second of the motion (µs)"
+        axis = "time for a second of the motion (µs)"
         found.append(_picture(scene, "time", axis, time))
     if step:
         found.append(_picture(scene, "step", "step (s)", step))

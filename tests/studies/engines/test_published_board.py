@@ -1,0 +1,78 @@
+"""The published board: its rows are what the judge says of its trajectories today, without an engine."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from taylor_verify.records.quantities import COLUMNS, state_groups
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.studies.engines import stored, trajectories
+from taylor_verify.studies.engines.document import Board, EngineRow
+from taylor_verify.studies.engines.replay import errors_of, judged
+
+REPORTS = Path(__file__).resolve().parents[3] / "reports"
+MEGABYTE = 1_000_000
+# An error is that of stored numbers against the exact motion: all digits that are printed, but the last.
+DIGITS = 2e-3
+
+
+@cache
+def board() -> Board:
+    found = stored.find(REPORTS)
+    assert found is not None
+    return found
+
+
+def rows() -> list[EngineRow]:
+    return [row for row in board().study.rows if row.is_judged]
+
+
+def is_still_so(row: EngineRow) -> bool:
+    """True if the stored trajectory of a row has its errors, its cause and its start."""
+    states = trajectories.states_of(trajectories.load(REPORTS), row)
+    assert states is not None
+    found = errors_of(judged(row.scene, row.rung, row.solver, states, row.steps))
+    assert found.errors == pytest.approx(row.errors, rel=DIGITS)
+    assert found.floors == pytest.approx(row.floors, rel=0.1)
+    assert found.start == pytest.approx(row.start, rel=DIGITS)
+    return found.cause == row.cause
+
+
+def test_one_row_of_each_engine_is_judged_again() -> None:
+    """The first of each on the shortest scene has the errors that are published."""
+    first = {row.engine: row for row in reversed(rows()) if row.scene == "engines/oblique"}
+    assert len(first) >= 3
+    assert all(is_still_so(row) for row in first.values())
+
+
+@pytest.mark.slow
+def test_every_row_is_judged_again() -> None:
+    """No number of the board is older than the judge."""
+    assert [row.key for row in rows() if not is_still_so(row)] == []
+
+
+def test_every_trajectory_has_its_row() -> None:
+    """As many blocks as rows, each of the samples and columns of its scene; two megabytes at most."""
+    arrays = trajectories.load(REPORTS)
+    assert sum(map(len, arrays.values())) == len(rows())
+    assert len({(row.array, row.place) for row in rows()}) == len(rows())
+    for row in rows():
+        scene = load(row.scene)
+        wide = sum(len(COLUMNS[name]) for name in state_groups(scene.model, scene.track))
+        assert arrays[row.array][row.place].shape == (len(scene.clock.elapsed), wide)
+    assert (REPORTS / trajectories.NAME).stat().st_size <= 2 * MEGABYTE
+
+
+def test_the_first_row_of_every_trajectory_is_the_start() -> None:
+    """To the rounding of the arithmetic: what comes after is the engine's, and no convention of ours."""
+    roundoff = {"f64": 2.0**-53, "f32": 2.0**-24}
+    wrong = [row.key for row in rows() if not (row.start or 0.0) <= 16 * roundoff[row.rung]]
+    assert wrong == []
+
+
+def test_no_engine_is_lost() -> None:
+    """A run that has no trajectory says why."""
+    assert [row.key for row in board().study.rows if not row.is_judged and not row.detail] == []
