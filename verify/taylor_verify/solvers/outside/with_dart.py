@@ -10,13 +10,13 @@
 # data = "tensor"
 # [tool.taylor-verify.settings]
 # step = 0.001
-# defaults = ["off", "on"]
+# defaults = ["off", "shipped"]
 # ///
 """DART: a body with a free joint, without gravity. Its world has one integrator, semi-implicit Euler.
 
 The inertia of a body is any symmetric 6x6 matrix, which is Kirchhoff's equations as they stand: the
 mass matrix of body and fluid together is handed over. DART has the angular part first. A body's
-spatial velocity is in its own axes; its transform leads from body to space. `defaults=on` leaves what
+spatial velocity is in its own axes; its transform leads from body to space. `defaults=shipped` leaves what
 puts slow bodies to sleep as it comes, which is on.
 """
 
@@ -46,7 +46,7 @@ def solve(body: FreeBody | ImmersedBody, settings: Settings) -> Solved:
         world.setTimeStep(settings.step)
         if hasattr(world, "setDeactivationOptions"):
             options = world.getDeactivationOptions()
-            options.mEnabled = settings.defaults == "on"
+            options.mEnabled = settings.defaults == "shipped"
             world.setDeactivationOptions(options)
         skeleton = dartpy.dynamics.Skeleton()
         joint, node = skeleton.createFreeJointAndBodyNodePair()
