@@ -37,13 +37,12 @@ def everything(scene: Scene) -> Scene:
     return replace(scene, track=frozenset({"attitude", "centre"}), initial=moved)
 
 
-# No closed form of the attitude: under a moment that is not along an axis of symmetry, in Weber's case; and
-# of the path without linear impulse.
+# No closed form of the attitude: under a moment that is not along an axis of symmetry, in Weber's case.
 STATE_ALONE = {
     *("euler/moment-across-axis", "euler/moment-across-no-spin"),
     *("euler/moment-oblique", "euler/moment-backward"),
     *("euler/moment-middle-axis", "euler/washboard-run", "euler/washboard-swing"),
-    *("kirchhoff/weber", "kirchhoff/no-linear-impulse"),
+    "kirchhoff/weber",
 }
 
 
