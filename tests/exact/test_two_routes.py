@@ -37,14 +37,13 @@ def everything(scene: Scene) -> Scene:
     return replace(scene, track=frozenset({"attitude", "centre"}), initial=moved)
 
 
-# No closed form of the attitude: under a moment that is not along an axis of symmetry; nor of the path
-# without linear impulse. Weber's scene is asked for the impulses alone; with the path it costs
-# time in proportion to t.
+# No closed form of the attitude: under a moment that is not along an axis of symmetry. Weber's scene is
+# asked for the impulses alone; with the path it costs time in proportion to t.
 STATE_ALONE = {
     *("euler/moment-across-axis", "euler/moment-across-no-spin"),
     *("euler/moment-oblique", "euler/moment-backward"),
     *("euler/moment-middle-axis", "euler/washboard-run", "euler/washboard-swing"),
-    *("kirchhoff/weber", "kirchhoff/no-linear-impulse"),
+    "kirchhoff/weber",
 }
 IN_PROPORTION_TO_TIME = {"kirchhoff/weber-path"}
 
