@@ -42,7 +42,36 @@ _TURNS = 15
 
 
 @dataclass(frozen=True)
-class FreeBody:
+class Body:
+    """What every body of an engine has: the question that asks for its motion."""
+
+    question: Question
+
+    @property
+    def instants(self) -> Sequence[float]:
+        instants: Sequence[float] = self.question.instants
+        return instants
+
+    @property
+    def remark(self) -> str:
+        """A sentence on what an engine is given in place of what the question has."""
+        return ""
+
+    def steps(self, step: float) -> list[int]:
+        """Return the number of steps to each instant; exit with a sentence if one is no multiple."""
+        counts = [round(instant / step) for instant in self.instants]
+        # The instants are rounded to the rung, and so is the step in the engine.
+        roundoff = 4 * 0.5**self.question.bits
+        for instant, count in zip(self.instants, counts, strict=True):
+            if not abs(instant / step - count) <= roundoff * count:
+                raise SystemExit(
+                    f"expected a step that divides t = {instant!r}, got {step!r} @ step"
+                )
+        return counts
+
+
+@dataclass(frozen=True)
+class FreeBody(Body):
     """Inertia, omega in body axes and attitude (unit, scalar first, body to space), as doubles.
 
     A motion backwards in time is the motion forwards with omega reversed, and is given as that one.
@@ -52,13 +81,7 @@ class FreeBody:
     inertia: Matrix
     omega: Vector
     attitude: Quaternion
-    question: Question
     turn: Quaternion = _IDENTITY
-
-    @property
-    def instants(self) -> Sequence[float]:
-        instants: Sequence[float] = self.question.instants
-        return instants
 
     @property
     def moments(self) -> Vector:
@@ -92,18 +115,6 @@ class FreeBody:
             turn=turn,
         )
 
-    def steps(self, step: float) -> list[int]:
-        """Return the number of steps to each instant; exit with a sentence if one is no multiple."""
-        counts = [round(instant / step) for instant in self.instants]
-        # The instants are rounded to the rung, and so is the step in the engine.
-        roundoff = 4 * 0.5**self.question.bits
-        for instant, count in zip(self.instants, counts, strict=True):
-            if not abs(instant / step - count) <= roundoff * count:
-                raise SystemExit(
-                    f"expected a step that divides t = {instant!r}, got {step!r} @ step"
-                )
-        return counts
-
     def row(self, omega: Vector, attitude: Quaternion) -> Row:
         """Return a row of the answer, of omega in body axes and the attitude that an engine has."""
         sign, turn = self.question.sign, self.turn
@@ -119,15 +130,18 @@ class FreeBody:
         return self.row(to_body(attitude, omega), attitude)
 
 
-def answer(solve: Callable[[FreeBody, Settings], Solved]) -> None:
+def answer(
+    solve: Callable[[Any, Settings], Solved], read: Callable[[Any], Body] | None = None
+) -> None:
     """Read the question on stdin, solve it as the arguments say, write the answer on stdout.
 
-    What an engine prints goes to stderr, at its exit and from C too.
+    ``read`` makes a body of the question, a free rigid one unless another reader is given.
     """
-    settings, body = arguments(), free_body(json.load(sys.stdin))
-    with os.fdopen(os.dup(1), "w", encoding="ascii") as stdout:
-        os.dup2(2, 1)
-        json.dump(document(body.question, solve(body, settings)), stdout)
+    # Engines greet on standard output, in C too; it is for the answer alone.
+    with os.fdopen(os.dup(sys.stdout.fileno()), "w") as out:
+        os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
+        settings, body = arguments(), (read or free_body)(json.load(sys.stdin))
+        json.dump(document(body.question, solve(body, settings)), out)
 
 
 def free_body(scene: Any) -> FreeBody:
@@ -147,7 +161,7 @@ def free_body(scene: Any) -> FreeBody:
     )
 
 
-def stepped(body: FreeBody, step: float, start: Callable[[], Engine], remark: str = "") -> Solved:
+def stepped(body: Body, step: float, start: Callable[[], Engine], remark: str = "") -> Solved:
     """Return the motion by a fixed step; ``start`` builds the engine anew and is not timed.
 
     The propagation is done twice, and the second is timed, as by `question.twice`.
