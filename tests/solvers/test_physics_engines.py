@@ -20,7 +20,7 @@ from taylor_verify.run import run
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.engines.engine import SCRIPTS, Engine, engines, prepare
+from taylor_verify.solvers.engines.engine import SCRIPTS, engines, prepare
 from taylor_verify.solvers.engines.launcher import NotMade
 from taylor_verify.solvers.process import protocol
 from taylor_verify.solvers.registry import solver_named
@@ -60,22 +60,23 @@ def sibling(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[str], Any]]:
             del sys.modules[name]
 
 
-def takes_tensor() -> list[Engine]:
-    return [one for one in engines().values() if one.script.about.data == "tensor"]
-
-
 def each_setting() -> list[str]:
-    """The engines by name, with each word of each of their settings."""
+    """The engines by name, with each word of each of their settings, and those without a step."""
     names = []
-    for one in takes_tensor():
+    for one in engines().values():
+        about = one.script.about
+        if about.data != "tensor" or "euler" not in about.models:
+            continue
         words = [
             f"{key}={word}"
-            for key, default in one.script.about.settings.items()
+            for key, default in about.settings.items()
             if isinstance(default, list)
             for word in default
         ]
         queries = ["&".join(filter(None, (word, BESIDE.get(word)))) for word in words]
-        names += [f"outside:{one.name}?{query}".rstrip("?") for query in queries or [""]]
+        names += [f"outside:{one.name}?{query}" for query in queries]
+        if "step" not in about.settings:
+            names.append(f"outside:{one.name}")
     return names
 
 

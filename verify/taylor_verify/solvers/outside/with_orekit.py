@@ -28,7 +28,12 @@ from question import twice
 
 def solve(body: FreeBody, settings: Settings) -> Solved:
     begin()
-    rows, seconds, more = twice(lambda: motion(body))
+    import jpype
+
+    try:
+        rows, seconds, more = twice(lambda: motion(body))
+    except jpype.JException as fault:
+        raise SystemExit(f"Orekit: {fault}") from None
     return Solved(rows, 0, 0, seconds, more)
 
 
