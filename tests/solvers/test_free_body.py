@@ -45,6 +45,12 @@ def shared(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
         sys.modules.pop(name, None)
 
 
+@pytest.fixture
+def immersed(shared: Any) -> Iterator[Any]:
+    yield import_module("immersed_body")
+    sys.modules.pop("immersed_body", None)
+
+
 def asked(problem: Problem, shared: Any) -> Any:
     return shared.free_body(json.loads(json.dumps(protocol.question(problem))))
 
@@ -170,3 +176,41 @@ def test_a_body_that_is_not_free_is_refused(scene: str, shared: Any) -> None:
     """A moment, wheels and a fluid end a script of a physics engine with a sentence."""
     with pytest.raises(SystemExit, match="expected a free rigid body"):
         asked(pose(load(scene), rung("f64")), shared)
+
+
+@pytest.mark.parametrize(
+    "scene", ["kirchhoff/whole-motion", "kirchhoff/ellipsoid-triaxial", "kirchhoff/backward"]
+)
+def test_a_solid_in_a_fluid_begins_with_its_impulses(scene: str, immersed: Any) -> None:
+    """The row of the velocities at the start is the state of the scene, forwards and backwards in time."""
+    problem = pose(load(scene), rung("f64"))
+    body = immersed.immersed_body(json.loads(json.dumps(protocol.question(problem))))
+    expected = [float(value) for value in problem.given.initial.moving]
+    own = body.row(body.velocity, body.omega, body.attitude, body.centre)
+    space = to_space_and_back(immersed, body)
+    # Two products with matrices of condition below ten, in doubles.
+    few = 200 * 2**-53 * max(map(abs, expected))
+    for row in (own, space):
+        assert np.max(np.abs(np.subtract(row[:6], expected))) <= few
+    assert (body.ellipsoid is not None) is ("ellipsoid" in scene)
+
+
+def to_space_and_back(immersed: Any, body: Any) -> Any:
+    turned = immersed.to_space(body.attitude, body.omega)
+    return body.row_from_space(body.velocity_in_space, turned, body.attitude, body.centre)
+
+
+def test_an_ellipsoid_is_asked_with_its_axes(immersed: Any) -> None:
+    """The question has the semi-axes and the densities of a scene that was written with them."""
+    document = protocol.question(pose(load("kirchhoff/ellipsoid-triaxial"), rung("f64")))
+    ellipsoid = immersed.immersed_body(json.loads(json.dumps(document))).ellipsoid
+    assert ellipsoid.semi_axes == [1.0, 0.8, 0.5]
+    assert (ellipsoid.density, ellipsoid.fluid_density) == (1.5, 1.0)
+
+
+@pytest.mark.parametrize("scene", ["kirchhoff/constant-loads", "euler/generic"])
+def test_a_solid_under_loads_or_without_a_fluid_is_refused(scene: str, immersed: Any) -> None:
+    """Loads, and a rigid body, end a script for a solid in a fluid with a sentence."""
+    document = json.loads(json.dumps(protocol.question(pose(load(scene), rung("f64")))))
+    with pytest.raises(SystemExit, match="expected a free solid in a fluid"):
+        immersed.immersed_body(document)

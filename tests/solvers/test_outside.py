@@ -91,6 +91,15 @@ def test_a_version_replaces_the_pin_of_its_package() -> None:
     assert found.block != as_pinned.block
 
 
+def test_packages_that_go_together_take_one_version() -> None:
+    """A version of MJX is that of MuJoCo beside it, and no other pin changes."""
+    pinned = named("outside:mjx").block
+    expected = pinned.replace("mujoco-mjx==3.17.0", "mujoco-mjx==3.8.0").replace(
+        '"mujoco==3.17.0"', '"mujoco==3.8.0"'
+    )
+    assert named("outside:mjx?version=3.8.0").block == expected != pinned
+
+
 def test_the_command_line_lists_them_all() -> None:
     """The names of the registry are those of the scripts, and each of them is a solver."""
     listed = {name.partition("?")[0] for name in solver_names() if name.startswith(OUTSIDE)}
@@ -359,6 +368,10 @@ def written(folder: Path, metadata: str) -> Path:
         ),
         (
             'dependencies = ["six==1.0"]\n[tool.taylor-verify]\ntitle = "x"\npackage = "seven"',
+            "expected a package among the dependencies, got 'seven' @ with_mine.py",
+        ),
+        (
+            'dependencies = ["six==1.0"]\n[tool.taylor-verify]\ntitle = "x"\nalike = ["seven"]',
             "expected a package among the dependencies, got 'seven' @ with_mine.py",
         ),
         (

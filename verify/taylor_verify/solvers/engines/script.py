@@ -8,6 +8,7 @@ dependencies = ["scikit-sundae==1.2.0", "numpy==2.4.6"]
 [tool.taylor-verify]
 title = "SUNDIALS CVODE, by scikit-sundae"
 package = "scikit-sundae"              optional: whose pin `version` replaces; else the first
+alike = ["mujoco"]                     optional: packages whose pins `version` replaces with it
 rungs = ["f64"]                        optional
 models = ["euler", "kirchhoff"]        optional
 loads = false                          optional: takes no constant loads and no wheels
@@ -48,6 +49,7 @@ class About(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
     title: str
     package: str = ""
+    alike: tuple[str, ...] = ()
     rungs: tuple[str, ...] = ("f64",)
     models: tuple[str, ...] = ("euler", "kirchhoff")
     loads: bool = True
@@ -87,8 +89,8 @@ class Script:
             raise ValueError(f"expected a version such as 1.2.0, got {version!r:.60} @ version")
         if not self.package:
             raise ValueError(f"expected no version: {self.path.name} has no library @ version")
-        pinned = re.escape(self.package + pin)
-        return re.sub(rf'"{pinned}[^"]*"', f'"{self.package}{pin}{version}"', self.block)
+        packages = "|".join(re.escape(each + pin) for each in (self.package, *self.about.alike))
+        return re.sub(rf'"({packages})[^"]*"', rf'"\g<1>{version}"', self.block)
 
 
 def scripts(folder: Path) -> list[Script]:
@@ -135,8 +137,9 @@ def _faults(script: Script) -> Iterator[str]:
             pinned.add(match[1])
         else:
             yield f"expected a dependency pinned with {script.launcher.pin}, got {requirement!r}"
-    if script.about.package and script.about.package not in pinned:
-        yield f"expected a package among the dependencies, got {script.package!r}"
+    for package in filter(None, (script.about.package, *script.about.alike)):
+        if package not in pinned:
+            yield f"expected a package among the dependencies, got {package!r}"
     known: set[str] = set()
     for key, default in script.about.settings.items():
         if isinstance(default, int | float) and not 0 < default < inf:

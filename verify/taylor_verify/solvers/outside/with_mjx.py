@@ -10,6 +10,7 @@
 # ]
 # [tool.taylor-verify]
 # title = "MuJoCo MJX on JAX"
+# alike = ["mujoco"]
 # models = ["euler"]
 # rungs = ["f32", "f64"]
 # loads = false
