@@ -152,8 +152,9 @@ class Outside(Solver):
         body = problem.given.body
         if body.manufactured is not None:
             return f"{self.name} is made for constant loads, and not for a manufactured motion"
-        if not self.engine.script.about.loads and (isinstance(body, Gyrostat) or not body.is_free):
-            return f"{self.name} is made for free bodies without wheels"
+        is_plain = body.is_free and not body.damping and not isinstance(body, Gyrostat)
+        if not (self.engine.script.about.loads or is_plain):
+            return f"{self.name} is made for free bodies without wheels and without damping"
         return ""
 
     def problem(self, scene: Scene, rung: Rung) -> Problem:

@@ -61,8 +61,8 @@ function propagated(counts, start) {
 // leads from these axes to those of the question. A motion backwards in time is the motion forwards with
 // omega reversed, and is given as that one.
 function freeBody({ model, bits, columns, body, initial, time }) {
-  if (model !== "euler" || "rotor" in body || doubles(body.moment).some((m) => m !== 0))
-    refuse("expected a free rigid body, got a moment, wheels or a fluid @ body");
+  if (model !== "euler" || "rotor" in body || "damping" in body || doubles(body.moment).some((m) => m !== 0))
+    refuse("expected a free rigid body, got a moment, wheels, damping or a fluid @ body");
   const elapsed = doubles(time.elapsed);
   const sign = elapsed.at(-1) < 0 ? -1 : 1;
   const asksStart = elapsed[0] === 0;

@@ -70,8 +70,8 @@ def immersed_body(scene: Any) -> ImmersedBody:
     question = read(scene)
     body, initial = scene["body"], scene["initial"]
     loads = [*floats(body.get("force", [])), *floats(body.get("couple", []))]
-    if scene["model"] != "kirchhoff" or any(loads):
-        raise SystemExit("expected a free solid in a fluid, got loads or no fluid @ body")
+    if scene["model"] != "kirchhoff" or any(loads) or "damping" in body:
+        raise SystemExit("expected a free solid in a fluid, got loads, damping or no fluid @ body")
     A, B, C = (numpy.array(floats(body[key])) for key in ("linear", "coupling", "angular"))
     energy = numpy.block([[A, B], [B.T, C]])
     impulses = floats(initial["linear_impulse"]) + floats(initial["angular_impulse"])
