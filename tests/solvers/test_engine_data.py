@@ -123,11 +123,11 @@ def test_truths_tell_the_data_of_two_solvers_apart(
     assert own.max["omega"] <= FLOAT32 / 10
 
 
-@pytest.mark.parametrize("name", ["euler/constant-moment", "euler/gyrostat"])
+@pytest.mark.parametrize("name", ["euler/constant-moment", "euler/gyrostat", "euler/damped"])
 def test_an_engine_for_free_bodies_is_not_asked_for_others(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A moment and wheels make no failure of an engine that says `loads = false`: it is unavailable."""
+    """A moment, wheels and damping make no failure of an engine that says `loads = false`: it is unavailable."""
     found = run(name, twin(tmp_path, 'data = "tensor"', monkeypatch), "f32")
     assert {str(v.verdict) for v in found.verdicts} == {"unavailable"}
     assert "free bodies without wheels" in str(found.verdicts[0].reason)

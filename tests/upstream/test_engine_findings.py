@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+import sys
 from pathlib import Path
 
 import pytest
@@ -16,13 +17,13 @@ SCRIPTS = scripts(REPORTS)
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
 def test_a_script_is_a_report(script: Path) -> None:
-    """It has its title, versions, expectation, finding and evidence by address, in at most 40 lines."""
+    """It has its title, versions, expectation, finding and evidence, and at most 40 lines of code."""
     found = read(script)
     assert found.title
     assert set(found.parts) == set(PARTS)
-    assert re.search(r"https://\S+\d", found.parts["Evidence"])
     assert re.search(r"\d+\.\d+", found.parts["Versions"])
-    assert len(script.read_text(encoding="utf-8").splitlines()) <= 40
+    code = script.read_text(encoding="utf-8").rpartition('"""\n\nimport')[2]
+    assert len([line for line in code.splitlines() if line.strip()]) <= 40
 
 
 @pytest.mark.parametrize(
@@ -33,24 +34,22 @@ def test_a_script_needs_its_engine_alone(script: Path) -> None:
     text = script.read_text(encoding="utf-8")
     (pinned,) = re.findall(r"^# dependencies = \[(.*)\]$", text, re.MULTILINE)
     packages = {re.split("[=><]", name.strip(' "'))[0] for name in pinned.split(",")}
-    imported = {
-        name.name.partition(".")[0]
-        for node in ast.walk(ast.parse(text))
-        if isinstance(node, ast.Import)
-        for name in node.names
-    }
+    nodes = [*ast.walk(ast.parse(text))]
+    modules = [name.name for node in nodes if isinstance(node, ast.Import) for name in node.names]
+    modules += [node.module or "" for node in nodes if isinstance(node, ast.ImportFrom)]
+    imported = {module.partition(".")[0] for module in modules}
     assert "numpy" in packages
     assert re.search(r'"[\w-]+==[\d.]+"', pinned)
-    assert imported - packages <= {"sys", "math"}
-    assert not any(isinstance(node, ast.ImportFrom) for node in ast.walk(ast.parse(text)))
+    others = imported - packages - sys.stdlib_module_names
+    assert len(others) <= 1, "the engine, where its package has another name"
+    assert "taylor_verify" not in text
 
 
-def test_the_list_of_scripts_is_whole() -> None:
-    """The README has a row for each script, and the page of the board a line."""
-    readme = (REPORTS / FOLDER / "README.md").read_text(encoding="utf-8")
-    assert re.findall(r"^\| \[(\w+\.\w+)\]", readme, re.MULTILINE) == [s.name for s in SCRIPTS]
+def test_the_page_lists_every_script() -> None:
+    """Each has a line on the page of the board, with what came and in which versions."""
     page = "\n".join(findings(REPORTS))
     assert all(f"../{FOLDER}/{script.name})" in page for script in SCRIPTS)
+    assert len(SCRIPTS) >= 3
 
 
 def test_a_script_in_javascript_is_a_report_too(tmp_path: Path) -> None:

@@ -114,6 +114,16 @@ def test_a_run_that_ends_early_is_a_row() -> None:
     assert (found.states, found.row.errors) == (None, {})
 
 
+def test_what_an_engine_leaves_behind_is_not_left_here(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A log that it writes to the folder where it is run is gone with that folder."""
+    monkeypatch.chdir(tmp_path)
+    bad = replace(SPINNER, solver="process:touch log", values=())
+    assert answered(next(bad.runs(ENTRIES.scene))).row.standing is Standing.FAILED
+    assert list(tmp_path.iterdir()) == []
+
+
 # What is stored.
 
 

@@ -152,7 +152,9 @@ def free_body(scene: Any) -> FreeBody:
         or {"rotor", "damping"} & scene["body"].keys()
         or any(floats(scene["body"]["moment"]))
     ):
-        raise SystemExit("expected a free rigid body, got a moment, wheels, damping or a fluid @ body")
+        raise SystemExit(
+            "expected a free rigid body, got a moment, wheels, damping or a fluid @ body"
+        )
     return FreeBody(
         inertia=floats(scene["body"]["inertia"]),
         omega=[question.sign * w for w in floats(scene["initial"]["omega"])],
