@@ -177,7 +177,7 @@ def test_both_routes_agree_for_any_gyrostat(free: FreeGyrostat) -> None:
 
 @pytest.mark.slow
 @given(gyrostats())
-@settings(max_examples=400)
+@settings(max_examples=200)
 def test_three_routes_agree_for_any_gyrostat(free: FreeGyrostat) -> None:
     """Enclosed Taylor series find the motion of both closed forms; these agree a hundred times later."""
     instants = slow(free, (Fraction(3, 2), Fraction(-2), Fraction(300)))
@@ -282,7 +282,7 @@ def test_without_wheels_it_is_eulers_top(spin: FreeSpin) -> None:
 
 @pytest.mark.slow
 @given(tops())
-@settings(max_examples=400)
+@settings(max_examples=200)
 def test_any_top_without_wheels_is_eulers_top(spin: FreeSpin) -> None:
     """So it is for many more bodies."""
     is_eulers_top(spin)
