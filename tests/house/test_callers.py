@@ -302,12 +302,12 @@ def test_the_machines_faults_are_not_called_ours(
     def break_down(*_: Any) -> None:
         raise error
 
-    monkeypatch.setattr("taylor_verify.models.problem.pose", break_down)
+    monkeypatch.setattr("taylor_verify.solvers.solver.pose", break_down)
     assert main(["run", SCENE]) == 2
     told = capsys.readouterr().err
     assert expected in told
     assert "a fault of taylor-verify" not in told
-    monkeypatch.setattr("taylor_verify.models.problem.pose", lambda *_: 1 / 0)
+    monkeypatch.setattr("taylor_verify.solvers.solver.pose", lambda *_: 1 / 0)
     assert main(["run", SCENE]) == 2
     assert "a fault of taylor-verify" in capsys.readouterr().err
 
