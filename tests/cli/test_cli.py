@@ -509,11 +509,11 @@ def test_an_error_nobody_foresaw_is_one_line_with_its_place(
     monkeypatch: pytest.MonkeyPatch, capsys: Captured, short: Path
 ) -> None:
     """It names the scene, the rung, the error and the file it rose in."""
-    monkeypatch.setattr("taylor_verify.models.problem.pose", lambda *_: 1 // 0)
+    monkeypatch.setattr("taylor_verify.solvers.solver.pose", lambda *_: 1 // 0)
     assert main(["run", str(short)]) == 2
     error = capsys.readouterr().err
     assert error.count("\n") == 1
-    for part in (str(short), "f64", "ZeroDivisionError", "run.py:"):
+    for part in (str(short), "f64", "ZeroDivisionError", "solver.py:"):
         assert part in error
 
 
