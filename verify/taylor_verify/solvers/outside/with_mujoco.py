@@ -11,7 +11,7 @@
 # data = "tensor"
 # [tool.taylor-verify.settings]
 # step = 0.002
-# integrator = ["Euler", "implicit", "implicitfast", "RK4"]
+# integrator = ["Euler", "implicit", "implicitfast", "RK4", "discrete"]
 # inertia = ["full", "principal"]
 # ///
 """MuJoCo: a body with a free joint, without gravity, geometry and damping.
@@ -33,6 +33,7 @@ from free_body import Engine, FreeBody, Settings, Solved, answer, principal, ste
 def solve(body: FreeBody, settings: Settings) -> Solved:
     import mujoco
 
+    require_integrator(settings)
     model = mujoco.MjModel.from_xml_string(mjcf(body, settings))
 
     def start() -> Engine:
@@ -48,7 +49,18 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
     return stepped(body, settings.step, start, remark(body, compiled_inertia(model)))
 
 
-def mjcf(body: FreeBody, settings: Settings) -> str:
+def require_integrator(settings: Settings) -> None:
+    """Exit with a sentence where this version of MuJoCo has no such integrator."""
+    import mujoco
+
+    if not hasattr(mujoco.mjtIntegrator, f"mjINT_{settings.integrator.upper()}"):
+        have = f"MuJoCo {mujoco.__version__}"
+        raise SystemExit(
+            f"expected an integrator of {have}, got {settings.integrator} @ integrator"
+        )
+
+
+def mjcf(body: FreeBody, settings: Settings, geom: str = "") -> str:
     """Return the model in MuJoCo's own format; repr of a double is read back as that double."""
     (a, d, e), (_, b, f), (_, _, c) = body.inertia
     inertia = f'fullinertia="{numbers([a, b, c, d, e, f])}"'
@@ -61,6 +73,7 @@ def mjcf(body: FreeBody, settings: Settings) -> str:
           <worldbody><body>
             <freejoint/>
             <inertial pos="0 0 0" mass="1" {inertia}/>
+            {geom}
           </body></worldbody>
         </mujoco>"""
 
