@@ -158,8 +158,7 @@ def test_the_start_is_the_scenes_own() -> None:
 def test_panels_are_kept_for_later_times() -> None:
     """What lies between the start and a time is integrated once at each precision."""
     scene = whole("plain", "r alike")
-    found = enclosed(scene)
-    assert isinstance(found, WeberBalls)
+    found = WeberBalls(curve_of(scene), solid(scene)[0], WHOLE)
     found.motion([Fraction(3)], 20)
     panels = list(found._sides[1].until(Fraction(3)))
     (frames,) = found._frames.values()

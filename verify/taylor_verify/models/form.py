@@ -68,18 +68,19 @@ class Form:
             names = self.states + self.parameters
             lines = self.equations.lines(Named(zip(names, map(Symbol, names), strict=True)))
             return tuple(f"{name} = {value}" for name, value in lines.items())
-        rates = zip(self.states, self._symbolic(), strict=True)
+        rates = zip(self.states, self.symbolic(), strict=True)
         return tuple(f"{name}' = {rate}" for name, rate in rates)
 
     def written(self) -> str:
         """Return all rates in full."""
-        return " ".join(map(str, self._symbolic()))
+        return " ".join(map(str, self.symbolic()))
 
     def operations(self) -> dict[str, int]:
         """Return the number of distinct sums, products and quotients of one evaluation of the rates."""
-        return operations(self._symbolic())
+        return operations(self.symbolic())
 
-    def _symbolic(self) -> list[Any]:
+    def symbolic(self) -> list[Any]:
+        """Return the rates as Symbols; the int 0 for a rate that is absent."""
         states, parameters = map(Symbol, self.states), map(Symbol, self.parameters)
         return self.rates(list(states), list(parameters))
 
@@ -90,7 +91,7 @@ class Form:
 
         The momentum of a rigid body stays a state all the same: whoever steps by himself moves it.
         """
-        rates = zip(self.states, self._symbolic(), strict=True)
+        rates = zip(self.states, self.symbolic(), strict=True)
         return tuple(name for name, rate in rates if name[0] in "xy" and is_absent(rate))
 
     @lru_cache(maxsize=256)  # noqa: B019

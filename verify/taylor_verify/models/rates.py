@@ -5,21 +5,31 @@ s  state, in the problem's units       J(s)  the Jacobian of the rates
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import operator
+from collections.abc import Iterator, Mapping
+from fractions import Fraction
 from functools import lru_cache
 from math import inf, isfinite, sqrt
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
-from flint import Ordering, fmpq_mpoly_ctx
+from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
 from taylor_verify.models.algebra import is_absent
 from taylor_verify.models.form import Form
 from taylor_verify.models.problem import Problem
+from taylor_verify.models.symbol import Symbol
 
 _SLOWEST = 2.0**-10  # keeps a step finite for a body that is (almost) at rest
 _ENOUGH, _NEARLY = 4, 1.2
 _ONES = np.ones(4)
+_OPERATIONS: Final[Mapping[tuple[str, int], Any]] = {
+    ("+", 2): operator.add,
+    ("-", 2): operator.sub,
+    ("-", 1): operator.neg,
+    ("*", 2): operator.mul,
+    ("/", 2): operator.truediv,
+}
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 Indices = np.ndarray[Any, np.dtype[np.intp]]
@@ -114,9 +124,10 @@ def _monomials(form: Form) -> Iterator[tuple[int, float, list[int], list[int]]]:
     A variable stands as often as its power. Parameters are counted from 1.
     """
     names, n = [*form.states, *form.parameters], len(form.states)
-    symbols = fmpq_mpoly_ctx.get([f"v{i}" for i in range(len(names))], Ordering.lex).gens()
-    for place, rate in enumerate(form.rates(symbols[:n], symbols[n:])):
-        for powers, c in () if is_absent(rate) else rate.to_dict().items():
+    variables = fmpq_mpoly_ctx.get([f"v{i}" for i in range(len(names))], Ordering.lex).gens()
+    known = dict(zip(names, variables, strict=True))
+    for place, rate in enumerate(form.symbolic()):
+        for powers, c in () if is_absent(rate) else _polynomial(rate, known).to_dict().items():
             factors = [i for i, power in enumerate(powers) for _ in range(int(power))]
             number = int(c.p) / int(c.q)
             yield (
@@ -125,3 +136,13 @@ def _monomials(form: Form) -> Iterator[tuple[int, float, list[int], list[int]]]:
                 [i for i in factors if i < n],
                 [i - n + 1 for i in factors if i >= n],
             )
+
+
+def _polynomial(term: Any, known: Mapping[str, Any]) -> Any:
+    """Return a symbolic rate as a polynomial; its numbers may be doubles, which flint does not take."""
+    if not isinstance(term, Symbol):
+        return fmpq(*Fraction(term).as_integer_ratio())
+    if term.name:
+        return known[term.name]
+    operands = [_polynomial(operand, known) for operand in term.operands]
+    return _OPERATIONS[term.operation, len(operands)](*operands)
