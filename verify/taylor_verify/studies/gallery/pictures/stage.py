@@ -158,7 +158,7 @@ class Stage:
         """Draw what the colours mean; reversed where the dark end is the least value."""
         from matplotlib.cm import ScalarMappable
 
-        axes = add_axes(self.figure, Frame(self.width, low, PAGE_WIDTH - self.width - 0.15, 0.12))
+        axes = add_axes(self.figure, Frame(self.width, low, PAGE_WIDTH - self.width - 0.2, 0.12))
         colours = ScalarMappable(norm, scale().reversed() if is_reversed else scale())
         bar = self.figure.colorbar(colours, cax=axes, orientation="horizontal")
         bar.outline.set_linewidth(0.5)
