@@ -127,7 +127,7 @@ def test_truths_tell_the_data_of_two_solvers_apart(
 def test_an_engine_for_free_bodies_is_not_asked_for_others(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """An engine that says `loads = false` is unavailable, and not faulty, with a moment, wheels or damping."""
+    """With a moment, wheels or damping an engine that says `loads = false` is unavailable, not faulty."""
     found = run(name, twin(tmp_path, 'data = "tensor"', monkeypatch), "f32")
     assert {str(v.verdict) for v in found.verdicts} == {"unavailable"}
     assert "free bodies without wheels" in str(found.verdicts[0].reason)
