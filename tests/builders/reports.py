@@ -9,7 +9,7 @@ import atexit
 import shutil
 from collections.abc import Iterable, Mapping
 from functools import cache
-from itertools import product
+from itertools import chain, product
 from pathlib import Path
 from tempfile import mkdtemp
 from types import SimpleNamespace
@@ -18,6 +18,7 @@ from typing import Any, Final
 import pytest
 
 from builders.studies.claims import STUDY
+from builders.studies.engines import board_with, made_up
 from builders.studies.extremes import study as extremes_study
 from builders.studies.reach import study as reach_study
 from builders.studies.tradeoff import NUMBERS_MADE, TIMES_MADE
@@ -35,6 +36,8 @@ from taylor_verify.studies.claims.page import CLAIMS
 from taylor_verify.studies.controls import measure as sight
 from taylor_verify.studies.controls import study as controls
 from taylor_verify.studies.controls.document import CONTROLS, ControlsStudy
+from taylor_verify.studies.engines.entry import entry_list
+from taylor_verify.studies.engines.stored import write as write_board
 from taylor_verify.studies.extremes.page import EXTREMES
 from taylor_verify.studies.gallery import page as gallery
 from taylor_verify.studies.growth.page import GROWTH
@@ -182,6 +185,9 @@ def small() -> Path:
     WORST.write(place, hunt.study([worst_of("euler-a", 1.5)], 60.0, 3))
     EXTREMES.write(place, extremes_study())
     CLAIMS.write(place, STUDY)
+    errors = {"omega": 1e-5, "attitude": 1e-4, "T": 1e-9}
+    board = [made_up(one, errors) for one in entry_list().entry if one.name in ("cannon", "havok")]
+    write_board(place, board_with(*chain.from_iterable(board)), b"")
     save(registry.pictures(place), place / figures.FOLDER, ["svg"])
     report.publish(place)
     return place

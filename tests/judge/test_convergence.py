@@ -13,8 +13,9 @@ from builders.scenes import asked_at
 from hypothesis import given
 from hypothesis import strategies as st
 
-from taylor_verify.judge.series.convergence import Sweep, convergence, sweep
+from taylor_verify.judge.series.convergence import Sweep, sweep
 from taylor_verify.models.problem import Problem
+from taylor_verify.records.convergence import convergence
 from taylor_verify.scenes.scene import Scene
 
 HALVED = [2.0**-k for k in range(1, 11)]

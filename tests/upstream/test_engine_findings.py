@@ -13,6 +13,14 @@ from taylor_verify.studies.engines.findings import FOLDER, PARTS, findings, read
 
 REPORTS = Path(__file__).resolve().parents[2] / "reports"
 SCRIPTS = scripts(REPORTS)
+PYTHON = [script for script in SCRIPTS if script.suffix == ".py"]
+JAVASCRIPT = [script for script in SCRIPTS if script.suffix == ".mjs"]
+# The modules of packages that are imported by another name; Orekit's are Java, by way of JPype.
+MODULES = {
+    "bsk": ("Basilisk",),
+    "mujoco-mjx": (),
+    "orekit-jpype": ("orekit_jpype", "jpype", "org"),
+}
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
@@ -20,29 +28,47 @@ def test_a_script_is_a_report(script: Path) -> None:
     """It has its title, versions, expectation, finding and evidence, and at most 40 lines of code."""
     found = read(script)
     assert found.title
-    assert set(found.parts) == set(PARTS)
+    assert set(found.parts) - {"To run"} == set(PARTS)
     assert re.search(r"\d+\.\d+", found.parts["Versions"])
-    code = script.read_text(encoding="utf-8").rpartition('"""\n\nimport')[2]
-    assert len([line for line in code.splitlines() if line.strip()]) <= 40
+    lines = script.read_text(encoding="utf-8").splitlines()
+    after = lines.index("import sys") if script.suffix == ".py" else lines.index("")
+    assert 5 <= len([line for line in lines[after:] if line.strip()]) <= 40
 
 
-@pytest.mark.parametrize(
-    "script", [s for s in SCRIPTS if s.suffix == ".py"], ids=lambda script: script.stem
-)
-def test_a_script_needs_its_engine_alone(script: Path) -> None:
-    """It imports the pinned packages of its first lines and the standard library, and nothing of ours."""
+@pytest.mark.parametrize("script", PYTHON, ids=lambda script: script.stem)
+def test_a_script_in_python_needs_its_engine_alone(script: Path) -> None:
+    """It imports the pinned packages of its engine, NumPy at most, the standard library, nothing of ours."""
     text = script.read_text(encoding="utf-8")
-    (pinned,) = re.findall(r"^# dependencies = \[(.*)\]$", text, re.MULTILINE)
-    packages = {re.split("[=><]", name.strip(' "'))[0] for name in pinned.split(",")}
+    (listed,) = re.findall(r"^# dependencies = \[(.*)\]$", text, re.MULTILINE)
+    dependencies = re.findall(r'"([^"]*)"', listed)
+    engine = [each for each in dependencies if not each.startswith("numpy")]
+    assert engine
+    assert all(re.fullmatch(r"[\w-]+==[\d.]+", each) for each in engine)
+    packages = [re.split("[=><]", each)[0] for each in dependencies]
+    modules = {name for package in packages for name in MODULES.get(package, (package,))}
     nodes = [*ast.walk(ast.parse(text))]
-    modules = [name.name for node in nodes if isinstance(node, ast.Import) for name in node.names]
-    modules += [node.module or "" for node in nodes if isinstance(node, ast.ImportFrom)]
-    imported = {module.partition(".")[0] for module in modules}
-    assert "numpy" in packages
-    assert re.search(r'"[\w-]+==[\d.]+"', pinned)
-    others = imported - packages - sys.stdlib_module_names
-    assert len(others) <= 1, "the engine, where its package has another name"
+    names = [name.name for node in nodes if isinstance(node, ast.Import) for name in node.names]
+    names += [node.module or "" for node in nodes if isinstance(node, ast.ImportFrom)]
+    assert {name.partition(".")[0] for name in names} - sys.stdlib_module_names <= modules
     assert "taylor_verify" not in text
+
+
+@pytest.mark.parametrize("script", JAVASCRIPT, ids=lambda script: script.stem)
+def test_a_script_in_javascript_needs_its_engine_alone(script: Path) -> None:
+    """It imports the package that its command installs, pinned, modules of node, and nothing of ours."""
+    text = script.read_text(encoding="utf-8")
+    command = rf"^// To run: npm install (\S+)@[\d.]+ && node {re.escape(script.name)}$"
+    (package,) = re.findall(command, text, re.MULTILINE)
+    imported = re.findall(r'^import .* from "(.*)";$', text, re.MULTILINE)
+    assert [name for name in imported if not name.startswith("node:")] == [package]
+    assert "taylor" not in text
+
+
+def test_the_readme_has_a_row_for_every_script() -> None:
+    """Its table has each script with its title, in alphabetical order, and nothing else."""
+    text = (REPORTS / FOLDER / "README.md").read_text(encoding="utf-8")
+    rows = [line for line in text.splitlines() if line.startswith("| [")]
+    assert rows == [f"| [{one.name}]({one.name}) | {read(one).title} |" for one in SCRIPTS]
 
 
 def test_the_page_lists_every_script() -> None:

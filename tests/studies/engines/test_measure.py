@@ -179,7 +179,7 @@ def test_a_lost_trajectory_is_named(tmp_path: Path) -> None:
     row = replace(document.study.rows[0], place=99)
     with pytest.raises(ValueError, match=r"expected a trajectory oblique-f64\[99\], got none"):
         trajectories.states_of(trajectories.load(tmp_path), row)
-    (tmp_path / trajectories.NAME).write_bytes(b"none")
+    (tmp_path / stored.TRAJECTORIES).write_bytes(b"none")
     with pytest.raises(ValueError, match="expected an NPZ of trajectories, got another file @ "):
         trajectories.load(tmp_path)
 

@@ -63,7 +63,7 @@ def test_every_trajectory_has_its_row() -> None:
         scene = load(row.scene)
         wide = sum(len(COLUMNS[name]) for name in state_groups(scene.model, scene.track))
         assert arrays[row.array][row.place].shape == (len(scene.clock.elapsed), wide)
-    assert (REPORTS / trajectories.NAME).stat().st_size <= 2 * MEGABYTE
+    assert (REPORTS / stored.TRAJECTORIES).stat().st_size <= 2 * MEGABYTE
 
 
 def test_the_first_row_of_every_trajectory_is_the_start() -> None:

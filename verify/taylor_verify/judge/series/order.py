@@ -14,14 +14,14 @@ from itertools import pairwise
 from math import exp, isfinite, log, log10, sqrt
 from typing import TYPE_CHECKING, Final
 
-from taylor_verify.judge.series.convergence import (
+from taylor_verify.records.answers import Order, OrderPoint, Stall
+from taylor_verify.records.convergence import (
     CLEAR,
     SAME,
     Convergence,
     convergence,
     local_orders,
 )
-from taylor_verify.records.answers import Order, OrderPoint, Stall
 from taylor_verify.records.json_text import finite
 from taylor_verify.records.quantities import COMPLETE, INITIAL, UNIT_QUATERNION
 from taylor_verify.records.status import Status

@@ -59,8 +59,8 @@ def findings(folder: Path) -> Iterator[str]:
     if found:
         yield "## Findings"
         yield (
-            "Each has a script that runs with the engine and NumPy alone, and evidence beside our adapter "
-            f"([all of them](../{FOLDER}/README.md))."
+            "Each has a script that runs with the engine and at most NumPy, and evidence beside our "
+            f"adapter ([all of them](../{FOLDER}/README.md))."
         )
         yield bullets(
             f"[{prose(one.title)}](../{FOLDER}/{one.script}): {prose(one.parts['Came'])} "

@@ -14,7 +14,6 @@ from taylor_verify.publish.page import made_with, whole
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.sheet import sheet as csv_sheet
 from taylor_verify.studies import figures
-from taylor_verify.studies.engines import trajectories
 from taylor_verify.studies.engines.advice import advice, like
 from taylor_verify.studies.engines.document import Board, EngineRow
 from taylor_verify.studies.engines.engine_page import place
@@ -27,7 +26,7 @@ from taylor_verify.studies.engines.ranking import (
     newest,
     settings,
 )
-from taylor_verify.studies.engines.stored import ENGINES, TIMINGS
+from taylor_verify.studies.engines.stored import ENGINES, TIMINGS, TRAJECTORIES
 
 _WHAT: Final = (
     "Each engine turns a free body, and its answer is compared with the exact motion of the same numbers. "
@@ -238,7 +237,7 @@ def _remake(board: Board) -> list[str]:
         "`make engines` runs what is not stored yet, and `make engines ENGINE=mujoco` one engine again; "
         "with `taylor-verify publish engines --anew` everything is run. It may be killed, and goes on.",
         f"`taylor-verify publish engines --rejudge` runs nothing: it judges the {count} stored "
-        f"trajectories again, in [trajectories.npz](../{trajectories.NAME}), and writes "
+        f"trajectories again, in [trajectories.npz](../{TRAJECTORIES}), and writes "
         f"[engines.json](../{ENGINES.name}) and this page. Errors are the same on every machine.",
         f"Times are in [engines-timings.json](../{TIMINGS.name}), {board.timings.workers} runs at a time "
         f"on {prose(machine.processor)}; no number but a time depends on the machine.",

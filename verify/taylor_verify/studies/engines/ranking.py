@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import inf, log10
 
-from taylor_verify.judge.series.convergence import Convergence, convergence
+from taylor_verify.records.convergence import Convergence, convergence
 from taylor_verify.studies.engines.document import EngineRow, EnginesStudy
 
 

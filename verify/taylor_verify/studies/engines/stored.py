@@ -8,7 +8,6 @@ from typing import Any, Final
 
 from taylor_verify.records.json_text import complete, plain
 from taylor_verify.records.replacement import replace_files
-from taylor_verify.studies.engines import trajectories
 from taylor_verify.studies.engines.document import Board, EnginesStudy, EnginesTimings
 from taylor_verify.studies.stored import Stored
 
@@ -19,6 +18,7 @@ def _fields(study: EnginesStudy) -> Mapping[str, Any]:
     return {"versions": study.versions, "spans": study.spans, "rows": rows}
 
 
+TRAJECTORIES: Final = "data/engines/trajectories.npz"
 ENGINES: Final = Stored(EnginesStudy, "engines", _fields)
 TIMINGS: Final = Stored(EnginesTimings, "engines", complete, stem="engines-timings")
 
@@ -27,7 +27,7 @@ def write(folder: Path, board: Board, file: bytes) -> list[Path]:
     """Store a board and the file of its trajectories below a report folder. Raises OSError."""
     # The rows come last: once they are in place, what they speak of is there.
     return [
-        *replace_files(folder, {trajectories.NAME: file}),
+        *replace_files(folder, {TRAJECTORIES: file}),
         *TIMINGS.write(folder, board.timings),
         *ENGINES.write(folder, board.study),
     ]

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 from zipfile import BadZipFile
 
 import numpy as np
@@ -20,8 +20,7 @@ import numpy as np
 from taylor_verify.studies.engines.answer import Answer
 from taylor_verify.studies.engines.document import EngineRow
 from taylor_verify.studies.engines.replay import States
-
-NAME: Final = "data/engines/trajectories.npz"
+from taylor_verify.studies.engines.stored import TRAJECTORIES
 
 
 def packed(answers: Iterable[Answer]) -> tuple[list[EngineRow], bytes]:
@@ -46,7 +45,7 @@ def load(folder: Path) -> Mapping[str, States]:
 
     Raises OSError for a file that cannot be read, and ValueError for one that is something else.
     """
-    place = folder / NAME
+    place = folder / TRAJECTORIES
     try:
         with np.load(place, allow_pickle=False) as file:
             return {name: file[name] for name in file.files}
@@ -65,5 +64,7 @@ def states_of(arrays: Mapping[str, States], row: EngineRow) -> States | None:
         return None
     found: Sequence[States] = arrays.get(row.array, np.empty(0))  # type: ignore[assignment]
     if not 0 <= row.place < len(found):
-        raise ValueError(f"expected a trajectory {row.array}[{row.place}], got none @ {NAME}")
+        raise ValueError(
+            f"expected a trajectory {row.array}[{row.place}], got none @ {TRAJECTORIES}"
+        )
     return found[row.place]

@@ -1,0 +1,248 @@
+"""The order of convergence of a fixed-step answer, of its errors over a sweep of steps.
+
+    h, e(h)      step and error; e ~ C h^p where the order p shows
+    p_i          local order between neighbouring steps, log(e_i / e_i+1) / log(h_i / h_i+1)
+
+With large steps the next power of h is not small yet; with small ones roundings take over. The order
+is read between the two: on the longest run of steps over which the local order stays the same. Pages
+show orders of stored errors, so this needs the standard library alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import fsum, isfinite, log, sqrt
+from typing import Final
+
+# An error that is not this much above the floor of rounding has some of it.
+CLEAR: Final = 10.0
+# And one beyond this multiple of the floor is not made by rounding on this rung.
+_FAR: Final = 100.0
+# Local orders that differ by less are the same one: the integers and halves that orders are, are apart
+# by twice as much.
+SAME: Final = 0.25
+# Two local orders can agree by chance, and one cannot disagree.
+_FEWEST: Final = 3
+# Errors that fall more slowly than with this order have stopped falling.
+_STALLED: Final = 0.5
+# Student's t for 95 % and 1 to 8 degrees of freedom; beyond, that of 8.
+_STUDENT: Final = (12.71, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306)
+
+
+@dataclass(frozen=True)
+class Convergence:
+    """The order that a sweep of steps shows.
+
+    ``order`` is the observed one and ``spread`` half of its 95 % interval, from the scatter about a
+    straight line in log-log; None where no range of steps has an order. ``steps`` are those used,
+    falling. ``level`` is the error below which smaller steps do not lead, None if they still do;
+    ``stalls_at`` is the step from which on they do not, and ``by_rounding`` is True if rounding explains
+    it. ``reason`` says all this in words, and the order expected if it is another.
+    """
+
+    order: float | None
+    spread: float | None
+    steps: tuple[float, ...]
+    level: float | None
+    reason: str
+    expected: float | None = None
+    stalls_at: float | None = None
+    by_rounding: bool = False
+
+    @property
+    def is_expected(self) -> bool:
+        """True if there is an order, and it is the expected one if one was named."""
+        if self.order is None or self.spread is None:
+            return False
+        return self.expected is None or _agree(self.order, self.spread, self.expected)
+
+
+def convergence(
+    steps: Sequence[float],
+    errors: Sequence[float | None],
+    roundoff_floor: float | Sequence[float] = 0.0,
+    expected: float | None = None,
+) -> Convergence:
+    """Return the order seen in errors over steps, given in any order of their own.
+
+    ``errors`` that are None or not finite belong to runs that broke. ``roundoff_floor`` is what
+    perfect rounding would leave, for all steps or for each, and ``expected`` the order that the method
+    ought to have. Raises ValueError for unlike lengths and
+    for steps that are not positive or not distinct.
+    """
+    points, broken = _points(steps, errors, roundoff_floor)
+    stop = _stop(points)
+    usable = [point for point in points[:stop] if point.is_clear]
+    chosen = _straight(usable)
+    least = min(points[stop:], key=lambda point: point.error, default=None)
+    order, spread = (None, None) if chosen is None else _slope(chosen)
+    words = [
+        *_order_words(usable, chosen, order, spread, expected),
+        *([f"no answer with step {', '.join(f'{s:.3g}' for s in broken)}"] if broken else []),
+        *_floor_words(points, least),
+    ]
+    return Convergence(
+        order=order,
+        spread=spread,
+        steps=tuple(point.step for point in chosen or ()),
+        level=least.error if least else None,
+        reason="; ".join(words),
+        expected=expected,
+        stalls_at=points[stop].step if least else None,
+        by_rounding=least is not None and least.is_rounding,
+    )
+
+
+def local_orders(steps: Sequence[float], errors: Sequence[float]) -> tuple[float, ...]:
+    """Return the order between neighbouring steps, of positive errors; the steps fall."""
+    points = [_Point(step, error, 0.0) for step, error in zip(steps, errors, strict=True)]
+    return tuple(_locals(points))
+
+
+@dataclass(frozen=True)
+class _Point:
+    step: float
+    error: float
+    floor: float
+
+    @property
+    def is_clear(self) -> bool:
+        """True if the error is one of the method: zero, and what roundings may make, is not."""
+        return self.error > CLEAR * self.floor
+
+    @property
+    def is_rounding(self) -> bool:
+        """True if rounding on this rung explains the error, whatever an answer rounds besides."""
+        return self.floor > 0 and self.error <= _FAR * self.floor
+
+
+def _points(
+    steps: Sequence[float], errors: Sequence[float | None], floors: float | Sequence[float]
+) -> tuple[list[_Point], list[float]]:
+    """The points from the largest step to the smallest, and the steps whose runs broke."""
+    each = [floors] * len(steps) if isinstance(floors, int | float) else list(floors)
+    if not len(steps) == len(errors) == len(each):
+        raise ValueError(
+            f"expected an error and a floor for each of {len(steps)} steps, got {len(errors)} errors "
+            f"and {len(each)} floors"
+        )
+    if not all(step > 0 for step in steps) or len(set(steps)) < len(steps):
+        raise ValueError(f"expected positive steps, no two the same, got {list(steps)}")
+    points, broken = [], []
+    for step, error, floor in sorted(zip(steps, errors, each, strict=True), key=lambda p: -p[0]):
+        if error is not None and isfinite(error):
+            points.append(_Point(float(step), float(error), float(floor)))
+        else:
+            broken.append(float(step))
+    return points, broken
+
+
+def _local(a: _Point, b: _Point) -> float:
+    """The order between two neighbours, of which the second has the smaller step."""
+    if not b.error > 0:
+        return float("inf")
+    return log(a.error / b.error) / log(a.step / b.step) if a.error > 0 else 0.0
+
+
+def _locals(points: Sequence[_Point]) -> list[float]:
+    return [_local(a, b) for a, b in pairwise(points)]
+
+
+def _stop(points: Sequence[_Point]) -> int:
+    """The place where errors stop falling for good: the first point that no smaller step improves on.
+
+    No improvement is one that is slower, from there to the end, than an order of a half: a step that
+    happens to do well stops nothing, nor does a start that is not falling yet, or slowly.
+    """
+    for i, point in enumerate(points[:-1]):
+        later = min(points[i + 1 :], key=lambda p: p.error)
+        slow = _local(point, replace(later, step=points[-1].step)) < _STALLED
+        if slow and not _is_gaining(points[i:]):
+            return i
+    return len(points)
+
+
+def _is_gaining(points: Sequence[_Point]) -> bool:
+    """Return True for errors that fall faster from step to step: their steps were too large at first."""
+    orders = _locals(points)
+    rises = all(before < after for before, after in pairwise(orders))
+    return len(orders) >= 2 and orders[0] > 0 and rises and orders[-1] >= _STALLED
+
+
+def _straight(points: Sequence[_Point]) -> Sequence[_Point] | None:
+    """The longest run of steps over which the local order is the same; of two, that of smaller steps."""
+    best: Sequence[_Point] | None = None
+    for first in range(len(points)):
+        for last in range(first + _FEWEST, len(points) + 1):
+            run = points[first:last]
+            orders = _locals(run)
+            if max(orders) - min(orders) <= SAME and (best is None or len(run) >= len(best)):
+                best = run
+    return best
+
+
+def _slope(points: Sequence[_Point]) -> tuple[float, float]:
+    """The least-squares slope of log e over log h, and half of its 95 % interval."""
+    x = _centred([log(p.step) for p in points])
+    y = _centred([log(p.error) for p in points])
+    square = fsum(a * a for a in x)
+    slope = fsum(a * b for a, b in zip(x, y, strict=True)) / square
+    freedom = len(points) - 2
+    scatter = fsum((b - slope * a) ** 2 for a, b in zip(x, y, strict=True)) / freedom
+    student = _STUDENT[min(freedom, len(_STUDENT)) - 1]
+    return slope, student * sqrt(scatter / square)
+
+
+def _centred(values: Sequence[float]) -> list[float]:
+    """Return the values less their mean."""
+    mean = fsum(values) / len(values)
+    return [value - mean for value in values]
+
+
+def _agree(order: float, spread: float, expected: float) -> bool:
+    """Return True if an order is the expected one, as far as a sweep can tell.
+
+    Scatter excuses nothing beyond half of the way to the next order.
+    """
+    return abs(order - expected) <= min(max(spread, SAME), 2 * SAME)
+
+
+# The words.
+
+
+def _order_words(
+    usable: Sequence[_Point],
+    chosen: Sequence[_Point] | None,
+    order: float | None,
+    spread: float | None,
+    expected: float | None,
+) -> Iterator[str]:
+    """Yield the order, with the expected one if it is another, and the steps that show it."""
+    if chosen is None or order is None or spread is None:
+        lacking = f"{len(usable)} steps show an error of the method, and it takes {_FEWEST}"
+        if len(usable) >= _FEWEST:
+            listed = ", ".join(f"{local:.2f}" for local in _locals(usable))
+            lacking = f"from step to step it is {listed}, nowhere twice the same"
+        yield f"no order: {lacking}"
+        return
+    is_other = expected is not None and not _agree(order, spread, expected)
+    yield f"order {order:.2f}{f', expected {expected:g}' if is_other else ''}"
+    yield f"steps {chosen[0].step:.3g} to {chosen[-1].step:.3g}"
+    if any(point.step > chosen[0].step for point in usable):
+        yield "larger ones are not asymptotic yet"
+
+
+def _floor_words(points: Sequence[_Point], level: _Point | None) -> Iterator[str]:
+    """Yield the ``level`` at which errors stop falling, and whether it is rounding that stops them."""
+    if level is not None:
+        why = ""
+        if level.is_rounding:
+            why = ": rounding"
+        elif level.floor > 0:
+            times = f"{level.error / level.floor:.1g} times"
+            why = f": {times} what rounding leaves, so not by rounding"
+        yield f"errors stop falling at {level.error:.1g}{why}"
+    elif near := [point for point in points if not point.is_clear]:
+        yield f"errors reach rounding at {near[0].error:.1g}"
