@@ -117,9 +117,10 @@ def clone(tmp_path: Path) -> Path:
 
 
 def test_a_repository_one_likes_to_receive() -> None:
-    """The published files are at most 250, and at most 8 MB."""
-    assert len(committed()) <= 250
-    assert sum((REPORTS / path).stat().st_size for path in committed()) <= 8 * MEGABYTE
+    """The published files are at most 280 and at most 10 MB, 2 MB for the trajectories of engines."""
+    assert len(committed()) <= 280
+    assert sum((REPORTS / path).stat().st_size for path in committed()) <= 10 * MEGABYTE
+    assert (REPORTS / "data/engines/trajectories.npz").stat().st_size <= 2 * MEGABYTE
 
 
 def test_git_leaves_out_what_is_made() -> None:
