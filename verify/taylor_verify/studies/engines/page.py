@@ -39,7 +39,8 @@ _LEGEND: Final = (
     "*order* is the observed order of the error over the steps, of omega and of the attitude; a dash where "
     "the steps show none.",
     "*time* is that of a second of the motion, in microseconds, by the engine's own calls alone: without "
-    "starting it, and without compiling.",
+    "starting it, and without compiling. It is of one run, beside another on the same machine: believe its "
+    "order of magnitude.",
     "*best step* is the coarsest of the steps with the least error. Steps are decimal, and every sample is "
     "at a whole number of steps.",
     "Adapters switch sleeping, damping and caps on the velocity off wherever an engine has them. The table "
