@@ -54,7 +54,7 @@ def test_no_operation_is_done_twice(scene: str) -> None:
     """There are as many lines as the form has distinct operations."""
     form = problem_of(scene).form
     code = _Code()
-    for rate in form._symbolic():
+    for rate in form.symbolic():
         code.word(rate)
     assert len(code.lines) == sum(form.operations().values())
     assert len({line.partition(" = ")[2] for line in code.lines}) == len(code.lines)
