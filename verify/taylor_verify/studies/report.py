@@ -27,6 +27,10 @@ FRONT = "README.md"
 _BESIDES = (
     Page("tables/traps.md", "a plain heyoka call against the driver of this suite"),
     Page("upstream/README.md", "what to report to heyoka's authors, each in a few lines that run"),
+    Page(
+        "upstream/engines/README.md",
+        "what to report to the authors of engines, each in a script that runs",
+    ),
 )
 
 

@@ -28,7 +28,7 @@ PACKED: Final = ".tar.xz"
 # Fonts and metadata of a drawing, which its page has too.
 _FONTS: Final = re.compile(r"font-family: [^;\"}]*")
 _METADATA: Final = re.compile(r"<metadata>.*?</metadata>\s*", re.DOTALL)
-_ROOMS: Final = ("figures", "tables", "reference", "upstream")
+_ROOMS: Final = ("figures", "tables", "reference", "upstream", "upstream/engines")
 _INCLUDED: Final = re.compile(r"^```\{include\} (\S+)\n```$", re.MULTILINE)
 _TOCTREE: Final = re.compile(r"^```\{toctree\}\n.*?^```$", re.MULTILINE | re.DOTALL)
 _ENTRY: Final = re.compile(r"^([a-z][\w/-]*)$", re.MULTILINE)
