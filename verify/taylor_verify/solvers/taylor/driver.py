@@ -3,7 +3,7 @@
 What heyoka does silently by itself and why it cannot happen here:
 a coefficient rounded to a double      all coefficients are parameters of the rung's own type
 a state far from size one              the problem is posed in units of its own size
-a small component lost beside a large  no step is longer than half the fastest linear time scale
+a small component lost beside a large  no step is longer than 5/8 of the fastest linear time scale
 impulses lost beside a long path       each stretch of the path is counted from where it begins
 an interrupt held until the end        no stretch takes longer than about half a second
 an endless or a broken run             the number of steps is bounded and the outcome is read
@@ -58,8 +58,8 @@ _LARGEST_STRAIGHT_LINE = 5
 # time: it runs a quarter faster then, and saves in a hundred steps what optimising takes.
 _LONG_WAY = 50
 
-# The samples of one stretch after the other, each a row of the states.
-Rows = list[np.ndarray[Any, Any]]
+# A row of the states for each instant.
+Rows = np.ndarray[Any, Any]
 
 
 @final
@@ -97,7 +97,7 @@ class Taylor(Solver):
             # Exact numbers of many samples take longer than the samples: the judge asks for them.
             quantities = Postponed(
                 problem,
-                lambda: [[numbers.exact(v) for v in row] for stretch in rows for row in stretch],
+                lambda: [[numbers.exact(v) for v in row] for row in rows],
             )
         return Trajectory(
             outcome=outcome,
@@ -186,8 +186,8 @@ def _propagate(
 ) -> tuple[Outcome, int, Rows, float]:
     """Return the outcome, the number of steps, the rows, and the seconds that heyoka's own code took.
 
-    The outcome is FINISHED only if every row is there and finite. Steps and seconds are those of the way
-    whose rows these are.
+    The outcome is FINISHED only if every row is there and finite; else the rows are no answer. Steps and
+    seconds are those of the way whose rows these are.
     """
     numbers = arithmetic(problem.rung)
     integrator.pars[:] = numbers.array(problem.parameters)
@@ -195,7 +195,7 @@ def _propagate(
     start = numbers.array(problem.initial_momenta)
     rate = linearised.fastest(start)
     if not isfinite(rate):
-        return Outcome.NON_FINITE, 0, [], 0.0
+        return Outcome.NON_FINITE, 0, start[None], 0.0
     # In these units the motion is of size one, also one that is at rest when it begins.
     radians = max(rate, 1.0) * abs(float(times[-1]))
     looks = _looks(radians, problem.rung)
@@ -205,12 +205,12 @@ def _propagate(
     ran = way.run(_segments(len(grid), calls), rate)
     if way.was_too_fast(ran, rate):
         ran = way.run(_segments(len(grid), looks), rate, is_watched=True)
-    if ran.outcome is not Outcome.FINISHED:
-        return ran.outcome, ran.steps, [], ran.seconds
-    rows = np.concatenate(ran.rows)
-    if len(rows) != len(grid):
-        return Outcome.INTERRUPTED, ran.steps, [], ran.seconds
-    return ran.outcome, ran.steps, [rows[samples]], ran.seconds
+    outcome, rows = ran.outcome, ran.rows
+    if outcome is Outcome.FINISHED and len(rows) != len(grid):
+        outcome = Outcome.INTERRUPTED
+    if outcome is Outcome.FINISHED:
+        rows = rows[samples]
+    return outcome, ran.steps, rows, ran.seconds
 
 
 class _Ran(NamedTuple):
@@ -255,12 +255,12 @@ class _Way:
         integrator.time = zero
         integrator.state[:] = self.start
         rows, longest, steps, seconds = [self.start[None]], 0.0, 0, 0.0
-        began_at = self.start[path]
+        began_at, outcome = self.start[path], Outcome.FINISHED
         for first, last in stretches:
             radians = rate * abs(float(grid[last] - grid[first]))
             if not radians <= MOST_RADIANS:
                 outcome = Outcome.STEP_LIMIT if isfinite(rate) else Outcome.NON_FINITE
-                return _Ran(outcome, rows, longest, steps, seconds)
+                break
             integrator.state[path] = zero
             began = perf_counter()
             status, _, max_h, taken, _, reached = integrator.propagate_grid(
@@ -278,13 +278,12 @@ class _Way:
             if outcome is Outcome.FINISHED and not np.isfinite(reached).all():
                 outcome = Outcome.NON_FINITE
             if outcome is not Outcome.FINISHED:
-                return _Ran(outcome, rows, longest, steps, seconds)
-        return _Ran(Outcome.FINISHED, rows, longest, steps, seconds)
+                break
+        return _Ran(outcome, np.concatenate(rows), longest, steps, seconds)
 
     def was_too_fast(self, ran: _Ran, rate: float) -> bool:
         """Return True where the rate has grown, and steps were too long for it or ran out for it."""
-        rows = np.concatenate(ran.rows)
-        some = rows[:: -ceil(len(rows) / _MOST_LOOKS)]
+        some = ran.rows[:: -ceil(len(ran.rows) / _MOST_LOOKS)]
         if ran.outcome is Outcome.FINISHED:
             # A bound that is soon found is nearly always enough.
             return all(

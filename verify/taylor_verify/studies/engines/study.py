@@ -69,7 +69,7 @@ def _count(text: str) -> int:
 STUDY: Final[Study[Board]] = Study(
     name="engines",
     title="physics engines on free motions: which setting is right to how many digits",
-    duration="under 30 minutes on two cores once the engines are installed",
+    duration="about 40 minutes on two cores once the engines are installed",
     measure=_measure,
     find=stored.find,
     page=page.page,
