@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import cache
+from typing import Any
+
+import pytest
 
 from builders.scenes import vector
 from taylor_verify.exact.kirchhoff.integrable import CYCLIC
@@ -62,3 +65,12 @@ def curve_of(scene: Scene) -> Curve:
     found = curve(scene)
     assert found is not None
     return found
+
+
+def by_turns(first: int) -> list[Any]:
+    """Return every pair of body and start as parameters of a test; but for each third, by turns, slow."""
+    return [
+        pytest.param(body, start, marks=() if (n + m) % 3 == first else pytest.mark.slow)
+        for n, start in enumerate(STARTS)
+        for m, body in enumerate(BODIES)
+    ]

@@ -65,7 +65,7 @@ def at_numbers(inner: Solution) -> Solution:
 @pytest.mark.parametrize("route", ["arb", "mpmath"])
 @pytest.mark.parametrize("name", free_forms())
 def test_a_ball_of_a_rational_gives_the_motion_at_the_rational(name: str, route: str) -> None:
-    """To within both radii, before the start, at it and beyond the end, attitude and centre included."""
+    """They agree within both radii before the start, at it and beyond the end, with attitude and centre."""
     inner = solution(everything(load(name)), route)
     end = load(name).clock.elapsed[-1]
     times = [end / 7, Fraction(0), -end / 3, 5 * end]

@@ -93,7 +93,7 @@ def test_three_routes_agree(name: str, damping: Fraction) -> None:
 @pytest.mark.parametrize("e", [-30, -12, 3])
 @pytest.mark.parametrize("name", ["euler/full-tensor", "kirchhoff/four-real-roots"])
 def test_the_size_of_the_damping(name: str, e: int) -> None:
-    """From 1e-30, where 1 - e^{-ct} has no digits in ordinary numbers, to 1e3, of either sign."""
+    """Rates of either sign agree, from 1e-30, where 1 - e^{-ct} has no digits in doubles, to 1e3."""
     for sign in (1, -1):
         scene = damped(name, sign * Fraction(10) ** e)
         times = [Fraction(1, 100), Fraction(-1, 300)]
@@ -208,7 +208,7 @@ def test_what_is_out_of_reach_is_said_in_time() -> None:
 
 
 def test_a_growth_within_reach_has_its_digits() -> None:
-    """At e^60 the phase has 26 digits before its point, and both routes agree behind it."""
+    """The phase at e^60 has 26 digits before its point, and both routes agree behind it."""
     scene = damped("euler/full-tensor", Fraction(-3))
     balls, mpmath = (solution(scene, r).motion([Fraction(20)], DIGITS) for r in ("arb", "mpmath"))
     assert apart(balls, mpmath) <= 1

@@ -427,7 +427,7 @@ def closed_scenes() -> list[str]:
 
 
 def _is_closed(problem: Scene) -> bool:
-    """But for quadratures, which cost time in proportion to the time of the motion."""
+    """Tell a closed form from a quadrature, which costs time in proportion to that of the motion."""
     try:
         return not enclosed(problem).by_quadrature
     except NoClosedForm:

@@ -171,7 +171,7 @@ def test_far_times_cost_no_digit() -> None:
 
 @pytest.mark.parametrize("route", ["arb", "mpmath"])
 def test_the_start_is_the_scenes_own(route: str) -> None:
-    """At time 0 every component is the one that the scene wrote, and a zero is a zero."""
+    """Every component at time 0 is the one that the scene wrote, and a zero is a zero."""
     x, y = vector("1/3", 0, "-1/7"), vector(0, "2/3", 0)
     scene = replace(about(DIRECTIONS[2], SIX["cubic"], x, y))
     scene = replace(scene, initial=replace(scene.initial, centre=vector(0, "1/3", 0)))
@@ -236,7 +236,7 @@ def moved(matrix: Matrix, i: int, k: int) -> Matrix:
 @pytest.mark.parametrize("block", ["linear", "coupling", "angular"])
 @pytest.mark.parametrize(("i", "k"), [(0, 0), (0, 1), (1, 2), (2, 2)])
 def test_what_is_nearly_of_revolution_is_not(block: str, i: int, k: int) -> None:
-    """One entry of one matrix off by 10^-60, and no closed form is claimed."""
+    """An entry of a matrix that is off by 10^-60 leaves no closed form."""
     scene = about(DIRECTIONS[0], SIX["four-roots"], *GENERIC)
     assert isinstance(scene.body, ImmersedBody)
     other = scene.body.with_parts({block: moved(getattr(scene.body, block), i, k)})

@@ -392,7 +392,7 @@ def test_a_time_out_of_reach_is_said_at_once(route: str) -> None:
 
 @pytest.mark.parametrize("t", ["-9", "-1/3", "2", "100"])
 def test_power_series_are_kummers_functions(t: str) -> None:
-    """Where both are in reach, balls overlap to 1e-60, and so do the solutions in mpmath."""
+    """Balls overlap to 1e-60 where both are in reach, and so do the solutions in mpmath."""
     line, time = strong_line(), Fraction(t)
     with ctx.workprec(300):
         series, kummer = (turn(line).quaternion(time) for turn in (SeriesTurn, KummerTurn))

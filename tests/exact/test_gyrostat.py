@@ -291,7 +291,7 @@ def test_any_top_without_wheels_is_eulers_top(spin: FreeSpin) -> None:
 @given(gyrostats())
 @settings(max_examples=15)
 def test_spins_are_steady_and_their_growth_is_an_eigenvalue(free: FreeGyrostat) -> None:
-    """For G of (K - mu) G = g, found by elimination, |G| is as given, and d' = d x w + G x K d has s^2.
+    """|G| of (K - mu) G = g, by elimination, is as given, and d' = d x w + G x K d has s^2.
 
     The matrix J of that equation has no trace and no determinant: its eigenvalues are 0, s and -s, and
     s^2 is half the trace of J^2.

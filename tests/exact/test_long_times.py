@@ -27,7 +27,7 @@ PERIOD_DIGITS = 60
 
 
 def closed_scenes() -> list[str]:
-    """But for damped motions, which never recur, and quadratures, which cost time in proportion to time."""
+    """Return all but damped motions, which never recur, and quadratures, which cost time as it passes."""
     shipped = [name for name in names() if name.startswith(("euler/", "kirchhoff/"))]
     return [name for name in shipped if recurs(load(name))]
 
@@ -45,7 +45,7 @@ def period(scene: Scene) -> Fraction | None:
 
 
 def recurring(motion: Motion, row: int, scene: Scene) -> list[Any]:
-    """What a period brings back: omega, or x along the axis of symmetry and the lengths of x and y.
+    """Return what a period brings back: omega, or x along the axis of symmetry and the lengths of x and y.
 
     About another origin y has another length, and a body without an axis is not asked for more than |x|.
     """

@@ -292,7 +292,7 @@ ENTRIES = [
 
 @pytest.mark.parametrize(("block", "i", "j"), ENTRIES)
 def test_what_is_nearly_isotropic_is_not(block: str, i: int, j: int) -> None:
-    """One entry of A or B, 10^-60 off about the origin where B is symmetric: no closed form."""
+    """An entry of A or B that is 10^-60 off, where B is symmetric, leaves no closed form."""
     scene = isotropic_body()
     body = with_entry(solid(scene)[0], block, i, j, LITTLE)
     if block == "coupling" and i != j:
@@ -311,7 +311,7 @@ def test_a_part_of_b_that_is_not_symmetric_is_only_another_origin(k: int) -> Non
 
 @pytest.mark.parametrize("k", range(3))
 def test_a_linear_impulse_of_1e_60_is_one(k: int) -> None:
-    """Of a body without symmetry nothing is closed any more."""
+    """A body without symmetry has no closed form any more."""
     x = tuple(LITTLE * (n == k) for n in range(3))
     assert solution(one_instant(GENERAL, Impulse(x, Y))).regime == NO_CLOSED_FORM
 

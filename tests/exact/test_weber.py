@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from builders.numbers import apart
 from builders.scenes import vector
-from builders.webers import BODIES, STARTS, built, case, curve_of
+from builders.webers import BODIES, built, by_turns, case, curve_of
 from flint import ctx
 from mpmath import mp, mpf
 
@@ -51,11 +51,7 @@ def shipped() -> Scene:
 
 
 # Every start, the bodies by turns; the other pairs are slow.
-PAIRS = [
-    pytest.param(body, start, marks=() if (n + m) % 3 == 0 else pytest.mark.slow)
-    for n, start in enumerate(STARTS)
-    for m, body in enumerate(BODIES)
-]
+PAIRS = by_turns(0)
 
 
 @pytest.mark.parametrize(("body", "start"), PAIRS)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from builders.numbers import apart
 from builders.scenes import vector
-from builders.webers import BODIES, STARTS, built, case, curve_of
+from builders.webers import BODIES, built, by_turns, case, curve_of
 from flint import acb, arb, ctx
 from mpmath import mp, mpf
 
@@ -48,11 +48,7 @@ def whole(start: str, body: str) -> Scene:
     return placed(case(start, body))
 
 
-PAIRS = [
-    pytest.param(body, start, marks=() if (n + m) % 3 == 1 else pytest.mark.slow)
-    for n, start in enumerate(STARTS)
-    for m, body in enumerate(BODIES)
-]
+PAIRS = by_turns(1)
 
 
 @pytest.mark.parametrize(("body", "start"), PAIRS)
@@ -142,7 +138,7 @@ def test_the_frame_turns_at_omega_and_the_centre_moves_at_U() -> None:
 
 
 def test_the_start_is_the_scenes_own() -> None:
-    """At time 0 both routes have what the scene wrote."""
+    """Both routes have at time 0 what the scene wrote."""
     scene = whole("plain", "r alike")
     for found in (enclosed(scene), closed_form(scene)):
         motion = found.motion([Fraction(0)], DIGITS)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import os
 import sys
-import threading
 import zipfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from builders.at_once import both
 from builders.scenes import THREE_INSTANTS
 
 from taylor_verify.models.problem import Problem, pose
@@ -173,18 +173,7 @@ def test_one_whose_python_is_gone_is_made_anew(script: Script) -> None:
 def test_two_at_once_make_it_together(script: Script) -> None:
     """Two that ask for an environment at once have the same one, and it is whole."""
     script()
-    found: list[Path] = []
-    start = threading.Barrier(2)
-
-    def make() -> None:
-        start.wait()
-        found.append(interpreter())
-
-    both = [threading.Thread(target=make) for _ in range(2)]
-    for one in both:
-        one.start()
-    for one in both:
-        one.join(120)
+    found = both(interpreter, 120)
     assert len(found) == 2
     assert found[0] == found[1]
     assert solver_named(NAME).solve(problem()).outcome is Outcome.FINISHED

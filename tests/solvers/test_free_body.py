@@ -10,30 +10,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.oblique import BACKWARDS, oblique
 
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.scenes.precision import rung
-from taylor_verify.scenes.reading.reader import load, read
+from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.engines.engine import SCRIPTS
 from taylor_verify.solvers.process import protocol
 from taylor_verify.solvers.solver import Callback
 from taylor_verify.studies.tradeoff.accuracy import Truth
-
-# A full tensor, an oblique attitude, and a motion backwards in time.
-OBLIQUE = """
-title = "Oblique"
-model = "euler"
-source = "none"
-track = ["omega", "attitude"]
-[body]
-inertia = [[1.2, 0.1, -0.2], [0.1, 2.1, 0.3], [-0.2, 0.3, 2.7]]
-[initial]
-omega = [0.9, -0.3, 0.5]
-attitude = [1, 2, -1, 3]
-[time]
-end = -4
-samples = 5
-"""
 
 
 @pytest.fixture
@@ -116,7 +101,7 @@ def test_an_engine_with_the_right_equations_converges_to_the_exact_motion(
 ) -> None:
     """The first row is the start, and the error falls with the fourth power of the step: full
     tensor, oblique attitude, backwards in time, in the axes of the question."""
-    problem = pose(read(OBLIQUE, "oblique"), rung("f64"))
+    problem = pose(oblique(time=BACKWARDS), rung("f64"))
     first, coarse = errors(problem, shared, engine, 0.1)
     # A dozen products of numbers below three, each rounded.
     assert first <= 40 * 2**-53
@@ -143,12 +128,12 @@ def test_a_diagonal_tensor_keeps_its_axes(shared: Any) -> None:
     body = asked(pose(load("euler/with-attitude"), rung("f64")), shared)
     assert body.in_principal_axes() == body
     assert body.in_principal_axes().remark == ""
-    assert asked(pose(read(OBLIQUE, "oblique"), rung("f64")), shared).in_principal_axes().remark
+    assert asked(pose(oblique(time=BACKWARDS), rung("f64")), shared).in_principal_axes().remark
 
 
 def test_full_axes_have_no_moments(shared: Any) -> None:
     """The moments of a body in other than principal axes are refused."""
-    body = asked(pose(read(OBLIQUE, "oblique"), rung("f64")), shared)
+    body = asked(pose(oblique(time=BACKWARDS), rung("f64")), shared)
     with pytest.raises(SystemExit, match="expected principal axes, got products of inertia"):
         _ = body.moments
 

@@ -7,10 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from builders.oblique import BACKWARDS, FULL, oblique
 
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.scenes.precision import rung
-from taylor_verify.scenes.reading.reader import load, read
+from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.engines.engine import SCRIPTS
 from taylor_verify.solvers.process import process
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
@@ -18,24 +19,10 @@ from taylor_verify.studies.tradeoff.accuracy import Truth
 
 pytestmark = pytest.mark.skipif(not shutil.which("node"), reason="node is not installed")
 
-# A full tensor, an oblique attitude, a motion backwards in time, and instants that leave out the start.
-SCENE = """
-title = "Oblique"
-model = "euler"
-track = ["omega", "attitude"]
-[body]
-inertia = {inertia}
-[initial]
-omega = [0.9, -0.3, 0.5]
-attitude = [1, 2, -1, 3]
-[time]
-{time}
-"""
-FULL = "[[1.2, 0.1, -0.2], [0.1, 2.1, 0.3], [-0.2, 0.3, 2.7]]"
 # Two equal moments, and 45 degrees to the principal axes.
 EQUAL = "[[2, 0.5, 0], [0.5, 2, 0], [0, 0, 1.5]]"
 DIAGONAL = "[2.7, 1.2, 2.1]"
-BACKWARDS = "end = -4\nsamples = 5"
+# Without the start.
 LISTED = "at = [0.5, 1, 4]"
 
 # An engine by RK4, in principal axes, which hands on omega in space axes as physics engines do. What it
@@ -81,7 +68,7 @@ def engine(tmp_path: Path) -> list[str]:
 
 
 def posed(inertia: str = FULL, time: str = BACKWARDS, on: str = "f64") -> Problem:
-    return pose(read(SCENE.format(inertia=inertia, time=time), "oblique"), rung(on))
+    return pose(oblique(inertia, time), rung(on))
 
 
 def solved(engine: list[str], problem: Problem, step: float) -> Trajectory:

@@ -7,11 +7,11 @@ import os
 import re
 import shutil
 import sys
-import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from builders.at_once import both
 from builders.scenes import THREE_INSTANTS
 
 from taylor_verify.models.problem import Problem, pose
@@ -187,18 +187,7 @@ def test_an_environment_is_made_once(script: Script, calls: Calls) -> None:
 def test_two_at_once_make_it_together(script: Script) -> None:
     """Two that ask for an environment at once have the same one, and nothing is left beside it."""
     script()
-    found: list[Path] = []
-    start = threading.Barrier(2)
-
-    def make() -> None:
-        start.wait()
-        found.append(environment())
-
-    both = [threading.Thread(target=make) for _ in range(2)]
-    for one in both:
-        one.start()
-    for one in both:
-        one.join(60)
+    found = both(environment, 60)
     assert len(found) == 2
     assert found[0] == found[1]
     assert list(found[0].parent.iterdir()) == [found[0]]

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.oblique import oblique
 
 from taylor_verify.models.problem import Problem, pose_as_stored
 from taylor_verify.scenes.precision import rung
-from taylor_verify.scenes.reading.reader import read
 from taylor_verify.solvers.engines.engine import prepare
 from taylor_verify.solvers.engines.launcher import NotMade
 from taylor_verify.solvers.registry import solver_named
@@ -19,19 +19,7 @@ from taylor_verify.studies.tradeoff.accuracy import Truth
 
 pytestmark = pytest.mark.slow
 
-SCENE = """
-title = "Oblique"
-model = "euler"
-track = ["omega", "attitude"]
-[body]
-inertia = {inertia}
-[initial]
-omega = [1.2, -0.8, 1.5]
-attitude = [3, -1, 2, 1]
-[time]
-end = 4
-samples = 5
-"""
+OMEGA, ATTITUDE = ("[1.2, -0.8, 1.5]", "[3, -1, 2, 1]")
 DIAGONAL = "[2, 3, 4]"
 FULL = "[[2.64, -0.288, -0.384], [-0.288, 3.4096, -0.7872], [-0.384, -0.7872, 2.9504]]"
 PRECISION = {"cannon": "f64"}
@@ -55,7 +43,7 @@ def solved(monkeypatch: pytest.MonkeyPatch) -> Rows:
             prepare(f"outside:{name}")
         except NotMade as reason:
             pytest.skip(str(reason))
-        problem = pose_as_stored(read(SCENE.format(inertia=inertia), "oblique"), posed_on(name))
+        problem = pose_as_stored(oblique(inertia, omega=OMEGA, attitude=ATTITUDE), posed_on(name))
         joint = "&" if "?" in name else "?"
         found = solver_named(f"outside:{name}{joint}step={step}").solve(problem)
         assert found.outcome is Outcome.FINISHED, found.detail

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.oblique import oblique
 
 from taylor_verify.models.problem import pose
 from taylor_verify.records.quantities import INITIAL, STATES
@@ -18,35 +19,14 @@ from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes.precision import rung
-from taylor_verify.scenes.reading.reader import read
-from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines.engine import SCRIPTS, engines, prepare
 from taylor_verify.solvers.engines.launcher import NotMade
 from taylor_verify.solvers.process import protocol
 from taylor_verify.solvers.registry import solver_named
 
-# A full tensor and an oblique attitude: axes that are mixed up show at the start.
-OBLIQUE = """
-title = "Oblique"
-model = "euler"
-source = "none"
-track = ["omega", "attitude"]
-[body]
-inertia = [[1.2, 0.1, -0.2], [0.1, 2.1, 0.3], [-0.2, 0.3, 2.7]]
-[initial]
-omega = [0.9, -0.3, 0.5]
-attitude = [1, 2, -1, 3]
-[time]
-end = 4
-samples = 5
-"""
 STEP = 1 / 32
 # Settings that exclude each other: the explicit methods of Exudyn have no constraint.
 BESIDE = {"coordinates=EulerParameters": "integrator=GeneralizedAlpha"}
-
-
-def oblique() -> Scene:
-    return read(OBLIQUE, "oblique")
 
 
 @pytest.fixture
