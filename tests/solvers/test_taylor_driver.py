@@ -30,7 +30,7 @@ from taylor_verify.scenes.precision import power_of_two, rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.solver import Callback
-from taylor_verify.solvers.taylor import driver
+from taylor_verify.solvers.taylor import driver, way
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.taylor.numbers import arithmetic
 from taylor_verify.solvers.trajectory import Outcome
@@ -208,9 +208,8 @@ def test_unfinished_run_fails_without_a_number(
     outcome: Outcome, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Whatever stopped a solver, the verdict is fail with the outcome's sentence, and no error is 0."""
-    from taylor_verify.solvers.taylor import driver
-
-    monkeypatch.setattr(driver, "_propagate", lambda *_: (outcome, 7, [], 0.0))
+    ran = way.Ran(outcome, np.empty((0, 3)), 1.0, 7, 0.0)
+    monkeypatch.setattr(way.Way, "run", lambda _: ran)
     (verdict,) = run("euler/generic", "taylor", "f64").verdicts
     assert verdict.verdict is Status.FAIL
     assert verdict.outcome == outcome.value
@@ -219,9 +218,7 @@ def test_unfinished_run_fails_without_a_number(
 
 def test_step_limit_is_an_outcome(monkeypatch: pytest.MonkeyPatch) -> None:
     """A run that needs more steps than it is allowed stops and says so."""
-    from taylor_verify.solvers.taylor import driver
-
-    monkeypatch.setattr(driver, "STEPS_PER_RADIAN", 0)
+    monkeypatch.setattr(way, "STEPS_PER_RADIAN", 0)
     long = spinning((Fraction(3, 4), Fraction(-1, 2), Fraction(7, 8)), Fraction(10**6))
     assert Taylor().solve(pose(long, rung("f64"))).outcome is Outcome.STEP_LIMIT
 
@@ -316,14 +313,8 @@ def sampled(scene: Scene, count: int) -> Scene:
 
 
 @pytest.mark.parametrize("name", ["euler/generic", "kirchhoff/whole-motion"])
-def test_samples_cost_no_steps(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
-    """Between the same 24 looks at the rate, 25 samples and 4801 take the same steps, to the bit.
-
-    Samples are read off the steps: if a step ended at each, there would be thousands.
-    """
-    from taylor_verify.solvers.taylor import driver
-
-    monkeypatch.setattr(driver, "_FEWEST_LOOKS", 24)
+def test_samples_cost_no_steps(name: str) -> None:
+    """25 samples and 4801 take the same steps, to the bit; a step that ended at each made thousands."""
     few, many = (
         Taylor().solve(pose(sampled(load(name), n), rung("f64"))) for n in (25, 24 * 200 + 1)
     )
@@ -334,8 +325,6 @@ def test_samples_cost_no_steps(monkeypatch: pytest.MonkeyPatch, name: str) -> No
 
 def test_unoptimised_code_takes_the_same_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     """How MPFR's calls are compiled changes what they cost, and not a bit of what they compute."""
-    from taylor_verify.solvers.taylor import driver
-
     problem = pose(load("euler/with-attitude"), rung("mp113"))
     found = []
     for long_way in (0, 10**6):
@@ -348,8 +337,6 @@ def test_unoptimised_code_takes_the_same_steps(monkeypatch: pytest.MonkeyPatch) 
 
 def test_two_bodies_of_one_form_share_one_compiled_integrator() -> None:
     """Coefficients are parameters: another body, start and span compile nothing."""
-    from taylor_verify.solvers.taylor import driver
-
     scene = spinning((Fraction(1), Fraction(3, 4), Fraction(2)), Fraction(10))
     moments = tensors.diagonal((Fraction(1), Fraction(2), Fraction(17, 5)))
     other = replace(scene, body=RigidBody(moments), initial=Spin((Fraction(2),) * 3))
@@ -425,7 +412,7 @@ def test_a_callback_changes_no_number(monkeypatch: pytest.MonkeyPatch, name: str
     """It is there to hear an interrupt: heyoka takes the same steps with it, bit for bit."""
     problem = pose(load("kirchhoff/whole-motion"), rung(name))
     without = Taylor().solve(problem)
-    monkeypatch.setattr(driver, "_RADIANS_AT_ONCE", {})
+    monkeypatch.setattr(way, "_RADIANS_AT_ONCE", {})
     heard = Taylor().solve(problem)
     assert heard.steps == without.steps
     for quantity, values in without.quantities.items():

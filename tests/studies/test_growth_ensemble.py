@@ -18,8 +18,8 @@ from taylor_verify.models.problem import Problem, pose
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.solvers.taylor.driver import LONGEST_STEP
 from taylor_verify.solvers.taylor.ensemble import Ensemble, Lane, batch_width
+from taylor_verify.solvers.taylor.way import LONGEST_STEP
 from taylor_verify.solvers.trajectory import Outcome, Trajectory, from_scaled
 from taylor_verify.studies.tradeoff.starts import nearby
 

@@ -25,7 +25,7 @@ from traps.trap import Trap, shown
 
 from taylor_verify.models.problem import pose
 from taylor_verify.scenes.precision import rung
-from taylor_verify.solvers.taylor import driver
+from taylor_verify.solvers.taylor import way
 from taylor_verify.solvers.taylor.cache import heyoka_cache_off
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.taylor.plain import Plain
@@ -316,7 +316,7 @@ def test_driver_hears_signals_on_the_way(monkeypatch: pytest.MonkeyPatch) -> Non
     """A signal that is repeated during a long run is heard between its stretches, not at its end."""
     heard = []
     # What takes half a second otherwise: ten times that would be a long test.
-    monkeypatch.setitem(driver._RADIANS_AT_ONCE, "f64", 1e4)
+    monkeypatch.setitem(way._RADIANS_AT_ONCE, "f64", 1e4)
     problem = pose(free("a long run", GENERIC, 2e5), rung("f64"))
     Taylor().solve(pose(free("compiled before", GENERIC, 1.0), rung("f64")))
     before = signal.signal(signal.SIGALRM, lambda *_: heard.append(1))

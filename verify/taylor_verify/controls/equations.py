@@ -20,7 +20,7 @@ from taylor_verify.controls.defect import BRICK, SCREW, Defect
 from taylor_verify.models.algebra import add, apply, cross, minus
 from taylor_verify.models.damping import WithDamping
 from taylor_verify.models.euler import angular_velocity, euler_equations
-from taylor_verify.models.form import Named, labelled
+from taylor_verify.models.form import Named, in_unit_of_path, labelled
 from taylor_verify.models.general import in_general_form
 from taylor_verify.models.kirchhoff import impulse_rates, kirchhoff_equations, velocities
 from taylor_verify.models.problem import Problem
@@ -142,7 +142,7 @@ def _uneven(n: Named) -> Mapping[str, Any]:
 def _unturned_path(n: Named) -> Mapping[str, Any]:
     """c' = U in place of R U."""
     U, _ = _velocities(n)
-    return kirchhoff_equations(n) | labelled("c", U)
+    return kirchhoff_equations(n) | labelled("c", in_unit_of_path(n, U))
 
 
 def _without_added_acceleration(problem: Problem) -> Problem:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
-from taylor_verify.models.algebra import ABSENT, is_absent
+from taylor_verify.models.algebra import ABSENT, is_absent, times
 from taylor_verify.models.frame import attitude_rate, centre_rate
 from taylor_verify.models.symbol import Symbol, operations
 
@@ -108,8 +108,13 @@ def frame_rates(n: Named, omega: Sequence[Any], U: Sequence[Any] | None) -> dict
         attitude = attitude_rate(n.quaternion(), omega)
         rates |= {f"e{i}": rate for i, rate in enumerate(attitude)}
     if "c1" in n and U is not None:
-        rates |= labelled("c", centre_rate(n.quaternion(), U))
+        rates |= labelled("c", centre_rate(n.quaternion(), in_unit_of_path(n, U)))
     return rates
+
+
+def in_unit_of_path(n: Named, U: Sequence[Any]) -> Sequence[Any]:
+    """Return s U, s the unit of length over that of the centre; U itself where the two are one."""
+    return [times(n["s"], u) for u in U] if "s" in n else U
 
 
 def labelled(letter: str, vector: Sequence[Any], mark: str = "") -> dict[str, Any]:

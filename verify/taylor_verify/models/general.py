@@ -38,6 +38,7 @@ def in_general_form(problem: Problem, zeros: bool = False) -> Problem:
         own += tuple(name for name in problem.form.states if name[0] in "uv")
         numbers |= {n: value for n, value in problem.parameter.items() if n[0] in _OF_MOTION}
     frame = tuple(name for name in problem.form.states if name[0] in "ec")
+    numbers |= {n: value for n, value in problem.parameter.items() if n == "s"}
     known = {**problem.parameter, **problem.state}
     states = own + frame
     names = tuple(name for name, value in numbers.items() if value or zeros)

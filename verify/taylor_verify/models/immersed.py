@@ -19,12 +19,13 @@ from taylor_verify.models.kirchhoff import (
 )
 from taylor_verify.models.manufactured import KIRCHHOFF_INVERSE
 from taylor_verify.models.mechanics import Change, Mechanics
-from taylor_verify.models.units import Units, binary, largest, root, size
+from taylor_verify.models.units import Units, binary, exponent_of_sum, largest, root, size
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.parts import IMPULSE, MOMENTUM, Part, Shape, Value
-from taylor_verify.scenes.precision import Rung
+from taylor_verify.scenes.precision import Rung, power_of_two
+from taylor_verify.scenes.tensors import Matrix, Vector
 
 _LETTERS = {"linear": "A", "coupling": "B", "angular": "C", "force": "X", "couple": "L"}
 
@@ -65,18 +66,35 @@ class Immersed(Mechanics[ImmersedBody, Impulse]):
         # x keeps its norm without a force; y may start at zero and take up all the energy.
         motion = body.manufactured
         state = start.moving if motion is None else motion.reach
-        doubled_energy = tensors.dot(state, tensors.apply(body.energy_matrix, state))
-        spun_up = root(doubled_energy / largest(body.angular)) if doubled_energy else Fraction(0)
+        linear, coupling, angular = map(largest, (body.linear, body.coupling, body.angular))
+        spun_up = _spun_up(body.energy_matrix, state, angular)
         impulse = size(state[:3]) or binary(size(body.force) * span)
         momentum = max(size(state[3:]), spun_up) or binary(size(body.couple) * span)
         impulse, momentum = impulse or momentum or Fraction(1), momentum or impulse or Fraction(1)
         rate = max(
-            largest(body.linear) * impulse**2 / momentum,
-            largest(body.coupling) * impulse,
-            largest(body.angular) * momentum,
+            linear * impulse**2 / momentum,
+            coupling * impulse,
+            angular * momentum,
             Fraction(0) if motion is None else motion.highest,
         )
-        return Units(time=1 / binary(rate), momentum=momentum, impulse=impulse)
+        # Neither impulse is above twice its unit: no path is longer, unless loads or damping make it so.
+        speed = 6 * (linear * impulse + coupling * momentum)
+        path = max(2 * binary(speed * span * impulse / momentum), Fraction(1))
+        return Units(time=1 / binary(rate), momentum=momentum, impulse=impulse, path=path)
+
+
+def _spun_up(energy: Matrix, state: Vector, angular: Fraction) -> Fraction:
+    """Return a power of two near |y| of a motion that has all its energy in the largest entry of C."""
+    terms = [
+        (a, entry, b)
+        for a, row in zip(state, energy, strict=True)
+        for b, entry in zip(state, row, strict=True)
+    ]
+    exponent = exponent_of_sum([term for term in terms if all(term)], angular)
+    if exponent is not None:
+        return power_of_two(exponent // 2)
+    doubled = sum((a * entry * b for a, entry, b in terms), Fraction(0))
+    return root(doubled / angular) if doubled else Fraction(0)
 
 
 def chosen_equations(numbers: Numbers) -> Choice:

@@ -11,9 +11,8 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import chain
+from math import isqrt, lcm
 from typing import NoReturn
-
-from mpmath import mp
 
 from taylor_verify.models import manufactured
 from taylor_verify.models.choice import Choice, constants_told
@@ -26,9 +25,9 @@ from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.instants import Instants
 from taylor_verify.scenes.manufactured import Manufactured, Wave
-from taylor_verify.scenes.motion import Clock, Quaternion, State
+from taylor_verify.scenes.motion import IDENTITY, Clock, Quaternion, State
 from taylor_verify.scenes.parts import Part, Shape, Value, entrywise
-from taylor_verify.scenes.precision import Rung, exact_value, floor_log2, power_of_two
+from taylor_verify.scenes.precision import Rung, floor_log2
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Vector
 
@@ -37,9 +36,11 @@ class NotRepresentable(Exception):
     """The rung cannot hold this scene as a body with distinct sample times; the text says why."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Problem:
     """Question to a solver: equations, parameters, initial state and times, all on one rung.
+
+    It is equal to itself alone, so that what follows from it can be looked up.
 
     ``given`` is what most solvers want: the body, the start (``given.initial.omega``) and the instants
     in the scene's own units. ``parameters``, ``initial_momenta`` and ``times`` (elapsed since the
@@ -101,7 +102,7 @@ def pose(scene: Scene, rung: Rung) -> Problem:
     data = _rounded_data(scene, units, _Rounding(rung))
     if scene.body.manufactured is not None:
         data = _with_clock(data, scene.body, scene.body.manufactured, units, _Rounding(rung))
-    data = _with_frame(data, scene.track, rung)
+    data = _with_frame(data, scene.track, units, rung)
     choice = data.choice
     form = choice.form(data.states)
     return Problem(
@@ -188,15 +189,15 @@ def _rounded_data(scene: Scene, units: Units, rounded: _Rounding) -> _Data:
     kind = mechanics(body)
     exact = kind.change(body).momentum(start.moving)
     vectors = {one.name: exact[3 * k : 3 * k + 3] for k, one in enumerate(kind.momenta)}
-    values = _each(kind.body_letters, kind.values(body), units.counted, rounded.each)
-    momenta = _each(kind.momenta, vectors, units.counted, rounded.each)
+    values = _counted(kind.body_letters, kind.values(body), units, rounded)
+    momenta = _counted(kind.momenta, vectors, units, rounded)
     try:
         given = kind.body(_each(kind.body_letters, values, units.physical))
     except ValueError as error:
         raise NotRepresentable(f"rounded to {rounded.rung.name}, {error}") from error
     momentum = tuple(chain(*_each(kind.momenta, momenta, units.physical).values()))
     place = {
-        part.name: units.physical(part, rounded.part(part, units.counted(part, start.part(part))))
+        part.name: units.physical(part, rounded.counted(part, start.part(part), units))
         for part in start.PARTS
         if part.name not in start.MOVING
     }
@@ -217,14 +218,16 @@ _Letters = Sequence[Part]
 _Values = Mapping[str, Value]
 
 
-def _each(
-    letters: _Letters,
-    values: _Values,
-    change: Callable[[Part, Value], Value],
-    rounded: Callable[[Value], Value] = lambda value: value,
-) -> _Values:
-    """Return the value of each letter in other units, and rounded."""
-    return {one.name: rounded(change(one, values[one.name])) for one in letters}
+def _each(letters: _Letters, values: _Values, change: Callable[[Part, Value], Value]) -> _Values:
+    """Return the value of each letter in other units."""
+    return {one.name: change(one, values[one.name]) for one in letters}
+
+
+def _counted(letters: _Letters, values: _Values, units: Units, rounded: _Rounding) -> _Values:
+    """Return the value of each letter, counted in its unit and rounded once."""
+    return {
+        one.name: rounded.each(values[one.name], -units.exponent(one.dimension)) for one in letters
+    }
 
 
 def _named(letters: _Letters, values: _Values) -> dict[str, Fraction]:
@@ -258,7 +261,7 @@ def _with_clock(
     return _Data(choice, states, data.body.with_motion(given), data.initial)
 
 
-def _with_frame(data: _Data, track: Collection[str], rung: Rung) -> _Data:
+def _with_frame(data: _Data, track: Collection[str], units: Units, rung: Rung) -> _Data:
     """Return the same with attitude and centre among the states, as far as they are tracked."""
     frame: dict[str, Fraction] = {}
     if "attitude" in track:
@@ -267,8 +270,11 @@ def _with_frame(data: _Data, track: Collection[str], rung: Rung) -> _Data:
     if "centre" in track:
         # The centre is integrated from the origin and its start added exactly afterwards.
         frame |= dict.fromkeys(("c1", "c2", "c3"), Fraction(0))
+    states = (*data.states, *frame)
+    if "centre" in track:
+        frame["s"] = 1 / units.path
     choice = replace(data.choice, numbers={**data.choice.numbers, **frame})
-    return replace(data, states=(*data.states, *frame), choice=choice)
+    return replace(data, states=states, choice=choice)
 
 
 @dataclass(frozen=True)
@@ -277,15 +283,21 @@ class _Rounding:
 
     rung: Rung
 
-    def __call__(self, value: Fraction) -> Fraction:
+    def __call__(self, value: Fraction, shift: int = 0) -> Fraction:
         try:
-            return self.rung.round(value)
+            return self.rung.round_scaled(value, shift)
         except OverflowError as error:
             raise NotRepresentable(str(error)) from error
 
-    def each(self, value: Value) -> Value:
-        """Round every number of a value, whatever its shape."""
-        return entrywise(self, value)
+    def each(self, value: Value, shift: int = 0) -> Value:
+        """Round every number of a value times 2^shift, whatever its shape."""
+        return entrywise(lambda entry: self(entry, shift) if entry else entry, value)
+
+    def counted(self, part: Part, value: Value, units: Units) -> Value:
+        """Round a part of a state, counted in its unit."""
+        if part.shape is Shape.QUATERNION:
+            return self.quaternion(value)
+        return self.each(value, -units.exponent(part.dimension))
 
     def part(self, part: Part, value: Value) -> Value:
         """Round a part of a body or a state as it stands."""
@@ -293,8 +305,10 @@ class _Rounding:
 
     def quaternion(self, quaternion: Quaternion) -> Quaternion:
         """Round the components after an exact scaling to order one; the norm does not matter."""
-        unit = power_of_two(max(floor_log2(entry) for entry in quaternion if entry))
-        e0, e1, e2, e3 = (self(entry / unit) for entry in quaternion)
+        if quaternion == IDENTITY:
+            return quaternion
+        shift = -max(floor_log2(entry) for entry in quaternion if entry)
+        e0, e1, e2, e3 = (self(entry, shift) for entry in quaternion)
         return (e0, e1, e2, e3)
 
     def waves(self, motion: Manufactured) -> tuple[Wave, ...]:
@@ -306,10 +320,14 @@ class _Rounding:
 
 def _unit_quaternion(quaternion: Quaternion, rung: Rung) -> Quaternion:
     """Return the quaternion over its norm, each component rounded once."""
+    if quaternion == IDENTITY:
+        return quaternion
     # 64 guard bits: the square root's own error cannot show in the rounding but by a tie of
     # probability 2^-64, and then by one unit in the last place.
-    with mp.workprec(rung.bits + 64):
-        norm = mp.sqrt(mp.convert(tensors.dot(quaternion, quaternion)))
-        quotients = [mp.convert(entry) / norm for entry in quaternion]
-        e0, e1, e2, e3 = (rung.round(exact_value(v)) for v in quotients)
+    scale = lcm(*(entry.denominator for entry in quaternion))
+    whole = [entry.numerator * (scale // entry.denominator) for entry in quaternion]
+    squared = sum(n * n for n in whole)
+    shift = max(0, rung.bits + 64 - squared.bit_length() // 2)
+    norm = isqrt(squared << 2 * shift)
+    e0, e1, e2, e3 = (rung.round(Fraction(n << shift, norm)) for n in whole)
     return (e0, e1, e2, e3)

@@ -49,8 +49,9 @@ class Linearised:
         parameters = np.array([1.0, *map(float, problem.parameters)])
         values = terms.coefficients * parameters[terms.factors].prod(axis=0)
         entries = np.bincount(terms.places, values, (n * n + 4) * (n + 1)).reshape(-1, n + 1)
-        self._constant, self._slopes = entries[:, 0], entries[:, 1:].T
+        self._constant, self._slopes = entries[:, 0], np.ascontiguousarray(entries[:, 1:].T)
         self._shape, self._turns = (-1, n, n), "e0" in problem.form.states
+        self._ones = np.ones(n * n)
 
     def fastest(self, states: Any, squarings: int = _ENOUGH) -> float:
         """Return the fastest rate at a state, or at all rows of an array; infinite where not finite.
@@ -62,9 +63,9 @@ class Linearised:
         rows = np.atleast_2d(states)[:, : self._momenta].astype(float)
         with np.errstate(all="ignore"):
             entries = rows @ self._slopes + self._constant
-            J, omega = entries[:, :-4].reshape(self._shape), entries[:, -4:]
+            J = entries[:, :-4].reshape(self._shape)
             bound = size = self._norm(J)
-            turned = sqrt(np.maximum.reduce(omega * omega @ _ONES)) if self._turns else 0.0
+            turned = self._turned(entries) if self._turns else 0.0
         if not isfinite(size + turned):
             return inf
         power, before = J / size if size else J, bound
@@ -75,6 +76,26 @@ class Linearised:
         if squarings == _ENOUGH and not before <= _NEARLY * bound:
             bound = float(np.abs(np.linalg.eigvals(J)).max())
         return max(bound, turned, _SLOWEST)
+
+    def is_within(self, states: Any, rate: float) -> bool:
+        """Return True if no row of an array of states has a rate that is faster.
+
+        Most are told by a bound that is soon found, |J^2|^(1/2) in Frobenius's norm.
+        """
+        rows = states[:, : self._momenta].astype(float)
+        with np.errstate(all="ignore"):
+            entries = rows @ self._slopes + self._constant
+            J = entries[:, :-4].reshape(self._shape)
+            squares = (J @ J).reshape(len(rows), -1) ** 2
+            bound = np.maximum.reduce(squares @ self._ones)
+        if bound <= rate**4 and (not self._turns or self._turned(entries) <= rate):
+            return True
+        return self.fastest(states) <= rate
+
+    def _turned(self, entries: Any) -> float:
+        """Return the largest |omega|/2."""
+        omega = entries[:, -4:]
+        return sqrt(np.maximum.reduce(omega * omega @ _ONES))
 
     def _norm(self, matrices: Any) -> float:
         """Return a bound of Frobenius's norm of each: the largest entry times the order."""

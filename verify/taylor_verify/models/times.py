@@ -35,7 +35,7 @@ class TypedTimes(Instants):
 
     @property
     def are_distinct(self) -> bool:
-        return bool(np.all(self.typed[1:] != self.typed[:-1]))
+        return bool((self.typed[1:] != self.typed[:-1]).all())
 
 
 class BinaryTimes(Instants):

@@ -9,28 +9,45 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
+from math import frexp, prod
+from typing import Final
 
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.parts import Dimension, Part, Value, entrywise
 from taylor_verify.scenes.precision import floor_log2, power_of_two
 from taylor_verify.scenes.tensors import Vector
 
+# A product of doubles that are rounded once each, and a sum of some, are right to within this part.
+_DOUBTFUL: Final = 2.0**-40
+# Smaller parts of a sum are not told from what its terms lost, nor products that left the range of doubles.
+_LEFT: Final = 2.0**-20
+_TINY, _HUGE = 1e-200, 1e200
+_ONE: Final = Fraction(1)
+
 
 @dataclass(frozen=True)
 class Units:
     """scaled value x unit = physical value; each unit is a power of two.
 
-    ``momentum`` is that of H (Euler) or y (Kirchhoff), ``impulse`` that of x.
+    ``momentum`` is that of H (Euler) or y (Kirchhoff), ``impulse`` that of x. ``path`` is the unit of the
+    centre over that of other lengths: a body at rest in size may go far.
     """
 
     time: Fraction
     momentum: Fraction
     impulse: Fraction = Fraction(1)
+    path: Fraction = Fraction(1)
 
     @property
     def length(self) -> Fraction:
-        """Unit of the centre: U = B y, times time."""
+        """Unit of a length: U = B y, times time."""
         return self.momentum / self.impulse
+
+    @property
+    def centre(self) -> Fraction:
+        """Unit of the centre among the states."""
+        return self.length * self.path
 
     @property
     def mass(self) -> Fraction:
@@ -39,23 +56,32 @@ class Units:
 
     def of(self, dimension: Dimension) -> Fraction:
         """Return the unit of any quantity."""
+        return power_of_two(self.exponent(dimension))
+
+    def exponent(self, dimension: Dimension) -> int:
+        """Return the power of two that the unit of any quantity is."""
+        mass, length, time = self._exponents
+        return mass * dimension.mass + length * dimension.length + time * dimension.time
+
+    @cached_property
+    def _exponents(self) -> tuple[int, int, int]:
         time, momentum, impulse = map(_exponent, (self.time, self.momentum, self.impulse))
         length = momentum - impulse
-        mass = impulse + time - length
-        return power_of_two(
-            mass * dimension.mass + length * dimension.length + time * dimension.time
-        )
+        return impulse + time - length, length, time
 
     def counted(self, part: Part, value: Value) -> Value:
         """Return a part of a body or a state, counted in its unit."""
-        return _scaled(1 / self.of(part.dimension), value)
+        return _scaled(-self.exponent(part.dimension), value)
 
     def physical(self, part: Part, value: Value) -> Value:
         """Return the part that is so much in its unit."""
-        return _scaled(self.of(part.dimension), value)
+        return _scaled(self.exponent(part.dimension), value)
 
 
-def _scaled(factor: Fraction, value: Value) -> Value:
+def _scaled(shift: int, value: Value) -> Value:
+    if not shift:
+        return value
+    factor = power_of_two(shift)
     return entrywise(lambda entry: entry * factor if entry else entry, value)
 
 
@@ -65,13 +91,38 @@ def _exponent(power: Fraction) -> int:
 
 def largest(matrix: Iterable[Vector]) -> Fraction:
     """Return the largest entry."""
-    return max(abs(entry) for row in matrix for entry in row)
+    entries = [entry for row in matrix for entry in row]
+    try:
+        sizes = [abs(float(entry)) for entry in entries]
+    except OverflowError:
+        return max(map(abs, entries))
+    least = max(sizes) * (1 - _DOUBTFUL)
+    return max(abs(entry) for entry, size in zip(entries, sizes, strict=True) if size >= least)
 
 
 def size(vector: Vector) -> Fraction:
     """Return a power of two within a factor of two of the norm; 0 for the zero vector."""
+    exponent = exponent_of_sum((entry, entry) for entry in vector)
+    if exponent is not None:
+        return power_of_two(exponent // 2)
     squared = tensors.dot(vector, vector)
     return root(squared) if squared else Fraction(0)
+
+
+def exponent_of_sum(products: Iterable[Vector], over: Fraction = _ONE) -> int | None:
+    """Return the exponent of a sum of products over a number: the largest e with 2^e <= |sum / number|.
+
+    None where doubles do not tell: a unit is asked for often, and a rational is dear.
+    """
+    try:
+        terms = [prod(map(float, factors)) / float(over) for factors in products]
+    except (OverflowError, ZeroDivisionError):
+        return None
+    total, beyond = abs(sum(terms)), sum(map(abs, terms)) * _DOUBTFUL
+    if not _TINY < beyond <= total * _DOUBTFUL / _LEFT < _HUGE:
+        return None
+    exponent = frexp(total - beyond)[1] - 1
+    return exponent if frexp(total + beyond)[1] - 1 == exponent else None
 
 
 def root(squared: Fraction) -> Fraction:

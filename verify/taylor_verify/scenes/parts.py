@@ -99,6 +99,6 @@ class Parted:
 
 def entrywise(change: Callable[[Fraction], Any], value: Value) -> Value:
     """Return the value with every number in it changed."""
-    if isinstance(value, tuple):
-        return tuple(entrywise(change, entry) for entry in value)
-    return change(value)
+    if not isinstance(value, tuple):
+        return change(value)
+    return tuple([entrywise(change, entry) for entry in value])

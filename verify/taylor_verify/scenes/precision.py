@@ -39,23 +39,37 @@ class Rung:
 
         Raises OverflowError where the format has no such number.
         """
-        if value == 0:
+        return self.round_scaled(value, 0)
+
+    def round_scaled(self, value: Fraction, shift: int) -> Fraction:
+        """Return the nearest number to value times 2^shift, likewise."""
+        if not value:
             return value
         significand, exponent = nearest(value.numerator, value.denominator, self.bits)
+        exponent += shift
         if self.emin is not None and exponent + self.bits <= self.emin + 1:
             # Perhaps below the normal numbers, whose last place is then that of the smallest one.
+            value *= power_of_two(shift)
             quantum = power_of_two(max(floor_log2(value), self.emin) - self.bits + 1)
             return round(value / quantum) * quantum
         if self.emax is not None and exponent + significand.bit_length() > self.emax + 1:
-            raise OverflowError(f"{float_text(value)} is outside the range of {self.name}")
-        return significand * power_of_two(exponent)
+            text = float_text(value * power_of_two(shift))
+            raise OverflowError(f"{text} is outside the range of {self.name}")
+        return dyadic(significand, exponent)
 
     def holds(self, value: Fraction) -> bool:
         """Return True if the value is a number of this format."""
-        try:
-            return self.round(value) == value
-        except OverflowError:
+        numerator, denominator = abs(value.numerator), value.denominator
+        if denominator & (denominator - 1):
             return False
+        zeros = (numerator & -numerator).bit_length() - 1 if numerator else 0
+        lowest = zeros - denominator.bit_length() + 1
+        beyond = numerator.bit_length() - denominator.bit_length() + 1
+        return (
+            beyond - lowest <= self.bits
+            and (self.emin is None or lowest > self.emin - self.bits)
+            and (self.emax is None or beyond <= self.emax + 1)
+        )
 
 
 _FORMATS = {
@@ -106,6 +120,15 @@ def rounded(value: Fraction, bits: int) -> Fraction:
     """Return the number of so many bits nearest to a value, ties to even, whatever its size."""
     significand, exponent = nearest(value.numerator, value.denominator, bits)
     return significand * power_of_two(exponent)
+
+
+def dyadic(significand: int, exponent: int) -> Fraction:
+    """Return significand times 2^exponent."""
+    return (
+        Fraction(significand << exponent)
+        if exponent >= 0
+        else Fraction(significand, 1 << -exponent)
+    )
 
 
 def power_of_two(exponent: int) -> Fraction:

@@ -196,7 +196,7 @@ def from_scaled(
     if "c1" in columns:
         start = given.initial.parts()["centre"]
         quantities["centre"] = [
-            tensors.plus(start, c) for c in _vectors(columns, "c", units.length)
+            tensors.plus(start, c) for c in _vectors(columns, "c", units.centre)
         ]
     return {
         name: np.array([[held_exactly(entry) for entry in row] for row in vectors], dtype=object)

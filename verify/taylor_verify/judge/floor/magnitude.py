@@ -143,7 +143,7 @@ def _sizes(problem: Problem, path: Path) -> dict[str, Floats]:
     if "attitude" in path.blocks:
         found |= {name: np.full(len(path.elapsed), _COMPONENT) for name in _QUATERNION}
     if "centre" in path.blocks:
-        length = problem.units.length
+        length = problem.units.centre
         start = np.array([float(c / length) for c in problem.given.initial.parts()["centre"]])
         rows = np.abs(path.centre * float(path.units["centre"] / length) + start)
         found |= dict(zip(_COMPONENTS["centre"], rows.T, strict=True))
@@ -177,5 +177,5 @@ def _largest(columns: Mapping[str, Floats], names: Sequence[str]) -> float:
 
 def _unit(problem: Problem, block: str) -> Fraction:
     units = problem.units
-    by_block = {"linear_impulse": units.impulse, "centre": units.length}
+    by_block = {"linear_impulse": units.impulse, "centre": units.centre}
     return by_block.get(block, units.momentum)

@@ -27,16 +27,15 @@ from taylor_verify.models.problem import Problem
 from taylor_verify.models.rates import Linearised
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.solvers.taylor.cache import stored
-from taylor_verify.solvers.taylor.driver import (
+from taylor_verify.solvers.taylor.driver import compiled, equations
+from taylor_verify.solvers.taylor.numbers import arithmetic, unavailable
+from taylor_verify.solvers.taylor.way import (
     LEAST_STEPS,
     LONGEST_STEP,
     MOST_RADIANS,
     STEPS_PER_RADIAN,
-    compiled,
-    equations,
     outcome_of,
 )
-from taylor_verify.solvers.taylor.numbers import arithmetic, unavailable
 from taylor_verify.solvers.trajectory import Outcome
 
 Array = np.ndarray[Any, Any]

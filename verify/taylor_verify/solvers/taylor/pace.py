@@ -10,8 +10,9 @@ from typing import Any
 
 from taylor_verify.models.problem import Problem
 from taylor_verify.models.rates import Linearised
-from taylor_verify.solvers.taylor.driver import LONGEST_STEP, compiled
+from taylor_verify.solvers.taylor.driver import compiled
 from taylor_verify.solvers.taylor.numbers import arithmetic
+from taylor_verify.solvers.taylor.way import LONGEST_STEP
 
 
 class Pace:

@@ -1,0 +1,230 @@
+"""The way of one problem through its instants: heyoka's steps, capped, bounded, looked at and counted."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from functools import lru_cache
+from itertools import pairwise
+from math import ceil, isfinite
+from time import perf_counter
+from typing import Any, Final, NamedTuple, final
+
+import numpy as np
+
+from taylor_verify.models.problem import Problem
+from taylor_verify.models.rates import Linearised
+from taylor_verify.scenes.precision import Rung
+from taylor_verify.solvers.taylor.numbers import arithmetic
+from taylor_verify.solvers.trajectory import Outcome
+
+# In units of the fastest linear rate at hand. heyoka's own step on a regular orbit is of this size;
+# a start close to an unstable axis, where the step would grow with the logarithm of the distance,
+# is what the cap is for.
+LONGEST_STEP: Final = 0.5
+# heyoka is called once, since each call cuts a step short. If the rate, looked at afterwards, says that a
+# step was longer than this factor allows, the way is gone again with looks so many radians apart, no more
+# and no less often than this: a call leads from each to the next, and the fastest rate so far counts.
+_SLACK: Final = 1.25
+# Steps of which the longest is shorter than this part of the cap were not cut to it.
+_UNCUT: Final = 0.9
+_RADIANS_APART: Final = 4
+_FEWEST_LOOKS, _MOST_LOOKS = 4, 24
+# A regular orbit takes three to five steps in the time of one radian, a close passage some more. Beyond
+# this bound a run has gone astray.
+LEAST_STEPS, STEPS_PER_RADIAN = 1000, 64
+# What would take longer than days is not begun.
+MOST_RADIANS: Final = 1e10
+# That takes about half a second where the processor has the arithmetic. A wide rung calls back after
+# each step instead, which costs a tenth of a microsecond: nothing beside its steps, but much here.
+_RADIANS_AT_ONCE = {"f32": 5e5, "f64": 5e5, "f80": 5e4}
+
+# A row of the states for each instant.
+Rows = np.ndarray[Any, Any]
+Places = slice | list[int]
+
+
+class Ran(NamedTuple):
+    """A way as far as it went: its longest step, its steps, and the seconds of heyoka's own code."""
+
+    outcome: Outcome
+    rows: Rows
+    longest: float
+    steps: int
+    seconds: float
+
+
+@final
+class Way:
+    """A problem on its way from its start through its instants.
+
+    ``integrator`` is that of the problem's form, shared with other problems: each run fills it in anew.
+    """
+
+    def __init__(self, integrator: Any, problem: Problem) -> None:
+        numbers = arithmetic(problem.rung)
+        self._integrator, self._problem, self._numbers = integrator, problem, numbers
+        self._order = int(integrator.order)
+        self._parameters = numbers.array(problem.parameters)
+        self._start = numbers.array(problem.initial_momenta)
+        self._times = numbers.times(problem.times)
+        self._linearised = Linearised(problem)
+        self._rate = self._linearised.fastest(self._start)
+        # In these units the motion is of size one, also one that is at rest when it begins.
+        self._radians = max(self._rate, 1.0) * abs(float(self._times[-1]))
+        self._calls = _calls(self._radians, problem.rung)
+        self._grid = self._instants(self._calls)
+
+    def run(self) -> Ran:
+        """Go the whole way.
+
+        The outcome is FINISHED only if a row is there for every sample, and finite; else the rows are no
+        answer. Steps and seconds are those of the run whose rows these are.
+        """
+        if not isfinite(self._rate):
+            return Ran(Outcome.NON_FINITE, self._start[None], 0.0, 0, 0.0)
+        grid, samples = self._grid
+        ran = self._went(_stretches(grid, self._calls), self._rate)
+        if self._was_too_fast(ran):
+            looks = max(self._calls, _looks(self._radians))
+            grid, samples = self._instants(looks)
+            ran = self._went(_stretches(grid, looks), self._rate, is_watched=True)
+        if ran.outcome is not Outcome.FINISHED:
+            return ran
+        if len(ran.rows) != len(grid):
+            return ran._replace(outcome=Outcome.INTERRUPTED)
+        return ran._replace(rows=ran.rows[samples])
+
+    @property
+    def order(self) -> int:
+        """The order of the Taylor series."""
+        return self._order
+
+    def _went(
+        self, stretches: Sequence[np.ndarray[Any, Any]], rate: float, is_watched: bool = False
+    ) -> Ran:
+        """Go from the first instant of each stretch to its last, in steps that suit the rate.
+
+        Where it is watched, the rate is looked at after each stretch, and the fastest so far counts.
+        """
+        integrator = self._integrator
+        integrator.pars[:] = self._parameters
+        integrator.time = stretches[0][0]
+        integrator.state[:] = self._start
+        rows, longest, steps, seconds = list[Rows](), 0.0, 0, 0.0
+        outcome = Outcome.FINISHED
+        for instants in stretches:
+            radians = rate * abs(float(instants[-1] - instants[0]))
+            if not radians <= MOST_RADIANS:
+                outcome = Outcome.STEP_LIMIT if isfinite(rate) else Outcome.NON_FINITE
+                break
+            cap = LONGEST_STEP / rate
+            began = perf_counter()
+            status, _, uncut, taken, _, reached = integrator.propagate_grid(
+                instants,
+                max_delta_t=self._numbers.double(cap),
+                max_steps=LEAST_STEPS + int(STEPS_PER_RADIAN * radians),
+                callback=self._callback,
+            )
+            seconds += perf_counter() - began
+            # Steps that were cut to the cap are left out of heyoka's longest.
+            step = float(uncut)
+            longest = max(longest, step if 0 < step < _UNCUT * cap else cap)
+            steps += int(taken)
+            rows.append(reached[1:] if rows else reached)
+            outcome = outcome_of(status)
+            if outcome is Outcome.FINISHED and not np.isfinite(reached).all():
+                outcome = Outcome.NON_FINITE
+            if outcome is not Outcome.FINISHED:
+                break
+            if is_watched:
+                rate = max(rate, self._linearised.fastest(reached[-1]))
+        whole = rows[0] if len(rows) == 1 else np.concatenate(rows or [self._start[None]])
+        return Ran(outcome, whole, longest, steps, seconds)
+
+    def _was_too_fast(self, ran: Ran) -> bool:
+        """Return True where the rate has grown, and steps were too long for it or ran out for it."""
+        some = ran.rows[:: -ceil(len(ran.rows) / _MOST_LOOKS)]
+        if ran.outcome is Outcome.FINISHED:
+            return not self._linearised.is_within(some, _SLACK * LONGEST_STEP / ran.longest)
+        return self._linearised.fastest(some) > self._rate
+
+    @property
+    def _callback(self) -> Any:
+        """What listens to an interrupt."""
+        return None if self._problem.rung.name in _RADIANS_AT_ONCE else _go_on
+
+    def _instants(self, pieces: int) -> tuple[np.ndarray[Any, Any], Places]:
+        """Return the instants that heyoka is asked for, and where the samples are among them.
+
+        They begin at its own time, asked for or not. Between few samples there are more, so that a way of
+        so many pieces can be cut there as often as between many.
+        """
+        times, exact = self._times, self._problem.times
+        zero = self._numbers.array([Fraction(0)])
+        grid = times if times[0] == zero[0] else np.concatenate([zero, times])
+        if len(grid) > pieces:
+            return grid, slice(len(grid) - len(times), None)
+        ends = list(exact) if len(grid) == len(times) else [Fraction(0), *exact]
+        instants, samples = ends[:1], [0]
+        for after, before in pairwise(ends):
+            instants += _waypoints(after, before, abs(ends[-1]) / pieces, self._problem.rung)
+            samples.append(len(instants))
+            instants.append(before)
+        return self._numbers.array(instants), samples[len(grid) - len(times) :]
+
+
+def outcome_of(status: Any) -> Outcome:
+    """Return the outcome that heyoka's own word stands for."""
+    return _outcomes().get(status, Outcome.INTERRUPTED)
+
+
+@lru_cache
+def _outcomes() -> dict[Any, Outcome]:
+    import heyoka as hy
+
+    return {
+        hy.taylor_outcome.time_limit: Outcome.FINISHED,
+        hy.taylor_outcome.err_nf_state: Outcome.NON_FINITE,
+        hy.taylor_outcome.step_limit: Outcome.STEP_LIMIT,
+    }
+
+
+def _looks(radians: float) -> int:
+    """Return how often the rate is looked at on a way so long."""
+    if not radians <= MOST_RADIANS:
+        return _MOST_LOOKS
+    return min(max(_FEWEST_LOOKS, ceil(radians / _RADIANS_APART)), _MOST_LOOKS)
+
+
+def _calls(radians: float, rung: Rung) -> int:
+    """Return how often heyoka is called on a way so long, that an interrupt may be heard."""
+    at_once = _RADIANS_AT_ONCE.get(rung.name)
+    return 1 if at_once is None or not radians <= MOST_RADIANS else max(1, ceil(radians / at_once))
+
+
+def _waypoints(after: Fraction, before: Fraction, gap: Fraction, rung: Rung) -> list[Fraction]:
+    """Return numbers of the rung between two others, in order and no farther apart than about ``gap``."""
+    pieces = ceil(abs(before - after) / gap)
+    points = [after]
+    for k in range(1, pieces):
+        instant = rung.round(after + (before - after) * Fraction(k, pieces))
+        if min(points[-1], before) < instant < max(points[-1], before):
+            points.append(instant)
+    return points[1:]
+
+
+def _go_on(integrator: Any) -> bool:
+    """Go on; heyoka returns to the interpreter for it, where an interrupt is waiting to be heard."""
+    del integrator
+    return True
+
+
+def _stretches(grid: np.ndarray[Any, Any], pieces: int) -> list[np.ndarray[Any, Any]]:
+    """Return the instants from each end of a piece of the grid to the next."""
+    if pieces == 1:
+        return [grid]
+    last = len(grid) - 1
+    pieces = min(last, pieces)
+    ends = sorted({round(k * last / pieces) for k in range(pieces + 1)}) if pieces else []
+    return [grid[start : end + 1] for start, end in pairwise(ends)] or [grid]
