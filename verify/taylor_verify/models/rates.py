@@ -82,11 +82,15 @@ class Linearised:
 
         Most are told by a bound that is soon found, |J^2|^(1/2) in Frobenius's norm.
         """
-        rows = states[:, : self._momenta].astype(float)
+        rows = states[:, : self._momenta]
+        if rows.dtype != float:
+            rows = rows.astype(float)
         with np.errstate(all="ignore"):
-            entries = rows @ self._slopes + self._constant
+            entries = rows @ self._slopes
+            entries += self._constant
             J = entries[:, :-4].reshape(self._shape)
-            squares = (J @ J).reshape(len(rows), -1) ** 2
+            squares = (J @ J).reshape(-1, len(self._ones))
+            squares *= squares
             bound = np.maximum.reduce(squares @ self._ones)
         if bound <= rate**4 and (not self._turns or self._turned(entries) <= rate):
             return True

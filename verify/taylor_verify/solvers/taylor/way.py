@@ -30,6 +30,7 @@ _SLACK: Final = 1.25
 _UNCUT: Final = 0.9
 _RADIANS_APART: Final = 4
 _FEWEST_LOOKS, _MOST_LOOKS = 4, 24
+_ROWS_LOOKED_AT: Final = 16
 # A regular orbit takes three to five steps in the time of one radian, a close passage some more. Beyond
 # this bound a run has gone astray.
 LEAST_STEPS, STEPS_PER_RADIAN = 1000, 64
@@ -93,7 +94,7 @@ class Way:
             return ran
         if len(ran.rows) != len(grid):
             return ran._replace(outcome=Outcome.INTERRUPTED)
-        return ran._replace(rows=ran.rows[samples])
+        return ran if len(grid) == len(self._times) else ran._replace(rows=ran.rows[samples])
 
     @property
     def order(self) -> int:
@@ -144,7 +145,7 @@ class Way:
 
     def _was_too_fast(self, ran: Ran) -> bool:
         """Return True where the rate has grown, and steps were too long for it or ran out for it."""
-        some = ran.rows[:: -ceil(len(ran.rows) / _MOST_LOOKS)]
+        some = ran.rows[:: -ceil(len(ran.rows) / _ROWS_LOOKED_AT)]
         if ran.outcome is Outcome.FINISHED:
             return not self._linearised.is_within(some, _SLACK * LONGEST_STEP / ran.longest)
         return self._linearised.fastest(some) > self._rate
