@@ -11,6 +11,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from fractions import Fraction
+from math import prod
 from typing import final
 
 from flint import acb, arb
@@ -24,6 +25,7 @@ from taylor_verify.exact.kirchhoff.quartic import (
     value,
 )
 from taylor_verify.exact.lattice import Lattice, lattice
+from taylor_verify.exact.line import Line
 
 
 class Course(ABC):
@@ -49,13 +51,14 @@ class Course(ABC):
         self.z, self.speed = ball(nutation.z), ball(nutation.speed)
 
     @final
-    def at(self, u: arb) -> tuple[arb, arb]:
-        """(z, z') at the time u, by Weierstrass's formula (Whittaker and Watson 20.6)."""
-        if u.is_zero():
-            return self.z, self.speed
+    def places(self, times: Sequence[arb], line: Line) -> list[tuple[arb, arb]]:
+        """(z, z') at the times u since the start, which are those of the line."""
         if self.front is not None:
-            return self.front.at(u)
-        p, slope = (value.real for value in self.lattice.p(acb(u)))
+            return [self.front.at(u) for u in times]
+        return [self._at(*both) for both in line.p()]
+
+    def _at(self, p: arb, slope: arb) -> tuple[arb, arb]:
+        """(z, z') by Weierstrass's formula (Whittaker and Watson 20.6), for u not zero."""
         rise, twice_b3 = p - self._b[2] / 2, 2 * self._b[3]
         below = 2 * rise * rise - self._half_b4_a0
         step = (twice_b3 * rise + self._b4_b1 - self.speed * slope) / below
@@ -143,8 +146,11 @@ class QuarticCourse(Course):
     def integral(self, u: arb, speed: arb, poles: Sequence[Sequence[acb]]) -> arb:
         """Found from the logarithms of N, whose arguments are followed continuously."""
         if not self.are_conjugate:
-            logs = (abs(value).log() for value, *_ in poles)
-            grown = sum((sign * log for sign, log in zip(self._signs, logs, strict=True)), arb(0))
+            # One logarithm, of the square of a quotient.
+            squares = [value.real * value.real + value.imag * value.imag for value, *_ in poles]
+            parts = zip(self._signs, squares, strict=True)
+            square = prod((x if sign > 0 else 1 / x for sign, x in parts), start=arb(1))
+            grown = square.log() / 2
         else:
             grown = 2 * self.lattice.turn(u, self.poles[0], poles[0][0])
         return self._pace * u - grown / self._size
