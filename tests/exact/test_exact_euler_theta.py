@@ -416,8 +416,8 @@ def _half_a_digit_too_narrow(patch: pytest.MonkeyPatch) -> None:
     right = balls.widths
 
     def narrow(rows: Sequence[arb], count: int) -> tuple[Any, Any]:
-        radii, widest = right(rows, count)
-        return radii / mp.sqrt(10), widest
+        radii, doubles = right(rows, count)
+        return radii / mp.sqrt(10), doubles
 
     patch.setattr(balls, "widths", narrow)
 

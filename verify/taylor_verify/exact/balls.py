@@ -96,10 +96,14 @@ def _measured(found: Enclosure, count: int) -> tuple[Motion, mpf]:
     """Midpoints and radii, and the widest one; the radius of a row is that of its widest quantity."""
     flat = {name: _flat(rows, count) for name, rows in found.items()}
     radii = {name: widths(balls, count) for name, (balls, _) in flat.items()}
-    row, *others = [numbers for numbers, _ in radii.values()]
-    for numbers in others:
-        row = np.frompyfunc(max_or_nan, 2, 1)(row, numbers)
-    widest = reduce(max_or_nan, (widest for _, widest in radii.values()))
+    numbers, doubles = (np.array(each) for each in zip(*radii.values(), strict=True))
+    row = numbers[doubles.argmax(axis=0), np.arange(count)]
+    beyond = np.flatnonzero(np.isnan(doubles).any(axis=0)).tolist()
+    for k in beyond:
+        row[k] = reduce(max_or_nan, numbers[:, k])
+    # Of doubles the largest is that of the numbers; there is a loop only where not all of them are.
+    candidates = row if beyond or not count else [row[doubles.max(axis=0).argmax()]]
+    widest = reduce(max_or_nan, candidates, mpf(0))
     each = {name: numbers for name, (numbers, _) in radii.items()}
     return Motion(Midpoints(flat), row, each), widest
 
@@ -140,8 +144,8 @@ class Midpoints(Mapping[str, np.ndarray[Any, Any]]):
         return dict, (dict(self),)
 
 
-def widths(balls: Sequence[arb], count: int) -> tuple[np.ndarray[Any, Any], mpf]:
-    """The radius of each of ``count`` rows as by ``width``, and the widest: by doubles where they suffice.
+def widths(balls: Sequence[arb], count: int) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
+    """The radius of each of ``count`` rows as by ``width``, and as a double; NaN where it needs more.
 
     With m the largest midpoint of a row, r = |radii|/m and s = |midpoints|/m >= 1, the radius is at most
     r/(s - r). Some dozen roundings by 2^-52 at most are covered by the last factor; and so is a radius
@@ -164,11 +168,10 @@ def widths(balls: Sequence[arb], count: int) -> tuple[np.ndarray[Any, Any], mpf]
     parts = zip(np.ldexp(mantissas, 53).astype(np.int64).tolist(), exponents.tolist(), strict=True)
     numbers = np.empty(count, dtype=object)
     numbers[:] = [mp.make_mpf(libmp.from_man_exp(m, e - 53)) for m, e in parts]
-    widest = mp.make_mpf(libmp.from_float(float(found.max(initial=0.0))))
     for k in outside:
         numbers[k] = width(balls[k * shape[1] : (k + 1) * shape[1]])
-        widest = max_or_nan(widest, numbers[k])
-    return numbers, widest
+    found[outside] = np.nan
+    return numbers, found
 
 
 def width(balls: Sequence[arb]) -> mpf:

@@ -27,7 +27,7 @@ from taylor_verify.exact.rotation import cross
 from taylor_verify.exact.solution import Time
 from taylor_verify.exact.theta_series import Places, ThetaSeries
 
-Rows = list[list[arb]]
+Rows = list[Sequence[arb]]
 
 _ONE: Final = arb(1)
 
@@ -48,15 +48,15 @@ class Polynomials:
         """(w_a, w_b, w_c) at each time."""
         return self._omega(self._places(balls_of(times)))[0]
 
-    def motion(self, times: Sequence[Time], to_space: arb_mat) -> tuple[Rows, Rows]:
-        """(w_a, w_b, w_c), and the columns a, b, c of R, one after the other, at each time.
+    def motion(self, times: Sequence[Time], to_space: arb_mat) -> tuple[Rows, list[Rows]]:
+        """(w_a, w_b, w_c), and the rows of R by their components along (a, b, c), at each time.
 
         ``to_space`` is R P at the start.
         """
         elapsed = balls_of(times)
         places = self._places(elapsed)
         omega, over = self._omega(places)
-        return omega, self._columns(elapsed, places, omega, over, to_space)
+        return omega, self._frames(elapsed, places, omega, over, to_space)
 
     def _places(self, elapsed: Sequence[arb]) -> Places:
         speed, start = self._speed, self._start
@@ -72,7 +72,7 @@ class Polynomials:
             places.cosines,
             strict=True,
         )
-        omega = [[three * w, s * one * w, c * two * w] for w, three, one, two, s, c in parts]
+        omega: Rows = [[three * w, s * one * w, c * two * w] for w, three, one, two, s, c in parts]
         return omega, over
 
     def _xi(
@@ -91,34 +91,32 @@ class Polynomials:
             found.append((cos * x - sin * y, sin * x + cos * y))
         return found
 
-    def _columns(
+    def _frames(
         self,
         elapsed: Sequence[arb],
         places: Places,
         omega: Rows,
         over: Sequence[arb],
         to_space: arb_mat,
-    ) -> Rows:
+    ) -> list[Rows]:
         moduli = self._moduli
         J_a, J_b, J_c = (J / moduli.momentum for J in moduli.moments)
-        first: list[arb] = []
-        second: list[arb] = []
-        third: list[arb] = []
+        # Entry by entry: to make a matrix of balls takes longer than the product.
+        matrix = (to_space * self._unwound()).tolist()
+        found: list[Rows] = []
         for (w_a, w_b, w_c), (x, y) in zip(omega, self._xi(elapsed, places, over), strict=True):
             a, b, c = J_a * w_a, J_b * w_b, J_c * w_c
             w = _ONE / (a * a + b * b)
             p, q, ac, bc = x * w, y * w, a * c, b * c
-            first += (-(p * ac + q * b), q * a - p * bc, x)
-            second += (p * b - q * ac, -(q * bc + p * a), y)
-            third += (a, b, c)
-        count = 3 * len(omega)
-        rows = (to_space * self._unwound() * arb_mat(3, count, first + second + third)).entries()
-        return [
-            rows[k : k + 3]
-            + rows[count + k : count + k + 3]
-            + rows[2 * count + k : 2 * count + k + 3]
-            for k in range(0, count, 3)
-        ]
+            a1, b1 = p * ac + q * b, q * a - p * bc
+            a2, b2 = p * b - q * ac, q * bc + p * a
+            found.append(
+                [
+                    (h * a - f * a1 + g * a2, h * b + f * b1 - g * b2, h * c + f * x + g * y)
+                    for f, g, h in matrix
+                ]
+            )
+        return found
 
     def _unwound(self) -> arb_mat:
         """B(0)^T, for rows of which the first two are a constant times theirs."""

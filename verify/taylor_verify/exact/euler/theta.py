@@ -104,8 +104,8 @@ class Tumbling(BallCourse):
         if start is None:
             return self._in_body(polynomials.omega(times)), []
         attitude = ball_matrix(rotation.rotation_matrix(start))
-        omega, columns = polynomials.motion(times, attitude * self._to_body)
-        turned = self._in_body([row[k : k + 3] for row in columns for k in (0, 3, 6)])
+        omega, frames = polynomials.motion(times, attitude * self._to_body)
+        turned = self._in_body([row for frame in frames for row in frame])
         return self._in_body(omega), [turned[k : k + 3] for k in range(0, len(turned), 3)]
 
     @cached_property
@@ -116,15 +116,14 @@ class Tumbling(BallCourse):
         series = ThetaSeries.where_short(self._functions.tau)
         return None if series is None else Polynomials(self._moduli, self._functions, series)
 
-    def _in_body(self, rows: list[list[arb]]) -> list[list[arb]]:
+    def _in_body(self, rows: Sequence[Sequence[arb]]) -> list[list[arb]]:
         """Vectors by their components along (a, b, c)."""
         if self._is_diagonal:
             return [
                 [side * row[k] if side < 0 else row[k] for k, side in self._order] for row in rows
             ]
-        flat = arb_mat(len(rows), 3, [entry for row in rows for entry in row])
-        found: list[list[arb]] = (flat * self._to_body.transpose()).tolist()
-        return found
+        matrix = self._to_body.tolist()
+        return [[p * a + q * b + r * c for p, q, r in matrix] for a, b, c in rows]
 
     @cached_property
     def _order(self) -> list[tuple[int, int]]:

@@ -26,7 +26,7 @@ from typing import Any, Final, final
 from flint import acb, arb, arb_mat
 
 from taylor_verify.exact.balls import Enclosed, Enclosure, ball, ball_matrix, balls, balls_of
-from taylor_verify.exact.kirchhoff.course import QuarticCourse, course
+from taylor_verify.exact.kirchhoff.course import Pole, QuarticCourse, course
 from taylor_verify.exact.kirchhoff.quartic import Nutation, repeated_root
 from taylor_verify.exact.lattice import Lattice, Periods
 from taylor_verify.exact.line import Line
@@ -152,20 +152,21 @@ class Orbit:
         poles = self._with_conjugate(own)
         along = self._course.integral(u, speed, poles) if self._needs_integral else arb(0)
         screw = self._screw * along
-        over = 1 / prod(value for value, *_ in poles) if poles else acb(1)
+        over = prod((pole.value.conjugate() * (1 / pole.square) for pole in poles), start=acb(1))
         if self._course.order == 2:
             over = over * over
         turn = self._xi * self._grown(self._xi_rate, u, -screw) * over
         xi = turn * above[0].conjugate() * above[1]
         re, im = xi.real, xi.imag
+        square = re * re + im * im
         front = self._course.front
         if front is not None:
             # G = y3 = 0, and y keeps its digits where z' = c (F^2 - z^2) has none left.
             eta = _I * front.c / self._r * xi
-        elif (re * re + im * im).mid() < self._near:
+        elif square.mid() < self._near:
             eta = self._eta_near_pole(u, z, xi, turn, above)
         else:
-            eta = acb(self._FG - z * self._y3, speed * self._over_r) / xi.conjugate()
+            eta = acb(self._FG - z * self._y3, speed * self._over_r) * xi * (1 / square)
         impulses = {
             "linear_impulse": [re, im, z],
             "angular_impulse": [eta.real, eta.imag, self._y3],
@@ -187,17 +188,17 @@ class Orbit:
         return impulses, frame
 
     def _carry_to_space(self, found: Sequence[dict[str, Any]], frames: Sequence[Rows]) -> None:
-        """Add R and the centre in space, all times in one product of matrices."""
-        wide = 3 + ("centre" in self._track)
-        stacked = [entry for i in range(3) for frame in frames for entry in frame[i]]
-        whole = len(frames) * wide
-        entries = (self._to_space * arb_mat(3, whole, stacked)).entries()
-        start = self._at_start["centre"]
-        for k, row in enumerate(found):
-            places = [i * whole + k * wide for i in range(3)]
-            row["attitude"] = [entries[place : place + 3] for place in places]
-            if wide > 3:
-                row["centre"] = [c + entries[p + 3] for c, p in zip(start, places, strict=True)]
+        """Add R and the centre in space."""
+        # Entry by entry: to make a matrix of balls takes longer than the product.
+        to_space, start = self._to_space.tolist(), self._at_start["centre"]
+        for row, (first, second, third) in zip(found, frames, strict=True):
+            carried = [
+                [p * a + q * b + r * c for a, b, c in zip(first, second, third, strict=True)]
+                for p, q, r in to_space
+            ]
+            row["attitude"] = [line[:3] for line in carried]
+            if "centre" in self._track:
+                row["centre"] = [c + line[3] for c, line in zip(start, carried, strict=True)]
 
     def _grown(self, rate: acb, u: arb, angle: arb) -> acb:
         """e^{rate u + i angle}, for a rate of xi, D1 or D2.
@@ -290,19 +291,21 @@ class Orbit:
         """The factors of the poles; of two that are conjugate, the first one."""
         return self._poles[:1] if self._course.are_conjugate else self._poles
 
-    def _with_conjugate(self, own: Sequence[list[acb]]) -> Sequence[list[acb]]:
-        """The jets of all poles."""
-        if not self._course.are_conjugate:
-            return own
-        return [*own, [value.conjugate() for value in own[0]]]
+    def _with_conjugate(self, jets: Sequence[Sequence[acb]]) -> list[Pole]:
+        """All poles, from the jets of ``_own_poles``."""
+        own = [Pole.of(jet) for jet in jets]
+        return [*own, own[0].conjugate()] if self._course.are_conjugate else own
 
     def _eta_near_pole(self, u: arb, z: arb, xi: acb, turn: acb, above: tuple[acb, acb]) -> acb:
         """Solve xi' = i r z eta - i (r' y3 + (q' - q) z) xi for eta, without a division by xi."""
         alpha, beta = above[0].conjugate(), above[1]
         alpha_slope, beta_slope = (factor.jet(u, 1)[1] for factor in (self._alpha, self._beta))
         growth = alpha_slope.conjugate() * beta + alpha * beta_slope
-        jets = self._with_conjugate([pole.jet(u, 1) for pole in self._own_poles])
-        slopes = sum((slope / value for value, slope in jets), acb(0))
+        jets = [factor.jet(u, 1) for factor in self._own_poles]
+        rates = [slope / value for value, slope in jets]
+        if self._course.are_conjugate:
+            rates += [rate.conjugate() for rate in rates]
+        slopes = sum(rates, acb(0))
         pull = self._xi_rate - self._course.order * slopes - _I * self._screw * z
         change = turn * growth + pull * xi
         return (change / _I + (self._spin + self._screw * z) * xi) / (self._r * z)
@@ -315,7 +318,7 @@ class Orbit:
         """
         F, over = self._F, self._over_F
         is_up = z.mid() >= 0
-        g = xi / (F + z) if is_up else xi.conjugate() / (F - z)
+        g = xi * (1 / (F + z)) if is_up else xi.conjugate() * (1 / (F - z))
         slanted = larger * g
         smaller = -slanted * g
         total, rest = (larger + smaller) * _HALF, (larger - smaller) * _HALF
@@ -337,7 +340,7 @@ class Orbit:
         re, im, y3 = eta.real, eta.imag, self._y3
         return acb(a * re + b * im + c * y3, d * re + e * im + f * y3)
 
-    def _path(self, u: arb, moment: acb, poles: Sequence[Sequence[acb]], along: arb) -> list[arb]:
+    def _path(self, u: arb, moment: acb, poles: Sequence[Pole], along: arb) -> list[arb]:
         """The centre from its start: 49 (18)-(19) across the impulse, and Z along it.
 
         F dZ/dt = p F^2 + q FG + (p' - p) z^2 + (q' - q) y3 z, from Z' = (U.x)/F.
