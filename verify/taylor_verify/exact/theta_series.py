@@ -159,13 +159,9 @@ class ThetaSeries:
 
     def three_and_four(self, scale: arb) -> tuple[arb_poly, arb_poly]:
         """``scale`` times theta_3(v), and theta_4(v), for an imaginary tau."""
-        count, bits = 1, ctx.prec * log(2)
-        while self._decay / 2 * count**2 < bits:
-            count += 1
-        q = self._q
+        count, q = self._even_count(), self._q
         terms = [arb(1), *(2 * q ** (n * n) for n in range(1, count))]
-        # The quotient of two terms is q^(2n+1).
-        tail = 2 * q ** (count * count) / (1 - q ** (2 * count + 1))
+        tail = self._even_tail(count)
         return (
             _polynomial([scale * term for term in terms], "T", abs(scale) * tail),
             _polynomial([(-1) ** n * term for n, term in enumerate(terms)], "T", tail),
@@ -182,6 +178,18 @@ class ThetaSeries:
         while self._decay * n * (n + 1) / 2 - 2 * pi * b * n - (1 + order) * log(2 * n + 1) < bits:
             n += 1
         return n
+
+    def _even_count(self) -> int:
+        """The number of terms of theta_3, likewise."""
+        n, bits = 1, ctx.prec * log(2)
+        while self._decay / 2 * n**2 < bits:
+            n += 1
+        return n
+
+    def _even_tail(self, count: int) -> arb:
+        """A bound of sum 2 |q|^{n^2} from n = count on, of which each is |q|^{2n+1} of the one before."""
+        first: arb = 2 * self._q ** (count * count)
+        return first / (1 - self._q ** (2 * count + 1))
 
     def _powers(self, count: int) -> list[arb]:
         """h^{n(n+1)/2}."""
