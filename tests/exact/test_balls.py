@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any, final
@@ -283,6 +284,19 @@ def test_of_a_vector_that_is_zero_the_radius_is_absolute() -> None:
     assert not mp.isfinite(module.width([arb(0), arb(0, 1e-30)]))
     assert not mp.isfinite(module.width([NOT_A_NUMBER]))
     assert not mp.isfinite(module.width([arb(1), INFINITE]))
+
+
+def test_midpoints_of_a_motion_are_a_mapping_that_can_be_sent() -> None:
+    """Its quantities are arrays, converted once; another process receives them as numbers."""
+    quantities = Told(lambda elapsed, bits: {"omega": [[ball(t), arb(3)] for t in elapsed]}).motion(
+        [Fraction(1, 2), Fraction(5)], DIGITS
+    )
+    found = quantities.quantities
+    assert (len(found), list(found)) == (1, ["omega"])
+    assert found["omega"].tolist() == [[mpf(0.5), mpf(3)], [mpf(5), mpf(3)]]
+    assert found["omega"] is found["omega"]
+    sent = pickle.loads(pickle.dumps(quantities))
+    assert sent["omega"].tolist() == found["omega"].tolist()
 
 
 # Between rationals, balls and mpmath.
