@@ -152,8 +152,9 @@ def widths(balls: Sequence[arb], count: int) -> tuple[np.ndarray[Any, Any], np.n
     that is no double, because one beside it is 10^40 times as much.
     """
     shape = count, len(balls) // max(count, 1)
-    radii = np.array([float(b.rad()) for b in balls]).reshape(shape)
-    middles = np.abs(np.array([float(b) for b in balls])).reshape(shape)
+    # Sorted, so that the axes of a vector may change places: sums of doubles depend on the order.
+    radii = np.sort(np.array([float(b.rad()) for b in balls]).reshape(shape))
+    middles = np.sort(np.abs(np.array([float(b) for b in balls])).reshape(shape))
     largest = middles.max(axis=1, initial=0.0)
     with np.errstate(all="ignore"):
         shares = radii / largest[:, None]
