@@ -21,6 +21,7 @@ from pathlib import Path
 from unittest.mock import patch
 
 from bench_check import judging
+from bench_instants import at_once
 from builders.two_runs import two_runs
 from mpmath import mpf
 
@@ -320,7 +321,11 @@ def main() -> None:
             for periods in (None, 1000):
                 around_the_integrator(name, track, periods)
 
-    judging(lambda each, rounds: [spent.best for spent in interleaved(each, rounds)], line)
+    def best(each: Sequence[Callable[[], object]], rounds: int) -> list[float]:
+        return [spent.best for spent in interleaved(each, rounds)]
+
+    at_once(best, line)
+    judging(best, line)
 
     print(f"\nSeconds of all derivatives by start and body, {SENSITIVE_TIMES} times,", end=" ")
     print(f"{SENSITIVE_DIGITS} digits; as a multiple of one motion.")

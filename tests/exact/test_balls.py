@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any, final
@@ -198,7 +199,7 @@ def encloses(motion: Motion, truth: Any) -> bool:
 
 def measured(found: Enclosure) -> Motion:
     with ctx.workprec(300):
-        return module._motion(found, 1)
+        return module._measured(found, 1)[0]
 
 
 @given(cornered())
@@ -221,8 +222,13 @@ def test_a_radius_too_small_by_half_a_digit_is_noticed(
     found = {"omega": [_shaped([arb(ball(v), ball(radius)) for v in values], shape)]}
     truth = {"omega": [_shaped([v + radius for v in values], shape)]}
     assert encloses(measured(found), truth)
-    honest = module.width
-    monkeypatch.setattr(module, "width", lambda balls: honest(balls) / mp.sqrt(10))
+    honest = module.widths
+
+    def short(balls: Sequence[arb], count: int) -> tuple[Any, Any]:
+        radii, doubles = honest(balls, count)
+        return radii / mp.sqrt(10), doubles
+
+    monkeypatch.setattr(module, "widths", short)
     assert not encloses(measured(found), truth)
 
 
@@ -243,9 +249,33 @@ def test_the_widest_quantity_gives_the_radius_of_a_row() -> None:
     narrow, wide = arb(1, 2.0**-90), arb(1, 2.0**-60)
     with ctx.workprec(200):
         found: Enclosure = {"omega": [[narrow], [narrow]], "attitude": [[[narrow]], [[wide]]]}
-        motion = module._motion(found, 2)
+        motion = module._measured(found, 2)[0]
     assert 2**-90 <= motion.radius[0] <= 2**-89
     assert 2**-60 <= motion.radius[1] <= 2**-59
+
+
+@given(st.lists(cornered(), min_size=1, max_size=4), st.integers(-900, 900))
+def test_widths_of_rows_are_those_of_each(
+    cases: list[tuple[Enclosure, dict[str, Any]]], exponent: int
+) -> None:
+    """By doubles or in balls, within the range of doubles or not, and nowhere less than the true ratio."""
+    with ctx.workprec(300):
+        rows = [[b * arb(2) ** exponent for b in np.array(case["omega"]).flat] for case, _ in cases]
+        size = min(map(len, rows))
+        rows = [row[:size] for row in rows]
+        found, doubles = module.widths([b for row in rows for b in row], len(rows))
+    for row, radius in zip(rows, found, strict=True):
+        alone = module.width(row)
+        assert radius == alone or abs(radius - alone) <= alone * mpf(2) ** -9
+        errors, middles = (
+            [exact_value(midpoint(b)) for b in part]
+            for part in ([b.rad() for b in row], [b.mid() for b in row])
+        )
+        if mp.isfinite(radius):
+            least = sum(m * m for m in middles)
+            assert sum(e * e for e in errors) <= exact_value(radius) ** 2 * least
+    for radius, double in zip(found, doubles.tolist(), strict=True):
+        assert double == radius or double != double
 
 
 def test_of_a_vector_that_is_zero_the_radius_is_absolute() -> None:
@@ -254,6 +284,19 @@ def test_of_a_vector_that_is_zero_the_radius_is_absolute() -> None:
     assert not mp.isfinite(module.width([arb(0), arb(0, 1e-30)]))
     assert not mp.isfinite(module.width([NOT_A_NUMBER]))
     assert not mp.isfinite(module.width([arb(1), INFINITE]))
+
+
+def test_midpoints_of_a_motion_are_a_mapping_that_can_be_sent() -> None:
+    """Its quantities are arrays, converted once; another process receives them as numbers."""
+    quantities = Told(lambda elapsed, bits: {"omega": [[ball(t), arb(3)] for t in elapsed]}).motion(
+        [Fraction(1, 2), Fraction(5)], DIGITS
+    )
+    found = quantities.quantities
+    assert (len(found), list(found)) == (1, ["omega"])
+    assert found["omega"].tolist() == [[mpf(0.5), mpf(3)], [mpf(5), mpf(3)]]
+    assert found["omega"] is found["omega"]
+    sent = pickle.loads(pickle.dumps(quantities))
+    assert sent["omega"].tolist() == found["omega"].tolist()
 
 
 # Between rationals, balls and mpmath.

@@ -413,8 +413,13 @@ def _one_branch_of_the_start(patch: pytest.MonkeyPatch) -> None:
 
 
 def _half_a_digit_too_narrow(patch: pytest.MonkeyPatch) -> None:
-    right = balls.width
-    patch.setattr(balls, "width", lambda row: right(row) / mp.sqrt(10))
+    right = balls.widths
+
+    def narrow(rows: Sequence[arb], count: int) -> tuple[Any, Any]:
+        radii, doubles = right(rows, count)
+        return radii / mp.sqrt(10), doubles
+
+    patch.setattr(balls, "widths", narrow)
 
 
 MPMATH, EQUATIONS, INTEGRALS = "agrees with mpmath", "obeys its equations", "keeps its integrals"

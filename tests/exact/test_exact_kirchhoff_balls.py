@@ -498,13 +498,13 @@ Twin = Callable[[pytest.MonkeyPatch], None]
 
 def wrong_sign_in_weierstrass(monkeypatch: pytest.MonkeyPatch) -> None:
     """+ v p' instead of - v p': z(-u) instead of z(u)."""
-    right = Course.at
+    right = Course._at
 
-    def at(self: Course, u: arb) -> tuple[arb, arb]:
-        z, speed = right(self, -u)
+    def at(self: Course, p: arb, slope: arb) -> tuple[arb, arb]:
+        z, speed = right(self, p, -slope)
         return z, -speed
 
-    monkeypatch.setattr(course_module.Course, "at", at)
+    monkeypatch.setattr(course_module.Course, "_at", at)
 
 
 def wrong_argument(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -534,13 +534,15 @@ def no_advance(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def transposed(monkeypatch: pytest.MonkeyPatch) -> None:
     """Space to body instead of body to space."""
-    right = Orbit.at
+    right = Orbit.rows
 
-    def at(self: Orbit, u: arb) -> dict[str, Any]:
-        found = right(self, u)
-        return {**found, "attitude": [list(row) for row in zip(*found["attitude"], strict=True)]}
+    def rows(self: Orbit, times: Sequence[arb]) -> list[dict[str, Any]]:
+        return [
+            {**row, "attitude": [list(column) for column in zip(*row["attitude"], strict=True)]}
+            for row in right(self, times)
+        ]
 
-    monkeypatch.setattr(Orbit, "at", at)
+    monkeypatch.setattr(Orbit, "rows", rows)
 
 
 TURNING = scene(BLUNT, GENERIC)  # a0 < 0 and q' != q: the argument of sigma enters

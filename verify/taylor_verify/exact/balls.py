@@ -7,9 +7,10 @@ sign, a branch) when the balls exclude the other answer; until then the precisio
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import reduce
+from itertools import chain
 from math import ceil, log2
 from typing import Any, Final, final
 
@@ -33,6 +34,9 @@ _MOST_BITS_PER_BIT: Final = 32
 _LEAST_LIMIT: Final = 8192
 # A width is told to two digits: all that it asks for is that its rounding upwards is small.
 WIDTH_BITS: Final = 64
+# Doubles whose squares, and quotients by each other, are doubles too; and a ball that is narrow.
+_FAR: Final = 1e140
+_NARROW: Final = 2.0**-10
 
 
 class Undecidable(ArithmeticError):
@@ -62,10 +66,8 @@ class Enclosed(Solution):
         target = ceil(digits * log2(10))
         bits, last = target + _FIRST_GUARD_BITS, None
         for _ in range(attempts):
-            motion = self._attempt(elapsed, bits)
-            widest = mp.inf
-            if motion is not None:
-                last, widest = motion, reduce(max_or_nan, motion.radius, mpf(0))
+            motion, widest = self._attempt(elapsed, bits)
+            last = motion or last
             missing = int(mp.mag(widest)) + target if mp.isfinite(widest) and widest else 0
             if not mp.isfinite(widest):
                 bits = 2 * bits
@@ -78,27 +80,99 @@ class Enclosed(Solution):
         because = f"the balls of the exact solution do not shrink to {digits} digits"
         raise Unsettled.beside(because, last, digits)
 
-    def _attempt(self, elapsed: Sequence[Fraction], bits: int) -> Motion | None:
-        """The motion at one precision; None where a branch is open or a number is not finite."""
+    def _attempt(self, elapsed: Sequence[Fraction], bits: int) -> tuple[Motion | None, mpf]:
+        """The motion at one precision, and its widest radius.
+
+        None, and infinite, where a branch is open or a number is not finite.
+        """
         try:
             with ctx.workprec(bits):
-                found = self.enclose(elapsed, bits)
-                return _motion(found, len(elapsed))
+                return _measured(self.enclose(elapsed, bits), len(elapsed))
         except (Undecidable, ZeroDivisionError):
-            return None
+            return None, mp.inf
 
 
-def _motion(found: Enclosure, count: int) -> Motion:
-    """Midpoints and radii; the radius of a row is that of its widest quantity."""
-    quantities, radii = {}, {}
-    widest = [mpf(0)] * count
-    for name, rows in found.items():
-        balls = np.array(rows, dtype=object)
-        quantities[name] = np.frompyfunc(midpoint, 1, 1)(balls)
-        widths = [width(list(row.flat)) for row in balls]
-        radii[name] = np.array(widths, dtype=object)
-        widest = [max_or_nan(w, row) for w, row in zip(widest, widths, strict=True)]
-    return Motion(quantities, np.array(widest, dtype=object), radii)
+def _measured(found: Enclosure, count: int) -> tuple[Motion, mpf]:
+    """Midpoints and radii, and the widest one; the radius of a row is that of its widest quantity."""
+    flat = {name: _flat(rows, count) for name, rows in found.items()}
+    radii = {name: widths(balls, count) for name, (balls, _) in flat.items()}
+    numbers, doubles = (np.array(each) for each in zip(*radii.values(), strict=True))
+    row = numbers[doubles.argmax(axis=0), np.arange(count)]
+    beyond = np.flatnonzero(np.isnan(doubles).any(axis=0)).tolist()
+    for k in beyond:
+        row[k] = reduce(max_or_nan, numbers[:, k])
+    # Of doubles the largest is that of the numbers; there is a loop only where not all of them are.
+    candidates = row if beyond or not count else [row[doubles.max(axis=0).argmax()]]
+    widest = reduce(max_or_nan, candidates, mpf(0))
+    each = {name: numbers for name, (numbers, _) in radii.items()}
+    return Motion(Midpoints(flat), row, each), widest
+
+
+def _flat(rows: Sequence[Any], count: int) -> tuple[list[arb], tuple[int, ...]]:
+    """The balls of all rows one after the other, and the shape of the whole."""
+    flat = rows.tolist() if isinstance(rows, np.ndarray) else rows
+    shape = np.array(flat[0], dtype=object).shape if count else ()
+    for _ in shape:
+        flat = list(chain.from_iterable(flat))
+    return list(flat), (count, *shape)
+
+
+@final
+class Midpoints(Mapping[str, np.ndarray[Any, Any]]):
+    """The midpoints of balls in mpmath, by quantity: converted when they are first asked for."""
+
+    def __init__(self, balls: Mapping[str, tuple[list[arb], tuple[int, ...]]]) -> None:
+        self._balls: dict[str, Any] = dict(balls)
+        self._numbers: dict[str, np.ndarray[Any, Any]] = {}
+
+    def __getitem__(self, name: str) -> np.ndarray[Any, Any]:
+        if name not in self._numbers:
+            balls, shape = self._balls[name]
+            numbers = np.empty(len(balls), dtype=object)
+            numbers[:] = [midpoint(b) for b in balls]
+            self._numbers[name], self._balls[name] = numbers.reshape(shape), None
+        return self._numbers[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._balls)
+
+    def __len__(self) -> int:
+        return len(self._balls)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # A ball of flint cannot be sent to another process.
+        return dict, (dict(self),)
+
+
+def widths(balls: Sequence[arb], count: int) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
+    """The radius of each of ``count`` rows as by ``width``, and as a double; NaN where it needs more.
+
+    With m the largest midpoint of a row, r = |radii|/m and s = |midpoints|/m >= 1, the radius is at most
+    r/(s - r). Some dozen roundings by 2^-52 at most are covered by the last factor; and so is a radius
+    that is no double, because one beside it is 10^40 times as much.
+    """
+    shape = count, len(balls) // max(count, 1)
+    # Sorted, so that the axes of a vector may change places: sums of doubles depend on the order.
+    radii = np.sort(np.array([float(b.rad()) for b in balls]).reshape(shape))
+    middles = np.sort(np.abs(np.array([float(b) for b in balls])).reshape(shape))
+    largest = middles.max(axis=1, initial=0.0)
+    with np.errstate(all="ignore"):
+        shares = radii / largest[:, None]
+        r, s = (np.sqrt((x * x).sum(axis=1)) for x in (shares, middles / largest[:, None]))
+        found = r / (s - r) * (1 + 2.0**-40)
+        # Written so that a NaN is outside. A row of exact entries is too: they may be no doubles.
+        inside = (1 / _FAR < largest) & (largest < _FAR) & (1 / _FAR < r) & (r < _NARROW)
+        inside &= ((shares == 0) | (shares > 1 / _FAR)).all(axis=1)
+    outside = np.flatnonzero(~inside).tolist()
+    found[outside] = 0.0
+    mantissas, exponents = np.frexp(found)
+    parts = zip(np.ldexp(mantissas, 53).astype(np.int64).tolist(), exponents.tolist(), strict=True)
+    numbers = np.empty(count, dtype=object)
+    numbers[:] = [mp.make_mpf(libmp.from_man_exp(m, e - 53)) for m, e in parts]
+    for k in outside:
+        numbers[k] = width(balls[k * shape[1] : (k + 1) * shape[1]])
+    found[outside] = np.nan
+    return numbers, found
 
 
 def width(balls: Sequence[arb]) -> mpf:
@@ -146,8 +220,12 @@ def ball(value: Fraction | int | arb) -> arb:
     """The smallest ball about a rational at the ambient precision; a ball as it is."""
     if isinstance(value, arb):
         return value
-    value = Fraction(value)
-    return arb(fmpq(value.numerator, value.denominator))
+    return arb(fmpq(*value.as_integer_ratio()))
+
+
+def balls_of(times: Iterable[Time]) -> list[arb]:
+    """The smallest balls about times; those that are balls as they are."""
+    return [t if isinstance(t, arb) else arb(fmpq(*t.as_integer_ratio())) for t in times]
 
 
 def balls(vector: Iterable[Fraction]) -> list[arb]:

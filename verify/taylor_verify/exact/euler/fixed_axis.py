@@ -16,7 +16,7 @@ from mpmath import mp, mpf
 from taylor_verify.exact import rotation
 from taylor_verify.exact.balls import ball, balls
 from taylor_verify.exact.euler.orbit import converted
-from taylor_verify.exact.euler.rotations import decades
+from taylor_verify.exact.euler.rotations import BallCourse, decades
 from taylor_verify.exact.frames import Frame, turn
 from taylor_verify.exact.solution import Number, Time, beside
 from taylor_verify.scenes import tensors
@@ -55,7 +55,7 @@ class FixedAxis:
 
 
 @final
-class FixedAxisBalls:
+class FixedAxisBalls(BallCourse):
     """The course in balls."""
 
     def __init__(self, exact: FixedAxis) -> None:

@@ -11,7 +11,9 @@ from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
 from functools import cached_property
-from typing import Final
+from typing import Any, Final
+
+import gmpy2
 
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.tensors import Matrix, Vector
@@ -46,14 +48,14 @@ class FreeSpin:
     @cached_property
     def minors(self) -> Fraction:
         """J1 J2 + J2 J3 + J3 J1, the sum of the principal minors."""
-        i = self.inertia
+        i = [tuple(map(_quick, row)) for row in self.inertia]
         pairs = ((0, 1), (1, 2), (2, 0))
-        return sum((i[j][j] * i[k][k] - i[j][k] ** 2 for j, k in pairs), Fraction(0))
+        return _exact(sum(i[j][j] * i[k][k] - i[j][k] ** 2 for j, k in pairs))
 
     @cached_property
     def determinant(self) -> Fraction:
-        a, b, c = self.inertia
-        return tensors.dot(a, tensors.cross(b, c))
+        a, b, c = (tuple(map(_quick, row)) for row in self.inertia)
+        return _exact(tensors.dot(a, tensors.cross(b, c)))
 
     @cached_property
     def momentum(self) -> Vector:
@@ -71,7 +73,8 @@ class FreeSpin:
     @cached_property
     def torque(self) -> Vector:
         """I w' = H x w at the start: zero exactly in a permanent rotation."""
-        return tensors.cross(self.momentum, self.omega)
+        momentum, omega = (tuple(map(_quick, v)) for v in (self.momentum, self.omega))
+        return tuple(map(_exact, tensors.cross(momentum, omega)))
 
     @cached_property
     def spread(self) -> Fraction:
@@ -81,18 +84,20 @@ class FreeSpin:
     @cached_property
     def skewness(self) -> Fraction:
         """27 (J1 - t)(J2 - t)(J3 - t), where t = tr I/3 is the mean moment."""
-        return 2 * self.trace**3 - 9 * self.trace * self.minors + 27 * self.determinant
+        trace, minors, determinant = map(_quick, (self.trace, self.minors, self.determinant))
+        return _exact(2 * trace**3 - 9 * trace * minors + 27 * determinant)
 
     @cached_property
     def discriminant(self) -> Fraction:
         """((J1 - J2)(J2 - J3)(J3 - J1))^2."""
-        return (4 * self.spread**3 - self.skewness**2) / 27
+        return _exact((4 * _quick(self.spread) ** 3 - _quick(self.skewness) ** 2) / 27)
 
     @cached_property
     def separation(self) -> Fraction:
         """(2T)^3 p(H^2/2T) = (H^2 - 2T J1)(H^2 - 2T J2)(H^2 - 2T J3), without a division."""
-        h, t = self.momentum_squared, self.twice_energy
-        return h**3 - self.trace * h**2 * t + self.minors * h * t**2 - self.determinant * t**3
+        h, t = _quick(self.momentum_squared), _quick(self.twice_energy)
+        trace, minors, determinant = map(_quick, (self.trace, self.minors, self.determinant))
+        return _exact(h**3 - trace * h**2 * t + minors * h * t**2 - determinant * t**3)
 
     # Two equal moments: an axis of symmetry e. Of three equal ones every axis is one.
 
@@ -156,3 +161,14 @@ class FreeSpin:
         if self.separation == 0:
             return Regime.SEPARATRIX
         return Regime.MAX_AXIS if self.separation < 0 else Regime.MIN_AXIS
+
+
+# Polynomials of rationals by GMP, which takes a fifth of the time that Python's own take.
+
+
+def _quick(value: Fraction) -> Any:
+    return gmpy2.mpq(value.numerator, value.denominator)
+
+
+def _exact(value: Any) -> Fraction:
+    return Fraction(int(value.numerator), int(value.denominator))

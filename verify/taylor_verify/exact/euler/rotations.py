@@ -7,13 +7,14 @@ are asked for next: working precisions are multiples of a step, so that calls sh
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any, Final, Protocol, final
 
 import numpy as np
-from flint import ctx
+from flint import arb, ctx
 from mpmath import mp
 
 from taylor_verify.exact import rotation
@@ -29,6 +30,10 @@ _STEP_BITS: Final = 32
 _STEP_DIGITS: Final = 10
 
 
+Moving = tuple[list[list[arb]], list[list[list[arb]]]]
+"""omega at every time, and the rows of R; none of the latter where it is not asked for."""
+
+
 class Course(Protocol):
     """A motion at one precision: numbers of flint, or of mpmath."""
 
@@ -41,32 +46,50 @@ class Course(Protocol):
         ...
 
 
+class BallCourse(ABC):
+    """A motion at one precision of flint."""
+
+    @abstractmethod
+    def at(self, t: Time, turned: bool) -> tuple[list[arb], list[arb]]:
+        """omega, and the turn since the start as a quaternion: as Course.at."""
+
+    def rows(self, times: Sequence[Time], start: motion.Quaternion | None) -> Moving:
+        """omega at every time, and R from an attitude at the start: one by one, unless stated."""
+        if start is None:
+            return [self.at(t, False)[0] for t in times], []
+        quaternion, both = rotation.unit(start), [self.at(t, True) for t in times]
+        frames = [rotation.rotation_rows(rotation.product(quaternion, q)) for _, q in both]
+        return [omega for omega, _ in both], frames
+
+
 @final
 @dataclass(eq=False)
 class RotationBalls(Enclosed):
-    """omega(t) and R(t) in balls; ``answer`` has the name of the frame, and what makes its rows."""
+    """omega(t) and R(t) in balls; with ``by_quaternion`` the unit quaternion in the place of R."""
 
     regime: str
-    set_up: Callable[[], Course]
+    set_up: Callable[[], BallCourse]
     attitude: motion.Quaternion | None = None
     by_quadrature: bool = False
-    answer: tuple[str, Callable[[list[Any]], Any]] = ("attitude", rotation.rotation_rows)
-    _courses: dict[int, Course] = field(default_factory=dict, init=False)
+    by_quaternion: bool = False
+    _courses: dict[int, BallCourse] = field(default_factory=dict, init=False)
 
     def enclose(self, elapsed: Sequence[Time], bits: int) -> Enclosure:
         """``omega``, rows of 3, and ``attitude``, rows of 3x3, where it is tracked."""
         with ctx.workprec(-(-bits // _STEP_BITS) * _STEP_BITS):
             course = self.course()
-            if self.attitude is None:
-                return {"omega": [course.at(t, False)[0] for t in elapsed]}
-            start, (name, rows_of) = rotation.unit(self.attitude), self.answer
-            rows = [course.at(t, True) for t in elapsed]
-            return {
-                "omega": [omega for omega, _ in rows],
-                name: [rows_of(rotation.product(start, turn)) for _, turn in rows],
-            }
+            if self.by_quaternion and self.attitude is not None:
+                start, rows = rotation.unit(self.attitude), [course.at(t, True) for t in elapsed]
+                return {
+                    "omega": [omega for omega, _ in rows],
+                    "quaternion": [rotation.product(start, turn) for _, turn in rows],
+                }
+            omega, frames = course.rows(elapsed, self.attitude)
+            return (
+                {"omega": omega} if self.attitude is None else {"omega": omega, "attitude": frames}
+            )
 
-    def course(self) -> Course:
+    def course(self) -> BallCourse:
         """The course at the ambient precision of flint."""
         if ctx.prec not in self._courses:
             self._courses[ctx.prec] = self.set_up()
@@ -77,7 +100,7 @@ class RotationBalls(Enclosed):
 
         It starts as the scene's own over its norm; its sign follows the motion without a jump.
         """
-        return replace(self, answer=("quaternion", list)).motion(elapsed, digits)
+        return replace(self, by_quaternion=True).motion(elapsed, digits)
 
 
 @final

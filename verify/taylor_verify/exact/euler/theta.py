@@ -11,18 +11,22 @@ The spherical angle of h about c never winds, because h_a > 0: all the winding i
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
+from typing import final
 
 from flint import arb, arb_mat
 
 from taylor_verify.exact import rotation
-from taylor_verify.exact.balls import ball, balls
+from taylor_verify.exact.balls import ball, ball_matrix, balls
 from taylor_verify.exact.euler.fixed_axis import FixedAxis, FixedAxisBalls
 from taylor_verify.exact.euler.moduli import Moduli, Triple
 from taylor_verify.exact.euler.phase import Periodic, Separatrix
+from taylor_verify.exact.euler.polynomials import Polynomials
 from taylor_verify.exact.euler.regime import CONSTANT, FreeSpin, Regime
-from taylor_verify.exact.euler.rotations import Course, RotationBalls
+from taylor_verify.exact.euler.rotations import BallCourse, Moving, RotationBalls
 from taylor_verify.exact.solution import Time
+from taylor_verify.exact.theta_series import MANY, ThetaSeries
 from taylor_verify.scenes import motion, tensors
 
 
@@ -31,14 +35,15 @@ def free_rotation(spin: FreeSpin, attitude: motion.Quaternion | None = None) -> 
     return RotationBalls(spin.regime.value, lambda: _course(spin), attitude)
 
 
-def _course(spin: FreeSpin) -> Course:
+def _course(spin: FreeSpin) -> BallCourse:
     """The motion set up at the ambient precision of flint."""
     if spin.regime in CONSTANT:
         return FixedAxisBalls(FixedAxis(spin.omega))
     return _Precession(spin) if spin.regime is Regime.AXISYMMETRIC else Tumbling(spin)
 
 
-class _Precession:
+@final
+class _Precession(BallCourse):
     """An axisymmetric body: a turn about the constant H at H/J_d, after one about its own axis.
 
     In body axes omega turns about e at Om = (J_s - J_d)(e.w)/J_d.
@@ -67,7 +72,8 @@ class _Precession:
         return omega, rotation.product(outer, inner)
 
 
-class Tumbling:
+@final
+class Tumbling(BallCourse):
     """A body with three different moments."""
 
     def __init__(self, spin: FreeSpin) -> None:
@@ -75,6 +81,7 @@ class Tumbling:
         is_separatrix = spin.regime is Regime.SEPARATRIX
         self._functions = Separatrix(moduli) if is_separatrix else Periodic(moduli)
         self._to_body = arb_mat([list(row) for row in zip(*moduli.axes, strict=True)])
+        self._is_diagonal = tensors.is_diagonal(spin.inertia)
 
     def at(self, t: Time, turned: bool) -> tuple[list[arb], list[arb]]:
         time = ball(t)
@@ -88,6 +95,41 @@ class Tumbling:
         # The turn by psi about axis 3, after the tilt.
         tilted = [cos * w - sin * z, cos * x - sin * y, cos * y + sin * x, cos * z + sin * w]
         return omega, (self._tilted_back * arb_mat(4, 1, tilted)).entries()
+
+    def rows(self, times: Sequence[Time], start: motion.Quaternion | None) -> Moving:
+        """Both at every time: by polynomials, unless there are few times, or no short series."""
+        polynomials = self._polynomials if len(times) >= MANY else None
+        if polynomials is None:
+            return super().rows(times, start)
+        if start is None:
+            return self._in_body(polynomials.omega(times)), []
+        attitude = ball_matrix(rotation.rotation_matrix(start))
+        omega, frames = polynomials.motion(times, attitude * self._to_body)
+        turned = self._in_body([row for frame in frames for row in frame])
+        return self._in_body(omega), [turned[k : k + 3] for k in range(0, len(turned), 3)]
+
+    @cached_property
+    def _polynomials(self) -> Polynomials | None:
+        """The polynomials of an orbit about an axis that is not all but a separatrix."""
+        if not isinstance(self._functions, Periodic):
+            return None
+        series = ThetaSeries.where_short(self._functions.tau)
+        return None if series is None else Polynomials(self._moduli, self._functions, series)
+
+    def _in_body(self, rows: Sequence[Sequence[arb]]) -> list[list[arb]]:
+        """Vectors by their components along (a, b, c)."""
+        if self._is_diagonal:
+            return [
+                [side * row[k] if side < 0 else row[k] for k, side in self._order] for row in rows
+            ]
+        matrix = self._to_body.tolist()
+        return [[p * a + q * b + r * c for p, q, r in matrix] for a, b, c in rows]
+
+    @cached_property
+    def _order(self) -> list[tuple[int, int]]:
+        """Of each body axis, where it is one of (a, b, c) or its opposite: which one, and the sign."""
+        sides = [[int(float(entry)) for entry in row] for row in self._to_body.tolist()]
+        return [next((k, side) for k, side in enumerate(row) if side) for row in sides]
 
     @cached_property
     def _tilted_back(self) -> arb_mat:

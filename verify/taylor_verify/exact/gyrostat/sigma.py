@@ -17,7 +17,7 @@ from typing import Any, Final, NamedTuple, Protocol, final
 
 from flint import acb, arb, arb_mat
 
-from taylor_verify.exact.balls import Enclosed, Enclosure, Undecidable, ball, balls
+from taylor_verify.exact.balls import Enclosed, Enclosure, Undecidable, ball, balls, balls_of
 from taylor_verify.exact.gyrostat.azimuth import (
     FRAMES,
     Arithmetic,
@@ -29,6 +29,7 @@ from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.exact.gyrostat.point import PointMap, point_map
 from taylor_verify.exact.gyrostat.velocity import momentum_form
 from taylor_verify.exact.lattice import Lattice, lattice
+from taylor_verify.exact.line import Line
 from taylor_verify.exact.rotation import (
     conjugate,
     cross,
@@ -41,7 +42,9 @@ from taylor_verify.exact.rotation import (
 from taylor_verify.scenes.motion import Quaternion
 from taylor_verify.scenes.tensors import Vector, dot
 
-Row = tuple[list[arb], arb_mat | None]
+Rows = list[list[arb]]
+Row = tuple[list[arb], Rows]
+"""omega in body axes, and the rows of R; none of the latter where it is not tracked."""
 
 _BALLS: Final = Arithmetic(ball, acb, lambda z: z.sqrt())
 
@@ -49,8 +52,8 @@ _BALLS: Final = Arithmetic(ball, acb, lambda z: z.sqrt())
 class Course(Protocol):
     """A motion with numbers of one precision, to be used at that one."""
 
-    def at(self, t: arb) -> Row:
-        """omega in body axes, and R where it is tracked."""
+    def rows(self, times: Sequence[arb]) -> list[Row]:
+        """omega in body axes, and R where it is tracked, at each time."""
         ...
 
 
@@ -68,10 +71,10 @@ class GyrostatBalls(Enclosed):
         """``omega``, rows of 3, and ``attitude``, rows of 3x3, where it is tracked."""
         if bits not in self._courses:
             self._courses[bits] = self._course()
-        rows = [self._courses[bits].at(ball(t)) for t in elapsed]
+        rows = self._courses[bits].rows(balls_of(elapsed))
         found: dict[str, Any] = {"omega": [omega for omega, _ in rows]}
         if self._attitude is not None:
-            found["attitude"] = [R.tolist() for _, R in rows if R is not None]
+            found["attitude"] = [R for _, R in rows]
         return found
 
     def _course(self) -> Course:
@@ -92,13 +95,16 @@ class Turning:
         self._omega, self._outer, self._inner = free.omega, outer, free.inner
         self._start = None if attitude is None else unit(attitude)
 
-    def at(self, t: arb) -> Row:
+    def rows(self, times: Sequence[arb]) -> list[Row]:
+        return [self._at(t) for t in times]
+
+    def _at(self, t: arb) -> Row:
         inner = _turn(self._inner, t)
         omega = arb_mat(rotation_rows(inner)) * arb_mat(3, 1, balls(self._omega))
         if self._start is None:
-            return omega.entries(), None
+            return omega.entries(), []
         turned = product(_turn(self._outer, t), conjugate(inner))
-        return omega.entries(), arb_mat(rotation_rows(product(self._start, turned)))
+        return omega.entries(), rotation_rows(product(self._start, turned))
 
 
 def _turn(rate: Vector, t: arb) -> list[arb]:
@@ -114,27 +120,42 @@ class Tumbling:
 
     def __init__(self, free: FreeGyrostat, attitude: Quaternion | None, frame: Frame) -> None:
         self._form = momentum_form(free).converted(ball)
-        self._K = arb_mat([balls(row) for row in free.K])
-        self._g = arb_mat(3, 1, balls(free.g))
+        self._K, self._g = [balls(row) for row in free.K], balls(free.g)
         self._lattice = lattice(*free.invariants)
         self._omega = balls(free.omega)
         self._azimuth: Azimuth | None = None
+        self._start: Rows = []
         if attitude is not None:
             self._azimuth = Azimuth(free, point_map(free), frame, self._lattice)
-            start = arb_mat([balls(row) for row in rotation_matrix(attitude)])
-            self._start = start
-            self._to_space = start * self._azimuth.tilt(balls(free.momentum))
+            self._start = [balls(row) for row in rotation_matrix(attitude)]
+            tilt = arb_mat(self._azimuth.axes(balls(free.momentum))).transpose()
+            self._to_space = (arb_mat(self._start) * tilt).tolist()
 
-    def at(self, t: arb) -> Row:
-        if t.is_zero():
-            return self._omega, self._start if self._azimuth else None
-        P, slope = (value.real for value in self._lattice.p(acb(t)))
-        G = self._form.at(P, slope)
-        omega = (self._K * arb_mat(3, 1, G) - self._g).entries()
-        if self._azimuth is None:
-            return omega, None
-        turned = self._azimuth.turn(t) * self._azimuth.tilt(G).transpose()
-        return omega, self._to_space * turned
+    def rows(self, times: Sequence[arb]) -> list[Row]:
+        line = self._lattice.along(times)
+        places = [self._form.at(P, slope) for P, slope in line.p()]
+        frames: Sequence[Rows] = [[]] * len(places)
+        if self._azimuth is not None:
+            turned = zip(self._azimuth.turns(times, line), places, strict=True)
+            frames = [self._in_space(turn, *self._azimuth.axes(G)) for turn, G in turned]
+        return [
+            (self._omega, self._start) if t.is_zero() else (self._spin(G), R)
+            for t, G, R in zip(times, places, frames, strict=True)
+        ]
+
+    # Entry by entry: to make a matrix of balls takes longer than the product.
+
+    def _spin(self, G: Sequence[arb]) -> list[arb]:
+        """K G - g."""
+        a, b, c = G
+        rows = zip(self._K, self._g, strict=True)
+        return [p * a + q * b + r * c - g for (p, q, r), g in rows]
+
+    def _in_space(self, turn: acb, m1: list[arb], m2: list[arb], m3: list[arb]) -> Rows:
+        """R(0) M(0) Rz(phi) M^T, with the cosine and the sine of phi in ``turn``."""
+        x, y = turn.real, turn.imag
+        turned = [(x * a - y * b, y * a + x * b, c) for a, b, c in zip(m1, m2, m3, strict=True)]
+        return [[p * a + q * b + r * c for a, b, c in turned] for p, q, r in self._to_space]
 
 
 @final
@@ -149,7 +170,7 @@ class Azimuth:
         for pole in poles(free, place.converted(ball), frame, _BALLS):
             argument = curve.argument(pole.p, pole.slope)
             value, slope = curve.jet(-argument, 1)
-            self._factors.append(_Factor(argument, 1 / value, pole.sigma))
+            self._factors.append(_Factor(argument, value, pole.sigma))
             self._rate -= pole.sigma * (slope / value).imag
 
     @property
@@ -157,26 +178,33 @@ class Azimuth:
         """The least distance of a pole from the real line."""
         return min(abs(float(factor.argument.imag.mid())) for factor in self._factors)
 
-    def turn(self, t: arb) -> arb_mat:
-        """Rz(phi)."""
-        quotient = acb(1)
+    def turns(self, times: Sequence[arb], line: Line) -> list[acb]:
+        """e^{i phi} at each of the times, which are those of the line."""
+        quotients = [acb(1)] * len(times)
         for argument, scale, sigma in self._factors:
-            value = self._lattice.jet(t - argument, 0)[0] * scale
-            quotient *= value if sigma > 0 else value.conjugate()
-        sin, cos = (self._rate * t).sin_cos()
-        # A factor for sigma = -1 is inverted; once its modulus is left out that is the conjugate.
-        circle = quotient / abs(quotient) * acb(cos, sin)
-        x, y = circle.real, circle.imag
-        return arb_mat([[x, -y, 0], [y, x, 0], [0, 0, 1]])
+            values = (value for value, *_ in line.jets(argument, scale, 0))
+            # A factor for sigma = -1 is inverted; once its modulus is left out that is the conjugate.
+            quotients = [
+                quotient * (value if sigma > 0 else value.conjugate())
+                for quotient, value in zip(quotients, values, strict=True)
+            ]
+        found = []
+        for t, quotient in zip(times, quotients, strict=True):
+            sin, cos = (self._rate * t).sin_cos()
+            p, q = quotient.real, quotient.imag
+            size = (p * p + q * q).rsqrt()
+            found.append(acb((cos * p - sin * q) * size, (sin * p + cos * q) * size))
+        return found
 
-    def tilt(self, G: Sequence[arb]) -> arb_mat:
-        """M, whose columns are m1, m2, m3."""
-        m3 = [component / self._N for component in G]
-        along = sum((p * q for p, q in zip(self._c, m3, strict=True)), arb(0))
+    def axes(self, G: Sequence[arb]) -> list[list[arb]]:
+        """m1, m2 and m3, the columns of M."""
+        over = 1 / self._N
+        m3 = [component * over for component in G]
+        along = self._c[0] * m3[0] + self._c[1] * m3[1] + self._c[2] * m3[2]
         across = [p - along * q for p, q in zip(self._c, m3, strict=True)]
-        length = sum((p * p for p in across), arb(0)).sqrt()
-        m1 = [component / length for component in across]
-        return arb_mat([m1, cross(m3, m1), m3]).transpose()
+        length = (across[0] * across[0] + across[1] * across[1] + across[2] * across[2]).rsqrt()
+        m1 = [component * length for component in across]
+        return [m1, cross(m3, m1), m3]
 
 
 class _Factor(NamedTuple):

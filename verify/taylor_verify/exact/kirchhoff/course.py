@@ -11,7 +11,8 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import final
+from math import prod
+from typing import NamedTuple, Self, final
 
 from flint import acb, arb
 
@@ -24,6 +25,33 @@ from taylor_verify.exact.kirchhoff.quartic import (
     value,
 )
 from taylor_verify.exact.lattice import Lattice, lattice
+from taylor_verify.exact.line import Line
+
+
+class Pole(NamedTuple):
+    """N(u) = s(u - w)/s(-w) at a pole w of z, |N|^2, and, where it was asked for, N'(u)."""
+
+    value: acb
+    square: arb
+    slope: acb | None = None
+
+    @classmethod
+    def of(cls, jet: Sequence[acb]) -> Self:
+        """Return the pole of N and, if it is there, N'."""
+        re, im = jet[0].real, jet[0].imag
+        return cls(jet[0], re * re + im * im, *jet[1:])
+
+    @property
+    def rate(self) -> arb:
+        """The real part of N'/N: real numbers cost a third of a division of complex ones."""
+        assert self.slope is not None
+        value, slope = self.value, self.slope
+        return (value.real * slope.real + value.imag * slope.imag) / self.square
+
+    def conjugate(self) -> Pole:
+        """Return the pole at the conjugate of w."""
+        slope = None if self.slope is None else self.slope.conjugate()
+        return Pole(self.value.conjugate(), self.square, slope)
 
 
 class Course(ABC):
@@ -42,6 +70,7 @@ class Course(ABC):
         b = _about(nutation.f, nutation.z)
         self._b = [ball(entry) for entry in b]
         # Products of rationals, so that what is zero is zero exactly.
+        self._half_b2, self._twice_b3 = ball(b[2] / 2), ball(2 * b[3])
         self._half_b4_a0, self._b4_b1 = ball(b[4] * b[0] / 2), ball(b[4] * b[1])
         g2, g3 = invariants(nutation.f)
         self.lattice: Lattice = lattice(g2, g3)
@@ -49,18 +78,20 @@ class Course(ABC):
         self.z, self.speed = ball(nutation.z), ball(nutation.speed)
 
     @final
-    def at(self, u: arb) -> tuple[arb, arb]:
-        """(z, z') at the time u, by Weierstrass's formula (Whittaker and Watson 20.6)."""
-        if u.is_zero():
-            return self.z, self.speed
+    def places(self, times: Sequence[arb], line: Line) -> list[tuple[arb, arb]]:
+        """(z, z') at the times u since the start, which are those of the line."""
         if self.front is not None:
-            return self.front.at(u)
-        p, slope = (value.real for value in self.lattice.p(acb(u)))
-        rise, twice_b3 = p - self._b[2] / 2, 2 * self._b[3]
-        below = 2 * rise * rise - self._half_b4_a0
-        step = (twice_b3 * rise + self._b4_b1 - self.speed * slope) / below
-        change = twice_b3 * slope - self.speed * (6 * p * p - self._half_g2)
-        return self.z + step, (change - 4 * step * rise * slope) / below
+            return [self.front.at(u) for u in times]
+        return [self._at(*both) for both in line.p()]
+
+    def _at(self, p: arb, slope: arb) -> tuple[arb, arb]:
+        """(z, z') by Weierstrass's formula (Whittaker and Watson 20.6), for u not zero."""
+        rise, twice_b3 = p - self._half_b2, self._twice_b3
+        twice = rise + rise
+        over = 1 / (twice * rise - self._half_b4_a0)
+        step = (twice_b3 * rise + self._b4_b1 - self.speed * slope) * over
+        change = twice_b3 * slope - self.speed * (6 * (p * p) - self._half_g2)
+        return self.z + step, (change - 2 * (step * twice * slope)) * over
 
     @final
     def argument(self, h: arb, s: acb) -> acb:
@@ -74,11 +105,8 @@ class Course(ABC):
         )
 
     @abstractmethod
-    def integral(self, u: arb, speed: arb, poles: Sequence[Sequence[acb]]) -> arb:
-        """int_0^u z du, where z' = ``speed`` at u.
-
-        ``poles`` are, at each pole w, N(u) = s(u - w)/s(-w) and, for a cubic, N'(u).
-        """
+    def integral(self, u: arb, speed: arb, poles: Sequence[Pole]) -> arb:
+        """int_0^u z du, where z' = ``speed`` at u; the poles of a cubic have their slopes."""
 
 
 @final
@@ -140,21 +168,26 @@ class QuarticCourse(Course):
         self._pace = self.z + (change / self._root).real
         self._square_pace = self.z**2 + sum(bends, acb(0)).real / self._a0 + self._slant * self.z
 
-    def integral(self, u: arb, speed: arb, poles: Sequence[Sequence[acb]]) -> arb:
+    def integral(self, u: arb, speed: arb, poles: Sequence[Pole]) -> arb:
         """Found from the logarithms of N, whose arguments are followed continuously."""
         if not self.are_conjugate:
-            logs = (abs(value).log() for value, *_ in poles)
-            grown = sum((sign * log for sign, log in zip(self._signs, logs, strict=True)), arb(0))
+            # One logarithm, of the square of a quotient.
+            parts = zip(self._signs, poles, strict=True)
+            square = prod(
+                (pole.square if sign > 0 else 1 / pole.square for sign, pole in parts),
+                start=arb(1),
+            )
+            grown = square.log() / 2
         else:
-            grown = 2 * self.lattice.turn(u, self.poles[0], poles[0][0])
+            grown = 2 * self.lattice.turn(u, self.poles[0], poles[0].value)
         return self._pace * u - grown / self._size
 
-    def integral_of_square(self, u: arb, poles: Sequence[Sequence[acb]], integral: arb) -> arb:
+    def integral_of_square(self, u: arb, poles: Sequence[Pole], integral: arb) -> arb:
         """int_0^u z^2 du from N and N', where ``integral`` is int_0^u z du.
 
         The latter is not read where f has no cubic term.
         """
-        change = sum((slope / value for value, slope in poles), acb(0)).real - self._start_slopes
+        change = sum((pole.rate for pole in poles), arb(0)) - self._start_slopes
         tilted = arb(0) if self._slant.is_zero() else self._slant * integral
         return self._square_pace * u - change / self._a0 - tilted
 
@@ -178,9 +211,8 @@ class CubicCourse(Course):
         self._start_slope = (s1 / s0).real
         self._pace = self.z + (s2 / s0 - (s1 / s0) ** 2).real / self._a1
 
-    def integral(self, u: arb, speed: arb, poles: Sequence[Sequence[acb]]) -> arb:
-        value, slope = poles[0]
-        return self._pace * u - ((slope / value).real - self._start_slope) / self._a1
+    def integral(self, u: arb, speed: arb, poles: Sequence[Pole]) -> arb:
+        return self._pace * u - (poles[0].rate - self._start_slope) / self._a1
 
 
 @final
@@ -193,7 +225,7 @@ class QuadraticCourse(Course):
         super().__init__(nutation)
         self._c2, self._half_c1 = ball(nutation.f[0]), ball(nutation.f[1] / 2)
 
-    def integral(self, u: arb, speed: arb, poles: Sequence[Sequence[acb]]) -> arb:
+    def integral(self, u: arb, speed: arb, poles: Sequence[Pole]) -> arb:
         return (speed - self.speed - self._half_c1 * u) / self._c2
 
 

@@ -25,15 +25,19 @@ from typing import Any, Final, final
 
 from flint import acb, arb, arb_mat
 
-from taylor_verify.exact.balls import Enclosed, Enclosure, ball, ball_matrix, balls
-from taylor_verify.exact.kirchhoff.course import QuarticCourse, course
+from taylor_verify.exact.balls import Enclosed, Enclosure, ball, ball_matrix, balls, balls_of
+from taylor_verify.exact.kirchhoff.course import Pole, QuarticCourse, course
 from taylor_verify.exact.kirchhoff.quartic import Nutation, repeated_root
-from taylor_verify.exact.lattice import Lattice
+from taylor_verify.exact.lattice import Lattice, Periods
+from taylor_verify.exact.line import Line
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Time
 from taylor_verify.scenes.motion import Impulse
 
+Rows = list[list[arb]]
+
 _I: Final = acb(0, 1)
+_HALF: Final = arb(0.5)
 # Where |xi|^2 is a smaller part of F^2, eta is not found by a division by it.
 _NEAR_POLE: Final = 2.0**-6
 
@@ -53,7 +57,7 @@ class NutatingBody(Enclosed):
         if bits not in self._orbits:
             heteroclinic = self.regime == "heteroclinic"
             self._orbits[bits] = Orbit(self.nutation, self.start, self.track, heteroclinic)
-        rows = [self._orbits[bits].at(ball(t)) for t in elapsed]
+        rows = self._orbits[bits].rows(balls_of(elapsed))
         names = ("linear_impulse", "angular_impulse", *sorted(self.track))
         return {name: [row[name] for row in rows] for name in names}
 
@@ -67,6 +71,12 @@ class Factor:
         if argument is not None:
             order = int(argument.is_zero())
             self._scale = lattice.jet(-argument, order)[order]
+
+    def jets(self, line: Line, count: int, order: int) -> list[list[acb]]:
+        """N and, for order 1, its derivative, at each of so many arguments of the line."""
+        if self._argument is None:
+            return [[acb(1), acb(0)][: order + 1]] * count
+        return line.jets(self._argument, self._scale, order)
 
     def jet(self, u: arb, order: int) -> list[acb]:
         """N and, for order 1, its derivative."""
@@ -93,10 +103,13 @@ class Orbit:
         body = nutation.body
         self._root = ball(nutation.axes.nu).sqrt()
         self._F, self._y3 = ball(nutation.F2).sqrt(), ball(nutation.y3)
+        self._over_F, self._over_r = 1 / self._F, self._root / ball(body.r)
+        self._near = _NEAR_POLE**2 * (self._F * self._F).mid()
         self._r, self._screw = self._rate(body.r), self._rate(body.q_prime - body.q)
         self._FG, self._spin = ball(nutation.FG), self._rate(body.r_prime * nutation.y3)
         self._course = course(nutation, heteroclinic)
         self._needs_integral = not self._screw.is_zero()
+        self._is_periodic = isinstance(self._course.lattice, Periods)
         # 1 where the derivatives of the poles' factors enter, else 0.
         is_cubic = self._course.order == 2
         self._pole_order = int((is_cubic and self._needs_integral) or "centre" in track)
@@ -115,41 +128,88 @@ class Orbit:
         if track:
             self._find_space(attitude)
 
-    def at(self, u: arb) -> dict[str, Any]:
-        """Every tracked quantity, and maybe more, at the time u since the start."""
-        if u.is_zero():
-            return self._at_start
-        z, speed = self._course.at(u)
-        poles = self._pole_jets(u, self._pole_order)
+    def rows(self, times: Sequence[arb]) -> list[dict[str, Any]]:
+        """Every tracked quantity, and maybe more, at each time since the start."""
+        line, count = self._course.lattice.along(times), len(times)
+        places = self._course.places(times, line)
+        above = (factor.jets(line, count, 0) for factor in (self._alpha, self._beta))
+        jets = [pole.jets(line, count, self._pole_order) for pole in self._own_poles]
+        poles = zip(*jets, strict=True) if jets else [()] * count
+        parts = zip(times, places, *above, poles, strict=True)
+        rows = [
+            self._row(u, place, (alpha[0], beta[0]), own) for u, place, alpha, beta, own in parts
+        ]
+        found: list[dict[str, Any]] = [impulses for impulses, _ in rows]
+        if self._track:
+            self._carry_to_space(found, [columns for _, columns in rows])
+        return [self._at_start if u.is_zero() else row for u, row in zip(times, found, strict=True)]
+
+    def _row(
+        self, u: arb, place: tuple[arb, arb], above: tuple[acb, acb], own: Sequence[list[acb]]
+    ) -> tuple[dict[str, Any], Rows]:
+        """The impulses, and the rows of R and of the way since the start by the axes of the formulas."""
+        z, speed = place
+        poles = self._with_conjugate(own)
         along = self._course.integral(u, speed, poles) if self._needs_integral else arb(0)
-        screw = (_I * self._screw * along).exp()
-        above = self._alpha.jet(u, 0)[0], self._beta.jet(u, 0)[0]
-        below = prod((value for value, *_ in poles), start=acb(1)) ** self._course.order
-        turn = self._xi * (self._xi_rate * u).exp() / (below * screw)
+        screw = self._screw * along
+        over = prod((pole.value.conjugate() * (1 / pole.square) for pole in poles), start=acb(1))
+        if self._course.order == 2:
+            over = over * over
+        turn = self._xi * self._grown(self._xi_rate, u, -screw) * over
         xi = turn * above[0].conjugate() * above[1]
+        re, im = xi.real, xi.imag
+        square = re * re + im * im
         front = self._course.front
         if front is not None:
             # G = y3 = 0, and y keeps its digits where z' = c (F^2 - z^2) has none left.
             eta = _I * front.c / self._r * xi
-        elif abs(xi).mid() < _NEAR_POLE * self._F.mid():
+        elif square.mid() < self._near:
             eta = self._eta_near_pole(u, z, xi, turn, above)
         else:
-            eta = acb(self._FG - z * self._y3, speed / self._r) / xi.conjugate()
-        found: dict[str, Any] = {
-            "linear_impulse": [xi.real, xi.imag, z],
+            eta = acb(self._FG - z * self._y3, speed * self._over_r) * xi * (1 / square)
+        impulses = {
+            "linear_impulse": [re, im, z],
             "angular_impulse": [eta.real, eta.imag, self._y3],
         }
-        if self._track:
-            one = self._one * above[0] ** 2 * (self._one_rate * u).exp() * screw / below
-            two = self._two * above[1] ** 2 * (self._two_rate * u).exp() / (screw * below)
-            frame = self._frame(one, two, xi, z)
-            found["attitude"] = (self._to_space * frame).tolist()
+        if not self._track:
+            return impulses, []
+        # Of D1 and D2 the larger one.
+        if z.mid() >= 0:
+            larger = self._one * above[0] * above[0] * self._grown(self._one_rate, u, screw)
+        else:
+            larger = self._two * above[1] * above[1] * self._grown(self._two_rate, u, -screw)
+        larger = larger * over
+        frame = self._frame(larger, xi, z)
+        if "centre" in self._track:
+            for row, entry in zip(
+                frame, self._path(u, self._moment(frame, eta), poles, along), strict=True
+            ):
+                row.append(entry)
+        return impulses, frame
+
+    def _carry_to_space(self, found: Sequence[dict[str, Any]], frames: Sequence[Rows]) -> None:
+        """Add R and the centre in space."""
+        # Entry by entry: to make a matrix of balls takes longer than the product.
+        to_space, start = self._to_space.tolist(), self._at_start["centre"]
+        for row, (first, second, third) in zip(found, frames, strict=True):
+            carried = [
+                [p * a + q * b + r * c for a, b, c in zip(first, second, third, strict=True)]
+                for p, q, r in to_space
+            ]
+            row["attitude"] = [line[:3] for line in carried]
             if "centre" in self._track:
-                path = self._path(u, self._moment(frame, eta), poles, along)
-                moved = (self._to_space * arb_mat(3, 1, path)).entries()
-                start = self._at_start["centre"]
-                found["centre"] = [c + v for c, v in zip(start, moved, strict=True)]
-        return found
+                row["centre"] = [c + line[3] for c, line in zip(start, carried, strict=True)]
+
+    def _grown(self, rate: acb, u: arb, angle: arb) -> acb:
+        """e^{rate u + i angle}, for a rate of xi, D1 or D2.
+
+        Where s has two periods a rate is imaginary: the quotients of s, and what they make together with
+        the exponential, come back to their sizes after every period of s.
+        """
+        if self._is_periodic:
+            sin, cos = (rate.imag * u + angle).sin_cos()
+            return acb(cos, sin)
+        return (rate * u + acb(0, angle)).exp()
 
     # The numbers of the whole orbit.
 
@@ -216,10 +276,9 @@ class Orbit:
 
     def _find_space(self, attitude: arb_mat) -> None:
         """The scene's space axes, in which R and the centre begin as it says."""
-        one = acb(0) if self._starts_on_axis(-1) else self._one
-        two = acb(0) if self._starts_on_axis(1) else self._two
-        frame = self._frame(one, two, self._start_xi, self._course.z)
-        self._to_space = attitude * frame.transpose()
+        larger = self._one if self._nutation.z >= 0 else self._two
+        frame = self._frame(larger, self._start_xi, self._course.z)
+        self._to_space = attitude * arb_mat(frame).transpose()
         self._start_moment = self._moment(frame, self._start_eta)
         body, F2 = self._nutation.body, self._nutation.F2
         self._ahead = self._rate(body.p * F2 + body.q * self._nutation.FG)
@@ -227,42 +286,61 @@ class Orbit:
 
     # The numbers of one time.
 
-    def _pole_jets(self, u: arb, order: int) -> list[list[acb]]:
-        if not self._course.are_conjugate:
-            return [pole.jet(u, order) for pole in self._poles]
-        jet = self._poles[0].jet(u, order)
-        return [jet, [value.conjugate() for value in jet]]
+    @property
+    def _own_poles(self) -> Sequence[Factor]:
+        """The factors of the poles; of two that are conjugate, the first one."""
+        return self._poles[:1] if self._course.are_conjugate else self._poles
+
+    def _with_conjugate(self, jets: Sequence[Sequence[acb]]) -> list[Pole]:
+        """All poles, from the jets of ``_own_poles``."""
+        own = [Pole.of(jet) for jet in jets]
+        return [*own, own[0].conjugate()] if self._course.are_conjugate else own
 
     def _eta_near_pole(self, u: arb, z: arb, xi: acb, turn: acb, above: tuple[acb, acb]) -> acb:
         """Solve xi' = i r z eta - i (r' y3 + (q' - q) z) xi for eta, without a division by xi."""
         alpha, beta = above[0].conjugate(), above[1]
         alpha_slope, beta_slope = (factor.jet(u, 1)[1] for factor in (self._alpha, self._beta))
         growth = alpha_slope.conjugate() * beta + alpha * beta_slope
-        slopes = sum((slope / value for value, slope in self._pole_jets(u, 1)), acb(0))
+        jets = [factor.jet(u, 1) for factor in self._own_poles]
+        rates = [slope / value for value, slope in jets]
+        if self._course.are_conjugate:
+            rates += [rate.conjugate() for rate in rates]
+        slopes = sum(rates, acb(0))
         pull = self._xi_rate - self._course.order * slopes - _I * self._screw * z
         change = turn * growth + pull * xi
         return (change / _I + (self._spin + self._screw * z) * xi) / (self._r * z)
 
-    def _frame(self, one: acb, two: acb, xi: acb, z: arb) -> arb_mat:
-        """R with the space axis Z along the impulse, row by row, from D1, D2, xi and z."""
-        F = self._F
-        # sin(theta) e^{i psi} by the larger of 1 + cos theta and 1 - cos theta
-        lean = one * xi / (_I * (F + z)) if z.mid() >= 0 else two * xi.conjugate() / (_I * (z - F))
-        total, rest = (one + two) / 2, (one - two) / 2
-        return arb_mat(
-            [
-                [total.real, -rest.imag, lean.imag],
-                [total.imag, rest.real, -lean.real],
-                [xi.real / F, xi.imag / F, z / F],
-            ]
-        )
+    def _frame(self, larger: acb, xi: acb, z: arb) -> Rows:
+        """R with the space axis Z along the impulse, row by row, from xi, z and the larger of D1 and D2.
 
-    def _moment(self, frame: arb_mat, eta: acb) -> acb:
+        With g = xi/(F + z) the other one is -D1 g^2, and sin(theta) e^{i psi} is -i D1 g; where D2 is the
+        larger, with g the conjugate of xi/(F - z), they are -D2 g^2 and i D2 g.
+        """
+        F, over = self._F, self._over_F
+        is_up = z.mid() >= 0
+        g = xi * (1 / (F + z)) if is_up else xi.conjugate() * (1 / (F - z))
+        slanted = larger * g
+        smaller = -slanted * g
+        total, rest = (larger + smaller) * _HALF, (larger - smaller) * _HALF
+        re, im = slanted.real, slanted.imag
+        if is_up:
+            re, im = -re, -im
+        else:
+            rest = -rest
+        # sin(theta) e^{i psi} = i (re + i im)
+        return [
+            [total.real, -rest.imag, re],
+            [total.imag, rest.real, im],
+            [xi.real * over, xi.imag * over, z * over],
+        ]
+
+    def _moment(self, frame: Rows, eta: acb) -> acb:
         """X + i Y of R y."""
-        y = frame * arb_mat(3, 1, [eta.real, eta.imag, self._y3])
-        return acb(y[0, 0], y[1, 0])
+        (a, b, c, *_), (d, e, f, *_), _ = frame
+        re, im, y3 = eta.real, eta.imag, self._y3
+        return acb(a * re + b * im + c * y3, d * re + e * im + f * y3)
 
-    def _path(self, u: arb, moment: acb, poles: list[list[acb]], along: arb) -> list[arb]:
+    def _path(self, u: arb, moment: acb, poles: Sequence[Pole], along: arb) -> list[arb]:
         """The centre from its start: 49 (18)-(19) across the impulse, and Z along it.
 
         F dZ/dt = p F^2 + q FG + (p' - p) z^2 + (q' - q) y3 z, from Z' = (U.x)/F.
@@ -271,5 +349,5 @@ class Orbit:
         if isinstance(self._course, QuarticCourse):
             square = self._course.integral_of_square(u, poles, along)
             advance += self._ahead_by_square * square
-        across = (moment - self._start_moment) / (_I * self._F)
-        return [across.real, across.imag, advance / self._F]
+        across, over = moment - self._start_moment, self._over_F
+        return [across.imag * over, -across.real * over, advance * over]

@@ -23,7 +23,7 @@ from taylor_verify.exact.balls import ball, balls
 from taylor_verify.exact.euler.moments.kummer import KummerTurn
 from taylor_verify.exact.euler.moments.regime import Line, LoadedSpin, MomentRegime
 from taylor_verify.exact.euler.moments.series import SeriesTurn
-from taylor_verify.exact.euler.rotations import RotationBalls
+from taylor_verify.exact.euler.rotations import BallCourse, RotationBalls
 from taylor_verify.scenes import motion, tensors
 
 
@@ -36,7 +36,7 @@ def loaded_rotation(spin: LoadedSpin, attitude: motion.Quaternion | None = None)
     return RotationBalls(spin.regime.value, lambda: _Course(spin, line), attitude)
 
 
-class _Course:
+class _Course(BallCourse):
     """The course at one precision of flint."""
 
     def __init__(self, spin: LoadedSpin, line: Line | None) -> None:

@@ -31,7 +31,7 @@ from taylor_verify.exact.euler.moments.washboard.turnings import (
     regime,
     turnings,
 )
-from taylor_verify.exact.euler.rotations import RotationBalls
+from taylor_verify.exact.euler.rotations import BallCourse, RotationBalls
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.scenes.motion import Quaternion
 
@@ -196,7 +196,7 @@ class Turn:
         return self.side * self._quotient(self.side * y * y)
 
 
-class Course:
+class Course(BallCourse):
     """The course at one precision of flint."""
 
     def __init__(self, board: Washboard) -> None:
