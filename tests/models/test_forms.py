@@ -174,6 +174,27 @@ def test_equal_coefficients_cancel_before_they_are_computed(equal: str) -> None:
     assert_same_equations(problem, seed=5)
 
 
+@pytest.mark.parametrize(
+    ("six", "expected"),
+    [
+        # Neighbours have a short difference. That of 0.3 and 1.1 would take 54 bits.
+        ((1, "1.5", "0.25", "0.3", "0.9", "1.1"), {"D1", "D2", "D3"}),
+        ((1, "1.5", "0.25", "0.3", "1.1", "0.3"), {"D1", "D2"}),
+    ],
+)
+def test_differences_of_clebschs_coefficients_where_the_rung_holds_them(
+    six: tuple[object, ...], expected: set[str]
+) -> None:
+    """p' - p, q' - q and r' - r are parameters if they are numbers of the rung, and else formed."""
+    alone = immersed(Clebsch(*vector(*six)).body())
+    for scene in (alone, tracking_all(alone)):
+        problem = pose(scene, rung("f64"))
+        assert {n for n in problem.form.parameters if n[0] == "D"} == expected
+        assert_same_equations(problem, seed=4)
+    # Without its frame p and q stand in differences alone.
+    assert {"p", "p'", "q", "q'"}.isdisjoint(pose(alone, rung("f64")).form.parameters)
+
+
 def test_almost_of_revolution_is_not_of_revolution() -> None:
     """One unit in the last place of one coefficient, and the body takes the general equations."""
     body = Clebsch(*vector(2, 3, "1/2", "-1/4", 1, "5/4")).body()

@@ -134,19 +134,23 @@ def test_kirchhoff_conserves_identically(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(20))
 def test_clebsch_form_is_the_general_form(seed: int) -> None:
-    """Clebsch's short equations are those of the 21 coefficients they stand for, loads included."""
+    """Clebsch's short equations are those of the 21 coefficients, with any of the differences or none."""
     random = Random(seed)
     six = Clebsch(*rationals(random, 6))
     body = six.body()
     x, y, X, L = (vector(random) for _ in range(4))
     U, Omega = velocities(x, y, body.linear, body.coupling, body.angular)
     coefficients = (six.p, six.p_prime, six.q, six.q_prime, six.r, six.r_prime)
-    assert clebsch_rates(x, y, coefficients, X, L) == impulse_rates(x, y, U, Omega, X, L)
+    expected = impulse_rates(x, y, U, Omega, X, L)
+    assert clebsch_rates(x, y, coefficients, X, L) == expected
+    gaps = [six.p_prime - six.p, six.q_prime - six.q, six.r_prime - six.r]
+    for differences in (gaps, [gaps[0], None, gaps[2]]):
+        assert clebsch_rates(x, y, coefficients, X, L, differences) == expected
 
 
 @pytest.mark.parametrize("seed", range(10))
 def test_attitude_turns_with_the_body(seed: int) -> None:
-    """q' = q (0, omega)/2 is R' = R [omega]x for R = R(q), and keeps |q|; c' = R U."""
+    """q' = q (0, omega)/2 is R' = R [omega]x for R = R(q), and keeps |q|; c' is R U + (1 - |q|^2) U."""
     random = Random(seed)
     q, w, U = rationals(random, 4), vector(random), vector(random)
     rate = attitude_rate(q, w)
@@ -158,7 +162,9 @@ def test_attitude_turns_with_the_body(seed: int) -> None:
     for i in range(3):
         turned = tensors.cross(tuple(R[i]), w)
         assert [(ahead[i][j] - behind[i][j]) / 2 for j in range(3)] == list(turned)
-    assert centre_rate(q, U) == [tensors.dot(tuple(row), U) for row in R]
+    excess = 1 - tensors.dot(tuple(q), tuple(q))
+    expected = [tensors.dot(tuple(row), U) + excess * U[i] for i, row in enumerate(R)]
+    assert centre_rate(q, U) == expected
 
 
 @pytest.mark.parametrize("form", FORMS, ids=lambda form: "".join(form.states))

@@ -19,6 +19,7 @@ from taylor_verify.models.problem import Problem
 from taylor_verify.records.standing import Standing
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.engines.peer import Peer
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
@@ -26,7 +27,12 @@ from taylor_verify.studies import report
 from taylor_verify.studies.tradeoff import measurement, rounds
 from taylor_verify.studies.tradeoff.cold import in_a_new_process
 from taylor_verify.studies.tradeoff.document import TradePoint
-from taylor_verify.studies.tradeoff.measurement import PROCESSES, SCENES, published_settings
+from taylor_verify.studies.tradeoff.measurement import (
+    PROCESSES,
+    SCENES,
+    published_settings,
+    scene_named,
+)
 from taylor_verify.studies.tradeoff.order_statistics import CONFIDENCE, coverage, estimate, place
 from taylor_verify.studies.tradeoff.rounds import YARDSTICK, clock_resolution, measured
 from taylor_verify.studies.tradeoff.setting import setting as real_setting
@@ -87,11 +93,17 @@ class Machine:
     def __init__(self) -> None:
         self.slowness = 1.0
         self.solved: list[str] = []
+        self.now = 0.0
 
     def take(self, name: str, seconds: float) -> float:
         self.slowness *= 1.01
         self.solved.append(name)
+        self.now += seconds * self.slowness
         return seconds * self.slowness
+
+    def clock(self) -> float:
+        """The seconds of the processor."""
+        return self.now
 
 
 @dataclass(frozen=True)
@@ -143,7 +155,7 @@ def names(*words: str) -> list[tuple[str, str]]:
 def test_a_ratio_is_formed_within_its_round(machine: Machine, scene: Scene) -> None:
     """A machine that slows down tenfold over a run shifts no ratio by more than one round does."""
     asked = names(*(f"a{k}:0.04" for k in range(12)))
-    found = measured(scene, asked, seed=3, rounds=18, resolution=1e-9)
+    found = measured(scene, asked, seed=3, rounds=18, resolution=1e-9, clock=machine.clock)
     assert machine.slowness > 10
     # A round has 13 solves or so, each a per cent slower than the one before.
     for one in found.values():
@@ -156,7 +168,7 @@ def test_each_round_has_an_order_of_its_own_and_every_setting(
 ) -> None:
     """Nothing meets always the same neighbour; the yardstick is in every round, asked for or not."""
     asked = names(*(f"a{k}:0.04" for k in range(8)))
-    measured(scene, asked, seed=3, rounds=4, resolution=1e-9)
+    measured(scene, asked, seed=3, rounds=4, resolution=1e-9, clock=machine.clock)
     each = [machine.solved[k : k + 9] for k in range(0, len(machine.solved), 9)]
     assert len(each) == 5
     assert all(sorted(one) == sorted(each[0]) for one in each)
@@ -169,14 +181,14 @@ def test_a_short_solve_is_repeated_until_the_clock_resolves_it(
 ) -> None:
     """A measurement lasts at least a hundred times the clock's resolution."""
     asked = names("quick:0.001")
-    measured(scene, asked, seed=1, rounds=1, resolution=1e-3)
+    measured(scene, asked, seed=1, rounds=1, resolution=1e-3, clock=machine.clock)
     # 0.1 s in solves of a thousandth; the first solve of all is not among them.
     assert machine.solved.count("quick:0.001") - 1 >= 0.1 / 0.001 / machine.slowness
 
 
 def test_what_fails_is_left_out(machine: Machine, scene: Scene) -> None:
     """A setting that does not finish has no time, and the others do."""
-    found = measured(scene, names("broken:0.01", "sound:0.01"), 1, 2, 1e-9)
+    found = measured(scene, names("broken:0.01", "sound:0.01"), 1, 2, 1e-9, machine.clock)
     assert set(found) == {("sound:0.01", "f64")}
     assert machine.solved.count("broken:0.01") == 1
 
@@ -186,7 +198,7 @@ def test_what_is_dear_is_solved_once(
 ) -> None:
     """Its only solve counts, over the yardstick of all the rounds."""
     monkeypatch.setattr(rounds, "_DEAR", -1.0)
-    found = measured(scene, names("dear:0.3"), 1, 3, 1e-9)
+    found = measured(scene, names("dear:0.3"), 1, 3, 1e-9, machine.clock)
     assert machine.solved.count("dear:0.3") == 1
     assert machine.solved.count(YARDSTICK[0]) == 4
     (one,) = found.values()
@@ -211,7 +223,7 @@ def test_the_resolution_is_the_smallest_step_of_the_clock() -> None:
 @pytest.mark.parametrize("name", SCENES)
 def test_every_published_setting_can_be_named_again(name: str) -> None:
     """A worker process gets names alone: each leads to the same solver, once."""
-    asked = tuple(published_settings(load(name)))
+    asked = tuple(published_settings(scene_named(name), True))
     found = [(one.solver.name, one.rung.name) for one in asked]
     assert len(set(found)) == len(found)
     assert YARDSTICK in found
@@ -225,7 +237,18 @@ def test_the_compiled_integrators_of_other_libraries_are_known() -> None:
     """Each name that is published with --outside is one that there is."""
     scene = load("kirchhoff/general-body")
     extra = set(published_settings(scene, True)) - set(published_settings(scene))
-    assert len(extra) == len(measurement._COMPILED) * len(measurement._FOR_THE_COLUMNS)
+    assert len(extra) == len(measurement.PEERS) * len(measurement._FOR_THE_COLUMNS)
+    assert all(isinstance(one.solver, Peer) for one in extra)
+
+
+def test_a_scene_beyond_its_end_has_the_solvers_of_the_columns_alone() -> None:
+    """Taylor on f64 and the peers follow it; the scene is the shipped one until the later time."""
+    name = "kirchhoff/whole-motion until t = 1600"
+    scene, shipped = scene_named(name), load("kirchhoff/whole-motion")
+    assert (scene.name, scene.body, scene.initial) == (name, shipped.body, shipped.initial)
+    assert (scene.clock.instants[0], scene.clock.instants[-1]) == (0, 1600)
+    families = {one.family for one in published_settings(scene, True)}
+    assert families == {"taylor f64", *(f"outside {peer}" for peer in measurement.PEERS)}
 
 
 def test_numbers_and_times_are_apart(monkeypatch: pytest.MonkeyPatch, scene: Scene) -> None:

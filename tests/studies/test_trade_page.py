@@ -81,9 +81,45 @@ def test_the_cheapest_setting_for_so_many_digits(folder: Path) -> None:
     assert six.startswith("**0.80")
     assert nine == twelve
     assert nine.startswith("**1.00** ")
-    _, _, six, nine, twelve = line(table, "fastest compiled other library")
-    assert six.startswith("outside cvode-bdf, **0.9")
-    assert twelve == "not reached"
+
+
+def test_a_peer_that_is_ahead_is_named(tmp_path: Path) -> None:
+    """The fastest stands in the last column with its lead; level are two whose intervals meet."""
+    name = "outside:cvode-bdf?rtol=1e-9&atol=1e-9"
+    told = {}
+    for ratio in (0.2, 0.7, 2.0):
+        low, high = ratio * 0.9, ratio * 1.2
+        timings = tuple(
+            replace(one, ratio=ratio, low=low, high=high, setup_seconds=7.0)
+            if one.solver == name
+            else one
+            for one in TIMES_MADE.timings
+        )
+        write(tmp_path, NUMBERS_MADE, replace(TIMES_MADE, timings=timings))
+        found = load(tmp_path)
+        assert found is not None
+        table = section(page(found, tmp_path), "Beside compiled integrators of other libraries")
+        assert "7.00 s" in table
+        told[ratio] = line(table, "`euler/generic`", " 6 |")
+        twelve = line(table, " 12 |")
+    # taylor at 1e-6 takes 0.8, from 0.72 to 0.96.
+    cells = ["**0.800** @ 1e-06", NOTHING, "**0.200** @ 1e-09", "**cvode-bdf**, 4.0 times"]
+    assert told[0.2][2:] == cells
+    assert told[0.7][-1] == "level: cvode-bdf and taylor"
+    assert told[2.0][-1] == "taylor, 2.5 times"
+    # The yardstick takes two milliseconds, one of them in heyoka.
+    assert twelve[2:] == ["**1.00**", "0.500", "not reached", "taylor, alone"]
+
+
+def test_without_peers_the_page_says_how_to_measure_them(tmp_path: Path) -> None:
+    """The section has a command in place of a table."""
+    points = tuple(p for p in POINTS if not p.solver.startswith("outside"))
+    write(tmp_path, replace(NUMBERS_MADE, points=points), TIMES_MADE)
+    found = load(tmp_path)
+    assert found is not None
+    told = section(page(found, tmp_path), "Beside compiled integrators of other libraries")
+    assert "publish tradeoff --outside" in told
+    assert "|" not in told
 
 
 def test_a_wider_number_has_its_price(folder: Path) -> None:

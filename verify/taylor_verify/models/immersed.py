@@ -12,6 +12,7 @@ from typing import final
 from taylor_verify.models.choice import Choice, Numbers
 from taylor_verify.models.form import Equations
 from taylor_verify.models.kirchhoff import (
+    CLEBSCH_DIFFERENCES,
     CLEBSCH_NAMES,
     ClebschAbout,
     clebsch_equations,
@@ -59,8 +60,7 @@ class Immersed(Mechanics[ImmersedBody, Impulse]):
         return Change()
 
     def choice(self, numbers: Mapping[str, Fraction], rung: Rung) -> Choice:
-        del rung
-        return chosen_equations(numbers)
+        return chosen_equations(numbers, rung)
 
     def units(self, body: ImmersedBody, start: Impulse, span: Fraction) -> Units:
         # x keeps its norm without a force; y may start at zero and take up all the energy.
@@ -97,8 +97,11 @@ def _spun_up(energy: Matrix, state: Vector, angular: Fraction) -> Fraction:
     return root(doubled / angular) if doubled else Fraction(0)
 
 
-def chosen_equations(numbers: Numbers) -> Choice:
-    """Return the equations of x, y, X, L and the 21 coefficients."""
+def chosen_equations(numbers: Numbers, rung: Rung) -> Choice:
+    """Return the equations of x, y, X, L and the 21 coefficients.
+
+    A difference of two of Clebsch's coefficients is a coefficient if the rung holds it.
+    """
     axis = axis_of_symmetry(numbers)
     loads_and_state = {n: v for n, v in numbers.items() if n[0] not in "ABC"}
     if axis is None:
@@ -109,13 +112,15 @@ def chosen_equations(numbers: Numbers) -> Choice:
     diagonals = [numbers[f"{matrix}{i}{i}"] for matrix in "ABC" for i in (across, axis)]
     six = dict(zip(CLEBSCH_NAMES, diagonals, strict=True))
     equal = tuple(n for n in "pqr" if six[n] and six[n] == six[f"{n}'"])
-    replaced = {f"{n}'": six[f"{n}'"] for n in equal}
-    kept = {n: v for n, v in six.items() if n not in replaced}
+    own = {name: value for name, value in six.items() if name[0] not in equal or name in equal}
+    found = {n: six[f"{n}'"] - six[n] for n in "pqr" if six[n] != six[f"{n}'"]}
+    held = {CLEBSCH_DIFFERENCES[n]: value for n, value in found.items() if rung.holds(value)}
     said = [f"Clebsch's T about axis {axis}: 6 coefficients of 21"]
     said += [f"{n}' = {n}" for n in equal]
+    said += [f"{d} = {n}' - {n}" for n, d in CLEBSCH_DIFFERENCES.items() if d in held]
     plain = axis == 3 and not equal
     equations = clebsch_equations if plain else ClebschAbout(axis, equal)
-    return Choice(equations, {**loads_and_state, **kept}, replaced, tuple(said))
+    return Choice(equations, {**loads_and_state, **own, **held}, six, tuple(said))
 
 
 def axis_of_symmetry(numbers: Numbers) -> int | None:

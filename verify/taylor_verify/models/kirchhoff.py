@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import reduce
 from typing import Any, Final
 
 from taylor_verify.models.algebra import (
@@ -19,14 +20,16 @@ from taylor_verify.models.algebra import (
     add,
     apply,
     cross,
-    dot,
     minus,
+    plus,
     times,
     transpose,
 )
 from taylor_verify.models.form import Named, frame_rates, labelled
 
 CLEBSCH_NAMES: Final = ("p", "p'", "q", "q'", "r", "r'")
+# The names of p' - p, q' - q and r' - r, for a body that has them as coefficients of its own.
+CLEBSCH_DIFFERENCES: Final = {"p": "D1", "q": "D2", "r": "D3"}
 
 
 def velocities(
@@ -48,58 +51,49 @@ def impulse_rates(
 
 
 def clebsch_rates(
-    x: Terms, y: Terms, coefficients: Terms, X: Terms, L: Terms
+    x: Terms, y: Terms, coefficients: Terms, X: Terms, L: Terms, differences: Terms = ()
 ) -> tuple[list[Any], list[Any]]:
     """Return both rates for Clebsch's T, where six products of the state serve for eighteen.
 
     x3' is 49 (3). y3' is the couple's third component alone, by 49 (2), whatever the force: without
-    it y3 is a constant and the caller passes a parameter. Coefficients stand by themselves, never as
-    differences such as q' - q, which the arithmetic of a rung would have to round. Where q' is the
-    very object that q is, the body is the same in all directions as far as q goes, and the terms of
-    that difference are left out; likewise p' and p, r' and r.
+    it y3 is a constant and the caller passes a parameter. ``differences`` are p' - p, q' - q and r' - r,
+    as far as the caller has them exactly. One that is None, or all of them where nothing is passed,
+    is formed as it goes, term by term: the arithmetic of a rung would have to round it.
     """
     p, p_prime, q, q_prime, r, r_prime = coefficients
+    dp, dq, dr = differences or (None, None, None)
     x1, x2, x3 = x
     y1, y2, y3 = y
     x1x3, x2x3, x3y1, x3y2 = x1 * x3, x2 * x3, x3 * y1, x3 * y2
     x1y3, x2y3, y1y3, y2y3 = times(x1, y3), times(x2, y3), times(y1, y3), times(y2, y3)
 
-    def sum_of(positive: Sequence[Terms], negative: Sequence[Terms]) -> Any:
-        kept, taken = _uncancelled(positive, negative)
-        total = dot(*zip(*kept, strict=True)) if kept else ABSENT
-        for coefficient, term in taken:
-            total = minus(total, times(coefficient, term))
-        return total
+    def by_p(term: Any) -> Any:
+        return _by_difference(dp, p_prime, p, term)
+
+    def by_q(term: Any) -> Any:
+        return _by_difference(dq, q_prime, q, term)
+
+    def by_r(term: Any) -> Any:
+        return _by_difference(dr, r_prime, r, term)
 
     x_rate = [
-        sum_of([(q_prime, x2x3), (r_prime, x2y3)], [(q, x2x3), (r, x3y2)]),
-        sum_of([(q, x1x3), (r, x3y1)], [(q_prime, x1x3), (r_prime, x1y3)]),
+        minus(plus(by_q(x2x3), times(r_prime, x2y3)), times(r, x3y2)),
+        minus(times(r, x3y1), plus(by_q(x1x3), times(r_prime, x1y3))),
         times(r, x1 * y2 - x2 * y1),
     ]
     y_rate = [
-        sum_of(
-            [(q_prime, x3y2), (r_prime, y2y3), (p_prime, x2x3), (q_prime, x2y3)],
-            [(q, x2y3), (r, y2y3), (p, x2x3), (q, x3y2)],
-        ),
-        sum_of(
-            [(q, x1y3), (r, y1y3), (p, x1x3), (q, x3y1)],
-            [(q_prime, x3y1), (r_prime, y1y3), (p_prime, x1x3), (q_prime, x1y3)],
-        ),
+        reduce(plus, [by_q(x3y2), by_r(y2y3), by_p(x2x3), by_q(x2y3)]),
+        minus(0, reduce(plus, [by_q(x3y1), by_r(y1y3), by_p(x1x3), by_q(x1y3)])),
         0,
     ]
     return add(x_rate, X), add(y_rate, L)
 
 
-def _uncancelled(
-    positive: Sequence[Terms], negative: Sequence[Terms]
-) -> tuple[list[Terms], list[Terms]]:
-    """The products without those that occur with both signs: the same coefficient, the same term."""
-    # Identity, not equality: two numbers may be equal by chance, and in one body only.
-    added, taken = ([(id(c), id(term)) for c, term in terms] for terms in (positive, negative))
-    return (
-        [term for key, term in zip(added, positive, strict=True) if key not in taken],
-        [term for key, term in zip(taken, negative, strict=True) if key not in added],
-    )
+def _by_difference(difference: Any, primed: Any, plain: Any, term: Any) -> Any:
+    """Return (primed - plain) term, with the difference where it is had."""
+    if difference is None:
+        return minus(times(primed, term), times(plain, term))
+    return times(difference, term)
 
 
 # The equations of a form.
@@ -118,7 +112,7 @@ class ClebschAbout:
     """Kirchhoff's equations for Clebsch's T about body axis 1, 2 or 3.
 
     ``equal`` lists those of p, q, r that are the same along the axis as across it: p' is p then, and
-    has no name of its own.
+    has no name of its own. The difference of two others may be a parameter.
     """
 
     axis: int = 3
@@ -131,7 +125,11 @@ class ClebschAbout:
         # A cyclic change of names turns the axes and mirrors nothing.
         order = [(self.axis + k) % 3 for k in range(3)]
         x, y, X, L = ([n.vector(letter)[i] for i in order] for letter in "xyXL")
-        found = clebsch_rates(x, y, six, X, L)
+        differences = [
+            ABSENT if name in self.equal else n.get(difference)
+            for name, difference in CLEBSCH_DIFFERENCES.items()
+        ]
+        found = clebsch_rates(x, y, six, X, L, differences)
         x_rate, y_rate = ([rate[order.index(i)] for i in range(3)] for rate in found)
         A, B, C = ([[ABSENT] * 3 for _ in range(3)] for _ in range(3))
         for block, across, along in zip((A, B, C), six[::2], six[1::2], strict=True):

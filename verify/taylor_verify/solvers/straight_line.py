@@ -8,7 +8,8 @@ floating point the rates are the same to the last bit.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from taylor_verify.models.form import Form
@@ -17,25 +18,47 @@ from taylor_verify.models.symbol import Symbol
 Rates = Callable[[Any, Sequence[Any]], list[Any]]
 
 
+@dataclass(frozen=True)
+class Lines:
+    """The equations of a form as assignments in + - * /, an operation a line, which many languages read.
+
+    State k is called ``s{k}`` and parameter k ``p{k}``. ``rates`` are the names of the results in the order
+    of the states. ``constants`` are numbers that the equations have besides, by name.
+    """
+
+    lines: tuple[str, ...]
+    rates: tuple[str, ...]
+    constants: Mapping[str, Any]
+
+
+def lines(form: Form) -> Lines:
+    """Return the lines that compute the rates of a form."""
+    code = _Code()
+    results = tuple(code.word(rate) for rate in form.rates(*_names(form)))
+    return Lines(tuple(code.lines), results, code.constants)
+
+
 def straight_line(form: Form, parameters: Sequence[Any]) -> Rates:
     """Return ``rates(t, state)`` in the arithmetic of the parameters and the state; t is not looked at."""
-    code = _Code()
-    states = [Symbol(f"s{k}") for k in range(len(form.states))]
-    names = [Symbol(f"p{k}") for k in range(len(form.parameters))]
-    results = [code.word(rate) for rate in form.rates(states, names)]
-    lines = [
+    code, (states, names) = lines(form), _names(form)
+    text = [
         f"def bound({_listed([*names, *map(Symbol, code.constants)])}):",
         " def rates(t, state):",
         f"  {_listed(states)} = state",
         *(f"  {line}" for line in code.lines),
-        f"  return [{', '.join(results)}]",
+        f"  return [{', '.join(code.rates)}]",
         " return rates",
     ]
     made: dict[str, Any] = {}
     # The text is made of the names s0, p0, c0, t0, ... and of + - * / alone.
-    exec("\n".join(lines), made)
+    exec("\n".join(text), made)
     rates: Rates = made["bound"](*parameters, *code.constants.values())
     return rates
+
+
+def _names(form: Form) -> tuple[list[Symbol], list[Symbol]]:
+    states = [Symbol(f"s{k}") for k in range(len(form.states))]
+    return states, [Symbol(f"p{k}") for k in range(len(form.parameters))]
 
 
 class Endless(Exception):

@@ -109,6 +109,12 @@ def prepare(name: str, tell: Tell = _log.warning) -> None:
         raise NotMade(answer)
 
 
+def command_of(solver: Outside, tell: Tell = _log.warning) -> list[str] | Lack:
+    """Return the words that start the script of an engine that stays, or the reason why there are none."""
+    command = _command(solver, tell)
+    return command if isinstance(command, Lack) else [*command, "serve"]
+
+
 def _command(solver: Outside, tell: Tell) -> list[str] | Lack:
     if solver.block not in _commands:
         script = solver.engine.script

@@ -13,6 +13,7 @@ rungs = ["f64"]                        optional
 models = ["euler", "kirchhoff"]        optional
 loads = false                          optional: takes no constant loads and no wheels
 data = "tensor"                        optional: takes I and omega as they stand; else I^-1 and I omega
+serves = true                          optional: answers many questions in one process (service.py)
 unavailable = "..."                    optional: why nothing can install it
 [tool.taylor-verify.methods]           optional: each method is a solver, with its title
 bdf = "BDF, order 1 to 5"
@@ -54,6 +55,7 @@ class About(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     models: tuple[str, ...] = ("euler", "kirchhoff")
     loads: bool = True
     data: Literal["inverse", "tensor"] = "inverse"
+    serves: bool = False
     unavailable: str = ""
     methods: Mapping[str, str] = {}
     settings: Mapping[str, float | str | list[str]] = {}

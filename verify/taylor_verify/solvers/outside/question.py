@@ -16,12 +16,12 @@ import json
 import math
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import Any
 
-from equations import rates
+from equations import Rates, rates
 
 Row = Sequence[float]
 # The method and the settings by name, numbers as numbers; the library's own names of them are the
@@ -35,7 +35,8 @@ class Question:
 
     ``instants`` are the absolute times since the start that are asked for, from 0 on and strictly
     rising; ``columns`` the names that the answer needs besides t, and ``times`` is its column t.
-    ``bits`` is the significand of the rung, 53 for float64.
+    ``bits`` is the significand of the rung, 53 for float64. ``code`` is the text of ``rates(s, p)`` where
+    the equations come with the question, and else empty: those of equations.py for the columns.
     """
 
     bits: int
@@ -46,6 +47,13 @@ class Question:
     instants: list[float]
     asks_start: bool
     times: list[str]
+    code: str = ""
+
+    @property
+    def equations(self) -> Hashable:
+        """All that compiled equations depend on."""
+        numbers = tuple(self.parameters), self.sign, len(self.state)
+        return self.code, tuple(self.columns), *numbers
 
     @property
     def end(self) -> float:
@@ -57,6 +65,7 @@ class Solved:
     """The states at the instants of the question, and the work they took; times in seconds.
 
     A ``remark`` is a sentence on how they were had, such as the axes that an engine has worked in.
+    ``again`` propagates once more, for a script that stays to be timed (service.py).
     """
 
     states: Sequence[Row]
@@ -65,10 +74,19 @@ class Solved:
     seconds: float
     compile_seconds: float
     remark: str = ""
+    again: Callable[[], Any] | None = None
 
 
 def answer(solve: Callable[[Question, Settings], Solved]) -> None:
-    """Read the question on stdin, solve it as the arguments say, write the answer on stdout."""
+    """Read the question on stdin, solve it as the arguments say, write the answer on stdout.
+
+    With the argument `serve` the script stays, and answers requests as service.py says.
+    """
+    if sys.argv[1:] == ["serve"]:
+        from service import serve
+
+        serve(solve)
+        return
     settings = arguments()
     question = read(json.load(sys.stdin))
     solved = solve(question, settings)
@@ -104,12 +122,39 @@ def _timed(propagate: Callable[[], Any]) -> tuple[Any, float]:
     return found, time.perf_counter() - began
 
 
+def once_for_equations(make: Callable[[Question], Any]) -> Callable[[Question], Any]:
+    """Return the function with a memory: what it makes of the same equations is made once."""
+    known: dict[Hashable, Any] = {}
+
+    def made(question: Question) -> Any:
+        if question.equations not in known:
+            known[question.equations] = make(question)
+        return known[question.equations]
+
+    return made
+
+
+def equations_of(question: Question, jit: Any = None) -> Rates:
+    """Return ``rates(s, p)`` of a question, a tuple; ``jit`` compiles each function of it."""
+    compiled = jit or (lambda function: function)
+    if not question.code:
+        return rates(question.columns, compiled)
+    made: dict[str, Any] = {}
+    exec(question.code, made)
+    found: Rates = compiled(made["rates"])
+    return found
+
+
+@once_for_equations
 def compiled_rates(question: Question) -> Any:
     """Return ``fill(state, out)``, the rates compiled by numba; the body's numbers are constants of it."""
     import numpy
     from numba import njit
 
-    found = rates(question.columns, njit)
+    # Equations that come with the question are compiled as C and heyoka's are: a product and a sum in one
+    # rounding, and no look whether a divisor is zero.
+    jit = njit(fastmath={"contract"}, error_model="numpy") if question.code else njit
+    found = equations_of(question, jit)
     parameters = numpy.array(question.parameters)
     sign, n = question.sign, len(question.state)
 
@@ -118,7 +163,7 @@ def compiled_rates(question: Question) -> Any:
         for i in range(n):
             out[i] = sign * f[i]
 
-    return njit(fill)
+    return jit(fill)
 
 
 # Reading.

@@ -8,6 +8,7 @@
 # ]
 # [tool.taylor-verify]
 # title = "CyRK"
+# serves = true
 # [tool.taylor-verify.methods]
 # dop853 = "Dormand-Prince 8(5,3)"
 # tsit5 = "Tsitouras 5(4)"
@@ -29,10 +30,17 @@ right-hand side does, in the argument that CyRK keeps for it.
 from __future__ import annotations
 
 import ctypes
-from functools import cache
 from typing import Any
 
-from question import Question, Settings, Solved, answer, compiled_rates, twice
+from question import (
+    Question,
+    Settings,
+    Solved,
+    answer,
+    compiled_rates,
+    once_for_equations,
+    twice,
+)
 
 METHODS = {
     "dop853": "DOP853",
@@ -46,14 +54,15 @@ MOST_MEMORY = 2000
 
 
 def solve(question: Question, settings: Settings) -> Solved:
-    # Compiled by the first propagation; whoever holds the address must hold the code behind it too.
-    compiled = cache(lambda: _right_hand_side(question))
-    (states, steps, evaluations), seconds, compiling = twice(
-        lambda: _propagated(compiled().address, question, settings)
-    )
-    return Solved(states, steps, evaluations, seconds, compiling)
+    def propagate() -> tuple[Any, int, int]:
+        return _propagated(_right_hand_side(question).address, question, settings)
+
+    (states, steps, evaluations), seconds, compiling = twice(propagate)
+    return Solved(states, steps, evaluations, seconds, compiling, again=propagate)
 
 
+# Compiled by the first propagation; whoever holds the address must hold the code behind it too.
+@once_for_equations
 def _right_hand_side(question: Question) -> Any:
     from CyRK import cyjit
     from numba import carray

@@ -10,6 +10,7 @@
 # ]
 # [tool.taylor-verify]
 # title = "diffrax on JAX"
+# serves = true
 # rungs = ["f32", "f64"]
 # [tool.taylor-verify.methods]
 # tsit5 = "Tsitouras 5(4)"
@@ -26,10 +27,18 @@ evaluations are not counted by diffrax.
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
-from equations import rates
-from question import Question, Settings, Solved, answer, twice
+from question import (
+    Question,
+    Settings,
+    Solved,
+    answer,
+    equations_of,
+    once_for_equations,
+    twice,
+)
 
 METHODS = {"tsit5": "Tsit5", "dopri8": "Dopri8"}
 DOUBLE_BITS = 53
@@ -42,32 +51,52 @@ def solve(question: Question, settings: Settings) -> Solved:
     import diffrax
     import jax.numpy as jnp
 
-    f, sign = rates(question.columns), question.sign
+    compiled = _compiled(question)(settings.method)
+    numbers = (question.state, question.instants, question.parameters)
+    given = [jnp.array(v) for v in (*numbers, settings.rtol, settings.atol)]
 
-    def field(t: Any, state: Any, parameters: Any) -> Any:
-        return sign * jnp.stack(f(state, parameters))
+    def propagate() -> Any:
+        return jax.block_until_ready(compiled(*given))
 
-    def propagated(start: Any, instants: Any, parameters: Any) -> Any:
-        return diffrax.diffeqsolve(
-            diffrax.ODETerm(field),
-            getattr(diffrax, METHODS[settings.method])(),
-            t0=0.0,
-            t1=question.end,
-            dt0=None,
-            y0=start,
-            args=parameters,
-            saveat=diffrax.SaveAt(ts=instants),
-            stepsize_controller=diffrax.PIDController(rtol=settings.rtol, atol=settings.atol),
-            max_steps=None,
-            throw=False,
-        )
-
-    compiled = jax.jit(propagated)
-    given = [jnp.array(v) for v in (question.state, question.instants, question.parameters)]
-    found, seconds, compiling = twice(lambda: jax.block_until_ready(compiled(*given)))
+    found, seconds, compiling = twice(propagate)
     if found.result != diffrax.RESULTS.successful:
         raise SystemExit(f"diffrax: {found.result}")
-    return Solved(found.ys.tolist(), int(found.stats["num_steps"]), 0, seconds, compiling)
+    steps = int(found.stats["num_steps"])
+    return Solved(found.ys.tolist(), steps, 0, seconds, compiling, again=propagate)
+
+
+@once_for_equations
+def _compiled(question: Question) -> Any:
+    """Return the propagation by method; the tolerances are arguments, so that one code serves all."""
+    import diffrax
+    import jax
+    import jax.numpy as jnp
+
+    f, sign = equations_of(question), question.sign
+
+    def field(t: Any, state: Any, parameters: Any) -> Any:
+        return sign * jnp.stack([jnp.asarray(v, state.dtype) for v in f(state, parameters)])
+
+    @cache
+    def by(method: str) -> Any:
+        def propagated(start: Any, instants: Any, parameters: Any, rtol: Any, atol: Any) -> Any:
+            return diffrax.diffeqsolve(
+                diffrax.ODETerm(field),
+                getattr(diffrax, METHODS[method])(),
+                t0=0.0,
+                t1=instants[-1],
+                dt0=None,
+                y0=start,
+                args=parameters,
+                saveat=diffrax.SaveAt(ts=instants),
+                stepsize_controller=diffrax.PIDController(rtol=rtol, atol=atol),
+                max_steps=None,
+                throw=False,
+            )
+
+        return jax.jit(propagated)
+
+    return by
 
 
 if __name__ == "__main__":

@@ -6,11 +6,14 @@ The numbers are the same on any machine, but for the rounding. The times are tho
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Final
 
 from taylor_verify.records.standing import Standing
 
 # None stands for a number that is not finite, or does not exist.
 Number = float | None
+# Between the name of a shipped scene and the time until which it is followed beyond its own end.
+UNTIL: Final = " until t = "
 
 
 def label(solver: str, setting: str, rung: str) -> str:
@@ -68,6 +71,11 @@ class TradeScene:
     attainable: dict[str, Number] = field(default_factory=dict)
     requests: tuple[str, ...] = ()
 
+    @property
+    def is_long(self) -> bool:
+        """True for a scene that is followed beyond its own end, with the solvers of the columns alone."""
+        return UNTIL in self.scene
+
 
 @dataclass(frozen=True)
 class PlainDouble:
@@ -105,6 +113,7 @@ class TradeTiming:
 
     ``ratio`` is that to the yardstick, between ``low`` and ``high``; both are None where the processes
     are too few for an interval. ``inner_seconds`` is the part in compiled code, where it is known.
+    ``setup_seconds`` came before the first solve of a process: compiling, the longest of all processes.
     """
 
     scene: str
@@ -116,6 +125,7 @@ class TradeTiming:
     low: Number
     high: Number
     processes: int
+    setup_seconds: Number = None
 
     @property
     def spread(self) -> float | None:

@@ -14,17 +14,24 @@ from __future__ import annotations
 import random
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
+from dataclasses import replace
+from fractions import Fraction
 from importlib.metadata import PackageNotFoundError, version
 from math import inf
 from typing import Final
 
 from taylor_verify.judge.provenance import command, packages, processor, versions
 from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.engines.engine import prepare
+from taylor_verify.solvers.engines.launcher import NotMade
+from taylor_verify.solvers.engines.session import end_sessions
 from taylor_verify.studies.tradeoff.cold import in_a_new_process
 from taylor_verify.studies.tradeoff.document import (
+    UNTIL,
     TimingMachine,
     TradeNumbers,
     TradeScene,
@@ -44,7 +51,7 @@ from taylor_verify.studies.tradeoff.setting import (
     setting,
     taylor,
 )
-from taylor_verify.studies.tradeoff.timing import SEED
+from taylor_verify.studies.tradeoff.timing import SEED, cold_caches
 from taylor_verify.studies.tradeoff.trade_off import (
     TradeOff,
     request_sentences,
@@ -52,10 +59,14 @@ from taylor_verify.studies.tradeoff.trade_off import (
     trade_off,
 )
 
+# Beyond its end the last of them is chaotic: no method has six digits there after a hundred periods.
 SCENES: Final = (
     *("euler/generic", "euler/with-attitude"),
     *("kirchhoff/whole-motion", "kirchhoff/general-body"),
+    *(f"euler/generic{UNTIL}800", f"euler/with-attitude{UNTIL}800"),
+    f"kirchhoff/whole-motion{UNTIL}1600",
 )
+_SAMPLES: Final = 101
 # The fewest whose two extremes hold the median with 95 %.
 PROCESSES: Final = 6
 # Every power of ten, so that the cheapest setting for so many digits is among them. RK45 would take
@@ -69,10 +80,11 @@ _SCIPY: Final = {
     "scipy:BDF": ("1e-3", "1e-6"),
 }
 _ODEFUN: Final = "mpmath:odefun?tol=1e-6"
-# Of the other libraries those whose equations are compiled too. Each solve compiles anew, for seconds:
-# so the tolerances are three, at which such methods leave a little more than 6, 9 and 12 digits.
-_COMPILED: Final = ("cyrk-dop853", "cyrk-lsoda", "diffrax-dopri8")
-_FOR_THE_COLUMNS: Final = ("1e-8", "1e-11", "1e-13")
+# Integrators of other libraries that are compiled as heyoka's are: they take turns with all others. For
+# the columns they and taylor have every power of ten.
+PEERS: Final = ("dop853", "cyrk-dop853", "cvode-adams", "diffrax-dopri8")
+_FOR_THE_COLUMNS: Final = tuple(f"1e-{digits}" for digits in range(5, 16))
+_OF_TAYLOR: Final = ("1e-3", *_FOR_THE_COLUMNS)
 _OWN_TOLERANCE: Final = ("f32", "f80", "f128", "mp237")
 
 # A scene with the settings that are timed on it.
@@ -89,14 +101,20 @@ def measurement(
 ) -> tuple[TradeNumbers, TradeTimings]:
     """Solve the scenes with every published setting, then time what is sound in fresh processes.
 
-    ``finished`` is called with the name of each part as it ends.
+    ``finished`` is called with the name of each part as it ends. A library whose environment cannot be made
+    is a setting that is not run.
     """
+    if with_outside:
+        for name in PEERS:
+            with suppress(NotMade):
+                prepare(name, finished)
     trades = []
-    for scene in map(load, names):
+    for scene in map(scene_named, names):
         settings = tuple(published_settings(scene, with_outside))
         # What is published must not hang on how busy the machine was.
         trades.append(trade_off(scene, settings, 0, seed, patience=inf))
         finished(f"errors of {scene.name}")
+    end_sessions()
     asked = [
         (one.scene, [p.timed.setting.name for p in sound_points(one.points)]) for one in trades
     ]
@@ -127,10 +145,33 @@ def _versions() -> dict[str, str]:
     return found
 
 
+def scene_named(name: str) -> Scene:
+    """Return a shipped scene, or one that is followed until a later time, as ``SCENES`` write it."""
+    shipped, _, end = name.partition(UNTIL)
+    scene = load(shipped)
+    if not end:
+        return scene
+    instants = tuple(Fraction(end) * k / (_SAMPLES - 1) for k in range(_SAMPLES))
+    title = f"{scene.title}{UNTIL}{end}"
+    return replace(scene, name=name, title=title, digest="", clock=Clock(Fraction(0), instants))
+
+
 def published_settings(scene: Scene, with_outside: bool = False) -> Iterator[Setting]:
-    """Yield the settings family by family, the coarsest first: taylor on every rung, all else on f64."""
+    """Yield the settings family by family, the coarsest first: taylor on every rung, all else on f64.
+
+    On a scene beyond its own end there are taylor on f64 and the peers alone.
+    """
+    f64, is_long = rung_named("f64"), UNTIL in scene.name
+    yield from taylor(f64, _OF_TAYLOR)
+    if not is_long:
+        yield from _for_short_scenes(scene)
+    if with_outside:
+        yield from outside(["f64"], PEERS, _FOR_THE_COLUMNS)
+
+
+def _for_short_scenes(scene: Scene) -> Iterator[Setting]:
+    """Yield what takes seconds for a hundred periods, or is compared on the short scenes alone."""
     f64 = rung_named("f64")
-    yield from taylor(f64)
     for name in _OWN_TOLERANCE:
         yield setting(YARDSTICK[0], rung_named(name))
     for solver, tolerances in _SCIPY.items():
@@ -141,15 +182,19 @@ def published_settings(scene: Scene, with_outside: bool = False) -> Iterator[Set
         if not scene.track - {"omega"}:
             # Seconds a solve: the scene with the fewest equations says enough.
             yield setting(_ODEFUN, f64)
-    if with_outside:
-        yield from outside(["f64"], _COMPILED, _FOR_THE_COLUMNS)
 
 
 def one_process(asked: Sequence[Asked], seed: int, rounds: int) -> dict[str, dict[Name, Measured]]:
-    """Return what one process measures, by scene; the scenes too in an order of its own."""
+    """Return what one process measures, by scene; the scenes too in an order of its own.
+
+    Everything is compiled there for the first time.
+    """
     scenes = list(asked)
     random.Random(seed).shuffle(scenes)
-    return {scene.name: measured(scene, names, seed, rounds) for scene, names in scenes}
+    with cold_caches():
+        found = {scene.name: measured(scene, names, seed, rounds) for scene, names in scenes}
+    end_sessions()
+    return found
 
 
 def _timings(
@@ -174,6 +219,7 @@ def _timing(scene: str, name: Name, every: Sequence[Measured]) -> TradeTiming:
         low=ratio.low,
         high=ratio.high,
         processes=len(every),
+        setup_seconds=max(one.setup for one in every),
     )
 
 

@@ -18,16 +18,14 @@ from taylor_verify.records.standing import Standing
 from taylor_verify.studies import figures
 from taylor_verify.studies.tradeoff.document import PlainDouble, TradePoint
 from taylor_verify.studies.tradeoff.pareto import pareto
+from taylor_verify.studies.tradeoff.peers import DIGITS, TAYLOR, peers_told
 from taylor_verify.studies.tradeoff.pictures import time_by_rung
 from taylor_verify.studies.tradeoff.pictures import trade as of_one_scene
-from taylor_verify.studies.tradeoff.stored import TimedPoint, Trade, Trades
+from taylor_verify.studies.tradeoff.stored import TimedPoint, Trade, Trades, cheapest
 from taylor_verify.studies.tradeoff.timing_method import how_it_was_timed, remake, what_is_timed
 
-DIGITS: Final = (6, 9, 12)
 _NOT_REACHED: Final = "not reached"
-_TAYLOR: Final = "taylor f64"
 _RIVALS: Final = ("scipy DOP853", "scipy LSODA", "scipy RK45", "scipy Radau", "scipy BDF")
-_OUTSIDE: Final = "outside"
 _GEOMETRIC: Final = "geometric "
 _CLOSED_FORM: Final = "closed-form ellipj"
 _ASKED: Final = (1e-3, 1e-6, 1e-9, 1e-12)
@@ -75,20 +73,22 @@ def page(found: Trades, folder: Path) -> str:
         "leaves the digits that the first line of each scene says. Where the intervals of neighbouring "
         "tolerances overlap, which of them is the cheapest is chance.",
         _by_digits(found),
+        "## Beside compiled integrators of other libraries",
+        *peers_told(found),
         "## What a wider number costs",
         "Taylor at each rung's own tolerance: time over that in float64, and the digits that are left. "
         "*attainable* are those that rounding the state once a sample, and nothing else, would leave.",
         _by_rung(found),
-        figures.shown(folder, _of_rungs(found.trades)),
+        figures.shown(folder, _of_rungs(found.short)),
         "## Asked for and achieved",
         "A tolerance bounds the error of one step, or what the solver takes for it, and promises "
         "nothing of the answer. The digits that were left at each:",
         _by_request(found),
         "## In pictures",
-        *(figures.shown(folder, _of_trade(one)) for one in found.trades),
+        *(figures.shown(folder, _of_trade(one)) for one in found.short),
         "## The front",
         "The settings in float64 that no other beats in both time and error, the fastest first.",
-        *(_front(trade) for trade in found.trades),
+        *(_front(trade) for trade in found.short),
         "## Geometric integrators",
         "Fixed steps, in the scene's unit of time. They keep what they promise, to the last bits: all of "
         "them the momentum in space, the midpoint and Moser and Veselov's the energy too, which "
@@ -113,7 +113,7 @@ def page(found: Trades, folder: Path) -> str:
 
 def pictures(found: Trades) -> list[Picture]:
     """Return the pictures of every scene, and that of all rungs."""
-    return [*(one for trade in found.trades for one in _of_trade(trade)), *_of_rungs(found.trades)]
+    return [*(one for trade in found.short for one in _of_trade(trade)), *_of_rungs(found.short)]
 
 
 def _of_trade(found: Trade) -> list[Picture]:
@@ -138,17 +138,14 @@ def _of_rungs(found: Sequence[Trade]) -> list[Picture]:
 def _by_digits(found: Trades) -> str:
     columns = ["scene", "solver", *(f"{digits} digits:" for digits in DIGITS)]
     rows = []
-    for trade in found.trades:
+    for trade in found.short:
         yardstick = _yardstick(trade, found.numbers.yardstick)
         rows.append([code(trade.scene), yardstick, *[""] * len(DIGITS)])
         ran = {p.family for p in trade.points if p.standing is not Standing.NOT_RUN}
-        for family in (_TAYLOR, *_RIVALS, _CLOSED_FORM):
+        for family in (TAYLOR, *_RIVALS, _CLOSED_FORM):
             if family in ran:
                 own = [row for row in trade.sound if row.point.family == family]
                 rows.append(["", _family(family), *(_cheapest(own, digits) for digits in DIGITS)])
-        others = [row for row in trade.sound if row.point.family.startswith(_OUTSIDE)]
-        cells = [_cheapest(others, n, named=True) if others else "not measured" for n in DIGITS]
-        rows.append(["", "fastest compiled other library", *cells])
     return table(columns, rows)
 
 
@@ -167,15 +164,13 @@ def _digits(point: TradePoint, exact: str = "exact") -> str:
     return exact if point.achieved_digits is None else f"{point.achieved_digits:.1f} digits"
 
 
-def _cheapest(rows: Iterable[TimedPoint], digits: int, named: bool = False) -> str:
+def _cheapest(rows: Iterable[TimedPoint], digits: int) -> str:
     """Return ratio, interval and tolerance of the fastest that leaves so many digits."""
-    reached = [row for row in rows if row.error <= 10.0**-digits]
-    if not reached:
+    best = cheapest(rows, digits)
+    if best is None:
         return _NOT_REACHED
-    best = min(reached, key=lambda row: row.timing.ratio)
-    who = f"{_family(best.point.family)}, " if named else ""
     is_tolerance = best.point.asked == "tolerance" and best.point.requested
-    return f"{who}{_ratio(best)}{f' @ {best.point.requested:.0e}' if is_tolerance else ''}"
+    return f"{_ratio(best)}{f' @ {best.point.requested:.0e}' if is_tolerance else ''}"
 
 
 def _ratio(row: TimedPoint) -> str:
@@ -190,12 +185,12 @@ def _ratio(row: TimedPoint) -> str:
 def _by_rung(found: Trades) -> str:
     own = {
         trade.scene: {row.point.rung: row for row in trade.sound if _is_own_tolerance(row.point)}
-        for trade in found.trades
+        for trade in found.short
     }
     rungs = {p.rung for p in found.numbers.points if _is_own_tolerance(p)}
     ladder = sorted(rungs, key=place_of_rung)
     rows = []
-    for trade in found.trades:
+    for trade in found.short:
         on = own[trade.scene]
         cells = [f"{_ratio(on[r])}, {_digits(on[r].point)}" if r in on else NOTHING for r in ladder]
         rows.append([code(trade.scene), *cells])
@@ -213,7 +208,7 @@ def _is_own_tolerance(point: TradePoint) -> bool:
 def _by_request(found: Trades) -> str:
     columns = ["scene", "solver", *(f"{-log10(asked):.0f} asked for:" for asked in _ASKED)]
     rows = []
-    for trade in found.trades:
+    for trade in found.short:
         for family in dict.fromkeys(p.family for p in trade.points if p.asked == "tolerance"):
             own = [p for p in trade.points if p.family == family]
             cells = [_achieved(own, asked) for asked in _ASKED]

@@ -1,7 +1,9 @@
 """The times of one process: settings in rounds of random order, as multiples of the round's yardstick.
 
 A time alone says as much of the machine as of the solver, so that what is kept is its ratio to the time
-of taylor on f64 in the same round, when the machine was as warm, as busy and as fast.
+of taylor on f64 in the same round, when the machine was as warm, as busy and as fast. Times are those of
+the processor: what other programs do at the time is no part of them. A peer has a process of its own,
+takes its turns with all others, and times itself in the same way.
 """
 
 from __future__ import annotations
@@ -13,12 +15,13 @@ from dataclasses import dataclass
 from functools import partial
 from math import ceil
 from statistics import median
-from time import perf_counter
+from time import perf_counter, thread_time
 from typing import Final, NamedTuple, TypeVar
 
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.engines.peer import Peer
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome
 from taylor_verify.studies.tradeoff.document import TimingMethod
@@ -46,23 +49,25 @@ class Measured:
     """The times of one setting in one process: medians of its rounds, per solve.
 
     ``ratio`` is that of the seconds to the yardstick's of the same round, ``inner`` the seconds in
-    somebody else's compiled integrator, where known.
+    somebody else's compiled integrator, where known, and ``setup`` what the first solve compiled.
     """
 
     seconds: float
     ratio: float
     inner: float | None
+    setup: float
 
 
 class _Taken(NamedTuple):
     """A measurement: seconds a solve, those of them in a compiled integrator, the wait for it.
 
-    What compiled before the propagation is not waited for again.
+    What compiled before the propagation, ``setup``, is not waited for again.
     """
 
     seconds: float
     inner: float | None
     waited: float
+    setup: float = 0.0
 
 
 def measured(
@@ -71,18 +76,19 @@ def measured(
     seed: int,
     rounds: int = ROUNDS,
     resolution: float | None = None,
+    clock: Callable[[], float] = thread_time,
 ) -> dict[Name, Measured]:
     """Measure these settings on a scene; one that does not finish here is left out.
 
-    The yardstick is measured with them, asked for or not.
+    The yardstick is measured with them, asked for or not. ``clock`` tells the processor's seconds.
     """
     least = max(_LEAST_SECONDS, _TIMES_RESOLUTION * (resolution or clock_resolution()))
     first: dict[Name, _Taken] = {}
     turns: dict[Name, Callable[[], _Taken | None]] = {}
     for name in dict.fromkeys([YARDSTICK, *names]):
         solver, rung = name[0], rung_named(name[1])
-        solve = partial(_solved, setting(solver, rung).solver, pose(scene, rung))
-        if (taken := solve(1)) is None:
+        solve = partial(_solved, setting(solver, rung).solver, pose(scene, rung), clock)
+        if (taken := solve(1, is_first=True)) is None:
             continue
         first[name] = taken
         is_unit = name == YARDSTICK
@@ -130,12 +136,18 @@ def _summed(
         median(taken.seconds for taken, _ in rounds),
         median(taken.seconds / seconds for taken, seconds in rounds),
         median(inner) if len(inner) == len(rounds) else None,
+        first.setup,
     )
 
 
-def _solved(solver: Solver, problem: Problem, count: int) -> _Taken | None:
-    """Solve so many times, as the solver times itself; None if a solve did not finish."""
-    began = perf_counter()
+def _solved(
+    solver: Solver, problem: Problem, clock: Callable[[], float], count: int, is_first: bool = False
+) -> _Taken | None:
+    """Solve so many times by the processor's clock; None if a solve did not finish."""
+    if isinstance(solver, Peer) and not is_first:
+        seconds = solver.seconds(problem, count)
+        return None if seconds is None else _Taken(seconds, None, seconds)
+    began, at = perf_counter(), clock()
     made = []
     for _ in range(count):
         # The numbers of a trajectory are not wanted, and would fill the memory.
@@ -143,10 +155,17 @@ def _solved(solver: Solver, problem: Problem, count: int) -> _Taken | None:
         if trajectory.outcome is not Outcome.FINISHED:
             return None
         made.append((trajectory.seconds, trajectory.compile_seconds, trajectory.inner_seconds))
-    waited = perf_counter() - began
-    seconds, compiling, inner = zip(*made, strict=True)
-    inside = None if None in inner else sum(inner) / count
-    return _Taken(sum(seconds) / count, inside, (waited - sum(compiling)) / count)
+    spent, waited = clock() - at, perf_counter() - began
+    stated, compiling, inner = (list(values) for values in zip(*made, strict=True))
+    if isinstance(solver, Peer):
+        return _Taken(stated[0], None, stated[0], compiling[0])
+    # What has compiled has stated its propagation apart.
+    seconds = min(spent, sum(stated)) if is_first else spent
+    # heyoka's part is known of the time on the wall, of which it is as large a share.
+    known = [part for part in inner if part is not None]
+    share = sum(known) / sum(stated) if len(known) == count and sum(stated) else None
+    inside = None if share is None else share * seconds / count
+    return _Taken(seconds / count, inside, (waited - sum(compiling)) / count, compiling[0])
 
 
 def _count(taken: _Taken, least: float) -> int:

@@ -13,6 +13,8 @@ from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.engines.engine import Outside, engines
+from taylor_verify.solvers.engines.peer import Peer
 from taylor_verify.solvers.registry import CLOSED_FORM, PROCESS, TAYLOR, solver_named
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.taylor.driver import Taylor
@@ -127,17 +129,18 @@ def outside(
 
 def toleranced() -> list[str]:
     """Return the names of the engines with a tolerance to choose: one of fixed steps has none."""
-    from taylor_verify.solvers.engines.engine import engines
-
     return [name for name, one in engines().items() if "rtol" in one.script.about.settings]
 
 
 def setting(name: str, rung: Rung) -> Setting:
     """Return the setting of a solver by its name, which says how accurate it is asked to be.
 
-    Raises ValueError for a name that is no solver.
+    A library whose script stays is a peer: it is timed as the solvers of this process are. Raises
+    ValueError for a name that is no solver.
     """
     solver = solver_named(name)
+    if isinstance(solver, Outside) and solver.engine.script.about.serves:
+        solver = Peer(solver)
     if isinstance(solver, Taylor):
         tolerance = 2 * rung.unit_roundoff if solver.tolerance is None else solver.tolerance
         return Setting(solver, rung, float(tolerance), TOLERANCE, f"taylor {rung.name}")
@@ -153,9 +156,9 @@ def setting(name: str, rung: Rung) -> Setting:
     return Setting(solver, rung, None, NOTHING, family.replace(":", " "))
 
 
-def taylor(rung: Rung) -> Iterator[Setting]:
+def taylor(rung: Rung, tolerances: Iterable[str] = _TOLERANCES) -> Iterator[Setting]:
     """Yield each tolerance that the rung can hold, and the rung's own: heyoka's is the machine epsilon."""
-    for text in _TOLERANCES:
+    for text in tolerances:
         # The last step down to epsilon would be another name for it.
         if float(text) > 10 * float(2 * rung.unit_roundoff):
             yield setting(f"{TAYLOR}?tol={text}", rung)

@@ -6,7 +6,7 @@ tradeoff-timings.json   seconds, ratios and intervals; the machine's own, and ne
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -59,6 +59,11 @@ class Trade:
         return self.about.scene
 
     @property
+    def is_long(self) -> bool:
+        """True for a scene that is followed beyond its own end, with few solvers."""
+        return self.about.is_long
+
+    @property
     def sound(self) -> tuple[TimedPoint, ...]:
         """The points that may be compared: sound, and timed in every process."""
         timed = ((p, self._timing(p)) for p in self.points if p.standing is Standing.SOUND)
@@ -103,6 +108,17 @@ class Trades:
             Trade(one, tuple(p for p in points if p.scene == one.scene), timings.get(one.scene, {}))
             for one in self.numbers.scenes
         )
+
+    @property
+    def short(self) -> tuple[Trade, ...]:
+        """The scenes as they are shipped, on which all solvers are compared."""
+        return tuple(trade for trade in self.trades if not trade.is_long)
+
+
+def cheapest(rows: Iterable[TimedPoint], digits: int) -> TimedPoint | None:
+    """Return the fastest that leaves so many digits; None where none does."""
+    reached = [row for row in rows if row.error <= 10.0**-digits]
+    return min(reached, key=lambda row: row.timing.ratio, default=None)
 
 
 def write(folder: Path, numbers: TradeNumbers, times: TradeTimings) -> list[Path]:

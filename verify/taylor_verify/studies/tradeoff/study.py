@@ -20,7 +20,7 @@ def _measure(folder: Path, progress: Progress, outside: bool = False) -> Measure
 STUDY: Final = Study(
     name="tradeoff",
     title="speed against accuracy, every solver, measured once",
-    duration="minutes, a quiet machine; with --outside a quarter of an hour more",
+    duration="minutes, a quiet machine; with --outside twenty",
     measure=_measure,
     find=load,
     page=page.page,
@@ -29,8 +29,8 @@ STUDY: Final = Study(
     options=(
         Option(
             "outside",
-            "measure compiled integrators of other libraries too, each solve a program of its own that "
-            "compiles first",
+            "measure compiled integrators of other libraries too, in turns with all others; their "
+            "environments are made first, a download",
         ),
     ),
 )

@@ -31,7 +31,7 @@ WHAT_IS_TIMED: Final = (
     "the solver's own propagation; taylor runs compiled equations and looks for its longest step in "
     "Python, scipy calls straight-line equations in Python, geometric and odefun are Python "
     "throughout, a program of one's own is timed as it states itself, and those of other libraries "
-    "state their second propagation"
+    "state a later propagation than their first, on the processor's clock where their process stays"
 )
 
 Clock = Callable[[], float]

@@ -33,10 +33,10 @@ _WHAT_IS_TIMED: Final = (
     ),
     ("mpmath", "`odefun` as a whole, Python throughout", "making the straight-line code"),
     (
-        "outside, process",
-        "what the program states of its own propagation; where it states nothing, all of it with "
-        "its start",
-        "what the program says it compiled before",
+        "outside",
+        "the propagation as a whole, compiled; the process of the library times it by the same clock, "
+        "in as many solves",
+        "compiling, the way of questions and answers between processes",
     ),
 )
 
@@ -59,6 +59,8 @@ def how_it_was_timed(found: Trades) -> list[str]:
         f"{m.times_resolution} times the clock's resolution ({figure(m.clock_resolution)} s), "
         "whichever is longer, so that the resolution is below 1 %. Python's collector of garbage is "
         "off. What takes more than a fifth of a second is solved once a process.",
+        "Times are the processor's, so that what else runs on the machine is no part of them. A library "
+        "of `outside` has a process of its own that stays, and takes its turn there.",
         f"Each time is divided by that of `{found.numbers.yardstick}` in the same round. A process "
         "gives the median of its rounds; the table shows the median of the processes.",
         _brackets(found),
@@ -90,6 +92,6 @@ def remake(found: Trades) -> str:
         f"[tradeoff-timings.json](../{TIMINGS.name}) (times, which are this machine's and which nothing "
         "is ever compared with); this page and its [CSV](tradeoff.csv) are made from those alone. "
         "`make reports` and `make check-reports` leave the times as they are. `--outside` adds "
-        "integrators of other libraries that are compiled as heyoka is. "
+        "the integrators of other libraries that are compiled as heyoka is. "
         f"Made by {code(found.times.machine.command)} with {packages or 'unknown versions'}."
     )

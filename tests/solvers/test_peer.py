@@ -1,0 +1,214 @@
+"""Integrators that stay in a process of their own: what they are asked, what they answer, how they end."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterator
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import pytest
+from builders.programs import is_alive
+
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.solvers.engines import peer as peers
+from taylor_verify.solvers.engines.engine import SCRIPTS, named, prepare
+from taylor_verify.solvers.engines.launcher import NotMade
+from taylor_verify.solvers.engines.peer import Peer, document
+from taylor_verify.solvers.engines.session import end_sessions, session
+from taylor_verify.solvers.straight_line import straight_line
+from taylor_verify.solvers.trajectory import Outcome
+from taylor_verify.studies.tradeoff.accuracy import Truth
+from taylor_verify.studies.tradeoff.measurement import PEERS
+
+# An integrator without a library: the classical method in steps that end on the samples.
+_SCRIPT = """
+import os, sys, time
+sys.path.insert(0, {scripts!r})
+from question import Solved, answer, equations_of, twice
+
+def solve(question, settings):
+    {begins}
+    f = equations_of(question)
+
+    def rates(s):
+        return [question.sign * v for v in f(s, question.parameters)]
+
+    def moved(s, k, h):
+        return [a + h * b for a, b in zip(s, k)]
+
+    def propagate():
+        rows, s = [question.state], question.state
+        for before, after in zip(question.instants, question.instants[1:]):
+            h = (after - before) / {steps}
+            for _ in range({steps}):
+                a = rates(s)
+                b = rates(moved(s, a, h / 2))
+                c = rates(moved(s, b, h / 2))
+                d = rates(moved(s, c, h))
+                s = [v + h / 6 * (p + 2 * q + 2 * r + t) for v, p, q, r, t in zip(s, a, b, c, d)]
+            rows.append(s)
+        return rows
+
+    rows, seconds, compiling = twice(propagate)
+    steps = {steps} * (len(question.instants) - 1)
+    return Solved(rows, steps, 4 * steps, seconds, compiling, again=propagate)
+
+answer(solve)
+"""
+
+
+Made = Callable[..., Peer]
+
+
+@pytest.fixture
+def fake(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Made]:
+    """A peer that is this script in this interpreter."""
+
+    def made(begins: str = "pass", steps: int = 40, limit: str = "60") -> Peer:
+        monkeypatch.setenv("TAYLOR_VERIFY_TIME_LIMIT", limit)
+        script = tmp_path / "with_fake.py"
+        script.write_text(_SCRIPT.format(scripts=str(SCRIPTS), begins=begins, steps=steps))
+        command = [sys.executable, "-B", str(script), "serve"]
+        monkeypatch.setattr(peers, "command_of", lambda engine: command)
+        return Peer(named("outside:dop853?rtol=1e-9"))
+
+    yield made
+    end_sessions()
+
+
+def posed(scene: str) -> Problem:
+    return pose(load(scene), rung("f64"))
+
+
+@pytest.mark.parametrize(
+    "scene", ["euler/backward", "kirchhoff/listed-times", "kirchhoff/general-body"]
+)
+def test_a_peer_is_asked_the_problem_that_heyoka_is_asked(scene: str, fake: Made) -> None:
+    """Its states, at the samples and in the problem's own form, are the exact motion."""
+    problem = posed(scene)
+    found = fake(steps=200).solve(problem)
+    assert (found.outcome, found.detail) == (Outcome.FINISHED, "")
+    assert found.evaluations == 4 * found.steps > 0
+    # The method is of fourth order, and no step is longer than a fortieth of a radian or so.
+    assert Truth(problem).accuracy(found).worst <= 1e-5
+
+
+def test_the_code_of_a_peer_is_the_code_of_this_process() -> None:
+    """Read back from the document, the lines give the rates of the form to the last bit."""
+    problem = posed("kirchhoff/whole-motion")
+    asked = json.loads(json.dumps(document(problem)))
+    sys.path.insert(0, str(SCRIPTS))
+    try:
+        service, question = import_module("service"), import_module("question")
+        read = service._read(asked)
+        found = question.equations_of(read)(read.state, read.parameters)
+    finally:
+        sys.path.remove(str(SCRIPTS))
+        for name in ("service", "question", "equations"):
+            sys.modules.pop(name, None)
+    parameters = [float(value) for value in problem.parameters]
+    expected = straight_line(problem.form, parameters)(0.0, read.state)
+    assert list(found) == expected
+    assert read.parameters == parameters
+    assert read.instants == [float(t) for t in problem.times]
+
+
+def test_a_peer_is_timed_without_its_start(fake: Made) -> None:
+    """Seconds of a solve are the processor's in the propagation, as often as asked, and grow with it."""
+    problem = posed("euler/generic")
+    short, long = fake(steps=1), None
+    few = short.seconds(problem, 3)
+    end_sessions()
+    long = fake(steps=30).seconds(problem, 3)
+    assert few is not None
+    assert long is not None
+    assert 0 < few < long
+
+
+def test_one_process_answers_all_questions(fake: Made) -> None:
+    """A second question is asked of the process that answered the first, and that one ends when told."""
+    one = fake(begins="sys.stderr.write(str(os.getpid()) + chr(10)); sys.stderr.flush()", steps=1)
+    for scene in ("euler/generic", "kirchhoff/screw"):
+        assert one.solve(posed(scene)).outcome is Outcome.FINISHED
+    words = session(peers.command_of(one.engine))._last_words().split()  # type: ignore[arg-type]
+    assert len(words) == 2
+    assert len(set(words)) == 1
+    assert is_alive(words[0])
+    end_sessions()
+    assert not is_alive(words[0])
+
+
+@pytest.mark.parametrize(
+    ("begins", "outcome", "words"),
+    [
+        ("raise ValueError('no such step')", Outcome.RAISED, "no such step"),
+        ("raise SystemExit('CVODE: too much work')", Outcome.RAISED, "too much work"),
+        ("sys.exit('last words') if 0 else os._exit(3)", Outcome.CRASHED, ""),
+        ("time.sleep(60)", Outcome.TIMED_OUT, ""),
+    ],
+)
+def test_a_peer_that_fails_is_an_outcome(
+    begins: str, outcome: Outcome, words: str, fake: Made
+) -> None:
+    """An error, a crash and a time limit are outcomes, and the next question is answered all the same."""
+    problem = posed("euler/generic")
+    found = fake(begins, limit="1").solve(problem)
+    assert found.outcome is outcome
+    assert words in found.detail
+    assert fake(begins, limit="1").seconds(problem, 1) is None
+    end_sessions()
+    assert fake(steps=1).solve(problem).outcome is Outcome.FINISHED
+
+
+def test_what_a_library_prints_is_no_answer(fake: Made) -> None:
+    """Words on the standard output go to standard error, and the answer is read all the same."""
+    assert fake("print('a banner', flush=True)", steps=1).solve(posed("euler/generic")).outcome is (
+        Outcome.FINISHED
+    )
+
+
+def test_a_peer_without_its_environment_is_unavailable(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It says why, and is asked on f64 alone."""
+    one = Peer(named("outside:dop853"))
+    assert "f64 alone" in one.unavailable(rung("f80"))
+    monkeypatch.setattr("taylor_verify.solvers.engines.python._uv", lambda: None)
+    found = one.solve(posed("euler/generic"))
+    assert found.outcome is Outcome.NO_PACKAGE
+    assert "uv is not installed" in found.detail
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", PEERS)
+def test_a_real_peer_keeps_near_its_tolerance(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each answers all states, backwards too, near its tolerance, and states what setting up took."""
+    # A test downloads nothing: `taylor-verify tradeoff --outside` does.
+    monkeypatch.setenv("UV_OFFLINE", "1")
+    try:
+        prepare(name)
+    except NotMade as reason:
+        pytest.skip(str(reason))
+    try:
+        for scene in ("euler/backward", "kirchhoff/whole-motion"):
+            problem = posed(scene)
+            one = Peer(named(f"outside:{name}?rtol=1e-8"))
+            found = one.solve(problem)
+            assert (found.outcome, found.detail) == (Outcome.FINISHED, "")
+            # These orbits carry an error of each step on thirtyfold at most.
+            assert Truth(problem).accuracy(found).worst <= 1e-8 * found.steps * 30
+            # Nothing compiles but before the first solve.
+            seconds = one.seconds(problem, 5)
+            assert seconds is not None
+            assert 0 < seconds < found.compile_seconds
+    finally:
+        end_sessions()
+
+
+def test_every_peer_is_there() -> None:
+    """The columns that are published are engines whose scripts stay."""
+    found: list[Any] = [named(f"outside:{name}") for name in PEERS]
+    assert all(one.engine.script.about.serves for one in found)

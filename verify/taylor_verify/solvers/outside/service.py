@@ -1,0 +1,106 @@
+"""Service of a script that stays: many problems, asked line by line, and timed again as often as asked.
+
+A request and its answer are one line of JSON each, on the standard input and output.
+
+    {"problem": {...}, "settings": {...}}   solves, and keeps the problem
+        {"place": 0, "states": [[...], ...], "steps": 9, "evaluations": 99, "seconds": ...,
+         "setup_seconds": ...}
+    {"again": 0, "count": 100}              propagates so many times; seconds of one of them
+        {"seconds": ...}
+    anything that fails
+        {"fault": "a sentence"}
+
+A problem has its equations as lines of + - * / with it: ``lines`` and the names of the results, ``rates``,
+as solvers/straight_line.py of taylor-verify writes them, with ``constants``, ``parameters``, ``state`` and
+``instants`` as hexadecimal floats. The instants begin with 0 and rise, and ``sign`` -1 asks for the motion
+backwards in time. Seconds are those of the processor, in all threads of this process.
+"""
+
+from __future__ import annotations
+
+import gc
+import json
+import os
+import sys
+import time
+from collections.abc import Callable
+from typing import Any
+
+from question import Question, Settings, Solved, floats
+
+Solve = Callable[[Question, Settings], Solved]
+
+
+def serve(solve: Solve) -> None:
+    """Answer the requests on the standard input until it ends."""
+    # What a library says on the standard output would stand among the answers.
+    answers = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)
+    kept: list[Callable[[], Any]] = []
+    for line in sys.stdin:
+        try:
+            answer = _answer(json.loads(line), solve, kept)
+        except (Exception, SystemExit) as error:  # a library's own: the caller hears of it
+            answer = {"fault": f"{type(error).__name__}: {error}"}
+        print(json.dumps(answer), file=answers, flush=True)
+
+
+def _answer(request: Any, solve: Solve, kept: list[Callable[[], Any]]) -> dict[str, Any]:
+    if "again" in request:
+        return {"seconds": _timed(kept[request["again"]], request["count"])}
+    began = time.process_time()
+    solved = solve(_read(request["problem"]), Settings(**request["settings"]))
+    spent = time.process_time() - began
+    assert solved.again is not None
+    kept.append(solved.again)
+    seconds = _timed(solved.again, 1)
+    return {
+        "place": len(kept) - 1,
+        "states": [[float(value).hex() for value in state] for state in solved.states],
+        "steps": int(solved.steps),
+        "evaluations": int(solved.evaluations),
+        "seconds": seconds,
+        # Beside compiling two propagations are in it.
+        "setup_seconds": max(0.0, spent - 2 * seconds),
+    }
+
+
+def _timed(propagate: Callable[[], Any], count: int) -> float:
+    """Return the processor's seconds of one propagation of so many."""
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        began = time.process_time()
+        for _ in range(count):
+            propagate()
+        return (time.process_time() - began) / count
+    finally:
+        if enabled:
+            gc.enable()
+
+
+def _read(problem: Any) -> Question:
+    return Question(
+        bits=53,
+        columns=[],
+        parameters=floats(problem["parameters"]),
+        state=floats(problem["state"]),
+        sign=problem["sign"],
+        instants=floats(problem["instants"]),
+        asks_start=True,
+        times=[],
+        code=_code(problem),
+    )
+
+
+def _code(problem: Any) -> str:
+    """Return the text of ``rates(s, p)``, which returns a tuple."""
+    constants = zip(problem["constants"], floats(list(problem["constants"].values())), strict=True)
+    lines = [
+        *(f"s{k} = s[{k}]" for k in range(len(problem["state"]))),
+        *(f"p{k} = p[{k}]" for k in range(len(problem["parameters"]))),
+        *(f"{name} = {value!r}" for name, value in constants),
+        *problem["lines"],
+        f"return ({', '.join(problem['rates'])},)",
+    ]
+    return "\n".join(["def rates(s, p):", *(f" {line}" for line in lines)])

@@ -1,0 +1,155 @@
+"""The section of the page that sets taylor beside compiled integrators of other libraries."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+from taylor_verify.publish.cells import NOTHING, figure
+from taylor_verify.publish.markdown import bold, bullets, code, prose, table
+from taylor_verify.studies.tradeoff.document import UNTIL
+from taylor_verify.studies.tradeoff.stored import TimedPoint, Trade, Trades, cheapest
+
+DIGITS: Final = (6, 9, 12)
+OUTSIDE: Final = "outside "
+TAYLOR: Final = "taylor f64"
+_NOT_REACHED: Final = "not reached"
+_NONE: Final = (
+    "Not measured: `taylor-verify publish tradeoff --outside` does, and makes their environments."
+)
+_WHAT: Final = (
+    "Integrators that are compiled as heyoka is, on the scenes above and on three of them for about a "
+    "hundred periods. Each runs in a process of its own that stays, and takes its turn with all others in "
+    "every round. All have the same equations, generated from one form, the same samples, and an error "
+    "measured by the same exact motion. A cell is the processor's time of the cheapest tolerance, of all "
+    "powers of ten from 1e-5 to 1e-15, that leaves so many digits, over that of the yardstick. *ahead* "
+    "is the fastest, with its lead: over the next where that is taylor, else over taylor. It is *level* "
+    "where the intervals of the two overlap."
+)
+# Families of the columns in words; any other goes by its own name.
+_TITLES: Final = {
+    "outside dop853": "DOP853 in numba",
+    "outside cyrk-dop853": "CyRK DOP853",
+    "outside cvode-adams": "SUNDIALS CVODE",
+    "outside diffrax-dopri8": "diffrax Dopri8",
+}
+_HOW: Final = (
+    "DOP853 in numba is ours: the method and the equations in one function, which numba compiles. A "
+    "library has to call the equations.",
+    "CyRK is C++, and calls equations that numba compiled.",
+    "CVODE (Adams, by scikit-sundae) is C, and calls equations that numba compiled by way of Python, for "
+    "want of another.",
+    "diffrax is compiled as a whole by XLA (`jit`).",
+    "The time of taylor has in it what its driver does in Python around heyoka's compiled steps.",
+)
+_SET_UP: Final = (
+    "Set-up, which no time above has in it: the processor's seconds before the first solve of a process, "
+    "compiling above all, the longest of all processes. taylor compiles once for each tolerance and form, "
+    "and finds its code again on disk in later processes, which was switched off here; the others compile "
+    "once for a body, in every process anew."
+)
+
+
+def peers_told(found: Trades) -> list[str]:
+    """Return the paragraphs and tables of the section; a sentence where no peer was measured."""
+    if not any(_peers(trade) for trade in found.trades):
+        return [_NONE]
+    return [_WHAT, _times(found), bullets(_HOW), _SET_UP, _set_up(found)]
+
+
+def _peers(trade: Trade) -> list[str]:
+    """Return the families of other libraries that were asked, those that could not be had included."""
+    return list(dict.fromkeys(p.family for p in trade.points if p.family.startswith(OUTSIDE)))
+
+
+def _families(found: Trades) -> list[str]:
+    """Return the families of the columns: taylor, those with a title in that order, and any other."""
+    asked = dict.fromkeys(family for trade in found.trades for family in _peers(trade))
+    known = [family for family in _TITLES if family in asked]
+    return [TAYLOR, *known, *(family for family in asked if family not in known)]
+
+
+def _title(family: str) -> str:
+    return _TITLES.get(family, prose(family.removeprefix(OUTSIDE).removesuffix(" f64")))
+
+
+def _of_family(trade: Trade, family: str) -> list[TimedPoint]:
+    return [row for row in trade.sound if row.point.family == family]
+
+
+# The times.
+
+
+def _times(found: Trades) -> str:
+    families = _families(found)
+    rows = []
+    for trade in found.trades:
+        for digits in DIGITS:
+            best = {f: cheapest(_of_family(trade, f), digits) for f in families}
+            ours, *others = (_cell(best[f], bool(_of_family(trade, f))) for f in families)
+            name = code(trade.scene) if digits == DIGITS[0] else ""
+            ahead = _ahead([row for row in best.values() if row])
+            rows.append([name, str(digits), ours, _inner(best[TAYLOR]), *others, ahead])
+    columns = ["taylor:", "of which heyoka:", *(f"{_title(f)}:" for f in families[1:])]
+    return table(["scene", "digits:", *columns, "ahead"], rows)
+
+
+def _cell(row: TimedPoint | None, is_there: bool) -> str:
+    if row is None:
+        return _NOT_REACHED if is_there else NOTHING
+    asked = f" @ {row.point.requested:.0e}" if row.point.requested else ""
+    return f"{bold(figure(row.timing.ratio))}{asked}"
+
+
+def _inner(row: TimedPoint | None) -> str:
+    """Return the part of a time that heyoka's own compiled code took, in the same unit."""
+    if row is None or not row.timing.inner_seconds:
+        return NOTHING
+    return figure(row.timing.ratio * row.timing.inner_seconds / row.timing.seconds)
+
+
+def _ahead(reached: Sequence[TimedPoint]) -> str:
+    """Return the fastest in words, with its lead over the next, or over taylor."""
+    if not reached:
+        return "nobody"
+    first, *others = sorted(reached, key=lambda row: row.timing.ratio)
+    name = _title(first.point.family)
+    if not others:
+        return f"{name}, alone"
+    is_taylor = first.point.family == TAYLOR
+    ours = next((row for row in others if row.point.family == TAYLOR), None)
+    other = others[0] if is_taylor else ours
+    if other is None:
+        return f"{bold(name)}: taylor does not reach them"
+    if _overlap(first, other):
+        return f"level: {name} and {_title(other.point.family)}"
+    lead = f"{other.timing.ratio / first.timing.ratio:.1f} times"
+    return f"{name}, {lead}" if is_taylor else f"{bold(name)}, {lead}"
+
+
+def _overlap(first: TimedPoint, other: TimedPoint) -> bool:
+    """Return True if the intervals of two times meet; without intervals the times are taken as they are."""
+    high, low = first.timing.high, other.timing.low
+    return high is not None and low is not None and low <= high
+
+
+# The set-up.
+
+
+def _set_up(found: Trades) -> str:
+    families = _families(found)
+    scenes = dict.fromkeys(trade.scene.partition(UNTIL)[0] for trade in found.trades)
+    rows = [[code(scene), *(_longest(found, scene, f) for f in families)] for scene in scenes]
+    return table(["scene", *(f"{_title(f)}:" for f in families)], rows)
+
+
+def _longest(found: Trades, scene: str, family: str) -> str:
+    """Return the longest set-up of a family on a scene: the short or the long one compiles for both."""
+    seconds = [
+        row.timing.setup_seconds
+        for trade in found.trades
+        if trade.scene.partition(UNTIL)[0] == scene
+        for row in _of_family(trade, family)
+        if row.timing.setup_seconds is not None
+    ]
+    return f"{figure(max(seconds))} s" if seconds else NOTHING
