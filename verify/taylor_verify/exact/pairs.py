@@ -1,10 +1,11 @@
 """Arrays of balls whose midpoints are sums of two doubles: ball arithmetic for many bodies at once.
 
-A number is hi + lo with |lo| at most half a unit in the last place of hi, and lies within ``rad`` of the true
-one. Sums and products of doubles are exact as such pairs (Knuth's TwoSum, Dekker's product), and the
-operations on pairs have proven relative errors below 16 u^2, u = 2^-53 (Joldes, Muller, Popescu, ACM TOMS
-44, 2017: 3 u^2 for the sum, 7 u^2 for the product, 15 u^2 for the quotient, 25/8 u^2 for the root). Radii are sums
-and products of numbers that are not negative: `radius` counts for the roundings of that many operations.
+A number is hi + lo with |lo| at most half a unit in the last place of hi, and lies within ``rad`` of
+the true one. Sums and products of doubles are exact as such pairs (Knuth's TwoSum, Dekker's
+product). The operations on pairs have proven relative errors below 16 u^2, u = 2^-53 (Joldes, Muller,
+Popescu, ACM TOMS 44, 2017: 3 u^2 for the sum, 7 u^2 for the product, 15 u^2 for the quotient,
+25/8 u^2 for the root). Radii are sums and products of numbers that are not negative: `radius`
+makes up for the roundings of so many operations.
 
 FLINT has no arrays of balls; one of its operations from Python costs what some hundred of these cost.
 """
@@ -103,10 +104,10 @@ class Pairs:
     __radd__ = __add__
 
     def __sub__(self, other: Any) -> Pairs:
-        return self + (-other)
+        return self.__add__(-other)
 
     def __rsub__(self, other: Any) -> Pairs:
-        return -self + other
+        return self.__neg__().__add__(other)
 
     def __mul__(self, other: Any) -> Pairs:
         if not isinstance(other, Pairs):

@@ -1,23 +1,23 @@
 """The free motions of many rigid bodies at once, in balls about pairs of doubles.
 
-The bodies have three different moments about the axes of the body, and are not on their separatrix. The legend is
-that of moduli, where FLINT's balls have one body at a time. Written in the momentum H = I w and in K = 1/J, with
-g_ab = |K_a - K_b| and so on,
+The bodies have three different moments about the axes of the body, and are not on their
+separatrix. The legend is that of moduli, where FLINT's balls have one body at a time. Written in
+the momentum H = I w and in K = 1/J, with g_ab = |K_a - K_b| and so on,
 
     A = g_ac H_a^2 + g_bc H_b^2,    C = g_ab H_b^2 + g_ac H_c^2,    N = g_ab H_a^2 - g_bc H_c^2,
     lam^2 = g_ab A,    m = g_bc C/(g_ab A),    m' = g_ac N/(g_ab A),
 
 the motion is H_a = (A/g_ac)^(1/2) dn u, H_b = -sig (C/g_ab)^(1/2) sn u, H_c = (C/g_ac)^(1/2) cn u.
 
-The addition theorem is that of phase. Theta functions are divided by what they are at zero, so that no root of the
-nome q is taken. With w = lam agm(1, k') t,
+The addition theorem is that of phase. Theta functions are divided by what they are at zero, so
+that no root of the nome q is taken. With w = lam agm(1, k') t,
 
     p = sin w - q^2 sin 3w + q^6 sin 5w - ...        sn v = (r_0 p)/(t_0 s)
     t = cos w + q^2 cos 3w + q^6 cos 5w + ...        cn v = (s_0 t)/(t_0 s)
     r, s = 1 +- 2 q cos 2w + 2 q^4 cos 4w +- ...     dn v = (s_0 r)/(r_0 s)
 
-The square of q comes by a step of Landen, k_1' = 2 k'^(1/2)/(1 + k'), from q^2 = e + 2 e^5 + 15 e^9 + ... with
-2 e = (1 - k_1'^(1/2))/(1 + k_1'^(1/2)) (DLMF 20.9.5).
+The square of q comes by a step of Landen, k_1' = 2 k'^(1/2)/(1 + k'), from the series
+q^2 = e + 2 e^5 + 15 e^9 + ... with 2 e = (1 - k_1'^(1/2))/(1 + k_1'^(1/2)) (DLMF 20.9.5).
 """
 
 from __future__ import annotations
@@ -36,8 +36,7 @@ _NOME: Final = (1.0, 2.0, 15.0, 150.0, 1707.0, 20910.0, 268616.0, 3567400.0)
 _MEANS: Final = 8
 # Angles are counted from multiples of pi over this.
 _PARTS: Final = 32
-# The terms of theta functions beyond those that are balls. A nome as large as the last ones ask for is that of a
-# body within 10^-5 of its separatrix.
+# The terms of theta functions beyond those that are balls. Beyond the largest nome m' is below 10^-4.
 _TAIL: Final = range(3, 8)
 _LARGEST_NOME: Final = 0.45
 _UNIT: Final = 2.0**-53
@@ -81,7 +80,10 @@ class Tops:
 
 
 class _Orbit(NamedTuple):
-    """The numbers of n orbits: columns (n, 1), but for the axes a, b, c (3, n) and what is known of them (n)."""
+    """The numbers of n orbits, in columns (n, 1).
+
+    ``axes`` (3, n) are the places of a, b, c; ``is_known`` (n) tells the orbits that are decided.
+    """
 
     axes: Any
     is_known: Any
@@ -132,9 +134,7 @@ def _orbit(inverse: Floats, momentum: Pairs) -> _Orbit:
         is_known=is_known,
         speed=_column(rate_squared.sqrt() * _mean(k_prime)),
         nome=_column(nome),
-        forms=tuple(
-            (_column(one * size), _column(other * size)) for (one, other), size in forms
-        ),
+        forms=tuple((_column(one * size), _column(other * size)) for (one, other), size in forms),
         squares=(_column(cn * cn), _column((sn * gamma) * (sn * gamma))),
     )
 
@@ -185,9 +185,7 @@ def _powers(q: Pairs) -> _Powers:
     fourth = second * second
     sixth = fourth * second
     eighth = fourth * fourth
-    return _Powers(
-        q, fourth.scaled(2.0), eighth * q, 1.0 - second, sixth, second - sixth, q.hi
-    )
+    return _Powers(q, fourth.scaled(2.0), eighth * q, 1.0 - second, sixth, second - sixth, q.hi)
 
 
 class _Thetas(NamedTuple):
@@ -208,8 +206,8 @@ def _thetas(powers: _Powers, sine: Pairs, cosine: Pairs) -> _Thetas:
     # The rest in doubles: 2 cos 2kw, and sin (2k + 1)w / sin w, cos (2k + 1)w / cos w.
     q, u = powers.nome, twice.hi
     cosines, sines, others = [u * u - 2, u], [u + u * u - 1, u + 1], [u * u - u - 1, u - 1]
-    more = [0.0, 0.0, 0.0, 0.0]
-    error = 0.0
+    more: list[Any] = [0.0, 0.0, 0.0, 0.0]
+    error = np.zeros_like(q)
     for k in _TAIL:
         for rows in (cosines, sines, others):
             rows[:] = [u * rows[0] - rows[1], rows[0]]
