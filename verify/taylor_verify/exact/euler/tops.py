@@ -40,6 +40,8 @@ _PARTS: Final = 32
 _TAIL: Final = range(3, 8)
 _LARGEST_NOME: Final = 0.45
 _UNIT: Final = 2.0**-53
+# The step of a difference, as a power of two of the size of the momentum.
+_DIFFERENCE: Final = -36
 # Sums of small terms in doubles, and what is left out of them: for an angle below pi/64.
 _OF_COSINE: Final = 2.0**-71
 _OF_SINE: Final = 2.0**-73
@@ -71,12 +73,52 @@ class Tops:
             back = np.argsort(orbit.axes, axis=0)[:, :, None]
             hi, lo, rad = (np.take_along_axis(part, back, axis=0) for part in parts)
             rad = np.where(orbit.is_known[:, None], rad, np.inf)
-        return Pairs(hi, lo, rad)
+        # At the start it is the start, to the last bit.
+        start = Pairs(*(np.broadcast_to(part, hi.shape[:2])[:, :, None] for part in self.momentum))
+        return start.chosen(times == 0, Pairs(hi, lo, rad))
+
+    def transition(self, times: Floats) -> tuple[Floats, Floats]:
+        """Return the momentum (3, n, m) and its derivative by the start (n, m, 3, 3), in doubles.
+
+        H moves as H'(0) does into H'(t), and lam H(lam t) is a motion too, so that H(0) moves into
+        H + t H'. The third direction is that of H x H' at the start, by a difference of two motions.
+        """
+        begin, K = self.momentum.hi, self.inverse
+        begin_rate = _cross(begin, K * begin)
+        beside = _cross(begin, begin_rate)
+        size = _squared(begin) ** 0.5 / _squared(beside) ** 0.5
+        step = np.ldexp(1.0, np.frexp(size)[1] + _DIFFERENCE)
+        here = self.motion(times)
+        there = Tops(K, self.momentum + beside * step).motion(times)
+        moved = ((there.hi - here.hi) + (there.lo - here.lo)) / step[:, None]
+        H = here.hi
+        rate = _cross(H, K[:, :, None] * H)
+        became = (H + times * rate, rate, moved)
+        began = (begin, begin_rate, beside)
+        derivative = sum(
+            np.einsum("inm,jn->nmij", end, start / _squared(start))
+            for end, start in zip(became, began, strict=True)
+        )
+        known: Any = np.isfinite(here.radius()).all(axis=0) & np.isfinite(there.radius()).all(
+            axis=0
+        )
+        return H, np.where(known[:, :, None, None], derivative, np.nan)
 
     @cached_property
     def _orbit(self) -> _Orbit:
         with np.errstate(all="ignore"):
             return _orbit(self.inverse, self.momentum)
+
+
+def _cross(a: Floats, b: Floats) -> Floats:
+    return np.stack(
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    )
+
+
+def _squared(vectors: Floats) -> Floats:
+    found: Floats = np.sum(vectors * vectors, axis=0)
+    return found
 
 
 class _Orbit(NamedTuple):

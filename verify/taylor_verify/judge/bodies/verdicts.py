@@ -1,0 +1,219 @@
+"""The verdicts on many free rigid bodies, and which of them stand.
+
+The floor, the truth and the bounds are those of the judge of one body, to some digits. The answers are
+not: a lane steps by other instructions than the integrator of one body, and the roundings of both are two
+draws of one sum, whose root mean square is the floor. A body is judged here only if its lane passes every
+gate with an error below a quarter of the bound, 2.5 floors. The other draw would have to exceed ten floors
+to be judged otherwise, as a sum of hundreds of roundings does in no sample that anybody will see. Every
+other body, and so every one that fails, is left to the judge of one body.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Final
+
+import numpy as np
+
+from taylor_verify.judge.bodies.floor import Floors
+from taylor_verify.judge.bodies.measured import Measured, Quantity
+from taylor_verify.judge.bodies.shifts import Shifts
+from taylor_verify.judge.gates import TRUTH_SHARE
+from taylor_verify.judge.initial import right_start
+from taylor_verify.judge.provenance import provenance
+from taylor_verify.records.error_kind import ErrorKind
+from taylor_verify.records.quantities import GATE_FACTOR, INITIAL
+from taylor_verify.records.reason import Carried, Cause, Reason, RoundoffFloor, shown
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.scenes.precision import Rung
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.trajectory import Outcome
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+
+# A gate is far away at this part of its bound.
+_FAR: Final = 1 / 4
+# A bound is far from the size of the motion, at which it would forbid nothing.
+_LARGEST_BOUND: Final = 1e-3
+
+
+@dataclass(frozen=True)
+class Gate:
+    """A quantity of n bodies with what is attainable (n, m), carried by the orbit or by a gradient."""
+
+    quantity: Quantity
+    attainable: Floats
+    carried: Carried
+
+    @property
+    def is_far(self) -> Any:
+        """Return the bodies (n) that would pass if every error were four times as large."""
+        bounds = GATE_FACTOR * self.attainable
+        passes = (self.quantity.errors <= _FAR * bounds) & (bounds <= _LARGEST_BOUND)
+        passes &= TRUTH_SHARE * self.quantity.widths <= _FAR * bounds
+        return passes.all(axis=1)
+
+
+def gates(measured: Measured, floors: Floors, inverse: Floats, roundoff: float) -> list[Gate]:
+    """Return the gates of omega, T and H2, of bodies with these inverse moments (3, n)."""
+    omega, (energy, momentum) = measured.omega, measured.conserved
+    H = measured.truth[:, :, floors.points.nodes]
+    by_gradient = (
+        Gate(each, roundoff * floors.of_gradients(gradient / each.scale[:, None]), Carried.GRADIENT)
+        for each, gradient in ((energy, inverse[:, :, None] * H), (momentum, 2 * H))
+    )
+    by_orbit = roundoff * floors.omega / omega.scale[:, None]
+    return [Gate(omega, by_orbit, Carried.ORBIT), *by_gradient]
+
+
+@dataclass(frozen=True)
+class Run:
+    """The solver, the rung and the lanes of n bodies.
+
+    ``times`` (n, m) are those of the samples since the start, ``shares`` (m) as parts of the last;
+    ``unit`` (n) is the unit of time in which shifts are counted.
+    ``steps`` (n) are those of each lane, of so many ``evaluations`` each; a lane took ``seconds``.
+    """
+
+    solver: str
+    rung: Rung
+    times: Floats
+    unit: Floats
+    shares: Floats
+    steps: Any
+    evaluations: int
+    seconds: float
+
+
+def verdicts(
+    run: Run, scenes: Mapping[int, Scene], gates: Sequence[Gate], shifts: Shifts, floors: Floors
+) -> dict[int, list[Verdict]]:
+    """Return the verdicts on bodies that pass, by their places, in the order of the judge of one body.
+
+    ``scenes`` are those of the bodies that are asked for.
+    """
+    columns = [_columns(run, gate, floors) for gate in gates]
+    known = provenance("")
+    found = {}
+    for k, scene in scenes.items():
+        shared: dict[str, Any] = {
+            "scene": scene.name,
+            "solver": run.solver,
+            "rung": run.rung.name,
+            "setting": "",
+            "verdict": Status.PASS,
+            "outcome": Outcome.FINISHED.value,
+            "roundoff": float(run.rung.unit_roundoff),
+            "error_kind": ErrorKind.ROUNDOFF,
+            "steps": int(run.steps[k]),
+            "evaluations": int(run.steps[k]) * run.evaluations,
+            "seconds": run.seconds,
+            "provenance": {**known, "scene": scene.digest},
+        }
+        instants = _Instants(scene.clock.start, run.times[k])
+        rows = [_row(column, k, instants, shared) for column in columns]
+        rows[0] = Verdict(**{**vars(rows[0]), **shifts.numbers(k, run.unit[k])})
+        if not run.times[k, 0]:
+            rows.insert(0, _start(columns[0], k, instants, shared))
+        found[k] = rows
+    return found
+
+
+@dataclass(frozen=True)
+class _Instants:
+    start: Fraction
+    times: Floats
+
+    def __getitem__(self, place: int) -> float:
+        elapsed = float(self.times[place])
+        return float(self.start + Fraction(elapsed)) if self.start else elapsed
+
+
+@dataclass(frozen=True)
+class _Columns:
+    """The numbers of one gate, each as a list over the bodies; ``at`` and ``ratio_at`` are places."""
+
+    gate: Gate
+    bits: int
+    max: list[float]
+    mean: list[float]
+    final: list[float]
+    at: list[int]
+    attainable: list[float]
+    ratio: list[float]
+    ratio_at: list[int]
+    steps: list[float]
+    growth: list[float]
+    change: list[float | None]
+
+
+def _columns(run: Run, gate: Gate, floors: Floors) -> _Columns:
+    errors, attainable, every = gate.quantity.errors, gate.attainable, np.arange(len(run.times))
+    worst = np.argmax(errors, axis=1)
+    ratios = np.divide(errors, attainable, out=np.zeros_like(errors), where=errors > 0)
+    ratio_at = np.argmax(ratios, axis=1)
+    value, steps = attainable[every, worst], floors.steps(worst, run.shares)
+    growth = value / (float(run.rung.unit_roundoff) * np.sqrt(steps))
+    change = gate.quantity.change
+    return _Columns(
+        gate,
+        run.rung.bits,
+        errors[every, worst].tolist(),
+        np.mean(errors, axis=1).tolist(),
+        errors[:, -1].tolist(),
+        worst.tolist(),
+        value.tolist(),
+        ratios[every, ratio_at].tolist(),
+        ratio_at.tolist(),
+        steps.tolist(),
+        growth.tolist(),
+        [None] * len(every) if change is None else change.tolist(),
+    )
+
+
+def _row(column: _Columns, k: int, instants: _Instants, shared: dict[str, Any]) -> Verdict:
+    gate, value = column.gate, column.attainable[k]
+    steps, growth = round(column.steps[k]), shown(column.growth[k])
+    floor = RoundoffFloor(gate.carried, shown(value), column.bits, steps, growth)
+    return Verdict(
+        quantity=gate.quantity.name,
+        max=column.max[k],
+        mean=column.mean[k],
+        final=column.final[k],
+        at=instants[column.at[k]],
+        unit=gate.quantity.unit,
+        bound=GATE_FACTOR * value,
+        reason=Reason(floor=floor, factor=float(GATE_FACTOR)),
+        attainable=value,
+        ratio=column.ratio[k],
+        ratio_at=instants[column.ratio_at[k]],
+        change=column.change[k],
+        until=instants[-1],
+        **shared,
+    )
+
+
+def _start(column: _Columns, k: int, instants: _Instants, shared: dict[str, Any]) -> Verdict:
+    """The verdict on the row at the start, by the four digits that a record has."""
+    quantity, at = column.gate.quantity, instants[0]
+    error = shown(float(quantity.errors[k, 0]))
+    value = shown(float(column.gate.attainable[k, 0]))
+    reason = Reason(floor=RoundoffFloor(Carried.START, value), factor=float(GATE_FACTOR))
+    return Verdict(
+        quantity=INITIAL,
+        max=error,
+        mean=error,
+        final=error,
+        at=at,
+        unit=quantity.unit,
+        bound=GATE_FACTOR * value,
+        reason=reason.with_remark(Cause.START, right_start(at)),
+        attainable=value,
+        ratio=error / value,
+        ratio_at=at,
+        until=at,
+        **shared,
+    )
