@@ -141,11 +141,10 @@ def _judged_together(
     compared = measured(tops, answer, bodies.grid)
     base = floors(tops, bodies.grid[:, -1], steps, samples)
     found = gates(compared, base, tops.inverse, float(rung.unit_roundoff))
-    stands = base.is_regular & compared.shifts.is_first_order
+    stands = base.is_known & compared.shifts.is_first_order
     for gate in found:
         stands &= gate.is_far
-    shares = np.array(samples, dtype=float)
-    what = Run(TAYLOR, rung, bodies.times, bodies.time, shares, steps, lanes.order, seconds)
+    what = Run(TAYLOR, rung, bodies.times, bodies.time, steps, lanes.order, seconds)
     asked = {k: scenes[here[k]] for k in np.flatnonzero(stands).tolist()}
     rows = verdicts(what, asked, found, compared.shifts, base)
     return {here[k]: row for k, row in rows.items()}

@@ -5,12 +5,12 @@ body. Phi comes from the closed form, and because its determinant is 1 its inver
 
     P(t) = Phi(t) [ sum over s <= t of Phi(s)^-1 diag(e(s)^2) Phi(s)^-T ] Phi(t)^T.
 
-Only an orbit on which errors grow no faster than in proportion to time is judged so. Norms are taken
-such that what counts as regular here does so for one body.
+Where errors grow faster than in proportion to time, the orbit is looked at in more points, as it is there.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
@@ -18,8 +18,8 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from taylor_verify.exact.conditioning.condition import REGULAR, few
-from taylor_verify.exact.euler.tops import Tops
+from taylor_verify.exact.conditioning.condition import REGULAR, few, many
+from taylor_verify.exact.euler.tops import Tops, cross
 from taylor_verify.exact.pairs import difference
 from taylor_verify.judge.floor.attainable import MOST_NODES
 from taylor_verify.scenes.instants import evenly
@@ -27,45 +27,58 @@ from taylor_verify.scenes.instants import evenly
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 Places = np.ndarray[Any, np.dtype[np.intp]]
 
-# Of three by three entries the root of the squares is the largest factor of a vector, and no more than this
-# times it.
+# Of three by three entries the root of the squares exceeds the norm by this factor at most.
 _FROBENIUS: Final = 3**0.5
+# So near to what counts as regular it is not decided here.
+_NEAR: Final = 1.02
+# A product of matrices whose determinant is off by more than this has lost its leading digits.
+_VOLUME: Final = 1e-3
 
 
 class Points(NamedTuple):
-    """The points of an orbit as parts of its time, and which of them stand for which sample.
+    """The points of n orbits as parts of their times, and which of them stand for which sample.
 
-    ``later`` and ``earlier`` are, for each sample, the points beside it; ``nodes`` are the samples at which
-    gradients are looked at, ``ends`` the number of points until each, and the last two as the first.
+    ``shares`` (n, p) are the points, the last one again and again where there are fewer; ``later`` and
+    ``earlier`` (n, m) are the points beside each sample, and ``ends`` (n, nodes) the number of points until
+    each node. Nodes are the samples at which gradients are looked at.
     """
 
     shares: Floats
     later: Places
     earlier: Places
-    nodes: Places
     ends: Places
-    later_node: Places
-    earlier_node: Places
+
+    @classmethod
+    def of(cls, samples: tuple[Fraction, ...], points: Sequence[Sequence[Fraction]]) -> Points:
+        """Return the points of orbits with samples at these parts of their times."""
+        at, most = np.array(samples, dtype=float), max(map(len, points))
+        shares = np.ones((len(points), most))
+        for row, each in zip(shares, points, strict=True):
+            row[: len(each)] = [float(share) for share in each]
+        beside = [_beside(row[: len(each)], at) for row, each in zip(shares, points, strict=True)]
+        ends = [
+            np.searchsorted(row[: len(each)], at[nodes(len(at))], side="right")
+            for row, each in zip(shares, points, strict=True)
+        ]
+        later, earlier = (np.array(rows) for rows in zip(*beside, strict=True))
+        return cls(shares, later, earlier, np.array(ends))
+
+    def at(self, places: Places) -> Points:
+        """Return the points of some of the orbits."""
+        return Points(
+            self.shares[places], self.later[places], self.earlier[places], self.ends[places]
+        )
 
 
 @lru_cache(maxsize=64)
-def points(samples: tuple[Fraction, ...]) -> Points:
-    """Return the points of an orbit with samples at these parts of its time."""
-    shares = np.array([float(share) for share in few(samples)])
-    at = np.array([float(share) for share in samples])
-    nodes = np.array(evenly(len(at), MOST_NODES))
-    return Points(
-        shares,
-        *_beside(shares, at),
-        nodes,
-        np.searchsorted(shares, at[nodes], side="right"),
-        *_beside(at[nodes], at),
-    )
+def nodes(samples: int) -> Places:
+    """Return the samples at which gradients are looked at."""
+    return np.array(evenly(samples, MOST_NODES))
 
 
-def _beside(nodes: Floats, places: Floats) -> tuple[Places, Places]:
-    later = np.minimum(np.searchsorted(nodes, places), len(nodes) - 1)
-    earlier = np.maximum(np.searchsorted(nodes, places, side="right") - 1, 0)
+def _beside(points: Floats, places: Floats) -> tuple[Places, Places]:
+    later = np.minimum(np.searchsorted(points, places), len(points) - 1)
+    earlier = np.maximum(np.searchsorted(points, places, side="right") - 1, 0)
     return later, earlier
 
 
@@ -73,51 +86,119 @@ def _beside(nodes: Floats, places: Floats) -> tuple[Places, Places]:
 class Floors:
     """What is attainable by n bodies at m samples: ``omega`` (n, m) in units of its K and H.
 
-    ``counted`` (n, points) are the steps so far, ``rounded`` (3, n, points) the sums of squares of their
-    roundings. ``is_regular`` (n) tells the bodies of which it is the floor.
+    ``reached`` (n, m) are the steps so far; ``squares`` (3, n, nodes) the sums of squares of their
+    roundings. ``is_known`` (n) tells the bodies of which it is the floor.
     """
 
-    points: Points
     omega: Floats
-    counted: Floats
+    reached: Floats
     squares: Floats
-    is_regular: Any
+    is_known: Any
 
-    def steps(self, worst: Places, samples: Floats) -> Floats:
-        """Return the steps (n) until the sample of the largest error, at the parts (m) of the time."""
-        reached = np.searchsorted(self.points.shares, samples[worst], side="right") - 1
-        counts = self.counted[np.arange(len(worst)), reached]
-        return np.maximum(1, np.rint(counts))
+    def put(self, places: Places, others: Floors) -> None:
+        """Put the floors of some bodies in place of these."""
+        self.omega[places], self.reached[places] = others.omega, others.reached
+        self.squares[:, places], self.is_known[places] = others.squares, others.is_known
 
     def of_gradients(self, gradients: Floats) -> Floats:
         """Return the attainable drift (n, m); ``gradients`` (3, n, nodes) are over the scale."""
-        until = self.squares[:, :, self.points.ends - 1]
-        rounded = np.diff(until, axis=2, prepend=0.0)
+        rounded = np.diff(self.squares, axis=2, prepend=0.0)
         drift = np.sqrt(np.cumsum(np.sum(gradients**2 * rounded, axis=0), axis=1))
-        pair = drift[:, self.points.later_node], drift[:, self.points.earlier_node]
-        found: Floats = np.maximum(*pair)
+        count = self.omega.shape[1]
+        later, earlier = _beside(nodes(count).astype(float), np.arange(float(count)))
+        found: Floats = np.maximum(drift[:, later], drift[:, earlier])
         return found
+
+
+@dataclass(frozen=True)
+class _Orbits:
+    """The orbits of some bodies at points of theirs, and how errors of the start are carried there."""
+
+    tops: Tops
+    points: Points
+    times: Floats
+    momentum: Floats
+    carried: Floats
+
+    @classmethod
+    def of(cls, tops: Tops, points: Points, ends: Floats, is_sharp: bool = False) -> _Orbits:
+        times = ends[:, None] * points.shares
+        return cls(tops, points, times, *tops.transition(times, is_sharp))
+
+    def floors(self, steps: Any, samples: int) -> Floors:
+        """Return the floors after so many ``steps`` (n) from one end to the other."""
+        points, K, every = self.points, self.tops.inverse, np.arange(len(steps))[:, None]
+        count = np.maximum(steps, samples).astype(float)
+        steps_at = np.diff(points.shares, prepend=0.0) * count[:, None]
+        steps_at[:, 0] = 1.0
+        rounded = _roundings(K, self.momentum, abs(self.times[:, -1]) / count)
+        squares = np.cumsum(steps_at * rounded**2, axis=2)
+        injected = np.moveaxis(rounded * np.sqrt(steps_at), 0, -1)
+        brought = _inverse(self.carried) * injected[:, :, None, :]
+        gathered = np.cumsum(brought @ np.swapaxes(brought, -1, -2), axis=1)
+        out = K.T[:, None, :, None] * self.carried
+        sizes = np.sqrt(np.sum((out @ gathered) * out, axis=(-1, -2)))
+        return Floors(
+            np.maximum(sizes[every, points.later], sizes[every, points.earlier]),
+            np.cumsum(steps_at, axis=1)[every, points.earlier],
+            squares[:, every, points.ends - 1],
+            abs(np.linalg.det(self.carried) - 1).max(axis=1) <= _VOLUME,
+        )
+
+    def at(self, places: Places) -> _Orbits:
+        """Return the orbits of some of the bodies."""
+        return _Orbits(
+            self.tops.at(places),
+            self.points.at(places),
+            self.times[places],
+            self.momentum[:, places],
+            self.carried[places],
+        )
+
+    @property
+    def may_be_irregular(self) -> Any:
+        """Return the bodies (n) on whose orbits errors may grow faster than in proportion to time."""
+        growth = np.sqrt(np.sum(self.carried**2, axis=(-1, -2)))
+        rate = np.sqrt(np.max(np.sum(self._jacobian() ** 2, axis=(-1, -2)), axis=1)) / _FROBENIUS
+        excess = growth / (REGULAR * (1 + rate[:, None] * abs(self.times)))
+        return ~(np.max(excess, axis=1) * _NEAR <= 1)
+
+    def excess(self) -> tuple[Floats, Floats]:
+        """Return the growth (n) over what counts as regular, and the fastest rate (n)."""
+        growth = np.linalg.norm(self.carried, 2, axis=(-2, -1))
+        rate = np.max(np.linalg.norm(self._jacobian(), 2, axis=(-2, -1)), axis=1)
+        return np.max(growth / (REGULAR * (1 + rate[:, None] * abs(self.times))), axis=1), rate
+
+    def _jacobian(self) -> Floats:
+        """J (n, points, 3, 3) of H' = H x K H: the column k is H x K e_k + e_k x K H."""
+        H, K, unit = self.momentum, self.tops.inverse[:, :, None], np.eye(3)[:, :, None, None]
+        omega = K * H
+        columns = [cross(H, K * unit[k]) + cross(unit[k], omega) for k in range(3)]
+        return np.moveaxis(np.array(columns), (0, 1), (-1, -2))
 
 
 def floors(tops: Tops, ends: Floats, steps: Any, samples: tuple[Fraction, ...]) -> Floors:
     """Return the floors of bodies that took so many ``steps`` (n) until their ``ends`` (n)."""
-    chosen, K = points(samples), tops.inverse
-    times = ends[:, None] * chosen.shares
-    H, Phi = tops.transition(times)
-    count = np.maximum(steps, len(samples)).astype(float)
-    steps_at = np.diff(chosen.shares, prepend=0.0) * count[:, None]
-    steps_at[:, 0] = 1.0
+    chosen = _few(samples).at(np.zeros(len(ends), dtype=np.intp))
     with np.errstate(all="ignore"):
-        rounded = _roundings(K, H, abs(ends) / count)
-        squares = np.cumsum(steps_at * rounded**2, axis=2)
-        injected = np.moveaxis(rounded * np.sqrt(steps_at), 0, -1)
-        brought = _inverse(Phi) * injected[:, :, None, :]
-        gathered = np.cumsum(brought @ np.swapaxes(brought, -1, -2), axis=1)
-        out = K.T[:, None, :, None] * Phi
-        sizes = np.sqrt(np.sum((out @ gathered) * out, axis=(-1, -2)))
-        is_regular = _is_regular(K, H, Phi, times)
-    omega = np.maximum(sizes[:, chosen.later], sizes[:, chosen.earlier])
-    return Floors(chosen, omega, np.cumsum(steps_at, axis=1), squares, is_regular)
+        orbits = _Orbits.of(tops, chosen, ends)
+        found = orbits.floors(steps, len(samples))
+        places = np.flatnonzero(orbits.may_be_irregular)
+        excess, rates = orbits.at(places).excess() if places.size else (np.empty(0), np.empty(0))
+        found.is_known[places[~(excess * _NEAR <= 1)]] = False
+        again = excess >= _NEAR
+        if again.any():
+            irregular = places[again]
+            turned = (rates[again] * abs(ends[irregular])).tolist()
+            points = Points.of(samples, [many(samples, rate) for rate in turned])
+            sharp = _Orbits.of(tops.at(irregular), points, ends[irregular], is_sharp=True)
+            found.put(irregular, sharp.floors(steps[irregular], len(samples)))
+    return found
+
+
+@lru_cache(maxsize=64)
+def _few(samples: tuple[Fraction, ...]) -> Points:
+    return Points.of(samples, [few(samples)])
 
 
 def _roundings(K: Floats, H: Floats, step: Floats) -> Floats:
@@ -147,16 +228,3 @@ def _inverse(Phi: Floats) -> Floats:
     """The inverses of matrices of determinant 1: the rows are products of the columns."""
     a, b, c = (Phi[..., k] for k in range(3))
     return np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=-2)
-
-
-def _is_regular(K: Floats, H: Floats, Phi: Floats, times: Floats) -> Any:
-    growth = np.sqrt(np.sum(Phi**2, axis=(-1, -2)))
-    omega = K[:, :, None] * H
-    # J = [H]x K - [K H]x: off its diagonal, in the row i and the column j, it is +-(K_i - K_j) H_k.
-    pairs = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
-    entries = [
-        (K[j][:, None] * H[k] - omega[k], K[i][:, None] * H[k] - omega[k]) for i, j, k in pairs
-    ]
-    squares = sum(one**2 + two**2 for one, two in entries)
-    rate = np.sqrt(np.max(squares, axis=1)) / _FROBENIUS
-    return (growth <= REGULAR * (1 + rate[:, None] * abs(times))).all(axis=1)

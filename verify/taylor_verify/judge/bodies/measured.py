@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from taylor_verify.exact.euler.tops import Tops
+from taylor_verify.exact.euler.tops import Tops, cross
 from taylor_verify.exact.pairs import Pairs, difference, two_sum
 from taylor_verify.judge.bodies.shifts import Errors, Shifts, shifts
 from taylor_verify.records.quantities import QUANTITIES
@@ -60,9 +60,9 @@ def measured(tops: Tops, answer: Floats, times: Floats) -> Measured:
             lengths(K * truth.radius()) / size,
             scale,
         )
-        rate = _cross(truth.hi, omega)
+        rate = cross(truth.hi, omega)
         velocity = K * rate
-        acceleration = K * (_cross(rate, omega) + _cross(truth.hi, velocity))
+        acceleration = K * (cross(rate, omega) + cross(truth.hi, velocity))
         moved = lengths(K * (answer - answer[:, :, :1])) / size
         found = shifts(Errors(off / size, velocity / size, acceleration / size, moved, times))
         ones = np.ones_like(K)
@@ -88,8 +88,3 @@ def lengths(vectors: Floats) -> Floats:
     """Return the lengths (...) of vectors (3, ...)."""
     found: Floats = np.sqrt(np.sum(vectors * vectors, axis=0))
     return found
-
-
-def _cross(a: Floats, b: Floats) -> Floats:
-    rows = [a[j] * b[k] - a[k] * b[j] for j, k in ((1, 2), (2, 0), (0, 1))]
-    return np.array(rows)

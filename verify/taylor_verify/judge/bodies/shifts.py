@@ -75,9 +75,12 @@ class Errors:
 
     def at(self, places: Any) -> Errors:
         """Return the errors of some answers."""
-        triples = (self.error, self.velocity, self.acceleration)
         return Errors(
-            *(rows[:, places] for rows in triples), self.moved[places], self.times[places]
+            self.error[:, places],
+            self.velocity[:, places],
+            self.acceleration[:, places],
+            self.moved[places],
+            self.times[places],
         )
 
     @cached_property
@@ -190,7 +193,7 @@ def _robust(single: Floats, times: Floats) -> Iterator[Floats]:
 
 
 def _strays(single: Floats, course: Floats, speed: Floats, across: Floats) -> Any:
-    """The samples (n, m) that are off a course by an unusual part of the shift; none where they are many."""
+    """The samples (n, m) that are off a course by an unusual part; none where they are many."""
     samples = single.shape[1]
     off = np.hypot((single - course) * speed, across)
     found = off > UNUSUAL * np.median(off, axis=1, keepdims=True)

@@ -17,7 +17,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.judge.bodies.floor import Floors
+from taylor_verify.judge.bodies.floor import Floors, nodes
 from taylor_verify.judge.bodies.measured import Measured, Quantity
 from taylor_verify.judge.bodies.shifts import Shifts
 from taylor_verify.judge.gates import TRUTH_SHARE
@@ -60,7 +60,7 @@ class Gate:
 def gates(measured: Measured, floors: Floors, inverse: Floats, roundoff: float) -> list[Gate]:
     """Return the gates of omega, T and H2, of bodies with these inverse moments (3, n)."""
     omega, (energy, momentum) = measured.omega, measured.conserved
-    H = measured.truth[:, :, floors.points.nodes]
+    H = measured.truth[:, :, nodes(measured.truth.shape[2])]
     by_gradient = (
         Gate(each, roundoff * floors.of_gradients(gradient / each.scale[:, None]), Carried.GRADIENT)
         for each, gradient in ((energy, inverse[:, :, None] * H), (momentum, 2 * H))
@@ -73,8 +73,8 @@ def gates(measured: Measured, floors: Floors, inverse: Floats, roundoff: float) 
 class Run:
     """The solver, the rung and the lanes of n bodies.
 
-    ``times`` (n, m) are those of the samples since the start, ``shares`` (m) as parts of the last;
-    ``unit`` (n) is the unit of time in which shifts are counted.
+    ``times`` (n, m) are those of the samples since the start; ``unit`` (n) is the unit of time in
+    which shifts are counted.
     ``steps`` (n) are those of each lane, of so many ``evaluations`` each; a lane took ``seconds``.
     """
 
@@ -82,7 +82,6 @@ class Run:
     rung: Rung
     times: Floats
     unit: Floats
-    shares: Floats
     steps: Any
     evaluations: int
     seconds: float
@@ -155,7 +154,8 @@ def _columns(run: Run, gate: Gate, floors: Floors) -> _Columns:
     worst = np.argmax(errors, axis=1)
     ratios = np.divide(errors, attainable, out=np.zeros_like(errors), where=errors > 0)
     ratio_at = np.argmax(ratios, axis=1)
-    value, steps = attainable[every, worst], floors.steps(worst, run.shares)
+    value = attainable[every, worst]
+    steps = np.maximum(1, np.rint(floors.reached[every, worst]))
     growth = value / (float(run.rung.unit_roundoff) * np.sqrt(steps))
     change = gate.quantity.change
     return _Columns(
