@@ -1,6 +1,6 @@
 """Verdicts on many bodies at once: of each the ones that `run` would give.
 
-Free rigid bodies in their principal axes, asked for omega on float64, are posed, solved and judged
+Free rigid bodies in their principal axes are on float64 posed, solved and judged
 together. Whatever else is asked, and whoever comes near a bound, goes through `run` one by one.
 """
 
@@ -16,16 +16,16 @@ from typing import Any, Final
 import numpy as np
 
 from taylor_verify.exact.euler.tops import Tops
-from taylor_verify.exact.pairs import Pairs
 from taylor_verify.judge.bodies.floor import floors
 from taylor_verify.judge.bodies.measured import measured
-from taylor_verify.judge.bodies.verdicts import Run, gates, verdicts
-from taylor_verify.models.bodies import FORM, Bodies, are_moderate, is_of_kind, numbers
+from taylor_verify.judge.bodies.verdicts import Run, are_unit, gates, verdicts
+from taylor_verify.models.bodies import Bodies, Numbers, is_of_kind, numbers
 from taylor_verify.models.times import TypedTimes, rounded_times
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes.instants import EquallySpaced
 from taylor_verify.scenes.motion import Clock
+from taylor_verify.scenes.pairs import Pairs
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.registry import TAYLOR
@@ -70,16 +70,20 @@ def _alike(scenes: Sequence[Scene]) -> Iterator[_Group]:
             known[id(clock)] = _times(clock), _rhythm(clock)
         times, rhythm = known[id(clock)]
         try:
-            inverse, momentum = numbers(scene)
+            rounded = numbers(scene)
         except OverflowError:
             continue
         if len(times):
-            groups[rhythm, times[-1] > 0].add(place, inverse, momentum, times)
+            group = groups[rhythm, times[-1] > 0, scene.track]
+            group.places.append(place)
+            group.numbers.append(rounded)
+            group.times.append(times)
+            group.is_turned = bool(scene.track)
     yield from groups.values()
 
 
 def _times(clock: Clock) -> Floats:
-    """The times since the start, each rounded once; none where they do not lead away from it one by one."""
+    """The times since the start, each rounded once; none where they do not lead away from it."""
     try:
         rounded = rounded_times(clock, Fraction(1), rung_named(_RUNG))
     except OverflowError:
@@ -98,28 +102,23 @@ def _rhythm(clock: Clock) -> Any:
 
 @dataclass
 class _Group:
-    """Scenes by their places, with the numbers of each."""
+    """Scenes by their places, with the numbers and the times of each."""
 
     places: list[int] = field(default_factory=list)
-    inverse: list[list[float]] = field(default_factory=list)
-    momentum: list[list[float]] = field(default_factory=list)
+    numbers: list[Numbers] = field(default_factory=list)
     times: list[Floats] = field(default_factory=list)
-
-    def add(self, place: int, inverse: list[float], momentum: list[float], times: Floats) -> None:
-        """Take in a scene."""
-        self.places.append(place)
-        self.inverse.append(inverse)
-        self.momentum.append(momentum)
-        self.times.append(times)
+    is_turned: bool = False
 
     def pieces(self) -> Iterator[tuple[list[int], Bodies]]:
         """Yield the bodies with their places, as many at once as memory close by holds."""
         most = max(1, _SAMPLES // len(self.times[0]))
         for begin in range(0, len(self.places), most):
             piece = slice(begin, begin + most)
-            inverse, momentum = np.array(self.inverse[piece]).T, np.array(self.momentum[piece]).T
-            bodies = Bodies(inverse, momentum, np.array(self.times[piece]))
-            chosen = np.flatnonzero(are_moderate(bodies))
+            rows = zip(*self.numbers[piece], strict=True)
+            inverse, momentum, attitude = (np.array(values).T for values in rows)
+            times = np.array(self.times[piece])
+            bodies = Bodies(inverse, momentum, times, attitude if self.is_turned else None)
+            chosen = np.flatnonzero(bodies.are_moderate)
             yield [self.places[begin + k] for k in chosen], bodies.at(chosen)
 
 
@@ -128,7 +127,7 @@ def _judged_together(
 ) -> dict[int, list[Verdict]]:
     """Return the verdicts of scenes, by place, that are far from every bound."""
     began = perf_counter()
-    lanes = propagate(FORM, bodies.parameters, bodies.starts, bodies.grid, bodies.rates)
+    lanes = propagate(bodies)
     seconds = (perf_counter() - began) / max(len(bodies), 1)
     ended = [k for k, outcome in enumerate(lanes.outcomes) if outcome is Outcome.FINISHED]
     if not ended:
@@ -137,14 +136,17 @@ def _judged_together(
     here = [places[k] for k in ended]
     elapsed = scenes[here[0]].clock.elapsed
     samples, rung = tuple(time / elapsed[-1] for time in elapsed), rung_named(_RUNG)
-    tops = Tops(bodies.inverse * (bodies.unit * bodies.time), Pairs(bodies.starts))
+    roundoff = float(rung.unit_roundoff)
+    tops = Tops(bodies.scaled_inverse, Pairs(bodies.starts[:3]), bodies.quaternion)
     compared = measured(tops, answer, bodies.grid)
     base = floors(tops, bodies.grid[:, -1], steps, samples)
-    found = gates(compared, base, tops.inverse, float(rung.unit_roundoff))
-    stands = base.is_known & compared.shifts.is_first_order
-    for gate in found:
-        stands &= gate.is_far
+    found = gates(compared, base, tops.inverse, roundoff)
+    conditions = [base.is_known, *(each.is_first_order for each in compared.shifts)]
+    conditions += [gate.is_far for gate in found]
+    if compared.excess is not None:
+        conditions.append(are_unit(compared.excess, base, roundoff))
+    stands = np.logical_and.reduce(conditions)
     what = Run(TAYLOR, rung, bodies.times, bodies.time, steps, lanes.order, seconds)
     asked = {k: scenes[here[k]] for k in np.flatnonzero(stands).tolist()}
-    rows = verdicts(what, asked, found, compared.shifts, base)
+    rows = verdicts(what, asked, found, compared, base)
     return {here[k]: row for k, row in rows.items()}

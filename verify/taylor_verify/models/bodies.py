@@ -12,15 +12,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
 from taylor_verify.models.algebra import add
-from taylor_verify.models.euler import principal_rate
-from taylor_verify.models.form import Form, Named, labelled
+from taylor_verify.models.euler import principal_rate, with_frame
+from taylor_verify.models.form import Form, Named
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Spin
+from taylor_verify.scenes.pairs import Pairs, difference, product
 from taylor_verify.scenes.scene import Scene
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
@@ -31,17 +32,22 @@ _SMALLEST, _LARGEST = 2.0**-60, 2.0**60
 _POINTS: Final = 5
 # Powers of a matrix lead to its fastest rate: of 16 factors a norm is some tenths too much.
 _SQUARINGS: Final = 4
+_TRACKS: Final = (frozenset[str](), frozenset({"attitude"}))
 
 
 def split_equations(n: Named) -> dict[str, Any]:
     """Return H' = H x K H in principal axes, each difference of K in two parts."""
     H = n.vector("H")
-    parts = (principal_rate(H, n.vector(letter)) for letter in "DE")
-    return labelled("H", add(*parts))
+    return with_frame(n, add(*(principal_rate(H, n.vector(letter)) for letter in "DE")))
 
 
-FORM: Final = Form(
-    split_equations, ("H1", "H2", "H3"), tuple(f"{letter}{i}" for letter in "DE" for i in (1, 2, 3))
+_MOMENTA: Final = tuple(f"H{i}" for i in (1, 2, 3))
+_DIFFERENCES: Final = tuple(f"{letter}{i}" for letter in "DE" for i in (1, 2, 3))
+FORM: Final = Form(split_equations, _MOMENTA, _DIFFERENCES)
+FORM_WITH_ATTITUDE: Final = Form(
+    split_equations,
+    (*_MOMENTA, *(f"e{i}" for i in range(4))),
+    (*_DIFFERENCES, *(f"K{i}{i}" for i in (1, 2, 3))),
 )
 
 
@@ -50,29 +56,41 @@ class Bodies:
     """Bodies of ``inverse`` moments (3, n) that start with ``momentum`` (3, n), asked at ``times`` (n, m).
 
     Doubles in units of the scenes; the times count from the start, all of them forwards or backwards.
+    ``attitude`` (4, n) are quaternions of about size one, where attitudes are asked for.
     """
 
     inverse: Floats
     momentum: Floats
     times: Floats
+    attitude: Floats | None = None
 
     @classmethod
-    def of(cls, inertia: Floats, omega: Floats, times: Floats) -> Bodies:
+    def of(
+        cls, inertia: Floats, omega: Floats, times: Floats, attitude: Floats | None = None
+    ) -> Bodies:
         """Return bodies by their moments of inertia (3, n) and omega (3, n): doubles, taken exactly."""
-        return cls(1 / inertia, inertia * omega, times)
+        return cls(1 / inertia, inertia * omega, times, attitude)
 
     def __len__(self) -> int:
         return len(self.times)
 
     def at(self, places: Any) -> Bodies:
         """Return some of the bodies."""
-        return Bodies(self.inverse[:, places], self.momentum[:, places], self.times[places])
+        attitude = None if self.attitude is None else self.attitude[:, places]
+        return Bodies(
+            self.inverse[:, places], self.momentum[:, places], self.times[places], attitude
+        )
+
+    @property
+    def form(self) -> Form:
+        """The one form of all such bodies."""
+        return FORM if self.attitude is None else FORM_WITH_ATTITUDE
 
     @cached_property
     def time(self) -> Floats:
         """The unit of time (n) in which the fastest rate is of size one: a power of two."""
         H, K = self.momentum, self.inverse
-        D = _differences(K)[0]
+        D = _differences(K).hi
         with np.errstate(all="ignore"):
             # The roots of z^3 + s z - d: those of the equations, linearised at the start.
             s = sum(D[i] * D[j] * H[k] ** 2 for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)))
@@ -86,104 +104,129 @@ class Bodies:
         return _binary(_norm(self.momentum))
 
     @property
+    def scaled_inverse(self) -> Floats:
+        """K (3, n) in units."""
+        return self.inverse * (self.unit * self.time)
+
+    @cached_property
+    def quaternion(self) -> Pairs | None:
+        """The unit quaternions (4, n) of the attitudes."""
+        if self.attitude is None:
+            return None
+        squares = [product(entry, entry) for entry in self.attitude]
+        return Pairs(self.attitude) / (squares[0] + squares[1] + squares[2] + squares[3]).sqrt()
+
+    @cached_property
     def parameters(self) -> Floats:
-        """The parameters (6, n) of the form, in units."""
-        return np.concatenate(_differences(self.inverse * (self.unit * self.time)))
+        """The parameters (p, n) of the form, in units."""
+        K = self.scaled_inverse
+        D = _differences(K)
+        return np.concatenate([D.hi, D.lo] if self.attitude is None else [D.hi, D.lo, K])
 
-    @property
+    @cached_property
     def starts(self) -> Floats:
-        """The initial states (3, n), in units."""
-        return self.momentum / self.unit
+        """The initial states (s, n), in units."""
+        momentum = self.momentum / self.unit
+        q = self.quaternion
+        return momentum if q is None else np.concatenate([momentum, q.hi])
 
-    @property
+    @cached_property
     def grid(self) -> Floats:
         """The times (n, m), in units."""
         return self.times / self.time[:, None]
 
-    @property
+    @cached_property
     def rates(self) -> Floats:
         """The fastest rate (n) of each motion in units, at some points of its orbit.
 
         The squares of H's components lie on a straight line, along D: by both conserved quantities.
         """
-        D, squares = self.parameters[:3], self.starts**2
+        D, squares = self.parameters[:3], self.starts[:3] ** 2
         with np.errstate(all="ignore"):
             ends = -squares / D
             low = np.max(np.where(D > 0, ends, -np.inf), axis=0)
             high = np.min(np.where(D < 0, ends, np.inf), axis=0)
-            shares = np.linspace(0.0, 1.0, _POINTS)
-            along = low[:, None] + (high - low)[:, None] * shares
+            along = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, _POINTS)
             along = np.where(np.isfinite(along), along, 0.0)
             points = squares[:, :, None] + D[:, :, None] * along
-            states = np.sqrt(np.maximum(points, 0.0))
-        return fastest(FORM, self.parameters, states)
+            return self.fastest(np.sqrt(np.maximum(points, 0.0)))
+
+    def fastest(self, states: Floats) -> Floats:
+        """Return the fastest rate (n) at any of the states (s, n, m) of each body; NaN where not finite.
+
+        Of equations that are quadratic in H a difference over two steps is the exact derivative. An
+        attitude turns at |omega|/2.
+        """
+        H, given = states[:3], [row[:, None] for row in self.parameters[:6]]
+        columns = []
+        with np.errstate(all="ignore"):
+            for step in np.eye(3)[:, :, None, None]:
+                ahead, behind = (FORM.rates(list(H + sign * step), given) for sign in (1, -1))
+                columns.append([(a - b) / 2 for a, b in zip(ahead, behind, strict=True)])
+            jacobian = np.moveaxis(np.array(columns), (0, 1), (-1, -2))
+            largest = 3 * np.max(abs(jacobian), axis=(1, 2, 3))
+            power = jacobian / np.where(largest > 0, largest, 1.0).reshape(-1, 1, 1, 1)
+            for _ in range(_SQUARINGS):
+                power = power @ power
+            norm = 3 * np.max(abs(power), axis=(1, 2, 3))
+            found: Floats = largest * norm ** (0.5**_SQUARINGS)
+            if self.attitude is not None:
+                omega = self.scaled_inverse[:, :, None] * H
+                found = np.maximum(found, np.max(_norm(omega), axis=1) / 2)
+        return found
+
+    @property
+    def are_moderate(self) -> Any:
+        """The bodies (n) without a number so large or small that a double loses some of its bits."""
+        sizes = abs(np.concatenate([self.inverse, self.momentum, self.times[:, -1:].T]))
+        inside = (sizes >= _SMALLEST) & (sizes <= _LARGEST)
+        inside[3:6] |= self.momentum == 0
+        if self.attitude is not None:
+            largest = np.max(abs(self.attitude), axis=0)
+            inside &= (largest >= _SMALLEST) & (largest <= _LARGEST)
+        return inside.all(axis=0)
 
 
-def fastest(form: Form, parameters: Floats, states: Floats) -> Floats:
-    """Return the fastest rate (n) at any of the states (s, n, m) of each body; NaN where not finite.
+class Numbers(NamedTuple):
+    """K, H and the quaternion of a body, each number rounded once from its exact value."""
 
-    Of equations that are quadratic in the states a difference over two steps is the exact derivative.
-    """
-    count, size = states.shape[1], len(states)
-    given = [row[:, None] for row in parameters]
-    columns = []
-    with np.errstate(all="ignore"):
-        for k in range(size):
-            step = np.zeros((size, 1, 1))
-            step[k] = 1.0
-            ahead, behind = (form.rates(list(states + sign * step), given) for sign in (1, -1))
-            columns.append([(a - b) / 2 for a, b in zip(ahead, behind, strict=True)])
-        jacobian = np.moveaxis(np.array(columns), (0, 1), (-1, -2))
-        largest = size * np.max(abs(jacobian), axis=(1, 2, 3))
-        power = jacobian / np.where(largest > 0, largest, 1.0).reshape(count, 1, 1, 1)
-        for _ in range(_SQUARINGS):
-            power = power @ power
-        norm = size * np.max(abs(power), axis=(1, 2, 3))
-        found: Floats = largest * norm ** (0.5**_SQUARINGS)
-    return found
+    inverse: list[float]
+    momentum: list[float]
+    attitude: list[float]
 
 
 def is_of_kind(scene: Scene) -> bool:
-    """Return True for a scene that asks for omega of a free rigid body, given in its principal axes."""
+    """Return True for a scene of a free rigid body that is given in its principal axes."""
     body = scene.body
     return (
         isinstance(body, RigidBody)
         and isinstance(scene.initial, Spin)
-        and not scene.track
+        and scene.track in _TRACKS
         and not body.damping
         and body.is_free
         and not any(body.inertia[i][j] for i in range(3) for j in range(i))
     )
 
 
-def numbers(scene: Scene) -> tuple[list[float], list[float]]:
-    """Return K and H of a scene of the kind, each rounded once from its exact value.
+def numbers(scene: Scene) -> Numbers:
+    """Return the numbers of a scene of the kind. A quotient of whole numbers is rounded once in Python.
 
-    A quotient of whole numbers is rounded once in Python. Raises OverflowError for one beyond doubles.
+    Raises OverflowError for a number beyond doubles.
     """
-    K, H = [], []
+    inverse, momentum = [], []
     for i, omega in enumerate(scene.initial.moving):
         moment = scene.body.energy_matrix[i][i]
-        K.append(moment.denominator / moment.numerator)
-        H.append((moment.numerator * omega.numerator) / (moment.denominator * omega.denominator))
-    return K, H
+        inverse.append(moment.denominator / moment.numerator)
+        momentum.append(
+            (moment.numerator * omega.numerator) / (moment.denominator * omega.denominator)
+        )
+    attitude = [q.numerator / q.denominator for q in scene.initial.attitude]
+    return Numbers(inverse, momentum, attitude)
 
 
-def are_moderate(bodies: Bodies) -> Any:
-    """Return which bodies (n) have no number so large or small that a double loses some of its bits."""
-    sizes = np.concatenate([bodies.inverse, bodies.momentum, bodies.times[:, -1:].T])
-    inside = (abs(sizes) >= _SMALLEST) & (abs(sizes) <= _LARGEST)
-    inside[3:6] |= bodies.momentum == 0
-    return inside.all(axis=0)
-
-
-def _differences(K: Floats) -> tuple[Floats, Floats]:
+def _differences(K: Floats) -> Pairs:
     """D and E (3, n): the differences of K, rounded, and what the rounding left."""
-    one, other = K[[2, 0, 1]], K[[1, 2, 0]]
-    high = one - other
-    taken = one - high
-    low = (one - (high + taken)) + (taken - other)
-    return high, low
+    return difference(K[[2, 0, 1]], K[[1, 2, 0]])
 
 
 def _norm(vectors: Floats) -> Floats:

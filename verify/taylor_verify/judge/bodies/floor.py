@@ -19,10 +19,11 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from taylor_verify.exact.conditioning.condition import REGULAR, few, many
-from taylor_verify.exact.euler.tops import Tops, cross
-from taylor_verify.exact.pairs import difference
+from taylor_verify.exact.euler.tops import Tops, Transition, cross
 from taylor_verify.judge.floor.attainable import MOST_NODES
+from taylor_verify.judge.floor.magnitude import ANGLE, COMPONENT
 from taylor_verify.scenes.instants import evenly
+from taylor_verify.scenes.pairs import difference
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 Places = np.ndarray[Any, np.dtype[np.intp]]
@@ -84,26 +85,37 @@ def _beside(points: Floats, places: Floats) -> tuple[Places, Places]:
 
 @dataclass(frozen=True)
 class Floors:
-    """What is attainable by n bodies at m samples: ``omega`` (n, m) in units of its K and H.
+    """What is attainable by n bodies at m samples: ``omega`` (n, m) in units of their K and H.
 
-    ``reached`` (n, m) are the steps so far; ``squares`` (3, n, nodes) the sums of squares of their
-    roundings. ``is_known`` (n) tells the bodies of which it is the floor.
+    ``attitude`` (n, m) is in radians, None where it is not asked for. ``reached`` (n, m) are the steps so
+    far; ``squares`` (3, n, nodes) and ``turns`` (n, nodes) the sums of squares of their roundings.
+    ``is_known`` (n) tells the bodies of which it is the floor.
     """
 
     omega: Floats
+    attitude: Floats | None
     reached: Floats
     squares: Floats
+    turns: Floats
     is_known: Any
 
     def put(self, places: Places, others: Floors) -> None:
         """Put the floors of some bodies in place of these."""
         self.omega[places], self.reached[places] = others.omega, others.reached
-        self.squares[:, places], self.is_known[places] = others.squares, others.is_known
+        self.squares[:, places], self.turns[places] = others.squares, others.turns
+        self.is_known[places] = others.is_known
+        if self.attitude is not None and others.attitude is not None:
+            self.attitude[places] = others.attitude
 
-    def of_gradients(self, gradients: Floats) -> Floats:
-        """Return the attainable drift (n, m); ``gradients`` (3, n, nodes) are over the scale."""
+    def of_gradients(self, momentum: Floats, attitude: Floats | float = 0.0) -> Floats:
+        """Return the attainable drift (n, m) by gradients over the scale.
+
+        That by the ``momentum`` is (3, n, nodes), that by the turn (n, nodes).
+        """
         rounded = np.diff(self.squares, axis=2, prepend=0.0)
-        drift = np.sqrt(np.cumsum(np.sum(gradients**2 * rounded, axis=0), axis=1))
+        turned = np.diff(self.turns, axis=1, prepend=0.0)
+        injected = np.sum(momentum**2 * rounded, axis=0) + attitude**2 * turned
+        drift = np.sqrt(np.cumsum(injected, axis=1))
         count = self.omega.shape[1]
         later, earlier = _beside(nodes(count).astype(float), np.arange(float(count)))
         found: Floats = np.maximum(drift[:, later], drift[:, earlier])
@@ -117,13 +129,12 @@ class _Orbits:
     tops: Tops
     points: Points
     times: Floats
-    momentum: Floats
-    carried: Floats
+    found: Transition
 
     @classmethod
     def of(cls, tops: Tops, points: Points, ends: Floats, is_sharp: bool = False) -> _Orbits:
         times = ends[:, None] * points.shares
-        return cls(tops, points, times, *tops.transition(times, is_sharp))
+        return cls(tops, points, times, tops.transition(times, is_sharp))
 
     def floors(self, steps: Any, samples: int) -> Floors:
         """Return the floors after so many ``steps`` (n) from one end to the other."""
@@ -131,18 +142,26 @@ class _Orbits:
         count = np.maximum(steps, samples).astype(float)
         steps_at = np.diff(points.shares, prepend=0.0) * count[:, None]
         steps_at[:, 0] = 1.0
-        rounded = _roundings(K, self.momentum, abs(self.times[:, -1]) / count)
+        Phi, Theta = self.found.moved, self.found.turn
+        rounded, turn = _roundings(K, self.found.momentum, abs(self.times[:, -1]) / count)
         squares = np.cumsum(steps_at * rounded**2, axis=2)
         injected = np.moveaxis(rounded * np.sqrt(steps_at), 0, -1)
-        brought = _inverse(self.carried) * injected[:, :, None, :]
+        brought = _inverse(Phi) * injected[:, :, None, :]
         gathered = np.cumsum(brought @ np.swapaxes(brought, -1, -2), axis=1)
-        out = K.T[:, None, :, None] * self.carried
+        out = K.T[:, None, :, None] * Phi
         sizes = np.sqrt(np.sum((out @ gathered) * out, axis=(-1, -2)))
+        turns = 3 * np.cumsum(steps_at * turn**2, axis=1)
+        angles = None
+        if Theta is not None:
+            angles = np.sqrt(turns + _turned(Theta, brought, gathered))
+            angles = np.maximum(angles[every, points.later], angles[every, points.earlier])
         return Floors(
-            np.maximum(sizes[every, points.later], sizes[every, points.earlier]),
-            np.cumsum(steps_at, axis=1)[every, points.earlier],
-            squares[:, every, points.ends - 1],
-            abs(np.linalg.det(self.carried) - 1).max(axis=1) <= _VOLUME,
+            omega=np.maximum(sizes[every, points.later], sizes[every, points.earlier]),
+            attitude=angles,
+            reached=np.cumsum(steps_at, axis=1)[every, points.earlier],
+            squares=squares[:, every, points.ends - 1],
+            turns=turns[every, points.ends - 1],
+            is_known=abs(np.linalg.det(Phi) - 1).max(axis=1) <= _VOLUME,
         )
 
     def at(self, places: Places) -> _Orbits:
@@ -151,27 +170,28 @@ class _Orbits:
             self.tops.at(places),
             self.points.at(places),
             self.times[places],
-            self.momentum[:, places],
-            self.carried[places],
+            self.found._replace(
+                momentum=self.found.momentum[:, places], moved=self.found.moved[places]
+            ),
         )
 
     @property
     def may_be_irregular(self) -> Any:
         """Return the bodies (n) on whose orbits errors may grow faster than in proportion to time."""
-        growth = np.sqrt(np.sum(self.carried**2, axis=(-1, -2)))
+        growth = np.sqrt(np.sum(self.found.moved**2, axis=(-1, -2)))
         rate = np.sqrt(np.max(np.sum(self._jacobian() ** 2, axis=(-1, -2)), axis=1)) / _FROBENIUS
         excess = growth / (REGULAR * (1 + rate[:, None] * abs(self.times)))
         return ~(np.max(excess, axis=1) * _NEAR <= 1)
 
     def excess(self) -> tuple[Floats, Floats]:
         """Return the growth (n) over what counts as regular, and the fastest rate (n)."""
-        growth = np.linalg.norm(self.carried, 2, axis=(-2, -1))
+        growth = np.linalg.norm(self.found.moved, 2, axis=(-2, -1))
         rate = np.max(np.linalg.norm(self._jacobian(), 2, axis=(-2, -1)), axis=1)
         return np.max(growth / (REGULAR * (1 + rate[:, None] * abs(self.times))), axis=1), rate
 
     def _jacobian(self) -> Floats:
         """J (n, points, 3, 3) of H' = H x K H: the column k is H x K e_k + e_k x K H."""
-        H, K, unit = self.momentum, self.tops.inverse[:, :, None], np.eye(3)[:, :, None, None]
+        H, K, unit = self.found.momentum, self.tops.inverse[:, :, None], np.eye(3)[:, :, None, None]
         omega = K * H
         columns = [cross(H, K * unit[k]) + cross(unit[k], omega) for k in range(3)]
         return np.moveaxis(np.array(columns), (0, 1), (-1, -2))
@@ -201,8 +221,23 @@ def _few(samples: tuple[Fraction, ...]) -> Points:
     return Points.of(samples, [few(samples)])
 
 
-def _roundings(K: Floats, H: Floats, step: Floats) -> Floats:
-    """The rounding of a step in each component (3, n, points): |H| + h S, as judge.floor.magnitude has it.
+def _turned(Theta: Floats, brought: Floats, gathered: Floats) -> Floats:
+    """The mean squares (n, points) of the turns that errors of H have made since they were.
+
+    An error that is brought back to the start as a has turned the body by Theta(t) a - Theta(s) a.
+    """
+    before = Theta @ brought
+    mixed = np.cumsum(brought @ np.swapaxes(before, -1, -2), axis=1)
+    squares = np.cumsum(np.sum(before**2, axis=(-1, -2)), axis=1)
+    after = np.sum((Theta @ gathered) * Theta, axis=(-1, -2))
+    found: Floats = after - 2 * np.trace(Theta @ mixed, axis1=-2, axis2=-1) + squares
+    return np.maximum(found, 0.0)
+
+
+def _roundings(K: Floats, H: Floats, step: Floats) -> tuple[Floats, Floats]:
+    """The rounding of a step in each component of H (3, n, points), and of a turn (n, points).
+
+    It is |x| + h S, as judge.floor.magnitude has it.
 
     The rate of a component has the sum of two differences of K where float64 does not hold its own, and
     holds the others.
@@ -215,8 +250,10 @@ def _roundings(K: Floats, H: Floats, step: Floats) -> Floats:
     S = size[:, :, None] * sizes[[1, 2, 0]] * sizes[[2, 0, 1]]
     limit = np.max(_norms(sizes), axis=1) / np.max(_norms(S), axis=1)
     h = np.fmin(step, np.where(np.isfinite(limit), limit, np.inf))
-    found: Floats = sizes + h[:, None] * S
-    return found
+    # A component of the quaternion is 1/2, and its rate the half of three of its products with omega.
+    rate = COMPONENT / 2 * np.sum(abs(K)[:, :, None] * sizes, axis=0)
+    turn = ANGLE * 2 * (COMPONENT + h[:, None] * rate) / np.sqrt(3.0)
+    return sizes + h[:, None] * S, turn
 
 
 def _norms(vectors: Floats) -> Floats:

@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from taylor_verify.exact.euler.tops import Tops, cross
-from taylor_verify.exact.pairs import Pairs, difference, two_sum
+from taylor_verify.exact.euler.tops import Tops, between, cross
 from taylor_verify.judge.bodies.shifts import Errors, Shifts, shifts
 from taylor_verify.records.quantities import QUANTITIES
+from taylor_verify.scenes.pairs import Pairs, difference, product, two_sum
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -35,39 +35,72 @@ class Quantity:
 
 @dataclass(frozen=True)
 class Measured:
-    """The errors of omega, T and H2 of n bodies, the exact motion (3, n, m), and shifts of time."""
+    """The errors of n bodies; ``shifts`` are those of the ``states``, and ``excess`` (n, m) is |q| - 1.
 
-    omega: Quantity
-    conserved: tuple[Quantity, Quantity]
-    truth: Floats
-    shifts: Shifts
+    ``momentum`` (3, n, m) is the exact motion.
+    """
+
+    states: tuple[Quantity, ...]
+    shifts: tuple[Shifts, ...]
+    conserved: tuple[Quantity, ...]
+    momentum: Floats
+    excess: Floats | None = None
 
 
 def measured(tops: Tops, answer: Floats, times: Floats) -> Measured:
-    """Compare answers (3, n, m), the momenta at these times (n, m), with the exact motions."""
+    """Compare answers (3 or 7, n, m), momenta and quaternions at these times (n, m), with the truth."""
     K, start = tops.inverse[:, :, None], tops.momentum.hi
-    truth = tops.motion(times)
+    truth = tops.states(times)
+    own, H = answer[:3], truth.momentum.hi
     with np.errstate(all="ignore"):
         # Neighbours have an exact difference; of other numbers it is rounded by a part of itself.
-        off = K * ((answer - truth.hi) - truth.lo)
-        omega = K * truth.hi
+        off = (own - H) - truth.momentum.lo
+        omega = K * H
         scale = np.max(lengths(omega), axis=1)
         size = scale[:, None]
-        errors = Quantity(
-            "omega",
-            QUANTITIES["omega"].unit,
-            lengths(off) / size,
-            lengths(K * truth.radius()) / size,
-            scale,
-        )
-        rate = cross(truth.hi, omega)
+        widths = lengths(K * truth.momentum.radius()) / size
+        errors = _state("omega", lengths(K * off) / size, widths, scale)
+        rate = cross(H, omega)
         velocity = K * rate
-        acceleration = K * (cross(rate, omega) + cross(truth.hi, velocity))
-        moved = lengths(K * (answer - answer[:, :, :1])) / size
-        found = shifts(Errors(off / size, velocity / size, acceleration / size, moved, times))
+        acceleration = lengths(K * (cross(rate, omega) + cross(H, velocity))) / size
+        moved = lengths(K * (own - own[:, :, :1])) / size
+        shifted = shifts(Errors(K * off / size, velocity / size, acceleration, moved, times))
         ones = np.ones_like(K)
-        conserved = (_drift("T", K / 2, answer, start), _drift("H2", ones, answer, start))
-    return Measured(errors, conserved, truth.hi, found)
+        conserved = (_drift("T", K / 2, own, start), _drift("H2", ones, own, start))
+        if truth.quaternion is None:
+            return Measured((errors,), (shifted,), conserved, H)
+        q = answer[3:]
+        turn, widths = _turn(q, truth.quaternion)
+        attitude = _state("attitude", lengths(turn), widths, np.ones_like(scale))
+        acceleration = np.hypot(np.sum(omega**2, axis=0), lengths(velocity))
+        begin = np.broadcast_to(q[:, :, :1], q.shape)
+        moved = 2 * lengths(between(begin, q))
+        turned = shifts(Errors(turn, omega, acceleration, moved, times))
+        in_space = lengths(off + cross(turn, H))
+        size = np.max(lengths(H), axis=1)
+        drift = Quantity(
+            "H_space",
+            "scale of H_space",
+            in_space / size[:, None],
+            np.zeros_like(in_space),
+            size,
+        )
+        squares = [product(entry, entry) for entry in q]
+        excess = (squares[0] + squares[1] + squares[2] + squares[3] - 1.0).hi / 2
+        every = (*conserved, drift)
+        return Measured((errors, attitude), (shifted, turned), every, H, excess)
+
+
+def _turn(q: Floats, truth: Pairs) -> tuple[Floats, Floats]:
+    """The turn (3, n, m) from the truth to quaternions q of either sign, in body axes, and its width."""
+    sign = np.where(np.sum(q * truth.hi, axis=0) < 0, -1.0, 1.0)
+    off = (sign * q - truth.hi) - truth.lo
+    # To twice its radius a turn is less than four times it away.
+    return 2 * between(truth.hi, off), 4 * lengths(truth.radius())
+
+
+def _state(name: str, errors: Floats, widths: Floats, scale: Floats) -> Quantity:
+    return Quantity(name, QUANTITIES[name].unit, errors, widths, scale)
 
 
 def _drift(name: str, weights: Floats, answer: Floats, start: Floats) -> Quantity:

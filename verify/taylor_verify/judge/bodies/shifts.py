@@ -62,8 +62,9 @@ class Shifts:
 
 @dataclass(frozen=True)
 class Errors:
-    """The errors (3, n, m) of n answers at these ``times`` (n, m), with velocity and acceleration.
+    """The errors (3, n, m) of n answers at these ``times`` (n, m), with the velocity of the motion.
 
+    ``acceleration`` (n, m) is the length of the second derivative.
     ``moved`` (n, m) is how far each answer has gone from its first sample, over the scale of the error.
     """
 
@@ -78,7 +79,7 @@ class Errors:
         return Errors(
             self.error[:, places],
             self.velocity[:, places],
-            self.acceleration[:, places],
+            self.acceleration[places],
             self.moved[places],
             self.times[places],
         )
@@ -101,7 +102,7 @@ class Errors:
 
     def is_first_order(self, course: Floats, left: Floats, kept: Any) -> Any:
         """Return True for the answers (n) of which a shift (n, m) asks for no more than first order."""
-        neglected = _lengths(self.acceleration) * course**2 / 2
+        neglected = self.acceleration * course**2 / 2
         neglected += FLOAT_NOISE * _lengths(self.velocity) * abs(course)
         return _largest(neglected, kept) <= NEGLIGIBLE / _COMPONENTS * _largest(left, kept)
 

@@ -11,15 +11,14 @@ other body, and so every one that fails, is left to the judge of one body.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, Final
 
 import numpy as np
 
 from taylor_verify.judge.bodies.floor import Floors, nodes
-from taylor_verify.judge.bodies.measured import Measured, Quantity
-from taylor_verify.judge.bodies.shifts import Shifts
+from taylor_verify.judge.bodies.measured import Measured, Quantity, lengths
 from taylor_verify.judge.gates import TRUTH_SHARE
 from taylor_verify.judge.initial import right_start
 from taylor_verify.judge.provenance import provenance
@@ -58,15 +57,28 @@ class Gate:
 
 
 def gates(measured: Measured, floors: Floors, inverse: Floats, roundoff: float) -> list[Gate]:
-    """Return the gates of omega, T and H2, of bodies with these inverse moments (3, n)."""
-    omega, (energy, momentum) = measured.omega, measured.conserved
-    H = measured.truth[:, :, nodes(measured.truth.shape[2])]
-    by_gradient = (
-        Gate(each, roundoff * floors.of_gradients(gradient / each.scale[:, None]), Carried.GRADIENT)
-        for each, gradient in ((energy, inverse[:, :, None] * H), (momentum, 2 * H))
-    )
-    by_orbit = roundoff * floors.omega / omega.scale[:, None]
-    return [Gate(omega, by_orbit, Carried.ORBIT), *by_gradient]
+    """Return the gates of the states and of what is conserved, of these inverse moments (3, n)."""
+    H = measured.momentum[:, :, nodes(measured.momentum.shape[2])]
+    gradients: dict[str, tuple[Floats, Floats | float]] = {
+        "T": (inverse[:, :, None] * H, 0.0),
+        "H2": (2 * H, 0.0),
+        "H_space": (np.ones_like(H), lengths(H)),
+    }
+    found = []
+    for each, by_orbit in zip(measured.states, (floors.omega, floors.attitude), strict=False):
+        assert by_orbit is not None
+        found.append(Gate(each, roundoff * by_orbit / each.scale[:, None], Carried.ORBIT))
+    for each in measured.conserved:
+        momentum, turn = (gradient / each.scale[:, None] for gradient in gradients[each.name])
+        drift = roundoff * floors.of_gradients(momentum, turn)
+        found.append(Gate(each, drift, Carried.GRADIENT))
+    return found
+
+
+def are_unit(excess: Floats, floors: Floors, roundoff: float) -> Any:
+    """Return the bodies (n) whose quaternions are far from being no unit quaternions."""
+    bounds = GATE_FACTOR * roundoff * np.maximum(floors.reached, 1.0)
+    return (abs(excess) <= _FAR * bounds).all(axis=1)
 
 
 @dataclass(frozen=True)
@@ -88,7 +100,7 @@ class Run:
 
 
 def verdicts(
-    run: Run, scenes: Mapping[int, Scene], gates: Sequence[Gate], shifts: Shifts, floors: Floors
+    run: Run, scenes: Mapping[int, Scene], gates: Sequence[Gate], measured: Measured, floors: Floors
 ) -> dict[int, list[Verdict]]:
     """Return the verdicts on bodies that pass, by their places, in the order of the judge of one body.
 
@@ -114,9 +126,13 @@ def verdicts(
         }
         instants = _Instants(scene.clock.start, run.times[k])
         rows = [_row(column, k, instants, shared) for column in columns]
-        rows[0] = Verdict(**{**vars(rows[0]), **shifts.numbers(k, run.unit[k])})
+        for place, shifts in enumerate(measured.shifts):
+            late = shifts.numbers(k, float(run.unit[k]))
+            rows[place] = replace(rows[place], **late)
         if not run.times[k, 0]:
-            rows.insert(0, _start(columns[0], k, instants, shared))
+            states = columns[: len(measured.states)]
+            starts = [_start(column, k, instants, shared) for column in states]
+            rows.insert(0, max(starts, key=lambda start: start.ratio or 0.0))
         found[k] = rows
     return found
 

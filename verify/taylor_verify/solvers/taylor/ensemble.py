@@ -230,8 +230,14 @@ def _check(problems: Sequence[Problem], tolerance: Fraction | None) -> None:
 
 
 @lru_cache(maxsize=32)
-def stepper(form: Form, rung: Rung, tolerance: Fraction | None, width: int) -> Any:
-    """Return one compiled integrator of so many lanes."""
+def stepper(
+    form: Form,
+    rung: Rung,
+    tolerance: Fraction | None,
+    width: int,
+    straight: int = _LARGEST_STRAIGHT_LINE,
+) -> Any:
+    """Return one compiled integrator of so many lanes; straight-line code up to so many states."""
     if width == 1:
         return compiled(form, rung, tolerance)
     import heyoka as hy
@@ -249,7 +255,7 @@ def stepper(form: Form, rung: Rung, tolerance: Fraction | None, width: int) -> A
         time=empty(),
         pars=empty(len(form.parameters)),
         fp_type=numbers.fp_type,
-        compact_mode=len(system) > _LARGEST_STRAIGHT_LINE,
+        compact_mode=len(system) > straight,
         # heyoka takes 0 for the machine epsilon of the type.
         tol=numbers.number(Fraction(0) if tolerance is None else rung.round(tolerance)),
     )
