@@ -51,7 +51,9 @@ def judged(scenes: Sequence[Scene], solver: str = TAYLOR, rung: str = _RUNG) -> 
     if solver == TAYLOR and rung == _RUNG and not unavailable(rung_named(rung)):
         for group in _alike(scenes):
             for places, bodies in group.pieces():
-                found |= _judged_together(scenes, places, bodies)
+                # What is not finite in one body is no number of another, and stands in no verdict.
+                with np.errstate(all="ignore"):
+                    found |= _judged_together(scenes, places, bodies)
     return [
         found[k] if k in found else list(run(scene, solver, rung).verdicts)
         for k, scene in enumerate(scenes)

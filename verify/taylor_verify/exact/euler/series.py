@@ -141,7 +141,8 @@ def sine_cosine(angle: Pairs) -> tuple[Pairs, Pairs]:
     sine = fourth * (1 / 120 - y * (1 / 5040 - y * (1 / 362880 - y / 39916800)))
     c = (1.0 - square.scaled(0.5) + cosine).widened(_OF_COSINE)
     s = r * (1.0 - square * circle.sixth + sine).widened(_OF_SINE)
-    places = np.mod(count, 2 * _PARTS).astype(np.intp)
+    # What is no number stays none, whatever stands in its place of the table.
+    places = np.mod(np.where(np.isfinite(count), count, 0.0), 2 * _PARTS).astype(np.intp)
     C, S = circle.cosine[places], circle.sine[places]
     return S * c + C * s, C * c - S * s
 

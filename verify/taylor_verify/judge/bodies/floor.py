@@ -203,7 +203,9 @@ def floors(tops: Tops, ends: Floats, steps: Any, samples: tuple[Fraction, ...]) 
     with np.errstate(all="ignore"):
         orbits = _Orbits.of(tops, chosen, ends)
         found = orbits.floors(steps, len(samples))
-        places = np.flatnonzero(orbits.may_be_irregular)
+        # Of what is not finite the volume is not known either.
+        is_finite = np.isfinite(orbits.found.moved).all(axis=(1, 2, 3))
+        places = np.flatnonzero(orbits.may_be_irregular & is_finite)
         excess, rates = orbits.at(places).excess() if places.size else (np.empty(0), np.empty(0))
         found.is_known[places[~(excess * _NEAR <= 1)]] = False
         again = excess >= _NEAR
