@@ -337,7 +337,7 @@ def test_samples_in_step_with_the_orbit_hide_none_of_it(monkeypatch: pytest.Monk
     found = _floor(asked, 14505)
     monkeypatch.setattr(condition, "few", lambda elapsed: list(elapsed))
     alone = _floor_again(asked, 14505)
-    monkeypatch.setattr(condition, "_REGULAR", 0)
+    monkeypatch.setattr(condition, "REGULAR", 0)
     resolved = _floor_again(asked, 14505)
     # A few dozen times stand for a thousand whose parts differ a hundredfold: within the gates' factor.
     assert (found[1:] >= 0.2 * resolved[1:]).all()

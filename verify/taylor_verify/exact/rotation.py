@@ -14,9 +14,10 @@ from flint import arb
 from taylor_verify.exact.balls import ball
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.motion import Quaternion
+from taylor_verify.scenes.pairs import Pairs
 from taylor_verify.scenes.tensors import Matrix
 
-Number = TypeVar("Number", Fraction, arb)
+Number = TypeVar("Number", Fraction, arb, Pairs)
 
 
 def cross(p: Sequence[Number], q: Sequence[Number]) -> list[Number]:

@@ -89,9 +89,18 @@ def _nearness(gate: Graded, k: int, finding: Finding) -> float:
 
 
 def _said(quantity: str, error: float, finding: Finding, start: float) -> str:
-    row, off = f"the row at the start, t = {start:g}", f"its {quantity} is off by {error:.3g}"
+    off = f"its {quantity} is off by {error:.3g}"
     if not error <= finding.bound:
-        return f"{row}, is not the scene's initial state: {off}"
+        return f"{_row(start)}, is not the scene's initial state: {off}"
     if finding.is_rounding or finding.tolerance is None:
-        return f"{row}, is the scene's initial state"
-    return f"{row}, is the scene's initial state to within the tolerance: {off}"
+        return right_start(start)
+    return f"{right_start(start)} to within the tolerance: {off}"
+
+
+def right_start(start: float) -> str:
+    """Return the sentence on a start that is right."""
+    return f"{_row(start)}, is the scene's initial state"
+
+
+def _row(start: float) -> str:
+    return f"the row at the start, t = {start:g}"

@@ -72,10 +72,11 @@ def turning(H: Terms, deviation: Sequence[Terms]) -> list[Any]:
 
 def euler_equations(n: Named) -> dict[str, Any]:
     """Return H' = H x K H + M, and the rate of the attitude where it is tracked."""
-    return _rates(n, momentum_rate(n.vector("H"), n.symmetric("K"), n.vector("M")))
+    return with_frame(n, momentum_rate(n.vector("H"), n.symmetric("K"), n.vector("M")))
 
 
-def _rates(n: Named, H_rate: list[Any]) -> dict[str, Any]:
+def with_frame(n: Named, H_rate: list[Any]) -> dict[str, Any]:
+    """Return the rates of H, and that of the attitude where it is tracked."""
     omega = angular_velocity(n.vector("H"), n.symmetric("K"))
     return labelled("H", H_rate) | frame_rates(n, omega, U=None)
 
@@ -95,7 +96,7 @@ class PrincipalEuler:
         for i in self.formed:
             D[i - 1] = differences(K)[i - 1]
         place = None if self.summed is None else self.summed - 1
-        return _rates(n, add(principal_rate(H, D, place), n.vector("M")))
+        return with_frame(n, add(principal_rate(H, D, place), n.vector("M")))
 
 
 @dataclass(frozen=True)
@@ -111,7 +112,7 @@ class TensorEuler:
         for i in (1, 2):
             kept = minus(K[i - 1][i - 1], K[2][2]) if i in self.formed else n[f"D{i}{i}"]
             deviation[i - 1][i - 1] = kept
-        return _rates(n, add(turning(H, deviation), n.vector("M")))
+        return with_frame(n, add(turning(H, deviation), n.vector("M")))
 
 
 # The form of the text.

@@ -39,7 +39,7 @@ from taylor_verify.scenes.scene import Scene
 _MOST_DECAY: Final = 300
 # A derivative that outgrows 1 + rate x time by more than this comes from a passage of an unstable
 # motion: it matters then at which moments of it an error is made, and where it is looked at.
-_REGULAR: Final = 8.0
+REGULAR: Final = 8.0
 # Steps of float64 cost less than orbits of dozens of digits beside this one until there are many. For a
 # solid in a fluid they cost less than seven of hundreds of digits until there are thousands; the four of
 # a rigid body, in functions of real numbers, cost less than those.
@@ -147,7 +147,7 @@ class Path:
     def is_regular(self) -> bool:
         """True if errors grow no faster than in proportion to time."""
         times = np.array([abs(float(t)) for t in self.elapsed])
-        return bool((self.growth <= _REGULAR * (1 + self.rate * times)).all())
+        return bool((self.growth <= REGULAR * (1 + self.rate * times)).all())
 
     def _place(self, block: str) -> slice:
         first = 3 * self.blocks.index(block)

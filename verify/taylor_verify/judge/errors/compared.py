@@ -32,7 +32,7 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 Shifts = tuple[Fraction, ...]
 
 # A sum of a dozen products of float64 cannot tell less than this part of its terms.
-_FLOAT_NOISE: Final = 2.0**-48
+FLOAT_NOISE: Final = 2.0**-48
 # Many shifts are tried on a few samples, to a few digits.
 _SEARCH_SAMPLES: Final = 16
 _SEARCH_DIGITS: Final = 15
@@ -98,7 +98,7 @@ class Shifted:
     def neglects(self, step: Floats) -> float:
         """Return what first order does not see of a further shift, in ``size``."""
         bend = np.linalg.norm(self.acceleration, axis=1) * step**2 * self.size / 2
-        noise = _FLOAT_NOISE * np.linalg.norm(self.velocity, axis=1) * np.abs(step)
+        noise = FLOAT_NOISE * np.linalg.norm(self.velocity, axis=1) * np.abs(step)
         return float(np.max(bend + noise))
 
     def moved(self, step: Floats) -> Shifts:

@@ -17,16 +17,16 @@ import numpy as np
 from taylor_verify.judge.errors.compared import Compared, Floats, Shifted
 
 # What is neglected is to be this much smaller than what is left.
-_NEGLIGIBLE: Final = 1 / 16
+NEGLIGIBLE: Final = 1 / 16
 # A sample at which the motion is slower than this part of its fastest tells no time.
-_AT_REST: Final = 1e-3
+AT_REST: Final = 1e-3
 # Convergence is quadratic: 2^-4 becomes 2^-237 in six evaluations, the rest is for a poor start.
 _EVALUATIONS: Final = 10
 _HALVINGS: Final = 3
 # An evaluation that leaves more than this part of the error before it is worth no further one.
 _PROGRESS: Final = 0.9
 # Beyond this error (relative, or radians) first order may not even know the direction.
-_FAR: Final = 0.1
+FAR: Final = 0.1
 # The search: this many steps of half a radian of the fastest turn, each way.
 _SEARCH_STEPS: Final = 16
 _SEARCH_STEP: Final = 0.5
@@ -57,7 +57,7 @@ def single(fit: Shifted, times: Floats) -> Floats:
 
 def moving(fit: Shifted) -> np.ndarray[Any, np.dtype[np.bool_]]:
     """Return the samples at which the motion is fast enough to tell the time."""
-    return fit.weight > _AT_REST**2 * np.max(fit.weight)
+    return fit.weight > AT_REST**2 * np.max(fit.weight)
 
 
 def fitted(compared: Compared, fit: Shifted, course: Course) -> Shifted:
@@ -66,7 +66,7 @@ def fitted(compared: Compared, fit: Shifted, course: Course) -> Shifted:
         step = course(fit, compared.run.times)
         better = fit.with_first_order(step)
         left = max(float(np.max(np.abs(better.error))), compared.doubt / fit.size)
-        if fit.neglects(fit.more + step) <= _NEGLIGIBLE * left:
+        if fit.neglects(fit.more + step) <= NEGLIGIBLE * left:
             return better
         closer = _closer(compared, fit, fit.more + step)
         if closer is None:
@@ -92,7 +92,7 @@ def best_start(compared: Compared, fit: Shifted, course: Course) -> Shifted:
     A motion that comes back has many shifts that are equally good: the smallest is taken of those
     that leave the least but for what the distance between two of them may add.
     """
-    is_far = np.max(np.abs(fit.error)) * fit.size > _FAR
+    is_far = np.max(np.abs(fit.error)) * fit.size > FAR
     if not is_far or not fit.rate:
         return fit
     times = compared.run.times

@@ -33,13 +33,13 @@ Places = np.ndarray[Any, np.dtype[np.bool_]]
 # moves a body along its orbit, by about as much as across it, so that a third or a half proves nothing.
 LEAVES: Final = 0.1
 # So large a part of the samples, and one at least, may be without the shift that the others share;
-_STRAYS: Final = 0.1
+STRAYS: Final = 0.1
 # a shift that fewer than this share explains nothing.
-_FEWEST: Final = 3
+FEWEST: Final = 3
 # A stray is off by so many times what is usual.
-_UNUSUAL: Final = 10.0
+UNUSUAL: Final = 10.0
 # The line of Theil and Sen looks at all pairs of so many samples.
-_MOST_PAIRED: Final = 201
+MOST_PAIRED: Final = 201
 # Its square is a double. No shift of time makes an error of that size, nor one that is not finite.
 _LARGEST_ERROR: Final = 2**500
 
@@ -201,7 +201,7 @@ class _Fits:
 def _without_strays(compared: Compared, single: Shifted) -> Iterator[_Fits]:
     """The fits of the samples that share a robust course, constant or linear in t."""
     moving = courses.moving(single)
-    if np.count_nonzero(moving) < _FEWEST:
+    if np.count_nonzero(moving) < FEWEST:
         return
     for robust in (_median, _theil_sen):
         course = robust(single.shift, moving, np.array(compared.run.instants))
@@ -225,10 +225,10 @@ def strays_from(course: Floats, shifts: Floats, speed: Floats, across: Floats) -
     error that a shift of one makes.
     """
     off = np.hypot((shifts - course) * speed, across)
-    is_off = (off > LEAVES * np.abs(course) * speed) & (off > _UNUSUAL * np.median(off))
+    is_off = (off > LEAVES * np.abs(course) * speed) & (off > UNUSUAL * np.median(off))
     strays = tuple(int(k) for k in np.flatnonzero(is_off))
-    few = max(1, int(_STRAYS * len(off)))
-    return strays if len(strays) <= min(few, len(off) - _FEWEST) else ()
+    few = max(1, int(STRAYS * len(off)))
+    return strays if len(strays) <= min(few, len(off) - FEWEST) else ()
 
 
 def _median(shifts: Floats, moving: Places, times: Floats) -> Floats:
@@ -238,7 +238,7 @@ def _median(shifts: Floats, moving: Places, times: Floats) -> Floats:
 def _theil_sen(shifts: Floats, moving: Places, times: Floats) -> Floats:
     """The line whose slope is the median of those between all pairs of samples."""
     places = np.flatnonzero(moving)
-    chosen = places[evenly(len(places), _MOST_PAIRED)]
+    chosen = places[evenly(len(places), MOST_PAIRED)]
     first, second = np.triu_indices(len(chosen), 1)
     t, c = times[chosen], shifts[chosen]
     gaps = t[second] - t[first]

@@ -39,7 +39,7 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # The gradient of a conserved quantity is as smooth as the motion: more nodes than this refine the sum
 # over the steps by nothing that shows in two digits.
-_MOST_NODES = 41
+MOST_NODES = 41
 # Below this floor, rounding the scene's data moves the orbit too little to change its condition.
 _SAME_ORBIT = 1e-3
 # A length is written out where six digits show that it is not 1.
@@ -76,7 +76,7 @@ class Floor:
     @property
     def nodes(self) -> list[int]:
         """The samples at which the gradients of conserved quantities are looked at."""
-        return evenly(len(self.times), _MOST_NODES)
+        return evenly(len(self.times), MOST_NODES)
 
     def of_gradients(self, invariant: Invariant, at_nodes: Motion, scale: Any) -> Floats:
         """Return the attainable drift at every sample, over the ``scale`` of the invariant.
@@ -221,7 +221,7 @@ def looked_at(scene: Scene) -> list[int]:
 @lru_cache(maxsize=8)
 def condition(scene: Scene) -> Path:
     """Return how errors travel along the scene's own orbit, between evenly chosen samples."""
-    return transition(scene, chosen(scene.clock.elapsed, _MOST_NODES))
+    return transition(scene, chosen(scene.clock.elapsed, MOST_NODES))
 
 
 def _steps_at(elapsed: Sequence[Fraction], steps: int) -> Floats:

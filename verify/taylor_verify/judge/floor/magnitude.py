@@ -41,9 +41,9 @@ from taylor_verify.scenes.scene import Scene
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # The components of a unit quaternion are as large as this on an average.
-_COMPONENT: Final = 0.5
+COMPONENT: Final = 0.5
 # A rounding of the components of a unit quaternion turns the frame by twice as much.
-_ANGLE: Final = 2.0
+ANGLE: Final = 2.0
 # No cosine is larger.
 _WAVE: Final = np.ones(1)
 _QUATERNION: Final = ("e0", "e1", "e2", "e3")
@@ -104,7 +104,7 @@ def roundings(given: Scene, path: Path, bits: int, steps: int, velocities: bool 
     columns = []
     for block in path.blocks:
         if block == "attitude":
-            turn = _ANGLE * np.sqrt(sum(rounded[name] ** 2 for name in _QUATERNION))
+            turn = ANGLE * np.sqrt(sum(rounded[name] ** 2 for name in _QUATERNION))
             columns += [turn / np.sqrt(3.0)] * 3
         else:
             unit = float(_unit(problem, block) / path.units[block])
@@ -141,7 +141,7 @@ def _sizes(problem: Problem, path: Path) -> dict[str, Floats]:
         rows = np.abs(path.momentum[:, 3 * k : 3 * k + 3]) * unit
         found |= dict(zip(_COMPONENTS[block], rows.T, strict=True))
     if "attitude" in path.blocks:
-        found |= {name: np.full(len(path.elapsed), _COMPONENT) for name in _QUATERNION}
+        found |= {name: np.full(len(path.elapsed), COMPONENT) for name in _QUATERNION}
     if "centre" in path.blocks:
         length = problem.units.centre
         start = np.array([float(c / length) for c in problem.given.initial.parts()["centre"]])

@@ -81,7 +81,7 @@ class Ensemble:
         self._numbers = arithmetic(rung)
         self._linearised = [Linearised(problem) for problem in problems]
         width = batch_width(rung)
-        first = _stepper(form, rung, tolerance, width)
+        first = stepper(form, rung, tolerance, width)
         lanes = range(len(problems))
         self._groups = [lanes[i : i + width] for i in lanes[::width]]
         # They share their code; each has a state of its own, for they run at the same time.
@@ -229,8 +229,14 @@ def _check(problems: Sequence[Problem], tolerance: Fraction | None) -> None:
 
 
 @lru_cache(maxsize=32)
-def _stepper(form: Form, rung: Rung, tolerance: Fraction | None, width: int) -> Any:
-    """Return one compiled integrator of so many lanes."""
+def stepper(
+    form: Form,
+    rung: Rung,
+    tolerance: Fraction | None,
+    width: int,
+    straight: int = _LARGEST_STRAIGHT_LINE,
+) -> Any:
+    """Return one compiled integrator of so many lanes; straight-line code up to so many states."""
     if width == 1:
         return compiled(form, rung, tolerance)
     import heyoka as hy
@@ -248,7 +254,7 @@ def _stepper(form: Form, rung: Rung, tolerance: Fraction | None, width: int) -> 
         time=empty(),
         pars=empty(len(form.parameters)),
         fp_type=numbers.fp_type,
-        compact_mode=len(system) > _LARGEST_STRAIGHT_LINE,
+        compact_mode=len(system) > straight,
         # heyoka takes 0 for the machine epsilon of the type.
         tol=numbers.number(Fraction(0) if tolerance is None else rung.round(tolerance)),
     )

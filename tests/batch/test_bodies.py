@@ -1,0 +1,189 @@
+"""Many free rigid bodies at once: their verdicts are those of one body at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from taylor_verify.batch import bodies as batch
+from taylor_verify.batch.bodies import judged
+from taylor_verify.exact.euler.tops import Tops
+from taylor_verify.exact.route import solution
+from taylor_verify.models.bodies import Bodies, numbers
+from taylor_verify.models.problem import pose
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.run import run
+from taylor_verify.scenes.pairs import Pairs
+from taylor_verify.scenes.precision import exact_value, rung
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.taylor import lanes
+from taylor_verify.solvers.taylor.lanes import propagate
+from taylor_verify.solvers.trajectory import Outcome
+from tests.builders.satellites import satellite, satellites
+
+pytest.importorskip("heyoka")
+
+
+@pytest.fixture
+def one_by_one(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The names of the scenes that go through the chain."""
+    names: list[str] = []
+
+    def noted(scene: Scene, solver: str, rung: str) -> object:
+        names.append(scene.name)
+        return run(scene, solver, rung)
+
+    monkeypatch.setattr(batch, "run", noted)
+    return names
+
+
+def _words(verdicts: Sequence[Verdict]) -> list[tuple[object, ...]]:
+    return [(v.scene, v.quantity, v.verdict, v.outcome, v.error_kind, v.unit) for v in verdicts]
+
+
+def _agree(scenes: Sequence[Scene]) -> None:
+    for scene, found in zip(scenes, judged(scenes), strict=True):
+        expected = run(scene).verdicts
+        assert _words(found) == _words(expected)
+        for one, other in zip(found, expected, strict=True):
+            assert one.until == other.until
+            # Where the errors are largest at one sample, both floors there are those of their steps. A
+            # step has the length of the time over their number, which takes part in its rounding too.
+            if one.at == other.at and one.attainable and other.attainable:
+                samples = len(scene.clock.instants)
+                steps = max(one.steps, samples) / max(other.steps, samples)
+                assert one.attainable == pytest.approx(other.attainable * steps**0.5, rel=0.05)
+
+
+def test_verdicts_are_those_of_one_body_at_a_time(one_by_one: list[str]) -> None:
+    """Verdicts on satellites judged together are those of the chain, and few go through it."""
+    scenes = satellites(10, 1) + satellites(10, 2, tracks_attitude=True)
+    _agree(scenes)
+    assert len(one_by_one) <= 2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("tracks_attitude", [False, True])
+def test_verdicts_on_a_thousand_satellites(tracks_attitude: bool) -> None:
+    """Verdicts on a random thousand, five hundred with attitude, are those of the chain."""
+    _agree(satellites(500, 3 + tracks_attitude, tracks_attitude))
+
+
+def test_other_questions_go_through_the_chain(one_by_one: list[str]) -> None:
+    """Bodies that are no triaxial free ones in their own axes are judged one by one."""
+    one = Fraction(1)
+    round_body = satellite("round", (one, one, 2 * one), (one, one / 2, one / 3))
+    steady = satellite("steady", (one, 2 * one, 3 * one), (one, Fraction(0), Fraction(0)))
+    resting = satellite("resting", (one, 2 * one, 3 * one), (Fraction(0),) * 3)
+    loaded = satellite("loaded", (one, 2 * one, 3 * one), (one, one, one))
+    loaded = replace(loaded, body=replace(loaded.body, moment=(one, Fraction(0), Fraction(0))))
+    scenes = [round_body, steady, resting, loaded]
+    found = judged(scenes)
+    assert one_by_one == ["round", "steady", "resting", "loaded"]
+    assert [_words(rows) for rows in found] == [_words(run(s).verdicts) for s in scenes]
+
+
+def test_a_lane_that_is_wrong_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A lane that is disturbed stands in no verdict, and its neighbours are judged as before."""
+    scenes = satellites(6, 5)
+    expected = [_words(rows) for rows in judged(scenes)]
+    names: list[str] = []
+
+    def disturbed(bodies: Bodies) -> lanes.Lanes:
+        found = propagate(bodies)
+        found.rows[0, 2, 20:] *= 1 + 1e-11
+        return found
+
+    def noted(scene: Scene, *_: str) -> object:
+        names.append(scene.name)
+        return run(scene)
+
+    monkeypatch.setattr(batch, "propagate", disturbed)
+    monkeypatch.setattr(batch, "run", noted)
+    assert [_words(rows) for rows in judged(scenes)] == expected
+    assert names == ["satellite2"]
+
+
+def _bodies(scenes: Sequence[Scene]) -> Bodies:
+    rows = [numbers(scene) for scene in scenes]
+    times = np.array([[float(t) for t in scene.clock.elapsed] for scene in scenes])
+    K, H, q = (np.array(values).T for values in zip(*rows, strict=True))
+    return Bodies(K, H, times, q)
+
+
+def test_numbers_are_those_of_pose() -> None:
+    """K, H, the unit quaternion and the times are those that `pose` has for each body."""
+    scenes = satellites(12, 6, tracks_attitude=True)
+    bodies = _bodies(scenes)
+    for k, scene in enumerate(scenes):
+        problem = pose(scene, rung("f64"))
+        parameter, unit = problem.parameter, problem.units
+        K = [parameter[f"K{i}{i}"] / unit.momentum / unit.time for i in (1, 2, 3)]
+        start = problem.initial_momenta
+        assert K == [Fraction(v) for v in bodies.inverse[:, k]]
+        assert [h * unit.momentum for h in start[:3]] == [
+            Fraction(v) for v in bodies.momentum[:, k]
+        ]
+        assert list(start[3:]) == [Fraction(v) for v in bodies.starts[3:, k]]
+
+
+def test_broken_lanes_spoil_no_other() -> None:
+    """A lane that is not finite ends as such, and the lanes beside it reach their ends."""
+    bodies = _bodies(satellites(9, 7))
+    whole = propagate(bodies)
+    bodies.momentum[0, 4] = np.nan
+    broken = propagate(Bodies(bodies.inverse, bodies.momentum, bodies.times, bodies.attitude))
+    assert broken.outcomes[4] is Outcome.NON_FINITE
+    others = [k for k in range(9) if k != 4]
+    assert all(broken.outcomes[k] is Outcome.FINISHED for k in others)
+    np.testing.assert_allclose(broken.rows[:, others], whole.rows[:, others], rtol=0, atol=1e-12)
+
+
+def test_lanes_whose_rate_grew_go_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A lane that meets a faster rate than its steps were made for goes again at that rate."""
+    bodies = _bodies(satellites(5, 8))
+    slow = bodies.rates.copy()
+    slow[3] /= 8
+    monkeypatch.setattr(Bodies, "rates", property(lambda _: slow))
+    found = propagate(bodies)
+    assert found.ways.tolist() == [1, 1, 1, 2, 1]
+    assert all(outcome is Outcome.FINISHED for outcome in found.outcomes)
+
+
+@pytest.mark.parametrize("seed", [9, 10])
+def test_exact_motions_lie_in_their_balls(seed: int) -> None:
+    """The exact motions of many bodies are those of one body, to within the radii."""
+    scenes = satellites(6, seed, tracks_attitude=True)
+    bodies = _bodies(scenes)
+    assert bodies.quaternion is not None
+    found = Tops(bodies.inverse, Pairs(bodies.momentum), bodies.quaternion).states(bodies.times)
+    assert found.quaternion is not None
+    places = [0, 1, 20, 40]
+    for k, scene in enumerate(scenes):
+        given = pose(scene, rung("f64")).given
+        times = [given.clock.elapsed[place] for place in places]
+        # The grid holds the elapsed times as doubles, as the problem does.
+        assert [float(t) for t in times] == bodies.times[k, places].tolist()
+        omega = solution(given).motion(times, 40)["omega"]
+        q = solution(given).quaternion(times, 40).quantities["quaternion"]  # type: ignore[attr-defined]
+        for row, place in enumerate(places):
+            for i in range(3):
+                exact = exact_value(omega[row][i]) / Fraction(bodies.inverse[i, k])
+                assert _distance(found.momentum, (i, k, place), exact) <= 0
+            same = q[row][0] * found.quaternion.hi[0, k, place] > 0
+            for i in range(4):
+                exact = exact_value(q[row][i]) * (1 if same else -1)
+                assert _distance(found.quaternion, (i, k, place), exact) <= 0
+
+
+def _distance(balls: Pairs, place: tuple[int, int, int], exact: Fraction) -> Fraction:
+    """How far a number is outside of its ball, which has to be a small one."""
+    assert balls.radius()[place] <= 1e-17
+    middle = Fraction(float(balls.hi[place])) + Fraction(float(balls.lo[place]))
+    # The other number has 40 digits.
+    room = Fraction(float(balls.radius()[place])) + Fraction(1, 10**38)
+    return abs(middle - exact) - room

@@ -1,0 +1,1 @@
+"""Many free rigid bodies judged at once, in arrays of float64."""
