@@ -24,11 +24,15 @@ class WorstOfFamily:
 
 @dataclass(frozen=True)
 class WorstStudy:
-    """A search of so many seconds; ``factor`` is the bound of a gate over what is attainable."""
+    """A search of so many ``runs`` in each family, or of so many ``seconds`` by an earlier version.
+
+    ``factor`` is the bound of a gate over what is attainable.
+    """
 
     factor: int
     rung: str
-    seconds: float
     seed: int
     provenance: Provenance
     families: tuple[WorstOfFamily, ...]
+    runs: int | None = None
+    seconds: float | None = None

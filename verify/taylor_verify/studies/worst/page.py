@@ -19,8 +19,8 @@ WORST: Final = Stored(WorstStudy, "worst")
 
 _WHAT: Final = (
     "A gate stands at {factor} times what is attainable, which is what independent roundings of every "
-    "component leave. How near does a sound solver come to it? In each family random places are drawn, "
-    "then steps are taken around the worst of them; the Taylor driver answers every scene on {rung}, and "
+    "component leave. How near does a sound solver come to it? {searched}; the Taylor driver answers "
+    "every scene on {rung}, and "
     "the largest *error over attainable* of all its gates counts. A gate that is vacuous asks nothing "
     "and does not count."
 )
@@ -42,17 +42,36 @@ def page(study: WorstStudy) -> str:
     judged = sum(row.judged for row in families)
     return whole(
         "The worst that a search has found",
-        _WHAT.format(factor=f"{study.factor:g}", rung=code(study.rung)),
+        _WHAT.format(factor=f"{study.factor:g}", rung=code(study.rung), searched=_searched(study)),
         f"Of {judged} scenes the worst is {code(families[0].scene)}: "
         f"{figure(families[0].ratio)} in {code(families[0].quantity)}.",
         _table(families),
         _KEPT,
         "## To remake this",
-        f"`taylor-verify publish worst --seconds {study.seconds:g} --seed {study.seed}` hunts "
-        "anew and replaces the scenes. A faster machine judges more scenes in the same time, and may "
-        "find worse ones: the scenes that were found are the fact, and not that there are no others. "
+        _remade(study)
+        + "The scenes that were found are the fact, and not that there are no others. "
         f"Every digit is in [worst.csv](worst.csv) and [worst.json](../{WORST.name}).",
         traced(complete(study.provenance)),
+    )
+
+
+def _searched(study: WorstStudy) -> str:
+    if study.runs is None:
+        return (
+            "In each family random places are drawn, then steps are taken around the worst of them"
+        )
+    return (
+        f"In each family {study.runs} runs are spent on a population of places that moves by "
+        "differential evolution"
+    )
+
+
+def _remade(study: WorstStudy) -> str:
+    if study.runs is None:
+        return f"The search took {study.seconds:g} s. `taylor-verify publish worst` hunts anew, by runs. "
+    return (
+        f"`taylor-verify publish worst --runs {study.runs} --seed {study.seed}` hunts anew and replaces "
+        "the scenes. With the same versions it finds the same scenes. "
     )
 
 
