@@ -42,7 +42,7 @@ def executor_named(name: str) -> Iterator[Placed]:
         return
     address = name.removeprefix(DASK)
     if not name.startswith(DASK) or not address:
-        raise ValueError(f"expected local or dask:ADDRESS, got {name!r}")
+        raise ValueError(f"expected local or dask:ADDRESS, got {name!r} @ executor")
     try:
         # It has types for a part of itself only.
         distributed: Any = import_module("distributed")
@@ -53,7 +53,7 @@ def executor_named(name: str) -> Iterator[Placed]:
     except (OSError, TimeoutError, ValueError) as error:
         said = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise Unreachable(
-            f"expected a dask scheduler that answers within {_PATIENCE} s, got {said!r} @ {address}"
+            f"expected a dask scheduler that answers within {_PATIENCE} s, got {said!r}"
         ) from None
     with client:
         threads = sum(client.nthreads().values())

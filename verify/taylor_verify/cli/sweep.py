@@ -66,6 +66,7 @@ def answer(options: argparse.Namespace) -> Answer:
         )
     messages = [f"{found.total} bodies in {monotonic() - began:.1f} s"]
     messages += [f"nothing was judged: {lack}" for lack in found.lacks]
+    messages += [f"refused, for one: {refusal}" for refusal in found.refusals]
     messages += [f"wrote {folder}"] if folder is not None else []
     return Answer(found.exit_status, document(found), partial(_text, found), messages)
 

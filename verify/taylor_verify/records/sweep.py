@@ -60,8 +60,7 @@ class WorstCase:
 class SweepSummary:
     """The sweep of one family or folder by one solver.
 
-    ``bodies`` counts the bodies by the gravest of their verdicts. ``outcomes`` counts the rows that were
-    not judged for a lack of the machine.
+    ``bodies`` counts the bodies by the gravest of their verdicts.
     """
 
     name: str
@@ -78,6 +77,9 @@ class SweepSummary:
     factor: int
     exit_status: int
     lacks: Annotated[tuple[str, ...], about("Why nothing was judged, where nothing was.")] = ()
+    refusals: Annotated[
+        tuple[str, ...], about("Some of the reasons why drawn numbers make no body.")
+    ] = ()
     provenance: Provenance = field(default_factory=Provenance)
 
     @property

@@ -21,6 +21,12 @@ from taylor_verify.scenes.reading.faults import Refused
 MANIFEST: Final = "sweep.json"
 _ROWS: Final = "verdicts"
 _MADE_BY: Final = "taylor-verify sweep"
+# What a caller calls them.
+_WORDS: Final = {
+    "digest": "scenes",
+    "package": "the code of taylor-verify",
+    "programs": "the programs of the solver",
+}
 # Texts that a column repeats.
 _REPEATED: Final = ("scene", "quantity", "verdict", "outcome", "unit", "because")
 
@@ -46,7 +52,7 @@ class Manifest:
     def differences(self, other: Manifest) -> list[str]:
         """Return a sentence for each option in which another sweep differs."""
         return [
-            f"expected {field.name} as in the sweep that is there ({_said(mine)}), got "
+            f"expected {_WORDS.get(field.name, field.name)} as in the sweep that is there ({_said(mine)}), got "
             f"{_said(theirs)} @ --resume"
             for field in fields(self)
             if (mine := getattr(self, field.name)) != (theirs := getattr(other, field.name))

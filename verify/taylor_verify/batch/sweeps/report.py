@@ -71,6 +71,7 @@ def page(found: SweepSummary) -> str:
         f"# {prose(found.title or found.name)}",
         judged,
         *(f"Nothing was judged: {prose(lack)}." for lack in found.lacks),
+        *(f"Refused, for one: {prose(refusal)}." for refusal in found.refusals),
         f"Error over attainable, of the rows that passed or failed; a gate stands at {found.factor}. "
         "A quantile is an error that occurred, at most a thousandth above the exact quantile.",
         table(

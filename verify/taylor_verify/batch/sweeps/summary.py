@@ -27,6 +27,9 @@ WORST: Final = 10
 _ROWS: Final = (
     *("point", "scene", "quantity", "verdict", "outcome", "max", "ratio", "unit", "because"),
 )
+# Of these the reasons are told, and of each so many.
+_REASONED: Final = (Status.UNAVAILABLE, Status.REFUSED)
+_MOST_REASONS: Final = 3
 # A scene that is worth a look stands before all that passed: the gravest first.
 _LOOKED_AT: Final = (Status.FAIL, Status.UNDECIDED)
 
@@ -55,6 +58,7 @@ def summary(
         factor=GATE_FACTOR,
         exit_status=totals.exit_status(),
         lacks=totals.lacks(),
+        refusals=totals.refusals(),
         provenance=made,
     )
 
@@ -68,7 +72,8 @@ class _Totals:
         self._most, self._drawn = worst, drawn
         self._quantities: dict[str, _Quantity] = {}
         self._outcomes: Counter[str] = Counter()
-        self._reasons: dict[str, None] = {}
+        # By status, in the order of their coming.
+        self._reasons: dict[Status, dict[str, None]] = {status: {} for status in _REASONED}
 
     def add(self, table: Any) -> None:
         """Count the rows of a part, which has all rows of its bodies, each body's together."""
@@ -79,9 +84,10 @@ class _Totals:
             found.add(rows, rows.words("quantity") == name)
         gravest = np.minimum.reduceat(rows.gravity, rows.starts)
         self.bodies.update(GRAVITY[which] for which in gravest.tolist())
-        for because in set(rows.words("because")[rows.is_status(Status.UNAVAILABLE)].tolist()):
-            if len(self._reasons) < self._most:
-                self._reasons[because] = None
+        for status, reasons in self._reasons.items():
+            for because in rows.words("because")[rows.is_status(status)].tolist():
+                if len(reasons) < _MOST_REASONS:
+                    reasons[because] = None
         self._add_worst(rows)
 
     def spreads(self) -> tuple[Spread, ...]:
@@ -104,7 +110,11 @@ class _Totals:
     def lacks(self) -> tuple[str, ...]:
         """Return the reasons why nothing was judged; empty where something was."""
         is_nothing = sum(self.bodies.values()) == self.bodies[Status.UNAVAILABLE]
-        return tuple(self._reasons) if is_nothing else ()
+        return tuple(self._reasons[Status.UNAVAILABLE]) if is_nothing else ()
+
+    def refusals(self) -> tuple[str, ...]:
+        """Return some of the reasons why numbers make no body."""
+        return tuple(self._reasons[Status.REFUSED])
 
     def _add_worst(self, rows: _Rows) -> None:
         """Keep the bodies that came nearest to failing, of these and those before."""

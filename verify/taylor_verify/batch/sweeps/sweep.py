@@ -21,7 +21,7 @@ from taylor_verify.batch.sweeps.chunk import Chunk, Judged, judge
 from taylor_verify.batch.sweeps.dataset import MANIFEST, Dataset, Manifest, read_manifest
 from taylor_verify.batch.sweeps.questions import Drawn, Questions, questions
 from taylor_verify.batch.sweeps.report import write_summary
-from taylor_verify.batch.sweeps.summary import WORST, summary
+from taylor_verify.batch.sweeps.summary import WORST, summary, with_files
 from taylor_verify.judge.provenance import packages
 from taylor_verify.records.sweep import SweepSummary
 from taylor_verify.scenes.precision import Rung
@@ -101,33 +101,38 @@ def sweep(
     Every process imports the script that calls this: there the call stands under
     ``if __name__ == "__main__":``.
     """
-    _check(jobs, worst, ahead, resume, out)
-    asked = questions(str(what), count, seed, points)
-    manifest = _manifest(asked, solver, rung_named(rung))
+    faults = list(_faults(jobs, worst, ahead, resume, out))
+    try:
+        asked = questions(str(what), count, seed, points)
+        manifest = _manifest(asked, solver, rung_named(rung))
+    except ValueError as error:
+        raise ValueError("\n".join([*faults, str(error)])) from None
+    if faults:
+        raise ValueError("\n".join(faults))
     with _folder(out) as folder, alone_in(folder):
         dataset = Dataset(folder, manifest)
         _begin(dataset, asked, resume)
         _judge_all(dataset, asked, executor, jobs, ahead)
         found, _ = write_summary(folder, summary(dataset, asked, asked.title, worst), asked)
-    return found
+    # What was written into a folder that is gone has no file.
+    return found if out is not None else with_files(found, {})
 
 
-def _check(jobs: object, worst: object, ahead: object, resume: bool, out: object) -> None:
+def _faults(
+    jobs: object, worst: object, ahead: object, resume: object, out: object
+) -> Iterator[str]:
+    """Yield a sentence for each argument that is none."""
     wanted = {"jobs": (jobs, 1), "worst": (worst, 0), "ahead": (ahead, 1)}
-    faults = [
-        f"expected a whole number of at least {least}, got {value!r} @ {name}"
-        for name, (value, least) in wanted.items()
-        if value is not None
-        and (isinstance(value, bool) or not isinstance(value, int) or value < least)
-    ]
-    if resume and out is None:
-        faults.append("expected the folder of the sweep to go on with, got none @ out")
+    for name, (value, least) in wanted.items():
+        is_whole = isinstance(value, int) and not isinstance(value, bool)
+        if value is not None and not (is_whole and int(str(value)) >= least):
+            yield f"expected a whole number of at least {least}, got {value!r} @ {name}"
     if isinstance(worst, int) and worst > _MOST_WORST:
-        faults.append(f"expected at most {_MOST_WORST} worst cases, got {worst} @ worst")
+        yield f"expected at most {_MOST_WORST} worst cases, got {worst} @ worst"
+    if resume and out is None:
+        yield "expected the folder of the sweep to go on with (--out), got none @ resume"
     if find_spec("pyarrow") is None:
-        faults.append("expected pyarrow (pip install 'taylor-verify[parquet]'), got none")
-    if faults:
-        raise ValueError("\n".join(faults))
+        yield "expected pyarrow (pip install 'taylor-verify[parquet]'), got none"
 
 
 def _manifest(asked: Questions, solver: str, rung: Rung) -> Manifest:
