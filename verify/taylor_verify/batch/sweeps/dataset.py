@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 from typing import Any, Final
@@ -51,11 +51,12 @@ class Manifest:
 
     def differences(self, other: Manifest) -> list[str]:
         """Return a sentence for each option in which another sweep differs."""
+        mine, theirs = vars(self), vars(other)
         return [
-            f"expected {_WORDS.get(field.name, field.name)} as in the sweep that is there ({_said(mine)}), got "
-            f"{_said(theirs)} @ --resume"
-            for field in fields(self)
-            if (mine := getattr(self, field.name)) != (theirs := getattr(other, field.name))
+            f"expected {_WORDS.get(name, name)} as in the sweep that is there ({_said(mine[name])}), "
+            f"got {_said(theirs[name])} @ resume"
+            for name in mine
+            if mine[name] != theirs[name]
         ]
 
 

@@ -112,7 +112,13 @@ def sweep(
     with _folder(out) as folder, alone_in(folder):
         dataset = Dataset(folder, manifest)
         _begin(dataset, asked, resume)
-        _judge_all(dataset, asked, executor, jobs, ahead)
+        try:
+            _judge_all(dataset, asked, executor, jobs, ahead)
+        except Interrupted:
+            if out is None:
+                # Nothing is left to go on from.
+                raise KeyboardInterrupt from None
+            raise
         found, _ = write_summary(folder, summary(dataset, asked, asked.title, worst), asked)
     # What was written into a folder that is gone has no file.
     return found if out is not None else with_files(found, {})

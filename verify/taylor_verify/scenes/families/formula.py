@@ -18,6 +18,7 @@ _DIGITS: Final = Context(prec=20)
 _GUARDED: Final = Context(prec=60)
 _LONGEST: Final = 200
 _LARGEST_POWER: Final = 20
+_MOST_BITS: Final = 13_280  # 4000 digits
 _ALLOWED: Final = "a formula in numbers defined above, + - * / ** and sqrt log exp"
 _FUNCTIONS: Final[Mapping[str, Callable[[Decimal], Decimal]]] = {
     "sqrt": _DIGITS.sqrt,
@@ -91,6 +92,14 @@ def _names(node: ast.expr) -> set[str]:
 
 
 def _value(node: ast.expr, text: str, numbers: Mapping[str, Fraction]) -> Fraction:
+    """Return the value of a node. Raises NoValue for a number that no scene file could hold."""
+    value = _computed(node, text, numbers)
+    if max(value.numerator.bit_length(), value.denominator.bit_length()) > _MOST_BITS:
+        raise NoValue(f"expected numbers of at most 4000 digits, got more in {text!r}")
+    return value
+
+
+def _computed(node: ast.expr, text: str, numbers: Mapping[str, Fraction]) -> Fraction:
     match node:
         case ast.Name(id=name):
             return numbers[name]
@@ -107,5 +116,8 @@ def _value(node: ast.expr, text: str, numbers: Mapping[str, Fraction]) -> Fracti
         case ast.Call(func=ast.Name(id=name), args=[argument]):
             exact = _value(argument, text, numbers)
             near = _GUARDED.divide(Decimal(exact.numerator), Decimal(exact.denominator))
-            return Fraction(_FUNCTIONS[name](near))
+            value = _FUNCTIONS[name](near)
+            if not value.is_finite():
+                raise InvalidOperation
+            return Fraction(value)
     raise ValueError(_ALLOWED)
