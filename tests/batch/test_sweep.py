@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -29,11 +30,14 @@ from taylor_verify.batch.sweeps.sweep import sweep
 from taylor_verify.cli import main
 from taylor_verify.records.status import Status
 from taylor_verify.records.sweep import SweepSummary
+from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.scenes.scene import Scene
 
-# Fixed steps need no compiler, and are exact to no more than their order.
-SOLVER = "geometric:splitting?step=0.05"
+# It needs no compiler, and passes. Of fixed steps the same bodies fail, for causes that take long to name.
+SOLVER = "closed-form:ellipj"
+FAILING = "geometric:splitting?step=0.05"
 TEMPLATE = """
 title = "Small"
 model = "euler"
@@ -49,7 +53,7 @@ omega = [{ formula = "g" }, 1, { uniform = [-1, 1] }]
 end = 1
 samples = 3
 """
-WORDS = ["--solver", SOLVER, "--count", "10"]
+WORDS = ["--solver", SOLVER, "--count", "10", "--jobs", "1"]
 
 
 @pytest.fixture
@@ -70,7 +74,29 @@ def parts(folder: Path) -> dict[str, bytes]:
 
 
 def swept(template: str, out: Path, **options: Any) -> SweepSummary:
-    return sweep(template, count=10, solver=SOLVER, out=out, **{"jobs": 1, **options})
+    asked: dict[str, Any] = {"count": 10, "solver": SOLVER, "jobs": 1, **options}
+    return sweep(template, out=out, **asked)
+
+
+def invented(scenes: Sequence[Scene], solver: str, rung: str) -> list[list[Verdict]]:
+    """A verdict on each scene that follows from its first moment, and takes no time."""
+    return [
+        [
+            Verdict(
+                *(scene.name, solver, rung, "", quantity, Status.PASS, "reached"),
+                max=float(scene.body.parts()["inertia"][0][0]),
+                ratio=float(scene.body.parts()["inertia"][0][0]),
+            )
+            for quantity in ("omega", "T")
+        ]
+        for scene in scenes
+    ]
+
+
+@pytest.fixture
+def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Rows that are invented, for what is asked of the cuts and not of the numbers."""
+    monkeypatch.setattr(chunks, "judged", invented)
 
 
 class Later(Executor):
@@ -114,31 +140,28 @@ def test_a_sweep_leaves_rows_a_summary_and_the_worst_cases(template: str, tmp_pa
 
 
 def test_a_worst_case_is_a_scene_that_runs(template: str, tmp_path: Path) -> None:
-    """Run alone, the scene of the worst case has the number that the sweep has; the exit status too."""
-    found = swept(template, tmp_path / "out", worst=1)
+    """Run alone, the scene of a worst case has the numbers that the sweep has; a failure fails both."""
+    found = swept(template, tmp_path / "out", solver=FAILING, count=1, worst=1)
     (case,) = found.worst
-    assert found.exit_status == 1
-    assert case.verdict is Status.FAIL
-    again = run(tmp_path / "out" / case.file, SOLVER)
-    assert {v.quantity: v.ratio for v in again.verdicts}[case.quantity] == case.ratio
-
-
-def test_rows_are_those_of_runs_one_by_one(template: str, tmp_path: Path) -> None:
-    """A row of the dataset is the verdict of `run` on the same scene."""
-    swept(template, tmp_path / "out", worst=20)
-    for file in (tmp_path / "out" / "worst").glob("*.toml"):
-        number = int(file.stem.rpartition("-")[2])
-        mine = [row for row in rows(tmp_path / "out") if row["point"] == number]
-        verdicts = run(file, SOLVER).verdicts
-        assert [row["max"] for row in mine] == [verdict.max for verdict in verdicts]
-        assert [row["verdict"] for row in mine] == [verdict.verdict.value for verdict in verdicts]
+    assert (found.exit_status, case.verdict) == (1, Status.FAIL)
+    mine = [row for row in rows(tmp_path / "out") if row["point"] == case.point]
+    verdicts = run(tmp_path / "out" / case.file, FAILING).verdicts
+    for name in ("max", "ratio", "bound", "steps", "quantity", "because"):
+        expected = [getattr(verdict, name) for verdict in verdicts]
+        if name == "because":
+            expected = [
+                text if v.verdict is not Status.PASS else ""
+                for v, text in zip(verdicts, expected, strict=True)
+            ]
+        assert [row[name] for row in mine] == expected
+    assert {v.quantity: v.ratio for v in verdicts}[case.quantity] == case.ratio
 
 
 def test_numbers_that_make_no_body_are_refused_rows(tmp_path: Path) -> None:
     """They are counted, undecided as a whole, and their reason is told; they are no worst case."""
     file = tmp_path / "some.toml"
     file.write_text(TEMPLATE.replace("uniform = [1, 2]", "uniform = [-1, 2]"))
-    found = sweep(str(file), count=10, solver="closed-form:ellipj", out=tmp_path / "out", jobs=1)
+    found = swept(str(file), tmp_path / "out")
     refused = [row for row in rows(tmp_path / "out") if row["quantity"] == "scene"]
     assert found.bodies["refused"] == len(refused) > 0
     assert found.exit_status == (1 if found.bodies["fail"] else 3)
@@ -168,6 +191,7 @@ def test_a_scene_that_breaks_the_code_stops_no_other(
 # Executors, interrupts.
 
 
+@pytest.mark.usefixtures("quick")
 def test_every_executor_leaves_the_same_bytes(template: str, tmp_path: Path) -> None:
     """In this process, in threads, and by an executor that begins with the last chunk."""
     swept(template, tmp_path / "here")
@@ -177,12 +201,14 @@ def test_every_executor_leaves_the_same_bytes(template: str, tmp_path: Path) -> 
             assert parts(tmp_path / name) == parts(tmp_path / "here")
 
 
+@pytest.mark.usefixtures("quick")
 def test_no_more_chunks_are_under_way_than_were_asked_for(template: str, tmp_path: Path) -> None:
     """With two ahead, an executor that waits for its third waits for ever; here it is given two."""
     swept(template, tmp_path / "out", jobs=None, executor=Later(5), ahead=2)
     assert len(parts(tmp_path / "out")) == 5
 
 
+@pytest.mark.usefixtures("quick")
 def test_an_interrupted_sweep_goes_on(
     template: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -204,18 +230,19 @@ def test_an_interrupted_sweep_goes_on(
     assert judged == []
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGKILL")
 def test_a_killed_sweep_goes_on(template: str, tmp_path: Path) -> None:
     """After SIGKILL in the middle, --resume has every row once, and the bytes of one go."""
     out = tmp_path / "out"
-    words = [sys.executable, "-m", "taylor_verify", "sweep", template, *WORDS, "--jobs", "1"]
+    words = [sys.executable, "-m", "taylor_verify", "sweep", template, *WORDS]
     process = subprocess.Popen([*words, "--out", str(out)], stderr=subprocess.DEVNULL)
     end = time.monotonic() + 60
     while time.monotonic() < end and len(list(out.glob("verdicts/part*"))) < 2:
         time.sleep(0.005)
     process.send_signal(signal.SIGKILL)
     process.wait()
-    assert main(["sweep", template, *WORDS, "--jobs", "1", "--out", str(out), "--resume"]) == 1
+    assert main(["sweep", template, *WORDS, "--out", str(out), "--resume"]) == 0
     swept(template, tmp_path / "whole")
     there = {name: file for name, file in parts_of_files(out).items() if name.startswith("part")}
     assert there == parts_of_files(tmp_path / "whole")
@@ -226,6 +253,7 @@ def parts_of_files(folder: Path) -> dict[str, bytes]:
     return {f.name: f.read_bytes() for f in (folder / "verdicts").iterdir() if f.is_file()}
 
 
+@pytest.mark.usefixtures("quick")
 def test_rows_of_other_code_are_refused(
     template: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -267,6 +295,7 @@ def test_a_wrong_call_is_refused(
     assert [file.name for file in tmp_path.iterdir()] == ["small.toml"]
 
 
+@pytest.mark.usefixtures("quick")
 def test_a_folder_with_another_sweep_is_refused(template: str, tmp_path: Path) -> None:
     """Without resume any sweep in the folder; with resume one that differs, which options is said."""
     swept(template, tmp_path / "out")
@@ -287,7 +316,7 @@ def test_a_folder_of_scenes_is_swept(template: str, tmp_path: Path) -> None:
     for file in (tmp_path / "out" / "worst").iterdir():
         (folder / file.name).write_bytes(file.read_bytes())
     found = sweep(str(folder), solver=SOLVER, jobs=1)
-    assert (found.total, found.seed, found.exit_status) == (4, None, 1)
+    assert (found.total, found.seed, found.exit_status) == (4, None, 0)
     with pytest.raises(ValueError, match="expected none beside a folder of scenes, got 3 @ count"):
         sweep(str(folder), count=3)
     (folder / "wrong.toml").write_text("x = 1\n")
@@ -295,11 +324,12 @@ def test_a_folder_of_scenes_is_swept(template: str, tmp_path: Path) -> None:
         sweep(str(folder), solver=SOLVER)
 
 
+@pytest.mark.usefixtures("quick")
 def test_json_is_one_document(template: str, capsys: pytest.CaptureFixture[str]) -> None:
     """`sweep --json` prints the summary and nothing else; without --out no file is named."""
-    assert main(["sweep", template, *WORDS, "--jobs", "1", "--json"]) == 1
+    assert main(["sweep", template, *WORDS, "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
-    assert (found["total"], found["exit_status"], found["bodies"]["fail"] > 0) == (20, 1, True)
+    assert (found["total"], found["exit_status"], found["bodies"]["pass"]) == (20, 0, 20)
     assert {case["file"] for case in found["worst"]} == {""}
 
 
