@@ -74,8 +74,8 @@ def run_stream(
 ) -> Generator[Result]:
     """Yield ``work(one)`` for each one asked, as each ends, with no more than ``ahead`` of them under way.
 
-    So that any number is asked for in bounded memory. All else is as in `run_all`; whoever does not take
-    all results closes the generator.
+    Any number can be asked for in bounded memory. ``executor``, ``workers`` and ``raises`` are those of
+    `run_all`, and so are the errors. Whoever does not take all results closes the generator.
     """
     numbered = enumerate(asked)
     for _, result in _ended(work, numbered, executor, workers or available_cores(), ahead, raises):
