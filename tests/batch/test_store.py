@@ -123,7 +123,7 @@ def test_the_same_run_twice_at_once_keeps_apart(cache: Path) -> None:
 def test_other_code_takes_up_nothing(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A judgement by another text of this package is not this one's."""
     keep()
-    monkeypatch.setattr(module, "_package", lambda: "another")
+    monkeypatch.setattr(module, "package_digest", lambda: "another")
     assert kept(resume=True) == 0
 
 

@@ -116,8 +116,8 @@ def _computed(node: ast.expr, text: str, numbers: Mapping[str, Fraction]) -> Fra
         case ast.Call(func=ast.Name(id=name), args=[argument]):
             exact = _value(argument, text, numbers)
             near = _GUARDED.divide(Decimal(exact.numerator), Decimal(exact.denominator))
-            value = _FUNCTIONS[name](near)
-            if not value.is_finite():
+            irrational = _FUNCTIONS[name](near)
+            if not irrational.is_finite():
                 raise InvalidOperation
-            return Fraction(value)
+            return Fraction(irrational)
     raise ValueError(_ALLOWED)

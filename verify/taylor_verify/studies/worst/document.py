@@ -22,7 +22,7 @@ class WorstOfFamily:
     scene: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class WorstStudy:
     """A search of so many ``runs`` in each family, or of so many ``seconds`` by an earlier version.
 
@@ -31,8 +31,8 @@ class WorstStudy:
 
     factor: int
     rung: str
+    runs: int | None = None
+    seconds: float | None = None
     seed: int
     provenance: Provenance
     families: tuple[WorstOfFamily, ...]
-    runs: int | None = None
-    seconds: float | None = None
