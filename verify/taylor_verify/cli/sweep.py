@@ -85,8 +85,9 @@ def _text(found: SweepSummary) -> str:
     if found.worst:
         page.line(bold("the worst cases"))
     for case in found.worst[:_SHOWN]:
-        size = "no number" if case.ratio is None else f"{case.ratio:.3g}"
-        said = f"  {case.scene}  {case.quantity} {size}  {case.because}".rstrip()
+        # The arithmetic of a bound is long; `run --explain` on the scene shows it.
+        size = case.because if case.ratio is None else f"{case.ratio:.3g}"
+        said = f"  {case.scene}  {case.quantity} {size}"
         page.line(status_text(case.verdict.value), f"{said}  {case.file}".rstrip())
     page.line()
     print_end(page, [], f"bodies: {counts(found)}", found.exit_status, explained=True)
