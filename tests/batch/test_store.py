@@ -123,7 +123,7 @@ def test_the_same_run_twice_at_once_keeps_apart(cache: Path) -> None:
 def test_other_code_takes_up_nothing(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A judgement by another text of this package is not this one's."""
     keep()
-    monkeypatch.setattr(module, "_package", lambda: "another")
+    monkeypatch.setattr(module, "package_digest", lambda: "another")
     assert kept(resume=True) == 0
 
 
@@ -295,7 +295,7 @@ def test_an_interrupted_run_goes_on_where_it_was(tmp_path: Path) -> None:
         pytest.skip("the run was over before it could be interrupted")
     assert working.returncode == 130
     assert out == ""
-    assert "of 4 scenes are finished and kept, nothing is written" in error or (
+    assert "of 4 scenes are finished and kept, no report is written" in error or (
         error == "taylor-verify: interrupted\n"
     )
     kept = len(files(place))

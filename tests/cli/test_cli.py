@@ -27,6 +27,7 @@ from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.scenes import library, tensors
 from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.families.library import family_names
 from taylor_verify.scenes.library import GUIDE
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.solvers import registry
@@ -66,6 +67,7 @@ def test_list_names_what_there_is(capsys: Captured) -> None:
         "scenes": list(library.names()),
         "extremes": list(library.names(library.EXTREMES, library.WORST)),
         "engines": list(library.names(library.ENGINES)),
+        "families": list(family_names()),
         "solvers": list(registry.solver_names()),
         "rungs": list(LADDER),
         "guide": dict(GUIDE),

@@ -124,18 +124,27 @@ def publish_reads_records(module: str, source: str) -> Iterator[str]:
         yield from _beyond(readable, module, source, for_types=["taylor_verify.scenes"])
 
 
-# What lies above batch, and would make a circle of it; publish is written to from one module.
+# What lies above batch, and would make a circle of it; publish is written to from modules called report.
 ABOVE_BATCH: Final = {"cli", "studies", "controls", "claims"}
 
 
 def batch_stands_below_the_verbs(module: str, source: str) -> Iterator[str]:
-    """batch imports nothing of the rooms above it, and publish in batch.report alone."""
+    """batch imports nothing of the rooms above it, and publish in its modules `report` alone."""
     if room(module) != "batch":
         return
-    above = ABOVE_BATCH if module == "taylor_verify.batch.report" else ABOVE_BATCH | {"publish"}
+    is_report = module.endswith(".report")
+    above = ABOVE_BATCH if is_report else ABOVE_BATCH | {"publish"}
     for target, line, _ in imports(source):
         if within(target, *(f"taylor_verify.{name}" for name in above)):
             yield f"expected nothing of {room(target)}, got {target} @ {module}:{line}"
+
+
+def dask_has_its_place(module: str, source: str) -> Iterator[str]:
+    """dask is imported in batch.cluster alone: all other code knows executors."""
+    if module != "taylor_verify.batch.cluster":
+        for target, line, _ in imports(source):
+            if within(target, "dask", "distributed"):
+                yield f"expected dask in batch.cluster only, got {target} @ {module}:{line}"
 
 
 def studies_stand_below_the_verbs(module: str, source: str) -> Iterator[str]:
@@ -275,6 +284,7 @@ RULES: Final = (
     asks_the_registry,
     heyoka_has_its_place,
     batch_stands_below_the_verbs,
+    dask_has_its_place,
     studies_stand_below_the_verbs,
     processes_have_their_place,
     imports_heyoka_late,
@@ -492,6 +502,12 @@ PLANTED = [
         "publish",
     ),
     (
+        dask_has_its_place,
+        "taylor_verify.batch.sweeps.sweep",
+        "def f():\n from distributed import Client",
+        "distributed.Client",
+    ),
+    (
         studies_stand_below_the_verbs,
         "taylor_verify.studies.growth.study",
         "def f():\n from taylor_verify.cli.streams import say",
@@ -565,6 +581,8 @@ def test_every_rule_has_a_planted_fault() -> None:
             "if TYPE_CHECKING:\n from taylor_verify.scenes.scene import Scene",
         ),
         ("taylor_verify.batch.report", "from taylor_verify.publish.ci.junit import junit"),
+        ("taylor_verify.batch.sweeps.report", "from taylor_verify.publish.cells import figure"),
+        ("taylor_verify.batch.cluster", "d = import_module('distributed')"),
         ("taylor_verify.batch.pool", "import multiprocessing"),
         (
             "taylor_verify.run_many",

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from builders.studies.worst import verdict, worst_of
+from builders.studies.worst import quarry, verdict, worst_of
 from hypothesis import HealthCheck, example, given, settings, target
 from hypothesis import strategies as st
 
@@ -17,13 +17,16 @@ from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.scenes import library
+from taylor_verify.scenes.families.family import Family
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import load
+from taylor_verify.studies.study import NotMeasured
 from taylor_verify.studies.worst import measure as hunt
 from taylor_verify.studies.worst import page as worst
-from taylor_verify.studies.worst.measure import FAMILIES, Catch, Family
+from taylor_verify.studies.worst.measure import Catch, Quarry, quarries
 from taylor_verify.studies.worst.study import STUDY
 
+FAMILIES = quarries()
 KEPT = library.names(library.WORST)
 EACH_FAMILY = pytest.mark.parametrize("family", FAMILIES, ids=lambda family: family.name)
 
@@ -31,20 +34,25 @@ EACH_FAMILY = pytest.mark.parametrize("family", FAMILIES, ids=lambda family: fam
 # The families.
 
 
+def places(quarry: Quarry) -> st.SearchStrategy[list[float]]:
+    """Places of the cube of a family, its edges too."""
+    return st.lists(st.floats(0, 1), min_size=quarry.family.free, max_size=quarry.family.free)
+
+
 @EACH_FAMILY
 @given(st.data())
 @settings(max_examples=20)
-def test_every_place_of_a_cube_is_a_scene(family: Family, data: st.DataObject) -> None:
+def test_every_place_of_a_cube_is_a_scene(family: Quarry, data: st.DataObject) -> None:
     """Every point of the cube and its edges is a scene of the model that the family's name begins with."""
-    place = data.draw(st.lists(st.floats(0, 1), min_size=family.free, max_size=family.free))
+    place = data.draw(places(family))
     try:
-        scene = family.scene(place)
+        scene = family.family.scene(place)
     except Refused as refused:
         # Where nothing moves there is no motion of another size; a scene that is refused counts for none.
         raise AssertionError(str(refused)) from refused
     assert scene.model == family.name.split("-")[0]
     # Written again it is the same one: the numbers in the file are all there is.
-    assert replace(family.scene(place), name=scene.name) == scene
+    assert replace(family.family.scene(place), name=scene.name) == scene
 
 
 @pytest.mark.slow
@@ -52,11 +60,10 @@ def test_every_place_of_a_cube_is_a_scene(family: Family, data: st.DataObject) -
 @given(st.data())
 @settings(max_examples=12, deadline=None, suppress_health_check=list(HealthCheck))
 def test_searched_for_the_worst_the_sound_driver_passes(
-    family: Family, data: st.DataObject
+    family: Quarry, data: st.DataObject
 ) -> None:
     """Led by error over attainable, a search finds no scene at which a gate fails."""
-    place = data.draw(st.lists(st.floats(0, 1), min_size=family.free, max_size=family.free))
-    catch = hunt.caught(family, place)
+    (catch,) = hunt.caught(family.family, [data.draw(places(family))])
     if catch is not None:
         target(catch.ratio)
         assert catch.verdict.verdict is Status.PASS
@@ -65,37 +72,54 @@ def test_searched_for_the_worst_the_sound_driver_passes(
 # The search.
 
 
-def _peak(family: Family, place: Sequence[float]) -> Catch:
+def _peaks(family: Family, several: Sequence[Sequence[float]]) -> list[Catch | None]:
     """A smooth hill with its top, 5, at 0.7 everywhere."""
-    distance = sum((value - 0.7) ** 2 for value in place) ** 0.5
-    return Catch(tuple(place), verdict(5 - distance))
+    distances = [sum((value - 0.7) ** 2 for value in place) ** 0.5 for place in several]
+    return [
+        Catch(tuple(place), verdict(5 - away))
+        for place, away in zip(several, distances, strict=True)
+    ]
 
 
 def test_hunt_climbs(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The hunt comes from the best of a cloud to the top of a hill, in five dimensions too."""
-    monkeypatch.setattr(hunt, "caught", _peak)
-    family = Family("euler-hill", "hills", 5, lambda place: "")
-    (found,) = hunt.hunt([family], 0.5, 1, lambda name: None)
-    assert found.judged > 50
-    # The cloud alone, of a thousand places in five dimensions, comes no nearer than some 0.1.
-    assert found.worst.ratio >= 5 - 0.1
+    """The hunt comes from its first places to the top of a hill, in five dimensions too."""
+    monkeypatch.setattr(hunt, "caught", _peaks)
+    (found,) = hunt.hunt([quarry("euler-hill", 5)], 2000, 1, lambda name: None)
+    # A cloud of as many places comes no nearer than some 0.1.
+    assert found.worst.ratio >= 5 - 0.05
 
 
-def test_same_seed_draws_the_same_places(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The places of the cloud follow from seed and family; another seed has others."""
-    seen: list[tuple[float, ...]] = []
+@pytest.mark.parametrize("runs", [10, 77, 400])
+def test_a_budget_is_a_number_of_runs(monkeypatch: pytest.MonkeyPatch, runs: int) -> None:
+    """No more runs are made than were asked for, and less than a generation is left over."""
+    monkeypatch.setattr(hunt, "caught", _peaks)
+    (found,) = hunt.hunt([quarry("euler-hill", 3)], runs, 1, lambda name: None)
+    assert runs * 0.6 < found.judged <= runs
 
-    def noted(family: Family, place: Sequence[float]) -> Catch:
-        seen.append(tuple(place))
-        return _peak(family, place)
+
+def test_a_hunt_can_be_repeated(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every place follows from seed and family; another seed has others."""
+    seen: list[list[float]] = []
+
+    def noted(family: Family, several: Sequence[Sequence[float]]) -> list[Catch | None]:
+        seen.extend(map(list, several))
+        return _peaks(family, several)
 
     monkeypatch.setattr(hunt, "caught", noted)
-    first = []
+    rounds = []
     for seed in (1, 1, 2):
         seen.clear()
-        hunt.hunt([Family("euler-hill", "hills", 2, lambda place: "")], 0.05, seed, str)
-        first.append(seen[:3])
-    assert first[0] == first[1] != first[2]
+        hunt.hunt([quarry("euler-hill", 2)], 60, seed, str)
+        rounds.append([*seen])
+    assert rounds[0] == rounds[1]
+    assert rounds[0][0] != rounds[2][0]
+
+
+def test_a_family_without_a_judged_scene_is_no_hunt(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where no place has a gate that asks something, the hunt says so and names the family."""
+    monkeypatch.setattr(hunt, "caught", lambda family, several: [None] * len(several))
+    with pytest.raises(NotMeasured, match="euler-nothing"):
+        hunt.hunt([quarry("euler-nothing")], 20, 1, str)
 
 
 @example(None)
@@ -146,11 +170,11 @@ def test_scene_file_says_why_it_is_there() -> None:
 
 def test_page_is_made_from_stored_rows_alone(tmp_path: Path) -> None:
     """The worst family stands first; a ratio changed in worst.json is changed on the page."""
-    rows = hunt.study([worst_of("euler-a", 1.5), worst_of("euler-b", 2.5)], 60.0, 3)
+    rows = hunt.study([worst_of("euler-a", 1.5), worst_of("euler-b", 2.5)], 60, 3)
     worst.WORST.write(tmp_path, rows)
     page = STUDY.pages(tmp_path)[STUDY.path]
     assert page.index("euler-b") < page.index("euler-a")
-    assert "--seconds 60 --seed 3" in page
+    assert "--runs 60 --seed 3" in page
     file = tmp_path / worst.WORST.name
     stored = json.loads(file.read_text(encoding="utf-8"))
     stored["families"][0]["ratio"] = 7.75
@@ -178,7 +202,19 @@ def test_old_scenes_make_room(tmp_path: Path) -> None:
     }
 
 
-def test_no_time_is_no_hunt(capsys: pytest.CaptureFixture[str]) -> None:
-    """`publish worst --seconds 0` is a wrong call and changes nothing."""
-    assert main(["publish", "worst", "--seconds", "0"]) == 2
-    assert "expected a time in seconds above 0, got 0 @ --seconds" in capsys.readouterr().err
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["--runs", "0"], "expected a whole number of at least 10, got 0 @ --runs"),
+        (
+            ["--seconds", "5"],
+            "expected a budget in runs, which can be repeated (--runs 400), got 5 s",
+        ),
+    ],
+)
+def test_no_budget_is_no_hunt(
+    capsys: pytest.CaptureFixture[str], words: list[str], sentence: str
+) -> None:
+    """No runs, and seconds, which no hunt can be repeated by, are wrong calls and change nothing."""
+    assert main(["publish", "worst", *words]) == 2
+    assert sentence in capsys.readouterr().err

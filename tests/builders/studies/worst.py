@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
+from decimal import Decimal
+
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.studies.worst.measure import Catch, Family, FamilyResult
+from taylor_verify.scenes.families.draw import Draw
+from taylor_verify.scenes.families.family import Family, Variable
+from taylor_verify.studies.worst.measure import Catch, FamilyResult, Quarry
 
 
 def verdict(ratio: float | None, status: Status = Status.PASS) -> Verdict:
     return Verdict("here", "taylor", "f64", "", "omega", status, "reached", ratio=ratio)
 
 
+def quarry(name: str, free: int = 1) -> Quarry:
+    """A family of so many free numbers."""
+    variables = tuple(
+        Variable(f"x{k}", Draw("uniform", (Decimal(0), Decimal(1)), 6)) for k in range(free)
+    )
+    return Quarry(Family(name, "things", ('title = "', 0, '"\n'), variables), "things")
+
+
 def worst_of(name: str, ratio: float) -> FamilyResult:
-    family = Family(name, "things", 1, lambda place: f'title = "{place[0]}"\n')
-    return FamilyResult(family, 7, Catch((0.25,), verdict(ratio)))
+    return FamilyResult(quarry(name), 7, Catch((0.25,), verdict(ratio)))

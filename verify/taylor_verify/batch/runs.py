@@ -3,10 +3,18 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Sequence
-from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, as_completed
-from contextlib import ExitStack
+from collections.abc import Callable, Generator, Iterable, Sequence
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    BrokenExecutor,
+    CancelledError,
+    Executor,
+    Future,
+    wait,
+)
+from contextlib import ExitStack, closing
 from functools import partial
+from itertools import islice
 from typing import Any, Final, TypeVar
 
 from taylor_verify.batch.failure import Failed
@@ -44,27 +52,66 @@ def run_all(
     if not asked:
         return []
     places = sorted(range(len(asked)), key=lambda k: expense(asked[k]) if expense else k)
-    futures: dict[Future[Result], int] = {}
+    workers = min(workers or available_cores(), len(asked))
     results: dict[int, Result] = {}
+    numbered = ((place, asked[place]) for place in places)
+    with closing(_ended(work, numbered, executor, workers, len(asked), raises)) as all_ended:
+        for place, result in all_ended:
+            results[place] = result
+            if ended is not None:
+                ended(asked[place], result)
+    return [results[place] for place in range(len(asked))]
+
+
+def run_stream(
+    work: Callable[[Asked], Result],
+    asked: Iterable[Asked],
+    executor: Executor | None = None,
+    *,
+    workers: int | None = None,
+    ahead: int = 256,
+    raises: type[Exception] = Exception,
+) -> Generator[Result]:
+    """Yield ``work(one)`` for each one asked, as each ends, with no more than ``ahead`` of them under way.
+
+    Any number can be asked for in bounded memory. ``executor``, ``workers`` and ``raises`` are those of
+    `run_all`, and so are the errors. Whoever does not take all results closes the generator.
+    """
+    numbered = enumerate(asked)
+    for _, result in _ended(work, numbered, executor, workers or available_cores(), ahead, raises):
+        yield result
+
+
+def _ended(
+    work: Callable[[Asked], Result],
+    numbered: Iterable[tuple[int, Asked]],
+    executor: Executor | None,
+    workers: int,
+    ahead: int,
+    raises: type[Exception],
+) -> Generator[tuple[int, Result]]:
+    """Yield the number and the result of each piece of work as it ends."""
+    waiting: dict[Future[Result], tuple[int, Asked]] = {}
+    left = iter(numbered)
     with ExitStack() as stack:
         if executor is None:
-            pool = LocalPool(min(workers or available_cores(), len(asked)))
+            pool = LocalPool(workers)
             executor = stack.enter_context(pool)
             # Nobody waits for the rest of what ends early, and the pool would.
             stack.push(lambda kind, *_: pool.terminate() if kind else None)
         try:
-            for place in places:
-                futures[_submitted(executor, work, asked[place])] = place
-            for future in as_completed(futures):
-                place = futures[future]
-                results[place] = _result(future, asked[place], raises)
-                if ended is not None:
-                    ended(asked[place], results[place])
+            while True:
+                for place, one in islice(left, ahead - len(waiting)):
+                    waiting[_submitted(executor, work, one)] = place, one
+                if not waiting:
+                    return
+                for future in wait(waiting, return_when=FIRST_COMPLETED).done:
+                    place, one = waiting.pop(future)
+                    yield place, _result(future, one, raises)
         except BaseException:
-            for future in futures:
+            for future in waiting:
                 future.cancel()
             raise
-    return [results[place] for place in range(len(asked))]
 
 
 def _take_turn(work: Callable[[Asked], Result], one: Asked) -> Result:

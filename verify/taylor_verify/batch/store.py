@@ -75,7 +75,7 @@ class Unfinished:
         from taylor_verify.scenes.reading.reader import as_scene
 
         question = (as_scene(job.scene).digest, *_words(job))
-        depends = (question, _programs(job.solver), versions(), _package())
+        depends = (question, program_digests(job.solver), versions(), package_digest())
         return self.folder / f"{_digest(repr(depends).encode())}{_SUFFIX}"
 
 
@@ -131,7 +131,7 @@ def _words(job: Job) -> tuple[object, ...]:
     return job.name, job.solver, job.rungs, job.tolerances
 
 
-def _programs(solver: str) -> list[str]:
+def program_digests(solver: str) -> list[str]:
     """The digests of the files that a command names: a program that has changed is another solver."""
     from taylor_verify.solvers.registry import PROCESS
 
@@ -143,7 +143,7 @@ def _programs(solver: str) -> list[str]:
 
 
 @cache
-def _package() -> str:
+def package_digest() -> str:
     """A digest of this package's own text: a judgement of other code is no judgement of this one."""
     digest = hashlib.sha256()
     package = Path(__file__).parents[1]

@@ -62,7 +62,7 @@ def _told_of(interrupt: KeyboardInterrupt) -> str:
     if not finished:
         return "interrupted"
     return (
-        f"interrupted: {finished} of {jobs} scenes are finished and kept, nothing is written; the "
+        f"interrupted: {finished} of {jobs} scenes are finished and kept, no report is written; the "
         "same command with --resume goes on from there"
     )
 

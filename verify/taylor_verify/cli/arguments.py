@@ -138,6 +138,24 @@ scenes* SCENE
 --out DIR  write the numbers and the work-precision pictures there
 """,
     ),
+    "sweep": (
+        "solve and judge many bodies and starts, drawn from a family",
+        "sweep satellites --count 1000 --seed 1 --out swept",
+        """
+what FAMILY  a shipped family (`list` names them), a template (a scene file in which numbers are drawn), or
+  a folder of scenes
+--count N  points that are drawn; default: what the template says, else 100
+--seed N  default: what the template says, else 1; point k of a seed is always the same
+--points random|sobol  how the points are spread; default: what the template says, else random
+--solver S [taylor]  default: taylor
+--rung R [f64]  default: f64
+--executor E [local]  local, or dask:ADDRESS of a scheduler; default: local
+--jobs N  processes on this machine; default: one a core
+--out DIR  write the rows (Parquet), a summary, a picture and the worst cases there
+--resume  go on with the sweep in --out, which was ended before its end
+--worst N [10]  the worst cases that are written as scenes; default: 10
+""",
+    ),
     "claims": (
         "check every numbered equation and every claim of the two source texts",
         'claims "hydromechanics 49 (17)"',

@@ -9,6 +9,7 @@ from functools import partial
 from taylor_verify.cli.answer import PASS, Answer
 from taylor_verify.cli.console import Page, bold
 from taylor_verify.records.precisions import LADDER
+from taylor_verify.scenes.families.library import family, family_names
 from taylor_verify.scenes.library import ENGINES, EXTREMES, GUIDE, WORST, names
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.files.formats.reading import FORMATS
@@ -24,14 +25,16 @@ def answer(options: argparse.Namespace) -> Answer:
         "engines": list(names(ENGINES)),
     }
     titles = {name: load(name).title for group in scenes.values() for name in group}
+    families = {name: family(name).title for name in family_names()}
     formats = {suffix: form.sentence for suffix, form in FORMATS.items()}
     found = {
         **scenes,
+        "families": list(families),
         "solvers": list(solver_names()),
         "rungs": list(LADDER),
         "formats": list(formats),
     }
-    text = partial(_text, found, {**titles, **remarks(), **formats}, GUIDE)
+    text = partial(_text, found, {**titles, **families, **remarks(), **formats}, GUIDE)
     return Answer(PASS, {**found, "guide": dict(GUIDE)}, text)
 
 

@@ -93,7 +93,7 @@ def as_scene(scene: Scene | str | os.PathLike[str]) -> Scene:
 def read(text: str, name: str) -> Scene:
     """Return the scene that this text describes; raises Refused with every fault of it."""
     faults = Faults()
-    top = Table(_parsed(text, name), "", faults)
+    top = Table(parsed(text, name), "", faults)
     title, source = top.text("title"), top.text("source", default="")
     model = _model(top)
     track = _track(top, model)
@@ -119,7 +119,8 @@ def read(text: str, name: str) -> Scene:
     )
 
 
-def _parsed(text: str, name: str) -> dict[str, object]:
+def parsed(text: str, name: str) -> dict[str, object]:
+    """Return a TOML document with decimals in their digits. Raises Refused for any other text."""
     if deep := _DEEP_KEY.search(text):
         line = text.count("\n", 0, deep.start()) + 1
         expected = f"a key of at most {_MOST_KEY_PARTS} parts"

@@ -22,13 +22,17 @@ class WorstOfFamily:
     scene: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class WorstStudy:
-    """A search of so many seconds; ``factor`` is the bound of a gate over what is attainable."""
+    """A search of so many ``runs`` in each family, or of so many ``seconds`` by an earlier version.
+
+    ``factor`` is the bound of a gate over what is attainable.
+    """
 
     factor: int
     rung: str
-    seconds: float
+    runs: int | None = None
+    seconds: float | None = None
     seed: int
     provenance: Provenance
     families: tuple[WorstOfFamily, ...]

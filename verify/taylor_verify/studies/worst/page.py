@@ -10,17 +10,18 @@ from taylor_verify.publish.cells import figure
 from taylor_verify.publish.markdown import code, prose, table
 from taylor_verify.publish.page import traced, whole
 from taylor_verify.publish.sheet import sheet as csv_sheet
-from taylor_verify.records.json_text import complete
+from taylor_verify.records.json_text import complete, plain
 from taylor_verify.records.replacement import replace_files
 from taylor_verify.studies.stored import Stored
 from taylor_verify.studies.worst.document import WorstOfFamily, WorstStudy
 
-WORST: Final = Stored(WorstStudy, "worst")
+# A budget that was not asked for is left out.
+WORST: Final = Stored(WorstStudy, "worst", fields=plain)
 
 _WHAT: Final = (
     "A gate stands at {factor} times what is attainable, which is what independent roundings of every "
-    "component leave. How near does a sound solver come to it? In each family random places are drawn, "
-    "then steps are taken around the worst of them; the Taylor driver answers every scene on {rung}, and "
+    "component leave. How near does a sound solver come to it? {searched}; the Taylor driver answers "
+    "every scene on {rung}, and "
     "the largest *error over attainable* of all its gates counts. A gate that is vacuous asks nothing "
     "and does not count."
 )
@@ -42,17 +43,40 @@ def page(study: WorstStudy) -> str:
     judged = sum(row.judged for row in families)
     return whole(
         "The worst that a search has found",
-        _WHAT.format(factor=f"{study.factor:g}", rung=code(study.rung)),
+        _WHAT.format(factor=f"{study.factor:g}", rung=code(study.rung), searched=_searched(study)),
         f"Of {judged} scenes the worst is {code(families[0].scene)}: "
         f"{figure(families[0].ratio)} in {code(families[0].quantity)}.",
         _table(families),
         _KEPT,
         "## To remake this",
-        f"`taylor-verify publish worst --seconds {study.seconds:g} --seed {study.seed}` hunts "
-        "anew and replaces the scenes. A faster machine judges more scenes in the same time, and may "
-        "find worse ones: the scenes that were found are the fact, and not that there are no others. "
-        f"Every digit is in [worst.csv](worst.csv) and [worst.json](../{WORST.name}).",
+        _remade(study)
+        + f"Every digit is in [worst.csv](worst.csv) and [worst.json](../{WORST.name}).",
         traced(complete(study.provenance)),
+    )
+
+
+def _searched(study: WorstStudy) -> str:
+    if study.runs is None:
+        return (
+            "In each family random places are drawn, then steps are taken around the worst of them"
+        )
+    return (
+        f"In each family {study.runs} runs are spent on a population of places that moves by "
+        "differential evolution"
+    )
+
+
+def _remade(study: WorstStudy) -> str:
+    if study.runs is None:
+        return (
+            f"`taylor-verify publish worst --seconds {study.seconds:g} --seed {study.seed}` hunts "
+            "anew and replaces the scenes. A faster machine judges more scenes in the same time, and may "
+            "find worse ones: the scenes that were found are the fact, and not that there are no others. "
+        )
+    return (
+        f"`taylor-verify publish worst --runs {study.runs} --seed {study.seed}` hunts anew and replaces "
+        "the scenes. With the same versions it finds the same scenes: these are the fact, and not that "
+        "there are no others. "
     )
 
 

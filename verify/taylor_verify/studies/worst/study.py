@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from math import inf
 from pathlib import Path
 from typing import Final
 
@@ -11,24 +10,37 @@ from taylor_verify.studies.study import Measured, Option, Progress, Study
 from taylor_verify.studies.worst import page
 from taylor_verify.studies.worst.page import WORST
 
+RUNS: Final = 400
+# A population, and a generation after it.
+LEAST_RUNS: Final = 10
 
-def _measure(folder: Path, progress: Progress, seconds: float = 600.0, seed: int = 1) -> Measured:
+
+def _measure(
+    folder: Path, progress: Progress, runs: int = RUNS, seed: int = 1, seconds: None = None
+) -> Measured:
     """Search; the scenes that are found take the place of those that are shipped."""
     from taylor_verify.scenes.library import WORST as SCENES
     from taylor_verify.scenes.library import cases_directory
-    from taylor_verify.studies.worst.measure import FAMILIES, hunt, study
+    from taylor_verify.studies.worst.measure import hunt, quarries, study
 
-    found = hunt(FAMILIES, seconds, seed, progress.counting(len(FAMILIES)))
-    scenes = {one.family.name: one.scene_text for one in found}
+    hunted = quarries()
+    found = hunt(hunted, runs, seed, progress.counting(len(hunted)))
+    scenes = {one.quarry.name: one.scene_text for one in found}
     shipped = page.store_scenes(cases_directory() / SCENES, scenes)
-    return Measured([*WORST.write(folder, study(found, seconds, seed)), *shipped])
+    return Measured([*WORST.write(folder, study(found, runs, seed)), *shipped])
 
 
-def _seconds(text: str) -> float:
+def _runs(text: str) -> int:
     with suppress(ValueError):
-        if 0 < float(text) < inf:
-            return float(text)
-    raise ValueError(f"expected a time in seconds above 0, got {text}")
+        if int(text) >= LEAST_RUNS:
+            return int(text)
+    raise ValueError(f"expected a whole number of at least {LEAST_RUNS}, got {text}")
+
+
+def _seconds(text: str) -> None:
+    raise ValueError(
+        f"expected a budget in runs, which can be repeated (--runs {RUNS}), got {text} s"
+    )
 
 
 def _seed(text: str) -> int:
@@ -40,13 +52,14 @@ def _seed(text: str) -> int:
 STUDY: Final = Study(
     name="worst",
     title="the worst that a search has found, family by family",
-    duration="ten minutes",
+    duration="some minutes",
     measure=_measure,
     find=WORST.find,
     page=lambda study, folder: page.page(study),
     sheet=page.sheet,
     options=(
-        Option("seconds", "the time of the search; default: 600", _seconds, "S"),
+        Option("runs", f"the runs of the search in each family; default: {RUNS}", _runs),
+        Option("seconds", "refused: the budget is --runs", _seconds, "S"),
         Option("seed", "the seed of the search; default: 1", _seed),
     ),
 )

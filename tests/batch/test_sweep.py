@@ -1,0 +1,411 @@
+"""A sweep: the same rows however it is cut, ended and taken up again, on any executor."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from builders.executor import Backwards
+from pyarrow import dataset
+
+from taylor_verify.batch import bodies
+from taylor_verify.batch.cluster import executor_named
+from taylor_verify.batch.failure import Failed
+from taylor_verify.batch.judging import Interrupted
+from taylor_verify.batch.sweeps import chunk as chunks
+from taylor_verify.batch.sweeps import sweep as sweeping
+from taylor_verify.batch.sweeps.chunk import COLUMNS
+from taylor_verify.batch.sweeps.sizes import Sizes
+from taylor_verify.batch.sweeps.sweep import sweep
+from taylor_verify.cli import main
+from taylor_verify.records.status import Status
+from taylor_verify.records.sweep import SweepSummary
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.run import run
+from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.scenes.scene import Scene
+
+# It needs no compiler, and passes. Of fixed steps the same bodies fail, for causes that take long to name.
+SOLVER = "closed-form:ellipj"
+FAILING = "geometric:splitting?step=0.05"
+TEMPLATE = """
+title = "Small"
+model = "euler"
+[sweep]
+seed = 5
+[sweep.numbers]
+g = { grid = [0.5, 1] }
+[body]
+inertia = [{ uniform = [1, 2] }, 2, 3]
+[initial]
+omega = [{ formula = "g" }, 1, { uniform = [-1, 1] }]
+[time]
+end = 1
+samples = 3
+"""
+WORDS = ["--solver", SOLVER, "--count", "10", "--jobs", "1"]
+
+
+@pytest.fixture
+def template(tmp_path: Path) -> str:
+    file = tmp_path / "small.toml"
+    file.write_text(TEMPLATE)
+    return str(file)
+
+
+def rows(folder: Path) -> list[dict[str, Any]]:
+    """Every row of a dataset, in the order of its parts."""
+    found: list[dict[str, Any]] = dataset.dataset(folder / "verdicts").to_table().to_pylist()
+    return found
+
+
+def parts(folder: Path) -> dict[str, bytes]:
+    return {file.name: file.read_bytes() for file in sorted((folder / "verdicts").glob("*"))}
+
+
+def swept(template: str, out: Path, **options: Any) -> SweepSummary:
+    asked: dict[str, Any] = {"count": 10, "solver": SOLVER, "jobs": 1, **options}
+    return sweep(template, out=out, **asked)
+
+
+def invented(scenes: Sequence[Scene], solver: str, rung: str) -> list[list[Verdict]]:
+    """A verdict on each scene that follows from its first moment, and takes no time."""
+    return [
+        [
+            Verdict(
+                *(scene.name, solver, rung, "", quantity, Status.PASS, "reached"),
+                max=float(scene.body.parts()["inertia"][0][0]),
+                ratio=float(scene.body.parts()["inertia"][0][0]),
+            )
+            for quantity in ("omega", "T")
+        ]
+        for scene in scenes
+    ]
+
+
+@pytest.fixture
+def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Rows that are invented, for what is asked of the cuts and not of the numbers."""
+    monkeypatch.setattr(chunks, "judged", invented)
+
+
+class Later(Executor):
+    """An executor of somebody's own, whose work ends at once, or never."""
+
+    def __init__(self, most: int) -> None:
+        self.most, self.submitted = most, 0
+
+    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        self.submitted += 1
+        if self.submitted > self.most:
+            raise KeyboardInterrupt
+        future.set_result(fn(*args, **kwargs))
+        return future
+
+
+# What a sweep leaves.
+
+
+def test_a_sweep_leaves_rows_a_summary_and_the_worst_cases(template: str, tmp_path: Path) -> None:
+    """A grid of two is gone through for each of ten points; what is written is what was judged."""
+    out = tmp_path / "out"
+    found = swept(template, out, worst=3)
+    assert found.total == 20
+    table = rows(out)
+    assert [row["point"] for row in table] == sorted(row["point"] for row in table)
+    assert {row["point"] for row in table} == set(range(20))
+    assert set(table[0]) == {*COLUMNS, "drawn.g", "drawn.body.inertia[0]", "drawn.initial.omega[2]"}
+    assert [row["drawn.g"] for row in table if row["quantity"] == "T"] == [0.5, 1.0] * 10
+    (omega,) = (each for each in found.quantities if each.quantity == "omega")
+    ratios = sorted(row["ratio"] for row in table if row["quantity"] == "omega")
+    assert omega.ratio is not None
+    assert omega.ratio.largest == ratios[-1]
+    assert ratios[9] <= omega.ratio.median <= ratios[9] * 1.001
+    assert {file.name for file in out.iterdir()} >= {"summary.md", "summary.csv", "summary.png"}
+    assert json.loads((out / "summary.json").read_text())["total"] == 20
+    assert [case.ratio for case in found.worst] == sorted(
+        (case.ratio for case in found.worst), reverse=True
+    )
+
+
+def test_a_worst_case_is_a_scene_that_runs(template: str, tmp_path: Path) -> None:
+    """Run alone, the scene of a worst case has the numbers that the sweep has; a failure fails both."""
+    found = swept(template, tmp_path / "out", solver=FAILING, count=1, worst=1)
+    (case,) = found.worst
+    assert (found.exit_status, case.verdict) == (1, Status.FAIL)
+    mine = [row for row in rows(tmp_path / "out") if row["point"] == case.point]
+    verdicts = run(tmp_path / "out" / case.file, FAILING).verdicts
+    for name in ("max", "ratio", "bound", "steps", "quantity", "because"):
+        expected = [getattr(verdict, name) for verdict in verdicts]
+        if name == "because":
+            expected = [
+                text if v.verdict is not Status.PASS else ""
+                for v, text in zip(verdicts, expected, strict=True)
+            ]
+        assert [row[name] for row in mine] == expected
+    assert {v.quantity: v.ratio for v in verdicts}[case.quantity] == case.ratio
+
+
+def test_numbers_that_make_no_body_are_refused_rows(tmp_path: Path) -> None:
+    """They are counted, undecided as a whole, and their reason is told; they are no worst case."""
+    file = tmp_path / "some.toml"
+    file.write_text(TEMPLATE.replace("uniform = [1, 2]", "uniform = [-1, 2]"))
+    found = swept(str(file), tmp_path / "out")
+    refused = [row for row in rows(tmp_path / "out") if row["quantity"] == "scene"]
+    assert found.bodies["refused"] == len(refused) > 0
+    assert found.exit_status == (1 if found.bodies["fail"] else 3)
+    assert "positive moment" in found.refusals[0]
+    assert not {row["point"] for row in refused} & {case.point for case in found.worst}
+
+
+def test_a_scene_that_breaks_the_code_stops_no_other(
+    template: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its row is undecided and says what broke; the others of its chunk are judged."""
+
+    def broken(scenes: Any, solver: str, rung: str) -> Any:
+        if any(scene.name == "small#3" for scene in scenes):
+            raise ArithmeticError("on purpose")
+        return bodies.judged(scenes, solver, rung)
+
+    monkeypatch.setattr(chunks, "judged", broken)
+    found = swept(template, tmp_path / "out")
+    assert found.bodies["undecided"] == 1
+    (row,) = (row for row in rows(tmp_path / "out") if row["point"] == 3)
+    assert (row["quantity"], row["verdict"]) == ("scene", "undecided")
+    assert "ArithmeticError: on purpose" in row["because"]
+    assert found.total == 20
+
+
+# Executors, interrupts.
+
+
+@pytest.mark.usefixtures("quick")
+def test_every_executor_leaves_the_same_bytes(template: str, tmp_path: Path) -> None:
+    """In this process, in threads, and by an executor that begins with the last chunk."""
+    swept(template, tmp_path / "here")
+    with ThreadPoolExecutor(2) as threads:
+        for name, executor in (("threads", threads), ("backwards", Backwards(5))):
+            swept(template, tmp_path / name, jobs=None, executor=executor)
+            assert parts(tmp_path / name) == parts(tmp_path / "here")
+
+
+@pytest.mark.usefixtures("quick")
+def test_no_more_chunks_are_under_way_than_were_asked_for(template: str, tmp_path: Path) -> None:
+    """With two ahead, an executor that waits for its third waits for ever; here it is given two."""
+    swept(template, tmp_path / "out", jobs=None, executor=Later(5), ahead=2)
+    assert len(parts(tmp_path / "out")) == 5
+
+
+@pytest.mark.usefixtures("quick")
+def test_an_interrupted_sweep_goes_on(
+    template: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What was finished is not judged again, a damaged part is, and the bytes are those of one go."""
+    swept(template, tmp_path / "whole")
+    out = tmp_path / "out"
+    with pytest.raises(Interrupted) as interrupted:
+        swept(template, out, jobs=None, executor=Later(3), ahead=1)
+    assert (interrupted.value.finished, interrupted.value.jobs) == (12, 20)
+    (out / "verdicts" / "part-000001.parquet").write_bytes(b"PAR1 damaged")
+    judged: list[int] = []
+    judge = sweeping.judge
+    monkeypatch.setattr(sweeping, "judge", lambda one: judged.append(one.number) or judge(one))
+    swept(template, out, resume=True)
+    assert judged == [1, 3, 4]
+    assert parts(out) == parts(tmp_path / "whole")
+    judged.clear()
+    swept(template, out, resume=True)
+    assert judged == []
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGKILL")
+def test_a_killed_sweep_goes_on(template: str, tmp_path: Path) -> None:
+    """After SIGKILL in the middle, --resume has every row once, and the bytes of one go."""
+    out = tmp_path / "out"
+    words = [sys.executable, "-m", "taylor_verify", "sweep", template, *WORDS]
+    process = subprocess.Popen([*words, "--out", str(out)], stderr=subprocess.DEVNULL)
+    end = time.monotonic() + 60
+    while time.monotonic() < end and len(list(out.glob("verdicts/part*"))) < 2:
+        time.sleep(0.005)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    assert main(["sweep", template, *WORDS, "--out", str(out), "--resume"]) == 0
+    swept(template, tmp_path / "whole")
+    there = {name: file for name, file in parts_of_files(out).items() if name.startswith("part")}
+    assert there == parts_of_files(tmp_path / "whole")
+
+
+def parts_of_files(folder: Path) -> dict[str, bytes]:
+    """The parts of a dataset, without what a killed process left half-written beside them."""
+    return {f.name: f.read_bytes() for f in (folder / "verdicts").iterdir() if f.is_file()}
+
+
+@pytest.mark.usefixtures("quick")
+def test_rows_of_other_code_are_refused(
+    template: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A worker with another version of the package is told, and nothing of it is written."""
+    monkeypatch.setattr(chunks, "package_digest", lambda: "another")
+    with pytest.raises(Failed, match="same version of taylor-verify on every worker"):
+        swept(template, tmp_path / "out")
+    assert not list((tmp_path / "out").glob("verdicts/part*"))
+
+
+# Calls.
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["--count", "0"], "expected a whole number from 1 to 1000000000, got 0 @ count"),
+        (["--jobs", "0", "--seed", "-1"], "got 0 @ jobs\nexpected a whole number from 0 to 2^63"),
+        (["--resume"], "expected the folder of the sweep to go on with (--out), got none @ resume"),
+        (["--resume", "--out", "gone"], "expected a folder with a sweep to go on with"),
+        (["--executor", "slurm"], "expected local or dask:ADDRESS, got 'slurm' @ executor"),
+        (["--executor", "dask:x:1", "--jobs", "2"], "expected --jobs or --executor"),
+        (["--solver", "nobody"], "expected a solver"),
+        (["--rung", "f65"], "@ --rung"),
+    ],
+)
+def test_a_wrong_call_is_refused(
+    template: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    words: list[str],
+    sentence: str,
+) -> None:
+    """Exit status 2, all faults of the arguments, and no folder is left."""
+    monkeypatch.chdir(tmp_path)
+    assert main(["sweep", template, *words]) == 2
+    assert sentence in capsys.readouterr().err
+    assert [file.name for file in tmp_path.iterdir()] == ["small.toml"]
+
+
+@pytest.mark.usefixtures("quick")
+def test_a_folder_with_another_sweep_is_refused(template: str, tmp_path: Path) -> None:
+    """Without resume any sweep in the folder; with resume one that differs, which options is said."""
+    swept(template, tmp_path / "out")
+    with pytest.raises(Refused, match=r"a folder without a sweep, got one .*--resume"):
+        swept(template, tmp_path / "out")
+    with pytest.raises(Refused, match=r"seed as in the sweep that is there \(5\), got 6 @ resume"):
+        swept(template, tmp_path / "out", resume=True, seed=6)
+    Path(template).write_text(TEMPLATE.replace("[1, 2]", "[1, 3]"))
+    with pytest.raises(Refused, match="expected scenes as in the sweep that is there"):
+        swept(template, tmp_path / "out", resume=True)
+
+
+def test_a_folder_of_scenes_is_swept(template: str, tmp_path: Path) -> None:
+    """Each file is a scene; what is drawn, and all faults of all files, are refused."""
+    folder = tmp_path / "scenes"
+    folder.mkdir()
+    swept(template, tmp_path / "out", worst=4)
+    for file in (tmp_path / "out" / "worst").iterdir():
+        (folder / file.name).write_bytes(file.read_bytes())
+    found = sweep(str(folder), solver=SOLVER, jobs=1)
+    assert (found.total, found.seed, found.exit_status) == (4, None, 0)
+    with pytest.raises(ValueError, match="expected none beside a folder of scenes, got 3 @ count"):
+        sweep(str(folder), count=3)
+    (folder / "wrong.toml").write_text("x = 1\n")
+    with pytest.raises(Refused, match=r"wrong\.toml is refused:\n.*title"):
+        sweep(str(folder), solver=SOLVER)
+
+
+@pytest.mark.usefixtures("quick")
+def test_json_is_one_document(template: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """`sweep --json` prints the summary and nothing else; without --out no file is named."""
+    assert main(["sweep", template, *WORDS, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert (found["total"], found["exit_status"], found["bodies"]["pass"]) == (20, 0, 20)
+    assert {case["file"] for case in found["worst"]} == {""}
+
+
+# Quantiles.
+
+
+def test_quantiles_are_sizes_that_occurred() -> None:
+    """Counted in parts, each quantile is at most a thousandth above the exact one; the largest is exact."""
+    drawn = np.exp(np.random.default_rng(1).normal(0, 3, 5000))
+    sizes = Sizes()
+    for part in np.array_split(drawn, 7):
+        sizes.add(part)
+    found = sizes.quantiles()
+    assert found is not None
+    for share, size in ((0.5, found.median), (0.9, found.ninety), (0.99, found.ninety_nine)):
+        exact = np.sort(drawn)[int(np.ceil(share * len(drawn))) - 1]
+        assert size in drawn
+        assert exact <= size <= exact * 1.001
+    assert found.largest == drawn.max()
+
+
+def test_nan_is_beyond_every_number() -> None:
+    """One NaN among a hundred is the largest, and no number."""
+    sizes = Sizes()
+    sizes.add(np.array([*np.linspace(0, 1, 99), np.nan]))
+    found = sizes.quantiles()
+    assert found is not None
+    assert found.largest is None
+    assert found.ninety is not None
+    assert Sizes().quantiles() is None
+
+
+# Dask.
+
+
+def test_where_nobody_answers_there_is_one_clear_error(
+    template: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """An address without a scheduler is refused within its seconds: exit status 2, one line."""
+    pytest.importorskip("distributed", reason="dask is an extra: pip install 'taylor-verify[dask]'")
+    monkeypatch.setattr("taylor_verify.batch.cluster._PATIENCE", 0.5)
+    began = time.monotonic()
+    assert main(["sweep", template, "--executor", "dask:tcp://127.0.0.1:9"]) == 2
+    assert time.monotonic() - began < 10
+    *_, last = capsys.readouterr().err.splitlines()
+    assert "expected a dask scheduler that answers within 0.5 s, got" in last
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGKILL")
+@pytest.mark.filterwarnings("default")
+def test_a_dask_worker_that_is_killed_loses_nothing(template: str, tmp_path: Path) -> None:
+    """One of two workers of a cluster is killed in the middle: the bytes are those of one process."""
+    distributed = pytest.importorskip(
+        "distributed", reason="dask is an extra: pip install 'taylor-verify[dask]'"
+    )
+    swept(template, tmp_path / "here", jobs=1)
+    cluster = distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+    )
+    out = tmp_path / "out"
+    with cluster, executor_named(f"dask:{cluster.scheduler_address}") as placed:
+        with distributed.Client(cluster) as client:
+            victim = next(iter(client.run(os.getpid).values()))
+
+        class Killing(Executor):
+            """The executor of dask, whose worker is killed when the third chunk is submitted."""
+
+            count = 0
+
+            def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+                self.count += 1
+                if self.count == 3:
+                    os.kill(victim, signal.SIGKILL)
+                assert placed.executor is not None
+                return placed.executor.submit(fn, *args, **kwargs)
+
+        swept(template, out, jobs=None, executor=Killing())
+    assert parts(out) == parts(tmp_path / "here")

@@ -1,0 +1,261 @@
+"""Families of scenes: what a template draws, that it can be repeated, and what is refused."""
+
+from __future__ import annotations
+
+from decimal import Decimal
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from taylor_verify.scenes.families.cube import Spread, places
+from taylor_verify.scenes.families.draw import Draw, linspace, logspace, number_text
+from taylor_verify.scenes.families.family import Family
+from taylor_verify.scenes.families.formula import NoValue, formula
+from taylor_verify.scenes.families.library import family, family_names
+from taylor_verify.scenes.families.reading import load_family, read_family
+from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.scenes.reading.reader import read
+from taylor_verify.scenes.reading.table import exact_number
+
+REST = """
+[initial]
+omega = [1, 0.5, 0.25]
+[time]
+end = 1
+samples = 2
+"""
+
+
+def template(body: str, sweep: str = "", rest: str = REST) -> Family:
+    """The family of a template with this body."""
+    text = f'title = "Drawn"\nmodel = "euler"\n{sweep}\n[body]\n{body}\n{rest}'
+    return read_family(text, "drawn")
+
+
+# What is drawn.
+
+
+@given(st.floats(0, 1))
+def test_a_draw_is_a_decimal_of_so_many_digits(share: float) -> None:
+    """A drawn number has at most the digits asked for, and lies between the bounds, ends included."""
+    for kind in ("uniform", "log_uniform"):
+        value = Draw(kind, (Decimal("0.001"), Decimal(30)), 4).value(share)
+        assert len(value.as_tuple().digits) <= 4
+        assert Decimal("0.001") <= value <= 30
+
+
+def test_distributions_have_their_middles() -> None:
+    """A share of a half is the mean, the geometric mean, the mean, the later of two choices."""
+    two = (Decimal("0.01"), Decimal(4))
+    middles = {
+        kind: Draw(kind, two, 9).value(0.5)
+        for kind in ("uniform", "log_uniform", "normal", "choice")
+    }
+    assert middles == {
+        "uniform": Decimal("2.005"),
+        "log_uniform": Decimal("0.2"),
+        "normal": Decimal("0.01"),
+        "choice": Decimal(4),
+    }
+
+
+def test_grids_have_both_ends() -> None:
+    """Equal steps and equal ratios, the ends exact however many digits they have."""
+    ends = Decimal("0.123456789"), Decimal(1)
+    assert linspace(*ends, 3, 4).values == (ends[0], Decimal("0.5617"), ends[1])
+    assert logspace(Decimal("0.01"), Decimal(100), 3, 6).values == (
+        *(Decimal("0.01"), Decimal(1), Decimal(100)),
+    )
+
+
+@given(st.fractions())
+def test_a_number_reads_back_as_it_was(value: Fraction) -> None:
+    """The text of a rational in a scene is that rational, as a decimal where it has one."""
+    text = number_text(value)
+    assert exact_number(text.strip('"') if text.startswith('"') else Decimal(text)) == value
+
+
+@pytest.mark.parametrize("spread", Spread)
+def test_a_point_is_the_same_in_every_cut(spread: Spread) -> None:
+    """Points asked for one by one, in parts, or all at once are equal; another seed has others."""
+    whole = places(spread, 5, 3, 0, 40)
+    parts = np.concatenate([places(spread, 5, 3, k, k + 8) for k in range(0, 40, 8)])
+    singly = np.concatenate([places(spread, 5, 3, k, k + 1) for k in (0, 7, 39)])
+    assert np.array_equal(whole, parts)
+    assert np.array_equal(whole[[0, 7, 39]], singly)
+    assert not np.array_equal(whole, places(spread, 5, 4, 0, 40))
+    assert whole.min() >= 0
+    assert whole.max() < 1
+
+
+def test_a_random_point_is_that_of_any_machine() -> None:
+    """The first numbers of seed 1 are these: a dataset can be drawn again years later."""
+    first = places(Spread.RANDOM, 3, 1, 0, 1)[0].tolist()
+    assert first == [0.3035680343067586, 0.8487087496857769, 0.1561347780434731]
+
+
+# Formulas.
+
+
+def test_a_formula_is_exact() -> None:
+    """0.1 is one tenth, and + - * / and powers of rationals are rationals."""
+    found = formula("-(a + 0.1)**2 / 3").value({"a": Fraction(1, 5)})
+    assert found == Fraction(-3, 100)
+
+
+def test_functions_are_rounded_to_twenty_digits() -> None:
+    """sqrt, log and exp are the nearest decimals of twenty digits."""
+    assert formula("sqrt(2)").value({}) == Fraction("1.4142135623730950488")
+    assert formula("log(2)").value({}) == Fraction("0.69314718055994530942")
+    assert formula("exp(1)").value({}) == Fraction("2.7182818284590452354")
+
+
+@pytest.mark.parametrize(
+    "text", ["1/a", "sqrt(a - 1)", "log(a)", "exp(1e9)", "((2**20)**20)**20 + exp(1e4)"]
+)
+def test_a_formula_may_have_no_value(text: str) -> None:
+    """A division by zero and a function outside its domain are refused at that point."""
+    with pytest.raises(NoValue, match="expected"):
+        formula(text).value({"a": Fraction(0)})
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "__import__('os')",
+        "a.b",
+        "a if b else c",
+        "a**b",
+        "a**99",
+        "f(a)",
+        "[a]",
+        "True",
+        "",
+        "a" * 300,
+        3,
+    ],
+)
+def test_what_is_no_formula_is_refused(text: object) -> None:
+    """Only numbers, names, + - * / **, and three functions make a formula."""
+    with pytest.raises(ValueError, match=r"formula|power"):
+        formula(text)
+
+
+# Templates.
+
+
+def test_a_template_writes_scenes() -> None:
+    """Numbers stand where their tables stood; formulas use those above, and a unit follows its number."""
+    rest = REST.replace("[1, 0.5, 0.25]", '[{ grid = [2, 3], unit = "deg/s" }, "0", "0"]')
+    drawn = template(
+        'inertia = [{ formula = "a" }, { uniform = [1, 3] }, { formula = "a / 3" }]',
+        "[sweep]\ndigits = 3\n[sweep.numbers]\na = { uniform = [1, 2] }",
+        rest,
+    )
+    assert (drawn.free, drawn.nodes) == (2, 2)
+    text = drawn.text([0.25, 0.5], 1)
+    assert 'inertia = [1.25, 2, "5/12"]' in text
+    assert 'omega = ["3 deg/s", "0", "0"]' in text
+    assert "sweep" not in text
+    read(text, "written")
+
+
+FAULTY = """
+titel = "x"
+model = "euler"
+[sweep]
+count = 0
+seeds = 7
+points = "halton"
+[sweep.numbers]
+a = { unifrom = [1, 2] }
+b = { uniform = [2, 1] }
+c = { formula = "q" }
+d = 3
+e = { normal = [0, 0] }
+f = { uniform = [1, 2] }
+h = { log_uniform = [0, 1] }
+i = { uniform = [1.0000001, 2] }
+m = { uniform = [1, 2], grid = [1] }
+n = { linspace = [1, 2, 2.5] }
+[body]
+inertia = [{ uniform = [1, 2], unit = 3 }, { gird = [2, 3] }, 4, 4]
+[initial]
+omega = [{ formula = "a + b + c + d + e + h + i + m + n" }, true, 1]
+[time]
+end = 0
+samples = 5
+"""
+
+
+def test_all_faults_of_a_template_are_named_at_once() -> None:
+    """Those of [sweep], of every number, and those of the scene that no faulty number can have caused."""
+    with pytest.raises(Refused) as refused:
+        read_family(FAULTY, "faulty")
+    paths = [fault.rpartition(" @ ")[2].partition(" (")[0] for fault in refused.value.faults]
+    assert paths == [
+        *("sweep.count", "sweep.points", "sweep.seeds"),
+        *("sweep.numbers.a", "sweep.numbers.b.uniform", "sweep.numbers.c.formula"),
+        *("sweep.numbers.d", "sweep.numbers.e.normal", "sweep.numbers.h.log_uniform"),
+        *("sweep.numbers.i.uniform", "sweep.numbers.m", "sweep.numbers.n.linspace"),
+        *("body.inertia[0].unit", "body.inertia[1]", "sweep.numbers.f"),
+        *("title", "initial.omega[1]", "time.end", "titel"),
+    ]
+
+
+def test_a_template_of_which_no_point_is_a_scene_is_refused() -> None:
+    """The faults are those of its first point; where some points are scenes, it is none."""
+    with pytest.raises(Refused, match=r"positive moment of inertia, got -.* @ body\.inertia\[0\]"):
+        template("inertia = [{ uniform = [-2, -1] }, 1, 1]")
+    template("inertia = [{ uniform = [-1, 2] }, 1, 1]")
+
+
+def test_a_plain_scene_is_no_template() -> None:
+    """A file in which nothing is drawn is refused, with an example of what could be."""
+    with pytest.raises(
+        Refused, match=r"expected a number that is drawn, got none @ drawn \(\{ uniform"
+    ):
+        template("inertia = [1, 2, 3]")
+
+
+def test_a_missing_template_is_named(tmp_path: Path) -> None:
+    """A file that is not there is a fault with its path."""
+    with pytest.raises(Refused, match=r"no such file @ .*gone\.toml"):
+        load_family(tmp_path / "gone.toml")
+
+
+# The shipped families.
+
+
+@pytest.mark.parametrize("name", family_names())
+def test_every_point_of_a_shipped_family_is_a_scene(name: str) -> None:
+    """Random points and both corners of the cube are scenes; the file says why it is there."""
+    shipped = family(name)
+    assert shipped.source.startswith("# Why: ")
+    for place in [
+        [0.0] * shipped.free,
+        [1.0] * shipped.free,
+        *places(Spread.RANDOM, shipped.free, 1, 0, 4),
+    ]:
+        assert shipped.scene(place).title == shipped.title
+
+
+def test_an_unknown_family_is_refused_with_a_near_one() -> None:
+    """A misspelt name is answered with the name that was meant."""
+    with pytest.raises(Refused, match=r"got satelites \(did you mean satellites\?\)"):
+        family("satelites")
+
+
+@given(st.lists(st.floats(0, 1), min_size=7, max_size=7))
+def test_near_separatrix_is_near_it(place: list[float]) -> None:
+    """H^2 differs from 2 T I2 by a part of order `off`, and the moments are in their order."""
+    drawn = family("near-separatrix")
+    numbers = drawn.numbers(place)
+    i1, i2, i3 = 1, numbers["i2"], numbers["i3"]
+    one, three = numbers["s"] * numbers["third"], numbers["third"]
+    assert i1 < i2 < i3
+    assert one**2 * i1 * (i2 - i1) == three**2 * i3 * (i3 - i2)

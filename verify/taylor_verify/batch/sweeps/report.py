@@ -1,0 +1,154 @@
+"""Files of a sweep: its summary as Markdown, CSV and JSON, a picture, and the worst cases as scenes."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterable, Mapping
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any, Final
+
+from taylor_verify.batch.sweeps.questions import Questions
+from taylor_verify.batch.sweeps.summary import with_files
+from taylor_verify.publish.cells import NOTHING, figure
+from taylor_verify.publish.markdown import code, prose, table
+from taylor_verify.publish.page import traced
+from taylor_verify.publish.pictures import exceedance
+from taylor_verify.publish.pictures.picture import save
+from taylor_verify.publish.sheet import sheet
+from taylor_verify.records.json_text import complete
+from taylor_verify.records.replacement import replace_files
+from taylor_verify.records.status import Status
+from taylor_verify.records.sweep import Quantiles, Spread, SweepSummary, WorstCase
+
+WORST: Final = "worst"
+PICTURES: Final = ("svg", "png")
+_NAMES: Final = ("median", "ninety", "ninety_nine", "thousandth", "largest")
+_HEADINGS: Final = ("median:", "90 %:", "99 %:", "99.9 %:", "largest:")
+# What stands in a name of a scene and in no name of a file.
+_ODD: Final = re.compile(r"[^A-Za-z0-9._-]+")
+_SHEET: Final = (
+    *("quantity", "unit", "judged", *(status.value for status in Status)),
+    *(f"ratio_{name}" for name in _NAMES),
+    *(f"max_{name}" for name in _NAMES),
+)
+
+
+def write_summary(
+    folder: Path, found: SweepSummary, questions: Questions
+) -> tuple[SweepSummary, list[Path]]:
+    """Write everything in one step; return the summary with the files of its worst cases, and all paths.
+
+    Without matplotlib there is no picture. Raises OSError.
+    """
+    files = {case.point: _file(rank, case) for rank, case in enumerate(found.worst, 1)}
+    found = with_files(found, files)
+    texts = {
+        case.file: _reason(found, case, questions) + questions.text(case.point)
+        for case in found.worst
+    }
+    texts |= {
+        "summary.md": page(found),
+        "summary.csv": sheet(_SHEET, map(_row, found.quantities)),
+        "summary.json": json.dumps(document(found), indent=1, allow_nan=False) + "\n",
+    }
+    stale = [file for file in (folder / WORST).glob("*.toml") if file.name not in files.values()]
+    written = [*replace_files(folder, texts, stale), *_drawn(folder, found)]
+    return found, written
+
+
+def document(found: SweepSummary) -> dict[str, Any]:
+    """Return the document of `sweep --json`."""
+    made: dict[str, Any] = complete(found)
+    return made
+
+
+def page(found: SweepSummary) -> str:
+    """Return the summary as Markdown."""
+    judged = f"{found.total} bodies by {code(found.solver)} on {code(found.rung)}: {counts(found)}."
+    blocks = [
+        f"# {prose(found.title or found.name)}",
+        judged,
+        *(f"Nothing was judged: {prose(lack)}." for lack in found.lacks),
+        *(f"Refused, for one: {prose(refusal)}." for refusal in found.refusals),
+        f"Error over attainable, of the rows that passed or failed; a gate stands at {found.factor}. "
+        "A quantile is an error that occurred, at most a thousandth above the exact quantile.",
+        table(
+            ["quantity", "judged:", *_HEADINGS, "fail:", "undecided:"],
+            [_cells(each, each.ratio) for each in found.quantities],
+        ),
+        "The largest error of each body, in the unit of its quantity.",
+        table(
+            ["quantity", "judged:", *_HEADINGS, "fail:", "undecided:"],
+            [_cells(each, each.max) for each in found.quantities],
+        ),
+    ]
+    if found.worst:
+        blocks += ["## The worst cases", _worst_table(found.worst)]
+    return "\n\n".join([*blocks, traced(complete(found.provenance))]) + "\n"
+
+
+def counts(found: SweepSummary) -> str:
+    """Return the number of bodies of each verdict that occurs, in words."""
+    return ", ".join(f"{n} {word}" for word, n in found.bodies.items() if n) or "none"
+
+
+def _cells(spread: Spread, quantiles: Quantiles | None) -> list[str]:
+    sizes = [getattr(quantiles, name) for name in _NAMES] if quantiles else None
+    shown = [_size(size) for size in sizes] if sizes else [NOTHING] * len(_NAMES)
+    last = (spread.counts[status.value] for status in (Status.FAIL, Status.UNDECIDED))
+    return [code(spread.quantity), str(spread.judged), *shown, *map(str, last)]
+
+
+def _size(size: float | None) -> str:
+    return "∞" if size is None else figure(size)
+
+
+def _worst_table(cases: Iterable[WorstCase]) -> str:
+    rows = [
+        [
+            f"[{code(case.scene)}]({case.file})",
+            case.verdict.value,
+            code(case.quantity),
+            figure(case.ratio),
+            figure(case.max),
+            prose(case.because),
+        ]
+        for case in cases
+    ]
+    return table(["scene", "verdict", "quantity", "over attainable:", "error:", "because"], rows)
+
+
+def _row(spread: Spread) -> Mapping[str, Any]:
+    row: dict[str, Any] = {"quantity": spread.quantity, "unit": spread.unit, **spread.counts}
+    row["judged"] = spread.judged
+    for prefix, quantiles in (("ratio", spread.ratio), ("max", spread.max)):
+        row |= {f"{prefix}_{name}": getattr(quantiles, name, None) for name in _NAMES}
+    return row
+
+
+def _file(rank: int, case: WorstCase) -> str:
+    stem = _ODD.sub("-", Path(case.scene).stem)
+    return f"{WORST}/{rank:02d}-{stem}.toml"
+
+
+def _reason(found: SweepSummary, case: WorstCase, questions: Questions) -> str:
+    """Return the comment that begins the scene of a worst case."""
+    size = "no number" if case.ratio is None else f"{case.ratio:.3g}"
+    drawn = f", seed {found.seed}, {found.points} points" if found.seed is not None else ""
+    return (
+        f"# Why: {case.verdict} in {case.quantity} by {found.solver} on {found.rung}.\n"
+        f"# Error over attainable: {size}. "
+        f"Scene {case.scene} of a sweep of {found.total}{drawn}.\n"
+    )
+
+
+def _drawn(folder: Path, found: SweepSummary) -> list[Path]:
+    if find_spec("matplotlib") is None:
+        return []
+    try:
+        drawn = exceedance.picture(found)
+    except ValueError:
+        return []
+    return save([drawn], folder, PICTURES)

@@ -1,0 +1,232 @@
+"""A sweep: many bodies and starts, solved and judged in chunks, resumable, in bounded memory."""
+
+from __future__ import annotations
+
+import logging
+import tempfile
+from collections.abc import Iterator
+from concurrent.futures import Executor
+from contextlib import closing, contextmanager
+from importlib.util import find_spec
+from os import PathLike
+from pathlib import Path
+from typing import Final
+
+from taylor_verify.batch.failure import Failed
+from taylor_verify.batch.judging import Interrupted
+from taylor_verify.batch.lock import alone_in
+from taylor_verify.batch.runs import run_stream
+from taylor_verify.batch.store import package_digest, program_digests
+from taylor_verify.batch.sweeps.chunk import Chunk, Judged, judge
+from taylor_verify.batch.sweeps.dataset import MANIFEST, Dataset, Manifest, read_manifest
+from taylor_verify.batch.sweeps.questions import Drawn, Questions, questions
+from taylor_verify.batch.sweeps.report import write_summary
+from taylor_verify.batch.sweeps.summary import WORST, summary, with_files
+from taylor_verify.judge.provenance import packages
+from taylor_verify.records.sweep import SweepSummary
+from taylor_verify.scenes.precision import Rung
+from taylor_verify.scenes.precision import rung as rung_named
+from taylor_verify.scenes.reading.faults import Refused, refusal
+from taylor_verify.solvers.registry import solver_named
+from taylor_verify.solvers.solver import Lack
+from taylor_verify.solvers.trajectory import Outcome
+
+AHEAD: Final = 64
+TEMPLATE: Final = "template.toml"
+# Chunks are many enough to go round and to lose little by an end, and long enough to be worth a message.
+_CHUNKS: Final = 64
+_LEAST_CHUNK: Final = 4
+_LONGEST_CHUNK: Final = 1024
+_MOST_WORST: Final = 1000
+_PROGRESS: Final = logging.getLogger("taylor_verify.progress")
+
+
+def sweep(
+    what: str | PathLike[str],
+    *,
+    count: int | None = None,
+    seed: int | None = None,
+    points: str | None = None,
+    solver: str = "taylor",
+    rung: str = "f64",
+    executor: Executor | None = None,
+    jobs: int | None = None,
+    out: str | PathLike[str] | None = None,
+    resume: bool = False,
+    worst: int = WORST,
+    ahead: int = AHEAD,
+) -> SweepSummary:
+    """Solve and judge many scenes; return how their errors are spread, and the worst of them.
+
+    Parameters
+    ----------
+    what
+        A shipped family (``satellites``), the path of a template, a folder of scene files, or a folder of
+        shipped scenes (``extremes``).
+    count, seed, points
+        How many points are drawn, from which seed, and ``random`` or ``sobol``. Point k of a seed is the
+        same however many are drawn. What is None is what the template says, else 100, 1 and ``random``.
+    solver, rung
+        As those of `run`.
+    executor
+        A `concurrent.futures.Executor` in place of processes of this machine. Only its ``submit`` is
+        called, and it is left open. Chunks and rows are pickled; a worker writes nothing.
+    jobs
+        The number of processes on this machine; as many as cores unless given.
+    out
+        A folder for the dataset, the summary, the picture and the worst cases. Without it nothing is left.
+    resume
+        Go on from the chunks that the same sweep, in the same folder, had finished.
+    worst
+        The number of worst cases that are written as scenes.
+    ahead
+        The number of chunks under way at a time.
+
+    Raises
+    ------
+    scenes.reading.faults.Refused
+        For a template or scenes that cannot be read, with all their faults, and for a folder that holds
+        another sweep.
+    ValueError
+        For an argument that is none.
+    batch.lock.Occupied
+        If another run writes to ``out``.
+    batch.failure.Failed
+        For a chunk whose process was lost, or of which the executor made an error.
+    batch.judging.Interrupted
+        A KeyboardInterrupt that says how many scenes are stored for ``resume``.
+
+    Notes
+    -----
+    Every process imports the script that calls this: there the call stands under
+    ``if __name__ == "__main__":``.
+    """
+    faults = list(_faults(jobs, worst, ahead, resume, out))
+    try:
+        asked = questions(str(what), count, seed, points)
+        manifest = _manifest(asked, solver, rung_named(rung))
+    except ValueError as error:
+        raise ValueError("\n".join([*faults, str(error)])) from None
+    if faults:
+        raise ValueError("\n".join(faults))
+    with _folder(out) as folder, alone_in(folder):
+        dataset = Dataset(folder, manifest)
+        _begin(dataset, asked, resume)
+        try:
+            _judge_all(dataset, asked, executor, jobs, ahead)
+        except Interrupted:
+            if out is None:
+                # Nothing is left to go on from.
+                raise KeyboardInterrupt from None
+            raise
+        found, _ = write_summary(folder, summary(dataset, asked, asked.title, worst), asked)
+    # What was written into a folder that is gone has no file.
+    return found if out is not None else with_files(found, {})
+
+
+def _faults(
+    jobs: object, worst: object, ahead: object, resume: object, out: object
+) -> Iterator[str]:
+    """Yield a sentence for each argument that is none."""
+    wanted = {"jobs": (jobs, 1), "worst": (worst, 0), "ahead": (ahead, 1)}
+    for name, (value, least) in wanted.items():
+        is_whole = isinstance(value, int) and not isinstance(value, bool)
+        if value is not None and not (is_whole and int(str(value)) >= least):
+            yield f"expected a whole number of at least {least}, got {value!r} @ {name}"
+    if isinstance(worst, int) and worst > _MOST_WORST:
+        yield f"expected at most {_MOST_WORST} worst cases, got {worst} @ worst"
+    if resume and out is None:
+        yield "expected the folder of the sweep to go on with (--out), got none @ resume"
+    if find_spec("pyarrow") is None:
+        yield "expected pyarrow (pip install 'taylor-verify[parquet]'), got none"
+
+
+def _manifest(asked: Questions, solver: str, rung: Rung) -> Manifest:
+    missing = solver_named(solver).unavailable(rung)
+    if isinstance(missing, Lack) and missing.outcome is Outcome.NO_PACKAGE:
+        raise ValueError(missing)
+    length = min(max(asked.total // _CHUNKS, _LEAST_CHUNK), _LONGEST_CHUNK)
+    return Manifest(
+        name=asked.name,
+        digest=asked.digest,
+        total=asked.total,
+        chunk=length,
+        solver=solver,
+        rung=rung.name,
+        programs=tuple(program_digests(solver)),
+        package=package_digest(),
+        versions=packages(),
+        **asked.described,
+    )
+
+
+@contextmanager
+def _folder(out: str | PathLike[str] | None) -> Iterator[Path]:
+    if out is not None:
+        yield Path(out)
+        return
+    with tempfile.TemporaryDirectory(prefix="taylor-verify-sweep-") as folder:
+        yield Path(folder)
+
+
+def _begin(dataset: Dataset, asked: Questions, resume: bool) -> None:
+    """Write what is asked, or compare it with what was asked. Raises Refused."""
+    there = read_manifest(dataset.folder)
+    if resume and there is None:
+        raise refusal("a folder with a sweep to go on with", f"no {MANIFEST}", dataset.folder)
+    if resume and there is not None:
+        if differences := there.differences(dataset.manifest):
+            raise Refused(differences)
+        return
+    if there is not None or dataset.rows.exists():
+        mend = "go on with --resume, or name another folder"
+        raise refusal("a folder without a sweep", "one", dataset.folder, mend)
+    dataset.begin({TEMPLATE: asked.family.source} if isinstance(asked, Drawn) else {})
+
+
+def _judge_all(
+    dataset: Dataset, asked: Questions, executor: Executor | None, jobs: int | None, ahead: int
+) -> None:
+    """Judge the chunks that are not there yet, and write each as it ends."""
+    finished = dataset.finished()
+    length, total = dataset.manifest.chunk, dataset.manifest.total
+    done = sum(min(length, total - number * length) for number in finished)
+    left = [number for number in range(dataset.parts) if number not in finished]
+    if not left:
+        return
+    _say(done, total)
+    chunks = (_chunk(dataset.manifest, asked, number) for number in left)
+    # One chunk, or one process, is this one.
+    is_here = executor is None and (len(left) == 1 or jobs == 1)
+    stream = (
+        (judge(chunk) for chunk in chunks)
+        if is_here
+        else run_stream(judge, chunks, executor, workers=jobs, ahead=ahead, raises=Failed)
+    )
+    try:
+        with closing(stream) as answers:
+            for answer in answers:
+                _check_package(dataset, answer)
+                dataset.write(answer.chunk, answer.columns)
+                done += answer.scenes
+                _say(done, total)
+    except KeyboardInterrupt as interrupt:
+        raise Interrupted(done, total) from interrupt
+
+
+def _chunk(manifest: Manifest, asked: Questions, number: int) -> Chunk:
+    first = number * manifest.chunk
+    stop = min(first + manifest.chunk, manifest.total)
+    return Chunk(number, first, stop, asked.part(first, stop), manifest.solver, manifest.rung)
+
+
+def _check_package(dataset: Dataset, answer: Judged) -> None:
+    """Refuse the rows of a worker with other code."""
+    if answer.package != dataset.manifest.package:
+        raise Failed(
+            "expected the same version of taylor-verify on every worker, got another one on a worker"
+        )
+
+
+def _say(done: int, total: int) -> None:
+    _PROGRESS.info(f"{done} of {total} bodies", extra={"share": done / total})

@@ -1,0 +1,95 @@
+"""The share of bodies whose error over attainable is above a size: a line for each quantity of a sweep."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, Final
+
+from taylor_verify.publish.pictures.log_axes import number_axes, widened
+from taylor_verify.publish.pictures.named import Named
+from taylor_verify.publish.pictures.palette import INK, QUIET
+from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.publish.pictures.sheet import sheet
+from taylor_verify.publish.pictures.style import look_of_line
+from taylor_verify.publish.pictures.wording import plain
+from taylor_verify.records.quantities import INITIAL
+from taylor_verify.records.sweep import Spread, SweepSummary
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Points = list[tuple[float, float]]
+
+STEM: Final = "summary"
+# In inches.
+_HEIGHT: Final = 3.2
+
+
+def picture(summary: SweepSummary) -> Picture:
+    """Return the picture of a sweep. Raises ValueError where no error over attainable is above zero."""
+    drawn = [each for each in summary.quantities if each.quantity != INITIAL and _points(each)]
+    if not drawn:
+        raise ValueError("expected an error above zero, got none @ sweep")
+    said = "; ".join(
+        f"{each.quantity} {plain(each.ratio.largest)}"
+        for each in drawn
+        if each.ratio is not None and each.ratio.largest is not None
+    )
+    return Picture(
+        STEM,
+        f"Error over attainable of {summary.total} bodies: {summary.name}",
+        f"Share of {summary.total} bodies of {summary.name} whose largest error, by {summary.solver} on "
+        f"{summary.rung}, is above a multiple of what is attainable; both axes are logarithmic, and a gate "
+        f"stands at {summary.factor}. The largest: {said}.",
+        partial(_figure, summary, drawn),
+    )
+
+
+def _points(spread: Spread) -> Points:
+    """Return the points of a line: the largest of all lies at half a body."""
+    least = 0.5 / spread.judged if spread.judged else 1.0
+    return [(size, max(share, least)) for size, share in spread.above]
+
+
+def _figure(summary: SweepSummary, drawn: list[Spread]) -> Figure:
+    from taylor_verify.publish.pictures.labels import write_names
+
+    figure, (axes,) = sheet(1, [], height=_HEIGHT)
+    lines = [_points(each) for each in drawn]
+    sizes = [size for points in lines for size, _ in points]
+    shares = [share for points in lines for _, share in points]
+    axes.set(xscale="log", yscale="log")
+    axes.set(xlabel="error over attainable", ylabel="share of bodies above it")
+    axes.set(xlim=widened([*sizes, summary.factor], 0.03, 0.12))
+    axes.set(ylim=widened([*shares, 1.0], 0.06, 0.06))
+    number_axes(axes)
+    axes.set_title(
+        f"{summary.name}: {summary.total} bodies, {summary.solver} on {summary.rung}", pad=6
+    )
+    axes.axvline(summary.factor, color=QUIET, linewidth=0.9, linestyle=(0, (1, 2)), gid="gate")
+    axes.annotate(
+        "gate ",
+        (summary.factor, 1.0),
+        xycoords=("data", "axes fraction"),
+        xytext=(-2, -9),
+        textcoords="offset points",
+        color=INK,
+        ha="right",
+        size="small",
+    )
+    named = []
+    for i, (each, points) in enumerate(zip(drawn, lines, strict=True)):
+        look = look_of_line(i)
+        axes.plot(
+            *zip(*points, strict=True),
+            color=look.colour,
+            linewidth=1.2,
+            gid=each.quantity,
+            zorder=3,
+        )
+        # Marks enough for a name to stand anywhere beside its line.
+        named.append(
+            Named(each.quantity, look.colour, [points[:: -max(len(points) // 20, 1)][::-1]])
+        )
+    write_names(axes, named)
+    return figure

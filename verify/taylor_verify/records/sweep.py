@@ -1,0 +1,91 @@
+"""The summary of a sweep: how many bodies passed, how the errors are spread, and the worst cases."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Annotated
+
+from taylor_verify.records.json_text import Count, Size, about
+from taylor_verify.records.provenance import Provenance
+from taylor_verify.records.status import Status
+
+
+@dataclass(frozen=True)
+class Quantiles:
+    """The sizes below which a half, nine tenths, ... of all lie; each is one that occurred.
+
+    Null is beyond every number: a gate that failed without one.
+    """
+
+    median: Size | None
+    ninety: Size | None
+    ninety_nine: Size | None
+    thousandth: Annotated[Size | None, about("A thousandth of all lie above it.")]
+    largest: Size | None
+
+
+@dataclass(frozen=True)
+class Spread:
+    """The errors of one quantity over all bodies.
+
+    ``judged`` rows passed or failed their gate; only these are in the quantiles. ``above`` has pairs: a
+    size of error over attainable, and the share of the judged rows above it.
+    """
+
+    quantity: str
+    counts: dict[str, int]
+    judged: Count
+    unit: str
+    ratio: Annotated[Quantiles | None, about("Of error over attainable.")]
+    max: Annotated[Quantiles | None, about("Of the largest error, in unit.")]
+    above: tuple[tuple[float, float], ...] = ()
+
+
+@dataclass(frozen=True)
+class WorstCase:
+    """A body that came nearest to failing, or failed; ``file`` is its scene below the folder."""
+
+    point: int
+    scene: str
+    verdict: Status
+    quantity: str
+    ratio: Annotated[Size | None, about("Error over attainable; null where there is no number.")]
+    max: Size | None
+    because: str = ""
+    file: str = ""
+    drawn: dict[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class SweepSummary:
+    """The sweep of one family or folder by one solver.
+
+    ``bodies`` counts the bodies by the gravest of their verdicts.
+    """
+
+    name: str
+    title: str
+    solver: str
+    rung: str
+    count: int
+    seed: int | None
+    points: str | None
+    total: Count
+    bodies: dict[str, int]
+    quantities: tuple[Spread, ...]
+    worst: tuple[WorstCase, ...]
+    factor: int
+    exit_status: int
+    lacks: Annotated[tuple[str, ...], about("Why nothing was judged, where nothing was.")] = ()
+    refusals: Annotated[
+        tuple[str, ...], about("Some of the reasons why drawn numbers make no body.")
+    ] = ()
+    provenance: Provenance = field(default_factory=Provenance)
+
+    @property
+    def passed(self) -> bool:
+        """True if something was judged, and the exit status is 0."""
+        return self.exit_status == 0 and not self.lacks
+
+    def __bool__(self) -> bool:
+        return self.passed

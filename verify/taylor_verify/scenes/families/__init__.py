@@ -1,0 +1,1 @@
+"""Families of scenes: scene files in which some numbers are drawn."""

@@ -1,0 +1,128 @@
+"""Numbers that are drawn: a share between 0 and 1 becomes a decimal of a stated number of digits.
+
+All but `normal` is computed in decimals, correctly rounded, so that every machine draws the same number.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from decimal import Context, Decimal
+from fractions import Fraction
+from statistics import NormalDist
+from typing import Final
+
+# Digits of what is computed before it is rounded to those that were asked for.
+_WORKING: Final = Context(prec=50)
+# A share this near to 0 or 1 is the most extreme that a double between them can be.
+_LEAST: Final = 2.0**-54
+# Larger whole numbers have a power of ten.
+_WRITTEN_OUT: Final = 10**15
+
+
+def uniform(share: float, low: Decimal, high: Decimal) -> Decimal:
+    """Return the number at a share of the way from ``low`` to ``high``."""
+    width = _WORKING.subtract(high, low)
+    return _WORKING.add(low, _WORKING.multiply(Decimal(share), width))
+
+
+def log_uniform(share: float, low: Decimal, high: Decimal) -> Decimal:
+    """Return the number at a share of the way from ``low`` to ``high`` by their logarithms."""
+    start, end = _WORKING.ln(low), _WORKING.ln(high)
+    return _WORKING.exp(uniform(share, start, end))
+
+
+def normal(share: float, mean: Decimal, deviation: Decimal) -> Decimal:
+    """Return the number below which this share of a normal distribution lies."""
+    within = min(max(share, _LEAST), 1 - 2 * _LEAST)
+    standard = Decimal(NormalDist().inv_cdf(within))
+    return _WORKING.add(mean, _WORKING.multiply(deviation, standard))
+
+
+def choice(share: float, *values: Decimal) -> Decimal:
+    """Return one of the values, each for an even part of the shares."""
+    return values[min(int(share * len(values)), len(values) - 1)]
+
+
+DISTRIBUTIONS: Final[Mapping[str, Callable[..., Decimal]]] = {
+    "uniform": uniform,
+    "log_uniform": log_uniform,
+    "normal": normal,
+    "choice": choice,
+}
+
+
+@dataclass(frozen=True)
+class Draw:
+    """A number of a distribution; ``digits`` is how many significant digits it is rounded to."""
+
+    kind: str
+    parameters: tuple[Decimal, ...]
+    digits: int
+
+    def value(self, share: float) -> Decimal:
+        """Return the number that belongs to a share between 0 and 1, both included."""
+        return rounded(DISTRIBUTIONS[self.kind](share, *self.parameters), self.digits)
+
+
+@dataclass(frozen=True)
+class Grid:
+    """A number that takes each of its values in turn."""
+
+    values: tuple[Decimal, ...]
+
+
+def linspace(low: Decimal, high: Decimal, count: int, digits: int) -> Grid:
+    """Return the grid of ``count`` equally spaced numbers, both ends included."""
+    return Grid(tuple(_spaced(uniform, low, high, count, digits)))
+
+
+def logspace(low: Decimal, high: Decimal, count: int, digits: int) -> Grid:
+    """Return the grid of ``count`` numbers in equal ratios, both ends included."""
+    return Grid(tuple(_spaced(log_uniform, low, high, count, digits)))
+
+
+def _spaced(
+    between: Callable[[float, Decimal, Decimal], Decimal],
+    low: Decimal,
+    high: Decimal,
+    count: int,
+    digits: int,
+) -> Sequence[Decimal]:
+    inner = [_exactly(between, k, count - 1, low, high) for k in range(1, count - 1)]
+    return [low, *(rounded(value, digits) for value in inner), high]
+
+
+def _exactly(
+    between: Callable[[float, Decimal, Decimal], Decimal],
+    step: int,
+    steps: int,
+    low: Decimal,
+    high: Decimal,
+) -> Decimal:
+    """Return the number at ``step / steps``, a share that is no double."""
+    share = _WORKING.divide(Decimal(step), Decimal(steps))
+    return between(share, low, high)  # type: ignore[arg-type]
+
+
+def rounded(value: Decimal, digits: int) -> Decimal:
+    """Return a decimal of so many significant digits, without zeros behind the last one."""
+    near = Context(prec=digits).plus(value)
+    return Decimal(0) if near == 0 else near.normalize(Context(prec=digits))
+
+
+def number_text(value: Fraction) -> str:
+    """Return a rational as a scene file writes it: a decimal where it has one, else ``"a/b"``."""
+    if value.denominator == 1 and abs(value) < _WRITTEN_OUT:
+        return str(value.numerator)
+    twos, fives, rest = 0, 0, value.denominator
+    while rest % 2 == 0:
+        twos, rest = twos + 1, rest // 2
+    while rest % 5 == 0:
+        fives, rest = fives + 1, rest // 5
+    if rest != 1:
+        return f'"{value}"'
+    places = max(twos, fives)
+    digits = value.numerator * 10**places // value.denominator
+    exact = Context(prec=len(str(abs(digits))) + 1)
+    return str(Decimal(digits).scaleb(-places, exact).normalize(exact)).replace("E+", "e")

@@ -1,0 +1,131 @@
+"""A table of a template becomes the rule of a number: a distribution, a grid or a formula."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping
+from decimal import Context, Decimal
+from fractions import Fraction
+from typing import Any, Final
+
+from taylor_verify.scenes.families.draw import (
+    DISTRIBUTIONS,
+    Draw,
+    Grid,
+    linspace,
+    logspace,
+    rounded,
+)
+from taylor_verify.scenes.families.formula import Formula, formula
+from taylor_verify.scenes.reading.faults import Faults, near, shown
+from taylor_verify.scenes.reading.table import exact_number
+
+UNIT: Final = "unit"
+_GRIDS: Final[Mapping[str, Callable[..., Grid]]] = {"linspace": linspace, "logspace": logspace}
+KINDS: Final = (*DISTRIBUTIONS, "grid", *_GRIDS, "formula")
+_MOST_VALUES: Final = 100_000
+_EXACT: Final = Context(prec=60)
+
+Rule = Draw | Grid | Formula
+
+
+def rule(
+    entries: Mapping[str, Any], place: str, digits: int, known: Collection[str], faults: Faults
+) -> Rule | None:
+    """Return the rule that a table writes, or None beside a fault.
+
+    ``known`` are the names that a formula may use.
+    """
+    kinds = [key for key in entries if key in KINDS]
+    others = [key for key in entries if key not in (*KINDS, UNIT)]
+    for key in others:
+        faults.add("a known distribution", f"`{key}`", place, near(key, (*KINDS, UNIT)))
+    if len(kinds) != 1:
+        if kinds or not others:
+            got = " and ".join(kinds) or "none"
+            faults.add(f"one of {', '.join(KINDS)}", got, place)
+        return None
+    (kind,) = kinds
+    reading = _Parameters(entries[kind], f"{place}.{kind}", digits, faults)
+    made = reading.formula(known) if kind == "formula" else reading.rule(kind)
+    return None if others else made
+
+
+class _Parameters:
+    """The parameters of one rule, and where they stand."""
+
+    def __init__(self, value: Any, place: str, digits: int, faults: Faults) -> None:
+        self._value, self._place, self._digits, self._faults = value, place, digits, faults
+
+    def formula(self, known: Collection[str]) -> Formula | None:
+        """Return the formula; a name that is not among the known ones is a fault."""
+        try:
+            made = formula(self._value)
+        except ValueError as error:
+            self._fault(str(error))
+            return None
+        unknown = sorted(made.names.difference(known))
+        for name in unknown:
+            mend = near(name, known) or "define it above, in [sweep.numbers]"
+            self._faults.add("a number defined above", f"`{name}`", self._place, mend)
+        return None if unknown else made
+
+    def rule(self, kind: str) -> Rule | None:
+        """Return the draw or the grid of these parameters."""
+        if kind in ("choice", "grid"):
+            values = self._numbers(least=1, most=_MOST_VALUES)
+            if values is None:
+                return None
+            return Grid(values) if kind == "grid" else Draw(kind, values, _EXACT.prec)
+        numbers = self._numbers(least=3, most=3) if kind in _GRIDS else self._numbers(2, 2)
+        if numbers is None or not self._is_sound(kind, *numbers[:2]):
+            return None
+        if kind not in _GRIDS:
+            return Draw(kind, numbers, self._digits)
+        count = numbers[2]
+        if count != int(count) or not 2 <= count <= _MOST_VALUES:
+            self._fault(f"a whole number of values from 2 to {_MOST_VALUES} as the third")
+            return None
+        return _GRIDS[kind](*numbers[:2], int(count), self._digits)
+
+    def _is_sound(self, kind: str, first: Decimal, second: Decimal) -> bool:
+        if kind == "normal":
+            if second > 0:
+                return True
+            self._fault("a mean and a positive standard deviation")
+            return False
+        if not first < second:
+            self._fault("a smaller and a larger number")
+            return False
+        if kind.startswith("log") and not first > 0:
+            self._fault("two positive numbers")
+            return False
+        if kind not in _GRIDS and any(rounded(n, self._digits) != n for n in (first, second)):
+            # A number rounded to fewer digits than its bounds have could lie outside of them.
+            self._fault(f"bounds of at most {self._digits} digits (`digits` in [sweep])")
+            return False
+        return True
+
+    def _numbers(self, least: int, most: int) -> tuple[Decimal, ...] | None:
+        count = f"{least}" if least == most else f"at least {least}"
+        if not isinstance(self._value, list) or not least <= len(self._value) <= most:
+            self._fault(f"an array of {count} {'number' if count.endswith('1') else 'numbers'}")
+            return None
+        found: list[Decimal] = []
+        for i, value in enumerate(self._value):
+            place = f"{self._place}[{i}]"
+            try:
+                found.append(_decimal(exact_number(value)))
+            except ValueError as error:
+                self._faults.add(str(error), shown(value), place)
+        return tuple(found) if len(found) == len(self._value) else None
+
+    def _fault(self, expected: str) -> None:
+        self._faults.add(expected, shown(self._value), self._place)
+
+
+def _decimal(value: Fraction) -> Decimal:
+    """Return a rational as the decimal that it is. Raises ValueError for one that is none."""
+    near = _EXACT.divide(Decimal(value.numerator), Decimal(value.denominator))
+    if Fraction(near) != value:
+        raise ValueError(f"a decimal of at most {_EXACT.prec} digits")
+    return near
