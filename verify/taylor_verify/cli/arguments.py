@@ -138,6 +138,15 @@ scenes* SCENE
 --out DIR  write the numbers and the work-precision pictures there
 """,
     ),
+    "draw": (
+        "draw the exact motion of a scene",
+        "draw euler/gyrostat --out gyrostat.svg",
+        """
+scene SCENE
+--out NAME  write NAME-polhode.svg and so on; the ending of NAME says the format: .svg (default), .pdf, .png
+--only NAME,...  draw these pictures and no others; a single one has the name of --out itself
+""",
+    ),
     "claims": (
         "check every numbered equation and every claim of the two source texts",
         'claims "hydromechanics 49 (17)"',

@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from taylor_verify.draw.stage import END, START, Look, Stage, scale
+from taylor_verify.draw.view import Ellipsoid, Numbers, View
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.pictures.wording import stem_of
-from taylor_verify.studies.gallery.pictures.stage import END, START, Look, Stage, scale
-from taylor_verify.studies.gallery.pictures.view import Ellipsoid, Numbers, View
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from taylor_verify.draw.stage import Look, Stage, norm_of, scale
+from taylor_verify.draw.view import Ellipsoid, Numbers, View
 from taylor_verify.publish.pictures.palette import INK, PAPER, QUIET
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.pictures.sheet import Entry
 from taylor_verify.publish.pictures.wording import plain, stem_of
-from taylor_verify.studies.gallery.pictures.stage import Look, Stage, norm_of, scale
-from taylor_verify.studies.gallery.pictures.view import Ellipsoid, Numbers, View
 
 if TYPE_CHECKING:
     from matplotlib.colors import Normalize

@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from taylor_verify.draw.axis_path import axis_of
+from taylor_verify.draw.stage import END, START, Look, Stage, scale
+from taylor_verify.draw.view import Numbers, View
 from taylor_verify.publish.pictures.palette import FAINT, INK, QUIET
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.pictures.sheet import Entry
 from taylor_verify.publish.pictures.style import SMALL
 from taylor_verify.publish.pictures.wording import stem_of
-from taylor_verify.studies.gallery.pictures.axis_path import axis_of
-from taylor_verify.studies.gallery.pictures.stage import END, START, Look, Stage, scale
-from taylor_verify.studies.gallery.pictures.view import Numbers, View
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
