@@ -12,8 +12,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
+from math import ceil
 from typing import Any, Final
 
+import numpy as np
 from mpmath import mp, mpf
 
 from taylor_verify.exact.elements import Elements, elements
@@ -34,6 +36,9 @@ DIGITS: Final = 30
 # Intervals of the dense course; over more periods than these a curve covers itself.
 INTERVALS: Final = 360
 PERIODS: Final = 3
+# Radians that a body may turn between two rows, and into how many parts an interval is cut at most.
+_TURN: Final = 0.1
+_MOST: Final = 8
 # Of a number in the course; the motion behind it is known to one digit more, and what is smaller
 # beside its vector than that is a zero that was not proven to be one.
 FIGURES: Final = 9
@@ -49,7 +54,10 @@ def motion(scene: Scene, intervals: int = INTERVALS) -> Document:
     body = scene.body
     shape, rotor = getattr(body, "ellipsoid", None), body.parts().get("rotor")
     # One of these answers last, and says how it was had.
-    course = course_of(scene, exact, length(scene, orbit), intervals)
+    extent = length(scene, orbit)
+    course = course_of(scene, exact, extent, intervals)
+    if (more := _enough(course)) > 1:
+        course = course_of(scene, exact, extent, more * intervals)
     return {
         "scene": scene.name,
         "title": scene.title,
@@ -118,6 +126,14 @@ def course_of(
     for name, rows in exactly.quantities.items():
         course[name] = [_rounded(list(row.flat)) for row in rows]
     return course
+
+
+def _enough(course: Document) -> int:
+    """Return into how many parts intervals must be cut, so that the body turns little in each."""
+    turned = np.array(course["attitude"]).reshape(-1, 3, 3)
+    cosines = (np.einsum("nij,nij->n", turned[1:], turned[:-1]) - 1) / 2
+    # The largest angle is below a half turn, whatever a fast body did: more than so many are no use.
+    return min(ceil(float(np.arccos(np.clip(cosines.min(), -1, 1))) / _TURN), _MOST)
 
 
 def _rounded(entries: Sequence[mpf]) -> list[float]:

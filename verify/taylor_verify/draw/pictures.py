@@ -6,7 +6,16 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import Any, Final
 
-from taylor_verify.draw import bifurcation, momentum_sphere
+from taylor_verify.draw import (
+    axis_path,
+    bifurcation,
+    centre_path,
+    components,
+    herpolhode,
+    momentum_sphere,
+    polhode,
+    spheres,
+)
 from taylor_verify.draw.caption import NotDrawn
 from taylor_verify.publish.pictures.picture import Picture
 
@@ -14,8 +23,14 @@ Document = Mapping[str, Any]
 
 # In the order in which they are written.
 KINDS: Final[Mapping[str, Callable[[Document], Picture]]] = {
+    "polhode": polhode.picture,
     "momentum": momentum_sphere.picture,
     "bifurcation": bifurcation.picture,
+    "time": components.picture,
+    "herpolhode": herpolhode.picture,
+    "axis": axis_path.picture,
+    "spheres": spheres.picture,
+    "path": centre_path.picture,
 }
 
 
