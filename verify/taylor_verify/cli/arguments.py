@@ -139,12 +139,17 @@ scenes* SCENE
 """,
     ),
     "draw": (
-        "draw the exact motion of a scene",
-        "draw euler/gyrostat --out gyrostat.svg",
+        "draw the exact motion of a scene, and the errors of trajectory files",
+        "draw euler/generic --out generic.svg",
         """
 scene SCENE
+files* FILE  trajectories, read as `check` reads them: their errors in time are drawn too
 --out NAME  write NAME-polhode.svg and so on; the ending of NAME says the format: .svg (default), .pdf, .png
---only NAME,...  draw these pictures and no others; a single one has the name of --out itself
+--only NAME,...  draw these and no others: polhode, momentum, bifurcation, time, herpolhode, axis, spheres,
+  path, errors; a single one has the name of --out itself
+--rung R [f64]  precision of the arithmetic that made the files; default: f64
+--columns* NAME=THEIRS,...  the file's column for a name of ours, as in `check`
+--accept-conventions  correct the conventions of the files before their errors are drawn, as in `check`
 """,
     ),
     "claims": (

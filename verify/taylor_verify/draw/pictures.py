@@ -45,7 +45,7 @@ def pictures(document: Document, names: Sequence[str] = ()) -> dict[str, Picture
     for name in names:
         try:
             if name not in KINDS:
-                raise NotDrawn(f"expected a picture ({', '.join(KINDS)}), got {name!r}")
+                raise NotDrawn(f"expected a picture ({', '.join(KINDS)}), got {name!r} @ --only")
             found[name] = KINDS[name](document)
         except NotDrawn as fault:
             faults.append(str(fault))

@@ -147,9 +147,9 @@ def _separatrices(surface: Ellipsoid, moments: Numbers) -> list[Numbers]:
     return [surface.circle(pole) for pole in poles]
 
 
-def _view(found: Series) -> View:
+def facing(course: Numbers, semi_axes: Sequence[float]) -> View:
     """The side to which the curve turns; of the axes, the one that it goes round faces the reader."""
-    q = found.course / np.array(found.semi_axes)
+    q = course / np.array(semi_axes)
     mean = q.mean(axis=0)
     order = np.argsort(-np.abs(mean))
     direction = np.zeros(3)
@@ -180,7 +180,9 @@ def _alone(found: Series, words: str) -> Figure:
 
 def _stage(found: Series) -> Stage:
     """Return the ellipsoid with its separatrices and the names of its axes."""
-    stage = Stage.around(Ellipsoid(found.semi_axes), _view(found), _STAGE, _HEIGHT)
+    stage = Stage.around(
+        Ellipsoid(found.semi_axes), facing(found.course, found.semi_axes), _STAGE, _HEIGHT
+    )
     for curve in found.separatrices:
         stage.line(curve, 2, _BORDER)
     axes = zip(
