@@ -16,10 +16,15 @@ from taylor_verify.cli.progress import working
 from taylor_verify.draw import file_errors
 from taylor_verify.draw.caption import NotDrawn
 from taylor_verify.draw.course import motion
+from taylor_verify.draw.film import ENDINGS as FILMS
+from taylor_verify.draw.film import film
+from taylor_verify.draw.moving import Moving, moving
+from taylor_verify.draw.page import page
 from taylor_verify.draw.pictures import pictures
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.files.judgement import judge_file
-from taylor_verify.publish.pictures.picture import ENDINGS, Picture, content
+from taylor_verify.publish.pictures.picture import ENDINGS as STILLS
+from taylor_verify.publish.pictures.picture import Picture, content
 from taylor_verify.records.record import Record
 from taylor_verify.records.replacement import replace_files
 from taylor_verify.scenes.precision import rung
@@ -29,8 +34,8 @@ from taylor_verify.solvers.files.columns.request import request
 from taylor_verify.solvers.files.file import TrajectoryFile, read
 
 ERRORS: Final = "errors"
-_STILL: Final = ENDINGS
-_DEFAULT: Final = ".svg"
+_STILL: Final = ".svg"
+_PAGE: Final = ".html"
 
 
 def answer(options: argparse.Namespace) -> Answer:
@@ -38,23 +43,34 @@ def answer(options: argparse.Namespace) -> Answer:
     require_matplotlib("draw")
     (options.rung,) = known_rungs([options.rung])
     scene, files = _asked(options)
-    place = _place(options.out, scene)
+    place = _place(options, scene)
     names = [name.strip() for name in options.only.split(",")] if options.only else []
+    if options.animate and (names or files):
+        raise WrongCall("expected a scene alone with --animate, got --only or files @ --animate")
     with working(f"draw {scene.name}"), wrong_calls(kinds=NotDrawn):
         document = _document(scene)
-        found = _pictures(document, names, files, partial(_record, options, scene))
-        written = _write(found, place, is_alone=len(names) == 1)
-    shown = {
-        "scene": scene.name,
-        "regime": document["regime"],
-        "route": document["route"],
-        "evidence": document["evidence"],
-        "files": [
-            {"file": str(path), "picture": name, "title": picture.title, "shows": picture.alt}
-            for path, (name, picture) in zip(written, found.items(), strict=True)
-        ],
+        if options.animate:
+            shown = [_animate(moving(document), place)]
+        else:
+            found = _pictures(document, names, files, partial(_record, options, scene))
+            shown = _write(found, place, is_alone=len(names) == 1)
+    facts = {name: document[name] for name in ("scene", "regime", "route", "evidence")}
+    told = {**facts, "files": shown}
+    return Answer(PASS, told, partial(_text, told))
+
+
+def _animate(motion: Moving, place: Path) -> dict[str, str]:
+    """Write the motion as a page or as a film."""
+    ending = place.suffix.lower()
+    made = page(motion) if ending == _PAGE else film(motion, ending)
+    with unwritable("a file that can be written", str(place), "--out"):
+        (path,) = replace_files(place.parent, {place.name: made})
+    return {
+        "file": str(path),
+        "picture": "animation",
+        "title": motion.title,
+        "shows": motion.alt,
     }
-    return Answer(PASS, shown, partial(_text, shown))
 
 
 def _asked(options: argparse.Namespace) -> tuple[Scene, list[TrajectoryFile]]:
@@ -106,7 +122,7 @@ def _record(options: argparse.Namespace, scene: Scene, file: TrajectoryFile) -> 
     return judged.record
 
 
-def _write(found: Mapping[str, Picture], place: Path, is_alone: bool) -> Sequence[Path]:
+def _write(found: Mapping[str, Picture], place: Path, is_alone: bool) -> list[dict[str, str]]:
     """Draw all, then write all; a picture that was asked for alone has the name of --out itself."""
     ending = place.suffix
     contents = {
@@ -116,17 +132,25 @@ def _write(found: Mapping[str, Picture], place: Path, is_alone: bool) -> Sequenc
         for name, picture in found.items()
     }
     with unwritable("a file that can be written", str(place), "--out"):
-        return replace_files(place.parent, contents)
+        written = replace_files(place.parent, contents)
+    return [
+        {"file": str(path), "picture": name, "title": picture.title, "shows": picture.alt}
+        for path, (name, picture) in zip(written, found.items(), strict=True)
+    ]
 
 
-def _place(out: str | None, scene: Scene) -> Path:
+def _place(options: argparse.Namespace, scene: Scene) -> Path:
     """Return the file that --out names, from which each picture has its name. Raises WrongCall."""
-    name = out if out is not None else Path(scene.name).with_suffix("").as_posix().replace("/", "-")
-    place = writable_file(name, "--out")
-    if not place.suffix:
-        return place.with_suffix(_DEFAULT)
-    if place.suffix.lower() not in _STILL:
-        raise WrongCall(f"expected {', '.join(_STILL)}, got {place.suffix!r} @ --out")
+    stem = Path(scene.name).with_suffix("").as_posix().replace("/", "-").strip("-.")
+    place = writable_file(stem if options.out is None else options.out, "--out")
+    endings = (_PAGE, *FILMS) if options.animate else STILLS
+    if options.out is None or not place.suffix:
+        return place.with_name(place.name + (_PAGE if options.animate else _STILL))
+    if place.suffix.lower() not in endings:
+        others = STILLS if options.animate else (_PAGE, *FILMS)
+        how = "out" if options.animate else ""
+        mend = f" (with{how} --animate: {', '.join(others)})"
+        raise WrongCall(f"expected {', '.join(endings)}{mend}, got {place.suffix!r} @ --out")
     return place
 
 

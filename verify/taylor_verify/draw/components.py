@@ -30,7 +30,7 @@ Document = Mapping[str, Any]
 # In inches.
 _HEIGHT: Final = 2.7
 # A component is told by its dashes too.
-_LINES: Final[tuple[dict[str, Any], ...]] = (
+LINES: Final[tuple[dict[str, Any], ...]] = (
     {"color": "#0B5FA5", "linewidth": 1.5},
     {"color": "#A83C00", "linewidth": 1.5, "dashes": (5, 1.6)},
     {"color": "#1C8578", "linewidth": 1.5, "dashes": (1.4, 1.2)},
@@ -114,7 +114,7 @@ def _figure(found: Series, words: str) -> Figure:
     names = [panel.letter for panel in found.panels]
     entries: list[Entry] = [
         (dict(look), ", ".join(f"{name}{subscript}" for name in names))
-        for look, subscript in zip(_LINES, SUBSCRIPTS, strict=True)
+        for look, subscript in zip(LINES, SUBSCRIPTS, strict=True)
     ]
     entries += [(_FLIP, "flip: the middle component is 0")] if found.flips else []
     figure, places = sheet(len(found.panels), entries, words, _HEIGHT)
@@ -128,7 +128,7 @@ def _figure(found: Series, words: str) -> Figure:
 def _draw(axes: Axes, found: Series, panel: Panel) -> None:
     from matplotlib.ticker import MaxNLocator
 
-    for look, values in zip(_LINES, panel.rows.T, strict=True):
+    for look, values in zip(LINES, panel.rows.T, strict=True):
         axes.plot(found.times, values, gid="course", zorder=3, **look)
     for flip in found.flips:
         axes.axvline(flip, zorder=1, **_FLIP)

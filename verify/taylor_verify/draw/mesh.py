@@ -21,8 +21,8 @@ _THINNEST: Final = 0.05
 _FLAT: Final = 0.06
 _RING: Final = 40
 _STRINGS: Final = 6
-_MERIDIANS: Final = 24
-_PARALLELS: Final = 12
+_MERIDIANS: Final = 32
+_PARALLELS: Final = 16
 
 
 @dataclass(frozen=True)
@@ -31,6 +31,20 @@ class Face:
 
     corners: Numbers
     colour: str
+
+    @property
+    def is_line(self) -> bool:
+        """True for two points."""
+        return len(self.corners) == 2
+
+    @property
+    def normal(self) -> Numbers:
+        """The unit vector outwards. At the pole of an ellipsoid two corners are one."""
+        a, b, c, *rest = self.corners
+        normal = np.cross(b - a, c - a)
+        if not normal.any():
+            normal = np.cross(c - a, rest[0] - a)
+        return np.asarray(normal / np.linalg.norm(normal))
 
 
 @dataclass(frozen=True)

@@ -28,6 +28,8 @@ _SHORTEST, _LONGEST = 6.0, 40.0
 # The frame of a body without a shape, in parts of its path.
 _FRAME: Final = 0.09
 _STILL: Final = 1e-6
+# In the squared distance from the surface, in units of its semi-axes.
+_OFF: Final = 1e-6
 OMEGA: Final = "\N{GREEK SMALL LETTER OMEGA}"
 
 
@@ -40,6 +42,12 @@ class Inset:
     curves: tuple[Numbers, ...]
     letter: str
     name: str
+
+    @property
+    def sinks(self) -> bool:
+        """True if the course leaves the surface, as damping lets it."""
+        inside = np.square(self.course / np.array(self.semi_axes)).sum(axis=1)
+        return bool(np.abs(inside - 1).max() > _OFF)
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from taylor_verify.draw.mesh import Face
 from taylor_verify.draw.moving import Inset, Moving
 from taylor_verify.draw.polhode import facing
 from taylor_verify.draw.view import Numbers
@@ -17,8 +18,6 @@ from taylor_verify.draw.view import Numbers
 _TEMPLATE: Final = Path(__file__).with_name("assets") / "turning.html"
 # Digits of a number on the page: no eye sees the next one.
 _DIGITS: Final = 4
-# In the squared distance from the surface, in units of its semi-axes.
-_OFF: Final = 1e-6
 
 
 def page(motion: Moving) -> str:
@@ -39,7 +38,7 @@ def document(motion: Moving) -> dict[str, Any]:
         "times": _rounded(motion.times, 7),
         "quaternions": _rounded(quaternions(motion.attitudes), 5),
         "centres": None if motion.centres is None else _rounded(motion.centres, 5),
-        "faces": [_face(face.corners, face.colour) for face in motion.body.faces],
+        "faces": [_face(face) for face in motion.body.faces],
         "arrow": motion.arrow,
         "middle": _rounded(motion.middle, 6),
         "reach": motion.reach,
@@ -52,22 +51,13 @@ def document(motion: Moving) -> dict[str, Any]:
     }
 
 
-def _face(corners: Numbers, colour: str) -> dict[str, Any]:
-    found = {"p": _rounded(corners), "c": colour}
-    if len(corners) == 2:
-        return found
-    normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
-    size = float(np.linalg.norm(normal))
-    if not size > 0:
-        # At the pole of an ellipsoid two corners of a face are one.
-        normal = np.cross(corners[2] - corners[0], corners[3] - corners[0])
-        size = float(np.linalg.norm(normal))
-    return {**found, "n": _rounded(normal / size)}
+def _face(face: Face) -> dict[str, Any]:
+    found = {"p": _rounded(face.corners), "c": face.colour}
+    return found if face.is_line else {**found, "n": _rounded(face.normal)}
 
 
 def _inset(inset: Inset) -> dict[str, Any]:
     view = facing(inset.course, inset.semi_axes)
-    inside = np.square(inset.course / np.array(inset.semi_axes)).sum(axis=1)
     return {
         "semi": _rounded(np.array(inset.semi_axes), 6),
         "course": _rounded(inset.course),
@@ -75,7 +65,7 @@ def _inset(inset: Inset) -> dict[str, Any]:
         "letter": inset.letter,
         "name": inset.name,
         "view": {"azimuth": view.azimuth, "elevation": view.elevation},
-        "sinks": bool(np.abs(inside - 1).max() > _OFF),
+        "sinks": inset.sinks,
     }
 
 
