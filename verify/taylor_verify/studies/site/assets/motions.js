@@ -50,15 +50,19 @@
     return Object.assign({}, trace, { ball: undefined, x: net[0], y: net[1], z: net[2] });
   }
 
-  function layout(titles, narrow) {
+  // One scale for all axes, and the longest side as long as that of a cube: whatever the sides, all of the
+  // box is in the frame.
+  function layout(titles, box, narrow) {
     const far = narrow ? 1.3 : 1.15;
+    const sides = box.map(function (ends) { return ends[1] - ends[0]; }), longest = Math.max.apply(null, sides);
     const scene = {
-      aspectmode: "data",
+      aspectmode: "manual",
+      aspectratio: { x: sides[0] / longest, y: sides[1] / longest, z: sides[2] / longest },
       camera: { eye: { x: 1.75 * far, y: 1.75 * far, z: 1.15 * far }, center: { x: 0, y: 0, z: -0.14 } },
     };
     titles.forEach(function (title, i) {
       scene["xyz"[i] + "axis"] = {
-        title: { text: title }, nticks: 5, color: "$ink", gridcolor: "$faint", linecolor: "$quiet",
+        title: { text: title }, range: box[i], nticks: Math.max(2, Math.round(5 * sides[i] / longest)), color: "$ink", gridcolor: "$faint", linecolor: "$quiet",
         zeroline: false, exponentformat: "power", showspikes: false, showbackground: false,
       };
     });
@@ -77,7 +81,7 @@
     await drawing.react(
       plot,
       coloured(stored.traces.map(withNet), style),
-      coloured(layout(stored.axes, narrow), style),
+      coloured(layout(stored.axes, stored.box, narrow), style),
       { responsive: true, displaylogo: false, displayModeBar: narrow ? false : "hover" },
     );
     plot.dataset.drawn = style.getPropertyValue("--motion-ink").trim();
