@@ -316,7 +316,8 @@ def test_every_frame_holds_its_motion(report: Path, scene: str) -> None:
                 ends = np.array(trace["ball"]["semi"])[:, None] * np.array(trace["ball"]["axes"])
                 assert (np.abs(ends) <= high).all(), figure.name
         sides = high - low
-        assert sides.min() >= 0.29 * sides.max(), figure.name
+        # But for rounding: a box is never seen as a line.
+        assert sides.min() >= 0.3 * (1 - 1e-9) * sides.max(), figure.name
 
 
 def test_a_loaded_body_has_no_ellipsoid(report: Path) -> None:

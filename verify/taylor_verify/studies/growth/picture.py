@@ -37,7 +37,9 @@ _LOOKS: Final = (_THIN, {**_THIN, "dashes": (5, 3)})
 _TITLE: Final = "ensembles of starts"
 # In decades, between two beginnings that each have their powers drawn.
 _APART: Final = 1.0
-_NOTE: Final = "Root mean square over the starts. Thin lines: powers of time, 1/2 and 3/2 solid, 1 and 2 dashed."
+_NOTE: Final = (
+    "Root mean square over the starts. Thin: powers of time, 1/2 and 3/2 solid, 1 and 2 dashed."
+)
 
 
 def picture(runs: Sequence[Ensemble]) -> Picture:

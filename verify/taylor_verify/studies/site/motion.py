@@ -120,8 +120,8 @@ def _box(rows: Numbers, surface: Trace | None) -> list[tuple[float, float]]:
         reach = np.sqrt(np.square(semi[:, None] * axes).sum(axis=0))
         points = np.concatenate([rows, [reach, -reach]])
     low, high = points.min(axis=0), points.max(axis=0)
-    longest = float((high - low).max())
-    half = np.maximum((high - low) / 2 + _MARGIN * longest, _LEAST_SIDE * longest / 2)
+    half = (high - low) / 2 + _MARGIN * float((high - low).max())
+    half = np.maximum(half, _LEAST_SIDE * half.max())
     middle = (low + high) / 2
     return [(float(a), float(b)) for a, b in zip(middle - half, middle + half, strict=True)]
 
