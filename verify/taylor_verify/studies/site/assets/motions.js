@@ -50,14 +50,15 @@
     return Object.assign({}, trace, { ball: undefined, x: net[0], y: net[1], z: net[2] });
   }
 
-  // One scale for all axes, and the longest side as long as that of a cube: whatever the sides, all of the
-  // box is in the frame.
+  // One scale for all axes, and a diagonal as long as that of the unit cube: whatever the sides, all of the
+  // box is in the frame, from wherever it is seen.
   function layout(titles, box, narrow) {
     const far = narrow ? 1.3 : 1.15;
     const sides = box.map(function (ends) { return ends[1] - ends[0]; }), longest = Math.max.apply(null, sides);
+    const unit = Math.hypot.apply(null, sides) / Math.sqrt(3);
     const scene = {
       aspectmode: "manual",
-      aspectratio: { x: sides[0] / longest, y: sides[1] / longest, z: sides[2] / longest },
+      aspectratio: { x: sides[0] / unit, y: sides[1] / unit, z: sides[2] / unit },
       camera: { eye: { x: 1.75 * far, y: 1.75 * far, z: 1.15 * far }, center: { x: 0, y: 0, z: -0.14 } },
     };
     titles.forEach(function (title, i) {
