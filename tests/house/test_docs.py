@@ -22,11 +22,14 @@ from builders.worked import DOCS, ROOT, blocks, work
 import taylor_verify
 from taylor_verify.cli import answer
 from taylor_verify.cli.arguments import parse
+from taylor_verify.draw.course import motion
+from taylor_verify.draw.pictures import pictures
 from taylor_verify.exact.solution import NO_CLOSED_FORM
 from taylor_verify.records.answers import Order, Stall
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.library import names
+from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.registry import FAMILIES
 from taylor_verify.solvers.trajectory import Outcome
 
@@ -218,7 +221,9 @@ def test_a_command_can_be_typed(command: str) -> None:
     assert [scene for scene in scenes if scene not in names()] == []
 
 
-VERBS = ("list", "scene", "run", "exact", "check", "explain", "tradeoff", "claims", "publish")
+VERBS = (
+    *("list", "scene", "run", "exact", "check", "explain", "tradeoff", "draw", "claims", "publish"),
+)
 
 
 @pytest.mark.parametrize("verb", VERBS)
@@ -231,6 +236,17 @@ def test_every_option_is_documented(verb: str, capsys: pytest.CaptureFixture[str
     page = text_of("command-line.md")
     assert f"taylor-verify {verb}" in page
     assert {option for option in options if option not in page} == set()
+
+
+def test_pictures_of_the_docs_are_those_of_their_commands() -> None:
+    """Each picture of the page says what its command says of it now."""
+    for stem, scene, name in (
+        ("racket", "euler/tennis-racket", "time"),
+        ("gyrostat", "euler/gyrostat", "bifurcation"),
+    ):
+        text = (DOCS / "pictures" / f"{stem}.svg").read_text(encoding="utf-8")
+        picture = pictures(motion(load(scene)), [name])[name]
+        assert picture.alt in text
 
 
 # The reference.

@@ -155,6 +155,14 @@ def studies_stand_below_the_verbs(module: str, source: str) -> Iterator[str]:
                 yield f"expected nothing of cli, got {target} @ {module}:{line}"
 
 
+def draw_stands_below_studies(module: str, source: str) -> Iterator[str]:
+    """draw imports nothing of studies, batch and cli: a study shows its pictures, and knows of more."""
+    if room(module) == "draw":
+        for target, line, _ in imports(source):
+            if within(target, *(f"taylor_verify.{name}" for name in ("studies", "batch", "cli"))):
+                yield f"expected nothing of {room(target)}, got {target} @ {module}:{line}"
+
+
 def processes_have_their_place(module: str, source: str) -> Iterator[str]:
     """Executors and processes are made in batch; trade times a new process, heyoka has threads."""
     placed = within(
@@ -286,6 +294,7 @@ RULES: Final = (
     batch_stands_below_the_verbs,
     dask_has_its_place,
     studies_stand_below_the_verbs,
+    draw_stands_below_studies,
     processes_have_their_place,
     imports_heyoka_late,
     is_silent,
@@ -512,6 +521,12 @@ PLANTED = [
         "taylor_verify.studies.growth.study",
         "def f():\n from taylor_verify.cli.streams import say",
         "cli",
+    ),
+    (
+        draw_stands_below_studies,
+        "taylor_verify.draw.polhode",
+        "from taylor_verify.studies.portraits.study import PORTRAITS",
+        "studies",
     ),
     (
         processes_have_their_place,

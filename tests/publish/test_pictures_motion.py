@@ -21,6 +21,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.ticker import FixedLocator
 
 from taylor_verify.cli import main
+from taylor_verify.draw import axis_path, centre_path, polhode
+from taylor_verify.draw.stage import norm_of, scale
+from taylor_verify.draw.view import Ellipsoid, View, pieces
 from taylor_verify.publish.pictures import log_axes
 from taylor_verify.publish.pictures.palette import lightness
 from taylor_verify.publish.pictures.picture import Picture, plotting, save
@@ -30,15 +33,7 @@ from taylor_verify.studies.controls import picture as shifts
 from taylor_verify.studies.controls.document import CONTROLS
 from taylor_verify.studies.gallery import page as gallery
 from taylor_verify.studies.gallery.page import Stored
-from taylor_verify.studies.gallery.pictures import (
-    axis_path,
-    centre_path,
-    errors_over_time,
-    polhode,
-    potential,
-)
-from taylor_verify.studies.gallery.pictures.stage import norm_of, scale
-from taylor_verify.studies.gallery.pictures.view import Ellipsoid, View, pieces
+from taylor_verify.studies.gallery.pictures import errors_over_time, potential
 from taylor_verify.studies.portraits.study import PORTRAITS
 
 RUNGS = ("f32", "f64", "f80", "f128", "mp237")

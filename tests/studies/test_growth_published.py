@@ -310,6 +310,19 @@ def test_thin_lines_rise_as_they_are_named() -> None:
             assert y1 <= panel.get_ylim()[1] * (1 + 1e-9)
 
 
+def test_powers_are_told_by_their_dashes() -> None:
+    """No text stands in a panel, where names of powers would meet: the note says what is dashed."""
+    (picture,) = pages.pictures(study_of(RUNS))
+    with plotting():
+        figure = picture.figure()
+    for panel, bias in zip(figure.axes, (1.0, 2.0), strict=True):
+        assert not panel.texts
+        for line in panel.get_lines():
+            if str(line.get_gid()).startswith("power"):
+                assert line.is_dashed() == (float(str(line.get_gid()).split()[1]) == bias)
+    assert any("dashed" in text.get_text() for text in figure.texts)
+
+
 def test_nothing_of_the_picture_is_cut_off() -> None:
     """Names of scenes that are long, and six of them, are on the page."""
     (picture,) = pages.pictures(study_of(RUNS))

@@ -15,6 +15,7 @@ from builders.reports import every_portrait, portrait_without_run
 from latex2mathml.converter import convert
 
 from taylor_verify.cli import main
+from taylor_verify.draw.course import DIGITS, FIGURES, INTERVALS, PERIODS
 from taylor_verify.exact.kirchhoff.displaced import symmetric_origin
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.printed import document
@@ -26,14 +27,7 @@ from taylor_verify.scenes.library import names
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.studies.portraits.equations import equations
-from taylor_verify.studies.portraits.measure import (
-    DIGITS,
-    FIGURES,
-    INTERVALS,
-    PERIODS,
-    TIMES,
-    roots,
-)
+from taylor_verify.studies.portraits.measure import TIMES, roots
 from taylor_verify.studies.portraits.study import PORTRAITS
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -15,6 +15,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 from urllib.parse import unquote
 
+import numpy as np
 import pytest
 from builders import reports
 from builders.reports import SCENES
@@ -297,6 +298,26 @@ def test_the_polhode_lies_on_its_ellipsoid(report: Path) -> None:
         square = sum((w / s) ** 2 for w, s in zip(along, ball["semi"], strict=True))
         # Semi-axes and directions have four digits, and enter squared.
         assert abs(square - 1) <= 2e-3
+
+
+@pytest.mark.parametrize("scene", ["euler/with-attitude", "kirchhoff/whole-motion"])
+def test_every_frame_holds_its_motion(report: Path, scene: str) -> None:
+    """The box of each picture in space holds the curve and the surface, at one scale for all axes."""
+    portrait = Report(report).portrait(scene)
+    assert portrait is not None
+    for figure in motion.motions_of(portrait, None):
+        low, high = np.array(figure.box).T
+        for trace in figure.traces:
+            if "x" in trace:
+                points = np.array([trace[axis] for axis in "xyz"]).T
+                assert (points >= low).all(), figure.name
+                assert (points <= high).all(), figure.name
+            else:
+                ends = np.array(trace["ball"]["semi"])[:, None] * np.array(trace["ball"]["axes"])
+                assert (np.abs(ends) <= high).all(), figure.name
+        sides = high - low
+        # But for rounding: a box is never seen as a line.
+        assert sides.min() >= 0.3 * (1 - 1e-9) * sides.max(), figure.name
 
 
 def test_a_loaded_body_has_no_ellipsoid(report: Path) -> None:

@@ -156,6 +156,22 @@ what FAMILY  a shipped family (`list` names them), a template (a scene file in w
 --worst N [10]  the worst cases that are written as scenes; default: 10
 """,
     ),
+    "draw": (
+        "draw the exact motion of a scene, and the errors of trajectory files",
+        "draw euler/tennis-racket --animate --out racket.html",
+        """
+scene SCENE
+files* FILE  trajectories, read as `check` reads them: their errors in time are drawn too
+--out NAME  write NAME-polhode.svg and so on; the ending of NAME says the format: .svg (default), .pdf, .png
+--only NAME,...  draw these and no others: polhode, momentum, bifurcation, time, herpolhode, axis, spheres,
+  path, errors; a single one has the name of --out itself
+--animate  draw one moving picture: a page that turns, with no network (--out NAME.html, the default), or a
+  film (.gif; .mp4 needs ffmpeg)
+--rung R [f64]  precision of the arithmetic that made the files; default: f64
+--columns* NAME=THEIRS,...  the file's column for a name of ours, as in `check`
+--accept-conventions  correct the conventions of the files before their errors are drawn, as in `check`
+""",
+    ),
     "claims": (
         "check every numbered equation and every claim of the two source texts",
         'claims "hydromechanics 49 (17)"',

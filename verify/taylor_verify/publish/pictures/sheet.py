@@ -31,8 +31,9 @@ _FOOT: Final = 0.06
 # Entries of a legend that the page is wide enough for, and the space between its lines.
 _ABREAST: Final = 4
 _SPACING: Final = 0.8
-# Letters of a note beside a panel.
+# Letters of a note beside a panel, and the inches that a letter takes.
 _NARROW: Final = 38
+_LETTER: Final = 0.055
 
 
 @dataclass(frozen=True)
@@ -145,5 +146,5 @@ def draw_legend(
             labelspacing=_SPACING,
         )
     below = top - _LINE * (len(entries) if free else _lines(entries))
-    words = fill(note, _NARROW) if free else note
+    words = fill(note, min(_NARROW, int(free.width / _LETTER))) if free else note
     figure.text(left / width, below / height, words, size=SMALL, color=QUIET, va="top")

@@ -13,6 +13,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any, Final
 
+from taylor_verify.draw import axis_path, centre_path, polhode
 from taylor_verify.publish.markdown import code, prose
 from taylor_verify.publish.page import whole
 from taylor_verify.publish.pictures.picture import Picture
@@ -22,13 +23,7 @@ from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.studies.controls import picture as shifts
 from taylor_verify.studies.controls.document import CONTROLS
-from taylor_verify.studies.gallery.pictures import (
-    axis_path,
-    centre_path,
-    errors_over_time,
-    polhode,
-    potential,
-)
+from taylor_verify.studies.gallery.pictures import errors_over_time, potential
 from taylor_verify.studies.portraits.study import PORTRAITS
 from taylor_verify.studies.reference import page as reference_files
 

@@ -1,7 +1,7 @@
 """The growth of errors over decades of time: a line for each ensemble, beside Brouwer's powers.
 
-Left the drift of a conserved quantity, right the phase, over periods. The thin lines rise as the powers
-of time that they are named for.
+Left the drift of a conserved quantity, right the phase, over periods. The thin lines rise as powers of
+time: solid that of roundings, dashed that of a bias. The note names them, so that no names meet.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from taylor_verify.publish.pictures.log_axes import number_axes, widened
 from taylor_verify.publish.pictures.palette import QUIET
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.pictures.sheet import sheet
-from taylor_verify.publish.pictures.style import SMALL, look_of_line
+from taylor_verify.publish.pictures.style import look_of_line
 from taylor_verify.publish.pictures.wording import plain, stem_of
 from taylor_verify.studies.growth.document import Ensemble
 
@@ -25,17 +25,20 @@ if TYPE_CHECKING:
 
 Points = list[tuple[float, float]]
 
-# Of each panel: its quantity, its heading, and the powers drawn in it with their names.
+# Of each panel: its quantity, its heading, and the powers of roundings and of a bias.
 PANELS: Final = (
-    ("T", "energy, relative", ((0.5, "1/2"), (1.0, "1"))),
-    ("phase", "phase (rad)", ((1.5, "3/2"), (2.0, "2"))),
+    ("T", "energy, relative", (0.5, 1.0)),
+    ("phase", "phase (rad)", (1.5, 2.0)),
 )
+_THIN: Final[dict[str, Any]] = {"color": QUIET, "linewidth": 0.6, "zorder": 1}
+# In the order of the powers above.
+_LOOKS: Final = (_THIN, {**_THIN, "dashes": (5, 3)})
 # The lines have no scene in common.
 _TITLE: Final = "ensembles of starts"
 # In decades, between two beginnings that each have their powers drawn.
 _APART: Final = 1.0
 _NOTE: Final = (
-    "Root mean square over the starts; thin lines: powers of time, 1/2 and 3/2 for roundings."
+    "Root mean square over the starts. Thin: powers of time, 1/2 and 3/2 solid, 1 and 2 dashed."
 )
 
 
@@ -86,8 +89,8 @@ def _figure(lines: Mapping[str, Mapping[str, Points]]) -> Figure:
         axes.set(ylim=widened([e for _, e in everything], 0.07, 0.1))
         number_axes(axes)
         for points in _apart(list(drawn.values())):
-            for power, name in powers:
-                _draw_power(axes, points, power, name)
+            for power, look in zip(powers, _LOOKS, strict=True):
+                _draw_power(axes, points, power, look)
         for label, points in drawn.items():
             axes.plot(*zip(*points, strict=True), gid=label, zorder=3, **looks[label].line)
     return figure
@@ -102,33 +105,12 @@ def _apart(lines: Sequence[Points]) -> list[Points]:
     return found
 
 
-def _draw_power(axes: Axes, points: Points, power: float, name: str) -> None:
+def _draw_power(axes: Axes, points: Points, power: float, look: Mapping[str, Any]) -> None:
     """Draw a power of time from the first point of a line to the border that it meets first."""
     (n0, e0), top, right = points[0], axes.get_ylim()[1], axes.get_xlim()[1]
     end = min(right, n0 * (top / e0) ** (1 / power))
     level = e0 * (end / n0) ** power
-    thin: dict[str, Any] = {
-        "color": QUIET,
-        "linewidth": 0.5,
-        "zorder": 1,
-        "scalex": False,
-        "scaley": False,
-    }
-    axes.plot([n0, end], [e0, level], gid=f"power {power:g}", **thin)
-    # Named where it ends inside the panel, so that the names of neighbours stay apart: one that comes up
-    # steeply to the right border stands above its end, where a flat one has its name below.
-    is_steep_at_the_right = end == right and power >= 1
-    axes.annotate(
-        name,
-        (end, level),
-        textcoords="offset points",
-        xytext=(-3, 1 if is_steep_at_the_right else -7),
-        ha="right",
-        size=SMALL,
-        color=QUIET,
-        gid="power",
-        annotation_clip=True,
-    )
+    axes.plot([n0, end], [e0, level], gid=f"power {power:g}", scalex=False, scaley=False, **look)
 
 
 def labels_of(runs: Sequence[Ensemble]) -> list[str]:

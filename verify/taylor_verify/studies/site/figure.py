@@ -18,7 +18,10 @@ Trace = dict[str, Any]
 
 @dataclass(frozen=True)
 class Figure:
-    """A picture in space by its ``name`` on the page, with a text in its stead and titles of the axes."""
+    """A picture in space by its ``name`` on the page, with a text in its stead and titles of the axes.
+
+    ``box`` is the least and the greatest coordinate that each axis shows: nothing drawn is outside.
+    """
 
     name: str
     title: str
@@ -26,10 +29,12 @@ class Figure:
     alt: str
     traces: Sequence[Trace]
     axes: Sequence[str]
+    box: Sequence[tuple[float, float]]
 
     def html(self) -> str:
         """Return the figure as a block of HTML, no line of which is empty."""
-        document = {"traces": list(self.traces), "axes": list(self.axes)}
+        box = [column(side) for side in self.box]
+        document = {"traces": list(self.traces), "axes": list(self.axes), "box": box}
         text = json.dumps(document, allow_nan=False, ensure_ascii=False, separators=(",", ":"))
         # No text of the data may end the script element.
         stored = text.replace("<", "\\u003c")

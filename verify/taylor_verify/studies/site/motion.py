@@ -31,6 +31,9 @@ _COLOUR_BAR: Final = {
 _FLATTEST: Final = 1e-3
 # Of a curve's extent, a third of a pixel on the screen.
 _UNSEEN: Final = 0.0008
+# Of a box, in parts of its longest side.
+_MARGIN: Final = 0.03
+_LEAST_SIDE: Final = 0.3
 # What spreads by less than this part of its size is a point: a body at rest, or one that spins steadily.
 _A_POINT: Final = 1e-7
 # What is constant differs in the last of the nine digits that are stored.
@@ -69,6 +72,7 @@ def polhode(portrait: Portrait, record: Record | None) -> Figure | None:
         alt=f"{portrait['title']}: the curve of the {name} in body axes.{curve.colour}",
         traces=[*([surface] if surface else []), *curve.traces()],
         axes=[f"{label}₁", f"{label}₂", f"{label}₃"],
+        box=_box(curve.rows, surface),
     )
 
 
@@ -85,6 +89,7 @@ def axis_in_space(portrait: Portrait, record: Record | None) -> Figure | None:
         alt=f"{portrait['title']}: the curve of body axis 3 on the unit sphere of space.{curve.colour}",
         traces=[_ball((1, 1, 1)), *curve.traces()],
         axes=["X", "Y", "Z"],
+        box=_box(curve.rows, _ball((1, 1, 1))),
     )
 
 
@@ -100,7 +105,25 @@ def path(portrait: Portrait, record: Record | None) -> Figure | None:
         alt=f"{portrait['title']}: the path of the centre in space.{curve.colour}",
         traces=curve.traces(),
         axes=["X", "Y", "Z"],
+        box=_box(curve.rows, None),
     )
+
+
+def _box(rows: Numbers, surface: Trace | None) -> list[tuple[float, float]]:
+    """Return the sides of a box that holds a curve and its surface, with room for the line's width.
+
+    No side is so short beside the longest that the box would be seen as a line.
+    """
+    points = rows
+    if surface:
+        semi, axes = np.array(surface["ball"]["semi"]), np.array(surface["ball"]["axes"])
+        reach = np.sqrt(np.square(semi[:, None] * axes).sum(axis=0))
+        points = np.concatenate([rows, [reach, -reach]])
+    low, high = points.min(axis=0), points.max(axis=0)
+    half = (high - low) / 2 + _MARGIN * float((high - low).max())
+    half = np.maximum(half, _LEAST_SIDE * half.max())
+    middle = (low + high) / 2
+    return [(float(a), float(b)) for a, b in zip(middle - half, middle + half, strict=True)]
 
 
 # Curves.

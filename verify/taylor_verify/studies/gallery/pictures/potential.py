@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from taylor_verify.draw.view import Numbers
 from taylor_verify.publish.pictures.palette import INK, PAPER, QUIET
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.pictures.sheet import Entry, sheet
 from taylor_verify.publish.pictures.style import SMALL
 from taylor_verify.publish.pictures.wording import stem_of
-from taylor_verify.studies.gallery.pictures.view import Numbers
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -50,15 +50,20 @@
     return Object.assign({}, trace, { ball: undefined, x: net[0], y: net[1], z: net[2] });
   }
 
-  function layout(titles, narrow) {
+  // One scale for all axes, and a diagonal as long as that of the unit cube: whatever the sides, all of the
+  // box is in the frame, from wherever it is seen.
+  function layout(titles, box, narrow) {
     const far = narrow ? 1.3 : 1.15;
+    const sides = box.map(function (ends) { return ends[1] - ends[0]; }), longest = Math.max.apply(null, sides);
+    const unit = Math.hypot.apply(null, sides) / Math.sqrt(3);
     const scene = {
-      aspectmode: "data",
+      aspectmode: "manual",
+      aspectratio: { x: sides[0] / unit, y: sides[1] / unit, z: sides[2] / unit },
       camera: { eye: { x: 1.75 * far, y: 1.75 * far, z: 1.15 * far }, center: { x: 0, y: 0, z: -0.14 } },
     };
     titles.forEach(function (title, i) {
       scene["xyz"[i] + "axis"] = {
-        title: { text: title }, nticks: 5, color: "$ink", gridcolor: "$faint", linecolor: "$quiet",
+        title: { text: title }, range: box[i], nticks: Math.max(2, Math.round(5 * sides[i] / longest)), color: "$ink", gridcolor: "$faint", linecolor: "$quiet",
         zeroline: false, exponentformat: "power", showspikes: false, showbackground: false,
       };
     });
@@ -77,7 +82,7 @@
     await drawing.react(
       plot,
       coloured(stored.traces.map(withNet), style),
-      coloured(layout(stored.axes, narrow), style),
+      coloured(layout(stored.axes, stored.box, narrow), style),
       { responsive: true, displaylogo: false, displayModeBar: narrow ? false : "hover" },
     );
     plot.dataset.drawn = style.getPropertyValue("--motion-ink").trim();

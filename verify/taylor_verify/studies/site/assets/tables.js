@@ -47,6 +47,11 @@
     body.append.apply(body, rows);
   }
 
+  // A row whose first cell is empty goes on with the row above: sorted, it would be nobody's.
+  function hasGroups(table) {
+    return Array.from(table.tBodies[0].rows).some(function (row) { return !row.cells[0].textContent.trim(); });
+  }
+
   function addSorting(table) {
     Array.from(table.tHead.rows[0].cells).forEach(function (heading, index) {
       const button = document.createElement("button");
@@ -104,7 +109,7 @@
     document.querySelectorAll("article table").forEach(function (table, number) {
       const rows = table.tHead && table.tBodies.length ? table.tBodies[0].rows.length : 0;
       table.id = table.id || "table-" + (number + 1);
-      if (rows >= SORTABLE) addSorting(table);
+      if (rows >= SORTABLE && !hasGroups(table)) addSorting(table);
       if (rows >= FILTERABLE) addFilter(table, number + 1);
     });
     addStops();

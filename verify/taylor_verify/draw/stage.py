@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from taylor_verify.draw.view import Ellipsoid, Numbers, View, pieces
 from taylor_verify.publish.pictures.palette import INK, PAPER, QUIET
 from taylor_verify.publish.pictures.sheet import Entry, Frame, add_axes, blank, draw_legend
 from taylor_verify.publish.pictures.style import PAGE_WIDTH, SMALL
-from taylor_verify.studies.gallery.pictures.view import Ellipsoid, Numbers, View, pieces
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -152,17 +152,22 @@ class Stage:
 
     def legend(self, entries: Sequence[Entry], note: str, top: float, indent: float = 0.0) -> None:
         """Write the legend beside the stage, from so many inches above the foot downwards."""
-        draw_legend(self.figure, entries, note, Frame(self.width - indent, 0.0, 0.0, top))
+        left = self.width - indent
+        draw_legend(self.figure, entries, note, Frame(left, 0.0, PAGE_WIDTH - left, top))
 
     def bar(self, norm: Normalize, name: str, low: float, is_reversed: bool = False) -> None:
         """Draw what the colours mean; reversed where the dark end is the least value."""
         from matplotlib.cm import ScalarMappable
+        from matplotlib.colors import LogNorm
+        from matplotlib.ticker import MaxNLocator
 
         axes = add_axes(self.figure, Frame(self.width, low, PAGE_WIDTH - self.width - 0.2, 0.12))
         colours = ScalarMappable(norm, scale().reversed() if is_reversed else scale())
         bar = self.figure.colorbar(colours, cax=axes, orientation="horizontal")
         bar.outline.set_linewidth(0.5)
         bar.outline.set_edgecolor(QUIET)
+        if not isinstance(norm, LogNorm):
+            axes.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
         axes.set_xlabel(name, size=SMALL)
         axes.tick_params(labelsize=SMALL)
 

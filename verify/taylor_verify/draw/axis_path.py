@@ -14,10 +14,11 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from taylor_verify.draw.caption import NotDrawn, caption
+from taylor_verify.draw.stage import END, START, Look, Stage, scale
+from taylor_verify.draw.view import Ellipsoid, Numbers, View
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.pictures.wording import stem_of
-from taylor_verify.studies.gallery.pictures.stage import END, START, Look, Stage, scale
-from taylor_verify.studies.gallery.pictures.view import Ellipsoid, Numbers, View
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -52,13 +53,13 @@ class Series:
 
 
 def series(portrait: Document) -> Series:
-    """Return the path of the axis. Raises ValueError for a scene that tracks no attitude."""
+    """Return the path of the axis. Raises NotDrawn for a scene that tracks no attitude."""
     course = portrait["course"]
     if "attitude" not in course:
-        raise ValueError(f"expected a scene with its attitude, got none @ {portrait['scene']}")
+        raise NotDrawn(f"expected a scene with its attitude, got none @ {portrait['scene']}")
     attitudes = np.array(course["attitude"]).reshape(-1, 3, 3)
     axis = axis_of(portrait)
-    momentum, name = _momentum(portrait)
+    momentum, name = momentum_of(portrait)
     in_space = np.einsum("nij,nj->ni", attitudes, momentum)
     sizes = np.linalg.norm(in_space, axis=1, keepdims=True)
     still = bool((sizes > 0).all()) and bool(
@@ -72,6 +73,8 @@ def axis_of(portrait: Document) -> int:
     """Return 1, 2 or 3: the axis of symmetry, or that which the polhode goes round; else the third."""
     if portrait["potential"]:
         return int(portrait["potential"]["variable"][1:])
+    if portrait.get("axis"):
+        return int(portrait["axis"])
     body = portrait["body"]
     choose = {"min-axis": np.argmin, "max-axis": np.argmax}.get(portrait["regime"])
     if body is None or choose is None:
@@ -80,19 +83,20 @@ def axis_of(portrait: Document) -> int:
     return int(np.argmax(np.abs(principal))) + 1
 
 
-def _momentum(portrait: Document) -> tuple[Numbers, str]:
-    """Return H = I omega in body axes, its tensor put together of moments and axes; or x as it is."""
+def momentum_of(portrait: Document) -> tuple[Numbers, str]:
+    """Return H = I omega + h in body axes, the tensor put together of moments and axes; or x as it is."""
     course, body = portrait["course"], portrait["body"]
     if body is None:
         return np.array(course["linear_impulse"]), "linear impulse"
     axes = np.array(body["axes"])
     tensor = axes.T @ np.diag(body["principal_moments"]) @ axes
-    found: Numbers = np.array(course["omega"]) @ tensor
+    wheels = np.array(portrait.get("rotor") or [0.0] * 3)
+    found: Numbers = np.array(course["omega"]) @ tensor + wheels
     return found, "angular momentum"
 
 
 def picture(portrait: Document) -> Picture:
-    """The path of one scene's axis. Raises ValueError as `series` does."""
+    """The path of one scene's axis. Raises NotDrawn as `series` does."""
     found = series(portrait)
     still = "" if found.fixed is None else f" The direction of the {found.fixed_name} is marked."
     alt = (
@@ -100,10 +104,12 @@ def picture(portrait: Document) -> Picture:
         f"t = {found.times[0]:g} to t = {found.times[-1]:g}, darker as time goes on.{still}"
     )
     title = f"Axis in space: {portrait['scene']}"
-    return Picture(stem_of(portrait, "axis"), title, alt, partial(_figure, found))
+    return Picture(
+        stem_of(portrait, "axis"), title, alt, partial(_figure, found, caption(portrait))
+    )
 
 
-def _figure(found: Series) -> Figure:
+def _figure(found: Series, words: str) -> Figure:
     stage = Stage.around(_SPHERE, View.facing(_middle(found.path)), _STAGE, _HEIGHT)
     stage.course(found.path, _WIDTH, 3)
     marks = [(found.path[0], START, "start"), (found.path[-1], END, "end")]
@@ -114,7 +120,7 @@ def _figure(found: Series) -> Figure:
     stage.name_axes(_SPHERE.semi_axes, ("x", "y", "z (space)"))
     path = {"color": scale()(0.6), "linewidth": _WIDTH}
     entries = [(path, f"body axis {found.axis}"), *((look, name) for _, look, name in marks)]
-    stage.legend(entries, "Faint: on the far side.", 2.8)
+    stage.legend(entries, f"Faint: on the far side. {words}".rstrip(), 2.8)
     stage.time_bar(found.times, 0.85)
     return stage.figure
 

@@ -1,26 +1,28 @@
-"""The polhode: the angular velocity on the ellipsoid of inertia, coloured by the error of a run.
+"""The polhode: the angular velocity on the ellipsoid of inertia, alone or coloured by the error of a run.
 
 T is conserved, so omega stays on the surface omega.I omega = 2T, whose semi-axes along the principal axes
-are sqrt(2T/J_i). The thin line is the exact course, the marks are the samples of a run: their place is the
+are sqrt(2T/J_i). The line is the exact course. With a run, the marks are its samples: their place is the
 exact one (an error of a few u is far below the width of a line), their colour the size of the error.
+Damping lets omega sink below the surface of the start.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from math import isfinite, sqrt
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from taylor_verify.draw.caption import NotDrawn, caption
+from taylor_verify.draw.stage import END, START, Look, Stage, norm_of, scale
+from taylor_verify.draw.view import Ellipsoid, Numbers, View
 from taylor_verify.publish.pictures.palette import INK, PAPER, QUIET
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.pictures.sheet import Entry
 from taylor_verify.publish.pictures.wording import plain, stem_of
-from taylor_verify.studies.gallery.pictures.stage import Look, Stage, norm_of, scale
-from taylor_verify.studies.gallery.pictures.view import Ellipsoid, Numbers, View
 
 if TYPE_CHECKING:
     from matplotlib.colors import Normalize
@@ -40,6 +42,9 @@ _SAMPLE: Final[Look] = {
     **{"linestyle": "none", "marker": "o", "markersize": 4.5},
     **{"markerfacecolor": QUIET, "markeredgecolor": INK, "markeredgewidth": 0.4},
 }
+# Of the squared distance, which has the rounding of nine digits.
+_OFF: Final = 1e-6
+_WIDTH: Final = 2.0
 _OMEGA: Final = "\N{GREEK SMALL LETTER OMEGA}"
 # The width of a mark, in points.
 _NEAR, _FAR = 4.2, 3.0
@@ -60,47 +65,71 @@ class Series:
     errors: tuple[float, ...]
     separatrices: tuple[Numbers, ...]
 
+    @property
+    def sinks(self) -> bool:
+        """True if the course leaves the surface: damping takes energy from the body, or gives it some."""
+        q = np.square(self.course / np.array(self.semi_axes)).sum(axis=1)
+        return bool(np.abs(q - 1).max() > _OFF)
 
-def series(portrait: Document, samples: Sequence[Sequence[float]], record: Document) -> Series:
-    """Return the curve and the samples, whose exact omega at the record's times is ``samples``.
 
-    Raises ValueError for a scene without such a surface: a fluid, a moment of force, a body at rest.
+def series(
+    portrait: Document,
+    samples: Sequence[Sequence[float]] = (),
+    record: Document | None = None,
+) -> Series:
+    """Return the curve and the samples of a run, whose exact omega at the record's times is ``samples``.
+
+    Raises NotDrawn for a scene without such a surface: a fluid, a moment of force, wheels, a body at rest.
     """
     body, course = portrait["body"], portrait["course"]
     is_free = any(row["name"] == "T" for row in portrait["analytic"])
     if body is None or "omega" not in course or not is_free:
-        raise ValueError(f"expected a free rigid body, got another scene @ {portrait['scene']}")
-    gate = next(gate for gate in record["gates"] if gate["quantity"] == "omega")
+        raise NotDrawn(f"expected a free rigid body, got another scene @ {portrait['scene']}")
+    if portrait.get("rotor"):
+        raise NotDrawn(f"expected a body without wheels, got a rotor @ {portrait['scene']}")
+    gates = record["gates"] if record else ()
+    errors = next((gate["errors"] for gate in gates if gate["quantity"] == "omega"), ())
+    u = record["unit_roundoff"] if record else 1.0
     axes, moments = np.array(body["axes"]), np.array(body["principal_moments"])
     own = np.array(course["omega"]) @ axes.T
     twice = float(moments @ np.square(own[0]))
     if not twice > 0:
-        raise ValueError(f"expected a body that turns, got one at rest @ {portrait['scene']}")
+        raise NotDrawn(f"expected a body that turns, got one at rest @ {portrait['scene']}")
     a, b, c = (sqrt(twice / moment) for moment in moments)
     return Series(
         (a, b, c),
         own,
-        np.array(samples) @ axes.T,
-        tuple(error / record["unit_roundoff"] for error in gate["errors"]),
+        np.array(samples).reshape(-1, 3) @ axes.T,
+        tuple(error / u for error in errors),
         tuple(_separatrices(Ellipsoid((a, b, c)), moments)),
     )
 
 
-def picture(portrait: Document, samples: Sequence[Sequence[float]], record: Document) -> Picture:
-    """The polhode of one scene, with the errors of one run. Raises ValueError as `series` does."""
+def picture(
+    portrait: Document,
+    samples: Sequence[Sequence[float]] = (),
+    record: Document | None = None,
+) -> Picture:
+    """The polhode of one scene, with the errors of a run if given. Raises NotDrawn as `series` does."""
     found = series(portrait, samples, record)
+    alt = (
+        f"The angular velocity of {portrait['scene']} on its ellipsoid of inertia, whose semi-axes are "
+        f"{', '.join(plain(a) for a in found.semi_axes)}: "
+    )
+    title, stem = f"Polhode: {portrait['scene']}", stem_of(portrait, "polhode")
+    if record is None:
+        sinks = portrait["damping"] > 0
+        alt += "it sinks below it as the body slows down." if sinks else "the exact course."
+        return Picture(stem, title, alt, partial(_alone, found, caption(portrait)))
     rung = record["rung"]
     most, at = max(
         (e, t) for e, t in zip(found.errors, record["times"], strict=True) if isfinite(e)
     )
-    alt = (
-        f"The angular velocity of {portrait['scene']} on its ellipsoid of inertia, whose semi-axes are "
-        f"{', '.join(plain(a) for a in found.semi_axes)}: a closed curve or part of one, with the "
-        f"{len(found.errors)} samples of the run on {rung} marked. Their errors are at most "
-        f"{plain(most)} u, at t = {at:g}."
+    alt += (
+        f"a closed curve or part of one, with the {len(found.errors)} samples of the run on {rung} "
+        f"marked. Their errors are at most {plain(most)} u, at t = {at:g}."
     )
-    title = f"Polhode: {portrait['scene']}"
-    return Picture(stem_of(portrait, "polhode"), title, alt, partial(_figure, found, rung))
+    return Picture(stem, title, alt, partial(_figure, found, rung))
 
 
 def _separatrices(surface: Ellipsoid, moments: Numbers) -> list[Numbers]:
@@ -118,9 +147,9 @@ def _separatrices(surface: Ellipsoid, moments: Numbers) -> list[Numbers]:
     return [surface.circle(pole) for pole in poles]
 
 
-def _view(found: Series) -> View:
+def facing(course: Numbers, semi_axes: Sequence[float]) -> View:
     """The side to which the curve turns; of the axes, the one that it goes round faces the reader."""
-    q = found.course / np.array(found.semi_axes)
+    q = course / np.array(semi_axes)
     mean = q.mean(axis=0)
     order = np.argsort(-np.abs(mean))
     direction = np.zeros(3)
@@ -132,18 +161,43 @@ def _view(found: Series) -> View:
     return View.facing([float(v) for v in direction])
 
 
-def _figure(found: Series, rung: str) -> Figure:
-    stage = Stage.around(Ellipsoid(found.semi_axes), _view(found), _STAGE, _HEIGHT)
+def _alone(found: Series, words: str) -> Figure:
+    """Draw the exact course by itself, darker as time goes on, with its start and its end."""
+    stage = _stage(found)
+    # What has sunk below the surface is not hidden by it.
+    over = replace(stage, surface=None) if found.sinks else stage
+    over.course(found.course, _WIDTH, 3)
+    for point, look, name in ((found.course[0], START, "start"), (found.course[-1], END, "end")):
+        over.mark(point, look, gid=name)
+    entries: list[Entry] = [
+        ({"color": scale()(0.6), "linewidth": _WIDTH}, f"{_OMEGA}, darker with time")
+    ]
+    entries += [(START, "start"), (END, "end")]
+    entries += [(_BORDER, "separatrices")] if found.separatrices else []
+    stage.legend(entries, f"Faint: on the far side. {words}", 3.2)
+    return stage.figure
+
+
+def _stage(found: Series) -> Stage:
+    """Return the ellipsoid with its separatrices and the names of its axes."""
+    stage = Stage.around(
+        Ellipsoid(found.semi_axes), facing(found.course, found.semi_axes), _STAGE, _HEIGHT
+    )
     for curve in found.separatrices:
         stage.line(curve, 2, _BORDER)
-    stage.line(found.course, 3, _COURSE)
-    norm = norm_of(found.errors)
-    _draw_samples(stage, found, norm)
     axes = zip(
         "\N{SUBSCRIPT ONE}\N{SUBSCRIPT TWO}\N{SUBSCRIPT THREE}", found.semi_axes, strict=True
     )
     names = [f"{_OMEGA}{subscript} = {semi_axis:.3g}" for subscript, semi_axis in axes]
     stage.name_axes(found.semi_axes, names)
+    return stage
+
+
+def _figure(found: Series, rung: str) -> Figure:
+    stage = _stage(found)
+    stage.line(found.course, 3, _COURSE)
+    norm = norm_of(found.errors)
+    _draw_samples(stage, found, norm)
     entries: list[Entry] = [(_COURSE, "exact course"), (_SAMPLE, f"samples of taylor {rung}")]
     entries += [(_BORDER, "separatrices")] if found.separatrices else []
     stage.legend(entries, "Faint: on the far side.", 2.8)

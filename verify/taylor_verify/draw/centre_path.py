@@ -1,7 +1,8 @@
-"""The path of the body's origin through the fluid, with its projections and the body's axis on the way.
+"""The path of the body's origin through the fluid, with its projections and the body on the way.
 
-One scale for all three directions. The walls behind carry the path's projections on them; short lines are
-the body's axis at equal intervals of time, from the origin of the body forward.
+One scale for all three directions. The walls behind carry the path's projections on them. The body is drawn
+at equal intervals of time: as its axis, a short line from the origin forward; or as the solid itself, an
+ellipsoid in its own size, and the frame of a body that has no shape.
 """
 
 from __future__ import annotations
@@ -13,14 +14,16 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from taylor_verify.draw.axis_path import axis_of
+from taylor_verify.draw.caption import NotDrawn, caption
+from taylor_verify.draw.solid import AXES, by_depth, draw_ellipsoid, draw_frame, reach
+from taylor_verify.draw.stage import END, START, Look, Stage, scale
+from taylor_verify.draw.view import Numbers, View
 from taylor_verify.publish.pictures.palette import FAINT, INK, QUIET
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.pictures.sheet import Entry
 from taylor_verify.publish.pictures.style import SMALL
 from taylor_verify.publish.pictures.wording import stem_of
-from taylor_verify.studies.gallery.pictures.axis_path import axis_of
-from taylor_verify.studies.gallery.pictures.stage import END, START, Look, Stage, scale
-from taylor_verify.studies.gallery.pictures.view import Numbers, View
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -36,6 +39,10 @@ _GLYPH: Final = 0.07
 _MARGIN: Final = 0.08
 # No side of the box is shorter than this part of the longest one.
 _LEAST_SIDE: Final = 0.35
+# Solids on a path at most, and how far from each other in parts of their size; axes of a frame are longer.
+_FRAMES: Final = 10
+_APART: Final = 1.25
+_LONGER: Final = 1.1
 _WIDTH: Final = 1.8
 _AXIS: Final[Look] = {"color": "#A83C00", "linewidth": 0.9, "gid": "axis"}
 _SHADOW: Final[Look] = {"color": "#A9B2BA", "linewidth": 0.8, "gid": "projection"}
@@ -50,12 +57,39 @@ _BELOW: Final = 0.42
 
 @dataclass(frozen=True)
 class Series:
-    """The origin of the body and its axis in space, one row a time; ``axis`` is its number."""
+    """The origin of the body and its attitude in space, one row a time; ``axis`` is drawn.
+
+    ``semi_axes`` are those of an ellipsoid. ``is_solid`` says that the body is drawn, and not its axis.
+    """
 
     times: Numbers
     path: Numbers
-    directions: Numbers
+    attitudes: Numbers
     axis: int
+    semi_axes: tuple[float, float, float] | None = None
+    is_solid: bool = False
+
+    @property
+    def directions(self) -> Numbers:
+        """The axis in space."""
+        return np.asarray(self.attitudes[:, :, self.axis - 1])
+
+    @property
+    def instants(self) -> list[int]:
+        """The rows at which the body is drawn: as many as have room beside each other."""
+        arc = float(np.linalg.norm(np.diff(self.path, axis=0), axis=1).sum())
+        size = 2 * max(self.semi_axes) if self.semi_axes else arc / _FRAMES
+        count = int(min(max(arc / (_APART * size or 1.0), 1), _FRAMES))
+        return [int(k) for k in np.linspace(0, len(self.path) - 1, count + 1).round()]
+
+    @property
+    def extent(self) -> Numbers:
+        """Points that the box has to hold: the path, and the solids on it."""
+        if not self.is_solid or self.semi_axes is None:
+            return self.path
+        places = self.instants
+        half = reach(np.array(self.semi_axes), self.attitudes[places])
+        return np.concatenate([self.path, self.path[places] + half, self.path[places] - half])
 
 
 @dataclass(frozen=True)
@@ -89,31 +123,46 @@ class _Box:
 
 
 def series(portrait: Document) -> Series:
-    """Return the path and the axis on it. Raises ValueError for a scene that tracks no centre."""
+    """Return the path and the axis on it. Raises NotDrawn for a scene that tracks no centre."""
     course = portrait["course"]
     if "centre" not in course:
-        raise ValueError(f"expected a scene with its centre, got none @ {portrait['scene']}")
-    axis = axis_of(portrait)
-    directions = np.array(course["attitude"]).reshape(-1, 3, 3)[:, :, axis - 1]
-    return Series(np.array(course["t"]), np.array(course["centre"]), directions, axis)
+        raise NotDrawn(f"expected a scene with its centre, got none @ {portrait['scene']}")
+    attitudes = np.array(course["attitude"]).reshape(-1, 3, 3)
+    shape = portrait.get("semi_axes")
+    return Series(
+        np.array(course["t"]),
+        np.array(course["centre"]),
+        attitudes,
+        axis_of(portrait),
+        None if shape is None else (shape[0], shape[1], shape[2]),
+        "evidence" in portrait,
+    )
 
 
 def picture(portrait: Document) -> Picture:
-    """The path of one scene. Raises ValueError as `series` does."""
+    """The path of one scene. Raises NotDrawn as `series` does."""
     found = series(portrait)
     first, last = (f"({', '.join(f'{v:.3g}' for v in found.path[k])})" for k in (0, -1))
     alt = (
         f"The origin of the body of {portrait['scene']} in space, from {first} at t = "
         f"{found.times[0]:g} to {last} at t = {found.times[-1]:g}, with its projections on three walls "
-        f"and the direction of body axis {found.axis} along the way."
+        f"and {_name(found)} along the way."
     )
     title = f"Path through the fluid: {portrait['scene']}"
-    return Picture(stem_of(portrait, "centre"), title, alt, partial(_figure, found))
+    return Picture(
+        stem_of(portrait, "centre"), title, alt, partial(_figure, found, caption(portrait))
+    )
 
 
-def _figure(found: Series) -> Figure:
-    view = _view(found.path)
-    box = _Box.of(found.path, view)
+def _name(found: Series) -> str:
+    if not found.is_solid:
+        return f"the direction of body axis {found.axis}"
+    return "the ellipsoid itself" if found.semi_axes else "the axes of the body"
+
+
+def _figure(found: Series, words: str) -> Figure:
+    view = _view(found.extent)
+    box = _Box.of(found.extent, view)
     stage = Stage.showing(view.seen(box.corners), view, _STAGE, _HEIGHT, _BELOW)
     _draw_walls(stage, box)
     for i in range(3):
@@ -121,20 +170,30 @@ def _figure(found: Series) -> Figure:
         shadow[:, i] = box.walls[i]
         stage.axes.plot(*view.seen(shadow).T, zorder=1, **_SHADOW)
     stage.course(found.path, _WIDTH, 4)
-    _draw_glyphs(stage, found, _GLYPH * box.longest)
+    draw_body = _draw_solids if found.is_solid else _draw_glyphs
+    draw_body(stage, found, _GLYPH * box.longest)
     stage.mark(found.path[0], START, gid="start")
     stage.mark(found.path[-1], END, gid="end")
     entries: list[Entry] = [
         ({"color": scale()(0.6), "linewidth": _WIDTH}, "origin of the body"),
-        (_AXIS, f"body axis {found.axis}"),
+        *_body_entries(found),
         (_SHADOW, "projections"),
         (START, "start"),
         ({**END, "markerfacecolor": QUIET}, "end"),
     ]
-    note = "One scale in all directions, the scene's own unit of length."
-    stage.legend(entries, note, 3.4, indent=0.05)
-    stage.time_bar(found.times, 1.3)
+    note = f"One scale in all directions, the scene's own unit of length. {words}".rstrip()
+    stage.legend(entries, note, 4.1 if found.is_solid else 3.4, indent=0.05)
+    stage.time_bar(found.times, 0.5 if found.is_solid else 1.3)
     return stage.figure
+
+
+def _body_entries(found: Series) -> list[Entry]:
+    if not found.is_solid:
+        return [(_AXIS, f"body axis {found.axis}")]
+    if found.semi_axes:
+        look = {"marker": "o", "markersize": 8, "markerfacecolor": "#E8EEF2", "linestyle": "none"}
+        return [({**look, "markeredgecolor": "#43525C"}, "the solid, in its own size")]
+    return [({"color": colour}, f"body axis {k}") for k, colour in enumerate(AXES, start=1)]
 
 
 def _view(path: Numbers) -> View:
@@ -204,6 +263,17 @@ def _edge(view: View, box: _Box, i: int) -> tuple[Numbers, Numbers]:
     point, way = min(edges, key=lambda edge: float(view.seen(edge[0])[0, 0]))
     outward = np.array([-1.0, 0.0]) if i == 2 else way / np.linalg.norm(way)
     return point, outward
+
+
+def _draw_solids(stage: Stage, found: Series, length: float) -> None:
+    """Draw the body at a few instants, the nearest last."""
+    rows = found.instants
+    for layer, k in enumerate(by_depth(found.path[rows], stage.view)):
+        row, at = rows[k], 4.5 + layer / 10
+        if found.semi_axes:
+            draw_ellipsoid(stage, found.semi_axes, found.attitudes[row], found.path[row], at)
+        else:
+            draw_frame(stage, _LONGER * length, found.attitudes[row], found.path[row], at)
 
 
 def _draw_glyphs(stage: Stage, found: Series, length: float) -> None:

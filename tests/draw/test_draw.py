@@ -1,0 +1,237 @@
+"""The verb `draw`: every frame holds its motion, every file is whole, and what is wrong has one message."""
+
+from __future__ import annotations
+
+import json
+import re
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from PIL import Image
+
+from taylor_verify.cli import main
+from taylor_verify.draw import mesh
+from taylor_verify.draw.caption import NotDrawn
+from taylor_verify.draw.course import motion
+from taylor_verify.draw.film import film
+from taylor_verify.draw.moving import moving
+from taylor_verify.draw.page import page, quaternions
+from taylor_verify.draw.pictures import KINDS, pictures
+from taylor_verify.publish.pictures.picture import plotting
+from taylor_verify.scenes.reading.reader import load
+
+# One of each kind of body, and what it has.
+HAS = {
+    "euler/tennis-racket": {"polhode", "momentum", "time", "herpolhode", "axis"},
+    "euler/separatrix": {"polhode", "momentum", "time", "herpolhode", "axis"},
+    "euler/damped": {"polhode", "time", "herpolhode", "axis"},
+    "euler/gyrostat": {"momentum", "bifurcation", "time", "herpolhode", "axis"},
+    "euler/gyrostat-dual-spin": {"momentum", "bifurcation", "time", "herpolhode", "axis"},
+    "euler/moment-along-axis": {"time", "axis"},
+    "euler/rest": {"time", "axis"},
+    "kirchhoff/whole-motion": {"time", "axis", "spheres", "path"},
+    "kirchhoff/ellipsoid-prolate": {"time", "axis", "spheres", "path"},
+    "manufactured/kirchhoff-path": {"time", "axis", "spheres", "path"},
+}
+EPS = 1e-6
+
+
+@cache
+def document(scene: str) -> dict[str, Any]:
+    # Few rows: what is asked here holds of every row.
+    return motion(load(scene), 60)
+
+
+@pytest.mark.parametrize("scene", HAS)
+def test_a_scene_has_its_pictures(scene: str) -> None:
+    """Each kind of body has the pictures that its motion has, and no other."""
+    assert set(pictures(document(scene))) == HAS[scene]
+
+
+@pytest.mark.parametrize("scene", HAS)
+def test_every_frame_holds_its_motion(scene: str) -> None:
+    """No line of a motion and no solid on it leaves its axes, and no text leaves the page."""
+    with plotting():
+        for name, picture in pictures(document(scene)).items():
+            figure = picture.figure()
+            FigureCanvasAgg(figure).draw()
+            drawn = [shape for axes in figure.axes for shape in shapes(axes)]
+            assert drawn, name
+            for axes in figure.axes:
+                box = axes.get_window_extent()
+                for points in shapes(axes):
+                    seen = axes.transData.transform(points)
+                    assert (seen >= [box.x0 - EPS, box.y0 - EPS]).all(), name
+                    assert (seen <= [box.x1 + EPS, box.y1 + EPS]).all(), name
+            page_box = figure.bbox
+            for text in figure.findobj(match=lambda a: getattr(a, "get_gid", str)() == "name"):
+                assert page_box.x0 <= text.get_window_extent().x0, name
+                assert text.get_window_extent().x1 <= page_box.x1, name
+
+
+def shapes(axes: Axes) -> list[np.ndarray[Any, Any]]:
+    """Vertices of the lines and polygons that are the motion."""
+    moves = {"course", "path", "solid", "start", "end", "scene"}
+    lines = [line.get_xydata() for line in axes.lines if line.get_gid() in moves]
+    solids = [patch.get_xy() for patch in axes.patches if patch.get_gid() in moves]
+    return [np.asarray(points) for points in (*lines, *solids) if len(points)]
+
+
+def test_a_course_is_cut_where_the_body_turns_far() -> None:
+    """Between two rows that are drawn a body turns by a tenth of a radian, or as little as can be had."""
+    attitudes = np.array(motion(load("euler/tennis-racket"))["course"]["attitude"])
+    cosines = ((attitudes[1:] * attitudes[:-1]).sum(axis=1) - 1) / 2
+    assert np.arccos(cosines.min()) <= 0.105
+
+
+# Moving
+
+
+def test_quaternions_turn_as_their_matrices() -> None:
+    """Each quaternion is its attitude, and its neighbour is on the same side of the sphere."""
+    attitudes = moving(document("euler/tennis-racket")).attitudes
+    q = quaternions(attitudes)
+    w, x, y, z = q.T
+    first = np.stack([1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)], axis=1)
+    assert np.abs(first - attitudes[:, :, 0]).max() <= 1e-7
+    assert (q[1:] * q[:-1]).sum(axis=1).min() >= 0
+
+
+@pytest.mark.parametrize("scene", ["euler/tennis-racket", "euler/nesc-brick", "euler/axisymmetric"])
+def test_faces_of_a_body_look_outwards(scene: str) -> None:
+    """Each prism of a body is closed: its faces' areas, as vectors, add to nothing."""
+    faces = [face for face in moving(document(scene)).body.faces if not face.is_line]
+    areas = []
+    for face in faces:
+        a = face.corners[0]
+        areas.append(
+            sum(
+                np.cross(b - a, c - a)
+                for b, c in zip(face.corners[1:-1], face.corners[2:], strict=True)
+            )
+        )
+    assert np.abs(np.sum(areas, axis=0)).max() <= 1e-9
+
+
+def test_a_brick_has_the_moments_of_its_body() -> None:
+    """The sides of the brick give the ratios of the moments that are asked for."""
+    moments = np.array([2.0, 3.0, 4.0])
+    body = mesh.rigid(moments, np.eye(3))
+    a, b, c = np.square(np.max([np.abs(f.corners).max(axis=0) for f in body.faces], axis=0))
+    assert np.array([b + c, a + c, a + b]) / (b + c) == pytest.approx(moments / 2)
+
+
+def test_the_racket_flips_in_space() -> None:
+    """H points upwards, and the two sides of the head change places at each flip."""
+    racket = moving(document("euler/tennis-racket"))
+    head = np.mean(
+        [f.corners.mean(axis=0) for f in racket.body.faces if f.colour == "plus"], axis=0
+    )
+    upwards = racket.attitudes[:, 2, :] @ head
+    changes = np.flatnonzero(upwards[:-1] * upwards[1:] < 0)
+    assert len(changes) == len(racket.flips)
+    assert racket.times[changes] == pytest.approx(np.array(racket.flips), abs=2.0)
+
+
+@pytest.mark.parametrize("scene", HAS)
+def test_nothing_moves_beyond_the_reach(scene: str) -> None:
+    """Every corner of the body is within the reach of the picture at every time."""
+    if scene == "euler/rest":
+        with pytest.raises(NotDrawn, match="body at rest"):
+            moving(document(scene))
+        return
+    shown = moving(document(scene))
+    corners = np.concatenate([face.corners for face in shown.body.faces])
+    places = np.einsum("nij,kj->nki", shown.attitudes, corners)
+    if shown.centres is not None:
+        places += (shown.centres - shown.middle)[:, None, :]
+    assert np.linalg.norm(places, axis=2).max() <= shown.reach * (1 + 1e-6)
+
+
+def test_a_page_needs_no_network() -> None:
+    """The page holds its script and its numbers, and names no address."""
+    text = page(moving(document("euler/tennis-racket")))
+    assert not re.search(r"https?://|src=|<link|@import", text)
+    (data,) = re.findall(r'<script type="application/json" id="motion">(.*?)</script>', text)
+    held = json.loads(data)
+    rows = len(held["times"])
+    assert rows == len(held["quaternions"]) == len(held["rows"]) == len(held["inset"]["course"])
+    assert "exact, by closed form" in held["caption"]
+
+
+def test_a_film_has_its_pictures(tmp_path: Path) -> None:
+    """A GIF has as many pictures as were asked for, and they differ."""
+    file = tmp_path / "film.gif"
+    file.write_bytes(film(moving(document("kirchhoff/whole-motion")), ".gif", 3))
+    with Image.open(file) as shown:
+        assert shown.n_frames == 3
+
+
+# The verb
+
+
+def test_draw_writes_what_it_says(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Every file named is there, whole, with what it shows; one picture alone has the name given."""
+    assert main(["draw", "euler/axisymmetric", "--out", str(tmp_path / "g.svg"), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert [Path(one["file"]).name for one in told["files"]] == [
+        f"g-{name}.svg" for name in KINDS if name in HAS["euler/separatrix"]
+    ]
+    assert told["evidence"] == "proven"
+    for one in told["files"]:
+        assert one["shows"] in Path(one["file"]).read_text(encoding="utf-8").replace("&gt;", ">")
+    alone = ["draw", "euler/generic", "--only", "time", "--out", str(tmp_path / "a.svg")]
+    assert main(alone) == 0
+    assert (tmp_path / "a.svg").exists()
+    assert main(["draw", "euler/generic", "--animate", "--out", str(tmp_path / "a.html")]) == 0
+    assert (tmp_path / "a.html").read_text(encoding="utf-8").endswith("</html>\n")
+
+
+def test_errors_of_a_file_are_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The errors are those of the judgement, and the floor is beside them."""
+    rows = document("euler/axisymmetric")["course"]
+    text = ["t,w1,w2,w3"]
+    pairs = zip(rows["t"][::5], rows["omega"][::5], strict=True)
+    text += [",".join(map(repr, [t, *omega])) for t, omega in pairs]
+    file = tmp_path / "mine.csv"
+    file.write_text("\n".join(text), encoding="utf-8")
+    out = tmp_path / "e.svg"
+    asked = ["draw", "euler/axisymmetric", str(file), "--only", "errors", "--out", str(out)]
+    assert main(asked) == 0
+    # Nine digits were written.
+    found = re.search(r"omega of \S+ at most (\S+?)[;.]\s", capsys.readouterr().out + " ")
+    assert found is not None
+    assert 1e-11 <= float(found[1]) <= 2e-9
+    assert "roundoff floor" in out.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["euler/generic", "--out", "a.gif"], r"expected \.svg, \.pdf, \.png"),
+        (["euler/generic", "--animate", "--out", "a.svg"], r"expected \.html, \.gif, \.mp4"),
+        (["euler/generic", "--only", "path,bifurcation,x"], "(?s)a body with wheels.*got 'x'"),
+        (["euler/generic", "--only", "errors"], "expected trajectory files"),
+        (["euler/generic", "bad.csv"], "expected a column `t`"),
+        (["euler/rest", "--animate"], "got a body at rest"),
+        (["euler/rest", "--animate", "--only", "time"], "expected a scene alone with --animate"),
+    ],
+)
+def test_what_cannot_be_drawn_is_one_message(
+    arguments: list[str],
+    message: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """A wrong ending, a picture that a scene lacks, a file that is none: exit 2, and nothing is written."""
+    monkeypatch.chdir(tmp_path)
+    Path("bad.csv").write_text("hello,1\n", encoding="utf-8")
+    assert main(["draw", *arguments]) == 2
+    assert re.search(message, capsys.readouterr().err)
+    assert [file.name for file in tmp_path.iterdir()] == ["bad.csv"]

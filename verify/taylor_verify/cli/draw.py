@@ -1,0 +1,164 @@
+"""The verb `draw`: pictures of the exact motion of one scene, and of the errors of files beside it."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any, Final
+
+from taylor_verify.cli.answer import PASS, Answer, WrongCall, wrong_calls
+from taylor_verify.cli.console import Page, bold
+from taylor_verify.cli.folders import unwritable, writable_file
+from taylor_verify.cli.inputs import known_rungs, read_scenes, require_matplotlib
+from taylor_verify.cli.progress import working
+from taylor_verify.draw import file_errors
+from taylor_verify.draw.caption import NotDrawn
+from taylor_verify.draw.course import motion
+from taylor_verify.draw.film import ENDINGS as FILMS
+from taylor_verify.draw.film import film
+from taylor_verify.draw.moving import Moving, moving
+from taylor_verify.draw.page import page
+from taylor_verify.draw.pictures import pictures
+from taylor_verify.exact.solution import Unsettled
+from taylor_verify.judge.files.judgement import judge_file
+from taylor_verify.publish.pictures.picture import ENDINGS as STILLS
+from taylor_verify.publish.pictures.picture import Picture, content
+from taylor_verify.records.record import Record
+from taylor_verify.records.replacement import replace_files
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.files.columns.request import request
+from taylor_verify.solvers.files.file import TrajectoryFile, read
+
+ERRORS: Final = "errors"
+_STILL: Final = ".svg"
+_PAGE: Final = ".html"
+
+
+def answer(options: argparse.Namespace) -> Answer:
+    """Draw the motion of a scene, and the errors of files, every picture to a file of its own."""
+    require_matplotlib("draw")
+    (options.rung,) = known_rungs([options.rung])
+    scene, files = _asked(options)
+    place = _place(options, scene)
+    names = [name.strip() for name in options.only.split(",")] if options.only else []
+    if options.animate and (names or files):
+        raise WrongCall("expected a scene alone with --animate, got --only or files @ --animate")
+    with working(f"draw {scene.name}"), wrong_calls(kinds=NotDrawn):
+        document = _document(scene)
+        if options.animate:
+            shown = [_animate(moving(document), place)]
+        else:
+            found = _pictures(document, names, files, partial(_record, options, scene))
+            shown = _write(found, place, is_alone=len(names) == 1)
+    facts = {name: document[name] for name in ("scene", "regime", "route", "evidence")}
+    told = {**facts, "files": shown}
+    return Answer(PASS, told, partial(_text, told))
+
+
+def _animate(motion: Moving, place: Path) -> dict[str, str]:
+    """Write the motion as a page or as a film."""
+    ending = place.suffix.lower()
+    made = page(motion) if ending == _PAGE else film(motion, ending)
+    with unwritable("a file that can be written", str(place), "--out"):
+        (path,) = replace_files(place.parent, {place.name: made})
+    return {
+        "file": str(path),
+        "picture": "animation",
+        "title": motion.title,
+        "shows": motion.alt,
+    }
+
+
+def _asked(options: argparse.Namespace) -> tuple[Scene, list[TrajectoryFile]]:
+    """Read the scene and the files; the faults of all are reported at once."""
+    faults: list[str] = []
+
+    def attempt(reading: Callable[[], Any]) -> Any:
+        try:
+            return reading()
+        except (WrongCall, Refused) as error:
+            faults.append(str(error))
+
+    scenes = attempt(lambda: read_scenes([options.scene]))
+    columns = options.columns or ()
+    names = dict.fromkeys(options.files)
+    files = [attempt(partial(lambda name: read(name, request(columns)), name)) for name in names]
+    if faults:
+        raise WrongCall("\n".join(faults))
+    return scenes[0], files
+
+
+def _document(scene: Scene) -> dict[str, Any]:
+    """Return what is drawn. Raises WrongCall where the exact motion cannot be had."""
+    with wrong_calls(f" @ {scene.name}", Unsettled):
+        return motion(scene)
+
+
+def _pictures(
+    document: Mapping[str, Any],
+    names: Sequence[str],
+    files: Sequence[TrajectoryFile],
+    record: Callable[[TrajectoryFile], Record],
+) -> dict[str, Picture]:
+    """Return the pictures of the motion, and that of the errors if files are given, by their names."""
+    others = [name for name in names if name != ERRORS]
+    found = pictures(document, others) if others or not names else {}
+    if files and (not names or ERRORS in names):
+        found[ERRORS] = file_errors.picture(document, {file.name: record(file) for file in files})
+    elif ERRORS in names:
+        raise WrongCall(f"expected trajectory files behind the scene, got none @ --only {ERRORS}")
+    return found
+
+
+def _record(options: argparse.Namespace, scene: Scene, file: TrajectoryFile) -> Record:
+    """Return the errors of a file. Raises WrongCall where it could not be compared."""
+    judged = judge_file(file, scene, rung(options.rung), options.accept_conventions, True)
+    if judged.record is None:
+        raise WrongCall(f"{judged.verdicts[0].because} @ {file.name}")
+    return judged.record
+
+
+def _write(found: Mapping[str, Picture], place: Path, is_alone: bool) -> list[dict[str, str]]:
+    """Draw all, then write all; a picture that was asked for alone has the name of --out itself."""
+    ending = place.suffix
+    contents = {
+        f"{place.stem if is_alone else f'{place.stem}-{name}'}{ending}": content(
+            picture, ending[1:].lower()
+        )
+        for name, picture in found.items()
+    }
+    with unwritable("a file that can be written", str(place), "--out"):
+        written = replace_files(place.parent, contents)
+    return [
+        {"file": str(path), "picture": name, "title": picture.title, "shows": picture.alt}
+        for path, (name, picture) in zip(written, found.items(), strict=True)
+    ]
+
+
+def _place(options: argparse.Namespace, scene: Scene) -> Path:
+    """Return the file that --out names, from which each picture has its name. Raises WrongCall."""
+    stem = Path(scene.name).with_suffix("").as_posix().replace("/", "-").strip("-.")
+    place = writable_file(stem if options.out is None else options.out, "--out")
+    endings = (_PAGE, *FILMS) if options.animate else STILLS
+    if options.out is None or not place.suffix:
+        return place.with_name(place.name + (_PAGE if options.animate else _STILL))
+    if place.suffix.lower() not in endings:
+        others = STILLS if options.animate else (_PAGE, *FILMS)
+        how = "out" if options.animate else ""
+        mend = f" (with{how} --animate: {', '.join(others)})"
+        raise WrongCall(f"expected {', '.join(endings)}{mend}, got {place.suffix!r} @ --out")
+    return place
+
+
+def _text(shown: Mapping[str, Any]) -> str:
+    page = Page()
+    how = f"(route {shown['route']}, {shown['evidence']})"
+    page.line(bold(shown["scene"]), f": {shown['regime']} {how}")
+    for file in shown["files"]:
+        page.line(f"wrote {file['file']}")
+        page.indented("  ", file["shows"])
+    return page.text()

@@ -1,0 +1,164 @@
+"""The components of the motion against time: omega in principal axes with its flips, or both impulses.
+
+A flip is where the middle component of omega is zero: from one to the next a free triaxial body takes the
+flip time 2K/lam of its orbit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from taylor_verify.draw.caption import caption
+from taylor_verify.draw.view import Numbers
+from taylor_verify.publish.pictures.palette import INK, PAPER, QUIET
+from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.publish.pictures.sheet import Entry, sheet
+from taylor_verify.publish.pictures.style import SMALL
+from taylor_verify.publish.pictures.wording import stem_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Document = Mapping[str, Any]
+
+# In inches.
+_HEIGHT: Final = 2.7
+# A component is told by its dashes too.
+LINES: Final[tuple[dict[str, Any], ...]] = (
+    {"color": "#0B5FA5", "linewidth": 1.5},
+    {"color": "#A83C00", "linewidth": 1.5, "dashes": (5, 1.6)},
+    {"color": "#1C8578", "linewidth": 1.5, "dashes": (1.4, 1.2)},
+)
+SUBSCRIPTS: Final = "\N{SUBSCRIPT ONE}\N{SUBSCRIPT TWO}\N{SUBSCRIPT THREE}"
+_FLIP: Final[dict[str, Any]] = {"color": QUIET, "linewidth": 0.8, "gid": "flip"}
+# Beyond the largest value, in parts of the extent; above it there is the flip time.
+_ROOM: Final = 0.06
+_HEADROOM: Final = 0.2
+_ASIDE: Final = 0.03
+
+
+@dataclass(frozen=True)
+class Panel:
+    """Three components (n, 3) of one vector, with its letter and its name."""
+
+    letter: str
+    name: str
+    rows: Numbers
+
+
+@dataclass(frozen=True)
+class Series:
+    """The panels at these times; the times of the flips, and the flip time of an orbit that has one."""
+
+    times: Numbers
+    panels: tuple[Panel, ...]
+    flips: tuple[float, ...]
+    flip_time: float | None
+
+
+def series(document: Document) -> Series:
+    """Return the components of omega in principal axes, or of both impulses in the axes of the scene."""
+    course, body = document["course"], document["body"]
+    times = np.array(course["t"])
+    if body is None:
+        panels = (
+            Panel("x", "linear impulse", np.array(course["linear_impulse"])),
+            Panel("y", "angular impulse", np.array(course["angular_impulse"])),
+        )
+        return Series(times, panels, (), None)
+    rows = np.array(course["omega"]) @ np.array(body["axes"]).T
+    panel = Panel("\N{GREEK SMALL LETTER OMEGA}", "angular velocity, principal axes", rows)
+    numbers = {row["name"]: float(row["value"]) for row in document["analytic"]}
+    flips: tuple[float, ...] = ()
+    # In the time of the scene, that is: with damping the orbit's own is another one.
+    if document["is_free"] and not document["rotor"] and "saddle_rate" in numbers:
+        flips = _zeros(times, rows[:, int(np.argsort(body["principal_moments"])[1])])
+    same = None if document["damping"] else numbers.get("flip_time")
+    return Series(times, (panel,), flips, same)
+
+
+def _zeros(times: Numbers, values: Numbers) -> tuple[float, ...]:
+    """Return the times of a change of sign, by the straight line between two rows."""
+    places = np.flatnonzero(values[:-1] * values[1:] < 0)
+    first, last = values[places], values[places + 1]
+    found = times[places] + (times[places + 1] - times[places]) * first / (first - last)
+    return tuple(float(t) for t in found)
+
+
+def picture(document: Document) -> Picture:
+    """Return the components of one scene against time."""
+    found = series(document)
+    names = " and ".join(panel.name for panel in found.panels)
+    alt = (
+        f"{names[0].upper()}{names[1:]} of {document['scene']}, each component against time, from t = "
+        f"{found.times[0]:g} to t = {found.times[-1]:g}."
+    )
+    if found.flips:
+        flips = ", ".join(f"{t:.4g}" for t in found.flips)
+        alt += f" The middle component is zero, a flip, at t = {flips}."
+    if found.flip_time is not None:
+        alt += f" The flip time is {found.flip_time:.9g}."
+    title = f"Motion in time: {document['scene']}"
+    return Picture(
+        stem_of(document, "time"), title, alt, partial(_figure, found, caption(document))
+    )
+
+
+def _figure(found: Series, words: str) -> Figure:
+    names = [panel.letter for panel in found.panels]
+    entries: list[Entry] = [
+        (dict(look), ", ".join(f"{name}{subscript}" for name in names))
+        for look, subscript in zip(LINES, SUBSCRIPTS, strict=True)
+    ]
+    entries += [(_FLIP, "flip: the middle component is 0")] if found.flips else []
+    figure, places = sheet(len(found.panels), entries, words, _HEIGHT)
+    for axes, panel in zip(places, found.panels, strict=True):
+        _draw(axes, found, panel)
+        if len(found.flips) > 1 and found.flip_time is not None:
+            _write_flip_time(axes, found.flips, found.flip_time)
+    return figure
+
+
+def _draw(axes: Axes, found: Series, panel: Panel) -> None:
+    from matplotlib.ticker import MaxNLocator
+
+    for look, values in zip(LINES, panel.rows.T, strict=True):
+        axes.plot(found.times, values, gid="course", zorder=3, **look)
+    for flip in found.flips:
+        axes.axvline(flip, zorder=1, **_FLIP)
+    low, high = float(panel.rows.min()), float(panel.rows.max())
+    extent = (high - low) or abs(high) or 1.0
+    above = _HEADROOM if len(found.flips) > 1 and found.flip_time is not None else _ROOM
+    first, last = sorted((float(found.times[0]), float(found.times[-1])))
+    # Room for half a number at the end.
+    axes.set(xlim=(first, last + _ASIDE * (last - first)), xlabel="time t")
+    axes.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
+    axes.set(ylim=(low - _ROOM * extent, high + above * extent))
+    axes.axhline(0, color=QUIET, linewidth=0.5, zorder=0)
+    axes.set_title(panel.name, pad=4)
+
+
+def _write_flip_time(axes: Axes, flips: Sequence[float], flip_time: float) -> None:
+    """Write the flip time between the first two flips."""
+    top = axes.get_ylim()[1]
+    low = axes.get_ylim()[0]
+    height = top - 0.09 * (top - low)
+    arrow = {"arrowstyle": "<|-|>", "color": INK, "linewidth": 0.8, "shrinkA": 0, "shrinkB": 0}
+    axes.annotate("", (flips[0], height), (flips[1], height), arrowprops=arrow, zorder=4)
+    axes.text(
+        (flips[0] + flips[1]) / 2,
+        height,
+        f"{flip_time:.5g}",
+        size=SMALL,
+        ha="center",
+        va="center",
+        zorder=5,
+        gid="flip time",
+        bbox={"facecolor": PAPER, "linewidth": 0, "pad": 1.5},
+    )

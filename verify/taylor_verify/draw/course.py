@@ -1,0 +1,176 @@
+"""The course of a motion in plain floats, dense enough to be drawn: rows of the exact solution.
+
+    document["course"]["omega"]      the motion at dense times
+    document["body"]                 principal moments and axes, and the momentum of wheels
+    document["analytic"]             the numbers of the orbit: period, flip time, steady spins
+
+Each number is the exact one, by closed form or enclosure, rounded to the figures of a picture.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from math import ceil
+from typing import Any, Final
+
+import numpy as np
+from mpmath import mp, mpf
+
+from taylor_verify.exact.elements import Elements, elements
+from taylor_verify.exact.ellipsoid import formed_to
+from taylor_verify.exact.printed import shortest_text
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import Solution, Unsettled
+from taylor_verify.records.quantities import TRACKED
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Matrix
+
+Document = dict[str, Any]
+
+# Of the numbers of the orbit.
+DIGITS: Final = 30
+# Intervals of the dense course; over more periods than these a curve covers itself.
+INTERVALS: Final = 360
+PERIODS: Final = 3
+# Radians that a body may turn between two rows, and into how many parts an interval is cut at most.
+_TURN: Final = 0.1
+_MOST: Final = 8
+# Of a number in the course; the motion behind it is known to one digit more, and what is smaller
+# beside its vector than that is a zero that was not proven to be one.
+FIGURES: Final = 9
+
+
+def motion(scene: Scene, intervals: int = INTERVALS) -> Document:
+    """Return the document that every picture of a motion is drawn from, attitude and centre included.
+
+    Raises Unsettled where the motion cannot be had to the figures of a picture.
+    """
+    whole = replace(scene, track=frozenset(TRACKED[scene.model]))
+    exact, orbit = solution(formed_to(whole, DIGITS)), orbit_of(scene)
+    body = scene.body
+    shape, rotor = getattr(body, "ellipsoid", None), body.parts().get("rotor")
+    # One of these answers last, and says how it was had.
+    extent = length(scene, orbit)
+    course = course_of(scene, exact, extent, intervals)
+    if (more := _enough(course)) > 1:
+        course = course_of(scene, exact, extent, more * intervals)
+    return {
+        "scene": scene.name,
+        "title": scene.title,
+        "model": scene.model,
+        "regime": orbit.regime or exact.regime,
+        "route": exact.route,
+        "evidence": exact.evidence,
+        "analytic": analytic(orbit),
+        "course": course,
+        "body": inertia_ellipsoid(scene),
+        "potential": None,
+        "axis": body.axis_of_symmetry if isinstance(body, ImmersedBody) else None,
+        "semi_axes": None if shape is None else [float(a) for a in shape.semi_axes],
+        "rotor": [float(v) for v in rotor] if rotor else None,
+        "is_free": body.is_free,
+        "damping": float(body.damping),
+    }
+
+
+def orbit_of(scene: Scene) -> Elements:
+    """Return the orbit's own numbers; none where the digits cannot be had."""
+    try:
+        return elements(scene, DIGITS)
+    except Unsettled as doubt:
+        return Elements("", (), (str(doubt),))
+
+
+def analytic(orbit: Elements) -> list[Document]:
+    """Return the numbers of the orbit with their meaning, each to all its digits."""
+    names = ("name", "value", "meaning", "unit", "source")
+    with mp.workdps(DIGITS):
+        texts = [str(mp.nstr(element.value, DIGITS)) for element in orbit.numbers]
+    return [
+        {name: getattr(element, name) for name in names} | {"value": text}
+        for element, text in zip(orbit.numbers, texts, strict=True)
+    ]
+
+
+def span(scene: Scene) -> Fraction:
+    """Return the time from the start to the farthest instant; below zero where time runs backward."""
+    start = scene.clock.start
+    return max((instant - start for instant in scene.clock.instants), key=abs)
+
+
+def length(scene: Scene, orbit: Elements) -> Fraction:
+    """Return the span, or a few periods if it is longer."""
+    whole = span(scene)
+    if "period" not in orbit:
+        return whole
+    few = PERIODS * Fraction(mp.nstr(orbit["period"].value, FIGURES))
+    return whole if abs(whole) <= few else (few if whole > 0 else -few)
+
+
+def course_of(
+    scene: Scene, exact: Solution, extent: Fraction, intervals: int = INTERVALS
+) -> Document:
+    """Return times and the motion at them, each number rounded to the figures of a picture.
+
+    A row is the motion at exactly the time printed. A vector is a list; an attitude has nine numbers,
+    row by row.
+    """
+    start = scene.clock.start
+    texts = [shortest_text(start + extent * k / intervals, FIGURES) for k in range(intervals + 1)]
+    exactly = exact.motion([Fraction(text) - start for text in texts], FIGURES + 1)
+    course: Document = {"t": [float(text) for text in texts]}
+    for name, rows in exactly.quantities.items():
+        course[name] = [_rounded(list(row.flat)) for row in rows]
+    return course
+
+
+def _enough(course: Document) -> int:
+    """Return into how many parts intervals must be cut, so that the body turns little in each."""
+    turned = np.array(course["attitude"]).reshape(-1, 3, 3)
+    cosines = (np.einsum("nij,nij->n", turned[1:], turned[:-1]) - 1) / 2
+    # The largest angle is below a half turn, whatever a fast body did: more than so many are no use.
+    return min(ceil(float(np.arccos(np.clip(cosines.min(), -1, 1))) / _TURN), _MOST)
+
+
+def _rounded(entries: Sequence[mpf]) -> list[float]:
+    """Return the entries to ``FIGURES`` digits; 0 for what is below the last of the largest one's."""
+    least = max(map(abs, entries)) / mpf(10) ** (FIGURES + 1)
+    return [float(mp.nstr(v, FIGURES)) if abs(v) > least else 0.0 for v in entries]
+
+
+def inertia_ellipsoid(scene: Scene) -> Document | None:
+    """Return principal moments, each with its axis in body components; None for a body in a fluid."""
+    inertia = scene.body.parts().get("inertia")
+    if inertia is None:
+        return None
+    moments, axes = principal_frame(inertia)
+    return {"principal_moments": plain(moments), "axes": [_rounded(axis) for axis in axes]}
+
+
+def principal_frame(inertia: Matrix) -> tuple[list[mpf], list[list[mpf]]]:
+    """Return the principal moments, and to each a unit vector; the three vectors are right-handed.
+
+    A body whose axes are its principal axes keeps their order and signs, any other has its moments
+    in ascending order and the largest component of its first two axes positive.
+    """
+    with mp.workdps(DIGITS):
+        if tensors.is_diagonal(inertia):
+            unit = [[mpf(int(i == k)) for k in range(3)] for i in range(3)]
+            return [mp.convert(inertia[i][i]) for i in range(3)], unit
+        found, vectors = mp.eigsy(mp.matrix([[mp.convert(v) for v in row] for row in inertia]))
+        first, second = (_upward([vectors[i, k] for i in range(3)]) for k in (0, 1))
+        third = [first[i] * second[k] - first[k] * second[i] for i, k in ((1, 2), (2, 0), (0, 1))]
+        return list(found), [first, second, third]
+
+
+def _upward(axis: list[mpf]) -> list[mpf]:
+    return axis if max(axis, key=abs) > 0 else [-component for component in axis]
+
+
+def plain(numbers: Sequence[mpf]) -> list[float]:
+    """Return numbers to the figures of a picture."""
+    return [float(mp.nstr(number, FIGURES)) for number in numbers]

@@ -1,0 +1,134 @@
+"""The errors of trajectory files against time, each quantity in a panel, beside the roundoff floor.
+
+The errors are those that `check` judges: against the exact motion of the same start, relative to the
+largest value of the motion, and in radians for an attitude. The floor is what perfect rounding would leave.
+The row at the start is left out, which has the rounding of the data and no error of a motion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from taylor_verify.draw.caption import NotDrawn, caption
+from taylor_verify.draw.view import Numbers
+from taylor_verify.publish.pictures.log_axes import powers_within, widened
+from taylor_verify.publish.pictures.palette import QUIET
+from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.publish.pictures.sheet import Entry, sheet
+from taylor_verify.publish.pictures.style import look_of_line
+from taylor_verify.publish.pictures.wording import plain, power_of_ten, stem_of
+from taylor_verify.records.quantities import STATES, is_conserved
+from taylor_verify.records.record import Record
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Document = Mapping[str, Any]
+
+# In inches.
+_HEIGHT: Final = 2.2
+_FLOOR: Final[dict[str, Any]] = {"linewidth": 0.9, "dashes": (1.2, 1.6), "gid": "floor"}
+# Marks on a line at most.
+_MARKS: Final = 12
+_TITLES: Final = {"omega": "angular velocity", "impulse": "impulses", "T": "energy T"}
+# Of the conserved quantities, one is shown: the energy, or the first that the scene conserves.
+_LONGEST_NAME: Final = 28
+
+
+@dataclass(frozen=True)
+class Line:
+    """Errors of one file, and what rounding would leave, at its times; what is zero is no number here."""
+
+    name: str
+    times: Numbers
+    errors: Numbers
+    floor: Numbers
+
+
+Panels = Mapping[str, Sequence[Line]]
+
+
+def panels_of(records: Mapping[str, Record], start: float) -> Panels:
+    """Return the lines of each quantity, by the names of the files: the states, then one conserved."""
+    found: dict[str, list[Line]] = {}
+    for name, record in records.items():
+        for gate in record.gates:
+            times = np.array(record.times)
+            errors, floor = (
+                np.where(times == start, np.nan, _above_zero(values))
+                for values in (gate.errors, gate.attainable)
+            )
+            if np.isfinite(errors).any():
+                line = Line(name, times, errors, floor)
+                found.setdefault(gate.quantity, []).append(line)
+    conserved = [name for name in found if is_conserved(name)][:1]
+    return {name: found[name] for name in (*STATES, *conserved) if name in found}
+
+
+def _above_zero(values: Sequence[float]) -> Numbers:
+    numbers = np.array(values, dtype=float)
+    return np.where(numbers > 0, numbers, np.nan)
+
+
+def picture(document: Document, records: Mapping[str, Record]) -> Picture:
+    """Return the picture of all files. Raises NotDrawn where no error is above zero."""
+    panels = panels_of(records, document["course"]["t"][0])
+    if not panels:
+        raise NotDrawn(f"expected an error above zero, got none @ {', '.join(records)}")
+    said = "; ".join(
+        f"{quantity} of {line.name} at most {plain(float(np.nanmax(line.errors)))}"
+        for quantity, lines in panels.items()
+        for line in lines
+    )
+    alt = f"Errors of files against time on {document['scene']}, logarithmic: {said}."
+    title = f"Errors in time: {document['scene']}"
+    return Picture(
+        stem_of(document, "errors"), title, alt, partial(_figure, panels, caption(document))
+    )
+
+
+def _figure(panels: Panels, words: str) -> Figure:
+    names = list(dict.fromkeys(line.name for lines in panels.values() for line in lines))
+    looks = {name: look_of_line(k).line for k, name in enumerate(names)}
+    entries: list[Entry] = [(looks[name], _short(name)) for name in names]
+    entries.append(({"color": QUIET, **_FLOOR}, "roundoff floor"))
+    figure, places = sheet(len(panels), entries, words, _HEIGHT)
+    for axes, (quantity, lines) in zip(places, panels.items(), strict=True):
+        _draw(axes, quantity, lines, looks)
+    return figure
+
+
+def _short(name: str) -> str:
+    name = PurePath(name).name
+    return name if len(name) <= _LONGEST_NAME else f"…{name[1 - _LONGEST_NAME :]}"
+
+
+def _draw(axes: Axes, quantity: str, lines: Sequence[Line], looks: Mapping[str, Any]) -> None:
+    from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
+
+    for line in lines:
+        look = {**looks[line.name], "markevery": max(1, len(line.times) // _MARKS)}
+        axes.plot(line.times, line.errors, gid="course", zorder=3, **look)
+        axes.plot(line.times, line.floor, color=look["color"], zorder=2, **_FLOOR)
+    values = np.concatenate([part for line in lines for part in (line.errors, line.floor)])
+    times = np.concatenate([line.times for line in lines])
+    first, last = float(times.min()), float(times.max())
+    aside = 0.03 * ((last - first) or 1.0)
+    unit = "rad" if quantity == "attitude" else "relative"
+    axes.set(yscale="log", xlabel="time t", ylabel=f"error ({unit})")
+    axes.set(xlim=(first - aside, last + aside))
+    axes.set(ylim=widened([float(v) for v in values[np.isfinite(values)]], 0.05, 0.08))
+    axes.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
+    axes.yaxis.set_major_locator(LogLocator(numticks=7))
+    axes.yaxis.set_minor_formatter(NullFormatter())
+    if powers_within(*axes.get_ylim()) >= 1:
+        axes.yaxis.set_major_formatter(lambda value, _: power_of_ten(value))
+    axes.grid(True, which="major")
+    axes.set_title(_TITLES.get(quantity, quantity), pad=4)

@@ -1,0 +1,217 @@
+"""The momentum of a body on its sphere |H|, with the curves of equal energy and the steady spins.
+
+|H| and T are conserved, H = I omega + h with the momentum h of wheels. So H runs along a curve of equal T
+on a sphere in the body. The steady spins are where T is stationary: a spin is unstable at a saddle, and a
+separatrix goes through it.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from taylor_verify.draw.caption import NotDrawn, caption
+from taylor_verify.draw.spins import Wheels
+from taylor_verify.draw.stage import START, Look, Stage
+from taylor_verify.draw.view import Ellipsoid, Numbers, View
+from taylor_verify.publish.pictures.palette import INK, PAPER
+from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.publish.pictures.sheet import Entry
+from taylor_verify.publish.pictures.wording import plain, stem_of
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Document = Mapping[str, Any]
+
+# In inches.
+_HEIGHT: Final = 4.0
+_STAGE: Final = 4.4
+_COURSE: Final[Look] = {"color": "#0B5FA5", "linewidth": 2.2, "gid": "course"}
+_LEVEL: Final[Look] = {"color": "#9AA5AE", "linewidth": 0.6, "gid": "level"}
+SEPARATRIX: Final[Look] = {"color": "#A83C00", "linewidth": 1.1, "gid": "separatrix"}
+_SPIN: Final[Look] = {"linestyle": "none", "markeredgecolor": INK, "markeredgewidth": 0.9}
+STABLE: Final[Look] = {**_SPIN, "marker": "o", "markersize": 5.5, "markerfacecolor": "#1C8578"}
+UNSTABLE: Final[Look] = {**_SPIN, "marker": "X", "markersize": 7, "markerfacecolor": "#E0714F"}
+_ROTOR: Final[Look] = {**_SPIN, "marker": "D", "markersize": 8, "markerfacecolor": PAPER}
+# Curves between neighbouring energies of steady spins.
+_LEVELS: Final = 5
+# Within the rim by this part of |H| nothing is foreshortened to nothing.
+_INSIDE: Final = 0.25
+# Points of the grid on which curves of equal energy are sought, from pole to pole.
+_ROWS: Final = 120
+_STEPS: Final = 4
+# A separatrix is drawn apart from a level that differs by more than this part of all energies.
+_SAME: Final = 1e-6
+
+
+@dataclass(frozen=True)
+class Spin:
+    """A steady spin: its momentum in principal axes, and True if it is stable."""
+
+    momentum: Numbers
+    stable: bool
+
+
+@dataclass(frozen=True)
+class Series:
+    """The course of H in principal axes, the wheels, and every steady spin with this |H|."""
+
+    course: Numbers
+    wheels: Wheels
+    size: float
+    spins: tuple[Spin, ...]
+
+    @property
+    def saddles(self) -> list[float]:
+        """The energies of the unstable spins."""
+        momenta = [spin.momentum for spin in self.spins if not spin.stable]
+        return (
+            sorted({float(energy) for energy in self.wheels.energy(np.array(momenta))})
+            if momenta
+            else []
+        )
+
+
+def series(document: Document) -> Series:
+    """Return the sphere of a free rigid body, with wheels or without.
+
+    Raises NotDrawn for another scene, and for a body without momentum.
+    """
+    body, course = document["body"], document["course"]
+    if body is None or not document["is_free"] or document["damping"]:
+        raise NotDrawn(
+            f"expected a free rigid body without damping, got another scene @ {document['scene']}"
+        )
+    axes, moments = np.array(body["axes"]), np.array(body["principal_moments"])
+    wheels = Wheels.of(moments, axes @ np.array(document["rotor"] or [0.0] * 3))
+    momenta = (np.array(course["omega"]) @ axes.T) * moments + wheels.rotor
+    size = float(np.linalg.norm(momenta[0]))
+    if not size > 0:
+        raise NotDrawn(f"expected a body with momentum, got none @ {document['scene']}")
+    return Series(momenta, wheels, size, tuple(_spins(document, wheels, size)))
+
+
+def _spins(document: Document, wheels: Wheels, size: float) -> list[Spin]:
+    """Return the steady spins whose rate and stability the elements of the orbit have."""
+    numbers = {row["name"]: float(row["value"]) for row in document["analytic"]}
+    found: list[Spin] = []
+    pending: list[Numbers] = []
+    k = 1
+    while (rate := numbers.get(f"spin_{k}")) is not None:
+        # Two spins beside an axis without h have one rate, and stand side by side.
+        pending = pending or wheels.at(rate / size, size)
+        found.append(Spin(pending.pop(0), f"spin_{k}_growth" not in numbers))
+        k += 1
+    return found
+
+
+def picture(document: Document) -> Picture:
+    """Return the momentum sphere of one scene. Raises NotDrawn as `series` does."""
+    found = series(document)
+    unstable = sum(not spin.stable for spin in found.spins)
+    alt = (
+        f"The momentum of {document['scene']} on the sphere |H| = {plain(found.size)} in the body, with "
+        f"curves of equal energy. {len(found.spins)} steady spins are marked, {unstable} of them unstable."
+    )
+    title = f"Momentum sphere: {document['scene']}"
+    return Picture(
+        stem_of(document, "momentum"), title, alt, partial(_figure, found, caption(document))
+    )
+
+
+def _figure(found: Series, caption: str) -> Figure:
+    sphere = Ellipsoid((found.size,) * 3)
+    stage = Stage.around(sphere, _view(found), _STAGE, _HEIGHT)
+    for levels, zorder, look in ((_levels(found), 1.5, _LEVEL), (found.saddles, 2, SEPARATRIX)):
+        for lines in level_lines(found.wheels, found.size, levels):
+            for line in lines:
+                stage.line(line, zorder, look)
+    stage.line(found.course, 3, _COURSE)
+    for spin in found.spins:
+        stage.mark(spin.momentum, STABLE if spin.stable else UNSTABLE, gid="spin")
+    entries: list[Entry] = [(_COURSE, "H of this motion"), (START, "start")]
+    entries += [(_LEVEL, "equal energy T")]
+    entries += [(SEPARATRIX, "separatrices")] if found.saddles else []
+    entries += [(STABLE, "stable steady spin")] if any(s.stable for s in found.spins) else []
+    entries += [(UNSTABLE, "unstable steady spin")] if found.saddles else []
+    if found.wheels.rotor.any():
+        direction = found.wheels.rotor / np.linalg.norm(found.wheels.rotor)
+        stage.mark(direction * found.size, _ROTOR, gid="wheels")
+        entries += [(_ROTOR, "direction of the wheels' h")]
+    stage.mark(found.course[0], START, gid="start")
+    subscripts = "\N{SUBSCRIPT ONE}\N{SUBSCRIPT TWO}\N{SUBSCRIPT THREE}"
+    stage.name_axes((found.size,) * 3, [f"H{subscript}" for subscript in subscripts])
+    stage.legend(entries, f"Principal axes of the body. Faint: on the far side. {caption}", 3.4)
+    return stage.figure
+
+
+def _view(found: Series) -> View:
+    """Return the side from which most of the course and of the steady spins is in front, saddles first."""
+    unstable = np.array([s.momentum for s in found.spins if not s.stable] or np.empty((0, 3)))
+    stable = np.array([s.momentum for s in found.spins if s.stable] or np.empty((0, 3)))
+
+    def in_front(view: View) -> float:
+        saddles, centres, course = (
+            np.asarray(points @ view.towards > _INSIDE * found.size)
+            for points in (unstable, stable, found.course)
+        )
+        return float(2 * saddles.sum() + 0.8 * centres.sum() + 3 * course.mean())
+
+    return max((View(a, e) for e in (24.0, -24.0) for a in range(20, 380, 15)), key=in_front)
+
+
+def _levels(found: Series) -> list[float]:
+    """Return energies between those of the steady spins, evenly in the distance along the sphere."""
+    low, high = (float(v[0]) for v in found.wheels.extremes(np.array([found.size])))
+    ends = [low, *found.saddles, high]
+    turns = (1 - np.cos(np.pi * np.arange(1, _LEVELS) / _LEVELS)) / 2
+    return [
+        a + (b - a) * float(part)
+        for a, b in itertools.pairwise(ends)
+        if b - a > _SAME * (high - low)
+        for part in turns
+    ]
+
+
+def level_lines(wheels: Wheels, size: float, levels: Sequence[float]) -> list[list[Numbers]]:
+    """Return for each level the curves T = level on the sphere |G| = size, each a line (n, 3)."""
+    from contourpy import contour_generator
+
+    polar = np.linspace(0, np.pi, _ROWS + 1)
+    azimuth = np.linspace(0, 2 * np.pi, 2 * _ROWS + 1)
+    energies = wheels.energy(_points(*np.meshgrid(polar, azimuth, indexing="ij")) * size)
+    chart = contour_generator(x=azimuth, y=polar, z=energies)
+    return [
+        [
+            _on_level(wheels, size, level, _points(line[:, 1], line[:, 0]))
+            for line in map(np.asarray, chart.lines(level))
+        ]
+        for level in levels
+    ]
+
+
+def _points(polar: Numbers, azimuth: Numbers) -> Numbers:
+    """Return unit vectors, their third component along the last axis of the chart."""
+    across = np.sin(polar)
+    return np.stack([across * np.cos(azimuth), across * np.sin(azimuth), np.cos(polar)], axis=-1)
+
+
+def _on_level(wheels: Wheels, size: float, level: float, directions: Numbers) -> Numbers:
+    """Return the points moved across the curve until their energy is right; near a saddle they stay."""
+    points = directions * size
+    scale = size**2 / float(wheels.moments.min())
+    for _ in range(_STEPS):
+        slope = (points - wheels.rotor) / wheels.moments
+        slope -= (slope * points).sum(axis=1, keepdims=True) * points / size**2
+        steep = np.square(slope).sum(axis=1)
+        away = level - wheels.energy(points)
+        part = np.where(steep * size**2 > 1e-6 * scale**2, away / np.maximum(steep, 1e-300), 0.0)
+        points = points + part[:, None] * slope
+        points *= size / np.linalg.norm(points, axis=1, keepdims=True)
+    return points

@@ -1,0 +1,194 @@
+"""Steady spins of a body with wheels, for every size of its momentum: the curves that bifurcate.
+
+Legend, principal axes: J moments, a = 1/J, h momentum of the wheels, G = I omega + h, N = |G|, and mu the
+rate omega.G/N^2, so that omega = mu G in a steady spin and G_i = h_i/(1 - mu J_i). A spin is stable if
+s^2 = -G.adj(K - mu) G < 0, K = I^-1. Between two poles a_i < mu < a_j the size f(mu) = N^2 is convex:
+two spins are born where it is least. All numbers are doubles, to be drawn.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+
+from taylor_verify.draw.view import Numbers
+
+# Bisections leave an interval of the size of its roundings.
+_BISECTIONS: Final = 44
+# Distances from a pole, in parts of an interval: spins of weak wheels are near to it.
+_NEAREST: Final = 1e-9
+_DENSE: Final = 150
+_FAR: Final = 1e6
+# In parts of the size of h, a component that is zero but for its rounding to nine digits.
+_ZERO: Final = 1e-8
+
+
+@dataclass(frozen=True)
+class Branch:
+    """Curve of steady spins: the momentum of each (n, 3), and whether it is stable."""
+
+    momenta: Numbers
+    stable: bool
+
+    @property
+    def sizes(self) -> Numbers:
+        """N of each."""
+        return np.asarray(np.linalg.norm(self.momenta, axis=1))
+
+
+@dataclass(frozen=True)
+class Wheels:
+    """A body with wheels in its principal axes: three moments and h, of shape (3,)."""
+
+    moments: Numbers
+    rotor: Numbers
+
+    @classmethod
+    def of(cls, moments: Numbers, rotor: Numbers) -> Wheels:
+        """Return the body with exact zeros where h has only the rounding of its digits."""
+        size = np.linalg.norm(rotor)
+        return cls(moments, np.where(np.abs(rotor) > _ZERO * size, rotor, 0.0))
+
+    @property
+    def poles(self) -> Numbers:
+        """a = 1/J, upwards."""
+        return np.sort(1 / self.moments)
+
+    def energy(self, momenta: Numbers) -> Numbers:
+        """Return T = omega.I omega/2 of momenta (n, 3)."""
+        return np.asarray(np.square(momenta - self.rotor) @ (1 / self.moments) / 2)
+
+    def momentum(self, rates: Numbers) -> Numbers:
+        """Return G of the steady spins with these mu, shape (n, 3); 0 along an axis without h."""
+        below = 1 - np.multiply.outer(rates, self.moments)
+        with np.errstate(divide="ignore"):
+            return np.asarray(
+                np.divide(self.rotor, below, out=np.zeros_like(below), where=self.rotor != 0)
+            )
+
+    def square(self, rates: Numbers, momenta: Numbers) -> Numbers:
+        """Return s^2 of a disturbance of each spin."""
+        x, y, z = (1 / self.moments - rates[:, None]).T
+        return np.asarray(-(np.square(momenta) * np.stack([y * z, z * x, x * y], -1)).sum(axis=1))
+
+    def at(self, rate: float, size: float) -> list[Numbers]:
+        """Return the momenta of this size that spin steadily at mu: one, or two beside an axis without h.
+
+        At a pole G is free along the axis of that pole.
+        """
+        momentum = self.momentum(np.array([rate]))[0]
+        axis = int(np.abs(1 - rate * self.moments).argmin())
+        if self.rotor[axis] or abs(1 - rate * self.moments[axis]) > _ZERO:
+            return [momentum]
+        along = np.zeros(3)
+        along[axis] = np.sqrt(max(size**2 - float(momentum @ momentum), 0.0))
+        return [momentum + along, momentum - along]
+
+    def births(self) -> list[float]:
+        """Return N where two steady spins more appear, upwards; fewer than two with equal moments."""
+        low, middle, high = self.poles
+        pairs = [
+            pair for pair in ((low, middle), (middle, high)) if pair[1] > (1 + _ZERO) * pair[0]
+        ]
+        return sorted(float(np.sqrt(least(self.moments, self.rotor, *pair))) for pair in pairs)
+
+    def branches(self, largest: float) -> list[Branch]:
+        """Return all steady spins up to this N, cut where their stability changes."""
+        found = []
+        low, middle, high = self.poles
+        outer = np.geomspace(_NEAREST, _FAR, 4 * _DENSE) * high
+        for rates in (
+            low - outer[::-1],
+            _between(low, middle),
+            _between(middle, high),
+            high + outer,
+        ):
+            found += self._pieces(rates, self.momentum(rates), largest)
+        for axis in np.flatnonzero(self.rotor == 0):
+            found += self._axial(int(axis), largest)
+        return found
+
+    def _axial(self, axis: int, largest: float) -> list[Branch]:
+        """Return the spins at the pole of an axis without h, one of each pair: they have one energy."""
+        rate = float(1 / self.moments[axis])
+        base = self.momentum(np.array([rate]))[0]
+        # Where another axis has the same moment, wheels along it leave no spin there.
+        if not np.isfinite(base).all() or not base @ base < largest**2:
+            return []
+        along = np.sqrt(np.linspace(0, largest**2 - base @ base, _DENSE))
+        momenta = base + np.multiply.outer(along, np.eye(3)[axis])
+        if np.count_nonzero(np.abs(1 - rate * self.moments) < _ZERO) > 1:
+            # A circle of spins, at the border of stability each, and stable as a whole.
+            return [Branch(momenta, True)]
+        return self._pieces(np.full(_DENSE, rate), momenta, largest)
+
+    def _pieces(self, rates: Numbers, momenta: Numbers, largest: float) -> list[Branch]:
+        """Return runs of neighbours below this N that are all stable, or all not."""
+        # What is infinite, at a pole, is within no size.
+        within = np.asarray(np.linalg.norm(momenta, axis=1) <= largest)
+        if not within.any():
+            return []
+        kind = np.asarray(np.where(within, np.where(self.square(rates, momenta) < 0, 1, 2), 0))
+        starts = [0, *(np.flatnonzero(np.diff(kind)) + 1), len(kind)]
+        return [
+            # A run ends where the next one begins, or the curve would have a gap.
+            Branch(momenta[first : last + (last < len(kind) and kind[last] > 0)], kind[first] == 1)
+            for first, last in pairwise(starts)
+            if last - first > 1 and kind[first] > 0
+        ]
+
+    def extremes(self, sizes: Numbers) -> tuple[Numbers, Numbers]:
+        """Return the least and the greatest T of momenta of each size."""
+        low, _, high = self.poles
+        both = []
+        for pole, side in ((low, -1.0), (high, 1.0)):
+            near, far = np.full(len(sizes), _NEAREST / 1e3), np.full(len(sizes), 1e9)
+            for _ in range(2 * _BISECTIONS):
+                middle = np.sqrt(near * far)
+                is_large = np.linalg.norm(self.momentum(pole * (1 + side * middle)), axis=1) > sizes
+                near, far = np.where(is_large, middle, near), np.where(is_large, far, middle)
+            momenta = self.momentum(pole * (1 + side * far))
+            axis = int(np.abs(1 / self.moments - pole).argmin())
+            rest = np.square(momenta).sum(axis=1) - momenta[:, axis] ** 2
+            sign = 1.0 if self.rotor[axis] == 0 else np.sign(momenta[:, axis])
+            momenta[:, axis] = sign * np.sqrt(np.maximum(sizes**2 - rest, 0))
+            both.append(self.energy(momenta))
+        return both[0], both[1]
+
+
+def _between(low: float, high: float) -> Numbers:
+    if not high > low:
+        return np.empty(0)
+    near = np.geomspace(_NEAREST, 0.5, _DENSE)
+    return np.asarray(low + (high - low) * np.concatenate([near, 1 - near[-2::-1]]))
+
+
+def least(moments: Numbers, rotors: Numbers, low: float, high: float) -> Numbers:
+    """Return the least f(mu) between two poles, for wheels h of shape (..., 3)."""
+    squares = np.square(rotors)
+    left, right = np.full(rotors.shape[:-1], low), np.full(rotors.shape[:-1], high)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for _ in range(_BISECTIONS):
+            middle = (left + right) / 2
+            below = 1 - middle[..., None] * moments
+            slope = np.where(squares > 0, squares * moments / below**3, 0.0).sum(axis=-1)
+            left, right = np.where(slope < 0, middle, left), np.where(slope < 0, right, middle)
+        below = 1 - ((left + right) / 2)[..., None] * moments
+        return np.asarray(np.where(squares > 0, squares / below**2, 0.0).sum(axis=-1))
+
+
+def number(moments: Numbers, rotors: Numbers, size: float) -> tuple[Numbers, Numbers]:
+    """Return by wheels h (..., 3) the logarithm of N^2 over f's least value, one for each pair of poles.
+
+    A pair of steady spins is there where it is positive.
+    """
+    low, middle, high = np.sort(1 / moments)
+    with np.errstate(divide="ignore"):
+        first, second = (
+            np.log(size**2 / np.maximum(least(moments, rotors, *pair), 1e-300))
+            for pair in ((low, middle), (middle, high))
+        )
+    return first, second
