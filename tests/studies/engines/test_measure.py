@@ -72,12 +72,18 @@ def test_one_engine_is_measured_alone(ran: list[str], tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "change", [{"made_of": "another adapter"}, {"standing": Standing.FAILED}], ids=str
+    "change",
+    [
+        {"made_of": "another adapter"},
+        {"standing": Standing.FAILED},
+        {"standing": Standing.UNAVAILABLE},
+    ],
+    ids=str,
 )
 def test_another_adapter_is_another_run(
     ran: list[str], tmp_path: Path, change: dict[str, Any]
 ) -> None:
-    """So is a run that failed: it is asked for again."""
+    """So is a run that failed, or had no environment: the machine may be at fault."""
     key, answer = next(iter(KNOWN.items()))
     changed = {**KNOWN, key: replace(answer, row=replace(answer.row, **change))}
     measure(ENTRIES, changed, Unfinished(tmp_path), lambda words: None)
@@ -112,16 +118,6 @@ def test_a_run_that_ends_early_is_a_row() -> None:
     assert found.row.standing is Standing.FAILED
     assert "exit status" in found.row.detail
     assert (found.states, found.row.errors) == (None, {})
-
-
-def test_what_an_engine_leaves_behind_is_not_left_here(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A log that it writes to the folder where it is run is gone with that folder."""
-    monkeypatch.chdir(tmp_path)
-    bad = replace(SPINNER, solver="process:touch log", values=())
-    assert answered(next(bad.runs(ENTRIES.scene))).row.standing is Standing.FAILED
-    assert list(tmp_path.iterdir()) == []
 
 
 # What is stored.

@@ -13,6 +13,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Final, final
 
 from taylor_verify.models.problem import Problem, pose, pose_as_stored
@@ -171,7 +172,10 @@ class Outside(Solver):
         settings = [f"{key}={value}" for key, value in self.settings]
         if self.engine.method:
             settings = [f"method={self.engine.method}", *settings]
-        return process.program([*command, *settings], self.time_limit).solve(problem)
+        # Engines leave logs where they are run, which is no place of the user's.
+        with TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+            words = [*command, *settings]
+            return process.program(words, self.time_limit, folder).solve(problem)
 
 
 def named(name: str) -> Outside:

@@ -11,7 +11,7 @@
 // row() reads the present state by body.rowFromSpace. The first row is read before any step, so that it
 // shows the state that the engine really begins with. Quaternions are [x, y, z, w], as in these engines.
 
-import { readFileSync } from "node:fs";
+import { readFileSync, writeSync } from "node:fs";
 
 // Standard output belongs to the answer, whatever an engine says.
 console.log = console.info = console.error;
@@ -35,6 +35,12 @@ function setting(argument) {
 export function refuse(reason) {
   console.error(String(reason));
   process.exit(1);
+}
+
+// End the script: the question is none for the engine or its script, which is no failure.
+export function unsuited(reason) {
+  writeSync(1, JSON.stringify({ unsuited: reason }));
+  process.exit(0);
 }
 
 // The motion by a fixed step. The propagation is done twice, and the second is timed.
@@ -62,7 +68,7 @@ function propagated(counts, start) {
 // omega reversed, and is given as that one.
 function freeBody({ model, bits, columns, body, initial, time }) {
   if (model !== "euler" || "rotor" in body || "damping" in body || doubles(body.moment).some((m) => m !== 0))
-    refuse("expected a free rigid body, got a moment, wheels, damping or a fluid @ body");
+    unsuited("expected a free rigid body, got a moment, wheels, damping or a fluid @ body");
   const elapsed = doubles(time.elapsed);
   const sign = elapsed.at(-1) < 0 ? -1 : 1;
   const asksStart = elapsed[0] === 0;
@@ -83,7 +89,7 @@ function freeBody({ model, bits, columns, body, initial, time }) {
       return instants.map((instant) => {
         const count = Math.round(instant / step);
         if (!(Math.abs(instant / step - count) <= 4 * 0.5 ** bits * count))
-          refuse(`expected a step that divides t = ${instant}, got ${step} @ step`);
+          unsuited(`expected a step that divides t = ${instant}, got ${step} @ step`);
         return count;
       });
     },

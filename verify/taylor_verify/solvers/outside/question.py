@@ -67,12 +67,26 @@ class Solved:
     remark: str = ""
 
 
+class Unsuited(SystemExit):
+    """The question is not one for the library or its script; the text says why.
+
+    It is told to the caller as such, and is no failure.
+    """
+
+    def document(self) -> dict[str, Any]:
+        """Return the answer that says so."""
+        return {"unsuited": str(self.code)}
+
+
 def answer(solve: Callable[[Question, Settings], Solved]) -> None:
     """Read the question on stdin, solve it as the arguments say, write the answer on stdout."""
-    settings = arguments()
-    question = read(json.load(sys.stdin))
-    solved = solve(question, settings)
-    json.dump(_written(question, solved), sys.stdout)
+    try:
+        settings = arguments()
+        question = read(json.load(sys.stdin))
+        written = _written(question, solve(question, settings))
+    except Unsuited as reason:
+        written = reason.document()
+    json.dump(written, sys.stdout)
 
 
 def arguments() -> Settings:
@@ -141,14 +155,14 @@ COLUMNS = {
 
 
 def read(scene: Any) -> Question:
-    """Return the question in a document; exit with a sentence if it asks for what is not computed."""
+    """Return the question in a document; raises Unsuited if it asks for what is not computed."""
     body, initial, clock = scene["body"], scene["initial"], scene["time"]
     columns = scene["columns"][1:]
     if scene["model"] not in COLUMNS:
-        raise SystemExit(f"expected the model {' or '.join(COLUMNS)}, got {scene['model']}")
+        raise Unsuited(f"expected the model {' or '.join(COLUMNS)}, got {scene['model']}")
     known = COLUMNS[scene["model"]]
     if unknown := [name for name in columns if name not in known.split()]:
-        raise SystemExit(f"expected columns among {known}, got {' '.join(unknown)} @ columns")
+        raise Unsuited(f"expected columns among {known}, got {' '.join(unknown)} @ columns")
     if scene["model"] == "euler":
         wheels = floats(body["rotor"]) if "rotor" in body else [0.0, 0.0, 0.0]
         parameters = _flat(body["inverse_inertia"]) + floats(body["moment"]) + wheels

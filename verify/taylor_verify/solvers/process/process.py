@@ -40,11 +40,13 @@ _STEPS_PER_SECOND = 1e10
 class Process(Solver):
     """The program behind ``process:COMMAND``; COMMAND is split as a shell would, and no shell runs.
 
-    It may take ``time_limit`` seconds for a problem, its start included.
+    It may take ``time_limit`` seconds for a problem, its start included, and runs in ``folder``: in the
+    working folder of this process unless one is given.
     """
 
     name: str
     time_limit: float = DEFAULT_LIMIT
+    folder: str | None = None
     setting: str = ""
 
     @property
@@ -58,13 +60,16 @@ class Process(Solver):
     def solve(self, problem: Problem) -> Trajectory:
         asked = json.dumps(protocol.question(problem)).encode()
         began = perf_counter()
-        ended = converse(self.command, asked, self.time_limit, protocol.longest_answer(problem))
+        longest = protocol.longest_answer(problem)
+        ended = converse(self.command, asked, self.time_limit, longest, self.folder)
         seconds = perf_counter() - began
         if ended.outcome is not Outcome.FINISHED:
             return Trajectory(ended.outcome, detail=ended.detail(), seconds=seconds)
         try:
             found = _trajectory(ended.answer, problem, ended.seconds)
             return replace(found, detail="; ".join(filter(None, (found.detail, ended.left))))
+        except protocol.Unsuited as reason:
+            return Trajectory(Outcome.UNSUITED, detail=str(reason), seconds=seconds)
         except protocol.Misanswer as fault:
             outcome, what = Outcome.MISANSWERED, str(fault)
         except protocol.NotFinite as fault:
@@ -82,9 +87,9 @@ def unavailable() -> str:
     )
 
 
-def program(words: Sequence[str], limit: float) -> Process:
-    """Return the solver that is this command, word by word."""
-    return Process(f"{PREFIX}{shlex.join(words)}", limit)
+def program(words: Sequence[str], limit: float, folder: str | None = None) -> Process:
+    """Return the solver that is this command, word by word, in this folder."""
+    return Process(f"{PREFIX}{shlex.join(words)}", limit, folder)
 
 
 def named(name: str) -> Process:

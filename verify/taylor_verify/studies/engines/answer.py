@@ -5,11 +5,9 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Mapping
-from contextlib import chdir
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
-from tempfile import TemporaryDirectory
 from typing import Any, Final
 
 import numpy as np
@@ -76,9 +74,7 @@ class _Read:
 
 def answered(asked: Asked) -> Answer:
     """Run one engine on one scene and judge what it answers."""
-    # Some engines leave a log where they are run.
-    with TemporaryDirectory() as place, chdir(place):
-        trajectory = solve(asked.scene, asked.solver, asked.rung)
+    trajectory = solve(asked.scene, asked.solver, asked.rung)
     standing = _STANDINGS.get(trajectory.outcome, Standing.FAILED)
     if standing is not Standing.JUDGED:
         return Answer(row_of(asked, standing, detail=_reason(trajectory)))

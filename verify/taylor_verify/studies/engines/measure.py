@@ -1,7 +1,9 @@
 """The runs of the entry list, each in processes of its own, and the board that they make.
 
-A run that is stored already, with the same scene, setting, version and adapter, is not run again. Runs that
-failed, and those of an engine that could not be installed, are asked for again by the next measurement.
+A run that is stored already, with the same scene, setting, version and adapter, is not run again, nor is
+one that the engine is not made for. Runs that failed, and those of an engine that could not be installed,
+are asked for again by the next measurement: a time limit, too little memory and a registry that does not
+answer are faults of a machine and a day. An environment that cannot be had is asked for once, for all runs.
 """
 
 from __future__ import annotations
