@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import shutil
 import sys
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from taylor_verify.judge.judgement import Judgement
@@ -15,8 +17,9 @@ from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines import python
-from taylor_verify.solvers.engines.engine import SCRIPTS, Engine, Outside
+from taylor_verify.solvers.engines.engine import SCRIPTS, Engine, Outside, solve_together
 from taylor_verify.solvers.engines.script import read_script
+from taylor_verify.solvers.trajectory import Outcome
 from taylor_verify.studies.tradeoff.accuracy import Truths
 
 # RK4 in doubles, on I and omega as the question has them: its own error is beyond float32.
@@ -69,6 +72,33 @@ FLOAT32 = 2.0**-24
 F32 = rung("f32")
 
 
+# An engine that remembers what it was asked before, in its process, and dies of a negative omega.
+MORTAL = """\
+# /// script
+# dependencies = []
+# [tool.taylor-verify]
+# title = "counts"
+# loads = false
+# [tool.taylor-verify.settings]
+# step = 0.5
+# ///
+import os
+
+from free_body import answer, stepped
+
+asked = []
+
+
+def solve(body, settings):
+    asked.append(1)
+    if body.omega[0] < 0:
+        os._exit(3)
+    solved = stepped(body, settings.step, lambda: (lambda steps: None, lambda: [*body.omega]))
+    return type(solved)(solved.states, solved.steps, 0, 0.0, 0.0, f"question {len(asked)}")
+
+
+answer(solve)
+"""
 # An engine as strict as some are: it leaves a log where it runs, and takes no tensor that no solid has.
 STRICT = """\
 # /// script
@@ -95,7 +125,7 @@ model = "euler"
 [body]
 inertia = [1, 2, {largest}]
 [initial]
-omega = [1, 1, 1]
+omega = [{first}, 1, 1]
 [time]
 end = 1
 samples = 2
@@ -178,7 +208,7 @@ def test_an_engine_that_ends_on_moments_of_no_solid_has_not_failed(
 ) -> None:
     """It cannot represent the body; the same end on moments that a solid has is a failure."""
     engine = twin(tmp_path, "", monkeypatch, STRICT)
-    found = run(read(NO_SOLID.format(largest=largest), "no solid"), engine, "f64")
+    found = run(read(NO_SOLID.format(largest=largest, first=1), "no solid"), engine, "f64")
     assert {str(v.verdict) for v in found.verdicts} == {verdict}
     assert words in str(found.verdicts[0].reason)
 
@@ -190,5 +220,35 @@ def test_an_engine_leaves_nothing_in_the_folder_of_the_user(
     here = tmp_path / "here"
     here.mkdir()
     monkeypatch.chdir(here)
-    run(read(NO_SOLID.format(largest=3), "a solid"), twin(tmp_path, "", monkeypatch, STRICT), "f64")
+    run(
+        read(NO_SOLID.format(largest=3, first=1), "a solid"),
+        twin(tmp_path, "", monkeypatch, STRICT),
+        "f64",
+    )
     assert list(here.iterdir()) == []
+
+
+def test_one_process_answers_many_questions(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A question that ends it has failed by itself, and the others are answered as if alone."""
+    engine = twin(tmp_path, "", monkeypatch, MORTAL)
+    asked = []
+    for first, step in ((1, "0.5"), (2, "0.3"), (3, "1.0"), (-4, "0.5"), (5, "0.5"), (6, "0.5")):
+        solver = replace(engine, settings=(("step", step),))
+        scene = read(NO_SOLID.format(largest=3, first=first), "a solid")
+        asked.append((solver, solver.problem(scene, rung("f64"))))
+    found = solve_together(asked)
+    assert [answer.outcome for answer in found] == [
+        *(Outcome.FINISHED, Outcome.UNSUITED, Outcome.FINISHED),
+        *(Outcome.CRASHED, Outcome.FINISHED, Outcome.FINISHED),
+    ]
+    alone = [solver.solve(problem) for solver, problem in asked]
+    for one, other in zip(found, alone, strict=True):
+        assert one.outcome is other.outcome
+        assert one.quantities.keys() == other.quantities.keys()
+        assert all(np.all(one.quantities[k] == other.quantities[k]) for k in one.quantities)
+    # The first process has come to the third question; all from the fourth on are asked alone.
+    details = ["question 1", "question 3", "question 1", "question 1"]
+    assert [a.detail for a in found if a.outcome is Outcome.FINISHED] == details
+    assert found[3].detail.startswith("exit status 3")

@@ -29,13 +29,13 @@ def ran(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     made: list[str] = []
 
     def run_all(
-        work: Callable[[Asked], Answer], asked: list[Asked], **options: Any
-    ) -> list[Answer]:
+        work: Callable[[list[Asked]], list[Answer]], asked: list[list[Asked]], **options: Any
+    ) -> list[list[Answer]]:
         found = []
-        for one in asked:
-            made.append(one.key)
-            found.append(KNOWN.get(one.key) or work(one))
-            options["ended"](one, found[-1])
+        for some in asked:
+            made.extend(one.key for one in some)
+            found.append([KNOWN.get(one.key) or work([one])[0] for one in some])
+            options["ended"](some, found[-1])
         return found
 
     monkeypatch.setattr(measuring, "run_all", run_all)
@@ -114,7 +114,7 @@ def test_an_engine_that_cannot_be_installed_is_no_failure(
 def test_a_run_that_ends_early_is_a_row() -> None:
     """It failed, with how it ended; there is no trajectory and no error."""
     bad = replace(SPINNER, solver="process:false", values=())
-    found = answered(next(bad.runs(ENTRIES.scene)))
+    (found,) = answered([next(bad.runs(ENTRIES.scene))])
     assert found.row.standing is Standing.FAILED
     assert "exit status" in found.row.detail
     assert (found.states, found.row.errors) == (None, {})

@@ -17,7 +17,6 @@ read before any step, so that it shows the state that the engine really begins w
 
 from __future__ import annotations
 
-import json
 import math
 import os
 import sys
@@ -34,10 +33,10 @@ from question import (
     Settings,
     Solved,
     Unsuited,
-    arguments,
     document,
     floats,
     read,
+    serve,
     unit,
 )
 
@@ -148,19 +147,19 @@ class FreeBody(Body):
 def answer(
     solve: Callable[[Any, Settings], Solved], read: Callable[[Any], Body] | None = None
 ) -> None:
-    """Read the question on stdin, solve it as the arguments say, write the answer on stdout.
+    """Read the question on stdin, or many, solve it as the arguments say, write the answer on stdout.
 
     ``read`` makes a body of the question, a free rigid one unless another reader is given.
     """
     # Engines greet on standard output, in C too; it is for the answer alone.
     with os.fdopen(os.dup(sys.stdout.fileno()), "w") as out:
         os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
-        try:
-            settings, body = arguments(), (read or free_body)(json.load(sys.stdin))
-            written = document(body.question, _solved(solve, body, settings))
-        except Unsuited as reason:
-            written = reason.document()
-        json.dump(written, out)
+
+        def answered(scene: Any, settings: Settings) -> dict[str, Any]:
+            body = (read or free_body)(scene)
+            return document(body.question, _solved(solve, body, settings))
+
+        serve(answered, out)
 
 
 def _solved(solve: Callable[[Any, Settings], Solved], body: Body, settings: Settings) -> Solved:

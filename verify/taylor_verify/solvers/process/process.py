@@ -27,6 +27,7 @@ from taylor_verify.solvers.solver import Callback, Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
 PREFIX: Final = "process:"
+_MANY: Final = "many"
 # Seconds for one scene: a hundred times what rk4.py takes for any shipped one at a step of 0.02.
 DEFAULT_LIMIT: Final = 300.0
 
@@ -76,6 +77,33 @@ class Process(Solver):
             outcome, what = Outcome.NON_FINITE, str(fault)
         detail = replace(ended, what=what).detail()
         return Trajectory(outcome, detail=detail, seconds=seconds)
+
+
+def together(
+    words: Sequence[str],
+    asked: Sequence[tuple[Sequence[str], Problem]],
+    limit: float,
+    folder: str | None = None,
+) -> list[Trajectory | None]:
+    """Return what one process of the command answers to many questions, each with its settings.
+
+    The command knows the argument `many` (solvers/outside/question.py). None stands where it gave no sound
+    answer, and for all that came after: these questions have to be asked alone. ``limit`` is for all.
+    """
+    lines = [
+        json.dumps({"settings": [*settings], "question": protocol.question(problem)})
+        for settings, problem in asked
+    ]
+    longest = sum(protocol.longest_answer(problem) for _, problem in asked)
+    text = "".join(f"{line}\n" for line in lines).encode()
+    ended = converse([*words, _MANY], text, limit, longest, folder)
+    # What stands behind the last end of a line is no whole answer.
+    answers = [] if ended.left else ended.answer.split(b"\n")[:-1]
+    found: list[Trajectory | None] = [None] * len(asked)
+    for place, (answer, (_, problem)) in enumerate(zip(answers, asked, strict=False)):
+        with suppress(protocol.Misanswer, protocol.NotFinite, protocol.Unsuited):
+            found[place] = _trajectory(answer, problem, ended.seconds)
+    return found
 
 
 def unavailable() -> str:
