@@ -9,38 +9,43 @@ import numpy as np
 
 from builders.trajectories import QUATERNION, VECTORS, Columns, named
 from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.reading.reader import load
 
 Array = np.ndarray[Any, Any]
-# omega after a step of length h, from I, omega, the moment M and h.
-Kick = Callable[[Array, Array, Array, float], Array]
+# omega after a step of length h, from I, the momentum of the wheels, omega, the moment M and h.
+Kick = Callable[[Array, Array, Array, Array, float], Array]
 
 
-def none(inertia: Array, w: Array, moment: Array, h: float) -> Array:
+def none(inertia: Array, rotor: Array, w: Array, moment: Array, h: float) -> Array:
     return w + h * np.linalg.solve(inertia, moment)
 
 
-def explicit(inertia: Array, w: Array, moment: Array, h: float) -> Array:
-    return w + h * np.linalg.solve(inertia, moment - np.cross(w, inertia @ w))
+def explicit(inertia: Array, rotor: Array, w: Array, moment: Array, h: float) -> Array:
+    return w + h * np.linalg.solve(inertia, moment - np.cross(w, inertia @ w + rotor))
 
 
-def implicit(inertia: Array, w: Array, moment: Array, h: float) -> Array:
-    """One step of Newton's method for I (w' - w) = h (M - w' x I w')."""
-    slope = np.column_stack(
-        [np.cross(e, inertia @ w) + np.cross(w, inertia @ e) for e in np.eye(3)]
-    )
-    torque = moment - np.cross(w, inertia @ w)
-    return w + h * np.linalg.solve(inertia + h * slope, torque)
+def without_wheels(inertia: Array, rotor: Array, w: Array, moment: Array, h: float) -> Array:
+    """An implicit step that knows nothing of the wheels."""
+    return implicit(inertia, 0 * rotor, w, moment, h)
+
+
+def implicit(inertia: Array, rotor: Array, w: Array, moment: Array, h: float) -> Array:
+    """One step of Newton's method for I (w' - w) = h (M - w' x (I w' + rotor))."""
+    momentum = inertia @ w + rotor
+    slope = np.column_stack([np.cross(e, momentum) + np.cross(w, inertia @ e) for e in np.eye(3)])
+    return w + h * np.linalg.solve(inertia + h * slope, moment - np.cross(w, momentum))
 
 
 def engine(scene: str, kick: Kick, h: float, rows: int, every: int = 1) -> Columns:
     """Rows of t, omega in body axes and a unit quaternion; a row after every so many steps."""
     given = load(scene)
-    assert isinstance(given.body, RigidBody)
+    assert isinstance(given.body, RigidBody | Gyrostat)
     assert isinstance(given.initial, Spin)
     inertia = np.array(given.body.inertia, dtype=float)
     moment = np.array(given.body.moment, dtype=float)
+    rotor = np.array(given.body.parts().get("rotor", np.zeros(3)), dtype=float)
     w = np.array(given.initial.omega, dtype=float)
     q = np.array(given.initial.attitude, dtype=float)
     q /= np.linalg.norm(q)
@@ -48,7 +53,7 @@ def engine(scene: str, kick: Kick, h: float, rows: int, every: int = 1) -> Colum
     for step in range((rows - 1) * every + 1):
         if step % every == 0:
             found.append([start + step * h, *w, *q])
-        w = kick(inertia, w, moment, h)
+        w = kick(inertia, rotor, w, moment, h)
         q = _turned(q, h * w)
     table = np.array(found)
     columns = named(("t",), table[:, :1])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 
 from builders.free_spins import OBLIQUE
@@ -92,3 +93,11 @@ def scene_of(free: FreeGyrostat, *instants: Fraction | int) -> Scene:
     clock = Clock(Fraction(0), tuple(map(Fraction, instants or (1,))))
     body, start = Gyrostat(free.inertia, free.rotor), Spin(free.omega, TILTED)
     return Scene("wheels", "wheels", "euler", frozenset({"attitude"}), body, start, clock)
+
+
+def paced(free: FreeGyrostat, instants: Sequence[Fraction]) -> list[Fraction]:
+    """Return the instants in units of the time in which the motion turns by a radian or so."""
+    stiffness = max(abs(entry) for row in free.K for entry in row)
+    fastest = stiffness * max(map(abs, free.momentum))
+    pace = max(abs(rate) for rate in (fastest, *free.omega, *free.g))
+    return [t / pace for t in instants] if pace else list(instants)

@@ -516,3 +516,20 @@ def test_explain_holds_the_elements_and_the_condition(name: str) -> None:
     else:
         assert document["condition"]["worst"] >= document["condition"]["end"] > 0
         assert f"{document['condition']['worst']:.3g}" in document["condition"]["sentence"]
+
+
+@pytest.mark.parametrize(
+    ("name", "on", "rounded", "regimes"),
+    [
+        ("kirchhoff/vacuum-ellipsoid", "f64", ["body", "start"], ("separatrix", "min-axis")),
+        ("euler/separatrix", "f64", [], ("separatrix", "separatrix")),
+        ("euler/separatrix", "f32", [], ("separatrix", "separatrix")),
+    ],
+)
+def test_explain_tells_the_scenes_own_orbit_and_what_the_rung_rounds(
+    name: str, on: str, rounded: list[str], regimes: tuple[str, str]
+) -> None:
+    """The regime is decided in the scene's own numbers; beside it stands that of the rounded ones."""
+    document = explanation(name, on)
+    assert document["rounded"] == rounded
+    assert (document["regime"], document["rung_regime"]) == regimes

@@ -17,6 +17,7 @@ from builders.gyrostats import (
     TRIAXIAL,
     homoclinic,
     on_circle,
+    paced,
     scene_of,
     turned,
 )
@@ -132,14 +133,6 @@ def gyrostats(draw: st.DrawFn) -> FreeGyrostat:
     return turned(free, turn) if draw(st.booleans()) else free
 
 
-def slow(free: FreeGyrostat, instants: Sequence[Fraction]) -> list[Fraction]:
-    """Return the instants in units of the time in which the motion turns by a radian or so."""
-    stiffness = max(abs(entry) for row in free.K for entry in row)
-    fastest = stiffness * max(map(abs, free.momentum))
-    pace = max(abs(rate) for rate in (fastest, *free.omega, *free.g))
-    return [t / pace for t in instants] if pace else list(instants)
-
-
 def agree(free: FreeGyrostat, instants: Sequence[Fraction], digits: int = DIGITS) -> None:
     """Both closed forms are the same motion, to the digits asked for."""
     scene = scene_of(free)
@@ -165,14 +158,14 @@ def test_both_routes_agree(name: str) -> None:
 @pytest.mark.parametrize("name", EXTREMES)
 def test_both_routes_agree_at_the_borders(name: str) -> None:
     """So they are 1e-30 beside a separatrix, a cusp and a steady spin, and for h of any size."""
-    agree(EXTREMES[name], slow(EXTREMES[name], INSTANTS))
+    agree(EXTREMES[name], paced(EXTREMES[name], INSTANTS))
 
 
 @given(gyrostats())
 @settings(max_examples=25)
 def test_both_routes_agree_for_any_gyrostat(free: FreeGyrostat) -> None:
     """Whatever the body, the wheels and the start, the two closed forms differ by no more than asked."""
-    agree(free, slow(free, (Fraction(3, 2), Fraction(-40))), 20)
+    agree(free, paced(free, (Fraction(3, 2), Fraction(-40))), 20)
 
 
 @pytest.mark.slow
@@ -180,7 +173,7 @@ def test_both_routes_agree_for_any_gyrostat(free: FreeGyrostat) -> None:
 @settings(max_examples=200)
 def test_three_routes_agree_for_any_gyrostat(free: FreeGyrostat) -> None:
     """Enclosed Taylor series find the motion of both closed forms; these agree a hundred times later."""
-    instants = slow(free, (Fraction(3, 2), Fraction(-2), Fraction(300)))
+    instants = paced(free, (Fraction(3, 2), Fraction(-2), Fraction(300)))
     agree(free, instants, 20)
     agrees_with_series(free, instants[:2])
 
@@ -195,7 +188,7 @@ def agrees_with_series(free: FreeGyrostat, instants: Sequence[Fraction]) -> None
 @pytest.mark.parametrize("name", EXTREMES)
 def test_taylor_series_agree_at_the_borders(name: str) -> None:
     """Series know no pole of phi', which too few digits put on the double point at any precision."""
-    agrees_with_series(EXTREMES[name], slow(EXTREMES[name], INSTANTS[:3]))
+    agrees_with_series(EXTREMES[name], paced(EXTREMES[name], INSTANTS[:3]))
 
 
 @pytest.mark.parametrize("name", ["circle", "circle, wheels along axis 1", "separatrix", "cusp"])
@@ -263,7 +256,7 @@ def tops(draw: st.DrawFn) -> FreeSpin:
 def is_eulers_top(spin: FreeSpin) -> None:
     """Weierstrass's formula, by balls and by mpmath, finds the motion of both routes of a rigid body."""
     none = FreeGyrostat(spin.inertia, vector(0, 0, 0), spin.omega)
-    instants = slow(none, (Fraction(3, 2), Fraction(-40)))
+    instants = paced(none, (Fraction(3, 2), Fraction(-40)))
     found = GyrostatBalls(none, TILTED).motion(instants, 20)
     routes = (
         jacobi.free_rotation(none, TILTED),

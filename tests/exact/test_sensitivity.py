@@ -41,6 +41,11 @@ SCENES = {
     ),
     "clebsch": CLEBSCH,
     "general": one_instant(LOADED, IMPULSE, "attitude", "centre"),
+    "damped": one_instant(RigidBody(TENSOR, damping=Fraction(1, 5)), SPIN, "attitude"),
+    "damped, moment": one_instant(
+        RigidBody(TENSOR, MOMENT, damping=Fraction(-1, 7)), SPIN, "attitude"
+    ),
+    "damped, clebsch": replace(CLEBSCH, body=CLEBSCH.body.with_damping(Fraction(2, 5))),
 }
 
 
@@ -63,20 +68,23 @@ LITTLE = mpf("1e-20")
 State = dict[str, Array]
 
 
-def rates(problem: Scene, state: State, body: Sequence[Any]) -> State:
+def rates(problem: Scene, state: State, body: Sequence[Any], damping: Any) -> State:
     """z', R' and c' of a state; the body as the numbers that sensitivity calls its components."""
     R = state["attitude"]
     if isinstance(problem.body, RigidBody):
         inertia, omega = symmetric(body), state["omega"]
         inverse = np.array(mp.inverse(mp.matrix(inertia.tolist())).tolist(), dtype=object)
         torque = np.cross(inertia @ omega, omega) + column(problem.body.moment)
-        return {"omega": inverse @ torque, "attitude": R @ cross_matrix(omega)}
+        slowing = damping * omega
+        return {"omega": inverse @ torque - slowing, "attitude": R @ cross_matrix(omega)}
     x, y = state["linear_impulse"], state["angular_impulse"]
     A, B, C = matrices(body)
     U, omega = A @ x + B @ y, B.T @ x + C @ y
     return {
-        "linear_impulse": np.cross(x, omega) + column(problem.body.force),
-        "angular_impulse": np.cross(y, omega) + np.cross(x, U) + column(problem.body.couple),
+        "linear_impulse": np.cross(x, omega) + column(problem.body.force) - damping * x,
+        "angular_impulse": (
+            np.cross(y, omega) + np.cross(x, U) + column(problem.body.couple) - damping * y
+        ),
         "attitude": R @ cross_matrix(omega),
         "centre": R @ U,
     }
@@ -114,6 +122,10 @@ def numbers(problem: Scene) -> list[Any]:
     return [mp.convert(c) for c in (*outer[0], *inner, *outer[1])]
 
 
+TIMES = vector("0.7", 3, -5)
+DIGITS = 20
+# The digits asked for, times sums of six numbers of size ten.
+CLOSE = mpf(10) ** (2 - DIGITS)
 MIDDLE, STEP = Fraction(1, 2), Fraction(1, 2**33)
 
 
@@ -133,7 +145,7 @@ def misfit(name: str, twin: Twin = lambda found: found) -> mpf:
     motion = solution(problem).motion(found.elapsed[:3], 40)
     with mp.workdps(60):
         states = [{name: rows[k] for name, rows in motion.quantities.items()} for k in range(3)]
-        body = numbers(problem)
+        body, damping = numbers(problem), mp.convert(problem.body.damping)
         worst = mpf(0)
         for into, names in found.components.items():
             for j in range(len(names)):
@@ -146,6 +158,7 @@ def misfit(name: str, twin: Twin = lambda found: found) -> mpf:
                             entry + s * (i == j and into in ("inertia", "clebsch", "energy"))
                             for i, entry in enumerate(body)
                         ],
+                        damping + s * (into == "damping"),
                     )
                     for s in (LITTLE, -LITTLE)
                 )
@@ -175,6 +188,32 @@ def test_derivatives_obey_the_linearised_equations(name: str) -> None:
         for (out, into), rows in known(name).by.items():
             expected = np.eye(3) if out == into else 0
             assert largest(rows[3] - expected) <= mpf("1e-24")
+
+
+@pytest.mark.parametrize("name", ["tumbling", "clebsch", "damped", "damped, clebsch"])
+def test_damping_slows_the_clock_and_shrinks_the_momenta(name: str) -> None:
+    """Where z = e^{-ct} Z(tau) with tau = (1 - e^{-ct})/c, the derivative by c is that of this formula.
+
+    It is -t z + s (z' + c z), and s times the rates of attitude and centre, where s = e^{ct} dtau/dc is
+    -t^2 M(1, 3, ct)/2 in Kummer's M, for c = 0 too.
+    """
+    problem, found = SCENES[name], sensitivity(SCENES[name], TIMES, DIGITS)
+    motion = solution(problem).motion(TIMES, DIGITS + 5)
+    with mp.workdps(40):
+        c, t = mp.convert(problem.body.damping), column(TIMES)
+        s = np.array([-(time**2) * mp.hyp1f1(1, 3, c * time) / 2 for time in t])[:, None]
+        for name, flow in found.flow.items():
+            expected = s * flow
+            if name not in ("attitude", "centre"):
+                expected = expected + (c * s - t[:, None]) * motion[name]
+            difference = found[name, "damping"][:, :, 0] - expected
+            assert largest(difference) <= CLOSE * (1 + largest(expected))
+
+
+def test_wheels_and_loads_have_no_derivative_by_a_damping_that_is_not_there() -> None:
+    """With a constant moment damping is an input of the damped body alone."""
+    assert "damping" not in known("moment").components
+    assert known("damped, moment").components["damping"] == ("c",)
 
 
 def transposed(found: Sensitivity) -> Sensitivity:
@@ -210,11 +249,6 @@ def test_a_broken_twin_is_noticed(twin: Twin) -> None:
 
 
 # Closed formulas and laws of scale.
-
-TIMES = vector("0.7", 3, -5)
-DIGITS = 20
-# The digits asked for, times sums of six numbers of size ten.
-CLOSE = mpf(10) ** (2 - DIGITS)
 
 
 def test_axisymmetric_body() -> None:

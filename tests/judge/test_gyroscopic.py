@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders.first_order import Kick, engine, explicit, implicit, none
+from builders.first_order import Kick, engine, explicit, implicit, none, without_wheels
 from builders.trajectories import (
     VECTORS,
     Columns,
@@ -50,6 +50,24 @@ def test_each_treatment_is_named(
     assert kick is none or f"with h = {h:g}; " in cause
     # Of rows that are steps all is explained but roundings.
     assert "this explains 100 % of the error of omega" in cause
+
+
+@pytest.mark.parametrize("kick", [explicit, implicit])
+@pytest.mark.parametrize("scene", ["euler/gyrostat", "euler/gyrostat-moment"])
+def test_a_step_for_a_body_with_wheels_is_named(scene: str, kick: Kick, tmp_path: Path) -> None:
+    """The torque of the wheels is a part of the term: with it a first-order step explains everything."""
+    (cause,) = causes(tmp_path, scene, engine(scene, kick, 0.01, 41))
+    assert cause.startswith(f"{WORDS[kick]}: ")
+    assert "with h = 0.01; " in cause
+    assert "this explains 100 % of the error of omega" in cause
+
+
+def test_an_engine_without_the_torque_of_the_wheels_is_named(tmp_path: Path) -> None:
+    """Its own first order hides nothing: without h x omega is said, and no step of first order."""
+    (cause,) = causes(
+        tmp_path, "euler/gyrostat", engine("euler/gyrostat", without_wheels, 0.001, 41)
+    )
+    assert cause.startswith("wheels left out: ")
 
 
 def test_a_moment_is_no_gyroscopic_term(tmp_path: Path) -> None:

@@ -4,19 +4,22 @@ from __future__ import annotations
 
 import shutil
 import sys
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.models.problem import pose
 from taylor_verify.run import run
 from taylor_verify.scenes.precision import rung
-from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines import python
-from taylor_verify.solvers.engines.engine import SCRIPTS, Engine, Outside
+from taylor_verify.solvers.engines.engine import SCRIPTS, Engine, Outside, solve_together
 from taylor_verify.solvers.engines.script import read_script
+from taylor_verify.solvers.trajectory import Outcome
 from taylor_verify.studies.tradeoff.accuracy import Truths
 
 # RK4 in doubles, on I and omega as the question has them: its own error is beyond float32.
@@ -69,13 +72,73 @@ FLOAT32 = 2.0**-24
 F32 = rung("f32")
 
 
-def twin(folder: Path, data: str, monkeypatch: pytest.MonkeyPatch) -> Outside:
+# An engine that remembers what it was asked before, in its process, and dies of a negative omega.
+MORTAL = """\
+# /// script
+# dependencies = []
+# [tool.taylor-verify]
+# title = "counts"
+# loads = false
+# [tool.taylor-verify.settings]
+# step = 0.5
+# ///
+import os
+
+from free_body import answer, stepped
+
+asked = []
+
+
+def solve(body, settings):
+    asked.append(1)
+    if body.omega[0] < 0:
+        os._exit(3)
+    solved = stepped(body, settings.step, lambda: (lambda steps: None, lambda: [*body.omega]))
+    return type(solved)(solved.states, solved.steps, 0, 0.0, 0.0, f"question {len(asked)}")
+
+
+answer(solve)
+"""
+# An engine as strict as some are: it leaves a log where it runs, and takes no tensor that no solid has.
+STRICT = """\
+# /// script
+# dependencies = []
+# [tool.taylor-verify]
+# title = "refuses"
+# loads = false
+# ///
+from pathlib import Path
+
+from free_body import answer
+
+
+def solve(body, settings):
+    Path("ENGINE_LOG.TXT").write_text("hello")
+    raise ValueError("A + B >= C is required")
+
+
+answer(solve)
+"""
+NO_SOLID = """\
+title = "no solid"
+model = "euler"
+[body]
+inertia = [1, 2, {largest}]
+[initial]
+omega = [{first}, 1, 1]
+[time]
+end = 1
+samples = 2
+"""
+
+
+def twin(folder: Path, data: str, monkeypatch: pytest.MonkeyPatch, text: str = TWIN) -> Outside:
     """The script as an engine that runs in this interpreter."""
     monkeypatch.setattr(python, "interpreter", lambda *_: sys.executable)
     for module in ("equations.py", "free_body.py", "question.py"):
         shutil.copy(SCRIPTS / module, folder)
     path = folder / "with_twin.py"
-    path.write_text(TWIN.format(data=data), encoding="utf-8")
+    path.write_text(text.replace("{data}", data), encoding="utf-8")
     script = read_script(path)
     return Outside(Engine(script), f"outside:twin-{script.about.data}", script.block, ())
 
@@ -131,3 +194,61 @@ def test_an_engine_for_free_bodies_is_not_asked_for_others(
     found = run(name, twin(tmp_path, 'data = "tensor"', monkeypatch), "f32")
     assert {str(v.verdict) for v in found.verdicts} == {"unavailable"}
     assert "free bodies without wheels" in str(found.verdicts[0].reason)
+
+
+@pytest.mark.parametrize(
+    ("largest", "verdict", "words"),
+    [
+        (5, "unavailable", "expected principal moments of a solid, got 1.0, 2.0, 5.0 @ inertia"),
+        (3, "fail", "A + B >= C is required"),
+    ],
+)
+def test_an_engine_that_ends_on_moments_of_no_solid_has_not_failed(
+    largest: int, verdict: str, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It cannot represent the body; the same end on moments that a solid has is a failure."""
+    engine = twin(tmp_path, "", monkeypatch, STRICT)
+    found = run(read(NO_SOLID.format(largest=largest, first=1), "no solid"), engine, "f64")
+    assert {str(v.verdict) for v in found.verdicts} == {verdict}
+    assert words in str(found.verdicts[0].reason)
+
+
+def test_an_engine_leaves_nothing_in_the_folder_of_the_user(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A log that it writes where it is run is gone with that folder."""
+    here = tmp_path / "here"
+    here.mkdir()
+    monkeypatch.chdir(here)
+    run(
+        read(NO_SOLID.format(largest=3, first=1), "a solid"),
+        twin(tmp_path, "", monkeypatch, STRICT),
+        "f64",
+    )
+    assert list(here.iterdir()) == []
+
+
+def test_one_process_answers_many_questions(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A question that ends it has failed by itself, and the others are answered as if alone."""
+    engine = twin(tmp_path, "", monkeypatch, MORTAL)
+    asked = []
+    for first, step in ((1, "0.5"), (2, "0.3"), (3, "1.0"), (-4, "0.5"), (5, "0.5"), (6, "0.5")):
+        solver = replace(engine, settings=(("step", step),))
+        scene = read(NO_SOLID.format(largest=3, first=first), "a solid")
+        asked.append((solver, solver.problem(scene, rung("f64"))))
+    found = solve_together(asked)
+    assert [answer.outcome for answer in found] == [
+        *(Outcome.FINISHED, Outcome.UNSUITED, Outcome.FINISHED),
+        *(Outcome.CRASHED, Outcome.FINISHED, Outcome.FINISHED),
+    ]
+    alone = [solver.solve(problem) for solver, problem in asked]
+    for one, other in zip(found, alone, strict=True):
+        assert one.outcome is other.outcome
+        assert one.quantities.keys() == other.quantities.keys()
+        assert all(np.all(one.quantities[k] == other.quantities[k]) for k in one.quantities)
+    # The first process has come to the third question; all from the fourth on are asked alone.
+    details = ["question 1", "question 3", "question 1", "question 1"]
+    assert [a.detail for a in found if a.outcome is Outcome.FINISHED] == details
+    assert found[3].detail.startswith("exit status 3")

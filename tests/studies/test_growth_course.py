@@ -70,6 +70,8 @@ def test_pieces_lead_to_every_instant(monkeypatch: pytest.MonkeyPatch) -> None:
         ({"lanes": 1}, "expected at least 2 lanes, got 1"),
         ({"name": "euler/constant-moment"}, "expected a free body.*@ euler/constant-moment"),
         ({"name": "kirchhoff/constant-loads"}, "expected a free body.*@ kirchhoff/constant-loads"),
+        ({"name": "euler/damped"}, "expected a motion that recurs.*dies away.*@ euler/damped"),
+        ({"name": "euler/damped-negative"}, "expected a motion that recurs.*speeds up"),
         ({"solver": "taylor?tol=0"}, "tol"),
         ({"solver": "scipy:RK45"}, "expected a method .taylor., got 'RK45'"),
     ],

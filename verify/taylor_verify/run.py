@@ -68,7 +68,7 @@ def run(
 
     scene, solver, rung = as_scene(scene), as_solver(solver), rung_named(rung)
     asked = tolerances(tolerance, [scene])
-    problem = _posed(scene, solver, rung)
+    problem = posed(scene, solver, rung)
     if isinstance(problem, Trajectory):
         outcome, detail = problem.outcome, problem.detail
         is_refused = outcome is Outcome.NOT_REPRESENTABLE
@@ -115,11 +115,11 @@ def solve(
     from taylor_verify.solvers.trajectory import Trajectory
 
     solver = as_solver(solver)
-    problem = _posed(as_scene(scene), solver, rung_named(rung))
+    problem = posed(as_scene(scene), solver, rung_named(rung))
     return problem if isinstance(problem, Trajectory) else _answer(solver, problem)
 
 
-def _posed(scene: Scene, solver: Solver, rung: Rung) -> Problem | Trajectory:
+def posed(scene: Scene, solver: Solver, rung: Rung) -> Problem | Trajectory:
     """Return the problem, or a trajectory whose outcome is the reason why there is none."""
     from taylor_verify.models.problem import NotRepresentable
     from taylor_verify.solvers.solver import Lack

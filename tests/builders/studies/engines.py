@@ -29,7 +29,7 @@ ENTRIES = EntryList((BoardScene(SCENE, advice=True),), (SPINNER, WOBBLER, PLAIN)
 @cache
 def answers() -> tuple[Answer, ...]:
     """The runs of the small list, really run."""
-    return tuple(answered(run) for run in ENTRIES.runs())
+    return tuple(answered(ENTRIES.runs()))
 
 
 @cache

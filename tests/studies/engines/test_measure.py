@@ -29,13 +29,13 @@ def ran(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     made: list[str] = []
 
     def run_all(
-        work: Callable[[Asked], Answer], asked: list[Asked], **options: Any
-    ) -> list[Answer]:
+        work: Callable[[list[Asked]], list[Answer]], asked: list[list[Asked]], **options: Any
+    ) -> list[list[Answer]]:
         found = []
-        for one in asked:
-            made.append(one.key)
-            found.append(KNOWN.get(one.key) or work(one))
-            options["ended"](one, found[-1])
+        for some in asked:
+            made.extend(one.key for one in some)
+            found.append([KNOWN.get(one.key) or work([one])[0] for one in some])
+            options["ended"](some, found[-1])
         return found
 
     monkeypatch.setattr(measuring, "run_all", run_all)
@@ -72,12 +72,18 @@ def test_one_engine_is_measured_alone(ran: list[str], tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "change", [{"made_of": "another adapter"}, {"standing": Standing.FAILED}], ids=str
+    "change",
+    [
+        {"made_of": "another adapter"},
+        {"standing": Standing.FAILED},
+        {"standing": Standing.UNAVAILABLE},
+    ],
+    ids=str,
 )
 def test_another_adapter_is_another_run(
     ran: list[str], tmp_path: Path, change: dict[str, Any]
 ) -> None:
-    """So is a run that failed: it is asked for again."""
+    """So is a run that failed, or had no environment: the machine may be at fault."""
     key, answer = next(iter(KNOWN.items()))
     changed = {**KNOWN, key: replace(answer, row=replace(answer.row, **change))}
     measure(ENTRIES, changed, Unfinished(tmp_path), lambda words: None)
@@ -108,20 +114,10 @@ def test_an_engine_that_cannot_be_installed_is_no_failure(
 def test_a_run_that_ends_early_is_a_row() -> None:
     """It failed, with how it ended; there is no trajectory and no error."""
     bad = replace(SPINNER, solver="process:false", values=())
-    found = answered(next(bad.runs(ENTRIES.scene)))
+    (found,) = answered([next(bad.runs(ENTRIES.scene))])
     assert found.row.standing is Standing.FAILED
     assert "exit status" in found.row.detail
     assert (found.states, found.row.errors) == (None, {})
-
-
-def test_what_an_engine_leaves_behind_is_not_left_here(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A log that it writes to the folder where it is run is gone with that folder."""
-    monkeypatch.chdir(tmp_path)
-    bad = replace(SPINNER, solver="process:touch log", values=())
-    assert answered(next(bad.runs(ENTRIES.scene))).row.standing is Standing.FAILED
-    assert list(tmp_path.iterdir()) == []
 
 
 # What is stored.

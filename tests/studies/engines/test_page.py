@@ -146,6 +146,15 @@ def test_an_error_that_changes_is_changed_on_the_page(tmp_path: Path) -> None:
     assert "4.56e-5" in after
 
 
+def test_an_engine_that_the_list_lacks_is_named(tmp_path: Path) -> None:
+    """Its rows make no page and no picture: one sentence says which engine it is, and how they go."""
+    other = replace(SPINNER, name="of-yesterday")
+    stale = board_with(*made_up(SPINNER, {"omega": 1e-3}), *made_up(other, {"omega": 1e-3}))
+    for make in (lambda: page.page(stale, tmp_path), lambda: page.pictures(stale)):
+        with pytest.raises(ValueError, match=r"got of-yesterday: .* @ data/engines\.json"):
+            make()
+
+
 def test_what_has_no_number_is_told_with_its_reason(tmp_path: Path) -> None:
     """Unavailable and failed are no errors of zero: they stand in a list of their own, on both pages."""
     lost = made_up(SPINNER, {}, standing=Standing.UNAVAILABLE, detail="no such package", floors={})

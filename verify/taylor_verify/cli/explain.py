@@ -62,7 +62,9 @@ def _print_problem(page: Page, found: Mapping[str, Any]) -> None:
     for line in found["equations"]:
         page.line(f"  {line}")
     if found["parameters"]:
-        page.line("with, shown as doubles,")
+        rounded = " and ".join(found["rounded"])
+        words = f", the {rounded} rounded to {found['rung']}" if rounded else ""
+        page.line(f"with, shown as doubles{words},")
         for name, value in found["parameters"].items():
             page.line(f"  {name:4} {float.fromhex(value)!r}")
     page.line("in units (exact powers of two)")
@@ -96,6 +98,9 @@ def _counted(cost: Mapping[str, Any]) -> str:
 def _print_orbit(page: Page, found: Mapping[str, Any]) -> None:
     """Print the regime of the orbit, its numbers, and how it carries an error on."""
     page.line(bold("orbit"), f"  {found['regime']}")
+    if found["rung_regime"] != found["regime"]:
+        rounded = f"numbers rounded to {found['rung']}"
+        page.indented("  ", f"Judged is the motion of the {rounded}: {found['rung_regime']}.")
     page.indented("  ", *found["sentences"])
     numbers = [
         (n["name"], f"{n['value']} {_UNITS.get(n['unit'], n['unit'])}".rstrip(), n["meaning"])

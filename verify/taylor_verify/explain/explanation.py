@@ -40,9 +40,7 @@ if TYPE_CHECKING:
 _DIGITS = 15
 # Beyond the digits of a rung, so that what is rounded to it is the exact number.
 _SPARE_DIGITS = 6
-_FROM_RECORD = (
-    *("equations", "parameters", "units", "regime", "route", "truth_digits", "unit_roundoff"),
-)
+_FROM_RECORD = (*("equations", "parameters", "units", "route", "truth_digits", "unit_roundoff"),)
 
 
 def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]:
@@ -71,6 +69,9 @@ def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]
         "warnings": [*scene.warnings, *lacking],
         "body": [*shape, *scene.notes],
         **{name: record.get(name) for name in _FROM_RECORD},
+        "regime": solution(scene).regime,
+        "rung_regime": record.get("regime"),
+        "rounded": _rounded(scene, rung_named(rung)),
         "cost": {
             **_cost(scene, rung),
             **{name: None if lacking else getattr(first, name) for name in effort},
@@ -107,6 +108,16 @@ def _judged_exact_motion(scene: Scene, rung: Rung) -> Judgement | None:
     except (NotRepresentable, Unsettled):
         return None
     return with_initial(found, float(problem.given.clock.start))
+
+
+def _rounded(scene: Scene, rung: Rung) -> list[str]:
+    """Name what the rung rounds; solver and truth then start from other numbers than the scene's."""
+    try:
+        given = pose(scene, rung).given
+    except NotRepresentable:
+        return []
+    pairs = {"body": (scene.body, given.body), "start": (scene.initial, given.initial)}
+    return [name for name, (own, other) in pairs.items() if own.parts() != other.parts()]
 
 
 def _orbit(scene: Scene) -> dict[str, Any]:

@@ -45,9 +45,12 @@ class Body(Parted):
     @property
     def undamped(self) -> Self:
         """The same body without damping."""
-        return (
-            cast("Self", replace(cast("Any", self), damping=Fraction(0))) if self.damping else self
-        )
+        return self.with_damping(Fraction(0)) if self.damping else self
+
+    def with_damping(self, damping: Fraction) -> Self:
+        """Return the same body with this damping."""
+        changed: Self = replace(cast("Any", self), damping=damping)
+        return changed
 
     @property
     def energy_matrix(self) -> Matrix:

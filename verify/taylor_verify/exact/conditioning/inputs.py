@@ -72,6 +72,18 @@ def body_input(scene: Scene) -> Input:
     )
 
 
+def damping_input(scene: Scene) -> Input:
+    """The rate of damping c, zero in a body that has none; in units of the fastest rate of the motion."""
+    kind, body = kind_of(scene.body), scene.body
+    unit = power_of_two(-kind.units(body, kind.state(scene.initial)).time)
+
+    def moved(j: int, amount: Fraction) -> Scene:
+        del j
+        return replace(scene, body=body.with_damping(body.damping + amount))
+
+    return Input("damping", ("c",), (unit,), moved)
+
+
 def _block_units(z: Vector, energy: Matrix) -> Vector:
     """Units of a state, or a momentum: for each component a power of two near the size of its block.
 

@@ -25,7 +25,13 @@ import numpy as np
 from mpmath import mp, mpf
 
 from taylor_verify.exact.conditioning.differences import difference, real
-from taylor_verify.exact.conditioning.inputs import Input, body_input, start_inputs
+from taylor_verify.exact.conditioning.inputs import (
+    Input,
+    body_input,
+    damping_input,
+    start_inputs,
+)
+from taylor_verify.exact.damping import is_solved
 from taylor_verify.exact.enclosure.system import posed_exactly
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.rows import cross_matrices, turned
@@ -65,6 +71,8 @@ class Sensitivity:
         clebsch                            kirchhoff: p p_prime q q_prime r r_prime, or, where T
         energy                             is not of Clebsch's form: A11 A22 A33 A23 A13 A12,
                                            B11 B12 B13 B21 ... B33, C11 ... C12, symmetric likewise
+        damping                            c, where there is damping, and, at c = 0, of a body
+                                           without loads and wheels
 
     ``error[quantity, input]`` (n, k) estimates, and does not prove, the Euclidean error of each
     column. ``flow[quantity]`` (n, 3) is the derivative by time, from the equations of motion (for the
@@ -90,7 +98,7 @@ def sensitivity(scene: Scene, times_elapsed: Sequence[Fraction], digits: int = 1
 
     Raises exact.solution.Unsettled where that cannot be had, ValueError for no times and for a
     manufactured motion. Costs three motions per component of the initial omega or impulses and of the
-    body; by Taylor that is slow.
+    body, and of the damping; by Taylor that is slow.
     """
     if scene.body.manufactured is not None:
         raise ValueError(
@@ -107,6 +115,9 @@ def sensitivity(scene: Scene, times_elapsed: Sequence[Fraction], digits: int = 1
         found = dict(_by_place(motion.quantities, working))
         flow = _flow(scene, motion.quantities)
     inputs = [*start_inputs(scene), body_input(scene)]
+    # Beside a body with loads or wheels, and no damping, there is no damped one in closed form.
+    if scene.body.damping or is_solved(scene):
+        inputs.append(damping_input(scene))
     for each in inputs:
         columns = [_column(base, each, j, digits) for j in range(len(each.units))]
         for name in base.sizes:

@@ -10,7 +10,7 @@ from mpmath import mp
 
 from taylor_verify.exact.element import Element, Elements, settled
 from taylor_verify.exact.gyrostat.closed import free_gyrostat
-from taylor_verify.exact.gyrostat.jacobi import Azimuth, Swing, digits_beside_double_root
+from taylor_verify.exact.gyrostat.jacobi import Azimuth, Swing, digits_beside_multiple_root
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat, Regime
 from taylor_verify.exact.gyrostat.spins import steady_spins
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
@@ -63,7 +63,7 @@ def _numbers(free: FreeGyrostat) -> list[Element]:
     if free.regime is Regime.CUSP:
         return []
     # R recurs but for a turn about H: phi of any body axis, which differ by whole turns.
-    with mp.workdps(mp.dps + ceil(digits_beside_double_root(free))):
+    with mp.workdps(mp.dps + ceil(digits_beside_multiple_root(free))):
         turned = Azimuth(free, Swing(free)).per_period
     angle = turned - 2 * mp.pi * mp.floor(turned / (2 * mp.pi))
     meaning = "angle about H by which the attitude differs after a period, less whole turns"

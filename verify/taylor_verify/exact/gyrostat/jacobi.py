@@ -59,23 +59,29 @@ def free_rotation(free: FreeGyrostat, attitude: Quaternion | None) -> Rotation:
 
 
 def _lost_digits(free: FreeGyrostat, longest: Fraction, turned: bool) -> float:
-    """The decimal digits lost to the angle turned in a time, and beside a double root of the pencil."""
+    """The decimal digits lost to the angle turned in a time, and beside a multiple root of the pencil."""
     del turned
+    return _GUARD_DIGITS + decades(1 + longest * _pace(free)) + digits_beside_multiple_root(free)
+
+
+def _pace(free: FreeGyrostat) -> Fraction:
+    """A bound of the rates of the motion."""
     rates = (free.omega, free.g, tensors.apply(free.K, free.momentum))
-    angle = longest * sum(abs(c) for v in rates for c in v)
-    return _GUARD_DIGITS + decades(1 + angle) + digits_beside_double_root(free)
+    return sum((abs(c) for v in rates for c in v), Fraction(0))
 
 
-def digits_beside_double_root(free: FreeGyrostat) -> float:
-    """Return the decimal digits that two nearly equal roots of the pencil cost.
+def digits_beside_multiple_root(free: FreeGyrostat) -> float:
+    """Return the decimal digits that two or three nearly equal roots of the pencil cost.
 
     A pole of phi' may be all but at the double point there, and too few digits put it on that point: two
-    precisions would agree, and be wrong by the share of the pole in the angle.
+    precisions would agree, and be wrong by the share of the pole in the angle. Three equal roots are zero:
+    near them differences of roots, and of p at a pole, are small beside the square of the rates.
     """
     if not free.discriminant:
         return 0
     g2, g3 = free.invariants
-    return decades((abs(g2) ** 3 + 27 * g3**2) / abs(free.discriminant))
+    size = abs(g2) ** 3 + 27 * g3**2
+    return decades(size / abs(free.discriminant)) + decades(_pace(free) ** 12 / size) / 6
 
 
 @final

@@ -175,7 +175,9 @@ class Azimuth:
 
     @property
     def distance(self) -> float:
-        """The least distance of a pole from the real line."""
+        """The least distance of a pole from the real line; zero if a pole is at no finite place."""
+        if not all(f.argument.is_finite() and f.scale.is_finite() for f in self._factors):
+            return 0.0
         return min(abs(float(factor.argument.imag.mid())) for factor in self._factors)
 
     def turns(self, times: Sequence[arb], line: Line) -> list[acb]:
@@ -219,7 +221,7 @@ def _best_frame(free: FreeGyrostat) -> Frame:
     for number, frame in enumerate(FRAMES):
         with suppress(Undecidable, ZeroDivisionError):
             distance = Azimuth(free, place, frame, curve).distance
-            if distance > 0:  # and no NaN
+            if distance > 0:
                 distances[number] = distance
     if not distances:
         raise Undecidable

@@ -70,6 +70,11 @@ class Axes:
         """True for the body axes themselves, where v_m, v_k and v_n are v1, v2 and v3."""
         return self == UPRIGHT
 
+    @property
+    def number(self) -> int | None:
+        """1, 2 or 3 if e is that body axis; None if it is oblique."""
+        return _UNIT.index(self.n) + 1 if self.n in _UNIT else None
+
     def pair(self, v: Vector) -> tuple[Fraction, Fraction]:
         """Return m.v and k.v, the rational parts of v_m and v_k."""
         return tensors.dot(self.m, v), tensors.dot(self.k, v)

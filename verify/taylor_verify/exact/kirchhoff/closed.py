@@ -28,7 +28,6 @@ from taylor_verify.exact.kirchhoff.regime import nutation_of, regime
 from taylor_verify.exact.kirchhoff.screws import is_steady
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.kirchhoff.top import top, with_impulses
-from taylor_verify.exact.kirchhoff.turned import upright
 from taylor_verify.exact.kirchhoff.turning import TurningBody
 from taylor_verify.exact.kirchhoff.vacuum import at_own_pace
 from taylor_verify.exact.kirchhoff.weber.course import WeberBalls
@@ -88,7 +87,7 @@ def case(scene: Scene) -> Case:
 
 def revolution(whole: Reduced) -> Case | None:
     """A body of revolution about any direction: Clebsch's, in axes of which the third is that one."""
-    found = upright(centred(whole))
+    found = centred(whole)
     scene = found.scene
     if clebsch_about(solid(scene)[0]) is None:
         return None

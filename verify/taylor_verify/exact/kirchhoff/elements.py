@@ -12,7 +12,6 @@ from taylor_verify.exact.kirchhoff.axes import Axes
 from taylor_verify.exact.kirchhoff.closed import Case, case
 from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.kirchhoff.solid import solid
-from taylor_verify.exact.kirchhoff.turned import axis_of_revolution
 from taylor_verify.exact.manufactured import MANUFACTURED, REGIME
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
 from taylor_verify.scenes.scene import Scene
@@ -35,13 +34,12 @@ def elements(scene: Scene, digits: int) -> Elements:
     if impulses is not None and isinstance(impulses.subject, Nutation):
         found = clebsch_elements.elements(impulses.reduced.scene, digits)
         axes = impulses.subject.axes
-        if axes.is_upright:
-            axis = axis_of_revolution(scene)
-            found = found if axis == 3 else _about(axis, found)
-            if body.axis_of_symmetry is None:
-                found = _beside(found, f"y{axis}")
-        else:
+        if axes.number is None:
             found = _oblique(axes, found)
+        else:
+            found = found if axes.is_upright else _about(axes.number, found)
+            if body.axis_of_symmetry is None:
+                found = _beside(found, f"y{axes.number}")
     else:
         kind = NO_CLOSED_FORM if whole is None else whole.regime
         found = general.elements(scene, impulses, kind, digits)
@@ -70,7 +68,7 @@ def _beside(found: Elements, y: str) -> Elements:
     return replace(found, sentences=tuple(told))
 
 
-def _about(axis: int | None, found: Elements) -> Elements:
+def _about(axis: int, found: Elements) -> Elements:
     """The elements with x3, y3 and axis 3 renamed to those of the axis of symmetry."""
     return _renamed(found, {third: f"{third[:-1]}{axis}" for third in ("x3", "y3", "axis 3")})
 

@@ -1,4 +1,6 @@
-"""Steps of first order for the gyroscopic term omega x I omega: explicit and implicit.
+"""Steps of first order for the gyroscopic term omega x (I omega + h): explicit and implicit.
+
+Legend: h is the step, except in this term, where it is the momentum of the wheels: ``rotor``.
 
 An explicit step is forward Euler on the term, an implicit one a step of Newton's method for backward
 Euler. Each is a map of one step, and its result is computed from every row to the next one. Rows need
@@ -34,15 +36,17 @@ def gyroscopic_step(material: Material) -> Iterator[Candidate]:
     right, pairs = material.equations, material.pairs
     if not right.is_rigid:
         return
-    for name, why, step in _STEPS:
+    momentum = "(I omega + wheels)" if any(right.rotor) else "I omega"
+    for name, words, step in _STEPS:
         left, h = _best_step(step, right, pairs)
+        why = words.format(momentum=momentum)
         yield Candidate(name, "omega", left, f"{why}, with h = {h:.3g}", fitted=1)
 
 
 def _torque(body: Equations, omega: Floats) -> Floats:
-    """M - omega x I omega - c I omega for every row."""
+    """M - omega x (I omega + rotor) - c I omega for every row."""
     momentum = omega @ body.tensor
-    return body.load - np.cross(omega, momentum) - body.damping * momentum
+    return body.load - np.cross(omega, momentum + body.rotor) - body.damping * momentum
 
 
 def _explicit(body: Equations, omega: Floats, h: Floats) -> Floats:
@@ -58,8 +62,8 @@ def _explicit_of_fixed_size(body: Equations, omega: Floats, h: Floats) -> Floats
 
 
 def _implicit(body: Equations, omega: Floats, h: Floats) -> Floats:
-    """(I + h ([omega]x I - [I omega]x)) (omega' - omega) = h (M - omega x I omega)."""
-    slope = _cross(omega) @ body.tensor - _cross(omega @ body.tensor)
+    """(I + h ([omega]x I - [H]x)) (omega' - omega) = h (M - omega x H), H = I omega + rotor."""
+    slope = _cross(omega) @ body.tensor - _cross(omega @ body.tensor + body.rotor)
     right = (h * _torque(body, omega))[:, :, None]
     return omega + np.linalg.solve(body.tensor + h[:, :, None] * slope, right)[:, :, 0]
 
@@ -72,12 +76,12 @@ def _cross(vectors: Floats) -> Floats:
 _STEPS: Final[tuple[tuple[str, str, _Step], ...]] = (
     (
         "explicit gyroscopic step",
-        "a step is omega + h I^-1 (M - omega x I omega), forward Euler on the gyroscopic term",
+        "a step is omega + h I^-1 (M - omega x {momentum}), forward Euler on the gyroscopic term",
         _explicit,
     ),
     (
         "explicit gyroscopic step",
-        "a step adds h (M - omega x I omega) to I omega, and restores its size",
+        "a step adds h (M - omega x {momentum}) to I omega, and restores its size",
         _explicit_of_fixed_size,
     ),
     (
@@ -111,7 +115,8 @@ def _pace(body: Equations, omega: Floats) -> float:
     """A bound of the rate of turn, in radians per unit of time."""
     ratio = np.linalg.norm(body.tensor, 2) * np.linalg.norm(body.inverse, 2)
     loads = np.sqrt(np.linalg.norm(body.inverse @ body.load))
-    return float(ratio * np.max(np.linalg.norm(omega, axis=1)) + loads)
+    wheels = np.linalg.norm(body.inverse @ np.array(body.rotor))
+    return float(ratio * np.max(np.linalg.norm(omega, axis=1)) + loads + wheels)
 
 
 def _moved(step: _Step, body: Equations, omega: Floats, spans: Floats, counts: Floats) -> Floats:

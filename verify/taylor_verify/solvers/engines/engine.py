@@ -9,10 +9,11 @@ neither the standard run nor a list makes one.
 from __future__ import annotations
 
 import logging
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Final, final
 
 from taylor_verify.models.problem import Problem, pose, pose_as_stored
@@ -174,10 +175,35 @@ class Outside(Solver):
         command = _command(self, _log.warning)
         if isinstance(command, Lack):
             return not_started(command)
-        settings = [f"{key}={value}" for key, value in self.settings]
-        if self.engine.method:
-            settings = [f"method={self.engine.method}", *settings]
-        return process.program([*command, *settings], self.time_limit).solve(problem)
+        # Engines leave logs where they are run, which is no place of the user's.
+        with TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+            words = [*command, *self.words]
+            return process.program(words, self.time_limit, folder).solve(problem)
+
+    @property
+    def words(self) -> list[str]:
+        """The arguments of the script: its method and the settings."""
+        method = [f"method={self.engine.method}"] if self.engine.method else []
+        return [*method, *(f"{key}={value}" for key, value in self.settings)]
+
+
+def solve_together(asked: Sequence[tuple[Outside, Problem]]) -> list[Trajectory]:
+    """Return what solvers of one script and version answer; one process loads the library for all.
+
+    What it leaves open, by an end, a fault or its time limit, is asked again in a process of its own. So a
+    failure is that of one question, and the same as without the others.
+    """
+    first, _ = asked[0]
+    command = _command(first, _log.warning)
+    found: list[Trajectory | None] = [None] * len(asked)
+    if len(asked) > 1 and not isinstance(command, Lack):
+        questions = [(solver.words, problem) for solver, problem in asked]
+        with TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+            found = process.together(command, questions, first.time_limit, folder)
+    return [
+        answer or solver.solve(problem)
+        for answer, (solver, problem) in zip(found, asked, strict=True)
+    ]
 
 
 def named(name: str) -> Outside:

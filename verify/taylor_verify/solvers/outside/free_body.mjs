@@ -16,15 +16,34 @@ import { readFileSync } from "node:fs";
 // Standard output belongs to the answer, whatever an engine says.
 console.log = console.info = console.error;
 
+// With the one argument `many` each line of stdin is { settings, question }, and is answered in a line.
 export async function answer(solve) {
-  const settings = Object.fromEntries(process.argv.slice(2).map(setting));
-  const body = freeBody(JSON.parse(readFileSync(0, "utf8")));
-  const { rows, ...work } = await (async () => solve(body, settings))().catch(refuse);
-  const states = body.asksStart ? rows : rows.slice(1);
-  // JSON has the decimal to which the number is the nearest double.
-  const columns = body.columns.map((name, i) => [name, states.map((row) => row[i])]);
-  process.stdout.write(JSON.stringify({ t: body.times, ...work, ...Object.fromEntries(columns) }));
+  const [words, text] = [process.argv.slice(2), readFileSync(0, "utf8")];
+  if (words.length !== 1 || words[0] !== "many") {
+    process.stdout.write(JSON.stringify(await answered(solve, JSON.parse(text), words)));
+    return;
+  }
+  for (const line of text.split("\n").filter(Boolean)) {
+    const { question, settings } = JSON.parse(line);
+    process.stdout.write(`${JSON.stringify(await answered(solve, question, settings))}\n`);
+  }
 }
+
+async function answered(solve, question, words) {
+  try {
+    const body = freeBody(question);
+    const { rows, ...work } = await solve(body, Object.fromEntries(words.map(setting)));
+    const states = body.asksStart ? rows : rows.slice(1);
+    // JSON has the decimal to which the number is the nearest double.
+    const columns = body.columns.map((name, i) => [name, states.map((row) => row[i])]);
+    return { t: body.times, ...work, ...Object.fromEntries(columns) };
+  } catch (reason) {
+    return reason instanceof Unsuited ? { unsuited: reason.message } : refuse(reason);
+  }
+}
+
+// The question is none for the engine or its script, which is no failure.
+class Unsuited extends Error {}
 
 function setting(argument) {
   const [name, value] = argument.split("=");
@@ -62,7 +81,7 @@ function propagated(counts, start) {
 // omega reversed, and is given as that one.
 function freeBody({ model, bits, columns, body, initial, time }) {
   if (model !== "euler" || "rotor" in body || "damping" in body || doubles(body.moment).some((m) => m !== 0))
-    refuse("expected a free rigid body, got a moment, wheels, damping or a fluid @ body");
+    throw new Unsuited("expected a free rigid body, got a moment, wheels, damping or a fluid @ body");
   const elapsed = doubles(time.elapsed);
   const sign = elapsed.at(-1) < 0 ? -1 : 1;
   const asksStart = elapsed[0] === 0;
@@ -83,7 +102,7 @@ function freeBody({ model, bits, columns, body, initial, time }) {
       return instants.map((instant) => {
         const count = Math.round(instant / step);
         if (!(Math.abs(instant / step - count) <= 4 * 0.5 ** bits * count))
-          refuse(`expected a step that divides t = ${instant}, got ${step} @ step`);
+          throw new Unsuited(`expected a step that divides t = ${instant}, got ${step} @ step`);
         return count;
       });
     },

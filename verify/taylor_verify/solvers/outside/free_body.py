@@ -17,7 +17,6 @@ read before any step, so that it shows the state that the engine really begins w
 
 from __future__ import annotations
 
-import json
 import math
 import os
 import sys
@@ -28,7 +27,18 @@ from itertools import pairwise
 from typing import Any
 
 import equations
-from question import Question, Row, Settings, Solved, arguments, document, floats, read, unit
+from question import (
+    Question,
+    Row,
+    Settings,
+    Solved,
+    Unsuited,
+    document,
+    floats,
+    read,
+    serve,
+    unit,
+)
 
 Vector = Sequence[float]
 Quaternion = Sequence[float]
@@ -58,15 +68,13 @@ class Body:
         return ""
 
     def steps(self, step: float) -> list[int]:
-        """Return the number of steps to each instant; exit with a sentence if one is no multiple."""
+        """Return the number of steps to each instant; raises Unsuited if one is no multiple."""
         counts = [round(instant / step) for instant in self.instants]
         # The instants are rounded to the rung, and so is the step in the engine.
         roundoff = 4 * 0.5**self.question.bits
         for instant, count in zip(self.instants, counts, strict=True):
             if not abs(instant / step - count) <= roundoff * count:
-                raise SystemExit(
-                    f"expected a step that divides t = {instant!r}, got {step!r} @ step"
-                )
+                raise Unsuited(f"expected a step that divides t = {instant!r}, got {step!r} @ step")
         return counts
 
 
@@ -85,10 +93,16 @@ class FreeBody(Body):
 
     @property
     def moments(self) -> Vector:
-        """The principal moments; exit with a sentence where the axes are not principal ones."""
+        """The principal moments; raises Unsuited where the axes are not principal ones."""
         if any(self.inertia[i][j] for i in range(3) for j in range(3) if i != j):
-            raise SystemExit("expected principal axes, got products of inertia @ inertia")
+            raise Unsuited("expected principal axes, got products of inertia @ inertia")
         return [self.inertia[i][i] for i in range(3)]
+
+    @property
+    def excess(self) -> str:
+        """A sentence on moments that no solid has: the largest is more than the other two together."""
+        a, b, c = sorted(principal(self.inertia)[0])
+        return f"principal moments of a solid, got {a!r}, {b!r}, {c!r}" if c > a + b else ""
 
     @property
     def remark(self) -> str:
@@ -133,26 +147,41 @@ class FreeBody(Body):
 def answer(
     solve: Callable[[Any, Settings], Solved], read: Callable[[Any], Body] | None = None
 ) -> None:
-    """Read the question on stdin, solve it as the arguments say, write the answer on stdout.
+    """Read the question on stdin, or many, solve it as the arguments say, write the answer on stdout.
 
     ``read`` makes a body of the question, a free rigid one unless another reader is given.
     """
     # Engines greet on standard output, in C too; it is for the answer alone.
     with os.fdopen(os.dup(sys.stdout.fileno()), "w") as out:
         os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
-        settings, body = arguments(), (read or free_body)(json.load(sys.stdin))
-        json.dump(document(body.question, solve(body, settings)), out)
+
+        def answered(scene: Any, settings: Settings) -> dict[str, Any]:
+            body = (read or free_body)(scene)
+            return document(body.question, _solved(solve, body, settings))
+
+        serve(answered, out)
+
+
+def _solved(solve: Callable[[Any, Settings], Solved], body: Body, settings: Settings) -> Solved:
+    """Return the motion; raises Unsuited where an engine ends on moments that no solid has."""
+    try:
+        return solve(body, settings)
+    except Exception as error:
+        if isinstance(body, FreeBody) and (excess := body.excess):
+            words = " ".join(str(error).split())
+            raise Unsuited(f"expected {excess} @ inertia ({words})") from error
+        raise
 
 
 def free_body(scene: Any) -> FreeBody:
-    """Return the body of a question; exit with a sentence where it is not free."""
+    """Return the body of a question; raises Unsuited where it is not free."""
     question = read(scene)
     if (
         scene["model"] != "euler"
         or {"rotor", "damping"} & scene["body"].keys()
         or any(floats(scene["body"]["moment"]))
     ):
-        raise SystemExit(
+        raise Unsuited(
             "expected a free rigid body, got a moment, wheels, damping or a fluid @ body"
         )
     return FreeBody(

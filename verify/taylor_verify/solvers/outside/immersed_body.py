@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from free_body import Body, Matrix, Quaternion, Vector, free_body, to_body, to_space
-from question import Row, floats, read, unit
+from question import Row, Unsuited, floats, read, unit
 
 ORIGIN = (0.0, 0.0, 0.0)
 
@@ -64,14 +64,14 @@ class ImmersedBody(Body):
 
 
 def immersed_body(scene: Any) -> ImmersedBody:
-    """Return the solid of a question; exit with a sentence where it is not free or not in a fluid."""
+    """Return the solid of a question; raises Unsuited where it is not free or not in a fluid."""
     import numpy
 
     question = read(scene)
     body, initial = scene["body"], scene["initial"]
     loads = [*floats(body.get("force", [])), *floats(body.get("couple", []))]
     if scene["model"] != "kirchhoff" or any(loads) or "damping" in body:
-        raise SystemExit("expected a free solid in a fluid, got loads, damping or no fluid @ body")
+        raise Unsuited("expected a free solid in a fluid, got loads, damping or no fluid @ body")
     A, B, C = (numpy.array(floats(body[key])) for key in ("linear", "coupling", "angular"))
     energy = numpy.block([[A, B], [B.T, C]])
     impulses = floats(initial["linear_impulse"]) + floats(initial["angular_impulse"])

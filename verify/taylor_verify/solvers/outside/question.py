@@ -5,6 +5,10 @@ the method, if it has several, and the settings that its metadata declares:
 
     uv run --script with_cvode.py method=bdf rtol=1e-9 atol=1e-12 < question.json > answer.json
 
+With the one argument ``many`` it reads a question from each line, {"settings": ["method=bdf"], "question":
+{...}}, and writes an answer to each, in a line of its own: libraries are loaded once. An error ends the
+script, and what is not answered by then has to be asked again.
+
 The keys of the JSON are explained in solvers/process/protocol.py of taylor-verify. Numbers are the
 doubles that the protocol hands over as ``hex``. An integration backwards in time is asked with
 ``sign`` -1: the rates are to be multiplied by it, and the clock runs forwards for every library.
@@ -19,11 +23,13 @@ import time
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, TextIO
 
 from equations import Rates, rates
 
 Row = Sequence[float]
+# The argument that says that many questions follow, each in a line.
+MANY = "many"
 # The method and the settings by name, numbers as numbers; the library's own names of them are the
 # script's affair.
 Settings = SimpleNamespace
@@ -77,25 +83,58 @@ class Solved:
     again: Callable[[], Any] | None = None
 
 
+class Unsuited(SystemExit):
+    """The question is not one for the library or its script; the text says why.
+
+    It is told to the caller as such, and is no failure.
+    """
+
+    def document(self) -> dict[str, Any]:
+        """Return the answer that says so."""
+        return {"unsuited": str(self.code)}
+
+
 def answer(solve: Callable[[Question, Settings], Solved]) -> None:
     """Read the question on stdin, solve it as the arguments say, write the answer on stdout.
 
     With the argument `serve` the script stays, and answers requests as service.py says.
     """
     if sys.argv[1:] == ["serve"]:
-        from service import serve
+        from service import stay
 
-        serve(solve)
+        stay(solve)
         return
-    settings = arguments()
-    question = read(json.load(sys.stdin))
-    solved = solve(question, settings)
-    json.dump(_written(question, solved), sys.stdout)
+
+    def answered(scene: Any, settings: Settings) -> dict[str, Any]:
+        question = read(scene)
+        return _written(question, solve(question, settings))
+
+    serve(answered, sys.stdout)
 
 
-def arguments() -> Settings:
-    """Return the settings of the command line."""
-    return Settings(**dict(map(_setting, sys.argv[1:])))
+def serve(answered: Callable[[Any, Settings], dict[str, Any]], out: TextIO) -> None:
+    """Write what is answered to the question on stdin, or to each of many."""
+    if sys.argv[1:] == [MANY]:
+        for line in sys.stdin:
+            asked = json.loads(line)
+            _serve(answered, asked["question"], asked["settings"], out)
+            out.write("\n")
+            out.flush()
+    else:
+        _serve(answered, json.load(sys.stdin), sys.argv[1:], out)
+
+
+def _serve(
+    answered: Callable[[Any, Settings], dict[str, Any]],
+    scene: Any,
+    settings: Sequence[str],
+    out: TextIO,
+) -> None:
+    try:
+        written = answered(scene, Settings(**dict(map(_setting, settings))))
+    except Unsuited as reason:
+        written = reason.document()
+    json.dump(written, out)
 
 
 def _setting(argument: str) -> tuple[str, str | float]:
@@ -186,14 +225,14 @@ COLUMNS = {
 
 
 def read(scene: Any) -> Question:
-    """Return the question in a document; exit with a sentence if it asks for what is not computed."""
+    """Return the question in a document; raises Unsuited if it asks for what is not computed."""
     body, initial, clock = scene["body"], scene["initial"], scene["time"]
     columns = scene["columns"][1:]
     if scene["model"] not in COLUMNS:
-        raise SystemExit(f"expected the model {' or '.join(COLUMNS)}, got {scene['model']}")
+        raise Unsuited(f"expected the model {' or '.join(COLUMNS)}, got {scene['model']}")
     known = COLUMNS[scene["model"]]
     if unknown := [name for name in columns if name not in known.split()]:
-        raise SystemExit(f"expected columns among {known}, got {' '.join(unknown)} @ columns")
+        raise Unsuited(f"expected columns among {known}, got {' '.join(unknown)} @ columns")
     if scene["model"] == "euler":
         wheels = floats(body["rotor"]) if "rotor" in body else [0.0, 0.0, 0.0]
         parameters = _flat(body["inverse_inertia"]) + floats(body["moment"]) + wheels

@@ -31,7 +31,7 @@ from question import Question, Settings, Solved, floats
 Solve = Callable[[Question, Settings], Solved]
 
 
-def serve(solve: Solve) -> None:
+def stay(solve: Solve) -> None:
     """Answer the requests on the standard input until it ends."""
     # What a library says on the standard output would stand among the answers.
     answers = os.fdopen(os.dup(1), "w")

@@ -33,7 +33,7 @@ import math
 from typing import Any
 
 from free_body import FreeBody, Settings, Solved, answer
-from question import twice
+from question import Unsuited, twice
 
 IMPLICIT = ("GeneralizedAlpha", "TrapezoidalIndex2")
 # Larger than any error: no step is refused or divided.
@@ -42,8 +42,8 @@ NO_TOLERANCE = 1e30
 
 def solve(body: FreeBody, settings: Settings) -> Solved:
     if settings.coordinates == "EulerParameters" and settings.integrator not in IMPLICIT:
-        raise SystemExit(
-            f"Exudyn: expected {' or '.join(IMPLICIT)} with EulerParameters, "
+        raise Unsuited(
+            f"expected {' or '.join(IMPLICIT)} with EulerParameters, "
             f"got {settings.integrator} @ integrator"
         )
     import exudyn

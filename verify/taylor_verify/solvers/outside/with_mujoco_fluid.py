@@ -35,6 +35,7 @@ from typing import Any
 
 from free_body import Engine, Settings, Solved, answer, stepped, to_body, to_space
 from immersed_body import ImmersedBody, immersed_body
+from question import Unsuited
 from with_mujoco import require_integrator
 
 METHODS = {"ellipsoid": "ellipsoid", "callback": "callback"}
@@ -85,9 +86,9 @@ def mean(mass: Any, first: int) -> float:
 
 
 def ellipsoid(body: ImmersedBody) -> str:
-    """Return the geometry whose mass, inertia and added mass MuJoCo forms; exit where it is none."""
+    """Return the geometry of which MuJoCo forms mass and added mass; raises Unsuited for other solids."""
     if body.ellipsoid is None:
-        raise SystemExit("expected a homogeneous ellipsoid, got another solid @ body")
+        raise Unsuited("expected a homogeneous ellipsoid, got another solid @ body")
     axes = " ".join(map(repr, body.ellipsoid.semi_axes))
     return (
         f'<geom type="ellipsoid" size="{axes}" density="{body.ellipsoid.density!r}" '

@@ -63,8 +63,13 @@ def _last_lines(stderr: bytes) -> str:
     return " / ".join("".join(c if c.isprintable() else " " for c in line) for line in shown)
 
 
-def converse(command: Sequence[str], asked: bytes, limit: float, longest: int) -> Ended:
-    """Start a program, ask it, and have its answer or the outcome; it never outlives the call."""
+def converse(
+    command: Sequence[str], asked: bytes, limit: float, longest: int, folder: str | None = None
+) -> Ended:
+    """Start a program, ask it, and have its answer or the outcome; it never outlives the call.
+
+    It runs in ``folder``, or in the working folder of this process.
+    """
     # Isolated and without site: no variable meant for the program has an effect on the supervisor.
     supervisor = [sys.executable, "-I", "-S", str(_SUPERVISOR)]
     ours, theirs = socket.socketpair()
@@ -76,6 +81,7 @@ def converse(command: Sequence[str], asked: bytes, limit: float, longest: int) -
             stderr=subprocess.PIPE,
             pass_fds=[theirs.fileno()],
             start_new_session=True,
+            cwd=folder,
             bufsize=0,
         )
     except (OSError, ValueError) as error:

@@ -27,6 +27,7 @@ from taylor_verify.solvers.solver import Callback, Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
 PREFIX: Final = "process:"
+_MANY: Final = "many"
 # Seconds for one scene: a hundred times what rk4.py takes for any shipped one at a step of 0.02.
 DEFAULT_LIMIT: Final = 300.0
 
@@ -40,11 +41,13 @@ _STEPS_PER_SECOND = 1e10
 class Process(Solver):
     """The program behind ``process:COMMAND``; COMMAND is split as a shell would, and no shell runs.
 
-    It may take ``time_limit`` seconds for a problem, its start included.
+    It may take ``time_limit`` seconds for a problem, its start included, and runs in ``folder``: in the
+    working folder of this process unless one is given.
     """
 
     name: str
     time_limit: float = DEFAULT_LIMIT
+    folder: str | None = None
     setting: str = ""
 
     @property
@@ -58,19 +61,49 @@ class Process(Solver):
     def solve(self, problem: Problem) -> Trajectory:
         asked = json.dumps(protocol.question(problem)).encode()
         began = perf_counter()
-        ended = converse(self.command, asked, self.time_limit, protocol.longest_answer(problem))
+        longest = protocol.longest_answer(problem)
+        ended = converse(self.command, asked, self.time_limit, longest, self.folder)
         seconds = perf_counter() - began
         if ended.outcome is not Outcome.FINISHED:
             return Trajectory(ended.outcome, detail=ended.detail(), seconds=seconds)
         try:
             found = _trajectory(ended.answer, problem, ended.seconds)
             return replace(found, detail="; ".join(filter(None, (found.detail, ended.left))))
+        except protocol.Unsuited as reason:
+            return Trajectory(Outcome.UNSUITED, detail=str(reason), seconds=seconds)
         except protocol.Misanswer as fault:
             outcome, what = Outcome.MISANSWERED, str(fault)
         except protocol.NotFinite as fault:
             outcome, what = Outcome.NON_FINITE, str(fault)
         detail = replace(ended, what=what).detail()
         return Trajectory(outcome, detail=detail, seconds=seconds)
+
+
+def together(
+    words: Sequence[str],
+    asked: Sequence[tuple[Sequence[str], Problem]],
+    limit: float,
+    folder: str | None = None,
+) -> list[Trajectory | None]:
+    """Return what one process of the command answers to many questions, each with its settings.
+
+    The command knows the argument `many` (solvers/outside/question.py). None stands where it gave no sound
+    answer, and for all that came after: these questions have to be asked alone. ``limit`` is for all.
+    """
+    lines = [
+        json.dumps({"settings": [*settings], "question": protocol.question(problem)})
+        for settings, problem in asked
+    ]
+    longest = sum(protocol.longest_answer(problem) for _, problem in asked)
+    text = "".join(f"{line}\n" for line in lines).encode()
+    ended = converse([*words, _MANY], text, limit, longest, folder)
+    # What stands behind the last end of a line is no whole answer.
+    answers = [] if ended.left else ended.answer.split(b"\n")[:-1]
+    found: list[Trajectory | None] = [None] * len(asked)
+    for place, (answer, (_, problem)) in enumerate(zip(answers, asked, strict=False)):
+        with suppress(protocol.Misanswer, protocol.NotFinite, protocol.Unsuited):
+            found[place] = _trajectory(answer, problem, ended.seconds)
+    return found
 
 
 def unavailable() -> str:
@@ -82,9 +115,9 @@ def unavailable() -> str:
     )
 
 
-def program(words: Sequence[str], limit: float) -> Process:
-    """Return the solver that is this command, word by word."""
-    return Process(f"{PREFIX}{shlex.join(words)}", limit)
+def program(words: Sequence[str], limit: float, folder: str | None = None) -> Process:
+    """Return the solver that is this command, word by word, in this folder."""
+    return Process(f"{PREFIX}{shlex.join(words)}", limit, folder)
 
 
 def named(name: str) -> Process:

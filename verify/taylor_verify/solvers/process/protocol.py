@@ -70,6 +70,9 @@ The answer is one JSON object on standard output, and the exit status 0: a list 
     compile_seconds      optional, beside seconds: what went before the propagation
     remark               optional: a sentence on how the answer was had, kept with the trajectory
 
+A program that cannot take the question (the body, the loads, what is tracked) answers {"unsuited": "..."}
+with the reason, and nothing else. The run is then unavailable, and no failure.
+
 An entry in quotes, "0x1.8p-3", "0.1" or "1/3", is taken exactly. A bare JSON number is on f32 and
 f64 the double nearest to it, because that is what the program held and printed, and on wider rungs
 the exact decimal. null, NaN and infinities are not finite. Other keys are not looked at.
@@ -120,6 +123,10 @@ class Misanswer(Exception):
 
 class NotFinite(Exception):
     """The answer holds a number that is not finite; the text says where."""
+
+
+class Unsuited(Exception):
+    """The program is not made for the question; the text is its reason."""
 
 
 @dataclass(frozen=True)
@@ -242,8 +249,13 @@ def longest_answer(problem: Problem) -> int:
 
 
 def read(text: bytes, problem: Problem) -> Answer:
-    """Return the states in an answer; raise Misanswer or NotFinite, whose text says what and where."""
+    """Return the states in an answer; raise Misanswer or NotFinite, whose text says what and where.
+
+    Raises Unsuited for an answer that says so.
+    """
     document = _parsed(text)
+    if "unsuited" in document:
+        raise Unsuited(_sentence(document, "unsuited"))
     names = column_names(problem)
     if missing := [name for name in names if name not in document]:
         raise Misanswer(f"expected the columns {', '.join(names)}, got no {', '.join(missing)}")
@@ -257,7 +269,7 @@ def read(text: bytes, problem: Problem) -> Answer:
     _check_times(times, problem)
     rows = [list(row) for row in zip(*states, strict=True)]
     work = _count(document, "steps"), _count(document, "evaluations")
-    return Answer(rows, *work, *_durations(document), _remark(document))
+    return Answer(rows, *work, *_durations(document), _sentence(document, "remark"))
 
 
 def _parsed(text: bytes) -> Mapping[str, Any]:
@@ -322,12 +334,12 @@ def _durations(document: Mapping[str, Any]) -> tuple[float | None, float]:
     return stated.get("seconds"), stated.get("compile_seconds", 0.0)
 
 
-def _remark(document: Mapping[str, Any]) -> str:
-    """Return the remark of a program, in printable characters: it is shown to people."""
-    remark = document.get("remark", "")
-    if not isinstance(remark, str):
-        raise Misanswer(f"expected a sentence, got {_json(remark)} @ remark")
-    return "".join(c if c.isprintable() else " " for c in remark[:_LONGEST_REMARK])
+def _sentence(document: Mapping[str, Any], name: str) -> str:
+    """Return a sentence of a program, in printable characters: it is shown to people."""
+    sentence = document.get(name, "")
+    if not isinstance(sentence, str):
+        raise Misanswer(f"expected a sentence, got {_json(sentence)} @ {name}")
+    return "".join(c if c.isprintable() else " " for c in sentence[:_LONGEST_REMARK])
 
 
 def _number(value: Any, as_double: bool, place: str) -> Fraction | float:

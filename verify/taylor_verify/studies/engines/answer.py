@@ -1,24 +1,25 @@
-"""The answer of one run of the board: its row, its trajectory and its time."""
+"""The answers of runs of the board: the row of each, its trajectory and its time."""
 
 from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Mapping
-from contextlib import chdir
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
-from tempfile import TemporaryDirectory
 from typing import Any, Final
 
 import numpy as np
 
+from taylor_verify.models.problem import Problem
 from taylor_verify.records.json_text import complete, parsed
 from taylor_verify.records.store import laid_out
-from taylor_verify.run import solve
+from taylor_verify.run import posed, solve
+from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.solvers.engines.engine import PREFIX, engines
+from taylor_verify.solvers.engines.engine import PREFIX, Outside, engines, solve_together
+from taylor_verify.solvers.registry import solver_named
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.studies.engines.document import EngineRow, Standing
 from taylor_verify.studies.engines.entry import Asked
@@ -74,11 +75,29 @@ class _Read:
     states: list[list[float]] | None = None
 
 
-def answered(asked: Asked) -> Answer:
-    """Run one engine on one scene and judge what it answers."""
-    # Some engines leave a log where they are run.
-    with TemporaryDirectory() as place, chdir(place):
-        trajectory = solve(asked.scene, asked.solver, asked.rung)
+def answered(asked: Sequence[Asked]) -> list[Answer]:
+    """Run one engine on scenes, of one version and precision, and judge what it answers."""
+    return [_judged(*pair) for pair in zip(asked, _trajectories(asked), strict=True)]
+
+
+def _trajectories(asked: Sequence[Asked]) -> list[Trajectory]:
+    """Return the trajectories; the scripts of an environment answer all that they take in one process."""
+    solvers = [solver_named(run.solver) for run in asked]
+    posing = zip(asked, solvers, strict=True)
+    problems = [posed(load(run.scene), solver, rung(run.rung)) for run, solver in posing]
+    found = {k: problem for k, problem in enumerate(problems) if isinstance(problem, Trajectory)}
+    pairs = {
+        k: (solver, problem)
+        for k, (solver, problem) in enumerate(zip(solvers, problems, strict=True))
+        if isinstance(solver, Outside) and isinstance(problem, Problem)
+    }
+    if pairs:
+        found |= zip(pairs, solve_together([*pairs.values()]), strict=True)
+    return [found.get(k) or solve(run.scene, run.solver, run.rung) for k, run in enumerate(asked)]
+
+
+def _judged(asked: Asked, trajectory: Trajectory) -> Answer:
+    """Return the row of a run, its numbers by the judge."""
     standing = _STANDINGS.get(trajectory.outcome, Standing.FAILED)
     if standing is not Standing.JUDGED:
         return Answer(row_of(asked, standing, detail=_reason(trajectory)))

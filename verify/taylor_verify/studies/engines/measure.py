@@ -1,7 +1,9 @@
 """The runs of the entry list, each in processes of its own, and the board that they make.
 
-A run that is stored already, with the same scene, setting, version and adapter, is not run again. Runs that
-failed, and those of an engine that could not be installed, are asked for again by the next measurement.
+A run that is stored already, with the same scene, setting, version and adapter, is not run again, nor is
+one that the engine is not made for. Runs that failed, and those of an engine that could not be installed,
+are asked for again by the next measurement: a time limit, too little memory and a registry that does not
+answer are faults of a machine and a day. An environment that cannot be had is asked for once, for all runs.
 """
 
 from __future__ import annotations
@@ -31,6 +33,9 @@ from taylor_verify.studies.engines.unfinished import Unfinished
 
 # Below the folder that is published: what is local there is nobody else's.
 UNFINISHED: Final = "local/engines"
+
+# Runs of one process: more of them load a library less often, and are more to do again after a kill.
+_TOGETHER: Final = 12
 
 Say = Callable[[str], None]
 Known = Mapping[str, Answer]
@@ -65,15 +70,28 @@ def measure(
     waiting = [run for run in waiting if not lacking.get(_environment(run), "")]
     done = 0
 
-    def ended(run: Asked, answer: Answer) -> None:
+    def ended(runs: Sequence[Asked], found: Sequence[Answer]) -> None:
         nonlocal done
-        done += 1
-        store.keep(answer)
-        say(f"{done}/{len(waiting)} {run}: {answer.row.standing}")
+        for run, answer in zip(runs, found, strict=True):
+            done += 1
+            store.keep(answer)
+            say(f"{done}/{len(waiting)} {run}: {answer.row.standing}")
 
-    made = run_all(answered, waiting, workers=workers or available_cores(), ended=ended)
-    answers |= {answer.row.key: answer for answer in made}
+    made = run_all(answered, _sets(waiting), workers=workers or available_cores(), ended=ended)
+    answers |= {answer.row.key: answer for found in made for answer in found}
     return [answers[run.key] for run in every if run.key in answers]
+
+
+def _sets(runs: Iterable[Asked]) -> list[list[Asked]]:
+    """Return the runs in sets that one process can answer: of one environment and one precision."""
+    alike: dict[tuple[str, str], list[Asked]] = {}
+    for run in runs:
+        alike.setdefault((_environment(run), run.rung), []).append(run)
+    return [
+        every[first : first + _TOGETHER]
+        for every in alike.values()
+        for first in range(0, len(every), _TOGETHER)
+    ]
 
 
 def _is_final(answer: Answer) -> bool:

@@ -17,7 +17,7 @@ from taylor_verify.studies import figures
 from taylor_verify.studies.engines.advice import advice, like
 from taylor_verify.studies.engines.document import Board, EngineRow
 from taylor_verify.studies.engines.engine_page import place
-from taylor_verify.studies.engines.entry import EntryList, entry_list
+from taylor_verify.studies.engines.entry import FILE, EntryList, entry_list
 from taylor_verify.studies.engines.findings import findings
 from taylor_verify.studies.engines.pictures import sweeps, work
 from taylor_verify.studies.engines.ranking import (
@@ -71,7 +71,7 @@ _OBJECT: Final = (
 
 def page(board: Board, folder: Path) -> str:
     """Return the whole page, with the pictures that are in ``folder``/figures."""
-    entries = entry_list()
+    entries = _entries(board)
     every = settings(board.study)
     return whole(
         "The engine board",
@@ -96,8 +96,20 @@ def page(board: Board, folder: Path) -> str:
 
 def pictures(board: Board) -> list[Picture]:
     """Return the pictures of the board: error against time and step, and error against version."""
-    entries = entry_list()
+    entries = _entries(board)
     return [*work.pictures(board, entries), *sweeps.pictures(board, entries)]
+
+
+def _entries(board: Board) -> EntryList:
+    """Return the entry list; ValueError for rows of an engine that is not on it."""
+    entries = entry_list()
+    stored = dict.fromkeys(row.engine for row in board.study.rows)
+    if unknown := [name for name in stored if name not in entries.engines]:
+        raise ValueError(
+            f"expected engines of {FILE.name}, got {', '.join(unknown)}: `publish engines` leaves their "
+            f"rows out @ {ENGINES.name}"
+        )
+    return entries
 
 
 def _best(board: Board, entries: EntryList, every: Sequence[Setting]) -> str:

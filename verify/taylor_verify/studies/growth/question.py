@@ -50,11 +50,18 @@ class Question:
     seed: int = 1
 
     def __post_init__(self) -> None:
-        if not self.scene.body.is_free or self.scene.body.damping:
-            got = "damping" if self.scene.body.damping else "loads"
+        if not self.scene.body.is_free:
             raise ValueError(
-                f"expected a free body, whose conserved quantities are conserved, got {got} "
+                "expected a free body, whose conserved quantities are conserved, got loads "
                 f"@ {self.scene.name}"
+            )
+        if self.scene.body.damping:
+            # A motion through tau = (1 - e^{-ct})/c has no decades of periods: for c > 0 it ends at
+            # tau = 1/c, and for c < 0 a power of the time is an exponential of it.
+            fate = "dies away" if self.scene.body.damping > 0 else "speeds up"
+            raise ValueError(
+                "expected a motion that recurs, whose errors grow as powers of the time, got one that "
+                f"{fate} as e^(-c t) under damping @ {self.scene.name}"
             )
         if not self.periods >= LEAST_PERIODS * (1 - _SLACK):
             raise ValueError(

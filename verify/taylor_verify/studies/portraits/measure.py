@@ -34,7 +34,6 @@ from taylor_verify.exact.ellipsoid import formed_to
 from taylor_verify.exact.kirchhoff.closed import revolution
 from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.kirchhoff.reduced import Reduced
-from taylor_verify.exact.kirchhoff.turned import axis_of_revolution
 from taylor_verify.exact.printed import document, shortest_text
 from taylor_verify.exact.route import solution
 from taylor_verify.explain.explanation import explanation
@@ -107,8 +106,8 @@ def _times(scene: Scene) -> list[tuple[str, Fraction]]:
 def _potential(scene: Scene, orbit: Elements) -> Document | None:
     """Return X3 of Hydromechanics 49 with its roots, and the interval of the axial impulse.
 
-    None unless the body is free, of revolution, and has a linear impulse: x3 is constant without
-    one. ``variable`` names the component along the axis of symmetry, x3 but for a body turned round.
+    None unless the body is free, of revolution about a body axis, and has a linear impulse: x3 is
+    constant without one. ``variable`` names the component along the axis of symmetry: x1, x2 or x3.
     """
     body = scene.body
     if not isinstance(body, ImmersedBody) or not body.is_free:
@@ -118,9 +117,9 @@ def _potential(scene: Scene, orbit: Elements) -> Document | None:
         return None
     nutation = found.subject
     X3 = [coefficient / nutation.body.r**2 for coefficient in nutation.f]  # noqa: N806 (as in 49)
-    if nutation.F2 == 0 or len(X3) < 2:
+    if nutation.F2 == 0 or len(X3) < 2 or nutation.axes.number is None:
         return None
-    variable = f"x{axis_of_revolution(scene)}"
+    variable = f"x{nutation.axes.number}"
     ends = [orbit[name].value for name in (f"{variable}_low", f"{variable}_high") if name in orbit]
     with mp.workdps(DIGITS):
         interval = ends or [mp.convert(nutation.z)] * 2
