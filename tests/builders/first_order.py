@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from builders.numbers import cross
 from builders.trajectories import QUATERNION, VECTORS, Columns, named
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Spin
@@ -22,15 +23,13 @@ def none(inertia: Array, w: Array, moment: Array, h: float) -> Array:
 
 
 def explicit(inertia: Array, w: Array, moment: Array, h: float) -> Array:
-    return w + h * np.linalg.solve(inertia, moment - np.cross(w, inertia @ w))
+    return w + h * np.linalg.solve(inertia, moment - cross(w, inertia @ w))
 
 
 def implicit(inertia: Array, w: Array, moment: Array, h: float) -> Array:
     """One step of Newton's method for I (w' - w) = h (M - w' x I w')."""
-    slope = np.column_stack(
-        [np.cross(e, inertia @ w) + np.cross(w, inertia @ e) for e in np.eye(3)]
-    )
-    torque = moment - np.cross(w, inertia @ w)
+    slope = np.column_stack([cross(e, inertia @ w) + cross(w, inertia @ e) for e in np.eye(3)])
+    torque = moment - cross(w, inertia @ w)
     return w + h * np.linalg.solve(inertia + h * slope, torque)
 
 
@@ -59,5 +58,5 @@ def _turned(q: Array, angle: Array) -> Array:
     """q times the quaternion of a turn about body axes."""
     half = np.linalg.norm(angle) / 2
     s, v = np.cos(half), np.sinc(half / np.pi) * angle / 2
-    turned = [q[0] * s - q[1:] @ v, *(q[0] * v + s * q[1:] + np.cross(q[1:], v))]
+    turned = [q[0] * s - q[1:] @ v, *(q[0] * v + s * q[1:] + cross(q[1:], v))]
     return np.array(turned) / np.linalg.norm(turned)
