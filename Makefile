@@ -22,6 +22,9 @@ verify verify-all: $(INSTALLED)
 		[ $$status -ne 130 ] || exit 130; \
 		$(BIN)/taylor-verify run extremes $(EXTREMES_ON) --out reports/local/extremes && exit $$status
 
+# Bytecode is kept, whatever the shell says: else each program that a test starts compiles the package.
+test test-all: export PYTHONDONTWRITEBYTECODE =
+
 # What a file of tests shares is made once, in one process.
 test: lint  ## Check style and types, then run all but the slow tests
 	@$(BIN)/python -m pytest -n 2 --dist loadfile -m 'not slow'

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Iterator
 
 import flint
@@ -17,6 +18,12 @@ settings.register_profile("search", deadline=None)
 settings.load_profile("house")
 # An assertion in a shared builder shows its values as one in a test does.
 pytest.register_assert_rewrite("builders")
+
+
+def pytest_collection_finish() -> None:
+    """Leave what is collected to the end: the search for garbage need not pass it again and again."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture(autouse=True)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from builders.numbers import cross
 from builders.trajectories import QUATERNION, VECTORS, Columns, named
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.gyrostat import Gyrostat
@@ -23,7 +24,7 @@ def none(inertia: Array, rotor: Array, w: Array, moment: Array, h: float) -> Arr
 
 
 def explicit(inertia: Array, rotor: Array, w: Array, moment: Array, h: float) -> Array:
-    return w + h * np.linalg.solve(inertia, moment - np.cross(w, inertia @ w + rotor))
+    return w + h * np.linalg.solve(inertia, moment - cross(w, inertia @ w + rotor))
 
 
 def without_wheels(inertia: Array, rotor: Array, w: Array, moment: Array, h: float) -> Array:
@@ -34,8 +35,8 @@ def without_wheels(inertia: Array, rotor: Array, w: Array, moment: Array, h: flo
 def implicit(inertia: Array, rotor: Array, w: Array, moment: Array, h: float) -> Array:
     """One step of Newton's method for I (w' - w) = h (M - w' x (I w' + rotor))."""
     momentum = inertia @ w + rotor
-    slope = np.column_stack([np.cross(e, momentum) + np.cross(w, inertia @ e) for e in np.eye(3)])
-    return w + h * np.linalg.solve(inertia + h * slope, moment - np.cross(w, momentum))
+    slope = np.column_stack([cross(e, momentum) + cross(w, inertia @ e) for e in np.eye(3)])
+    return w + h * np.linalg.solve(inertia + h * slope, moment - cross(w, momentum))
 
 
 def engine(scene: str, kick: Kick, h: float, rows: int, every: int = 1) -> Columns:
@@ -64,5 +65,5 @@ def _turned(q: Array, angle: Array) -> Array:
     """q times the quaternion of a turn about body axes."""
     half = np.linalg.norm(angle) / 2
     s, v = np.cos(half), np.sinc(half / np.pi) * angle / 2
-    turned = [q[0] * s - q[1:] @ v, *(q[0] * v + s * q[1:] + np.cross(q[1:], v))]
+    turned = [q[0] * s - q[1:] @ v, *(q[0] * v + s * q[1:] + cross(q[1:], v))]
     return np.array(turned) / np.linalg.norm(turned)

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from builders.numbers import cross
 from taylor_verify.models.problem import Problem
 
 Floats = np.ndarray[Any, Any]
@@ -18,7 +19,7 @@ def euler_rates(problem: Problem, number: type) -> Callable[[Floats], Floats]:
     inertia = np.array(problem.given.body.inertia, dtype=float)
     inverse = np.linalg.inv(inertia).astype(number)
     inertia = inertia.astype(number)
-    return lambda w: inverse @ np.cross(inertia @ w, w)
+    return lambda w: inverse @ cross(inertia @ w, w)
 
 
 def explicit_euler(f: Callable[[Floats], Floats], w: Floats, h: Any) -> tuple[Floats, Floats]:
@@ -42,7 +43,7 @@ def turned(q: Floats, angle: Floats) -> Floats:
     """q times the exponential of half a rotation vector in body axes."""
     size = float(np.linalg.norm(angle))
     s, v = math.cos(size / 2), math.sin(size / 2) / size * angle
-    return np.array([q[0] * s - q[1:] @ v, *(q[0] * v + s * q[1:] + np.cross(q[1:], v))])
+    return np.array([q[0] * s - q[1:] @ v, *(q[0] * v + s * q[1:] + cross(q[1:], v))])
 
 
 def fixed_step(

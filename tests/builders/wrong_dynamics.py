@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from builders.numbers import cross
 from builders.trajectories import QUATERNION, VECTORS, Columns, named
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.material import Material
@@ -53,24 +54,24 @@ class Numbers:
 
 
 def euler(w: Array, q: Array, n: Numbers) -> Array:
-    return np.linalg.solve(n.tensor, np.cross(n.tensor @ w + n.rotor, w) + n.load) - n.damping * w
+    return np.linalg.solve(n.tensor, cross(n.tensor @ w + n.rotor, w) + n.load) - n.damping * w
 
 
 def kirchhoff(z: Array, q: Array, n: Numbers) -> Array:
     x, y, velocity = z[:3], z[3:], n.tensor @ z
     U, W = velocity[:3], velocity[3:]
-    free = np.concatenate([np.cross(x, W), np.cross(y, W) + np.cross(x, U)])
+    free = np.concatenate([cross(x, W), cross(y, W) + cross(x, U)])
     return free + n.load - n.damping * z
 
 
 def turned(q: Array, w: Array) -> Array:
     """q w / 2, w in body axes."""
-    return 0.5 * np.array([-q[1:] @ w, *(q[0] * w + np.cross(q[1:], w))])
+    return 0.5 * np.array([-q[1:] @ w, *(q[0] * w + cross(q[1:], w))])
 
 
 def turned_by_space(q: Array, w: Array) -> Array:
     """w q / 2, which takes w for a vector of space."""
-    return 0.5 * np.array([-q[1:] @ w, *(q[0] * w - np.cross(q[1:], w))])
+    return 0.5 * np.array([-q[1:] @ w, *(q[0] * w - cross(q[1:], w))])
 
 
 def simulated(

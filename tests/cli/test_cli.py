@@ -590,7 +590,7 @@ needs_processes = pytest.mark.skipif(
 
 
 @needs_processes
-@pytest.mark.parametrize("after", [0.0, 0.2, 1.5])
+@pytest.mark.parametrize("after", [0.0, pytest.param(0.2, marks=pytest.mark.slow), 1.5])
 def test_an_interrupt_ends_run_and_workers_with_one_line(
     working: subprocess.Popen[str], tmp_path: Path, after: float
 ) -> None:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import pytest
+from builders.turns import by_turns
 
 import taylor_verify
 from taylor_verify.judge.judgement import Judgement
@@ -91,7 +92,7 @@ def test_a_script_whose_solver_leaves_comes_to_its_end() -> None:
     assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 7
 
 
-@pytest.mark.parametrize("code", ["0", "", "1"])
+@pytest.mark.parametrize("code", by_turns(["0", "", "1"]))
 def test_sys_exit_in_a_test_fails_the_test_alone(pytester: pytest.Pytester, code: str) -> None:
     """The plugin reports a failed solver with the line that left, and the session goes on."""
     pytester.makepyfile(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from itertools import product
 from typing import Any
 
 import pytest
@@ -22,6 +23,14 @@ from taylor_verify.scenes.scene import Scene
 DIGITS = 25
 FRAME = (Fraction(1), Fraction(-2), Fraction(1, 3), Fraction(2))
 PLACE = (Fraction(1), Fraction(-2), Fraction(1, 3))
+
+
+# A path of Weber's kind costs as much as all the others together.
+LONG = [
+    ("kirchhoff/weber", "arb"),
+    ("kirchhoff/weber", "mpmath"),
+    ("kirchhoff/weber-path", "mpmath"),
+]
 
 
 def free_forms() -> list[str]:
@@ -62,8 +71,13 @@ def at_numbers(inner: Solution) -> Solution:
     return carried(inner, as_it_is, clock=lambda t, number: number(t))
 
 
-@pytest.mark.parametrize("route", ["arb", "mpmath"])
-@pytest.mark.parametrize("name", free_forms())
+@pytest.mark.parametrize(
+    ("name", "route"),
+    [
+        pytest.param(*case, marks=pytest.mark.slow if case in LONG else ())
+        for case in product(free_forms(), ["arb", "mpmath"])
+    ],
+)
 def test_a_ball_of_a_rational_gives_the_motion_at_the_rational(name: str, route: str) -> None:
     """They agree within both radii before the start, at it and beyond the end, with attitude and centre."""
     inner = solution(everything(load(name)), route)

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builders.scenes import vector
+from builders.turns import by_turns
 from mpmath import mp, mpf
 
 from taylor_verify.exact.elements import elements
@@ -70,7 +71,9 @@ def distance(a: Any, b: Any) -> mpf:
 # Every orbit.
 
 
-@pytest.mark.parametrize("name", [n for n in names() if n.startswith(("euler/", "kirchhoff/"))])
+@pytest.mark.parametrize(
+    "name", by_turns(n for n in names() if n.startswith(("euler/", "kirchhoff/")))
+)
 def test_the_digits_asked_for_are_right(name: str) -> None:
     """Fifteen digits agree with forty, name by name, and every number says what it is."""
     scene = load(name)

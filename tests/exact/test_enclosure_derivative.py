@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.turns import by_turns
 from flint import arb, arb_mat, ctx
 
 from taylor_verify.exact.balls import ball, midpoint
@@ -96,7 +97,7 @@ def in_units(units: Vector, matrix: arb_mat) -> arb_mat:
     return arb_mat([[matrix[i, j] * factors[i][j] for j in range(n)] for i in range(n)])
 
 
-@pytest.mark.parametrize("name", BY_DIFFERENCES)
+@pytest.mark.parametrize("name", by_turns(BY_DIFFERENCES))
 def test_differences_of_the_motion_lie_in_the_enclosed_derivative(name: str) -> None:
     """Each derivative, a difference of exact motions, is in its ball, whose width no norm would notice."""
     scene = replace(load(name), track=frozenset())

@@ -26,6 +26,7 @@ from builders.clebsch import (
     falling,
 )
 from builders.scenes import one_instant, vector
+from builders.turns import by_turns
 from flint import acb, arb, ctx
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
@@ -181,7 +182,7 @@ def agrees_with_jacobi(problem: Scene, times: Sequence[Fraction]) -> bool:
 BOTH_WAYS = vector("3/2", 4, "-7/3", 0, "1/1000000007")
 
 
-@by_case
+@pytest.mark.parametrize(("solid", "start", "kind"), by_turns(CASES.values()))
 def test_agrees_with_taylor(solid: Clebsch, start: State, kind: str) -> None:
     """Impulses, attitude and centre are those of the Taylor route, both ways in time."""
     problem = scene(solid, start)

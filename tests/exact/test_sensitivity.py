@@ -309,7 +309,9 @@ def test_impulses_or_coefficients_multiplied() -> None:
             assert largest(combined(found, name, impulses) - expected) <= CLOSE
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=pytest.mark.slow if n == "general" else ()) for n in SCENES]
+)
 def test_the_flow_is_the_derivative_by_time(name: str) -> None:
     """For R as the rotation vector of space axes, R omega; the rest as it is."""
     flow = known(name).flow

@@ -67,7 +67,7 @@ SEEDED = {
 @pytest.mark.parametrize(
     ("kind", "exponent"),
     [
-        (kind, exponent)
+        pytest.param(kind, exponent, marks=pytest.mark.slow if exponent == 60 else ())
         for kind, exponent in product(SEEDED, (20, 60, 300))
         # The closed form of a body under a moment takes minutes for the last one.
         if (kind, exponent) != ("moment", 300)

@@ -74,7 +74,13 @@ def closed_forms() -> list[str]:
     return found
 
 
-@pytest.mark.parametrize("name", closed_forms())
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.slow if name in IN_PROPORTION_TO_TIME else ())
+        for name in closed_forms()
+    ],
+)
 def test_on_every_shipped_scene(name: str) -> None:
     """Attitude and centre included, within the span of the scene, before it and after it."""
     scene = load(name)

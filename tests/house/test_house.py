@@ -32,10 +32,13 @@ class Import(NamedTuple):
     for_types_only: bool
 
 
+parse = functools.cache(ast.parse)
+
+
 @functools.cache
 def imports(source: str) -> tuple[Import, ...]:
     """Every import of a module: at its top, inside functions, and import_module of a literal."""
-    return tuple(_imports_below(ast.parse(source), for_types_only=False))
+    return tuple(_imports_below(parse(source), for_types_only=False))
 
 
 def _imports_below(node: ast.AST, for_types_only: bool) -> Iterator[Import]:
@@ -223,7 +226,7 @@ def heyoka_has_its_place(module: str, source: str) -> Iterator[str]:
 
 def imports_heyoka_late(module: str, source: str) -> Iterator[str]:
     """heyoka is imported inside functions, or for type hints alone: no module needs it to load."""
-    for target, line in _imports_on_loading(ast.parse(source)):
+    for target, line in _imports_on_loading(parse(source)):
         if within(target, "heyoka"):
             yield f"expected heyoka inside a function, got {target} @ {module}:{line}"
 
@@ -249,7 +252,7 @@ def is_silent(module: str, source: str) -> Iterator[str]:
     for target, line, _ in imports(source):
         if within(target, "rich", "sys.stdout", "sys.stderr"):
             yield f"expected printing in cli only, got {target} @ {module}:{line}"
-    for node in ast.walk(ast.parse(source)):
+    for node in ast.walk(parse(source)):
         match node:
             case ast.Call(func=ast.Name(id="print")):
                 yield f"expected printing in cli only, got print() @ {module}:{node.lineno}"
@@ -273,7 +276,7 @@ def names_a_noun(module: str, source: str) -> Iterator[str]:
 
 def says_what_it_is(module: str, source: str) -> Iterator[str]:
     """Every module with something in it has a docstring."""
-    if source.strip() and not ast.get_docstring(ast.parse(source)):
+    if source.strip() and not ast.get_docstring(parse(source)):
         yield f"expected a docstring, got none @ {module}"
 
 

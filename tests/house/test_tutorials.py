@@ -24,7 +24,7 @@ def _as_a_reader(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 # They judge a dozen files, and look for the cause of each error.
-LONG = ("check-my-vehicle", "judge-my-engine")
+LONG = ("check-my-satellite", "check-my-vehicle", "judge-my-engine")
 PAGES = [
     pytest.param(page, id=page.stem, marks=[pytest.mark.slow] if page.stem in LONG else [])
     for page in TUTORIALS

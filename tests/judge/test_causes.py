@@ -313,7 +313,7 @@ def as_float32(columns: Columns) -> Columns:
     }
 
 
-@pytest.mark.parametrize("every", [1, 5])
+@pytest.mark.parametrize("every", [1, pytest.param(5, marks=pytest.mark.slow)])
 def test_a_state_in_float32_is_named(every: int, tmp_path: Path) -> None:
     """Rounding every step to 24 bits is named; rounding every row that is written is none of it."""
     inside = runge_kutta(load(FREE), 0.02, every, single=True)

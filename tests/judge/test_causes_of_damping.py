@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from builders.trajectories import Columns, file_judgement, write_csv
+from builders.turns import by_turns
 from builders.wrong_dynamics import Array, Numbers, Rate, material, runge_kutta, simulated
 
 from taylor_verify.judge.causes.search import likely_causes
@@ -56,13 +57,15 @@ def of_velocity(n: Numbers) -> Rate:
     return rate
 
 
-@pytest.mark.parametrize("scene", [RIGID, FLUID])
 @pytest.mark.parametrize(
-    ("change", "name"),
+    ("scene", "change", "name"),
     [
-        (left_out, "damping left out"),
-        (turned_round, "damping with the other sign"),
-        (doubled, "another damping"),
+        (RIGID, left_out, "damping left out"),
+        (RIGID, turned_round, "damping with the other sign"),
+        (RIGID, doubled, "another damping"),
+        (FLUID, left_out, "damping left out"),
+        pytest.param(FLUID, turned_round, "damping with the other sign", marks=pytest.mark.slow),
+        pytest.param(FLUID, doubled, "another damping", marks=pytest.mark.slow),
     ],
 )
 def test_a_wrong_damping_is_named(scene: str, change: Callable[[Numbers], None], name: str) -> None:
@@ -77,8 +80,11 @@ def test_damping_of_the_velocity_is_named(scene: str) -> None:
     assert set(found) == {"damping of the velocity"}
 
 
-@pytest.mark.parametrize("scene", [RIGID, FLUID])
-@pytest.mark.parametrize("first", [False, True], ids=["after", "before"])
+# A law in both places, on a rigid body and in a fluid by turns.
+@pytest.mark.parametrize(
+    ("first", "scene"),
+    by_turns([(False, RIGID), (False, FLUID)], 2) + by_turns([(True, FLUID), (True, RIGID)], 2),
+)
 @pytest.mark.parametrize(
     ("factor", "name", "words"),
     [

@@ -298,7 +298,10 @@ def all_at_once(columns: Columns) -> Columns:
 # A start in line with the axes of space shows space axes only after a while.
 @pytest.mark.parametrize(
     ("scene", "rows"),
-    [("euler/with-attitude", 5), ("euler/with-attitude", 1001), ("euler/nesc-brick", 1001)],
+    [
+        *(("euler/with-attitude", 5), ("euler/nesc-brick", 1001)),
+        pytest.param("euler/with-attitude", 1001, marks=pytest.mark.slow),
+    ],
 )
 @pytest.mark.parametrize(
     ("spoil", "subjects"),

@@ -272,8 +272,9 @@ class Flushed(Solver):
 @pytest.mark.parametrize(
     "name",
     [
-        *("euler-unstable-axis-1e-4", "euler-unstable-axis-1e-8", "euler-unstable-axis-1e-16"),
-        *("euler-unstable-axis-1e-40", "kirchhoff-unstable-spin-1e-4"),
+        *("euler-unstable-axis-1e-4", "euler-unstable-axis-1e-16", "kirchhoff-unstable-spin-1e-4"),
+        pytest.param("euler-unstable-axis-1e-8", marks=pytest.mark.slow),
+        pytest.param("euler-unstable-axis-1e-40", marks=pytest.mark.slow),
     ],
 )
 def test_a_body_that_never_flips_has_no_green_state(name: str) -> None:

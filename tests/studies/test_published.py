@@ -445,11 +445,13 @@ def test_renderings_have_all_of_a_page(path: str) -> None:
     latex_has_the_rows(page_in(REPORTS, path), rendered())
 
 
+@pytest.mark.slow
 def test_links_of_the_renderings_lead_somewhere(clone: Path) -> None:
     """Links and pictures of the HTML lead to renderings, or to published files."""
     links_lead_somewhere(clone, rendered())
 
 
+@pytest.mark.slow
 def test_the_renderings_are_of_a_sane_size() -> None:
     """All LaTeX and all HTML together stay below 1.5 MB each."""
     for suffix in (".tex", ".html"):

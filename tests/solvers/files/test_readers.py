@@ -13,6 +13,7 @@ from builders import recordings
 from builders.lacking import lacking
 from builders.recordings import CLOCK, OMEGA, QUATERNION, WRITERS, Columns
 from builders.trajectories import columns_at, write_csv
+from builders.turns import by_turns
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from mcap.writer import CompressionType
@@ -65,7 +66,7 @@ def test_verdicts_are_those_of_the_csv(name: str, columns: Columns, tmp_path: Pa
     assert {row["verdict"] for row in rows if row["quantity"] != "complete"} == {"pass"}
 
 
-@pytest.mark.parametrize("name", WRITERS)
+@pytest.mark.parametrize("name", by_turns(WRITERS))
 def test_a_spoiled_row_is_seen_in_every_format(name: str, columns: Columns, tmp_path: Path) -> None:
     """A twin with one number changed by 1e-9 fails, at the time of that number."""
     spoiled = {key: list(values) for key, values in columns.items()}

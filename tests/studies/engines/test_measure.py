@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,11 @@ from taylor_verify.studies.engines.entry import Asked, EntryList
 from taylor_verify.studies.engines.measure import answers_of, judged_again, measure
 from taylor_verify.studies.engines.unfinished import Unfinished
 
-KNOWN = {answer.row.key: answer for answer in answers()}
+
+@cache
+def known() -> dict[str, Answer]:
+    """The runs of the small list by their keys."""
+    return {answer.row.key: answer for answer in answers()}
 
 
 @pytest.fixture
@@ -34,7 +39,7 @@ def ran(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         found = []
         for some in asked:
             made.extend(one.key for one in some)
-            found.append([KNOWN.get(one.key) or work([one])[0] for one in some])
+            found.append([known().get(one.key) or work([one])[0] for one in some])
             options["ended"](some, found[-1])
         return found
 
@@ -44,7 +49,7 @@ def ran(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 def test_what_is_stored_is_not_run_again(ran: list[str], tmp_path: Path) -> None:
     """With every answer known nothing is run, and the answers stand in the order of the list."""
-    found = measure(ENTRIES, KNOWN, Unfinished(tmp_path), lambda words: None)
+    found = measure(ENTRIES, known(), Unfinished(tmp_path), lambda words: None)
     assert ran == []
     assert [answer.row.key for answer in found] == [run.key for run in ENTRIES.runs()]
 
@@ -65,10 +70,10 @@ def test_a_measurement_goes_on_after_a_kill(ran: list[str], tmp_path: Path) -> N
 
 def test_one_engine_is_measured_alone(ran: list[str], tmp_path: Path) -> None:
     """The rows of the others stay as they are."""
-    others = {key: answer for key, answer in KNOWN.items() if answer.row.engine != "spinner"}
+    others = {key: answer for key, answer in known().items() if answer.row.engine != "spinner"}
     found = measure(ENTRIES, others, Unfinished(tmp_path), lambda words: None, only=["spinner"])
     assert {key.partition("?")[0] for key in ran} == {SPINNER.solver}
-    assert len(found) == len(KNOWN)
+    assert len(found) == len(known())
 
 
 @pytest.mark.parametrize(
@@ -84,8 +89,8 @@ def test_another_adapter_is_another_run(
     ran: list[str], tmp_path: Path, change: dict[str, Any]
 ) -> None:
     """So is a run that failed, or had no environment: the machine may be at fault."""
-    key, answer = next(iter(KNOWN.items()))
-    changed = {**KNOWN, key: replace(answer, row=replace(answer.row, **change))}
+    key, answer = next(iter(known().items()))
+    changed = {**known(), key: replace(answer, row=replace(answer.row, **change))}
     measure(ENTRIES, changed, Unfinished(tmp_path), lambda words: None)
     assert ran == [key]
 
@@ -103,7 +108,7 @@ def test_an_engine_that_cannot_be_installed_is_no_failure(
     monkeypatch.setattr(measuring, "prepare", prepare)
     lost = replace(SPINNER, name="lost", solver="outside:mujoco", versions=("1.0",))
     entries = EntryList(ENTRIES.scene, (*ENTRIES.entry, lost))
-    found = measure(entries, KNOWN, Unfinished(tmp_path), lambda words: None)
+    found = measure(entries, known(), Unfinished(tmp_path), lambda words: None)
     rows = [answer.row for answer in found if answer.row.engine == "lost"]
     assert [row.standing for row in rows] == [Standing.UNAVAILABLE] * len(SPINNER.values)
     assert {row.detail for row in rows} == {"no such package"}
