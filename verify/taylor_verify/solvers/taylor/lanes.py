@@ -14,14 +14,14 @@ import numpy as np
 
 from taylor_verify.models.bodies import Bodies
 from taylor_verify.scenes.precision import rung
-from taylor_verify.solvers.taylor.driver import (
+from taylor_verify.solvers.taylor.ensemble import batch_width, stepper
+from taylor_verify.solvers.taylor.way import (
     LEAST_STEPS,
     LONGEST_STEP,
     MOST_RADIANS,
     STEPS_PER_RADIAN,
     outcome_of,
 )
-from taylor_verify.solvers.taylor.ensemble import batch_width, stepper
 from taylor_verify.solvers.trajectory import Outcome
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
