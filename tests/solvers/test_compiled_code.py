@@ -65,12 +65,13 @@ def test_unlike_integrators_are_unlike_files(folder: Path) -> None:
     """Rung, tolerance, equations, literals and optimisation are each in the name of a file."""
     problem = pose(load("euler/generic"), rung("f64"))
     compile_afresh()
+    compile_afresh("f80")
     for other in (
         {"name": "f32"},
         {"scene": "euler/with-attitude"},
         {"tolerance": Fraction(1, 1000)},
         {"tolerance": Fraction(1, 1001)},
-        {"is_long": False},
+        {"name": "f80", "is_long": False},
         {"literals": problem.parameters},
         {"literals": tuple(2 * value for value in problem.parameters)},
     ):

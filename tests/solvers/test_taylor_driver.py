@@ -323,9 +323,10 @@ def test_samples_cost_no_steps(name: str) -> None:
         assert np.array_equal(rows[-1], many.quantities[quantity][-1])
 
 
-def test_unoptimised_code_takes_the_same_steps(monkeypatch: pytest.MonkeyPatch) -> None:
-    """How MPFR's calls are compiled changes what they cost, and not a bit of what they compute."""
-    problem = pose(load("euler/with-attitude"), rung("mp113"))
+@pytest.mark.parametrize("name", ["f80", "f128", "mp113"])
+def test_unoptimised_code_takes_the_same_steps(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """How loops are compiled changes what they cost, and not a bit of what they compute."""
+    problem = pose(load("euler/with-attitude"), rung(name))
     found = []
     for long_way in (0, 10**6):
         monkeypatch.setattr(driver, "_LONG_WAY", long_way)

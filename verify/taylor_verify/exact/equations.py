@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
+from math import prod
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -81,13 +82,13 @@ class Equations(NamedTuple):
     def scaled(self, units: Vector, time: Fraction, length: Fraction) -> Scaled:
         """The equations with z in ``units``, one for each component; the centre goes by lengths."""
         one = np.array(units, dtype=object)
-        rates = time / one
+        rates, turns, lengths = time / one, [time] * 3, [time / length] * 3
         return Scaled(
-            (self.constant * rates).astype(float),
-            (self.linear * np.outer(rates, one)).astype(float),
-            (self.hessian * np.multiply.outer(rates, np.outer(one, one))).astype(float),
-            (self.spin * one * time).astype(float),
-            (self.velocity * one * (time / length)).astype(float),
+            in_units(self.constant, rates).astype(float),
+            in_units(self.linear, rates, one).astype(float),
+            in_units(self.hessian, rates, one, one).astype(float),
+            in_units(self.spin, turns, one).astype(float),
+            in_units(self.velocity, lengths, one).astype(float),
         )
 
 
@@ -101,9 +102,26 @@ def nothing(n: int) -> Exact:
     return np.full((n, n), Fraction(0), dtype=object)
 
 
+def in_units(values: Exact, *units: Sequence[Fraction]) -> Exact:
+    """The entries times the unit of each of their places, one vector of units for each axis."""
+    found = np.full(values.shape, Fraction(0), dtype=object)
+    # Most of them are zero, and a product of rationals is dear.
+    for place in zip(*np.nonzero(values), strict=True):
+        factors = (vector[i] for vector, i in zip(units, place, strict=True))
+        found[place] = prod(factors, start=values[place])
+    return found
+
+
 def cross(left: Matrix, right: Matrix) -> Exact:
     """The second derivatives of (left z) x (right z), two linear forms of z with three rows each."""
-    one, other = exact(left), exact(right)
-    pairs = ((1, 2), (2, 0), (0, 1))
-    products = [np.outer(one[j], other[k]) - np.outer(one[k], other[j]) for j, k in pairs]
-    return exact([product + product.T for product in products])
+    n = len(left[0])
+    found = np.full((3, n, n), Fraction(0), dtype=object)
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        for first, second, sign in ((j, k, 1), (k, j, -1)):
+            for a, p in enumerate(left[first]):
+                for b, q in enumerate(right[second]):
+                    # Most entries are zero, and a product of rationals is dear.
+                    if p and q:
+                        found[i, a, b] += sign * p * q
+                        found[i, b, a] += sign * p * q
+    return found

@@ -21,7 +21,7 @@ import numpy as np
 
 from taylor_verify.exact.clocks import Floats, standing, swing
 from taylor_verify.exact.conditioning.inputs import momentum
-from taylor_verify.exact.equations import Scaled, exact
+from taylor_verify.exact.equations import Scaled, exact, in_units
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.scenes.precision import floor_log2, power_of_two
 from taylor_verify.scenes.scene import Scene
@@ -71,8 +71,8 @@ class Flow:
         kind, units = kind_of(scene.body), momentum(scene).units
         equations = kind.momentum_equations(scene.body)
         one = exact(units)
-        scaled = equations.hessian * np.multiply.outer(1 / one, np.outer(one, one))
-        linear = equations.linear * np.outer(1 / one, one)
+        scaled = in_units(equations.hessian, 1 / one, one, one)
+        linear = in_units(equations.linear, 1 / one, one)
         every = (*scaled.flat, *linear.flat, *(equations.constant / one))
         rates = [abs(rate) for rate in every if rate]
         time = 1 / power_of_two(floor_log2(max(rates))) if rates else Fraction(1)

@@ -19,13 +19,14 @@ up from step to step, and which the bound of the balance has to hold (judge.bala
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 from mpmath import mp
 
+from taylor_verify.exact.conditioning.neighbours import neighbours
 from taylor_verify.exact.damping import without_damping
 from taylor_verify.exact.invariants import Invariant, decisive, invariants
 from taylor_verify.exact.taylor import arcs
@@ -67,8 +68,8 @@ class Drifts:
         self._found = invariants(scene)
         self._series = {invariant.name: Series() for invariant in self._found}
         self._begin = in_mpfr(start)
-        # Where the last block ended: its time, its state, and the sums of all increments.
-        self._before: tuple[Fraction, State] = Fraction(0), scene.initial
+        # Where the last block ended, and the sums of all increments.
+        self._end = _End(Fraction(0), scene.initial, self._begin, self._begin)
         self._sums: dict[str, Column] = {}
         # The signed drift of the last row, over its scale, of what is a number.
         self._changes: dict[str, float] = {}
@@ -87,11 +88,12 @@ class Drifts:
         scene, quick = self._scene, in_mpfr(answer)
         is_free = scene.body.is_conservative
         self._is_lost = self._is_lost or not (is_free or _is_finite(answer))
-        ends = None if is_free or self._is_lost else in_mpfr(self._arc_ends(elapsed, held))
+        moved = None if is_free or self._is_lost else in_mpfr(truth)
+        ends = None if moved is None else self._arc_ends(elapsed, moved, quick, held)
         with precision():
             if is_free:
                 quick = without_damping(scene, quick, elapsed)
-            self._widen(without_damping(scene, in_mpfr(truth), elapsed))
+            self._widen(without_damping(scene, moved or in_mpfr(truth), elapsed))
             assert self._largest is not None
             for invariant in self._found:
                 if is_free:
@@ -135,17 +137,46 @@ class Drifts:
         self._sums[invariant.name] = sums[-1]
         return sums
 
-    def _arc_ends(self, elapsed: Sequence[Fraction], held: Mapping[str, Column]) -> Motion:
-        """The exact motion at each sample that sets out from the sample before, or from the start."""
-        states = _states(self._scene, held)
-        time, state = self._before
-        begins = (time, *elapsed[:-1])
-        spans = [b - a for a, b in zip(begins, elapsed, strict=True)]
-        self._before = elapsed[-1], states[-1]
-        return arcs(self._scene, [state, *states[:-1]], spans, self._digits, begins)
+    def _arc_ends(
+        self,
+        elapsed: Sequence[Fraction],
+        truth: Motion,
+        answer: Motion,
+        held: Mapping[str, Column],
+    ) -> Motion:
+        """The exact motion at each sample that sets out from the sample before, or from the start.
+
+        Followed beside the exact motion of the scene, where it is close to it; else enclosed.
+        """
+        scene, end, last = self._scene, self._end, [len(elapsed) - 1]
+        begins = (end.time, *elapsed[:-1])
+        with precision():
+            earlier, beside = (
+                joined(before, rows).at(range(len(elapsed)))
+                for before, rows in ((end.truth, truth), (end.answer, answer))
+            )
+            found = neighbours(scene, [*begins, *elapsed], (earlier, truth), beside, self._digits)
+        if found is None:
+            states = _states(scene, held)
+            spans = [b - a for a, b in zip(begins, elapsed, strict=True)]
+            starts = [end.state, *states[:-1]]
+            found = in_mpfr(arcs(scene, starts, spans, self._digits, begins))
+        (state,) = _states(scene, {name: rows[last] for name, rows in held.items()})
+        self._end = _End(elapsed[-1], state, truth.at(last), answer.at(last))
+        return found
 
 
 # The arcs.
+
+
+@dataclass(frozen=True)
+class _End:
+    """A sample: its time, the answer as an exact state, the exact motion and the answer there."""
+
+    time: Fraction
+    state: State
+    truth: Motion
+    answer: Motion
 
 
 def _states(scene: Scene, held: Mapping[str, Column]) -> list[State]:

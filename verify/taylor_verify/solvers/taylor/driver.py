@@ -32,11 +32,14 @@ from taylor_verify.solvers.taylor.numbers import arithmetic, unavailable
 from taylor_verify.solvers.taylor.way import Way
 from taylor_verify.solvers.trajectory import Outcome, Postponed, Trajectory
 
-# Beyond this many states straight-line code compiles longer than it runs.
+# Beyond this many states optimising straight-line code takes longer than it runs.
 _LARGEST_STRAIGHT_LINE = 5
-# Code that is compiled in every process anew is optimised for ways longer than this, in the units of
-# time: it runs a quarter faster then, and saves in a hundred steps what optimising takes.
+# Where code may be left as it is, it is optimised for ways longer than this, in the units of time. Loops
+# run up to twice as fast then (f80), MPFR's calls by a quarter, f128's not at all; in some hundred steps
+# that is what optimising takes.
 _LONG_WAY = 50
+# The standard set asks for nearly four hundred, a scene's rungs one after the other.
+_MOST_COMPILED = 128
 
 
 @final
@@ -61,8 +64,8 @@ class Taylor(Solver):
     def solve(self, problem: Problem) -> Trajectory:
         began = perf_counter()
         numbers = arithmetic(problem.rung)
-        # Where code is found again it is one and the same for every way.
-        is_long = numbers.is_found_again or abs(problem.times[-1]) > _LONG_WAY
+        # Of doubles there is one code for every way.
+        is_long = numbers.is_quick_plain or _is_long(numbers.times(problem.times))
         integrator = compiled(problem.form, problem.rung, self.tolerance, is_long=is_long)
         compile_seconds = perf_counter() - began
         way = _way(integrator, problem)
@@ -106,7 +109,7 @@ def tolerance(name: str) -> Fraction | None:
     return options(name, [TAYLOR], ["tol"]).positive("tol", default="")
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=_MOST_COMPILED)
 def compiled(
     form: Form,
     rung: Rung,
@@ -117,7 +120,8 @@ def compiled(
     """Return the one compiled integrator of a form, rung and tolerance; the rest is filled in per problem.
 
     Parameters cost what literals cost, and serve every body: literals are for measuring that. What it
-    computes does not depend on ``is_long``, which tells what pays.
+    computes does not depend on ``is_long``, which tells what pays: optimised loops compute the same to the
+    last bit. Optimised straight-line code of doubles does not, because it fuses products with sums.
     """
     import heyoka as hy
 
@@ -129,13 +133,15 @@ def compiled(
         coefficients = [hy.expression(numbers.number(value)) for value in literals]
     system = equations(form, coefficients)
     passed = len(form.parameters) if literals is None else 0
+    is_small = len(system) <= _LARGEST_STRAIGHT_LINE
+    is_optimised = is_small if numbers.is_quick_plain else is_long
     options = {
         "state": np.array([zero] * len(system), dtype=numbers.fp_type),
         "time": zero,
         "pars": np.array([zero] * passed, dtype=numbers.fp_type),
         "fp_type": numbers.fp_type,
-        "compact_mode": numbers.compact or len(system) > _LARGEST_STRAIGHT_LINE,
-        "opt_level": 3 if is_long else 0,
+        "compact_mode": numbers.compact or not (is_small or numbers.is_quick_plain),
+        "opt_level": 3 if is_optimised else 0,
         # heyoka takes 0 for the machine epsilon of the type.
         "tol": zero if tolerance is None else numbers.number(rung.round(tolerance)),
     }
@@ -155,6 +161,10 @@ def equations(form: Form, coefficients: Sequence[Any]) -> list[tuple[Any, Any]]:
         (state, hy.expression(0.0) if is_absent(rate) else rate)
         for state, rate in zip(states, rates, strict=True)
     ]
+
+
+def _is_long(times: Any) -> bool:
+    return abs(float(times[-1])) > _LONG_WAY
 
 
 # Whoever times a solver asks it one question many times: what follows from the question is made once.

@@ -32,7 +32,8 @@ class Arithmetic:
 
     ``scaled`` makes one of a significand and an exponent of two; ``double`` rounds a double to nearest
     where the rung is the narrower. ``exact`` leads back. Code for it that is stored on disk is found
-    again by another process if ``is_found_again``.
+    again by another process if ``is_found_again``. Straight-line code for it ``is_quick_plain``: without
+    any optimising it runs as fast as optimised loops, and compiles in a quarter of their time.
     """
 
     fp_type: Any
@@ -41,6 +42,7 @@ class Arithmetic:
     exact: Callable[[Any], Fraction] = exact_value
     compact: bool = False
     is_found_again: bool = True
+    is_quick_plain: bool = False
 
     def number(self, value: Fraction) -> Any:
         return self.scaled(value.numerator, 1 - value.denominator.bit_length())
@@ -58,8 +60,10 @@ class Arithmetic:
 
 
 _OF_NUMPY: Final = {
-    "f32": Arithmetic(np.float32, lambda m, e: np.float32(ldexp(m, e)), np.float32),
-    "f64": Arithmetic(float, ldexp, float),
+    "f32": Arithmetic(
+        np.float32, lambda m, e: np.float32(ldexp(m, e)), np.float32, is_quick_plain=True
+    ),
+    "f64": Arithmetic(float, ldexp, float, is_quick_plain=True),
     "f80": Arithmetic(np.longdouble, lambda m, e: np.ldexp(np.longdouble(m), e), np.longdouble),
 }
 

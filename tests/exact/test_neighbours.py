@@ -1,0 +1,145 @@
+"""Motions beside an exact one: they are those of the enclosed equations, or there is no answer."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+
+from taylor_verify.exact.conditioning import neighbours as module
+from taylor_verify.exact.conditioning.neighbours import neighbours
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.taylor import arcs
+from taylor_verify.scenes.motion import Motion, State
+from taylor_verify.scenes.mpfr import in_mpfr, precision, to_mpf
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+
+TIMES = (Fraction(0), Fraction(1, 3), Fraction(3, 2))
+ENDS = (Fraction(2, 5), Fraction(1), Fraction(13, 4))
+# Of the exact motion.
+DIGITS = 90
+# Constant loads; wheels and attitude; a path; a load that changes with time, and a path.
+SCENES = (
+    "euler/constant-moment",
+    "euler/gyrostat-moment",
+    "kirchhoff/steady-screw-under-loads",
+    "manufactured/kirchhoff-path",
+)
+
+
+def beside(scene: Scene, size: Fraction) -> list[State]:
+    """Exact states near the motion at TIMES: every component is off by some parts of ``size``."""
+    motion = solution(scene).motion(TIMES, DIGITS)
+    states = []
+    for k in range(len(TIMES)):
+        parts = {}
+        for name in scene.initial.MOVING:
+            parts[name] = off(motion[name][k], size * (k + 1))
+        if "attitude" in scene.track:
+            q = np.array(quaternion(motion["attitude"][k]), dtype=object)
+            parts["attitude"] = off(q, size)
+        if "centre" in scene.track:
+            parts["centre"] = off(motion["centre"][k], size)
+        states.append(scene.initial.with_parts(parts))
+    return states
+
+
+def off(vector: np.ndarray, size: Fraction) -> tuple[Fraction, ...]:
+    exact = [Fraction(str(mp.nstr(value, 100))) for value in vector]
+    return tuple(value + size * Fraction(3 - 2 * i, 4) for i, value in enumerate(exact))
+
+
+def quaternion(R: np.ndarray) -> list[mpf]:
+    """The quaternion of a rotation that is no half turn."""
+    scalar = mp.sqrt(1 + R[0, 0] + R[1, 1] + R[2, 2]) / 2
+    axis = (R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1])
+    return [scalar, *(each / (4 * scalar) for each in axis)]
+
+
+def asked(scene: Scene, states: list[State], digits: int) -> Motion | None:
+    """Where the states come to by their difference from the exact motion, in numbers of mpmath."""
+    exact = tuple(in_mpfr(solution(scene).motion(times, DIGITS)) for times in (TIMES, ENDS))
+    here = arcs(scene, states, [Fraction(0)] * 3, DIGITS, TIMES)
+    with precision():
+        found = neighbours(scene, [*TIMES, *ENDS], exact, in_mpfr(here), digits)
+    if found is None:
+        return None
+    return Motion({name: to_mpf(rows) for name, rows in found.quantities.items()}, found.radius)
+
+
+def distance(one: Motion, other: Motion) -> mpf:
+    """The largest difference of any component, over the largest component of its quantity."""
+    return max(
+        max(abs(value) for value in (rows - other[name]).flat)
+        / max(1, *(abs(value) for value in rows.flat))
+        for name, rows in one.quantities.items()
+    )
+
+
+@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize(("size", "digits"), [("1e-4", 6), ("1e-14", 16), ("1e-70", 71)])
+def test_they_are_the_enclosed_arcs(name: str, size: str, digits: int) -> None:
+    """States a little off come to where their own enclosed arcs come to, squares included."""
+    with mp.workdps(DIGITS + 20):
+        scene = load(name)
+        states = beside(scene, Fraction(size))
+        spans = [end - begin for begin, end in zip(TIMES, ENDS, strict=True)]
+        found = asked(scene, states, digits)
+        assert found is not None
+        arrived = arcs(scene, states, spans, digits + 10, TIMES)
+        assert distance(found, arrived) <= mpf(10) ** -(digits + 3)
+
+
+def test_the_exact_motion_leads_to_itself() -> None:
+    """A state that is not off is not off afterwards."""
+    with mp.workdps(DIGITS + 20):
+        scene = load("euler/gyrostat-moment")
+        exact = [in_mpfr(solution(scene).motion(times, DIGITS)) for times in (TIMES, ENDS)]
+        with precision():
+            found = neighbours(scene, [*TIMES, *ENDS], (exact[0], exact[1]), exact[0], 40)
+        assert found is not None
+        there = {name: to_mpf(rows) for name, rows in exact[1].quantities.items()}
+        arrived = {name: to_mpf(rows) for name, rows in found.quantities.items()}
+        left = distance(Motion(arrived, found.radius), Motion(there, found.radius))
+        assert left <= mpf(10) ** -(DIGITS - 1)
+
+
+def test_no_answer_where_doubles_are_not_enough() -> None:
+    """Of a difference of a thousandth float64 has no twenty digits of the motion."""
+    with mp.workdps(DIGITS + 20):
+        scene = load("euler/gyrostat-moment")
+        assert asked(scene, beside(scene, Fraction("1e-3")), 20) is None
+
+
+def test_no_answer_after_too_many_steps() -> None:
+    """Arcs of thousands of radians are left to the enclosure."""
+    with mp.workdps(DIGITS + 20):
+        scene = load("euler/constant-moment")
+        exact = in_mpfr(solution(scene).motion(TIMES, DIGITS))
+        with precision():
+            far = [10**4 * time for time in ENDS]
+            assert neighbours(scene, [*TIMES, *far], (exact, exact), exact, 16) is None
+
+
+def test_a_wrong_end_of_the_exact_motion_is_noticed() -> None:
+    """The motion along an arc has to arrive at the exact one: else there is no answer."""
+    with mp.workdps(DIGITS + 20):
+        scene = load("euler/constant-moment")
+        states = beside(scene, Fraction("1e-12"))
+        exact = [in_mpfr(solution(scene).motion(times, DIGITS)) for times in (TIMES, TIMES)]
+        here = in_mpfr(arcs(scene, states, [Fraction(0)] * 3, DIGITS, TIMES))
+        with precision():
+            assert neighbours(scene, [*TIMES, *ENDS], (exact[0], exact[1]), here, 16) is None
+
+
+def test_too_low_an_order_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two orders that do not agree are no answer."""
+    with mp.workdps(DIGITS + 20):
+        scene = load("euler/constant-moment")
+        states = beside(scene, Fraction("1e-14"))
+        assert asked(scene, states, 16) is not None
+        monkeypatch.setattr(module, "_PARTS", (2, 4))
+        assert asked(scene, states, 16) is None

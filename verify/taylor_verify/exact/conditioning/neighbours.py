@@ -1,0 +1,239 @@
+"""Motions beside an exact one: where the equations lead from states that are close to it.
+
+z, R, c   the exact momentum, attitude and centre; z + s e, R P and c + s R g those beside them
+s         a power of two near the largest of these differences
+p, s v    the quaternion of P, with p = (1 - |s v|^2)^(1/2)
+J         linear in z, with z' = load + J(z) z/2, so that loads drop out of a difference
+
+    e' = J(z + s e/2) e                        v' = (p W + v x (2 Omega + s W))/2,  W = dOmega
+    g' = dU - Omega x g + 2 p v x U + 2 s v x (v x U),  U that of z + s e
+
+Nothing is neglected: these are the equations of the difference itself. It is small, so that it need not
+have more digits than a float64 has, however many the exact motion has. All arcs are followed at once, by
+Gragg's method of extrapolation. Its error is not proven but estimated, from two orders that have to agree
+and from the exact motion, at which z has to arrive; the estimate has to be negligible.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import ceil
+from typing import Any, Final
+
+import gmpy2
+import numpy as np
+
+from taylor_verify.exact import clocks
+from taylor_verify.exact.clocks import Floats
+from taylor_verify.exact.conditioning.flow import Flow, applied
+from taylor_verify.exact.invariant import Array
+from taylor_verify.exact.kind import Kind
+from taylor_verify.exact.registry import kind_of
+from taylor_verify.exact.rows import applied as mapped
+from taylor_verify.exact.rows import cross_matrices, turned
+from taylor_verify.scenes.motion import Motion
+from taylor_verify.scenes.scene import Scene
+
+# The parts of a step, each time fewer than the next: extrapolated from all of them, order 14.
+_PARTS: Final = (2, 4, 6, 8, 10, 12, 14)
+# In radians of the fastest rate. Enclosed arcs are not much dearer than more steps than these.
+_STEP: Final = 0.75
+_MOST_STEPS: Final = 64
+# What the roundings of some hundred operations on float64 leave of a difference, with a margin.
+_NOISE: Final = 2.0**-44
+# Of the digits asked for, so many more: no digit of a verdict is to depend on which way was gone.
+_MORE_DIGITS: Final = 3
+# Beyond it squares are near the end of float64.
+_LARGEST: Final = 1e100
+
+
+def neighbours(
+    scene: Scene,
+    elapsed: Sequence[Fraction],
+    exact: tuple[Motion, Motion],
+    beside: Motion,
+    digits: int,
+) -> Motion | None:
+    """Return where the states ``beside`` an exact motion have come to when it has gone on by an arc.
+
+    ``exact`` are its rows at the beginnings and at the ends of the arcs; row k of ``beside`` belongs to
+    the k-th beginning. ``elapsed`` are the times of the beginnings and, behind them, of the ends. Motions
+    are in MPFR's numbers, at the ambient precision. None where the estimated error is not far below
+    ``digits`` digits of the motion.
+    """
+    count = len(elapsed) // 2
+    arcs = _Arcs(scene, Flow.of(scene), kind_of(scene.body))
+    begin, end = exact
+    start, size = arcs.difference(begin, beside)
+    spans = np.array(
+        [float((b - a) / arcs.flow.time) for a, b in zip(elapsed, elapsed[count:], strict=False)]
+    )
+    clock = clocks.floats(scene.body.manufactured, elapsed[:count])
+    z, arrival = (arcs.counted(arcs.momentum(motion)) for motion in exact)
+    with np.errstate(all="ignore"):  # what is not finite is not negligible
+        reached, errors = arcs.followed(clock, z, start, float(size), spans)
+        # No rate of an error is more than about 2 in these units, for a z of 1.
+        missed = 4 * (1 + np.abs(spans)) * np.linalg.norm(reached.z - arrival, axis=1)
+        largest = np.max(np.abs(np.hstack([start, reached.difference])), axis=1)
+        errors = errors + (largest * (_NOISE + missed))[:, None]
+    if not arcs.is_negligible(errors, size, end, digits + _MORE_DIGITS):
+        return None
+    return arcs.moved(end, reached.difference, size)
+
+
+@dataclass(frozen=True)
+class _Reached:
+    """The ends of arcs in float64: z, and the difference (e, v, g) in one array."""
+
+    z: Floats
+    difference: Floats
+
+
+@dataclass(frozen=True)
+class _Arcs:
+    """The arcs of one scene, counted in the units of its flow."""
+
+    scene: Scene
+    flow: Flow
+    kind: Kind[Any, Any]
+
+    @property
+    def _has_turn(self) -> bool:
+        return "attitude" in self.scene.track or "centre" in self.scene.track
+
+    @property
+    def _has_centre(self) -> bool:
+        return "centre" in self.scene.track
+
+    def momentum(self, motion: Motion) -> Array:
+        """Return the momentum of every row, in the scene's units."""
+        return self.kind.momentum_rows(self.scene.body, motion)
+
+    def counted(self, momentum: Array) -> Floats:
+        """Return momenta in the units of the flow."""
+        units = np.array([gmpy2.mpfr(unit) for unit in self.flow.components], dtype=object)
+        found: Floats = (momentum / units).astype(float)
+        return found
+
+    # From exact motions to differences, and back.
+
+    def difference(self, exact: Motion, beside: Motion) -> tuple[Floats, Any]:
+        """Return (e, v, g) and their size s, a power of two."""
+        units = np.array([gmpy2.mpfr(unit) for unit in self.flow.components], dtype=object)
+        parts = [(self.momentum(beside) - self.momentum(exact)) / units]
+        if self._has_turn:
+            back = np.swapaxes(exact["attitude"], 1, 2)
+            parts.append(_half_turns(back @ beside["attitude"]))
+        if self._has_centre:
+            length = gmpy2.mpfr(self.flow.length)
+            parts.append(turned(back, beside["centre"] - exact["centre"]) / length)
+        whole = np.hstack(parts)
+        largest = max((abs(value) for value in whole.flat), default=0)
+        size = gmpy2.exp2(gmpy2.get_exp(largest)) if gmpy2.is_regular(largest) else gmpy2.mpfr(1)
+        return (whole / size).astype(float), size
+
+    def moved(self, exact: Motion, difference: Floats, size: Any) -> Motion:
+        """Return the motion that differs so from the exact one."""
+        d = len(self.flow.components)
+        exactly = np.array([gmpy2.mpfr(v) for v in difference.flat], dtype=object)
+        whole = exactly.reshape(difference.shape) * size
+        e = whole[:, :d] * np.array([gmpy2.mpfr(u) for u in self.flow.components], dtype=object)
+        found = dict(exact.quantities)
+        if self.kind.moving == ("omega",):
+            K = self.kind.momentum_equations(self.scene.body).spin
+            found["omega"] = found["omega"] + mapped(tuple(map(tuple, K)), e)
+        else:
+            for k, name in enumerate(self.kind.moving):
+                found[name] = found[name] + e[:, 3 * k : 3 * k + 3]
+        R = exact.quantities.get("attitude")
+        if self._has_turn and R is not None:
+            v = whole[:, d : d + 3]
+            cosine = np.array([gmpy2.sqrt(1 - sum(v_i * v_i for v_i in row)) for row in v])
+            crossed = cross_matrices(v)
+            turn = cosine[:, None, None] * crossed + crossed @ crossed
+            found["attitude"] = R + 2 * (R @ turn)
+        if self._has_centre and R is not None:
+            shift = turned(R, whole[:, d + 3 :]) * gmpy2.mpfr(self.flow.length)
+            found["centre"] = found["centre"] + shift
+        return Motion(found, exact.radius)
+
+    def is_negligible(self, errors: Floats, size: Any, exact: Motion, digits: int) -> bool:
+        """Return True if all errors are below so many digits of the largest |H|, |x|, |y|, 1 and |c|."""
+        z = self.counted(self.momentum(exact))
+        sizes = [np.max(np.abs(z[:, k : k + 3])) for k in range(0, z.shape[1], 3)]
+        if self._has_turn:
+            sizes.append(1.0)
+        if self._has_centre:
+            centre = exact["centre"] / gmpy2.mpfr(self.flow.length)
+            sizes.append(float(max(abs(value) for value in centre.flat)))
+        limit = gmpy2.mpfr(10) ** -digits
+        most = [np.max(np.abs(errors[:, 3 * k : 3 * k + 3])) for k in range(len(sizes))]
+        return all(
+            gmpy2.mpfr(error) * size <= limit * float(largest)
+            for error, largest in zip(most, sizes, strict=True)
+        )
+
+    # In float64.
+
+    def followed(
+        self, clock: Floats, z: Floats, start: Floats, size: float, spans: Floats
+    ) -> tuple[_Reached, Floats]:
+        """Return where all arcs end, and the estimated errors of the differences; NaN for too long arcs."""
+        m, d = clock.shape[1], z.shape[1]
+        at = np.hstack([clock, z, start])
+        radians = np.max(np.abs(spans) * self.flow.rate(z), initial=0.0)
+        if not radians <= _MOST_STEPS * _STEP or np.max(np.abs(start), initial=0.0) > _LARGEST:
+            return _Reached(z, start), np.full_like(start, np.nan)
+        steps = max(1, ceil(radians / _STEP))
+        errors = np.zeros_like(start)
+        for _ in range(steps):
+            at, error = self._step(at, (spans / steps)[:, None], size, m, d)
+            errors += np.abs(error[:, m + d :])
+        return _Reached(at[:, m : m + d], at[:, m + d :]), errors
+
+    def _step(self, at: Floats, h: Floats, size: float, m: int, d: int) -> tuple[Floats, Floats]:
+        """A step of the modified midpoint rule, extrapolated in the square of its parts."""
+        first, row = self._rates(at, size, m, d), list[Floats]()
+        for k, count in enumerate(_PARTS):
+            part = h / count
+            before, now = at, at + part * first
+            for _ in range(count - 1):
+                before, now = now, before + 2 * part * self._rates(now, size, m, d)
+            above, row = row, [now]
+            for j in range(k):
+                share = (count / _PARTS[k - 1 - j]) ** 2 - 1
+                row.append(row[j] + (row[j] - above[j]) / share)
+        return row[-1], row[-1] - row[-2]
+
+    def _rates(self, at: Floats, size: float, m: int, d: int) -> Floats:
+        flow = self.flow
+        clock, z, e = at[:, :m], at[:, m : m + d], at[:, m + d : m + 2 * d]
+        found = [
+            clock @ flow.turning.T,
+            flow.load(clock) + flow.free(z),
+            applied(flow.jacobian(z + size / 2 * e), e),
+        ]
+        if self._has_turn:
+            v = at[:, m + 2 * d : m + 2 * d + 3]
+            cosine = np.sqrt(1 - size**2 * np.sum(v * v, axis=1))[:, None]
+            spin, more = z @ flow.equations.spin.T, e @ flow.equations.spin.T
+            found.append((cosine * more + np.cross(v, 2 * spin + size * more)) / 2)
+        if self._has_centre:
+            g = at[:, m + 2 * d + 3 :]
+            speed = (z + size * e) @ flow.equations.velocity.T
+            across = np.cross(v, speed)
+            carried = 2 * cosine * across + 2 * size * np.cross(v, across)
+            found.append(e @ flow.equations.velocity.T - np.cross(spin, g) + carried)
+        return np.hstack(found)
+
+
+def _half_turns(rotations: Array) -> Array:
+    """Return the vector part of the quaternion of every rotation that is no half turn, (n, 3)."""
+    trace = np.trace(rotations, axis1=1, axis2=2)
+    skew = rotations - np.swapaxes(rotations, 1, 2)
+    axes = np.stack([skew[:, 2, 1], skew[:, 0, 2], skew[:, 1, 0]], axis=1)
+    lengths = np.array([gmpy2.sqrt(1 + each) for each in trace])
+    found: Array = axes / (2 * lengths)[:, None]
+    return found
