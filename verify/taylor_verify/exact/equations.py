@@ -102,7 +102,7 @@ def nothing(n: int) -> Exact:
     return np.full((n, n), Fraction(0), dtype=object)
 
 
-def in_units(values: Exact, *units: Sequence[Fraction]) -> Exact:
+def in_units(values: Exact, *units: Exact | Sequence[Fraction]) -> Exact:
     """The entries times the unit of each of their places, one vector of units for each axis."""
     found = np.full(values.shape, Fraction(0), dtype=object)
     # Most of them are zero, and a product of rationals is dear.
