@@ -6,7 +6,7 @@ BIN = .venv/bin
 PIP = $(BIN)/python -m pip --quiet --disable-pip-version-check
 INSTALLED = .venv/.installed
 
-.PHONY: help verify verify-all test test-all docs site test-site bench reports traps release-data tradeoff
+.PHONY: help verify verify-all test test-all docs site test-site bench mutants reports traps release-data tradeoff
 .PHONY: engines check-reports lint clean
 
 help:  ## Print this list
@@ -50,6 +50,10 @@ test-site: site  ## Look at those pages in a browser without a window (Debian: i
 
 bench: $(INSTALLED)  ## Time the exact solutions and check, in ratios within one run
 	@$(BIN)/python tests/bench.py
+
+# At the lowest priority, for an hour or more: first which tests run which line, then COUNT mutants.
+mutants: $(INSTALLED)  ## Change single signs and constants of exact, judge and claims: do the tests notice?
+	@PYTHONPATH=tests $(BIN)/python -m mutants $(if $(COUNT),--count $(COUNT)) $(if $(SEED),--seed $(SEED))
 
 reports: $(INSTALLED)  ## Rewrite what is published: reports/data, what is made from it, reports/reference and reports/claims.md
 	@$(BIN)/taylor-verify publish controls extremes > /dev/null

@@ -477,3 +477,17 @@ def test_a_site_of_committed_files_alone_is_whole(
     pages = {name: Page(text) for name, text in read.items()}
     assert {place_of(scene) for scene in SCENES} < set(pages)
     links_resolve(pages, files)
+
+
+def test_the_pages_of_parts_stand_below_their_page(tmp_path: Path) -> None:
+    """The navigation has the board, and the page of each engine under it; another page is its own."""
+    tables = tmp_path / "tables"
+    tables.mkdir()
+    for name in ("engines", "engines-mujoco", "engines-drake", "extremes"):
+        (tables / f"{name}.md").write_text(f"# {name}\n", encoding="utf-8")
+    stage = Stage(tmp_path, None)
+    stage.add_pages({})
+    assert stage.report_pages == ["reports/tables/engines", "reports/tables/extremes"]
+    board = str(stage.files["reports/tables/engines.md"])
+    assert board.endswith("```{toctree}\n:hidden:\n\nengines-drake\nengines-mujoco\n```\n")
+    assert "toctree" not in str(stage.files["reports/tables/extremes.md"])

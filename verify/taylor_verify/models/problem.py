@@ -98,7 +98,7 @@ def pose(scene: Scene, rung: Rung) -> Problem:
     units = natural_units(scene)
     times = _rounded_times(scene.clock, units, rung)
     start, unit = scene.clock.start, units.time
-    clock = Clock(start, Instants(len(times), lambda: (start + t * unit for t in times)))
+    clock = Clock(start, Instants(len(times), lambda k: start + times[k] * unit))
     data = _rounded_data(scene, units, _Rounding(rung))
     if scene.body.manufactured is not None:
         data = _with_clock(data, scene.body, scene.body.manufactured, units, _Rounding(rung))
@@ -153,7 +153,7 @@ def adopt(scene: Scene, rung: Rung, instants: Sequence[Fraction]) -> Problem:
     return replace(
         posed,
         scene=replace(scene, clock=clock),
-        times=Instants(len(instants), lambda: (t / posed.units.time for t in clock.elapsed)),
+        times=Instants(len(instants), lambda k: clock.elapsed[k] / posed.units.time),
         given=replace(posed.given, clock=clock),
     )
 

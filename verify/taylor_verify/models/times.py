@@ -30,7 +30,7 @@ class TypedTimes(Instants):
     """Numbers of a rung of the hardware: ``typed`` holds each of them exactly, as a NumPy array."""
 
     def __init__(self, typed: np.ndarray[Any, Any]) -> None:
-        super().__init__(len(typed), lambda: map(exact_value, typed))
+        super().__init__(len(typed), lambda k: exact_value(typed[k]))
         self.typed = typed
 
     @property
@@ -42,7 +42,7 @@ class BinaryTimes(Instants):
     """Numbers of any rung: time k is significand times 2^exponent by ``pairs[k]``, both whole."""
 
     def __init__(self, pairs: Sequence[tuple[int, int]]) -> None:
-        super().__init__(len(pairs), lambda: (m * power_of_two(e) for m, e in pairs))
+        super().__init__(len(pairs), lambda k: pairs[k][0] * power_of_two(pairs[k][1]))
         self.pairs = pairs
 
     @property

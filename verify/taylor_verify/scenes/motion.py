@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from taylor_verify.records.quantities import MOMENTA
+from taylor_verify.scenes.instants import Instants
 from taylor_verify.scenes.parts import IMPULSE, LENGTH, MOMENTUM, NUMBER, RATE, Part, Parted, Shape
 from taylor_verify.scenes.tensors import ZERO_VECTOR, Vector
 
@@ -93,11 +94,11 @@ class Clock:
     instants: Sequence[Fraction]
 
     @cached_property
-    def elapsed(self) -> tuple[Fraction, ...]:
+    def elapsed(self) -> Sequence[Fraction]:
         """Time since the initial state. The equations are autonomous: this alone enters them."""
         if not self.start:
-            return tuple(self.instants)
-        return tuple(instant - self.start for instant in self.instants)
+            return self.instants
+        return Instants(len(self.instants), lambda k: self.instants[k] - self.start)
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,7 @@ from taylor_verify.models.frame import rotation
 from taylor_verify.models.problem import Problem
 from taylor_verify.models.registry import mechanics
 from taylor_verify.scenes import tensors
+from taylor_verify.scenes.instants import MOST_KEPT
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.mpfr import precision, to_mpf, to_mpfr
 from taylor_verify.scenes.precision import exact_value, held_exactly
@@ -48,29 +49,6 @@ class Outcome(Enum):
         return self in (Outcome.NO_PACKAGE, Outcome.NO_FORMAT, Outcome.UNSUITED)
 
 
-class Postponed(Mapping[str, np.ndarray[Any, Any]]):
-    """The quantities of a trajectory, made of a solver's rows when the first of them is looked at."""
-
-    def __init__(self, problem: Problem, rows: Callable[[], Sequence[Sequence[Fraction]]]) -> None:
-        self._problem, self._rows = problem, rows
-
-    @cached_property
-    def _formed(self) -> dict[str, np.ndarray[Any, Any]]:
-        return from_scaled(self._problem, self._rows())
-
-    def __getitem__(self, quantity: str) -> np.ndarray[Any, Any]:
-        return self._formed[quantity]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(_names(self._problem))
-
-    def __len__(self) -> int:
-        return len(_names(self._problem))
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return dict, (self._formed,)
-
-
 class ByRows(Mapping[str, np.ndarray[Any, Any]]):
     """Quantities that are formed when some of their rows are looked at; ``count`` is that of all rows."""
 
@@ -88,6 +66,45 @@ class ByRows(Mapping[str, np.ndarray[Any, Any]]):
 
     def __len__(self) -> int:
         return sum(1 for _ in self)
+
+
+class Postponed(ByRows):
+    """The quantities of a trajectory, made of a solver's ``rows`` when somebody looks at them.
+
+    ``exact`` makes a rational of a number of the solver's. Of a long answer only the rows that are looked
+    at are made, and none is kept.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        rows: Sequence[Sequence[Any]] | np.ndarray[Any, Any],
+        exact: Callable[[Any], Fraction],
+    ) -> None:
+        self._problem, self._rows, self._exact = problem, rows, exact
+        self.count = len(rows)
+
+    def rows(self, places: Sequence[int]) -> dict[str, np.ndarray[Any, Any]]:
+        if self.count > MOST_KEPT:
+            return self._made(places)
+        return {name: rows[list(places)] for name, rows in self._formed.items()}
+
+    @cached_property
+    def _formed(self) -> dict[str, np.ndarray[Any, Any]]:
+        return self._made(range(self.count))
+
+    def _made(self, places: Sequence[int]) -> dict[str, np.ndarray[Any, Any]]:
+        exact, rows = self._exact, self._rows
+        return from_scaled(self._problem, [[exact(v) for v in rows[k]] for k in places])
+
+    def __getitem__(self, quantity: str) -> np.ndarray[Any, Any]:
+        return self._formed[quantity]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(_names(self._problem))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return dict, (self._formed,)
 
 
 def rows_at(
@@ -147,7 +164,7 @@ def of_rows(
     """
     if not all(is_finite(value) for row in rows for value in row):
         return Trajectory(Outcome.NON_FINITE, **work)
-    exact = Postponed(problem, lambda: [[exact_value(v) for v in row] for row in rows])
+    exact = Postponed(problem, rows, exact_value)
     return Trajectory(Outcome.FINISHED, exact, **work)
 
 

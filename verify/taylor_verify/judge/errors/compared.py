@@ -129,7 +129,7 @@ class Run:
         return rates(self.scene, self.truth)
 
     @cached_property
-    def elapsed(self) -> tuple[Fraction, ...]:
+    def elapsed(self) -> Sequence[Fraction]:
         return self.scene.clock.elapsed
 
     @cached_property

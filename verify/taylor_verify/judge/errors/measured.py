@@ -75,6 +75,10 @@ class Block:
     own: Quantities
     answer: Motion
 
+    def is_whole_of(self, scene: Scene) -> bool:
+        """Return True if these are all rows."""
+        return len(self.places) == len(scene.clock.instants)
+
     def add_to(self, states: States, arc: Arc) -> None:
         """Give the distances of these rows to the ``states`` of all, whose path so far is ``arc``."""
         for found in state_distances(self.scene, self.truth, self.answer, arc):
@@ -96,7 +100,7 @@ class Comparison:
 
     def measured(self, nodes: Sequence[int], costs: Costs) -> Measured:
         """Measure everything. Raises Unsettled where the exact motion cannot be had."""
-        elapsed, states, excess, arc = self.scene.clock.elapsed, States(), list[Floats](), Arc()
+        states, excess, arc = States(), list[Floats](), Arc()
         with costs.of(TRUTH):
             start = self.exact.motion([Fraction(0)], self.digits + MORE_DIGITS)
         drifts = Drifts(self.scene, start, self.digits)
@@ -106,8 +110,7 @@ class Comparison:
                 with costs.of(ERRORS):
                     block.add_to(states, arc)
                 with costs.of(CONSERVED):
-                    moved = [elapsed[k] for k in block.places]
-                    drifts.add(moved, block.truth, block.answer, block.own)
+                    drifts.add(block.scene.clock.elapsed, block.truth, block.answer, block.own)
                     if "quaternion" in block.own:
                         excess.append(in_doubles(norms(block.own["quaternion"]) - 1))
             first = block.places[0]
@@ -122,7 +125,7 @@ class Comparison:
                     block.scene, self.exact, block.truth, block.answer, digits, errors
                 )
         lengths = np.concatenate(excess) if excess else None
-        truth, is_whole = reduce(joined, at_nodes), len(block.places) == len(elapsed)
+        truth, is_whole = reduce(joined, at_nodes), block.is_whole_of(self.scene)
         return Measured(errors, drifts.errors(), lengths, truth, shifts, is_whole)
 
     def states(self) -> list[Errors]:
@@ -149,14 +152,14 @@ class Comparison:
         instants = tuple(clock.instants[k] for k in places)
         scene = replace(self.scene, clock=Clock(clock.start, instants))
         with costs.of(TRUTH):
-            truth = self.exact.motion([clock.elapsed[k] for k in places], self.digits)
+            truth = self.exact.motion(scene.clock.elapsed, self.digits)
         own = rows_at(self.quantities, places)
         return Block(places, scene, truth, own, motion_of(own, self.bits))
 
     def _shifted(self, errors: Sequence[Errors], last: Block) -> Block:
         """The rows on which shifts are sought."""
-        count = len(self.scene.clock.instants)
-        if count == len(last.places):
+        if last.is_whole_of(self.scene):
             return last
+        count = len(self.scene.clock.instants)
         worst = {index_of_largest(each.doubles) for each in errors}
         return self._block(sorted(worst.union(evenly(count, MOST_SHIFTED))), Costs())

@@ -74,10 +74,7 @@ class Taylor(Solver):
         quantities: Mapping[str, Any] = {}
         if outcome is Outcome.FINISHED:
             # Exact numbers of many samples take longer than the samples: the judge asks for them.
-            quantities = Postponed(
-                problem,
-                lambda: [[numbers.exact(v) for v in row] for row in rows],
-            )
+            quantities = Postponed(problem, rows, numbers.exact)
         return Trajectory(
             outcome=outcome,
             quantities=quantities,

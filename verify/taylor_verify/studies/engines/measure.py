@@ -17,8 +17,9 @@ from taylor_verify.batch.pool import available_cores
 from taylor_verify.batch.runs import run_all
 from taylor_verify.judge.provenance import machine, packages
 from taylor_verify.scenes.reading.reader import load as load_scene
-from taylor_verify.solvers.engines.engine import PREFIX, prepare
+from taylor_verify.solvers.engines.engine import PREFIX, Outside, prepare
 from taylor_verify.solvers.engines.launcher import NotMade
+from taylor_verify.solvers.registry import solver_named
 from taylor_verify.studies.engines import trajectories
 from taylor_verify.studies.engines.answer import Answer, answered, made_of, row_of
 from taylor_verify.studies.engines.document import (
@@ -86,7 +87,9 @@ def _sets(runs: Iterable[Asked]) -> list[list[Asked]]:
     """Return the runs in sets that one process can answer: of one environment and one precision."""
     alike: dict[tuple[str, str], list[Asked]] = {}
     for run in runs:
-        alike.setdefault((_environment(run), run.rung), []).append(run)
+        solver = solver_named(run.solver)
+        script = solver.block if isinstance(solver, Outside) else run.entry.solver
+        alike.setdefault((script, run.rung), []).append(run)
     return [
         every[first : first + _TOGETHER]
         for every in alike.values()

@@ -68,9 +68,17 @@ class Stage:
 
     @property
     def report_pages(self) -> list[str]:
-        """The pages of the report as a toctree names them."""
-        pages = [place for place in self._pages if place.startswith(f"{REPORTS}/")]
-        return [place.removesuffix(".md") for place in pages]
+        """The pages of the report as a toctree names them, without those that stand below another one."""
+        pages = [
+            place.removesuffix(".md") for place in self._pages if place.startswith(f"{REPORTS}/")
+        ]
+        below = {page for parent in pages for page in self._below(parent)}
+        return [page for page in pages if page not in below]
+
+    def _below(self, parent: str) -> list[str]:
+        """Return the pages of the parts of a page: tables/engines-mujoco stands below tables/engines."""
+        pages = (place.removesuffix(".md") for place in self._pages)
+        return [page for page in pages if page.startswith(f"{parent}-")]
 
     def toctrees(self) -> str:
         """Return the lists of pages of docs/index.md, for the navigation; nothing without docs."""
@@ -92,6 +100,13 @@ class Stage:
 
     def _add(self, place: str, text: str) -> None:
         folder = posixpath.dirname(place)
+        if (
+            below := self._below(place.removesuffix(".md"))
+            if place.startswith(f"{REPORTS}/")
+            else []
+        ):
+            names = "\n".join(map(posixpath.basename, below))
+            text = f"{text}\n```{{toctree}}\n:hidden:\n\n{names}\n```\n"
         self.files[place] = relinked(text, folder, folder, self._resolve)
 
     def _included(self, place: str, block: re.Match[str]) -> str:
