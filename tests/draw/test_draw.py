@@ -30,6 +30,7 @@ HAS = {
     "euler/tennis-racket": {"polhode", "momentum", "time", "herpolhode", "axis"},
     "euler/separatrix": {"polhode", "momentum", "time", "herpolhode", "axis"},
     "euler/damped": {"polhode", "time", "herpolhode", "axis"},
+    "euler/damped-negative": {"polhode", "time", "herpolhode", "axis"},
     "euler/gyrostat": {"momentum", "bifurcation", "time", "herpolhode", "axis"},
     "euler/gyrostat-dual-spin": {"momentum", "bifurcation", "time", "herpolhode", "axis"},
     "euler/moment-along-axis": {"time", "axis"},

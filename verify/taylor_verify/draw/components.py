@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from taylor_verify.draw.caption import caption
+from taylor_verify.draw.caption import NotDrawn, caption
 from taylor_verify.draw.view import Numbers
 from taylor_verify.publish.pictures.palette import INK, PAPER, QUIET
 from taylor_verify.publish.pictures.picture import Picture
@@ -63,9 +63,16 @@ class Series:
 
 
 def series(document: Document) -> Series:
-    """Return the components of omega in principal axes, or of both impulses in the axes of the scene."""
+    """Return the components of omega in principal axes, or of both impulses in the axes of the scene.
+
+    Raises NotDrawn where no double tells the start from the end.
+    """
     course, body = document["course"], document["body"]
     times = np.array(course["t"])
+    if times[0] == times[-1]:
+        raise NotDrawn(
+            f"expected times that doubles tell apart, got {times[0]!r} @ {document['scene']}"
+        )
     if body is None:
         panels = (
             Panel("x", "linear impulse", np.array(course["linear_impulse"])),
@@ -92,7 +99,7 @@ def _zeros(times: Numbers, values: Numbers) -> tuple[float, ...]:
 
 
 def picture(document: Document) -> Picture:
-    """Return the components of one scene against time."""
+    """Return the components of one scene against time. Raises NotDrawn as `series` does."""
     found = series(document)
     names = " and ".join(panel.name for panel in found.panels)
     alt = (

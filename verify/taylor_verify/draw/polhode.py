@@ -118,8 +118,8 @@ def picture(
     )
     title, stem = f"Polhode: {portrait['scene']}", stem_of(portrait, "polhode")
     if record is None:
-        sinks = portrait["damping"] > 0
-        alt += "it sinks below it as the body slows down." if sinks else "the exact course."
+        words = {0: "the exact course.", 1: "it sinks below it.", -1: "it rises above it."}
+        alt += words[int(np.sign(portrait["damping"]))]
         return Picture(stem, title, alt, partial(_alone, found, caption(portrait)))
     rung = record["rung"]
     most, at = max(
@@ -180,9 +180,8 @@ def _alone(found: Series, words: str) -> Figure:
 
 def _stage(found: Series) -> Stage:
     """Return the ellipsoid with its separatrices and the names of its axes."""
-    stage = Stage.around(
-        Ellipsoid(found.semi_axes), facing(found.course, found.semi_axes), _STAGE, _HEIGHT
-    )
+    view = facing(found.course, found.semi_axes)
+    stage = Stage.around(Ellipsoid(found.semi_axes), view, _STAGE, _HEIGHT, found.course)
     for curve in found.separatrices:
         stage.line(curve, 2, _BORDER)
     axes = zip(

@@ -82,11 +82,22 @@ class Stage:
         return cls(figure, axes, view, width)
 
     @classmethod
-    def around(cls, surface: Ellipsoid, view: View, width: float, height: float) -> Stage:
-        """Return a stage with a surface: its rim, filled, and the three sections across the axes."""
+    def around(
+        cls,
+        surface: Ellipsoid,
+        view: View,
+        width: float,
+        height: float,
+        also: Numbers | None = None,
+    ) -> Stage:
+        """Return a stage with a surface: its rim, filled, and the three sections across the axes.
+
+        It has room for the points of ``also``, which may lie beyond the surface.
+        """
         rim = view.seen(surface.outline(view))
         names = view.seen(np.diag(surface.semi_axes) * (1 + _NAME))
-        bare = cls.showing(np.concatenate([rim, names]), view, width, height)
+        beyond = [] if also is None else [view.seen(also)]
+        bare = cls.showing(np.concatenate([rim, names, *beyond]), view, width, height)
         bare.axes.fill(*rim.T, facecolor=_SURFACE, edgecolor=QUIET, linewidth=0.7, zorder=0)
         stage = cls(bare.figure, bare.axes, view, width, surface)
         for pole in np.eye(3):
@@ -172,9 +183,11 @@ class Stage:
         axes.tick_params(labelsize=SMALL)
 
     def time_bar(self, times: Numbers, low: float) -> None:
-        """Draw the colours of a course from its start to its end."""
+        """Draw the colours of a course from its start to its end, unless no double tells these apart."""
         from matplotlib.colors import Normalize
 
+        if times[0] == times[-1]:
+            return
         norm = Normalize(float(times.min()), float(times.max()))
         self.bar(norm, "time t", low, is_reversed=bool(times[-1] < times[0]))
 
