@@ -687,7 +687,7 @@ def in_21_coefficients(posed: Problem) -> Problem:
     for block, letter in zip("ABC", "pqr", strict=True):
         body |= {f"{block}{i}{i}": known[letter] for i in (1, 2)}
         body[f"{block}33"] = known[f"{letter}'"]
-    numbers = body | {name: value for name, value in known.items() if name[0] in "XL"}
+    numbers = body | {name: value for name, value in known.items() if name[0] in "XLs"}
     impulses = ("x1", "x2", "x3", "y1", "y2", "y3")
     states = (*impulses, *(name for name in posed.form.states if name not in impulses))
     form = Form(kirchhoff_equations, states, tuple(numbers))

@@ -176,7 +176,7 @@ class Azimuth:
     @property
     def distance(self) -> float:
         """The least distance of a pole from the real line; zero if a pole is at no finite place."""
-        if not all(f.argument.is_finite() and f.scale.is_finite() for f in self._factors):
+        if not all(f.argument.is_finite() and (1 / f.scale).is_finite() for f in self._factors):
             return 0.0
         return min(abs(float(factor.argument.imag.mid())) for factor in self._factors)
 

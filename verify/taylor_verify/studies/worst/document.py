@@ -24,15 +24,14 @@ class WorstOfFamily:
 
 @dataclass(frozen=True, kw_only=True)
 class WorstStudy:
-    """A search of so many ``runs`` in each family, or of so many ``seconds`` by an earlier version.
+    """A search of so many ``runs`` in each family.
 
     ``factor`` is the bound of a gate over what is attainable.
     """
 
     factor: int
     rung: str
-    runs: int | None = None
-    seconds: float | None = None
+    runs: int
     seed: int
     provenance: Provenance
     families: tuple[WorstOfFamily, ...]

@@ -56,10 +56,6 @@ def page(study: WorstStudy) -> str:
 
 
 def _searched(study: WorstStudy) -> str:
-    if study.runs is None:
-        return (
-            "In each family random places are drawn, then steps are taken around the worst of them"
-        )
     return (
         f"In each family {study.runs} runs are spent on a population of places that moves by "
         "differential evolution"
@@ -67,12 +63,6 @@ def _searched(study: WorstStudy) -> str:
 
 
 def _remade(study: WorstStudy) -> str:
-    if study.runs is None:
-        return (
-            f"`taylor-verify publish worst --seconds {study.seconds:g} --seed {study.seed}` hunts "
-            "anew and replaces the scenes. A faster machine judges more scenes in the same time, and may "
-            "find worse ones: the scenes that were found are the fact, and not that there are no others. "
-        )
     return (
         f"`taylor-verify publish worst --runs {study.runs} --seed {study.seed}` hunts anew and replaces "
         "the scenes. With the same versions it finds the same scenes: these are the fact, and not that "
