@@ -178,3 +178,17 @@ def test_a_report_without_a_study_has_no_paper(
     assert "expected what `publish controls engines reach tradeoff` writes" in said
     assert [file for file in sorted(tmp_path.rglob("*")) if file not in before] == []
     assert bulk.missing(tmp_path, {}).renderings == ()
+
+
+def test_compiled_rivals_have_rows_and_a_sentence(sources: Sources) -> None:
+    """Integrators of other libraries stand in the table and in the finding where they were measured."""
+    numbers = sources.trades.numbers
+    points = tuple(
+        replace(p, family="outside dop853") if p.family == "scipy DOP853" else p
+        for p in numbers.points
+    )
+    other = replace(
+        sources, trades=replace(sources.trades, numbers=replace(numbers, points=points))
+    )
+    assert "DOP853 in numba" in tables(other)[-1].csv
+    assert "The fastest compiled integrator of another library takes" in findings.trade(other)
