@@ -8,14 +8,14 @@ from math import inf
 from statistics import median
 from typing import Final
 
-from taylor_verify.publish.cells import figure, worst
+from taylor_verify.publish.cells import INFINITE, figure, over_attainable
 from taylor_verify.publish.markdown import prose
 from taylor_verify.records.status import Status
 from taylor_verify.studies.controls.proof import conserving
 from taylor_verify.studies.engines.advice import LOST
 from taylor_verify.studies.engines.ranking import Score
 from taylor_verify.studies.paper.sources import Sources
-from taylor_verify.studies.reach.document import ReachFamily, ReachRow
+from taylor_verify.studies.reach.document import ReachFamily
 from taylor_verify.studies.reach.page import last_value, most_periods
 from taylor_verify.studies.tradeoff.peers import OUTSIDE, TAYLOR
 from taylor_verify.studies.tradeoff.stored import TimedPoint, Trade, cheapest
@@ -73,16 +73,16 @@ def _drift(score: Score) -> float:
 def accuracy(sources: Sources) -> str:
     """Return what a Taylor integrator achieves, over what perfect rounding would leave."""
     verdicts = sources.verdicts
-    ratios = [v.ratio for v in verdicts if v.is_compared and v.ratio is not None]
-    most = worst(verdicts)
-    if most is None or not ratios:
+    ratios = [over_attainable(verdict) for verdict in verdicts if verdict.is_compared]
+    if not ratios:
         return ""
+    largest = INFINITE if max(ratios) == inf else figure(max(ratios))
     rungs = {run.rung for run in sources.runs}
     scenes = {run.scene for run in sources.runs}
     passed = sum(verdict.verdict is Status.PASS for verdict in verdicts)
     return (
         f"The Taylor integrator of heyoka follows {len(scenes)} motions in {len(rungs)} number formats; "
-        f"{passed} of {len(verdicts)} comparisons pass. The largest error is {figure(most.ratio)} times "
+        f"{passed} of {len(verdicts)} comparisons pass. The largest error is {largest} times "
         "what perfect rounding of every step would leave, and half of the errors are below "
         f"{figure(median(ratios))} times that."
     )
@@ -93,14 +93,16 @@ def reach(sources: Sources) -> str:
     rows = [row for row in sources.reach.rows if row.rung == _RUNG]
     long = next((f for f in sources.reach.families if not f.symbol), None)
     near = next((f for f in sources.reach.families if f.symbol == "d"), None)
-    own: Callable[[str], list[ReachRow]] = lambda name: [r for r in rows if r.family == name]  # noqa: E731
     words = []
-    if long is not None and (row := next(iter(own(long.name)), None)) is not None:
-        periods = most_periods(row, REACHED)
-        more = " at least" if periods == row.periods[-1] else ""
-        words.append(f"{_of(long)}, after{more} {periods or 0} periods")
-    if near is not None and (value := last_value(own(near.name), 1, REACHED)) is not None:
-        words.append(f"{_of(near)}, after one period, only down to $d$ = {value}")
+    for row in rows:
+        if long is not None and row.family == long.name:
+            periods = most_periods(row, REACHED)
+            more = " at least" if periods == row.periods[-1] else ""
+            words.append(f"{_of(long)}, after{more} {periods or 0} periods")
+    if near is not None:
+        value = last_value([row for row in rows if row.family == near.name], 1, REACHED)
+        down = "at no distance" if value is None else f"only down to $d$ = {value}"
+        words.append(f"{_of(near)}, after one period, {down}")
     if not words:
         return ""
     return f"In double precision {REACHED} digits are left {', but '.join(words)}."
