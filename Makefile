@@ -6,7 +6,7 @@ BIN = .venv/bin
 PIP = $(BIN)/python -m pip --quiet --disable-pip-version-check
 INSTALLED = .venv/.installed
 
-.PHONY: help verify verify-all test test-all docs site test-site bench mutants reports traps release-data tradeoff
+.PHONY: help verify verify-all test test-all docs site test-site bench mutants reports paper traps release-data tradeoff
 .PHONY: engines check-reports lint clean
 
 help:  ## Print this list
@@ -60,16 +60,21 @@ reports: $(INSTALLED)  ## Rewrite what is published: reports/data, what is made 
 	@$(MAKE) --no-print-directory traps > /dev/null
 	@$(BIN)/taylor-verify run --out reports
 	@$(BIN)/taylor-verify publish reference portraits enclosure gallery claims > /dev/null
-	@$(BIN)/taylor-verify publish --paper > /dev/null
 
 # A report to heyoka's authors, from the calls of its minimal scripts; no part of the package.
 traps: $(INSTALLED)  ## Measure the table of heyoka's traps anew (tests/traps)
 	@PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=tests:reports/upstream $(BIN)/python -m traps
 
+paper: $(INSTALLED)  ## Make the paper and its tables, PDF, LaTeX and CSV, in reports/paper
+	@$(BIN)/taylor-verify publish --paper > /dev/null
+	@echo 'reports/paper/paper.pdf'
+
+# The paper is in the archive too; beside it, whoever wants to read need not unpack.
 release-data: $(INSTALLED)  ## Pack everything published, what is not committed included, into dist
 	@$(BIN)/taylor-verify publish --missing > /dev/null
 	@$(BIN)/taylor-verify publish --paper > /dev/null
 	@$(BIN)/taylor-verify publish --archive dist
+	@cp reports/paper/paper.pdf dist/taylor-verify-paper.pdf
 
 # Apart from the reports: a time is another one in every run, and nothing is ever compared with it.
 tradeoff: $(INSTALLED)  ## Measure the published speed against accuracy anew (minutes, on a quiet machine)

@@ -172,22 +172,36 @@ def for_gallery() -> Path:
     return place
 
 
+def _write_measured(place: Path) -> None:
+    """Write the studies that the paper tells of, beside the verdicts."""
+    write_controls(place)
+    write_tradeoff(place, NUMBERS_MADE, TIMES_MADE)
+    REACH.write(place, reach_study())
+    errors = {"omega": 1e-5, "attitude": 1e-4, "T": 1e-9}
+    board = [made_up(one, errors) for one in entry_list().entry if one.name in ("cannon", "havok")]
+    write_board(place, board_with(*chain.from_iterable(board)), b"")
+
+
+@cache
+def for_paper() -> Path:
+    """Return a report of two scenes with all that the paper tells of."""
+    place = folder()
+    write_runs(place, product(("euler/generic", "kirchhoff/general-body"), ("f32", "f64")))
+    _write_measured(place)
+    return place
+
+
 @cache
 def small() -> Path:
     """Return a report of five scenes on two rungs, with a page of every kind and its picture."""
     place = folder()
     write_runs(place, product(SCENES, ("f64", "mp237")))
     write_portraits(place, SCENES)
-    write_controls(place)
-    write_tradeoff(place, NUMBERS_MADE, TIMES_MADE)
-    REACH.write(place, reach_study())
+    _write_measured(place)
     GROWTH.write(place, followed([_ENSEMBLE], None, lambda label, done, of: None))
     WORST.write(place, hunt.study([worst_of("euler-a", 1.5)], 60, 3))
     EXTREMES.write(place, extremes_study())
     CLAIMS.write(place, STUDY)
-    errors = {"omega": 1e-5, "attitude": 1e-4, "T": 1e-9}
-    board = [made_up(one, errors) for one in entry_list().entry if one.name in ("cannon", "havok")]
-    write_board(place, board_with(*chain.from_iterable(board)), b"")
     save(registry.pictures(place), place / figures.FOLDER, ["svg"])
     report.publish(place)
     return place

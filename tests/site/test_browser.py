@@ -249,6 +249,23 @@ def test_tables_sort_numbers_as_numbers(reader: Reader) -> None:
     assert column(reader, "#table-1", 0) == sorted(names)
 
 
+def test_tables_of_groups_stay_in_order(reader: Reader) -> None:
+    """A table with rows that go on with the one above cannot be sorted; the others of its page can."""
+    reader.open("reports/tables/tradeoff.html")
+    goes_on = "tr:has(> td:first-child:empty), tr:has(> td:first-child > p > em:first-child)"
+    grouped, plain = (
+        reader.run(
+            f"return Array.from(document.querySelectorAll('article table')).filter(t => "
+            f"{sign}t.querySelector(arguments[0])).map(t => t.querySelectorAll('th button').length)",
+            goes_on,
+        )
+        for sign in ("", "!")
+    )
+    assert len(grouped) >= 2
+    assert not any(grouped)
+    assert any(plain)
+
+
 def test_each_table_has_a_filter_of_its_own(reader: Reader) -> None:
     """On a page with two large tables a filter hides rows of its own table alone."""
     reader.open(SCENE)

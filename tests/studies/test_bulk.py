@@ -18,7 +18,7 @@ from taylor_verify.cli import main
 from taylor_verify.cli import publishing as command
 from taylor_verify.records import store
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.studies import archive, bulk, registry
+from taylor_verify.studies import archive, bulk
 
 SCENES = ("euler/rest", "euler/generic")
 Captured = pytest.CaptureFixture[str]
@@ -123,7 +123,6 @@ def test_scenes_and_solvers_that_are_not_ours_are_not_made(tmp_path: Path) -> No
 
 def test_a_report_is_packed_the_same_every_time(report: Path, tmp_path: Path) -> None:
     """Two archives are the same bytes; what a user's own runs wrote is not in them."""
-    assert main(["publish", "--paper", "--from", str(report)]) == 0
     (report / "local").mkdir()
     for place in (report / "local" / "mine.csv", report / ".hidden"):
         place.write_text("mine", encoding="utf-8")
@@ -143,7 +142,7 @@ def test_a_report_is_packed_the_same_every_time(report: Path, tmp_path: Path) ->
     assert {f"name/{path}" for path in listed} == set(contents)
     assert all(hashlib.sha256(contents[f"name/{p}"]).hexdigest() == s for p, s in listed.items())
     assert not [path for path in listed if "mine" in path or "hidden" in path]
-    assert {"data/records/euler-rest.taylor.f64.json", "tables/paper.tex"} <= set(listed)
+    assert {"data/records/euler-rest.taylor.f64.json", "tables/accuracy.md"} <= set(listed)
     # The header of the stream has neither a time nor a name.
     assert content[4:8] == bytes(4)
     assert gzip.decompress(content)
@@ -152,31 +151,9 @@ def test_a_report_is_packed_the_same_every_time(report: Path, tmp_path: Path) ->
 def test_a_report_that_lacks_something_is_not_packed(
     report: Path, tmp_path: Path, capsys: Captured
 ) -> None:
-    """Without its renderings or records it is a wrong call that says what makes them; no file is left."""
+    """Without its records it is a wrong call that says what makes them; no file is left."""
     call = ["publish", "--from", str(report), "--archive", str(tmp_path / "dist")]
-    assert main(call) == 2
-    assert "publish --paper" in capsys.readouterr().err
-    assert main(["publish", "--paper", "--from", str(report)]) == 0
     assert main(call) == 0
     shutil.rmtree(report / "data" / store.RECORDS)
     assert main(call) == 2
     assert "without 4 records of runs @ --archive" in capsys.readouterr().err
-
-
-@pytest.mark.slow
-def test_the_paper_draws_the_pictures_that_are_there() -> None:
-    """Each SVG of a report that its data make has a PDF, and no other picture is drawn."""
-    place = reports.folder()
-    shutil.copytree(
-        reports.small(), place, dirs_exist_ok=True, ignore=shutil.ignore_patterns("*.pdf")
-    )
-    drawings = sorted((place / "figures").glob("*.svg"), key=lambda file: file.stat().st_size)
-    assert len(drawings) >= 5
-    assert {file.stem for file in drawings} <= {one.stem for one in registry.pictures(place)}
-    # Two pictures and no page are soon made.
-    for file in [*drawings[2:], *place.glob("*.md"), *place.glob("tables/*.md")]:
-        file.unlink()
-    (place / "figures/mine.svg").write_text("<svg/>", encoding="utf-8")
-    assert main(["publish", "--paper", "--from", str(place)]) == 0
-    drawn = {file.stem for file in (place / "figures").glob("*.pdf")}
-    assert drawn == {file.stem for file in drawings[:2]}

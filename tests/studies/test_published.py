@@ -19,14 +19,7 @@ from typing import Any
 
 import pytest
 from builders import reports
-from builders.pages import (
-    compiled,
-    html_has_the_cells,
-    latex_has_the_rows,
-    links_lead_somewhere,
-    page_in,
-    results,
-)
+from builders.pages import results
 from builders.schema import violations
 from builders.verdicts import row as baseline_row
 
@@ -35,6 +28,7 @@ from taylor_verify.claims.numbers import CITED
 from taylor_verify.judge import baseline
 from taylor_verify.judge.rounding_class import FACTOR, LEVEL, compare
 from taylor_verify.publish.page import MADE_BY
+from taylor_verify.publish.paper import images
 from taylor_verify.publish.pictures.picture import Picture, content
 from taylor_verify.records import store
 from taylor_verify.records.precisions import LADDER
@@ -43,7 +37,6 @@ from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.library import EXTREMES, names
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.studies import paper as paper
 from taylor_verify.studies import registry, report
 from taylor_verify.studies.accuracy.attainable import attainable
 from taylor_verify.studies.bulk import patterns
@@ -56,6 +49,7 @@ from taylor_verify.studies.engines import stored as board
 from taylor_verify.studies.extremes import page as extremes
 from taylor_verify.studies.gallery import page as gallery
 from taylor_verify.studies.growth import page as growth
+from taylor_verify.studies.paper.pack import pack
 from taylor_verify.studies.prices.page import PRICES
 from taylor_verify.studies.reach.page import REACH
 from taylor_verify.studies.reference import page as reference_files
@@ -429,43 +423,15 @@ def test_published_widths_are_remade() -> None:
         assert widths(load(name), times, study.bits)[:10] == rows[:10]
 
 
-# What is made of the pages.
-
-
-@cache
-def rendered() -> dict[str, str]:
-    return paper.renderings(REPORTS)
+# What is made of all of them.
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("path", paper.PAGES)
-def test_renderings_have_all_of_a_page(path: str) -> None:
-    """No row or cell of a published page is lost in LaTeX or in HTML."""
-    html_has_the_cells(page_in(REPORTS, path), rendered())
-    latex_has_the_rows(page_in(REPORTS, path), rendered())
-
-
-@pytest.mark.slow
-def test_links_of_the_renderings_lead_somewhere(clone: Path) -> None:
-    """Links and pictures of the HTML lead to renderings, or to published files."""
-    links_lead_somewhere(clone, rendered())
-
-
-@pytest.mark.slow
-def test_the_renderings_are_of_a_sane_size() -> None:
-    """All LaTeX and all HTML together stay below 1.5 MB each."""
-    for suffix in (".tex", ".html"):
-        found = [text for name, text in rendered().items() if name.endswith(suffix)]
-        assert sum(len(text.encode()) for text in found) <= 1.5 * MEGABYTE
-
-
-@pytest.mark.slow
-def test_pdflatex_takes_every_published_page(clone: Path, tmp_path: Path) -> None:
-    """Each by itself and the paper of all: none has a line or a table that is wider than its page."""
-    paper.write(clone)
-    for file in sorted((clone / "tables").glob("*.tex")):
-        said = compiled(clone / "tables", file.name, tmp_path)
-        assert [line for line in said.splitlines() if line.startswith("Overfull")] == []
+def test_the_published_paper_is_short(tmp_path: Path) -> None:
+    """It has at most twelve pages."""
+    made = pack(REPORTS)
+    made.write(tmp_path)
+    assert len(images(made.text, made.citation, tmp_path)) <= 12
 
 
 @pytest.mark.slow

@@ -17,7 +17,7 @@ from taylor_verify.publish.page import MADE_BY
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.records import store
 from taylor_verify.records.replacement import replace_files
-from taylor_verify.studies import bulk, paper, registry, report
+from taylor_verify.studies import bulk, registry
 from taylor_verify.studies.registry import STUDIES, UnknownStudy, find
 from taylor_verify.studies.stored import Stored
 from taylor_verify.studies.study import (
@@ -285,14 +285,6 @@ def test_a_study_is_found_once() -> None:
     assert [study.name for study in find(["worst", "claims", "worst"])] == ["worst", "claims"]
     with pytest.raises(UnknownStudy):
         find(["worst", "nothing"])
-
-
-def test_the_paper_has_every_page_that_is_read() -> None:
-    """Each page of a study in tables, and the ledger; none of a folder's own index."""
-    own = {study.path for study in registry.others() if "README" not in study.path}
-    own -= {SMALLEST.path}
-    assert own | {"tables/accuracy.md", "claims.md"} <= set(paper.PAGES)
-    assert {page.path for page in report.entries(Path(), paper.PAGES)} >= own
 
 
 @pytest.mark.parametrize("study", STUDIES, ids=lambda study: study.name)

@@ -43,8 +43,8 @@ def add_options(verb: argparse.ArgumentParser, in_full: bool) -> None:
     made.add_argument(
         "--paper",
         action="store_true",
-        help="instead render the pages of DIR as LaTeX and HTML, into DIR/tables, and draw their "
-        "pictures as PDF",
+        help="instead make the paper of what is stored, as PDF and LaTeX with its tables and pictures, "
+        "into DIR/paper, and draw the pictures of DIR as PDF (pypandoc-binary, typst)",
     )
     made.add_argument(
         "--missing",
@@ -227,9 +227,9 @@ def _pages(folder: Path) -> Answer:
 
 def _rendered(folder: Path) -> Answer:
     with _wrong_calls(folder, " @ --paper"):
-        from taylor_verify.studies import paper
+        from taylor_verify.studies.paper import pack
 
-        return files_written(paper.write(folder))
+        return files_written(pack.write(folder))
 
 
 def _site(folder: Path, target: Path) -> Answer:
@@ -259,7 +259,7 @@ def _packed(folder: Path, target: Path) -> Answer:
     from taylor_verify.studies.archive import pack
 
     lacking = _missing(folder)
-    renderings = f"{len(lacking.renderings)} renderings" if lacking.renderings else ""
+    renderings = f"{len(lacking.renderings)} files of the paper" if lacking.renderings else ""
     if without := ", ".join(filter(None, (lacking.data, renderings))):
         raise WrongCall(
             "expected a whole report (`publish --missing`, then `publish --paper`), got one without "

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Sequence
 _BAR = r"\|"
 # What Markdown gives a meaning: an underscore has none inside a word.
 _MEANT = re.compile(r"[\\`*\[\]<>|~&$]|(?<!\w)_|_(?!\w)")
+_MARK = re.compile(r"\\(.)|[*`]")
 
 
 def table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -51,3 +52,8 @@ def bold(text: str) -> str:
 
 def bullets(items: Iterable[str]) -> str:
     return "\n".join(f"- {item}" for item in items)
+
+
+def plain(text: str) -> str:
+    """Return the words of a line without its marks: bold, code and the backslashes of `prose`."""
+    return _MARK.sub(lambda found: found[1] or "", text)

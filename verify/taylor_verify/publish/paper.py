@@ -1,83 +1,74 @@
-"""A published page as LaTeX that pdflatex compiles as it is, and as one file of HTML; pandoc makes both.
+"""A paper written in Markdown, as a PDF that Typst sets and as LaTeX. Neither needs TeX.
 
-The pages are the one source: no number is written down in two places. ``paper.lua`` beside this file has
-what pandoc lacks, tables that fit a printed page above all.
+pandoc, in the wheel of `pypandoc-binary`, writes both forms. Typst compiles in this process, with the fonts
+that its wheel brings and no others, so that the PDF is the same on another machine. `paper.lua` has what
+pandoc's LaTeX lacks; `paper.typst` and `paper.latex` are the frames around the text.
 """
 
 from __future__ import annotations
 
-import posixpath
-from collections.abc import Collection, Iterable
-from dataclasses import dataclass
-from pathlib import Path, PurePosixPath
-from typing import Final
+import re
+from pathlib import Path
+from typing import Any, Final
 
-FOLDER: Final = "tables"
-LATEX: Final = ".tex"
-HTML: Final = ".html"
-_MADE_BY: Final = "made by taylor-verify publish --paper; do not edit"
-MAKERS: Final = {LATEX: f"% {_MADE_BY}", HTML: f"<!-- {_MADE_BY} -->"}
-"""First line of every rendering, by its suffix."""
+MADE_BY: Final = "made by taylor-verify publish --paper; do not edit"
 
-_FILTER: Final = Path(__file__).with_suffix(".lua")
-_TEMPLATE: Final = Path(__file__).with_suffix(".latex")
-_OPTIONS: Final = (
-    "--standalone",
-    "--fail-if-warnings",
-    "--syntax-highlighting=none",
-    "--wrap=none",
-)
+_HERE: Final = Path(__file__).with_suffix("")
+# In the words of a table a tilde, a caret or an at sign is what it is.
+_READER: Final = "markdown-superscript-subscript-citations"
+_OPTIONS: Final = ("--fail-if-warnings", "--wrap=none", "--columns=10000")
+# Signs of cells that the fonts of LaTeX lack.
+_SIGNS: Final = {"→": r"$\to$", "µ": r"$\mu$", "∞": r"$\infty$"}
+_POWER: Final = re.compile(r"(?<![\w.`])(-?\d+(?:\.\d+)?)e\+?(-?)0*(\d+)(?![\w`])")
 
 
-@dataclass(frozen=True)
-class Page:
-    """A page by its path below the report's folder, with its Markdown."""
-
-    path: str
-    text: str
-
-    @property
-    def stem(self) -> str:
-        """Name of its renderings: those of the ledger stand among the tables, too."""
-        return PurePosixPath(self.path).stem
+def formulas(text: str) -> str:
+    """Return Markdown with signs, and numbers such as 2.5e-14, as formulas."""
+    for sign, formula in _SIGNS.items():
+        text = text.replace(sign, formula)
+    return _POWER.sub(_power, text)
 
 
-def latex(page: Page) -> str:
-    """Return the LaTeX of one page. Raises ValueError for HTML in it, which would be lost."""
-    # Without `smart` an apostrophe is written as it stands.
-    return _render(page, LATEX, "latex-smart", [f"--template={_TEMPLATE}"])
+def _power(number: re.Match[str]) -> str:
+    mantissa, sign, exponent = number.groups()
+    factor = "" if mantissa == "1" else rf"{mantissa}\times "
+    return rf"${factor}10^{{{sign}{exponent}}}$"
 
 
-def html(page: Page, pages: Collection[str]) -> str:
-    """Return the HTML of one page; links to ``pages`` lead to their renderings.
-
-    Raises ValueError for HTML in the page, and for a formula that is none.
-    """
-    seen = " ".join(posixpath.relpath(path, FOLDER) for path in pages)
-    folder = "" if posixpath.dirname(page.path) == FOLDER else "../"
-    settings = ["--metadata=lang:en", f"--metadata=pages:{seen}", f"--metadata=folder:{folder}"]
-    return _render(page, HTML, "html5", ["--mathml", "--variable=maxwidth:80rem", *settings])
+def latex(text: str, citation: Path) -> str:
+    """Return a paper as LaTeX, with the title and the authors of a file CITATION.cff."""
+    return f"% {MADE_BY}\n{_convert(text, 'latex', citation)}"
 
 
-def paper(title: str, stems: Iterable[str]) -> str:
-    """Return one document that reads in the files of all pages."""
-    inputs = "\n".join(rf"\clearpage\input{{{stem}}}" for stem in stems)
-    options = [*_OPTIONS, f"--template={_TEMPLATE}", f"--metadata=title:{title}"]
-    text = _convert(f"```{{=latex}}\n{inputs}\n```", "markdown", "latex", options)
-    return f"{MAKERS[LATEX]}\n{text}"
+def latex_table(text: str) -> str:
+    """Return a table with its caption as LaTeX to be read in, by booktabs, adjustbox and amsmath."""
+    return f"% {MADE_BY}\n{_convert(text, 'latex')}"
 
 
-def _render(page: Page, suffix: str, writer: str, options: list[str]) -> str:
-    options = [*_OPTIONS, f"--lua-filter={_FILTER}", *options]
-    try:
-        return f"{MAKERS[suffix]}\n{_convert(page.text, 'gfm', writer, options)}"
-    except RuntimeError as error:
-        # A filter that stops adds where in it that was.
-        reason = str(error).partition("\nstack traceback")[0]
-        raise ValueError(f"{reason} @ {page.path}") from error
+def pdf(text: str, citation: Path, folder: Path) -> bytes:
+    """Return a paper as PDF; the pictures that it names are files of ``folder``."""
+    return bytes(_compile(text, citation, folder, "pdf"))
 
 
-def _convert(text: str, reader: str, writer: str, options: list[str]) -> str:
+def images(text: str, citation: Path, folder: Path) -> list[bytes]:
+    """Return the pages of a paper as PNG."""
+    pages = _compile(text, citation, folder, "png")
+    return [pages] if isinstance(pages, bytes) else list(pages)
+
+
+def _compile(text: str, citation: Path, folder: Path, form: str) -> Any:
+    import typst
+
+    source = _convert(text, "typst", citation).encode()
+    # The time of making would make two files of one paper differ.
+    return typst.compile(source, root=folder, ignore_system_fonts=True, format=form, timestamp=0)
+
+
+def _convert(text: str, writer: str, citation: Path | None = None) -> str:
     import pypandoc
 
-    return str(pypandoc.convert_text(text, writer, reader, options))
+    options = [*_OPTIONS, f"--lua-filter={_HERE.with_suffix('.lua')}"]
+    if citation is not None:
+        template = f"--template={_HERE.with_suffix(f'.{writer}')}"
+        options += ["--standalone", "--number-sections", template, f"--metadata-file={citation}"]
+    return str(pypandoc.convert_text(formulas(text), writer, _READER, options))

@@ -1,6 +1,6 @@
 """The bulk of a report folder: files that are made from the rest, which the repository does not hold.
 
-Every study names its own; beside them there are the renderings of pages and pictures (`paper`).
+Every study names its own; beside them there are the paper and the pictures as PDF (`paper`).
 """
 
 from __future__ import annotations
@@ -14,11 +14,12 @@ from taylor_verify.records import store
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.studies import figures
-from taylor_verify.studies.paper import PAGES
+from taylor_verify.studies.paper.pack import FOLDER, PDF
+from taylor_verify.studies.paper.sources import lacking as unmeasured
 from taylor_verify.studies.registry import STUDIES
 from taylor_verify.studies.study import Bulk, Progress, Published
 
-_RENDERINGS: Final = (f"{figures.FOLDER}/*.pdf", "tables/*.html", "tables/*.tex")
+_RENDERINGS: Final = (f"{figures.FOLDER}/*.pdf", f"{FOLDER}/")
 
 
 def patterns() -> tuple[str, ...]:
@@ -29,7 +30,7 @@ def patterns() -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class Missing:
-    """Bulk that a report folder lacks: of each kind what is to be made, and rendered files."""
+    """Bulk that a report folder lacks: of each kind what is to be made, and what `--paper` writes."""
 
     folder: Path
     lacking: tuple[tuple[Bulk, Sequence[Any]], ...]
@@ -55,12 +56,10 @@ def missing(folder: Path, digests: Mapping[str, str] | None = None) -> Missing:
     known = {name: load(name).digest for name in names()} if digests is None else digests
     report = Published(folder, store.load(folder), known)
     found = [(bulk, bulk.lacking(report)) for study in STUDIES for bulk in study.bulk]
-    pages = [Path(page).stem for page in PAGES if (folder / page).exists()]
     drawings = sorted((folder / figures.FOLDER).glob("*.svg"))
-    renderings = (
-        *(f"tables/{page}{ending}" for page in pages for ending in (".tex", ".html")),
-        *(f"{figures.FOLDER}/{drawing.stem}.pdf" for drawing in drawings),
-    )
+    drawn = (f"{figures.FOLDER}/{drawing.stem}.pdf" for drawing in drawings)
+    # A report without the studies that the paper tells of can have none.
+    renderings = () if unmeasured(folder) else (f"{FOLDER}/{PDF}", *drawn)
     return Missing(
         folder,
         tuple((bulk, lacking) for bulk, lacking in found if lacking),

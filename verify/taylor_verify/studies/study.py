@@ -1,7 +1,7 @@
 """A study: something that is measured, stored below a report folder, and told in pages and pictures.
 
 Every folder of `studies` with a module `study` has one, and `registry` lists them all: the command line,
-the report, its index, the pictures, the paper and the missing data are made by going through that list.
+the report, its index, the pictures and the missing data are made by going through that list.
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from statistics import median
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from taylor_verify.publish.cells import NOTHING, figure, in_roundoffs, main_error, ratio, worst
 from taylor_verify.publish.markdown import bold, bullets, code, prose, table
@@ -61,7 +61,7 @@ def front(verdicts: Sequence[Verdict], others: Iterable[Page]) -> str:
         "## In short",
         _in_short(found, verdicts),
         counts(verdicts),
-        _by_rung(found),
+        table(BY_RUNG, by_rung(found)),
         "## How to read it",
         bullets(_READING),
         "## The error of every scene",
@@ -79,9 +79,9 @@ def front(verdicts: Sequence[Verdict], others: Iterable[Page]) -> str:
         "digits of an error, but neither its verdict nor its size. "
         "`verify/taylor_verify/judge/rounding_class.py` says what that means in numbers, and why.",
         "What is *not committed* is large and made from the rest: records, portraits of the "
-        "scenes, `gates`, PDF, LaTeX, HTML, and the JSON of `reference`. `taylor-verify publish "
-        "--missing` makes the data of these in minutes, `taylor-verify publish --paper` the "
-        "renderings, and `make release-data` packs all into one archive.",
+        "scenes, `gates`, pictures as PDF, the paper, and the JSON of `reference`. `taylor-verify "
+        "publish --missing` makes the data of these in minutes, `make paper` the paper and the "
+        "pictures, and `make release-data` packs all into one archive.",
         made_with(versions(verdicts)),
     )
 
@@ -103,12 +103,16 @@ def _in_short(found: Sequence[Run], verdicts: Sequence[Verdict]) -> str:
     )
 
 
-def _by_rung(found: Sequence[Run]) -> str:
-    """Return a line a rung: roundoff, median and worst error of state, the worst over attainable."""
-    errors = ("median error, u:", "largest error, u:", "over attainable:")
-    columns = ["rung", "u:", "runs:", "all pass:", *errors, "where"]
+BY_RUNG: Final = (
+    *("rung", "u:", "runs:", "all pass:"),
+    *("median error, u:", "largest error, u:", "over attainable:", "where"),
+)
+
+
+def by_rung(found: Sequence[Run]) -> list[list[str]]:
+    """Return a row a rung: roundoff, median and worst error of state, the worst over attainable."""
     rungs = sorted({run.rung for run in found}, key=place_of_rung)
-    return table(columns, [_rung_row([r for r in found if r.rung == rung]) for rung in rungs])
+    return [_rung_row([r for r in found if r.rung == rung]) for rung in rungs]
 
 
 def _rung_row(of_rung: Sequence[Run]) -> list[str]:

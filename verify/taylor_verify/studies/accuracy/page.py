@@ -49,13 +49,11 @@ _CONTENTS: Final = (
         "every verdict, its bound and why that bound: `gates.md`, not committed",
     ),
 )
-_RENDERED: Final = (
-    "`taylor-verify publish --paper` renders these pages, and the ledger of claims, from their Markdown "
-    "and from nothing else: each as NAME.tex, which pdflatex compiles as it is (three times, for the "
-    "columns to stand right), and as NAME.html, which is one file without a script; all of them "
-    "together as paper.tex. They are not committed, nor are `gates.md` and `gates.csv`: `taylor-verify "
-    "publish --missing` makes the tables of the gates. The gates are left to their CSV: a line for every "
-    "verdict with its reason is for searching and not for reading."
+_PAPER: Final = (
+    "`make paper` makes a paper of what the studies found, with its tables alone as LaTeX and CSV, in "
+    "`reports/paper`. It is not committed, nor are `gates.md` and `gates.csv`: `taylor-verify publish "
+    "--missing` makes the tables of the gates, a line for every verdict with its reason, for searching and "
+    "not for reading."
 )
 _ACCURACY: Final = (
     *("scene", "rung", "quantity", "max:", "mean:", "at t:", "max, u:", "mean, u:"),
@@ -194,8 +192,8 @@ def readme(verdicts: Sequence[Verdict], others: Iterable[Page] = ()) -> str:
         "## How to read a cell",
         bullets(how),
         table(["verdict", "meaning"], meanings),
-        "## In LaTeX and HTML",
-        _RENDERED,
+        "## To print and to cite",
+        _PAPER,
         "## Scenes",
         table(["scene", "rungs", "SHA-256"], _scenes(verdicts)),
     )

@@ -55,14 +55,18 @@ def requoted(folder: Path, verdicts: Sequence[Verdict]) -> dict[str, str]:
 
 def accuracy(verdicts: Iterable[Verdict]) -> str:
     """Return the largest errors of chosen scenes by rung, in u and over what is attainable."""
+    return "\n\n".join([BEGIN, table(*chosen(verdicts)), END])
+
+
+def chosen(verdicts: Iterable[Verdict]) -> tuple[list[str], list[list[str]]]:
+    """Return headings and rows of the chosen scenes."""
     found = {(v.scene, v.quantity, v.rung): v for v in verdicts if v.solver == "taylor"}
     rungs = sorted({rung for _, _, rung in found}, key=place_of_rung)
     columns = ["scene", "what is compared", *(f"{r}:" for r in rungs)]
-    rows = [
+    return columns, [
         [code(scene), quantity, *(_cell(found.get((scene, quantity, rung))) for rung in rungs)]
         for scene, quantity in _SHOWN
     ]
-    return "\n\n".join([BEGIN, table(columns, rows), END])
 
 
 def _cell(verdict: Verdict | None) -> str:

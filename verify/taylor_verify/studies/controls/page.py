@@ -179,16 +179,27 @@ def _twins(sights: Sequence[Sight]) -> str:
 # The short table.
 
 
+SHORT: Final = (
+    "what was broken",
+    "energy:",
+    "other conserved quantities:",
+    "compared with the exact motion:",
+)
+
+
 def short(study: ControlsStudy) -> str:
     """Return some fifteen rows and four columns, between the marks BEGIN and END."""
+    legend = (
+        "A number is the largest error over its bound: that check sees the defect. *not seen* is a "
+        "check that passes it."
+    )
+    return "\n\n".join([BEGIN, table(SHORT, short_rows(study)), legend, END])
+
+
+def short_rows(study: ControlsStudy) -> list[list[str]]:
+    """Return the rows of the short table."""
     shown = [s for s in _blindest_first(study.sights) if s.defect.told and s.is_finished]
-    columns = [
-        "what was broken",
-        "energy:",
-        "other conserved quantities:",
-        "compared with the exact motion:",
-    ]
-    rows = [
+    return [
         [
             prose(sight.defect.what),
             _summed(sight, lambda name: name == "T"),
@@ -197,11 +208,6 @@ def short(study: ControlsStudy) -> str:
         ]
         for sight in shown
     ]
-    legend = (
-        "A number is the largest error over its bound: that check sees the defect. *not seen* is a "
-        "check that passes it."
-    )
-    return "\n\n".join([BEGIN, table(columns, rows), legend, END])
 
 
 def _summed(sight: Sight, wanted: Callable[[str], bool]) -> str:

@@ -22,6 +22,7 @@ from taylor_verify.studies.engines.findings import findings
 from taylor_verify.studies.engines.pictures import sweeps, work
 from taylor_verify.studies.engines.ranking import (
     Setting,
+    best_of_each,
     digits,
     newest,
     settings,
@@ -116,30 +117,24 @@ def _best(board: Board, entries: EntryList, every: Sequence[Setting]) -> str:
     """Return a line for each engine: its best setting on the scenes that all of them take."""
     scene = entries.advised[0]
     titles, rows = {row.name: row.title for row in entries.entry}, []
-    for engine, group in groupby(newest(every), key=lambda one: one.engine):
-        scores = [score for one in group for score in one.scores([scene])]
-        best = min(scores, key=lambda score: score.error, default=None)
-        if best is not None:
-            name = f"[{prose(titles.get(engine, engine))}]({place(engine).removeprefix('tables/')})"
-            rows.append(
-                [f"{name} {best.setting.version}".strip(), *_cells(board, best.setting, best.row)]
-            )
+    for best in best_of_each(every, scene):
+        engine = best.setting.engine
+        name = f"[{prose(titles.get(engine, engine))}]({place(engine).removeprefix('tables/')})"
+        rows.append(
+            [f"{name} {best.setting.version}".strip(), *cells(board, best.setting, best.row)]
+        )
     if not rows:
         return "Nothing was judged."
-    columns = [
-        "engine",
-        "setting",
-        "best step:",
-        "omega:",
-        "attitude:",
-        "order:",
-        "energy:",
-        "time:",
-    ]
-    return f"On {code(scene)}, each engine with its best setting:\n\n{table(columns, rows)}"
+    return f"On {code(scene)}, each engine with its best setting:\n\n{table(COLUMNS, rows)}"
 
 
-def _cells(board: Board, setting: Setting, row: EngineRow) -> list[str]:
+COLUMNS: Final = (
+    *("engine", "setting", "best step:", "omega:", "attitude:", "order:", "energy:", "time:"),
+)
+
+
+def cells(board: Board, setting: Setting, row: EngineRow) -> list[str]:
+    """Return the cells of a row behind the name of its engine."""
     orders = [setting.order(row.scene, name) for name in ("omega", "attitude")]
     said = [f"{o.order:.1f}" if o and o.order is not None else NOTHING for o in orders]
     pace = board.pace(row)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 from math import inf, log10
 
 from taylor_verify.records.convergence import Convergence, convergence
@@ -105,6 +106,15 @@ def best_of(scores: Iterable[Score]) -> Score | None:
     """Return the score with the smallest finite error; None where there is none."""
     finite = [score for score in scores if score.error < inf]
     return min(finite, key=lambda score: score.error, default=None)
+
+
+def best_of_each(every: Iterable[Setting], scene: str) -> list[Score]:
+    """Return the best score of each engine in its newest version on a scene, in the order of the list."""
+    found = []
+    for _, group in groupby(newest(every), key=lambda one: one.engine):
+        scores = [score for one in group for score in one.scores([scene])]
+        found += sorted(scores, key=lambda score: score.error)[:1]
+    return found
 
 
 def digits(error: float) -> float:

@@ -124,11 +124,11 @@ def _by_value(one: ReachFamily, rows: Sequence[ReachRow]) -> str:
             if any(after in row.periods for row in own):
                 blocks = product((ACHIEVED, ATTAINABLE), DIGITS)
                 values = (last_value(own, after, n, key) for key, n in blocks)
-                lines.append([rung, str(after), *(_cell(v, one.values[-1]) for v in values)])
+                lines.append([rung, str(after), *(cell(v, one.values[-1]) for v in values)])
     return table(["rung", "periods:", *_headings(f"{one.symbol}, ")], lines)
 
 
-def _cell(value: str | int | None, last: str | int) -> str:
+def cell(value: str | int | None, last: str | int) -> str:
     """Return the value; behind the last that was tried stands that it may go on."""
     if value is None:
         return NOTHING
@@ -155,7 +155,7 @@ def _periods(row: ReachRow, key: str) -> list[str]:
     """Return the most periods for each number of digits."""
     if not numbers_of(row, key):
         return [_nothing(row)] * len(DIGITS)
-    return [_cell(most_periods(row, n, key), row.periods[-1]) for n in DIGITS]
+    return [cell(most_periods(row, n, key), row.periods[-1]) for n in DIGITS]
 
 
 def _nothing(row: ReachRow) -> str:

@@ -27,7 +27,7 @@ _WHAT: Final = (
     "where the intervals of the two overlap."
 )
 # Families of the columns in words; any other goes by its own name.
-_TITLES: Final = {
+TITLES: Final = {
     "outside dop853": "DOP853 in numba",
     "outside cyrk-dop853": "CyRK DOP853",
     "outside cvode-adams": "SUNDIALS CVODE",
@@ -65,12 +65,12 @@ def _peers(trade: Trade) -> list[str]:
 def _families(found: Trades) -> list[str]:
     """Return the families of the columns: taylor, those with a title in that order, and any other."""
     asked = dict.fromkeys(family for trade in found.trades for family in _peers(trade))
-    known = [family for family in _TITLES if family in asked]
+    known = [family for family in TITLES if family in asked]
     return [TAYLOR, *known, *(family for family in asked if family not in known)]
 
 
 def _title(family: str) -> str:
-    return _TITLES.get(family, prose(family.removeprefix(OUTSIDE).removesuffix(" f64")))
+    return TITLES.get(family, prose(family.removeprefix(OUTSIDE).removesuffix(" f64")))
 
 
 def _of_family(trade: Trade, family: str) -> list[TimedPoint]:

@@ -47,9 +47,11 @@
     body.append.apply(body, rows);
   }
 
-  // A row whose first cell is empty goes on with the row above: sorted, it would be nobody's.
+  // A row that begins empty or in italics goes on with the row above: sorted, it would be nobody's.
   function hasGroups(table) {
-    return Array.from(table.tBodies[0].rows).some(function (row) { return !row.cells[0].textContent.trim(); });
+    return Array.from(table.tBodies[0].rows).some(function (row) {
+      return !row.cells[0].textContent.trim() || row.cells[0].querySelector(":scope > p > em:first-child");
+    });
   }
 
   function addSorting(table) {

@@ -1,0 +1,194 @@
+"""The paper opens with findings that are computed, and has all of its tables, alone and within."""
+
+from __future__ import annotations
+
+import csv
+import re
+import shutil
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from builders import reports
+
+from taylor_verify.cli import main
+from taylor_verify.publish.paper import images
+from taylor_verify.studies import bulk
+from taylor_verify.studies.paper import findings, pack
+from taylor_verify.studies.paper.sources import Sources, read
+from taylor_verify.studies.paper.table import tables
+
+TEXT = (Path(pack.__file__).parent / "text.md").read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def sources() -> Sources:
+    found = read(reports.for_paper())
+    numbers = found.trades.numbers
+    # So that a rival leaves the digits that the paper asks for.
+    points = tuple(replace(p, error=1e-3 * p.error if p.error else None) for p in numbers.points)
+    trades = replace(found.trades, numbers=replace(numbers, points=points))
+    return replace(found, trades=trades)
+
+
+@pytest.fixture(scope="module")
+def made() -> pack.Pack:
+    return pack.pack(reports.for_paper())
+
+
+# The findings.
+
+
+def test_no_number_of_the_abstract_is_typed() -> None:
+    """The abstract has marks where numbers stand, and the paper begins with it."""
+    abstract = TEXT[: TEXT.index("\n---\n", 4)]
+    assert not re.search(r"\d", abstract)
+    assert set(re.findall(r"§\{(\w+)\}", abstract)) == set(findings.FINDINGS)
+
+
+def fewer_defects(sources: Sources) -> Sources:
+    return replace(
+        sources, controls=replace(sources.controls, defects=sources.controls.defects[1:])
+    )
+
+
+def better_engines(sources: Sources) -> Sources:
+    study = sources.board.study
+    rows = tuple(
+        replace(row, errors={name: error / 1e3 for name, error in row.errors.items()})
+        for row in study.rows
+    )
+    return replace(sources, board=replace(sources.board, study=replace(study, rows=rows)))
+
+
+def fewer_verdicts(sources: Sources) -> Sources:
+    return replace(sources, verdicts=sources.verdicts[:5])
+
+
+def worse_reach(sources: Sources) -> Sources:
+    rows = tuple(
+        replace(row, errors=tuple(None if e is None else 1e8 * e for e in row.errors))
+        for row in sources.reach.rows
+    )
+    return replace(sources, reach=replace(sources.reach, rows=rows))
+
+
+def slower_rivals(sources: Sources) -> Sources:
+    times = sources.trades.times
+    timings = tuple(
+        replace(one, ratio=7 * one.ratio) if one.solver.startswith("scipy") else one
+        for one in times.timings
+    )
+    return replace(sources, trades=replace(sources.trades, times=replace(times, timings=timings)))
+
+
+@pytest.mark.parametrize(
+    ("name", "changed"),
+    [
+        ("controls", fewer_defects),
+        ("engines", better_engines),
+        ("accuracy", fewer_verdicts),
+        ("reach", worse_reach),
+        ("trade", slower_rivals),
+    ],
+)
+def test_a_finding_follows_its_rows(
+    sources: Sources, name: str, changed: Callable[[Sources], Sources]
+) -> None:
+    """Other rows make other numbers of the same sentence, and leave the other findings alone."""
+    before = {key: finding(sources) for key, finding in findings.FINDINGS.items()}
+    after = {key: finding(changed(sources)) for key, finding in findings.FINDINGS.items()}
+    assert [key for key in before if before[key] != after[key]] == [name]
+    assert re.search(r"\d", before[name])
+
+
+def test_the_findings_are_those_of_the_rows(sources: Sources) -> None:
+    """Counted anew from the documents, some of the numbers are those of the sentences."""
+    passed = sum(verdict.verdict == "pass" for verdict in sources.verdicts)
+    assert f"{passed} of {len(sources.verdicts)} comparisons" in findings.accuracy(sources)
+    largest = max(v.ratio for v in sources.verdicts if v.ratio is not None)
+    assert f"{largest:.3g} times what perfect rounding" in findings.accuracy(sources)
+    assert f"Of {len(sources.controls.defects)} solvers" in findings.controls(sources)
+
+
+# The tables and the whole.
+
+
+def test_every_table_is_named_and_shown(made: pack.Pack) -> None:
+    """The text speaks of each table and each picture, which has a caption with its data and machine."""
+    assert [one.name for one in made.tables] == re.findall(r"§\{tabular:(\w+)\}", TEXT)
+    assert [f"table:{one.name}" for one in made.tables] == sorted(
+        set(re.findall(r"§\{(table:\w+)\}", TEXT)),
+        key=[f"table:{one.name}" for one in made.tables].index,
+    )
+    assert len(re.findall(r"§\{picture:\w+\}", TEXT)) == len(made.pictures)
+    for one in made.tables:
+        assert one.rows
+        assert one.markdown in made.text
+        assert re.search(r"Data: `data/[\w-]+\.json`.* Machine: .+\.$", one.caption.markdown)
+    assert "§" not in made.text
+
+
+def test_every_source_is_cited() -> None:
+    """What the list of references begins with is named in the text before it."""
+    body, listed = TEXT.split("# References")
+    names = re.findall(r"^- \*?(?:Encyclopaedia )?(\w+)", listed, re.M)
+    assert len(names) >= 10
+    assert [name for name in names if name not in body] == []
+    assert "doi" not in listed.lower()
+
+
+def test_a_sheet_has_the_cells_of_its_table(sources: Sources) -> None:
+    """Read back, a CSV has the headings and as many rows; no mark of Markdown is left in it."""
+    for one in tables(sources):
+        heads, *rows = csv.reader(one.csv.splitlines())
+        assert heads == [heading.removesuffix(":") for heading in one.headings]
+        assert len(rows) == len(one.rows)
+        assert not re.search(r"[*`\\]", one.csv)
+
+
+@pytest.mark.slow
+def test_the_pack_is_whole_and_the_same_every_time(tmp_path: Path) -> None:
+    """PDF, LaTeX, tables and pictures are written and no longer missing; a second run changes nothing."""
+    place = tmp_path / "report"
+    shutil.copytree(reports.for_paper(), place)
+    assert f"{pack.FOLDER}/{pack.PDF}" in bulk.missing(place, {}).renderings
+    assert main(["publish", "--paper", "--from", str(place)]) == 0
+    files = {file.name: file.read_bytes() for file in (place / pack.FOLDER).iterdir()}
+    made = pack.pack(place)
+    alone = {f"{one.name}{ending}" for one in made.tables for ending in (".tex", ".csv")}
+    drawn = {f"{one.stem}.pdf" for one in made.pictures}
+    assert set(files) == {pack.PDF, pack.LATEX, *alone, *drawn}
+    assert bulk.missing(place, {}).renderings == ()
+    assert all(name in files[pack.LATEX].decode() for name in drawn)
+    assert len(images(made.text, made.citation, place / pack.FOLDER)) <= 12
+    assert main(["publish", "--paper", "--from", str(place)]) == 0
+    assert {file.name: file.read_bytes() for file in (place / pack.FOLDER).iterdir()} == files
+
+
+def test_a_report_without_a_study_has_no_paper(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """All that is missing is said at once, the exit status is 2, and nothing is written."""
+    reports.write_runs(tmp_path, [("euler/rest", "f64")])
+    before = sorted(tmp_path.rglob("*"))
+    assert main(["publish", "--paper", "--from", str(tmp_path)]) == 2
+    said = capsys.readouterr().err
+    assert "expected what `publish controls engines reach tradeoff` writes" in said
+    assert [file for file in sorted(tmp_path.rglob("*")) if file not in before] == []
+    assert bulk.missing(tmp_path, {}).renderings == ()
+
+
+def test_compiled_rivals_have_rows_and_a_sentence(sources: Sources) -> None:
+    """Integrators of other libraries stand in the table and in the finding where they were measured."""
+    numbers = sources.trades.numbers
+    points = tuple(
+        replace(p, family="outside dop853") if p.family == "scipy DOP853" else p
+        for p in numbers.points
+    )
+    other = replace(
+        sources, trades=replace(sources.trades, numbers=replace(numbers, points=points))
+    )
+    assert "DOP853 in numba" in tables(other)[-1].csv
+    assert "The fastest compiled integrator of another library takes" in findings.trade(other)

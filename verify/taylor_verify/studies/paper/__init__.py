@@ -1,0 +1,1 @@
+"""The paper: twelve pages at most that open with the findings, made of what the studies have stored."""

@@ -1,0 +1,30 @@
+"""The caption of a table or a picture: what is shown, of which data, and on which machine."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+from taylor_verify.publish.markdown import code, prose
+from taylor_verify.records import store
+from taylor_verify.studies.engines import stored as engines
+from taylor_verify.studies.tradeoff import stored as tradeoff
+
+VERDICTS: Final = (f"{store.FOLDER}/{store.VERDICTS}",)
+ENGINES: Final = (engines.ENGINES.name, engines.TIMINGS.name)
+TRADEOFF: Final = (tradeoff.NUMBERS.name, tradeoff.TIMINGS.name)
+
+
+@dataclass(frozen=True)
+class Caption:
+    """What is shown in Markdown, the files of the report that it is made of, and the processor."""
+
+    words: str
+    data: tuple[str, ...]
+    machine: str
+
+    @property
+    def markdown(self) -> str:
+        """The whole caption."""
+        files = ", ".join(map(code, self.data))
+        return f"{self.words} Data: {files}. Machine: {prose(self.machine) or 'unknown'}."

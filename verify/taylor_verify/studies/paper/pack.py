@@ -1,0 +1,107 @@
+"""Pack of the paper: paper.pdf, paper.tex with its pictures, and each table alone as LaTeX and CSV.
+
+All of it is made of stored rows and stored pictures, and `text.md` beside this file: it has the words, and
+marks such as §{engines} where a finding, a table, a picture or the number of one stands.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from string import Template
+from typing import Final
+
+from taylor_verify.publish import paper
+from taylor_verify.publish.markdown import prose
+from taylor_verify.publish.page import packages
+from taylor_verify.publish.pictures.picture import Picture, save
+from taylor_verify.records.replacement import replace_files
+from taylor_verify.records.store import versions
+from taylor_verify.studies import figures, registry
+from taylor_verify.studies.paper.findings import FINDINGS
+from taylor_verify.studies.paper.illustration import pictures
+from taylor_verify.studies.paper.sources import read
+from taylor_verify.studies.paper.table import Table, tables
+
+FOLDER: Final = "paper"
+PDF: Final = "paper.pdf"
+LATEX: Final = "paper.tex"
+
+_TEXT: Final = Path(__file__).with_name("text.md")
+_CITATION: Final = "CITATION.cff"
+
+
+class _Marked(Template):
+    """A text with marks such as §{table:engines}."""
+
+    delimiter = "§"
+    idpattern = r"[a-z]+(?::[a-z]+)?"
+
+
+@dataclass(frozen=True)
+class Pack:
+    """The paper of one report: its text, its tables and its pictures, in the order of the text."""
+
+    text: str
+    tables: Sequence[Table]
+    pictures: Sequence[Picture]
+    citation: Path
+
+    def write(self, place: Path) -> list[Path]:
+        """Write all files into a folder and return them.
+
+        Raises OSError, and ImportError without pypandoc, typst or matplotlib.
+        """
+        drawn = save(self.pictures, place, ("pdf",))
+        files: dict[str, str | bytes] = {
+            LATEX: paper.latex(self.text, self.citation),
+            PDF: paper.pdf(self.text, self.citation, place),
+        }
+        for table in self.tables:
+            files[f"{table.name}.tex"] = paper.latex_table(table.markdown)
+            files[f"{table.name}.csv"] = table.csv
+        return [*replace_files(place, files), *drawn]
+
+
+def write(folder: Path) -> list[Path]:
+    """Write the pack into ``folder``/paper, and each picture that is in ``folder``/figures as PDF there.
+
+    The errors are those of `pack` and of `Pack.write`.
+    """
+    made = pack(folder)
+    there = {file.stem for file in (folder / figures.FOLDER).glob("*.svg")}
+    shown = [picture for picture in registry.pictures(folder) if picture.stem in there]
+    return [
+        *made.write(folder / FOLDER),
+        *(save(shown, folder / figures.FOLDER, ("pdf",)) if shown else ()),
+    ]
+
+
+def pack(folder: Path) -> Pack:
+    """Return the paper of a report folder, of which nothing is written yet.
+
+    Raises OSError for files that cannot be read, and ValueError for a study that is missing, a file that
+    holds something else, or a checkout without its CITATION.cff.
+    """
+    sources = read(folder)
+    made, shown = tables(sources), pictures(sources)
+    values = {
+        "versions": prose(packages(versions(sources.verdicts))),
+        **{name: finding(sources) for name, finding in FINDINGS.items()},
+        **{f"table:{one.name}": f"Table {i}" for i, one in enumerate(made, 1)},
+        **{f"tabular:{one.name}": one.markdown for one in made},
+        **{f"figure:{one.name}": f"Figure {i}" for i, one in enumerate(shown, 1)},
+        **{f"picture:{one.name}": one.markdown for one in shown},
+    }
+    text = _Marked(_TEXT.read_text(encoding="utf-8")).substitute(values)
+    return Pack(text, made, [one.picture for one in shown], _citation(folder))
+
+
+def _citation(folder: Path) -> Path:
+    """Return the file that names title and authors: beside the report, or in the checkout of this code."""
+    places = (folder.resolve().parent, Path(__file__).resolve().parents[4])
+    for place in places:
+        if (place / _CITATION).is_file():
+            return place / _CITATION
+    raise ValueError(f"expected {_CITATION} of a checkout, got none @ {places[0]}")

@@ -1,0 +1,96 @@
+"""The stored documents that the paper is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Final
+
+from taylor_verify.publish.markdown import prose
+from taylor_verify.records import store
+from taylor_verify.records.runs import Run, runs
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.studies.controls.document import CONTROLS, ControlsStudy
+from taylor_verify.studies.engines import stored as engines
+from taylor_verify.studies.engines.document import Board
+from taylor_verify.studies.engines.entry import EntryList, entry_list
+from taylor_verify.studies.engines.ranking import Score, best_of_each, settings
+from taylor_verify.studies.reach.document import ReachStudy
+from taylor_verify.studies.reach.page import REACH
+from taylor_verify.studies.tradeoff import stored as tradeoff
+from taylor_verify.studies.tradeoff.stored import Trades
+
+# A study, and the file without which it is not measured.
+_FILES: Final = {
+    "controls": CONTROLS.name,
+    "engines": engines.ENGINES.name,
+    "reach": REACH.name,
+    "tradeoff": tradeoff.NUMBERS.name,
+}
+
+
+@dataclass(frozen=True)
+class Sources:
+    """Verdicts on the standard set, and four studies."""
+
+    verdicts: tuple[Verdict, ...]
+    controls: ControlsStudy
+    board: Board
+    reach: ReachStudy
+    trades: Trades
+
+    @cached_property
+    def runs(self) -> Sequence[Run]:
+        """The runs of the standard set."""
+        return runs(self.verdicts)
+
+    @property
+    def processors(self) -> str:
+        """The machines of the runs."""
+        found = {v.provenance["processor"] for v in self.verdicts if "processor" in v.provenance}
+        return ", ".join(sorted(found))
+
+    @cached_property
+    def entries(self) -> EntryList:
+        """The list of engines, with their titles."""
+        return entry_list()
+
+    @cached_property
+    def engine_scene(self) -> str:
+        """The scene on which the engines are compared."""
+        return self.entries.advised[0]
+
+    @cached_property
+    def best(self) -> list[Score]:
+        """The best setting of each engine, plain solvers included."""
+        return best_of_each(settings(self.board.study), self.engine_scene)
+
+    def name_of(self, score: Score) -> tuple[str, bool]:
+        """Return title and version of an engine in Markdown, and True for a plain solver."""
+        engine = score.setting.engine
+        entry = next(entry for entry in self.entries.entry if entry.name == engine)
+        return prose(f"{entry.title} {score.setting.version}".strip()), entry.plain
+
+
+def lacking(folder: Path) -> list[str]:
+    """Return the studies that the paper tells of and a report folder does not have."""
+    return [name for name, file in _FILES.items() if not (folder / file).exists()]
+
+
+def read(folder: Path) -> Sources:
+    """Return the sources below a report folder.
+
+    Raises OSError for files that cannot be read, and ValueError for a study that is missing or a file that
+    holds something else.
+    """
+    verdicts = store.load(folder)
+    if unmeasured := lacking(folder):
+        raise ValueError(
+            f"expected what `publish {' '.join(unmeasured)}` writes, got a report without it @ {folder}"
+        )
+    board, trades = engines.find(folder), tradeoff.load(folder)
+    assert board is not None
+    assert trades is not None
+    return Sources(verdicts, CONTROLS.load(folder), board, REACH.load(folder), trades)
