@@ -117,15 +117,15 @@ def _parted(rows: Iterable[Verdict]) -> tuple[list[Verdict], list[Verdict]]:
     return [verdict for verdict in every if verdict not in lengths], lengths
 
 
-def decided_alone(held: Held, baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
-    """Return the comparison ``held`` with a status that ignores the gates of the new rows.
+def decided_alone(comparison: Held, baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
+    """Return the ``comparison`` with a status that ignores the gates of the new rows.
 
     A failed row without a finite error is a regression, even if the baseline has no finite error either.
-    A row that shows nothing is undecided. Such a row is undecided, vacuous or refused, or it fails and is
-    new.
+    A row that shows nothing counts as not compared: it is undecided, vacuous or refused, or it fails and
+    is new.
     """
     known = {_name(verdict) for verdict in baseline}
-    named = {(d.scene, d.rung, d.quantity) for d in (*held.regressions, *held.undecided)}
+    named = {(d.scene, d.rung, d.quantity) for d in (*comparison.regressions, *comparison.undecided)}
     lost, unshown = [], []
     for verdict in made:
         status = exit_status([verdict])
@@ -138,8 +138,8 @@ def decided_alone(held: Held, baseline: Iterable[Verdict], made: Iterable[Verdic
             lost.append(Departure.of(verdict, "a finite error", format_number(None), "max"))
         elif _name(verdict) not in known:
             unshown.append(Departure.of(verdict, "a row of the baseline", "a new one that fails"))
-    regressions, undecided = (*held.regressions, *lost), (*held.undecided, *unshown)
-    return Held(held.compared, regressions, undecided, held.changes)
+    regressions, undecided = (*comparison.regressions, *lost), (*comparison.undecided, *unshown)
+    return Held(comparison.compared, regressions, undecided, comparison.changes)
 
 
 def _name(verdict: Verdict) -> tuple[str, str, str]:
