@@ -125,7 +125,9 @@ def decided_alone(comparison: Held, baseline: Iterable[Verdict], made: Iterable[
     is new.
     """
     known = {_name(verdict) for verdict in baseline}
-    named = {(d.scene, d.rung, d.quantity) for d in (*comparison.regressions, *comparison.undecided)}
+    named = {
+        (d.scene, d.rung, d.quantity) for d in (*comparison.regressions, *comparison.undecided)
+    }
     lost, unshown = [], []
     for verdict in made:
         status = exit_status([verdict])
