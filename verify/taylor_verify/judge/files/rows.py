@@ -69,7 +69,7 @@ class FileRows(ByRows):
 
     def rows(self, places: Sequence[int]) -> dict[str, Array]:
         asked, bits = _within(self.places, places), self.rung.bits + _SPARE_BITS
-        values = {name: rows.held(asked, bits) for name, rows in self.file.groups.items()}
+        values = {name: rows.as_mpf(asked, bits) for name, rows in self.file.groups.items()}
         if "attitude" in values:
             values["attitude"] = values["attitude"].reshape(-1, 3, 3)
         if self.readings:
