@@ -93,8 +93,8 @@ class Variables:
     def __init__(self, description: Any, names: Names) -> None:
         self.references = {
             variable.name: variable.valueReference
-            for one in description.modelVariables
-            if one.type in ("Real", "Float64") and not getattr(one, "dimensions", None)
+            for variable in description.modelVariables
+            if variable.type in ("Real", "Float64") and not getattr(variable, "dimensions", None)
         }
         self.names = names
 
