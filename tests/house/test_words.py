@@ -23,7 +23,7 @@ BEGINNING: Final = re.compile(
 # Participles, pronouns and verbs that do not say what a variable holds.
 NAMELESS: Final = re.compile(r"_*(found|told|kept|held|seen|looks|said|gone|begun|it)_*")
 # The rooms without such names, in the package and among the tests.
-ROOMS: Final = ("judge", "exact", "models", "records", "claims")
+ROOMS: Final = ("judge", "exact", "models", "solvers", "scenes", "records", "claims", "batch")
 TEST_ROOMS: Final[tuple[str, ...]] = ()
 # A key of published JSON.
 KEYS: Final = frozenset({("Convention", "found")})

@@ -25,7 +25,7 @@ _EXPECTED: Final = "a positive number below 1 (the error of the answer zero)"
 
 @dataclass(frozen=True)
 class Tolerances:
-    """One tolerance for ``every`` quantity, or one for ``each`` named quantity.
+    """Tolerances: one for ``every`` quantity, or one for ``each`` named quantity.
 
     Quantities without a tolerance keep the bounds from the arithmetic.
     """

@@ -142,7 +142,7 @@ class Derivatives:
 def derivatives(
     scene: Scene, elapsed: Sequence[Fraction], exponent: int, digits: int
 ) -> Derivatives:
-    """One-sided differences at ``digits`` digits, each momentum changed by 10^-exponent units."""
+    """Return one-sided differences at ``digits`` digits, each momentum changed by 10^-exponent units."""
     start, kind = momentum(scene), kind_of(scene.body)
     step = Fraction(1, 10**exponent)
     expansion = Fraction(np.trace(kind.momentum_equations(scene.body).linear))

@@ -127,7 +127,7 @@ class Tumbling(BallCourse):
 
     @cached_property
     def _order(self) -> list[tuple[int, int]]:
-        """For each body axis that is one of (a, b, c) up to sign: its index and the sign."""
+        """Return index and sign of each body axis that is one of (a, b, c) up to sign."""
         sides = [[int(float(entry)) for entry in row] for row in self._to_body.tolist()]
         return [next((k, side) for k, side in enumerate(row) if side) for row in sides]
 

@@ -161,7 +161,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Compared:
-    """One quantity of an answer, compared with the exact motion at any shifts."""
+    """A quantity of an answer, compared with the exact motion at any shifts."""
 
     run: Run
     errors: Errors
