@@ -9,7 +9,7 @@ import pytest
 from mpmath import mp, mpf
 
 import taylor_verify
-from taylor_verify.exact.ellipsoid import deviation, formed_to, told
+from taylor_verify.exact.ellipsoid import deviation, formed_to, sentences
 from taylor_verify.exact.route import solution
 from taylor_verify.explain.explanation import explanation
 from taylor_verify.models.problem import pose
@@ -36,9 +36,9 @@ def test_shipped_ellipsoids_are_what_their_files_say(name: str) -> None:
     body = load(name).body
     assert isinstance(body, ImmersedBody)
     assert deviation(body, BITS + 40) <= ROUNDING
-    sentences = " ".join(told(body))
-    assert f"rounded to {BITS} bits" in sentences
-    assert "the one that is solved" in sentences
+    text = " ".join(sentences(body))
+    assert f"rounded to {BITS} bits" in text
+    assert "the one that is solved" in text
 
 
 SPHEROIDS = {
@@ -126,4 +126,4 @@ def test_explain_says_which_body_is_solved() -> None:
     sphere = explanation("kirchhoff/ellipsoid-sphere", "f64")
     assert "semi-axes 3/4, 3/4, 3/4" in sphere["body"][0]
     assert "y is constant in body axes" in sphere["body"][-1]
-    assert told(load("kirchhoff/cubic").body) == []
+    assert sentences(load("kirchhoff/cubic").body) == []

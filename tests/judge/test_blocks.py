@@ -252,11 +252,11 @@ def test_rows_are_formed_as_their_values_are() -> None:
         assert [row[0] for row in rows][:4] == values[:4]
         places = range(len(column))
         wanted = [held(value, 181) for value in values]
-        for mine, theirs in zip(rows.held(places, 181)[:, 0], wanted, strict=True):
+        for mine, theirs in zip(rows.as_mpf(places, 181)[:, 0], wanted, strict=True):
             assert mine == theirs or (mp.isnan(mine) and mp.isnan(theirs))
         doubles = [float(value) for value in values]
         np.testing.assert_array_equal(rows.doubles()[:, 0], np.array(doubles))
-        assert rows.held([2, 0], 181)[:, 0].tolist() == [wanted[2], wanted[0]]
+        assert rows.as_mpf([2, 0], 181)[:, 0].tolist() == [wanted[2], wanted[0]]
 
 
 def test_a_file_tells_which_rows_are_numbers(tmp_path: Path) -> None:

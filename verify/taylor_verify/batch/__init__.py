@@ -1,1 +1,1 @@
-"""Runs of many scenes at once: on any executor, resumable, with one result that a program can ask."""
+"""Runs of many scenes: on any executor, resumable, with one result object."""

@@ -1,7 +1,7 @@
-"""Verdicts on many bodies at once: of each the ones that `run` would give.
+"""Verdicts on many bodies at once, the same for each body as those of `run`.
 
-Free rigid bodies in their principal axes are on float64 posed, solved and judged
-together. Whatever else is asked, and whoever comes near a bound, goes through `run` one by one.
+On float64, free rigid bodies in their principal axes are posed, solved and judged together. All other
+scenes, and bodies that come near a bound, go through `run` one by one.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from taylor_verify.solvers.taylor.numbers import unavailable
 from taylor_verify.solvers.trajectory import Outcome
 
 _RUNG: Final = "f64"
-# So many samples at once fit into the caches of a processor.
+# This many samples at once fit into the caches of a processor.
 _SAMPLES: Final = 2**15
 _MOST_SAMPLES: Final = 4096
 
@@ -44,18 +44,18 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 def judged(scenes: Sequence[Scene], solver: str = TAYLOR, rung: str = _RUNG) -> list[list[Verdict]]:
     """Return the verdicts of each scene by a solver on a rung, in the order of the scenes.
 
-    Statuses and quantities are those of `run`; numbers that roundings have made are other draws of them.
+    Statuses and quantities equal those of `run`; numbers that depend on roundings may differ.
     Raises ValueError for a name that is no solver or no rung.
     """
-    found: dict[int, list[Verdict]] = {}
+    together: dict[int, list[Verdict]] = {}
     if solver == TAYLOR and rung == _RUNG and not unavailable(rung_named(rung)):
         for group in _alike(scenes):
             for places, bodies in group.pieces():
-                # What is not finite in one body is no number of another, and stands in no verdict.
+                # Values that are not finite stay within their body, and enter no verdict.
                 with np.errstate(all="ignore"):
-                    found |= _judged_together(scenes, places, bodies)
+                    together |= _judged_together(scenes, places, bodies)
     return [
-        found[k] if k in found else list(run(scene, solver, rung).verdicts)
+        together[k] if k in together else list(run(scene, solver, rung).verdicts)
         for k, scene in enumerate(scenes)
     ]
 
@@ -85,7 +85,7 @@ def _alike(scenes: Sequence[Scene]) -> Iterator[_Group]:
 
 
 def _times(clock: Clock) -> Floats:
-    """The times since the start, each rounded once; none where they do not lead away from it."""
+    """Return the times since the start, each rounded once; none if they do not lead away from it."""
     try:
         rounded = rounded_times(clock, Fraction(1), rung_named(_RUNG))
     except OverflowError:
@@ -96,7 +96,7 @@ def _times(clock: Clock) -> Floats:
 
 
 def _rhythm(clock: Clock) -> Any:
-    """Something equal for clocks whose samples are at the same parts of the time to the last one."""
+    """Return a key that is equal for clocks with samples at the same fractions of their last times."""
     if isinstance(clock.instants, EquallySpaced) and clock.instants.first == clock.start:
         return len(clock.instants)
     return tuple(elapsed / clock.elapsed[-1] for elapsed in clock.elapsed)
@@ -112,7 +112,7 @@ class _Group:
     is_turned: bool = False
 
     def pieces(self) -> Iterator[tuple[list[int], Bodies]]:
-        """Yield the bodies with their places, as many at once as memory close by holds."""
+        """Yield the bodies with their places, as many at once as fit into the caches."""
         most = max(1, _SAMPLES // len(self.times[0]))
         for begin in range(0, len(self.places), most):
             piece = slice(begin, begin + most)
@@ -135,20 +135,20 @@ def _judged_together(
     if not ended:
         return {}
     bodies, answer, steps = bodies.at(ended), lanes.rows[:, ended], lanes.steps[ended]
-    here = [places[k] for k in ended]
-    elapsed = scenes[here[0]].clock.elapsed
+    places_of_finished = [places[k] for k in ended]
+    elapsed = scenes[places_of_finished[0]].clock.elapsed
     samples, rung = tuple(time / elapsed[-1] for time in elapsed), rung_named(_RUNG)
     roundoff = float(rung.unit_roundoff)
     tops = Tops(bodies.scaled_inverse, Pairs(bodies.starts[:3]), bodies.quaternion)
     compared = measured(tops, answer, bodies.grid)
     base = floors(tops, bodies.grid[:, -1], steps, samples)
-    found = gates(compared, base, tops.inverse, roundoff)
-    conditions = [base.is_known, *(each.is_first_order for each in compared.shifts)]
-    conditions += [gate.is_far for gate in found]
+    all_gates = gates(compared, base, tops.inverse, roundoff)
+    conditions = [base.is_known, *(shifts.is_first_order for shifts in compared.shifts)]
+    conditions += [gate.is_far for gate in all_gates]
     if compared.excess is not None:
         conditions.append(are_unit(compared.excess, base, roundoff))
     stands = np.logical_and.reduce(conditions)
     what = Run(TAYLOR, rung, bodies.times, bodies.time, steps, lanes.order, seconds)
-    asked = {k: scenes[here[k]] for k in np.flatnonzero(stands).tolist()}
-    rows = verdicts(what, asked, found, compared, base)
-    return {here[k]: row for k, row in rows.items()}
+    asked = {k: scenes[places_of_finished[k]] for k in np.flatnonzero(stands).tolist()}
+    rows = verdicts(what, asked, all_gates, compared, base)
+    return {places_of_finished[k]: row for k, row in rows.items()}

@@ -1,4 +1,4 @@
-"""Executors by their names on the command line; the one place that knows dask."""
+"""Executors by their names on the command line; only this module imports dask."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ _PATIENCE: Final = 5
 # Chunks under way for every thread of the workers, so that none waits for the next.
 _AHEAD: Final = 3
 _LEAST_AHEAD: Final = 64
-# Workers that a chunk may bring down before it is told as lost.
+# Number of workers that a chunk may crash before it is reported as lost.
 _RETRIES: Final = 3
 
 
 class Unreachable(ConnectionError):  # noqa: N818 (it names what happened to the address)
-    """No executor could be had; the text says what was expected and what came."""
+    """The error for an executor that cannot be reached; the text says what was expected and what came."""
 
 
 class Placed(NamedTuple):
@@ -51,9 +51,9 @@ def executor_named(name: str) -> Iterator[Placed]:
     try:
         client = distributed.Client(address, timeout=_PATIENCE)
     except (OSError, TimeoutError, ValueError) as error:
-        said = str(error).splitlines()[0] if str(error) else type(error).__name__
+        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise Unreachable(
-            f"expected a dask scheduler that answers within {_PATIENCE} s, got {said!r}"
+            f"expected a dask scheduler that answers within {_PATIENCE} s, got {reason!r}"
         ) from None
     with client:
         threads = sum(client.nthreads().values())

@@ -149,7 +149,7 @@ def _of_one_file(
 
 
 def shown_verdicts(results: Judgements | Judgement) -> list[Verdict]:
-    """Return the verdicts without those that are no pass and came as expected: a CI knows no such thing."""
+    """Return the verdicts without expected ones that are not a pass, for CI systems."""
     return list(results.verdicts) if isinstance(results, Judgement) else results.unexpected
 
 

@@ -1,7 +1,7 @@
-"""Verdicts compared with what is expected of the extremes, whose right answers are not all `pass`.
+"""Comparison of verdicts with the expected ones of the extremes, whose correct answers are not all `pass`.
 
-A verdict keeps its word. An expected one changes no exit status. A verdict that was expected and did not
-come, or came unexpected, is a mismatch and fails.
+The verdicts themselves are not changed. An expected verdict does not change the exit status. An expected
+verdict that is missing, or an unexpected one, is a mismatch and fails.
 
 The file speaks of the bounds that follow from the arithmetic. A row that was judged by a tolerance is
 compared with nothing: its verdict counts as it stands.
@@ -25,7 +25,7 @@ _PASS = Expectation(Status.PASS.value, "")
 
 @dataclass(frozen=True)
 class Mismatch:
-    """A row that is not what was expected; ``got`` is a verdict or `no row`."""
+    """A row that differs from the expected one; ``got`` is a verdict or `no row`."""
 
     row: Row
     expected: Expectation
@@ -102,16 +102,16 @@ def compare_with_expectations(
     expectations = expectations or shipped()
     expected: dict[Row, Expectation] = {}
     mismatches: list[Mismatch] = []
-    for run, found in runs.items():
+    for run, by_quantity in runs.items():
         foreseen = expectations.of_run(*run)
-        if not foreseen and all(v.verdict is Status.UNAVAILABLE for v in found.values()):
+        if not foreseen and all(v.verdict is Status.UNAVAILABLE for v in by_quantity.values()):
             continue
-        for quantity in dict.fromkeys((*found, *foreseen)):
-            if quantity in found and found[quantity].tolerance is not None:
+        for quantity in dict.fromkeys((*by_quantity, *foreseen)):
+            if quantity in by_quantity and by_quantity[quantity].tolerance is not None:
                 continue
             row, wanted = (*run, quantity), foreseen.get(quantity, _PASS)
             expected[row] = wanted
-            got = found[quantity].verdict.value if quantity in found else "no row"
+            got = by_quantity[quantity].verdict.value if quantity in by_quantity else "no row"
             if got != wanted.verdict:
                 mismatches.append(Mismatch(row, wanted, got))
     return Agreement(expected, tuple(mismatches))

@@ -1,4 +1,4 @@
-"""A run that broke: the error, and the one line that says why."""
+"""A run that broke: the error, and a line with the reason."""
 
 from __future__ import annotations
 

@@ -59,7 +59,7 @@ class Judgements(Sequence[Judgement]):
 
     @cached_property
     def verdicts(self) -> tuple[Verdict, ...]:
-        """Every verdict of every run."""
+        """Verdicts of all runs."""
         return tuple(verdict for judgement in self.judgements for verdict in judgement.verdicts)
 
     @property

@@ -1,4 +1,4 @@
-"""Checks: how far apart the two sides of a statement are, and how far apart they may be."""
+"""Checks: the distance of the two sides of a statement, and the allowed distance."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final, final
 
-# A false statement must miss its bound by more than any carelessness in the bound could explain.
+# A false statement must exceed its bound by this factor, more than an inaccurate bound could explain.
 _CLEARLY: Final = 1e6
 
 
@@ -78,12 +78,12 @@ class All(Worded):
 
 
 def worse(*residuals: Residual) -> Residual:
-    """Return the residual that says most: a NaN, else one that misses its bound, else the largest."""
+    """Return the most critical residual: a NaN, else one that exceeds its bound, else the largest."""
     return max(residuals, key=lambda r: (r.size != r.size, not r.is_satisfied, r.size))
 
 
 def measured(check: Check) -> Residual:
-    """Return what a check gives, or a NaN with its reason for one that comes to no number."""
+    """Return the residual of a check; NaN with the reason if the check gives no number."""
     try:
         return check()
     except ArithmeticError as error:

@@ -11,7 +11,7 @@ from taylor_verify.claims.document import ClaimResiduals, ClaimRow
 from taylor_verify.claims.document import Verdict as Verdict
 
 Change = Check | tuple[str, str]
-"""A check of its own, or old and new words in the text of the claim's check."""
+"""A separate check, or old and new words in the text of the claim's check."""
 
 
 @dataclass(frozen=True)
@@ -24,9 +24,9 @@ class Claim:
     makes it fail: to the form as transcribed, or to the statement without its condition. ``mutants``
     change one thing each (a sign, a factor, an index); the check rejects them.
 
-    ``lost`` says what the scan lost, ``condition`` under what the statement holds, ``gap`` what is
-    left open, ``void`` why nothing is said of any motion; ``correction`` is the true form (LaTeX),
-    ``counterexample`` where the false one fails.
+    ``lost`` says what the scan lost, ``condition`` when the statement holds, ``gap`` what is left open,
+    ``void`` why the statement applies to no motion. ``correction`` is the true form (LaTeX),
+    ``counterexample`` a point where the false form fails.
     """
 
     id: str
@@ -95,7 +95,7 @@ class Finding:
         )
 
 
-# What an entry of the ledger has word for word.
+# The fields that an entry of the ledger copies from the claim.
 _WORDS: Final = (
     *("id", "statement", "domain", "method", "correction"),
     *("condition", "lost", "void", "counterexample", "remark"),

@@ -60,14 +60,14 @@ class Equations(Worded):
 
 def differences(equations: Iterable[str], symbols: dict[str, Any]) -> list[Any]:
     """The differences of all members from the first of their equation, arrays entry by entry."""
-    found: list[Any] = []
+    result: list[Any] = []
     for equation in equations:
         first, *others = (np.asarray(eval(text, symbols)) for text in equation.split(" = "))
         if not others:
             raise ValueError(f"expected members with ' = ' between them, got {equation!r}")
         for other in others:
-            found += [*np.ravel(first - other)]
-    return found
+            result += [*np.ravel(first - other)]
+    return result
 
 
 @final
@@ -101,10 +101,10 @@ class Exact(Setting):
         return self.symbols[name]
 
     def residual(self, equations: Iterable[str]) -> Residual:
-        found = [self.field.element(d) for d in differences(equations, self.symbols)]
-        if not found:
+        elements = [self.field.element(d) for d in differences(equations, self.symbols)]
+        if not elements:
             return Residual(float("nan"), 0.0, "nothing was compared")
-        nonzero = [self.field.size(d) for d in found if not d.is_zero]
+        nonzero = [self.field.size(d) for d in elements if not d.is_zero]
         # A polynomial that is no zero but vanishes at the point says nothing of its size.
         size = (max(nonzero) or float("nan")) if nonzero else 0.0
         return Residual(size, 0.0, _BECAUSE)

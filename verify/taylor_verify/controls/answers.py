@@ -27,7 +27,7 @@ Rows = Any
 
 
 def _early(problem: Problem) -> Problem:
-    """Every state is that of half a millisecond later."""
+    """The answer with all states taken half a millisecond later."""
     ahead = _EARLY / problem.units.time
     times = tuple(problem.rung.round(t + ahead) for t in problem.times)
     return replace(problem, times=times)

@@ -1,7 +1,7 @@
-"""A closed form in ball arithmetic (Arb): every number carries a bound of its own error.
+"""Closed forms in ball arithmetic (Arb), in which every number carries a proven error bound.
 
-Nothing is estimated here. A motion is accepted when the balls are narrow enough, and a decision (a
-sign, a branch) when the balls exclude the other answer; until then the precision rises.
+No error is estimated here. A motion is accepted when its balls are narrow enough. A decision (a sign, a
+branch) is accepted when the balls exclude the other answer. Until then the precision rises.
 """
 
 from __future__ import annotations
@@ -25,26 +25,26 @@ from taylor_verify.scenes.tensors import Matrix
 # Quantity by name; for each time a row of balls, nested as the quantity is shaped.
 Enclosure = Mapping[str, Sequence[Any]]
 
-# What a few hundred ball operations lose on an orbit without difficulties.
+# Bits that a few hundred ball operations lose on a simple orbit.
 _FIRST_GUARD_BITS: Final = 40
 _ATTEMPTS: Final = 12
-# The worst orbits of the tests lose twice the digits asked for; what would take this many times is
+# The worst orbits of the tests lose twice the digits asked for. A need for this many times the bits means
 # an equality that no precision decides.
 _MOST_BITS_PER_BIT: Final = 32
 _LEAST_LIMIT: Final = 8192
-# A width is told to two digits: all that it asks for is that its rounding upwards is small.
+# A width is reported to two digits, so that only a small upward rounding is needed.
 WIDTH_BITS: Final = 64
-# Doubles whose squares, and quotients by each other, are doubles too; and a ball that is narrow.
+# Limits of doubles whose squares and quotients are doubles too, and of a narrow ball.
 _FAR: Final = 1e140
 _NARROW: Final = 2.0**-10
 
 
 class Undecidable(ArithmeticError):
-    """Two branches that the balls of one precision do not tell apart; a higher one may."""
+    """The error for a branch that the balls do not decide at this precision; a higher one may."""
 
 
 class Enclosed(Solution):
-    """A closed form evaluated in balls: what it says about its error is proven."""
+    """A closed form evaluated in balls, with a proven error bound."""
 
     route = "arb"
 
@@ -54,7 +54,7 @@ class Enclosed(Solution):
 
         The times are rational or balls.
 
-        Raises Undecidable where a branch cannot be told at this precision.
+        Raises Undecidable if a branch cannot be decided at this precision.
         """
 
     @final
@@ -92,20 +92,22 @@ class Enclosed(Solution):
             return None, mp.inf
 
 
-def _measured(found: Enclosure, count: int) -> tuple[Motion, mpf]:
+def _measured(enclosure: Enclosure, count: int) -> tuple[Motion, mpf]:
     """Midpoints and radii, and the widest one; the radius of a row is that of its widest quantity."""
-    flat = {name: _flat(rows, count) for name, rows in found.items()}
+    flat = {name: _flat(rows, count) for name, rows in enclosure.items()}
     radii = {name: widths(balls, count) for name, (balls, _) in flat.items()}
-    numbers, doubles = (np.array(each) for each in zip(*radii.values(), strict=True))
+    numbers, doubles = (
+        np.array(radii_of_quantities) for radii_of_quantities in zip(*radii.values(), strict=True)
+    )
     row = numbers[doubles.argmax(axis=0), np.arange(count)]
     beyond = np.flatnonzero(np.isnan(doubles).any(axis=0)).tolist()
     for k in beyond:
         row[k] = reduce(max_or_nan, numbers[:, k])
-    # Of doubles the largest is that of the numbers; there is a loop only where not all of them are.
+    # The largest double belongs to the largest number; a loop is needed only if some are no doubles.
     candidates = row if beyond or not count else [row[doubles.max(axis=0).argmax()]]
     widest = reduce(max_or_nan, candidates, mpf(0))
-    each = {name: numbers for name, (numbers, _) in radii.items()}
-    return Motion(Midpoints(flat), row, each), widest
+    radii_of_quantities = {name: numbers for name, (numbers, _) in radii.items()}
+    return Motion(Midpoints(flat), row, radii_of_quantities), widest
 
 
 def _flat(rows: Sequence[Any], count: int) -> tuple[list[arb], tuple[int, ...]]:
@@ -159,20 +161,20 @@ def widths(balls: Sequence[arb], count: int) -> tuple[np.ndarray[Any, Any], np.n
     with np.errstate(all="ignore"):
         shares = radii / largest[:, None]
         r, s = (np.sqrt((x * x).sum(axis=1)) for x in (shares, middles / largest[:, None]))
-        found = r / (s - r) * (1 + 2.0**-40)
+        bounds = r / (s - r) * (1 + 2.0**-40)
         # Written so that a NaN is outside. A row of exact entries is too: they may be no doubles.
         inside = (1 / _FAR < largest) & (largest < _FAR) & (1 / _FAR < r) & (r < _NARROW)
         inside &= ((shares == 0) | (shares > 1 / _FAR)).all(axis=1)
     outside = np.flatnonzero(~inside).tolist()
-    found[outside] = 0.0
-    mantissas, exponents = np.frexp(found)
+    bounds[outside] = 0.0
+    mantissas, exponents = np.frexp(bounds)
     parts = zip(np.ldexp(mantissas, 53).astype(np.int64).tolist(), exponents.tolist(), strict=True)
     numbers = np.empty(count, dtype=object)
     numbers[:] = [mp.make_mpf(libmp.from_man_exp(m, e - 53)) for m, e in parts]
     for k in outside:
         numbers[k] = width(balls[k * shape[1] : (k + 1) * shape[1]])
-    found[outside] = np.nan
-    return numbers, found
+    bounds[outside] = np.nan
+    return numbers, bounds
 
 
 def width(balls: Sequence[arb]) -> mpf:

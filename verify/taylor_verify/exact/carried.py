@@ -1,4 +1,4 @@
-"""Solutions found in other coordinates or at another time, carried back to those of the scene."""
+"""Solutions in other coordinates or another time, converted back to those of the scene."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ _GUARD_DIGITS: Final = 6
 _TIME_DIGITS: Final = 30
 
 Back = Callable[[dict[str, Any], Sequence[Time], Number], None]
-"""Puts the object arrays of every quantity, at these times, into the coordinates of the scene."""
+"""A function that converts the arrays of all quantities, in place, to the coordinates of the scene."""
 
 Clock = Callable[[Time, Number], Time]
-"""Maps a time since the start of the scene to that of the inner motion; zero to zero, exactly."""
+"""A function from the time since the start of the scene to the inner time; exactly zero at zero."""
 
 
 def carried(
@@ -34,7 +34,7 @@ def carried(
 
 @final
 class CarriedBalls(Enclosed):
-    """A solution in balls: what cancels on the way back widens them, and the precision rises."""
+    """A converted solution in balls; where the conversion widens them the precision rises."""
 
     def __init__(
         self, inner: Enclosed, back: Back, regime: str, clock: Clock | None = None
@@ -54,7 +54,7 @@ class CarriedBalls(Enclosed):
 
 @final
 class Carried(Settled):
-    """A solution in mpmath, believed when two evaluations agree after the way back."""
+    """A converted solution in mpmath, accepted when two evaluations agree after the conversion."""
 
     route = "mpmath"
 

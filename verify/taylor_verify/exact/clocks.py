@@ -48,12 +48,12 @@ def start(motion: Manufactured) -> Vector:
 
 def balls_at(motion: Manufactured, elapsed: Fraction) -> list[arb]:
     """The clock at a time since the start in balls, at the ambient precision."""
-    found = [arb(1)]
+    clock = [arb(1)]
     for wave in motion.waves:
         angle = wave.frequency * elapsed
         s, c = arb(fmpq(angle.numerator, angle.denominator)).sin_cos()
-        found += [c, s]
-    return found
+        clock += [c, s]
+    return clock
 
 
 def floats(motion: Manufactured | None, times: Sequence[Fraction]) -> Floats:

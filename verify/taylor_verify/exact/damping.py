@@ -36,7 +36,7 @@ from taylor_verify.scenes.mpfr import alike
 from taylor_verify.scenes.precision import floor_log2
 from taylor_verify.scenes.scene import Scene
 
-# A motion whose phase has more digits than this before its point takes seconds an instant.
+# If the phase has more digits than this before its point, an instant takes seconds.
 _MOST_DIGITS: Final = 2000
 NOT_QUADRATIC: Final = "damping together with a constant load or with wheels"
 
@@ -58,15 +58,15 @@ def decayed(exponent: Fraction, number: Number) -> Any:
 
 
 def elapsed_without(damping: Fraction, t: Fraction, number: Number) -> Time:
-    """Return tau, the time at which the motion without damping is where the damped one is at t."""
+    """Return tau, the time of the undamped motion that corresponds to the time t of the damped one."""
     exponent = damping * t
     if not exponent:
         return t
     if number is ball:
         return ball(-exponent).expm1() / ball(-damping)
     with mp.extraprec(_bits_before_point(exponent)):
-        found: mpf = mp.expm1(mp.convert(-exponent)) / mp.convert(-damping)
-    return found
+        tau: mpf = mp.expm1(mp.convert(-exponent)) / mp.convert(-damping)
+    return tau
 
 
 def growths(scene: Scene, elapsed: Sequence[Fraction]) -> Array | None:

@@ -1,4 +1,4 @@
-"""Numbers that describe an orbit as a whole, and how they are settled."""
+"""Elements, the numbers that describe an orbit as a whole, and the precision at which they settle."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _ATTEMPTS: Final = 12
 
 @dataclass(frozen=True)
 class Element:
-    """A number of the orbit: its unit in words of the scene's units, what it means, its formula.
+    """A number of the orbit, with its unit in words, its meaning and its formula.
 
     ``unit`` is empty for a pure number. ``size`` is what an error is measured against where the
     number itself may be zero or nearly so; 0 asks for relative accuracy.
@@ -41,9 +41,9 @@ def described(table: str, values: Iterable[mpf]) -> list[Element]:
 
 @dataclass(frozen=True)
 class Elements(Mapping[str, Element]):
-    """The numbers of one orbit by name, in the order in which they are read, and what they say.
+    """The numbers of one orbit by name, in reading order, with explaining sentences.
 
-    ``sentences`` tell in words what no number tells: what is conserved, whether it is stable.
+    ``sentences`` state what no number can: the conserved quantities and the stability.
     """
 
     regime: str

@@ -32,25 +32,25 @@ _FAR: Final = (
 
 
 def elements(scene: Scene, digits: int = 15) -> Elements:
-    """Every element that the orbit of this scene has, to ``digits`` significant digits.
+    """Return the elements of the scene's orbit, to ``digits`` significant digits.
 
-    Where there is no closed form it says so, and holds only what is exact without one. Raises
-    exact.solution.Unsettled where the digits cannot be had.
+    Without a closed form there are only the elements that are exact without one. Raises
+    exact.solution.Unsettled if the digits cannot be reached.
     """
     if scene.body.damping:
         return _damped(scene, digits)
-    found: Elements = function_at(f"{kind_of(scene.body).room}.elements:elements")(scene, digits)
-    return found
+    result: Elements = function_at(f"{kind_of(scene.body).room}.elements:elements")(scene, digits)
+    return result
 
 
 def _damped(scene: Scene, digits: int) -> Elements:
-    """The elements of the motion without damping, and how much of it there is."""
+    """Return the elements of the undamped motion, and the part of it that the damped body performs."""
     damping = scene.body.damping
     if not is_solved(scene):
         story = f"No closed form is built for {NOT_QUADRATIC}."
         return Elements(NO_CLOSED_FORM, (), (story, _FAR))
     free = elements(replace(scene, body=scene.body.undamped), digits)
-    numbers = [replace(one, meaning=_at_the_start(one)) for one in free.numbers]
+    numbers = [replace(element, meaning=_at_the_start(element)) for element in free.numbers]
     if damping > 0:
         with mp.workdps(digits):
             horizon = 1 / mp.convert(damping)
@@ -60,11 +60,11 @@ def _damped(scene: Scene, digits: int) -> Elements:
                 meaning = "periods of the motion without damping until the body is at rest"
                 turns = horizon / free["period"].value
                 numbers.append(Element("periods_to_rest", turns, "", meaning, "1/(c period)"))
-    told = (
-        one.replace("Conserved:", "Conserved, of e^{ct} times the momenta:")
-        for one in free.sentences
+    sentences = (
+        element.replace("Conserved:", "Conserved, of e^{ct} times the momenta:")
+        for element in free.sentences
     )
-    return Elements(free.regime, tuple(numbers), (_SLOWED, *told))
+    return Elements(free.regime, tuple(numbers), (_SLOWED, *sentences))
 
 
 def _at_the_start(element: Element) -> str:

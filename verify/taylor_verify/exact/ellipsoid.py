@@ -1,4 +1,4 @@
-"""Mass, inertia and what the fluid adds for a homogeneous ellipsoid, in balls, by Lamb's own formulas.
+"""Mass, inertia and added masses of a homogeneous ellipsoid, in balls, by Lamb's formulas.
 
 Legend: semi-axes a, b, c in any cyclic order, V = 4 pi a b c/3, M mass, I moments of inertia about the
 axes, m added masses, j added moments of inertia, rho the density of the fluid; Lamb, Hydrodynamics,
@@ -7,9 +7,9 @@ arts. 114 and 115, with R_D by Arb:
     alpha = (2/3) a b c R_D(b^2, c^2, a^2) and so on,        m_a = rho V alpha/(2 - alpha),
     j_a = rho V (b^2 - c^2)^2 (gamma - beta) / (5 (2 (b^2 - c^2) + (b^2 + c^2)(beta - gamma))).
 
-Nothing is done against the cancellation in these: the balls tell what it costs, and the precision
-rises. So they share no formula but Lamb's with the coefficients that a scene is read with, which take
-the differences apart, and hold these to the ellipsoid that they are meant for.
+The cancellation in these formulas is left as it is: the balls show its cost, and the precision rises. The
+coefficients that a scene is read with are computed by rearranged formulas. So this file is an independent
+check of them.
 """
 
 from __future__ import annotations
@@ -29,17 +29,17 @@ from taylor_verify.scenes.reading.faults import shown
 from taylor_verify.scenes.scene import Scene
 
 _FIRST_GUARD_BITS: Final = 40
-# Beyond the digits asked for: what an orbit may magnify by 10^30 is still below their last place.
+# Digits beyond those asked for: errors that an orbit magnifies by 10^30 stay below the last digit.
 _MORE_DIGITS: Final = 30
 _DIGITS_TOLD: Final = 12
-# Of the guard, each time: from 40 bits to more than what axes of the largest ratio a scene can write
-# (10^10000) and the smallest difference take.
+# Doublings of the guard bits: from 40 bits to more than axes of the largest ratio that a scene can write
+# (10^10000) and of the smallest difference need.
 _DOUBLINGS: Final = 14
 
 
 @dataclass(frozen=True)
 class Inertias:
-    """M; I and what the fluid adds to M and to I, each along or about body axes 1, 2, 3."""
+    """Mass M, inertia I, added mass and added inertia, along or about body axes 1, 2, 3."""
 
     mass: arb
     inertia: list[arb]
@@ -68,42 +68,42 @@ def formed_to(scene: Scene, digits: int) -> Scene:
 
 
 def inertias(ellipsoid: Ellipsoid, bits: int) -> Inertias:
-    """Every number of the ellipsoid to ``bits`` bits of itself; what is zero is zero exactly.
+    """Return the inertias of the ellipsoid to ``bits`` relative bits; zeros are exact.
 
-    Raises Unsettled where no precision within reason gives them.
+    Raises Unsettled if no reasonable precision suffices.
     """
     guard = _FIRST_GUARD_BITS
     for _ in range(_DOUBLINGS):
         with ctx.workprec(bits + guard):
-            found = _at_ambient_precision(ellipsoid)
-            numbers = [found.mass, *found.inertia, *found.added_mass, *found.added_inertia]
+            result = _at_ambient_precision(ellipsoid)
+            numbers = [result.mass, *result.inertia, *result.added_mass, *result.added_inertia]
             if all(number.is_zero() or number.rel_accuracy_bits() >= bits for number in numbers):
-                return found
+                return result
         guard *= 2
     raise Unsettled(f"the inertia of the ellipsoid does not settle to {bits} bits")
 
 
 def deviation(body: ImmersedBody, bits: int) -> mpf:
-    """A bound of how far the coefficients of a body are off those of its ellipsoid, each of itself.
+    """Return a bound of the relative error of a body's coefficients, compared with its ellipsoid.
 
-    Proven, and found with ``bits`` bits: no bound below about 2^-bits can come out. Raises ValueError
+    The bound is proven with ``bits`` bits, so it is never below about 2^-bits. Raises ValueError
     for a body that was not given as an ellipsoid.
     """
     if body.ellipsoid is None:
         raise ValueError("expected a body that was given as an ellipsoid, got coefficients alone")
-    found = inertias(body.ellipsoid, bits)
+    exact = inertias(body.ellipsoid, bits)
     with ctx.workprec(bits + _FIRST_GUARD_BITS):
-        pairs = zip((body.linear, body.angular), found.coefficients(), strict=True)
+        pairs = zip((body.linear, body.angular), exact.coefficients(), strict=True)
         off = (ball(form[i][i]) / true[i] - 1 for form, true in pairs for i in range(3))
         return max(upper(abs(error)) for error in off)
 
 
-def told(body: ImmersedBody) -> list[str]:
-    """Sentences on the body that was read; none for one that was given by its coefficients."""
+def sentences(body: ImmersedBody) -> list[str]:
+    """Return sentences on the ellipsoid of a body; none for a body given by its coefficients."""
     shape = body.ellipsoid
     if shape is None:
         return []
-    found = inertias(shape, COEFFICIENT_BITS)
+    exact = inertias(shape, COEFFICIENT_BITS)
     off = deviation(body, COEFFICIENT_BITS + _FIRST_GUARD_BITS)
     a = ", ".join(map(shown, shape.semi_axes))
     is_neutral = shape.density == shape.fluid_density
@@ -111,8 +111,8 @@ def told(body: ImmersedBody) -> list[str]:
     return [
         f"A homogeneous ellipsoid: semi-axes {a}, density {shown(shape.density)}, in a fluid of "
         f"density {shown(shape.fluid_density)}{buoyancy}.",
-        f"By Lamb's integrals: mass {_text([found.mass])}, added mass {_text(found.added_mass)}; "
-        f"inertia {_text(found.inertia)}, added inertia {_text(found.added_inertia)}.",
+        f"By Lamb's integrals: mass {_text([exact.mass])}, added mass {_text(exact.added_mass)}; "
+        f"inertia {_text(exact.inertia)}, added inertia {_text(exact.added_inertia)}.",
         f"1/(mass + added mass) and 1/(inertia + added inertia) are rounded to {COEFFICIENT_BITS} "
         "bits, and the body of these rationals is the one that is solved: each is off by less than "
         f"2^{mp.mag(off)} of itself, as balls about Lamb's formulas prove.",
@@ -162,7 +162,7 @@ def _at_ambient_precision(ellipsoid: Ellipsoid) -> Inertias:
 
 def _alpha(ellipsoid: Ellipsoid, i: int) -> arb:
     """The integral of axis i: a^3 R_D(b^2, c^2, a^2) = R_D((b/a)^2, (c/a)^2, 1)."""
-    one = ellipsoid.semi_axes[i]
-    y, z = (ellipsoid.semi_axes[(i + n) % 3] / one for n in (1, 2))
+    axis = ellipsoid.semi_axes[i]
+    y, z = (ellipsoid.semi_axes[(i + n) % 3] / axis for n in (1, 2))
     integral = acb.elliptic_rd(ball(y * y), ball(z * z), acb(1)).real
     return 2 * ball(y * z) * integral / 3

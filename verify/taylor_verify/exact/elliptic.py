@@ -76,9 +76,9 @@ class Landen:
     def _octant(self, v: mpf) -> Triple:
         """The three functions for 0 <= v <= K/2: only positive terms are added on the way up."""
         cn, sn = mp.cos_sin(self._mean * v)
-        dn = one = mpf(1)
+        dn = unity = mpf(1)
         for k, m_prime in reversed(self._moduli):
-            denominator = one + k * sn * sn  # products, because mpf powers cost twice as much
+            denominator = unity + k * sn * sn  # products, because mpf powers cost twice as much
             cn = cn * dn / denominator
             sn = (sn + k * sn) / denominator
             dn = mp.sqrt(cn * cn + m_prime * sn * sn)  # 1 - m sn^2 would cancel where m' is small

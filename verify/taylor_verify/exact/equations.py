@@ -43,7 +43,7 @@ class Equations(NamedTuple):
 
     def minus(self, other: Equations) -> Equations:
         """The difference, entry by entry."""
-        return Equations(*(one - two for one, two in zip(self, other, strict=True)))
+        return Equations(*(ours - theirs for ours, theirs in zip(self, other, strict=True)))
 
     def damped(self, damping: Fraction) -> Equations:
         """The equations with -c z more."""
@@ -81,14 +81,14 @@ class Equations(NamedTuple):
 
     def scaled(self, units: Vector, time: Fraction, length: Fraction) -> Scaled:
         """The equations with z in ``units``, one for each component; the centre goes by lengths."""
-        one = np.array(units, dtype=object)
-        rates, turns, lengths = time / one, [time] * 3, [time / length] * 3
+        unit = np.array(units, dtype=object)
+        rates, turns, lengths = time / unit, [time] * 3, [time / length] * 3
         return Scaled(
             in_units(self.constant, rates).astype(float),
-            in_units(self.linear, rates, one).astype(float),
-            in_units(self.hessian, rates, one, one).astype(float),
-            in_units(self.spin, turns, one).astype(float),
-            in_units(self.velocity, lengths, one).astype(float),
+            in_units(self.linear, rates, unit).astype(float),
+            in_units(self.hessian, rates, unit, unit).astype(float),
+            in_units(self.spin, turns, unit).astype(float),
+            in_units(self.velocity, lengths, unit).astype(float),
         )
 
 
@@ -104,24 +104,24 @@ def nothing(n: int) -> Exact:
 
 def in_units(values: Exact, *units: Exact | Sequence[Fraction]) -> Exact:
     """The entries times the unit of each of their places, one vector of units for each axis."""
-    found = np.full(values.shape, Fraction(0), dtype=object)
+    products = np.full(values.shape, Fraction(0), dtype=object)
     # Most of them are zero, and a product of rationals is dear.
     for place in zip(*np.nonzero(values), strict=True):
         factors = (vector[i] for vector, i in zip(units, place, strict=True))
-        found[place] = prod(factors, start=values[place])
-    return found
+        products[place] = prod(factors, start=values[place])
+    return products
 
 
 def cross(left: Matrix, right: Matrix) -> Exact:
     """The second derivatives of (left z) x (right z), two linear forms of z with three rows each."""
     n = len(left[0])
-    found = np.full((3, n, n), Fraction(0), dtype=object)
+    hessian = np.full((3, n, n), Fraction(0), dtype=object)
     for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
         for first, second, sign in ((j, k, 1), (k, j, -1)):
             for a, p in enumerate(left[first]):
                 for b, q in enumerate(right[second]):
                     # Most entries are zero, and a product of rationals is dear.
                     if p and q:
-                        found[i, a, b] += sign * p * q
-                        found[i, b, a] += sign * p * q
-    return found
+                        hessian[i, a, b] += sign * p * q
+                        hessian[i, b, a] += sign * p * q
+    return hessian

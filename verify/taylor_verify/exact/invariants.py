@@ -23,7 +23,7 @@ def invariants(scene: Scene) -> tuple[Invariant, ...]:
 
 
 def decisive(scene: Scene, motion: Motion) -> list[int]:
-    """Rows of a motion that have the scales of all its invariants: any scale is that of these rows alone.
+    """Return the rows of a motion that determine the scales of all its invariants.
 
     Each scale is made of the largest T, |H|, |x|, |y| and |y| + |c| |x|. Rows that are not finite are
     passed over, if there are others.

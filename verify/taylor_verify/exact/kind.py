@@ -1,4 +1,4 @@
-"""The contract of a kind of body: everything that the truth has to know about it.
+"""The contract of a kind of body: everything that the exact solution needs to know about it.
 
 A new kind is a folder with one class like exact.euler.rigid.Rigid, and one line in exact.registry.
 """

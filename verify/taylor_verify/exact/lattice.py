@@ -138,9 +138,9 @@ class Periods(Lattice):
         return [acb.modular_theta(v, self._tau, k)[0] / self._length**k for k in range(order + 1)]
 
     def p(self, u: acb) -> tuple[acb, acb]:
-        one, two, three, four = acb.modular_theta(u / self._length, self._tau)
-        p = self._roots[0] + self._from_root * (two / one) ** 2
-        return p, self._slope * two * three * four / one**3
+        th1, th2, th3, th4 = acb.modular_theta(u / self._length, self._tau)
+        p = self._roots[0] + self._from_root * (th2 / th1) ** 2
+        return p, self._slope * th2 * th3 * th4 / th1**3
 
     def argument(self, X: acb, Y: acb) -> acb:
         """Carlson's R_F, which is right up to its sign and periods, whatever square roots it takes."""
@@ -155,14 +155,16 @@ class Periods(Lattice):
         return u.union(2 * u - self._reduced(2 * u) - u)
 
     def turn(self, u: arb, w: acb, quotient: acb) -> arb:
-        there, start = (u - w) / self._length, -w / self._length
-        return nearest_turn(quotient, self._rough_turn(there) - self._rough_turn(start))
+        end, start = (u - w) / self._length, -w / self._length
+        return nearest_turn(quotient, self._rough_turn(end) - self._rough_turn(start))
 
     def _half_period(self, X: acb) -> acb:
         """The half period whose root X is, the other two being excluded."""
-        one, tau = acb(1), self._tau
+        unity, tau = acb(1), self._tau
         # Which of the pair belongs to tau/2 and which to (1 + tau)/2 is asked of p itself.
-        halves = [h for h in (one, tau, one + tau) if self.p(h * self._length / 2)[0].overlaps(X)]
+        halves = [
+            h for h in (unity, tau, unity + tau) if self.p(h * self._length / 2)[0].overlaps(X)
+        ]
         if len(halves) != 1:
             raise Undecidable
         return self._reduced(halves[0] * self._length / 2)
@@ -242,8 +244,8 @@ class Elementary(Lattice):
             return (across * quotient).arg() - across.arg()
         # sin v is a constant times e^{-i v}(1 - e^{2 i v}) for Im v > 0; below, the conjugate.
         kappa, side = self._rho.imag, sign((-w).imag)
-        there, start = (v if side > 0 else v.conjugate() for v in (kappa * (u - w), kappa * -w))
-        bend = (1 - (2 * _I * there).exp()).arg() - (1 - (2 * _I * start).exp()).arg()
+        end, start = (v if side > 0 else v.conjugate() for v in (kappa * (u - w), kappa * -w))
+        bend = (1 - (2 * _I * end).exp()).arg() - (1 - (2 * _I * start).exp()).arg()
         return side * (bend - kappa * u)
 
 
@@ -260,9 +262,9 @@ def nearest_turn(quotient: acb, rough: arb) -> arb:
 def _integral_to_infinity(from_roots: Sequence[acb]) -> acb:
     """R_F of three numbers, turned in the plane where one of them lies across Carlson's cut."""
     for factor in (acb(1), _I, acb(-1)):
-        found = factor.sqrt() * acb.elliptic_rf(*(factor * z for z in from_roots))
-        if found.is_finite():
-            return found
+        integral = factor.sqrt() * acb.elliptic_rf(*(factor * z for z in from_roots))
+        if integral.is_finite():
+            return integral
     raise Undecidable
 
 
@@ -275,7 +277,7 @@ def _logarithm(z: acb) -> acb:
 
 def _nearest(value: arb) -> int:
     """An integer near the middle of the ball: any will do, the nearest is best."""
-    found = (value.mid() + arb(1) / 2).floor().unique_fmpz()
-    if found is None:
+    integer = (value.mid() + arb(1) / 2).floor().unique_fmpz()
+    if integer is None:
         raise Undecidable
-    return int(found)
+    return int(integer)

@@ -60,24 +60,24 @@ class BySeries(Line):
 
     def p(self) -> list[tuple[arb, arb]]:
         series, places = self._series, self._places
-        one, two = series.one(arb(1)), series.two(arb(1))
+        theta1, theta2 = series.one(arb(1)), series.two(arb(1))
         e, c, cube = self._lattice.real_constants
         # -2 (theta_1'(0)/(L lead))^3, for sin 2 pi v = 2 sin cos
         cube = -2 * cube
-        found = []
+        values = []
         for sin, cos, one_v, two_v, one_2v in zip(
             places.sines,
             places.cosines,
-            places.at(one),
-            places.at(two),
-            places.doubled.at(one),
+            places.at(theta1),
+            places.at(theta2),
+            places.doubled.at(theta1),
             strict=True,
         ):
             below = 1 / (sin * one_v)
             across, square = cos * two_v * below, below * below
             slope = cube * cos * sin * one_2v * square * square
-            found.append((e + c * (across * across), slope))
-        return found
+            values.append((e + c * (across * across), slope))
+        return values
 
     def jets(self, w: acb, scale: acb, order: int) -> list[list[acb]]:
         length, factor = self._lattice.period, self._series.lead / scale

@@ -61,7 +61,7 @@ def _motion(scene: Scene) -> Manufactured:
 @final
 @dataclass(frozen=True)
 class EnclosedPolynomial(Enclosed):
-    """Every cosine and sine by Arb, to the precision that the rows ask for."""
+    """A manufactured motion in balls: cosines and sines by Arb."""
 
     scene: Scene
     polynomial: Manufactured
@@ -78,7 +78,7 @@ class EnclosedPolynomial(Enclosed):
 @final
 @dataclass(frozen=True)
 class SettledPolynomial(Settled):
-    """Every cosine and sine by mpmath."""
+    """A manufactured motion in mpmath."""
 
     scene: Scene
     polynomial: Manufactured

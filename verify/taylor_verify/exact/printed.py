@@ -18,30 +18,30 @@ from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.precision import exact_value
 from taylor_verify.scenes.scene import Scene
 
-# The motion is known to this many digits more than are printed, so that printing is what limits.
+# The motion has this many digits more than are printed, so that printing limits the accuracy.
 _SPARE_DIGITS = 3
-# Below 10^-5, and where a number would need zeros that are no digits of it, an exponent is written.
+# An exponent is written below 10^-5, and where a plain number would need zeros after its last digit.
 _LEAST_PLAIN_EXPONENT = -5
-# In bits. Beyond it the digits come from mpmath, whose own rounding is a thousandth of the last one.
+# In bits. Larger rationals are printed by mpmath, whose rounding is a thousandth of the last digit.
 _LARGEST_RATIONAL = 100_000
 
 
 def document(
-    scene: Scene, found: Solution, times: Sequence[tuple[str, Fraction]], digits: int
+    scene: Scene, exact: Solution, times: Sequence[tuple[str, Fraction]], digits: int
 ) -> dict[str, Any]:
-    """Return what `exact --json` prints: a row for each time, given as its text and its exact value.
+    """Return the document of `exact --json`: a row for each time, given as its text and its exact value.
 
-    ``radius`` is that of Motion with the rounding of the printed digits. A vector that cannot be told from
-    zero is printed as zero, and ``absolute`` bounds its size; it has no part in ``radius``. The row at
-    the start is the initial state itself. Where some times are not reached, ``because`` says why, and
-    ``rows`` has the other ones.
+    ``radius`` is the radius of Motion plus the rounding of the printed digits. A vector that cannot be
+    distinguished from zero is printed as zero; ``absolute`` bounds its size, and ``radius`` does not
+    count it. The row at the start is the initial state itself. If some times are not reached, ``because``
+    says why, and ``rows`` has the other times.
     """
     elapsed = [time - scene.clock.start for _, time in times]
     because = None
     motion: Motion | None
     places: Sequence[int] = range(len(times))
     try:
-        motion = found.motion(elapsed, digits + _SPARE_DIGITS)
+        motion = exact.motion(elapsed, digits + _SPARE_DIGITS)
     except Unsettled as doubt:
         motion, places, because = doubt.motion, doubt.places, f"undecided: {doubt} @ {scene.name}"
     start = _start(scene)
@@ -61,10 +61,10 @@ def document(
         )
     return {
         "scene": scene.name,
-        "route": found.route,
-        "evidence": found.evidence,
+        "route": exact.route,
+        "evidence": exact.evidence,
         "digits": digits,
-        "regime": _regime(scene, found),
+        "regime": _regime(scene, exact),
         "rows": rows,
     } | ({} if because is None else {"because": because})
 
@@ -92,7 +92,7 @@ def _printed_radius(radius: Fraction, digits: int) -> str:
 
 
 def _start(scene: Scene) -> dict[str, np.ndarray[Any, Any]]:
-    """The initial state by name, as rationals: what is zero has no digits but that one."""
+    """Return the initial state by name, as rationals; a zero of the start is exactly zero."""
     initial, kind = scene.initial, kind_of(scene.body)
     z = kind.state(initial)
     state: dict[str, Any] = {name: z[3 * k : 3 * k + 3] for k, name in enumerate(kind.moving)}
@@ -100,12 +100,12 @@ def _start(scene: Scene) -> dict[str, np.ndarray[Any, Any]]:
     return {name: np.array(values, dtype=object) for name, values in state.items()}
 
 
-def _regime(scene: Scene, found: Solution) -> str:
-    """The kind of orbit where it is known, whatever route was taken to the numbers."""
+def _regime(scene: Scene, exact: Solution) -> str:
+    """Return the kind of orbit if it is known, independent of the route to the numbers."""
     try:
         return solution(scene, "arb").regime
     except NoClosedForm:
-        return found.regime
+        return exact.regime
 
 
 def decimal_text(value: Fraction, digits: int, rounding: str = ROUND_HALF_EVEN) -> str:
@@ -118,7 +118,7 @@ def decimal_text(value: Fraction, digits: int, rounding: str = ROUND_HALF_EVEN) 
     context = Context(prec=digits, rounding=rounding, Emax=MAX_EMAX, Emin=MIN_EMIN)
     quotient = context.divide(Decimal(value.numerator), Decimal(value.denominator))
     exponent = quotient.adjusted()
-    # A quotient that comes out even lacks its last zeros.
+    # An exact quotient lacks its trailing zeros.
     padded = quotient.quantize(Decimal((0, (1,), exponent - digits + 1)), context=context)
     is_plain = _LEAST_PLAIN_EXPONENT <= exponent < digits
     return format(padded, "f" if is_plain else "e")

@@ -33,7 +33,7 @@ def exact_times(times: Iterable[Any]) -> list[Fraction]:
 
 
 def check_digits(digits: Any) -> int:
-    """Return the number of digits; ValueError for what is no whole number from 1 to ten thousand."""
+    """Return the number of digits. Raises ValueError unless it is a whole number from 1 to ten thousand."""
     try:
         number = None if isinstance(digits, bool) else index(digits)
     except TypeError:

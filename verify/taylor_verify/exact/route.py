@@ -43,18 +43,18 @@ class CheaperSolution(Solution):
     def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:
         """The motion by the closed form at few precisions, else by few steps, else by the closed form."""
         with suppress(Unsettled):
-            found = self._closed.motion(elapsed, digits, _FEW_PRECISIONS)
+            motion = self._closed.motion(elapsed, digits, _FEW_PRECISIONS)
             self.route = self._closed.route
-            return found
+            return motion
         self.route = self._series.route
         try:
             return self._series.motion(elapsed, digits)
         except Unsettled as doubt:
             partial = doubt
         with suppress(Unsettled):
-            found = self._closed.motion(elapsed, digits)
+            motion = self._closed.motion(elapsed, digits)
             self.route = self._closed.route
-            return found
+            return motion
         raise partial
 
     def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
@@ -75,8 +75,8 @@ def solution(scene: Scene, route: str | None = None) -> Solution:
     if route in CLOSED_ROUTES:
         return _closed_form(scene, route)
     if route is not None:
-        known = ", ".join((*CLOSED_ROUTES, "taylor"))
-        raise ValueError(f"expected a route ({known}), got {brief(route)}")
+        routes = ", ".join((*CLOSED_ROUTES, "taylor"))
+        raise ValueError(f"expected a route ({routes}), got {brief(route)}")
     try:
         closed = _closed_form(scene, "arb")
     except NoClosedForm:
@@ -92,8 +92,8 @@ def _closed_form(scene: Scene, route: str) -> Solution:
     module = f"{kind_of(scene.body).room}.closed"
     if scene.body.manufactured is not None:
         module = "taylor_verify.exact.manufactured"
-    found: Solution = function_at(f"{module}:{_FUNCTIONS[route]}")(scene)
-    return found
+    closed: Solution = function_at(f"{module}:{_FUNCTIONS[route]}")(scene)
+    return closed
 
 
 def _damped(scene: Scene, route: str) -> Solution:

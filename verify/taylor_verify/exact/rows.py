@@ -45,10 +45,10 @@ def cross(a: Array, b: Array) -> Array:
 
 def cross_matrices(vectors: Array) -> Array:
     """[v]x (..., 3, 3) of every vector v (..., 3): [v]x d = v x d."""
-    found = np.zeros((*vectors.shape, 3), dtype=vectors.dtype)
+    matrices = np.zeros((*vectors.shape, 3), dtype=vectors.dtype)
     for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        found[..., i, j], found[..., j, i] = -vectors[..., k], vectors[..., k]
-    return found
+        matrices[..., i, j], matrices[..., j, i] = -vectors[..., k], vectors[..., k]
+    return matrices
 
 
 def norms(rows: Array) -> Array:

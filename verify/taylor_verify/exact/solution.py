@@ -1,4 +1,4 @@
-"""An exact solution, and what it takes before one of its numbers is believed.
+"""An exact solution, and the conditions under which its numbers are accepted.
 
 The truth is independent of what it judges: nothing here imports models, solvers or the judge.
 """
@@ -22,24 +22,24 @@ Time = Any
 """A time since the start: a rational, or a number of the route, which is a ball or an mpf."""
 
 Number = Callable[[Any], Any]
-"""Makes a ball or an mpf of a rational, at the ambient precision; leaves what is one as it is."""
+"""A function that makes a ball or an mpf of a rational, at the ambient precision; others stay unchanged."""
 
 NO_CLOSED_FORM: Final = "no closed form"
 
 _FIRST_GUARD_DIGITS = 3
 # Two evaluations that are compared differ by this much in precision.
 SETTLING_STEP_DIGITS: Final = 12
-# The precision rises by so many of these steps, attempt by attempt, until two evaluations agree: odd
-# numbers, so that what an evaluation does at every other step only, the next one does not.
+# The precision rises by this many steps, attempt by attempt, until two evaluations agree. The numbers are
+# odd, so that an effect at every second step cannot occur in two evaluations that are compared.
 _RISES: Final = (1, 1, 3, 3, 9, 9, 27)
 
 
 class NoClosedForm(Exception):
-    """The scene tracks something for which no closed form is implemented; the text says what."""
+    """The error for a scene that tracks a quantity without a closed form; the text names it."""
 
 
 class Unsettled(ArithmeticError):
-    """The digits cannot be had at every time; the text says why.
+    """The error for digits that cannot be reached at every time; the text says why.
 
     ``motion`` holds the rows that have their digits all the same, and is None where none has. Its row k
     belongs to time number ``places[k]`` of those that were asked for.
@@ -95,7 +95,7 @@ class Solution(ABC):
 
 
 class Settled(Solution):
-    """A solution that is believed when two evaluations at different precisions agree."""
+    """A solution that is accepted when two evaluations at different precisions agree."""
 
     @abstractmethod
     def evaluate(self, elapsed: Sequence[Time], digits: int) -> Quantities:

@@ -31,12 +31,12 @@ from taylor_verify.scenes.scene import Scene
 _GUARD_BITS: Final = 40
 _MORE_BITS: Final = 16
 _ATTEMPTS: Final = 24
-# Beyond twice the bits of the digits asked for: what a motion may lose.
+# Bits that a motion may lose, beyond twice the bits of the digits asked for.
 _MOST_BITS: Final = 10_000
-# The same for the times before one that is out of reach: seconds of work, not hours.
+# The same limit for times before a time that is out of reach: seconds of work, not hours.
 _MOST_BITS_BESIDE: Final = 500
 # A vector that may be zero has no relative digits. If it is smaller than this, in bits beyond the digits
-# asked for, beside its own largest size, its error is told absolutely.
+# asked for, beside its own largest size, its error is reported as an absolute bound.
 _NEGLIGIBLE_BITS: Final = 1000
 # The sizes of vectors that are zero throughout.
 _LEAST_SIZE: Final = -1e9
@@ -95,7 +95,7 @@ class _Enclosing(Solution):
                 try:
                     self._prove(proven, times, target, first, limit)
                 except Unreached as reason:
-                    # What is said of a nearer time takes the place of what was said of one behind it.
+                    # The sentence on a nearer time replaces the sentence on a later time.
                     hint = "; ask for it without the times behind it" if doubt else ""
                     limit, doubt = min(limit, 2 * target + _MOST_BITS_BESIDE), f"{reason}{hint}"
                     times = self._before(times, reason.time)
@@ -146,24 +146,24 @@ class _Enclosing(Solution):
         for name, (vector, largest) in self._vectors(row).items():
             balls = np.array(vector, dtype=object)
             radii[name], missing = _radius(list(balls.flat), largest, target)
-            # Not one digit is known of a vector that may be zero: it is answered as zero.
-            is_told = mp.isfinite(width(list(balls.flat)))
-            told = np.frompyfunc(midpoint, 1, 1)(balls)
-            values[name] = told if is_told else np.full(balls.shape, mpf(0), dtype=object)
+            # A vector that may be zero has no known digit: the answer is zero.
+            has_digits = mp.isfinite(width(list(balls.flat)))
+            middles = np.frompyfunc(midpoint, 1, 1)(balls)
+            values[name] = middles if has_digits else np.full(balls.shape, mpf(0), dtype=object)
             lacking = max(lacking, missing)
         return _Proven(values, radii, lacking)
 
     def _vectors(self, row: Row) -> dict[str, tuple[Any, float]]:
-        """Each tracked quantity as balls, with log2 of its largest size so far."""
-        found: dict[str, tuple[Any, float]] = {
+        """Return the tracked quantities as balls, with log2 of their largest sizes so far."""
+        vectors: dict[str, tuple[Any, float]] = {
             name: (row.state[3 * k : 3 * k + 3], row.largest[k])
             for k, name in enumerate(kind_of(self.scene.body).moving)
         }
         if row.turn:
-            found["attitude"] = [row.turn[i : i + 3] for i in (0, 3, 6)], 0.0
+            vectors["attitude"] = [row.turn[i : i + 3] for i in (0, 3, 6)], 0.0
         if row.centre is not None:
-            found["centre"] = row.centre, row.largest[-1]
-        return found
+            vectors["centre"] = row.centre, row.largest[-1]
+        return vectors
 
     def _gathered(self, rows: Sequence[_Proven]) -> Motion:
         """The rows as one motion; the radius of a row is that of its widest quantity."""

@@ -54,11 +54,11 @@ class Places:
     @cached_property
     def doubled(self) -> Places:
         """The arguments 2v."""
-        made = object.__new__(Places)
-        made.sines = [2 * s * c for s, c in zip(self.sines, self.cosines, strict=True)]
-        made.cosines = self.x
-        made.x = [2 * (x * x) - 1 for x in self.x]
-        return made
+        doubled = object.__new__(Places)
+        doubled.sines = [2 * s * c for s, c in zip(self.sines, self.cosines, strict=True)]
+        doubled.cosines = self.x
+        doubled.x = [2 * (x * x) - 1 for x in self.x]
+        return doubled
 
     def at(self, polynomial: arb_poly) -> list[arb]:
         """The values of a polynomial in x."""
@@ -121,9 +121,9 @@ class ThetaSeries:
         y = float(tau.imag.mid())
         if not pi / (4 * y) <= _MOST_BITS_CANCELLED * log(2):
             return None
-        found = cls(tau)
+        series = cls(tau)
         # An argument is known up to periods: its imaginary part is at most half of y, in either direction.
-        return found if found._count(y / 2, 1) <= MOST_TERMS else None
+        return series if series._count(y / 2, 1) <= MOST_TERMS else None
 
     def shifted(self, s: acb, K: acb, order: int = 0) -> Odd:
         """K theta_1(v + s)/2q^(1/4), or for order 1 its derivative by v."""
@@ -193,12 +193,12 @@ class ThetaSeries:
 
     def _powers(self, count: int) -> list[arb]:
         """h^{n(n+1)/2}."""
-        power, step, found = arb(1), arb(1), []
+        power, step, powers = arb(1), arb(1), []
         for _ in range(count):
-            found.append(power)
+            powers.append(power)
             step = step * self._h
             power = power * step
-        return found
+        return powers
 
     def _multiples(self, s: acb, count: int) -> tuple[list[acb], list[acb]]:
         """The sines and the cosines of (2n+1) pi s."""
@@ -231,8 +231,8 @@ def _polynomials(
     """The real and the imaginary part of a polynomial; None for an axis on which it is zero."""
     parts = [c.real for c in coefficients], [c.imag for c in coefficients]
     return [
-        _polynomial(part, basis, tail) if there else None
-        for part, there in zip(parts, axes, strict=True)
+        _polynomial(part, basis, tail) if is_wanted else None
+        for part, is_wanted in zip(parts, axes, strict=True)
     ]
 
 

@@ -51,7 +51,7 @@ def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]
     """
     scene = as_scene(scene)
     body = scene.body
-    shape = ellipsoid.told(body) if isinstance(body, ImmersedBody) else []
+    shape = ellipsoid.sentences(body) if isinstance(body, ImmersedBody) else []
     found, lacking = _judged(scene, rung_named(rung))
     record = found.record.document() if found.record is not None else {}
     first = found.verdicts[0]

@@ -1,1 +1,1 @@
-"""The judgement: errors against the truth, what perfect rounding would leave, gates and verdicts."""
+"""The judgement of a run: its errors against the truth, the roundoff floor, the gates and the verdicts."""

@@ -1,29 +1,30 @@
-"""A baseline: the verdicts of an earlier run, and what of a new run is a regression from them.
+"""Comparison of a run with a baseline, the verdicts of an earlier run, to find regressions.
 
-The errors of a sound run are drawn anew by another processor or another order of a sum, and stay in
-their rounding class (see `rounding_class`, whose FACTOR and LEVEL these are). That class has two
-sides, for what is published must neither grow nor shrink. A regression has one:
+Another processor or another order of a sum changes the roundings of a sound run, but its errors stay in
+their rounding class (see `rounding_class`, which defines FACTOR and LEVEL). That class has two sides,
+because a published number must neither grow nor shrink. A regression has only one side:
 
     verdict                   worse in the grades of the exit status: pass, nothing shown, fail
     max, mean, final, ratio   now > FACTOR max(before, LEVEL attainable), or no finite number
-    row                       gone: a quantity that is no longer compared is no longer right
+    row                       missing: a quantity that is no longer compared is no longer right
 
-By the figures of that class, rounding alone raises a false alarm at most 5e-6 times a row. Below 5
-attainable no error of a single row is seen as grown, whatever it was: chance may make it small.
+By the figures of that class, rounding alone raises a false alarm with probability at most 5e-6 per row.
+An error below 5 attainable never counts as grown, whatever it was: it may have been small by chance.
 
-Attainable is here what the *former* number of steps would leave, for it grows as their root and
-errors may not be excused by more steps: the larger of the former one and of sqrt(former steps / steps
-now) times the present one, since the two maxima may be of unlike times.
+`attainable` here is the roundoff floor for the *former* number of steps. The floor grows as the square
+root of the steps, and more steps must not excuse a larger error. The larger of two values is taken, the
+former floor and sqrt(former steps / steps now) times the present floor, because the two maxima may be at
+different times.
 
-A row that was asked another question (another text of the scene, another unit or roundoff) cannot
-be held against its former self: it is undecided, never green. All else that left its class is told
-and fails nothing: an error that shrank, a better verdict, a new row, another cost.
+A row that answers another question (another text of the scene, another unit or roundoff) cannot be
+compared with the former row: it is undecided, never green. Every other change is reported and fails
+nothing: a smaller error, a better verdict, a new row, another cost.
 
-A verdict by another tolerance is no worse verdict; the errors are compared all the same.
+A verdict by another tolerance is not a worse verdict; the errors are still compared.
 
-A baseline excuses nothing: a gate that fails does so though it failed before. A caller may let the
-baseline alone decide (`decided_alone`): then a failed gate is none of its business, and what shows nothing
-of its own is never green.
+A baseline excuses nothing: a gate that failed before and fails again is a failure. A caller may let the
+baseline alone decide (`decided_alone`): then failed gates do not count, and a row that shows nothing by
+itself is never green.
 """
 
 from __future__ import annotations
@@ -42,9 +43,9 @@ from taylor_verify.judge.rounding_class import (
     Departure,
     departures,
     finite,
+    format_number,
     has_grown,
     paired,
-    told,
 )
 from taylor_verify.records.json_text import parsed
 from taylor_verify.records.quantities import COMPLETE, UNIT_QUATERNION
@@ -61,7 +62,7 @@ _MOST_BYTES: Final = Limit(2**28, "bytes", "a hundred thousand verdicts")
 
 @dataclass(frozen=True)
 class Held:
-    """A run compared with a baseline: how many rows, and what is to be said of which."""
+    """The result of comparing a run with a baseline: the number of rows, and the rows that departed."""
 
     compared: int
     regressions: tuple[Departure, ...]
@@ -77,19 +78,19 @@ class Held:
 
 
 def hold(baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
-    """Compare every row made with the row of the baseline; rungs that a machine lacks are left out.
+    """Compare every new row with its row of the baseline. Rungs that a machine lacks are left out.
 
-    A row that is gone, a verdict that is worse, a quaternion that is no unit quaternion any more, and an
-    error beyond ten times the larger of what it was and half of what is attainable are regressions: below
-    that, roundings drawn anew may explain it.
+    Four things are regressions: a missing row, a worse verdict, a quaternion that is no longer a unit
+    quaternion, and an error above ten times the larger of the former error and half of the attainable one.
+    Below that limit, other roundings may explain the growth.
     """
-    # That of the extent of an answer is there or not as its own call has asked.
+    # Whether the row COMPLETE exists depends on the options of each call, so it is not compared.
     before, now = ([v for v in verdicts if v.quantity != COMPLETE] for verdicts in (baseline, made))
     rows = paired(before, now)
-    # The row of a quaternion is there only where it fails: a sound run has none.
-    gone, mended = _parted(rows.missing)
+    # A quaternion has a row only where it fails: a sound run has none.
+    missing, mended = _parted(rows.missing)
     added, spoiled = _parted(rows.extra)
-    regressions = [Departure.of(verdict, "this row", "none") for verdict in gone]
+    regressions = [Departure.of(verdict, "this row", "none") for verdict in missing]
     undecided: list[Departure] = []
     changes = [Departure.of(verdict, "a row of the baseline", "a new one") for verdict in added]
     changes += [Departure.of(v, "a row that fails", "none: it is mended") for v in mended]
@@ -103,41 +104,44 @@ def hold(baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
         grown = [] if other else list(_regressions(old, new))
         undecided += other
         regressions += grown
-        # Of a verdict that is worse the other numbers are the consequence.
+        # Where a row is a regression, its other numbers are consequences.
         changes += [] if other or grown else departures(old, new)
     regressions += [Departure.of(verdict, "no such row", "one that fails") for verdict in spoiled]
     return Held(len(rows.shared), tuple(regressions), tuple(undecided), tuple(changes))
 
 
 def _parted(rows: Iterable[Verdict]) -> tuple[list[Verdict], list[Verdict]]:
-    """Rows that every run has, and those of the length of quaternions."""
+    """Split rows into those that every run has and those about the length of quaternions."""
     every = list(rows)
     lengths = [verdict for verdict in every if verdict.quantity == UNIT_QUATERNION]
     return [verdict for verdict in every if verdict not in lengths], lengths
 
 
-def decided_alone(held: Held, baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
-    """Return the comparison ``held``, made to decide alone, whatever the gates of the rows made say.
+def decided_alone(comparison: Held, baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
+    """Return the ``comparison`` with a status that ignores the gates of the new rows.
 
-    A row that failed and has no finite error is a regression, though the baseline has none either. A row
-    that shows nothing cannot be compared: it is undecided, vacuous or refused, or it fails and is new.
+    A failed row without a finite error is a regression, even if the baseline has no finite error either.
+    A row that shows nothing counts as not compared: it is undecided, vacuous or refused, or it fails and
+    is new.
     """
     known = {_name(verdict) for verdict in baseline}
-    named = {(d.scene, d.rung, d.quantity) for d in (*held.regressions, *held.undecided)}
+    named = {
+        (d.scene, d.rung, d.quantity) for d in (*comparison.regressions, *comparison.undecided)
+    }
     lost, unshown = [], []
     for verdict in made:
         status = exit_status([verdict])
         if status == 0 or _name(verdict) in named:
             continue
         if status != 1:
-            got = f"{verdict.verdict} ({verdict.because})"
-            unshown.append(Departure.of(verdict, "a row that shows something", got))
+            verdict_words = f"{verdict.verdict} ({verdict.because})"
+            unshown.append(Departure.of(verdict, "a row that shows something", verdict_words))
         elif finite(verdict, "max") is None:
-            lost.append(Departure.of(verdict, "a finite error", told(None), "max"))
+            lost.append(Departure.of(verdict, "a finite error", format_number(None), "max"))
         elif _name(verdict) not in known:
             unshown.append(Departure.of(verdict, "a row of the baseline", "a new one that fails"))
-    regressions, undecided = (*held.regressions, *lost), (*held.undecided, *unshown)
-    return Held(held.compared, regressions, undecided, held.changes)
+    regressions, undecided = (*comparison.regressions, *lost), (*comparison.undecided, *unshown)
+    return Held(comparison.compared, regressions, undecided, comparison.changes)
 
 
 def _name(verdict: Verdict) -> tuple[str, str, str]:
@@ -149,43 +153,46 @@ def _other_question(old: Verdict, new: Verdict) -> Iterator[Departure]:
         yield Departure.of(new, "the text that the baseline was made of", "another", "scene")
     # A longer run has larger errors.
     if None not in (old.until, new.until) and old.until != new.until:
-        yield Departure.of(new, told(old.until), told(new.until), "last time")
+        yield Departure.of(new, format_number(old.until), format_number(new.until), "last time")
     for name in ("unit", "roundoff"):
         was, now = getattr(old, name), getattr(new, name)
-        # A run that came to no comparison has neither.
+        # A run that was not compared has neither.
         if was and now and was != now:
             yield Departure.of(new, str(was), str(now), name)
 
 
 def _regressions(old: Verdict, new: Verdict) -> Iterator[Departure]:
-    # Of two comparisons by unlike tolerances neither verdict tells of the other.
+    # Verdicts by different tolerances cannot be compared with each other.
     is_alike = old.tolerance == new.tolerance or not (old.is_compared and new.is_compared)
     grades = [_GRADES.index(exit_status([verdict])) for verdict in (old, new)]
     if is_alike and grades[1] > grades[0]:
         yield Departure.of(new, old.verdict.value, new.verdict.value, "verdict")
-    grown = [(name, *found) for name in ERRORS if (found := _grown(old, new, name)) is not None]
+    grown = {name: excess for name in ERRORS if (excess := _grown(old, new, name)) is not None}
     if grown:
-        # They grow together: the first has the figures, the others are named.
-        name, limit, got = grown[0]
-        others = ", ".join(other for other, *_ in grown[1:])
-        yield Departure.of(new, limit, got, f"{name} (and {others})" if others else name)
+        # The errors of a row grow together: the figures of the first suffice, the others are named.
+        name, *further = grown
+        limit, error = grown[name]
+        others = ", ".join(further)
+        yield Departure.of(new, limit, error, f"{name} (and {others})" if others else name)
 
 
 def _grown(old: Verdict, new: Verdict, name: str) -> tuple[str, str] | None:
-    """The limit that an error exceeds, and the error; None where it does not."""
+    """Return the limit that an error exceeds, and the error; None if it stays below."""
     was, now = finite(old, name), finite(new, name)
     level = LEVEL * (1.0 if name == "ratio" else _attainable(old, new))
     if not has_grown(was, now, level):
         return None
     if was is None:
-        return told(was), told(now)
+        return format_number(was), format_number(now)
     limit = FACTOR * max(was, level)
     larger = f"the larger of the baseline's {was:.3g} and {LEVEL:g} attainable, {level:.3g}"
-    return f"at most {limit:.3g} ({FACTOR:g} x {larger}: rounding explains no more)", told(now)
+    return f"at most {limit:.3g} ({FACTOR:g} x {larger}: rounding explains no more)", format_number(
+        now
+    )
 
 
 def _attainable(old: Verdict, new: Verdict) -> float:
-    """The error that is attainable in the former number of steps."""
+    """Return the error that is attainable in the former number of steps."""
     before, now = (finite(row, "attainable") or 0.0 for row in (old, new))
     steps = old.steps / new.steps if 0 < old.steps < new.steps else 1.0
     return max(before, math.sqrt(steps) * now)
@@ -197,9 +204,8 @@ def _attainable(old: Verdict, new: Verdict) -> float:
 def load(file: Path | str) -> tuple[Verdict, ...]:
     """Return the verdicts of a file: verdicts.json of `run --out`, or the document of `--json`.
 
-    Raises scenes.reading.faults.Refused for a file that cannot be read, and ValueError, with what was
-    expected and where, for one that holds something else: a baseline that is half understood would let
-    all pass.
+    Raises scenes.reading.faults.Refused for a file that cannot be read. Raises ValueError, which names what
+    was expected and where, for a file with other content: a half-understood baseline would pass everything.
     """
     content = read_bytes(Path(file), "a file of verdicts", _MOST_BYTES)
     try:
@@ -219,7 +225,7 @@ def load(file: Path | str) -> tuple[Verdict, ...]:
 
 @dataclass(frozen=True)
 class _Rows:
-    """The part of a document that a baseline is made of; that of several files has theirs."""
+    """The part of a document that a baseline needs; a document of several files has one for each file."""
 
     verdicts: tuple[Verdict, ...] | None = None
     files: tuple[_Rows, ...] = ()
@@ -236,7 +242,7 @@ def _placed(document: _Rows, place: str = "") -> Iterator[tuple[str, Verdict]]:
 
 
 def _check(verdict: Verdict, place: str) -> None:
-    """Refuse a row whose numbers cannot be those of a verdict, or that nothing can be compared with."""
+    """Refuse a row whose numbers cannot belong to a verdict, or with which nothing can be compared."""
     if not isinstance(verdict.provenance.get("scene"), str):
         raise ValueError(
             f"expected the digest of the scene's text, got none @ {place}.provenance.scene"

@@ -1,4 +1,4 @@
-"""Processor time of a run, stage by stage."""
+"""Processor time of a run by stage."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Costs:
 
     @contextmanager
     def of(self, stage: str) -> Iterator[None]:
-        """Count what happens inside to the stage, in seconds of this process on all its threads."""
+        """Add the processor time of the block to the stage, in seconds of all threads of this process."""
         began = process_time()
         try:
             yield
@@ -31,15 +31,15 @@ class Costs:
 
 
 def total(costs: Iterable[Mapping[str, float]]) -> dict[str, float]:
-    """Return the sum of many runs, the dearest stage first."""
+    """Return the sum over many runs, the most expensive stage first."""
     sums: dict[str, float] = {}
-    for stage, seconds in chain.from_iterable(each.items() for each in costs):
+    for stage, seconds in chain.from_iterable(run.items() for run in costs):
         sums[stage] = sums.get(stage, 0.0) + seconds
     return dict(sorted(sums.items(), key=lambda item: -item[1]))
 
 
 def sentence(sums: Mapping[str, float]) -> str:
-    """Return the whole and the share of each stage, in words."""
+    """Return the total and the share of each stage, in words."""
     whole = sum(sums.values())
     shares = ", ".join(f"{stage} {100 * s / whole:.0f} %" for stage, s in sums.items())
     return f"processor time {whole:.1f} s: {shares}"

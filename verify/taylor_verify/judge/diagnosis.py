@@ -1,7 +1,7 @@
-"""The kind of the error that is left in one quantity, and since when, from its samples.
+"""Diagnosis of the error of one quantity from its samples: its kind, and when it becomes too large.
 
-Only what the samples show is said: a power of time is named where a straight line in logarithms fits it
-closely, and an error that fits nothing is unexplained.
+Only what the samples show is reported: a power of time is named if a straight line in logarithms fits it
+closely, and an error that fits no pattern is unexplained.
 """
 
 from __future__ import annotations
@@ -27,44 +27,45 @@ _OF_A_SHIFT: Final = {
     Kind.DRIFTING.value: ErrorKind.PHASE_DRIFT,
     Kind.WANDERING.value: ErrorKind.PHASE_WANDER,
 }
-# A constant error stays within this part of its largest value, over so many samples at least.
+# A constant error never falls below this part of its largest value, over at least _FEWEST samples.
 _CONSTANT: Final = 0.9
 _FEWEST: Final = 5
-# An error as large as this part of the motion has nowhere to grow to.
+# An error as large as this part of the motion cannot grow much further.
 _LOST: Final = 0.1
-# The root mean squares of a bounded error over the quarters of the time are alike to this part, which
-# leaves room for noise, and for a growth as t^0.15. So many samples in each at least.
+# The root mean squares of a bounded error over the quarters of the time agree to this part, which leaves
+# room for noise, and for a growth as t^0.15. Each quarter needs the number of samples below.
 _BOUNDED: Final = 0.75
 _QUARTERS: Final = 4
 _FEWEST_IN_A_QUARTER: Final = 5
-# The fit of a power: root mean squares over equal parts of the logarithm of time, from this part of the
-# time on. So many samples in each at least, and an interval of 95 % no wider than this to either side.
+# The fit of a power: root mean squares over _PARTS equal parts of the logarithm of time, beginning at the
+# fraction _FROM of the time. Each part needs the number of samples below. The 95 % interval of the power
+# must be no wider than _CLEAR to either side.
 _FROM: Final = 1 / 32
 _PARTS: Final = 5
 _FEWEST_IN_A_PART: Final = 3
 _STUDENT: Final = 3.182  # three degrees of freedom
 _CLEAR: Final = 0.2
-# A slower growth than this cannot be told from none.
+# A slower growth than this cannot be distinguished from none.
 _LEAST_POWER: Final = 0.3
 
 
 def diagnosed(
     verdict: Verdict, times: Floats, start: float, errors: Floats, attainable: Floats
 ) -> Verdict:
-    """Return the verdict with the kind of its error, the growth of it, and since when it is too large.
+    """Return the verdict with the kind of its error, its growth, and the time from which it is too large.
 
-    ``errors`` and ``attainable`` are those of all samples, in the order of ``times``; ``start`` is the
+    ``errors`` and ``attainable`` are given at all samples, in the order of ``times``; ``start`` is the
     time of the initial state.
     """
     bounds = bounds_of(attainable, verdict.tolerance)
     too_large = np.flatnonzero(~(errors <= bounds))
     if not np.isfinite(errors).all():
-        # What is no number comes first, whatever else is too large.
+        # NaN and infinity come first, whatever else is too large.
         too_large = np.flatnonzero(~np.isfinite(errors))
     is_failed = verdict.verdict is Status.FAIL and len(too_large) > 0
     kind, exponent = None, None
     if verdict.verdict is not Status.UNDECIDED:
-        # A truth that is too wide shows no course of the error.
+        # If the truth is too wide, the course of the error is not visible.
         kind, exponent = _kind(verdict, np.abs(times - start), errors, attainable)
     return replace(
         verdict,
@@ -98,7 +99,7 @@ def _kind(
 
 
 def is_constant(errors: Floats) -> bool:
-    """Return True for an error that is about the same at every sample, the first one included."""
+    """Return True for an error that is nearly equal at all samples, the first one included."""
     return len(errors) >= _FEWEST and bool(np.min(errors) >= _CONSTANT * np.max(errors))
 
 
@@ -112,7 +113,7 @@ def is_bounded(elapsed: Floats, errors: Floats) -> bool:
 
 
 def power_of_time(elapsed: Floats, errors: Floats) -> float | None:
-    """Return the power with which an error grows; None where the samples show none clearly."""
+    """Return the power of time with which an error grows; None if the samples show none clearly."""
     end = float(np.max(elapsed))
     if not end > 0:
         return None
@@ -136,7 +137,7 @@ def _parts(elapsed: Floats, edges: Floats) -> list[Places]:
 
 
 def _mean_square_root(errors: Floats) -> float:
-    """Return the root mean square, scaled so that no square leaves the doubles; 0 of none."""
+    """Return the root mean square, scaled so that no square overflows; 0 of an empty array."""
     largest = float(np.max(errors, initial=0.0))
     if not largest > 0:
         return 0.0

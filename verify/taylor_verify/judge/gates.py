@@ -1,6 +1,6 @@
-"""Gates: a bound with its reason, asked of every sample, written so that a NaN cannot pass.
+"""Gates: the comparison of every sample's error with a bound, written so that NaN cannot pass.
 
-The bound follows from the arithmetic, unless the caller has asked for a tolerance.
+The bound follows from the arithmetic, unless the caller asks for a tolerance.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.records.reason import AskedTolerance, Cause, Reason, shown
 from taylor_verify.records.status import Status
 
-# A truth wider than this share of a bound cannot judge against it.
+# The truth must be at least this many times narrower than the bound.
 TRUTH_SHARE = 16
-# At an error of one the answer zero would do as well: such a bound forbids nothing.
+# The answer zero has an error of one, so a bound of one or more forbids nothing.
 _VACUOUS = 1.0
 _TOO_FINE = (
     "the tolerance is finer than the roundings of this precision: take a wider precision, or a larger "
@@ -26,10 +26,10 @@ _TOO_FINE = (
 
 @dataclass(frozen=True)
 class Finding:
-    """The finding of a gate: the status, the sample that decided and the numbers there.
+    """The result of a gate: the status, the deciding sample and the numbers there.
 
-    ``bound`` is what was allowed at the sample of the largest error, a ``tolerance`` where one was asked
-    for. ``is_rounding`` is true if the roundings of the arithmetic explain the error.
+    ``bound`` is the allowed error at the sample of the largest error: the ``tolerance`` if there is one.
+    ``is_rounding`` is True if the roundings of the arithmetic explain the error.
     """
 
     status: Status
@@ -45,11 +45,11 @@ class Finding:
 def judge(
     errors: Errors, attainable: Floats, terms: Reason, tolerance: float | None = None
 ) -> Finding:
-    """Compare every sample's error with GATE_FACTOR times the attainable one, or with a tolerance.
+    """Compare every sample's error with GATE_FACTOR times the attainable error, or with a tolerance.
 
-    The ratio is the largest of the samples that are asked, or of all if none is. ``terms`` say what is
-    attainable; the finding adds the factor, the tolerance, and a remark where the numbers do not say
-    everything. A tolerance is below 1, so that no gate that has one is vacuous.
+    The ratio is the largest over the asked samples, or over all samples if none is asked. ``terms``
+    describe the attainable error; the finding adds the factor, the tolerance, and a remark if the numbers
+    need one. A tolerance is below 1, so a gate with a tolerance is never vacuous.
     """
     roundings = GATE_FACTOR * attainable
     bounds = bounds_of(attainable, tolerance)
@@ -86,7 +86,7 @@ def judge(
 
 
 def bounds_of(attainable: Floats, tolerance: float | None) -> Floats:
-    """Return the bound of every sample: the caller's tolerance, or that of the arithmetic."""
+    """Return the bound of every sample: the caller's tolerance, or the bound from the arithmetic."""
     return GATE_FACTOR * attainable if tolerance is None else np.full(len(attainable), tolerance)
 
 
@@ -96,7 +96,7 @@ def _status(errors: Errors, bounds: Floats) -> Status:
     within = errors.doubles <= bounds
     asked = _asked(bounds)
     if asked < len(bounds):
-        # What the floor does not excuse still fails: the samples before it reached the motion.
+        # The samples before the floor reached the motion's size can still fail.
         return Status.VACUOUS if within[:asked].all() else Status.FAIL
     if not (errors.widths * TRUTH_SHARE <= bounds).all():
         return Status.UNDECIDED
@@ -104,20 +104,20 @@ def _status(errors: Errors, bounds: Floats) -> Status:
 
 
 def _asked(bounds: Floats) -> int:
-    """Return the number of samples that the gate asks: those before its bound reaches the motion's size.
+    """Return the number of samples that the gate asks: those with a bound below the size of the motion.
 
-    A floor may fall again afterwards, as the orbit's own condition does after a flip. But it is that
-    of small errors, and one as large as the motion has left the orbit: nothing brings it back.
+    The floor may fall again afterwards, for example after a flip. But the floor holds for small errors
+    only. An answer with an error as large as the motion has left the orbit and does not return.
     """
     lost = np.flatnonzero(~(bounds < _VACUOUS))
     return int(lost[0]) if len(lost) else len(bounds)
 
 
 def _ratios(errors: Floats, attainable: Floats) -> Floats:
-    """Error over attainable: 0 for no error, infinite where the floor is zero and the error not."""
+    """Return error over attainable: 0 for no error, infinite if only the floor is zero."""
     with np.errstate(all="ignore"):
-        held = np.where(attainable > 0, errors / attainable, np.inf + 0 * errors)
-    return np.where(errors == 0, 0.0, held)
+        ratios = np.where(attainable > 0, errors / attainable, np.inf + 0 * errors)
+    return np.where(errors == 0, 0.0, ratios)
 
 
 def index_of_largest(values: Floats) -> int:

@@ -1,8 +1,8 @@
-"""The verdict on the start alone: an answer that is wrong there says so before anything else.
+"""The verdict on the start alone: the first row of a judgement, because a wrong start explains the others.
 
-Of the rows of all states at the start the one counts that is nearest to its bound. The gate is that of
-the state at this sample: a rounding of the data, and nothing that an orbit has made of it. Where a
-tolerance was asked for, the start may be off by the tolerance of its state.
+The state whose error at the start is nearest to its bound counts. The gate is the gate of that state at
+this sample: a rounding of the data, without any growth along the orbit. If the caller asks for a
+tolerance, it applies to the start too.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from taylor_verify.records.quantities import GATE_FACTOR, INITIAL, STATES
 from taylor_verify.records.reason import Carried, Cause, Reason, RoundoffFloor, shown
 from taylor_verify.records.verdict import Verdict
 
-# One sample has no course in time.
+# A single sample has no course in time.
 _NO_COURSE: Final[dict[str, Any]] = dict.fromkeys(
     ("time_shift", "residual", "shift", "trend", "remains", "change", "exponent", "since")
 )
 
 
 def with_initial(judgement: Judgement, start: float) -> Judgement:
-    """Return the judgement of a run with the verdict on its start in front, if a sample is there."""
+    """Return the judgement with the verdict on the start as its first row, if a sample is at the start."""
     record = judgement.record
     if record is None:
         return judgement
@@ -41,9 +41,9 @@ def with_initial(judgement: Judgement, start: float) -> Judgement:
 def initial_verdict(
     gates: Sequence[Graded], start: float, carried: Carried = Carried.ROW
 ) -> list[Verdict]:
-    """Return the verdict on the row at the start; none where there is no such row.
+    """Return the verdict on the row at the start, in a list; empty if there is no such row.
 
-    ``carried`` tells the start of a run from that of a file, which has been rounded once more.
+    ``carried`` distinguishes the start of a run from the start of a file, which is rounded once more.
     """
     starts = [
         (gate, int(k), _finding(gate, int(k), carried))
@@ -55,7 +55,7 @@ def initial_verdict(
         return []
     gate, k, finding = starts[int(np.argmax([_nearness(*row) for row in starts]))]
     error = float(gate.errors[k])
-    said = _said(gate.verdict.quantity, error, finding, start)
+    remark = _remark(gate.verdict.quantity, error, finding, start)
     verdict = replace(
         gate.verdict,
         quantity=INITIAL,
@@ -66,7 +66,7 @@ def initial_verdict(
         at=start,
         bound=finding.bound,
         tolerance=finding.tolerance,
-        reason=finding.reason.with_remark(Cause.START, said),
+        reason=finding.reason.with_remark(Cause.START, remark),
         attainable=float(gate.attainable[k]),
         ratio=finding.ratio,
         ratio_at=start,
@@ -83,12 +83,12 @@ def _finding(gate: Graded, k: int, carried: Carried) -> Finding:
 
 
 def _nearness(gate: Graded, k: int, finding: Finding) -> float:
-    """The error of the start of a state, in tenths of its bound."""
+    """Return the error of the start of a state, in tenths of its bound."""
     tolerance = finding.tolerance
     return finding.ratio if tolerance is None else GATE_FACTOR * float(gate.errors[k]) / tolerance
 
 
-def _said(quantity: str, error: float, finding: Finding, start: float) -> str:
+def _remark(quantity: str, error: float, finding: Finding, start: float) -> str:
     off = f"its {quantity} is off by {error:.3g}"
     if not error <= finding.bound:
         return f"{_row(start)}, is not the scene's initial state: {off}"
@@ -98,7 +98,7 @@ def _said(quantity: str, error: float, finding: Finding, start: float) -> str:
 
 
 def right_start(start: float) -> str:
-    """Return the sentence on a start that is right."""
+    """Return the sentence on a correct start."""
     return f"{_row(start)}, is the scene's initial state"
 
 

@@ -1,4 +1,4 @@
-"""The judgement of one trajectory: every quantity compared, every comparison a verdict."""
+"""The judgement of one trajectory: a verdict for every compared quantity."""
 
 from __future__ import annotations
 
@@ -39,15 +39,15 @@ if TYPE_CHECKING:
 
 
 class NotPassed(AssertionError):
-    """A judgement that is no pass; the text is every verdict that is none, with its reason."""
+    """The error for a judgement that did not pass; its text has every other verdict with its reason."""
 
 
 @dataclass(frozen=True, repr=False)
 class Judgement:
-    """The verdicts of one run and the record they rest on (None if the run never came to a truth).
+    """The verdicts of one run and the record of their numbers (None if there was nothing to compare).
 
     ``costs`` are processor seconds by stage: solving, the exact motion, the orbit's condition, ...
-    ``causes`` explain nearly all of the error of a quantity that failed. The truth value of a judgement is
+    ``causes`` explain nearly all of the error of a failed quantity. The truth value of a judgement is
     ``passed``.
     """
 
@@ -66,7 +66,7 @@ class Judgement:
         return self.passed
 
     def to_dataframe(self) -> pandas.DataFrame:
-        """Return a pandas.DataFrame with a row for each verdict, and its fields as columns.
+        """Return a pandas.DataFrame with a row for each verdict and a column for each field.
 
         Raises ModuleNotFoundError without pandas (``pip install pandas``).
         """
@@ -78,7 +78,7 @@ class Judgement:
         return f"<{type(self).__name__} of {run}: {word}; {counts(self.verdicts)}>"
 
     def __str__(self) -> str:
-        """Return the sentence of every quantity, a line each."""
+        """Return the sentences of all quantities, one per line."""
         return "\n".join([repr(self)[1:-1], *(verdict.sentence for verdict in self.verdicts)])
 
     def _repr_html_(self) -> str:
@@ -92,8 +92,8 @@ class Judgement:
     def raise_for_failure(self) -> None:
         """Raise NotPassed, an AssertionError, unless the judgement passed."""
         if not self.passed:
-            others = [v for v in self.verdicts if v.verdict is not Status.PASS]
-            lines = [f"{v.verdict}  {v.scene} {v.rung} {v.sentence}" for v in others]
+            not_passed = [v for v in self.verdicts if v.verdict is not Status.PASS]
+            lines = [f"{v.verdict}  {v.scene} {v.rung} {v.sentence}" for v in not_passed]
             lines += [cause.line for cause in self.causes]
             raise NotPassed("\n".join(lines) or "nothing was judged")
 
@@ -109,11 +109,11 @@ def judgement(
     seconds: float | None = None,
     tolerances: Tolerances = NO_TOLERANCES,
 ) -> Judgement:
-    """Compare a trajectory with the exact solution of the same rounded data, and judge it.
+    """Judge a trajectory by comparison with the exact solution of the same rounded data.
 
-    ``seconds`` is how long the answer took by the caller's clock, which limits the steps that a solver
-    may claim. ``tolerances`` take the place of bounds. A trajectory that is not finished, and a truth
-    that cannot be had, are verdicts and raise nothing.
+    ``seconds`` is the time that the answer took by the caller's clock; it limits the steps that a solver
+    may claim. ``tolerances`` replace the bounds. An unfinished trajectory and a missing truth are verdicts;
+    they raise nothing.
     """
     run = Run(problem, solver, trajectory, tolerances)
     main, outcome = MAIN[problem.scene.model], trajectory.outcome

@@ -1,4 +1,4 @@
-"""Provenance of a published number: versions, processor, command and scene."""
+"""The provenance of a published number: versions, processor, command and scene."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ PACKAGES = ("taylor-verify", "heyoka", "numpy", "mpmath", "python-flint")
 
 @lru_cache
 def versions() -> dict[str, str]:
-    found = {"python": platform.python_version()}
+    by_name = {"python": platform.python_version()}
     for package in PACKAGES:
         try:
-            found[package] = version(package)
+            by_name[package] = version(package)
         except PackageNotFoundError:
-            found[package] = "not installed"
-    return found
+            by_name[package] = "not installed"
+    return by_name
 
 
 @lru_cache
 def processor() -> str:
-    """Return the processor's own name where the system tells it, else its architecture."""
+    """Return the processor's name if the system provides it, else its architecture."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:
@@ -41,8 +41,8 @@ def command() -> str:
 
 
 def packages() -> dict[str, str]:
-    """Return the versions of the packages, without Python's, on which no number depends."""
-    return {package: found for package, found in versions().items() if package != "python"}
+    """Return the versions of the packages. Python is left out, because no number depends on its version."""
+    return {package: number for package, number in versions().items() if package != "python"}
 
 
 def machine() -> Machine:

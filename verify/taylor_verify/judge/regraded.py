@@ -1,7 +1,7 @@
-"""A judgement graded anew, with the rounding of the input in what is attainable.
+"""Regrading of a judgement with a floor that includes the rounding of the input.
 
-It works on the record, which is everything a run was judged by: the errors and floors of every gate at
-every sample. Of two judgements that go either way in time from one start the graver counts.
+It uses the record, which has the errors and floors of every gate at every sample. If there are two
+judgements, one in each direction of time from the start, the worse one counts.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 @dataclass(frozen=True)
 class Graded:
-    """A gate: its verdict, and its errors and floors at all samples in the order of time."""
+    """A gate: its verdict, and its errors and floors at all samples, in the order of time."""
 
     verdict: Verdict
     times: Floats
@@ -40,9 +40,9 @@ class Graded:
     def of(
         cls, verdict: Verdict, gate: GateRecord, times: Floats, attainable: Floats | None = None
     ) -> Graded:
-        """Return a recorded gate, its errors to four digits; ``attainable`` takes the place of its floors.
+        """Return a recorded gate, its errors to four digits; ``attainable`` replaces its floors.
 
-        A tolerance has no rounding to leave room for: of the largest error all digits count then.
+        A tolerance leaves no room for rounding, so with a tolerance all digits of the largest error count.
         """
         errors = np.array(gate.errors)
         if verdict.tolerance is not None and verdict.max is not None and isfinite(verdict.max):
@@ -52,9 +52,9 @@ class Graded:
         return cls(verdict, times, errors, floors)
 
     def judged(self, terms: Reason, samples: slice = slice(None)) -> Finding:
-        """Return what the gate finds at these samples.
+        """Return the finding of the gate at these samples.
 
-        A truth that was narrow enough for the rounding alone is so for the larger floor.
+        A truth that is narrow enough for the rounding alone is narrow enough for the larger floor.
         """
         verdict, errors = self.verdict, self.errors[samples]
         widths = np.full(len(errors), inf if verdict.verdict is Status.UNDECIDED else 0.0)
@@ -66,10 +66,10 @@ class Graded:
 def graded(
     verdicts: Sequence[Verdict], record: Record, inputs: InputRounding, roundoff: float
 ) -> list[Graded]:
-    """Return every gate of a judgement, its floor the root of the squares of rounding and input."""
+    """Return every gate of a judgement, with the root sum of squares of rounding and input as its floor."""
     times, gates = np.array(record.times), []
     for verdict, gate in zip(verdicts, record.gates, strict=True):
-        # The length of a quaternion owes nothing to the input.
+        # The length of a quaternion does not depend on the input.
         moved = inputs.at_samples.get(gate.quantity, np.zeros(len(times)))
         both = np.hypot(np.array(gate.attainable), moved)
         worst = index_of_largest(np.array(gate.errors))
@@ -80,9 +80,9 @@ def graded(
 
 
 def verdict_of(sides: Sequence[Graded], flaw: str, start: float) -> Verdict:
-    """Return the verdict of one gate: that of the direction of time which is graver, or else nearer to it.
+    """Return the worse verdict of a gate over both directions of time, or the one nearer to its bound.
 
-    ``flaw`` says where the data have no finite number, if there is such a place; ``start`` is the time of
+    ``flaw`` names the first place where the data are not finite, if there is one; ``start`` is the time of
     the initial state.
     """
     return min((_verdict(side, flaw, start) for side in sides), key=_gravity)
@@ -111,14 +111,14 @@ def _verdict(side: Graded, flaw: str, start: float) -> Verdict:
 
 
 def merged(records: Sequence[Record], gates: Sequence[Graded]) -> Record | None:
-    """Return the record of the longer side, with the floors that were used; None where there is none."""
+    """Return the record of the longer side, with the floors that were used; None without records."""
     if not records:
         return None
     record = max(records, key=lambda r: len(r.times))
     used = {g.verdict.quantity: g for g in gates if len(g.times) == len(record.times)}
-    kept = (
+    gates_of_record = (
         replace(gate, attainable=four_digits(used[gate.quantity].attainable))
         for gate in record.gates
         if gate.quantity in used
     )
-    return replace(record, gates=tuple(kept))
+    return replace(record, gates=tuple(gates_of_record))

@@ -1,4 +1,4 @@
-"""The rows and records that a judgement is written down in: a verdict, the terms of its gate, a run."""
+"""The rows and records of a judgement: a verdict, the terms of its gate, a run."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def verdict_on(
 
 @dataclass(frozen=True)
 class Run:
-    """The problem, the solver and its answer: what is the same in every verdict of a run."""
+    """A run: the problem, the solver and its answer, shared by all verdicts."""
 
     problem: Problem
     solver: Solver
@@ -84,9 +84,9 @@ class Run:
         shift: Shift | None = None,
         at_samples: bool = True,
     ) -> Gated:
-        """Return the verdict on errors, and the terms of their gate to the four digits of a picture.
+        """Return the verdict on errors, and the terms of their gate to the four digits that pictures need.
 
-        A ``shift`` that roundings alone have made is another one on every machine: it is no reason.
+        A ``shift`` that roundings alone cause differs on every machine, so it is not given as a reason.
         """
         finding = judge(errors, attainable, reason, self.tolerances.of(errors.quantity))
         is_told = not (finding.status is Status.PASS and finding.is_rounding)
@@ -128,20 +128,20 @@ class Run:
         verdict, gate = self.gated(errors, attainable, reason)
         full, width = Doubles(errors.doubles), float(np.max(errors.widths))
         gate = replace(gate, errors=full, attainable=Doubles(attainable), truth_radius=width)
-        # Of an answer from elsewhere the seconds are not known.
+        # The seconds of an answer from another program are not known.
         return replace(verdict, seconds=None), gate
 
 
 @dataclass(frozen=True)
 class Gates:
-    """The gates of a run: errors beside the roundoff ``floor`` of so many ``steps``."""
+    """The gates of a run: comparison of errors with the roundoff ``floor`` of the counted ``steps``."""
 
     run: Run
     floor: Floor
     steps: Steps
 
     def state(self, errors: Errors, shift: Shift | None, at_samples: bool) -> Gated:
-        """Return the verdict on a state quantity, with the shift of time behind its error."""
+        """Return the verdict on a state quantity, with the shift of time that explains its error."""
         attainable = self.floor.of_state(errors)
         reason = self._reason(errors, attainable, Carried.ORBIT)
         return self.run.gated(errors, attainable, reason, shift, at_samples)
@@ -149,7 +149,7 @@ class Gates:
     def conserved(self, errors: Errors, attainable: Floats, work: ClockWork | None) -> Gated:
         """Return the verdict on a conserved quantity.
 
-        ``attainable`` is what rounding the momenta leaves; under a clock its roundings do ``work`` too.
+        ``attainable`` is the drift by rounding the momenta; ``work`` is the effect of a clock's roundings.
         """
         if work is not None:
             (scale,) = errors.parts.values()
@@ -160,9 +160,9 @@ class Gates:
         return self.run.gated(errors, attainable, reason)
 
     def unit_quaternion(self, excess: Floats | None) -> list[Gated]:
-        """Return the row of quaternions that are no unit quaternions; none where they are to roundoff.
+        """Return the row on quaternions that are not of unit length; empty if they are, to roundoff.
 
-        ``excess`` (n,) is |q| - 1; a length that is not finite is the attitude's failure.
+        ``excess`` (n,) is |q| - 1; a length that is not finite is a failure of the attitude.
         """
         if excess is None or not np.isfinite(excess).all():
             return []
@@ -177,7 +177,7 @@ class Gates:
 
 
 def _mean(errors: Floats) -> float:
-    """Return the mean; infinite where the sum is beyond doubles."""
+    """Return the mean; infinite if the sum overflows."""
     try:
         return fsum(errors) / len(errors)
     except OverflowError:
@@ -185,7 +185,7 @@ def _mean(errors: Floats) -> float:
 
 
 def _bound(radius: float) -> float:
-    """Three digits, and not less: the rest tells how the truth was come by, which may differ by run."""
+    """Return a radius rounded up to three digits: further digits depend on how the truth was computed."""
     return float(f"{1.006 * radius:.3g}")
 
 

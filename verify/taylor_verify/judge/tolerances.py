@@ -1,7 +1,7 @@
-"""Tolerances that a caller asks for, in place of the bounds that follow from the arithmetic.
+"""Tolerances of a caller, which replace the bounds that follow from the arithmetic.
 
-A tolerance is a relative error, and radians for an attitude. It is below 1: the answer zero has an error
-of 1, so that a larger one would forbid nothing.
+A tolerance is a relative error, or radians for an attitude. It is below 1: the answer zero has an error of
+1, so a larger tolerance would forbid nothing.
 """
 
 from __future__ import annotations
@@ -18,20 +18,23 @@ if TYPE_CHECKING:
     from taylor_verify.scenes.scene import Scene
 
 Tolerance = float | Mapping[str, float] | None
-"""What a caller gives: a number for all quantities, or a number for each of some."""
+"""A caller's tolerance: one number for all quantities, or a number for each named quantity."""
 
 _EXPECTED: Final = "a positive number below 1 (the error of the answer zero)"
 
 
 @dataclass(frozen=True)
 class Tolerances:
-    """The tolerance of ``every`` quantity, or of ``each`` of some; the others keep their own bounds."""
+    """Tolerances: one for ``every`` quantity, or one for ``each`` named quantity.
+
+    Quantities without a tolerance keep the bounds from the arithmetic.
+    """
 
     every: float | None = None
     each: tuple[tuple[str, float], ...] = ()
 
     def of(self, quantity: str) -> float | None:
-        """Return the tolerance of a quantity; None where its own bound stands.
+        """Return the tolerance of a quantity; None if the bound from the arithmetic applies.
 
         The length of a quaternion has the tolerance of the attitude.
         """
@@ -45,10 +48,10 @@ NO_TOLERANCES: Final = Tolerances()
 def tolerances(
     asked: Tolerances | Tolerance, scenes: Iterable[Scene], place: str = "tolerance"
 ) -> Tolerances:
-    """Return the tolerances that are ``asked`` for in some scenes; Tolerances stay as they are.
+    """Return the tolerances that a caller ``asked`` for, checked against some scenes.
 
-    Raises ValueError, with every fault and its ``place``, for a name that is no quantity of these scenes
-    and for a tolerance that is no positive number below 1.
+    Tolerances are returned unchanged. Raises ValueError, with every fault and its ``place``, for a name
+    that is not a quantity of these scenes and for a tolerance that is not a positive number below 1.
     """
     if isinstance(asked, Tolerances):
         return asked
@@ -59,8 +62,8 @@ def tolerances(
     known, faults = _quantities(scenes), []
     unknown = [str(name) for name in asked if name not in known]
     if unknown or not asked:
-        got = ", ".join(unknown) or "nothing"
-        faults.append(f"expected some of {', '.join(known)}, got {got} @ {place}")
+        received = ", ".join(unknown) or "nothing"
+        faults.append(f"expected some of {', '.join(known)}, got {received} @ {place}")
     each: dict[str, float] = {}
     for name, value in asked.items():
         try:
@@ -80,11 +83,11 @@ def _tolerance(value: Any, place: str) -> float:
 
 
 def _quantities(scenes: Iterable[Scene]) -> list[str]:
-    """Return the quantities that are compared in some of these scenes, states first."""
+    """Return the quantities that are compared in at least one of these scenes, states first."""
     from taylor_verify.exact.invariants import invariants
 
     asked = list(scenes)
-    # A file may have the angular velocity of a solid in a fluid too.
+    # A file may also have the angular velocity of a solid in a fluid.
     states = {name for scene in asked for name in ("omega", MAIN[scene.model], *scene.track)}
-    conserved = dict.fromkeys(each.name for scene in asked for each in invariants(scene))
+    conserved = dict.fromkeys(invariant.name for scene in asked for invariant in invariants(scene))
     return [*(name for name in STATES if name in states), *conserved]

@@ -1,4 +1,4 @@
-"""Velocities of a body whose state is in momenta; a file may have them in place of these.
+"""Velocities of a body whose state is momenta; a file may have either.
 
 U   velocity of the body's origin, body axes        Omega   angular velocity, body axes
 """
@@ -20,14 +20,14 @@ Array = np.ndarray[Any, Any]
 
 
 class VelocityForms(NamedTuple):
-    """Each velocity, by its columns, as a sum of matrices times momenta; ``mass_matrix`` leads back."""
+    """Matrices from momenta to each velocity, by column group; ``mass_matrix`` is the inverse map."""
 
     forms: Mapping[str, Mapping[str, Matrix]]
     mass_matrix: Matrix
 
 
 def _immersed(body: ImmersedBody) -> VelocityForms:
-    """U = A x + B y and Omega = B^T x + C y."""
+    """Return the forms U = A x + B y and Omega = B^T x + C y."""
     A, B, C = body.linear, body.coupling, body.angular
     forms = {
         "linear_velocity": {"linear_impulse": A, "angular_impulse": B},
@@ -36,28 +36,28 @@ def _immersed(body: ImmersedBody) -> VelocityForms:
     return VelocityForms(forms, body.mass_matrix)
 
 
-# By the class of a body; one that is absent has omega itself for its state.
+# Forms by class of body; the state of any other body is omega itself.
 _FORMS: Final[Mapping[type[Body], Callable[[Any], VelocityForms]]] = {ImmersedBody: _immersed}
 
 
 def has_velocities(body: Body) -> bool:
-    """Return True if velocities stand for the momenta of this body."""
+    """Return True if this body has velocities besides its momenta."""
     return type(body) in _FORMS
 
 
 def velocity_forms(body: Body) -> VelocityForms:
-    """Return the velocities of a body that has them."""
+    """Return the velocity forms of a body that has velocities."""
     return _FORMS[type(body)](body)
 
 
 def velocity(group: str, body: Body, quantities: Quantities) -> Any:
-    """Return a velocity at every sample, by the name of its columns, from the exact coefficients."""
+    """Return the velocity of a column group at every sample, from the exact coefficients."""
     linear = velocity_forms(body).forms[group].items()
     return sum(quantities[name] @ exact_matrix(matrix).T for name, matrix in linear)
 
 
 def velocities(body: Body, quantities: Quantities) -> dict[str, Any]:
-    """Return every velocity at every sample, by the names of their columns."""
+    """Return every velocity at every sample, by column group."""
     return {group: velocity(group, body, quantities) for group in VELOCITIES}
 
 

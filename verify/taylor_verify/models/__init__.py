@@ -1,1 +1,1 @@
-"""The equations of motion, each written once, and the rounded problem that a solver is handed."""
+"""The equations of motion, each written once, and the rounded problem that a solver receives."""

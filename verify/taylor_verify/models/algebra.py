@@ -1,9 +1,9 @@
-"""Sums and products in any arithmetic, where the integer 0 stands for a term that is not there.
+"""Sums and products in any arithmetic; the integer 0 means an absent term.
 
-heyoka has no algebraic simplification: a term that is multiplied by a zero parameter is computed
-at every order of every step. So an absent coefficient enters the equations as the int 0, and these
-functions leave out whatever it touches. Everything else is + and x of the caller's own numbers:
-heyoka expressions, mpf, Arb balls, Fractions and NumPy arrays all pass through.
+heyoka has no algebraic simplification: it computes a term with a zero parameter at every order of every
+step. So an absent coefficient is the int 0, and these functions leave out every product with it. All other
+operations are + and x of the caller's numbers: heyoka expressions, mpf, Arb balls, Fractions and NumPy
+arrays all work.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def times(a: Any, b: Any) -> Any:
 
 
 def dot(a: Terms, b: Terms) -> Any:
-    """Return the sum of a_i b_i over the terms that are there."""
+    """Return the sum of a_i b_i over the terms that are not absent."""
     result: Any = ABSENT
     for p, q in zip(a, b, strict=True):
         result = plus(result, times(p, q))

@@ -1,9 +1,8 @@
-"""Free rigid bodies in their principal axes, posed many at once: all of them have one form.
+"""Free rigid bodies in their principal axes, posed many at once, all with one form of the equations.
 
-K and H are the numbers that `pose` has for each body, rounded once from exact ones. Where `pose`
-chooses between forms, a difference of K's diagonal that float64 does not hold is here the sum of two
-coefficients, D + E exactly. So the differences add up to zero for every body, and |H|^2 is constant
-identically.
+K and H are the same numbers as in `pose` for each body, rounded once from exact ones. Where `pose` chooses
+between forms, a difference of K's diagonal that float64 cannot represent is here the exact sum D + E of two
+coefficients. So the differences add up to zero for every body, and |H|^2 is constant identically.
 
 K  inverse moments    H  momentum    D, E  differences of K, high and low part
 """
@@ -26,11 +25,11 @@ from taylor_verify.scenes.scene import Scene
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
-# Sizes at which neither a product of three numbers nor its last bits leave the normal doubles.
+# Limits within which a product of three numbers, with its last bits, stays in the normal doubles.
 _SMALLEST, _LARGEST = 2.0**-60, 2.0**60
-# Points of the orbit at which its rate is looked at before it is integrated.
+# Number of points of the orbit at which its rate is evaluated before the integration.
 _POINTS: Final = 5
-# Powers of a matrix lead to its fastest rate: of 16 factors a norm is some tenths too much.
+# Squarings of a matrix for its fastest rate: the norm of 16 factors is some tenths too large.
 _SQUARINGS: Final = 4
 _TRACKS: Final = (frozenset[str](), frozenset({"attitude"}))
 
@@ -53,10 +52,10 @@ FORM_WITH_ATTITUDE: Final = Form(
 
 @dataclass(frozen=True)
 class Bodies:
-    """Bodies of ``inverse`` moments (3, n) that start with ``momentum`` (3, n), asked at ``times`` (n, m).
+    """Bodies with ``inverse`` moments (3, n) and ``momentum`` (3, n) at the start, at ``times`` (n, m).
 
     Doubles in units of the scenes; the times count from the start, all of them forwards or backwards.
-    ``attitude`` (4, n) are quaternions of about size one, where attitudes are asked for.
+    ``attitude`` (4, n) are quaternions of about size one, if attitudes are asked for.
     """
 
     inverse: Floats
@@ -137,9 +136,9 @@ class Bodies:
 
     @cached_property
     def rates(self) -> Floats:
-        """The fastest rate (n) of each motion in units, at some points of its orbit.
+        """Fastest rate (n) of each motion in units, at some points of its orbit.
 
-        The squares of H's components lie on a straight line, along D: by both conserved quantities.
+        By the two conserved quantities, the squares of H's components lie on a straight line along D.
         """
         D, squares = self.parameters[:3], self.starts[:3] ** 2
         with np.errstate(all="ignore"):
@@ -154,14 +153,14 @@ class Bodies:
     def fastest(self, states: Floats) -> Floats:
         """Return the fastest rate (n) at any of the states (s, n, m) of each body; NaN where not finite.
 
-        Of equations that are quadratic in H a difference over two steps is the exact derivative. An
-        attitude turns at |omega|/2.
+        The equations are quadratic in H, so a central difference is the exact derivative. An attitude
+        turns at |omega|/2.
         """
-        H, given = states[:3], [row[:, None] for row in self.parameters[:6]]
+        H, parameters = states[:3], [row[:, None] for row in self.parameters[:6]]
         columns = []
         with np.errstate(all="ignore"):
             for step in np.eye(3)[:, :, None, None]:
-                ahead, behind = (FORM.rates(list(H + sign * step), given) for sign in (1, -1))
+                ahead, behind = (FORM.rates(list(H + sign * step), parameters) for sign in (1, -1))
                 columns.append([(a - b) / 2 for a, b in zip(ahead, behind, strict=True)])
             jacobian = np.moveaxis(np.array(columns), (0, 1), (-1, -2))
             largest = 3 * np.max(abs(jacobian), axis=(1, 2, 3))
@@ -169,15 +168,15 @@ class Bodies:
             for _ in range(_SQUARINGS):
                 power = power @ power
             norm = 3 * np.max(abs(power), axis=(1, 2, 3))
-            found: Floats = largest * norm ** (0.5**_SQUARINGS)
+            rate: Floats = largest * norm ** (0.5**_SQUARINGS)
             if self.attitude is not None:
                 omega = self.scaled_inverse[:, :, None] * H
-                found = np.maximum(found, np.max(_norm(omega), axis=1) / 2)
-        return found
+                rate = np.maximum(rate, np.max(_norm(omega), axis=1) / 2)
+        return rate
 
     @property
     def are_moderate(self) -> Any:
-        """The bodies (n) without a number so large or small that a double loses some of its bits."""
+        """Return True for the bodies (n) without a number so large or small that a double loses bits."""
         sizes = abs(np.concatenate([self.inverse, self.momentum, self.times[:, -1:].T]))
         inside = (sizes >= _SMALLEST) & (sizes <= _LARGEST)
         inside[3:6] |= self.momentum == 0
@@ -225,16 +224,16 @@ def numbers(scene: Scene) -> Numbers:
 
 
 def _differences(K: Floats) -> Pairs:
-    """D and E (3, n): the differences of K, rounded, and what the rounding left."""
+    """Return D and E (3, n): the rounded differences of K, and their rounding errors."""
     return difference(K[[2, 0, 1]], K[[1, 2, 0]])
 
 
 def _norm(vectors: Floats) -> Floats:
-    found: Floats = np.sqrt(np.sum(vectors**2, axis=0))
-    return found
+    norm: Floats = np.sqrt(np.sum(vectors**2, axis=0))
+    return norm
 
 
 def _binary(sizes: Floats) -> Floats:
-    """The powers of two just below, and 1 where there is none."""
+    """Return the powers of two just below the sizes; 1 if there is none."""
     mantissa, exponent = np.frexp(sizes)
     return np.where(mantissa > 0, np.ldexp(1.0, exponent - 1), 1.0)

@@ -1,7 +1,8 @@
-"""Choice of the equations of a rounded body: the fewest operations that are exactly its own.
+"""The choice of the equations of a rounded body: the fewest operations that represent it exactly.
 
-Every decision is one between rationals, the numbers of the rung themselves: a coefficient is left out
-if it is zero, two are one if they are equal, and a difference is a coefficient if the rung holds it.
+Every decision compares rationals, the exact values of the numbers of the rung. A coefficient is left out
+if it is zero. Two equal coefficients become one. A difference becomes a coefficient if the rung can
+represent it.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ Numbers = Mapping[str, Fraction]
 
 @dataclass(frozen=True)
 class Choice:
-    """Equations, all numbers that may enter them, those they replace, and why, in sentences."""
+    """Equations, the numbers that may enter them, the numbers that these replace, and the reasons."""
 
     equations: Equations
     numbers: Numbers
@@ -25,9 +26,9 @@ class Choice:
     because: tuple[str, ...]
 
     def form(self, states: tuple[str, ...]) -> Form:
-        """Return the equations in these states, without what is zero or constant.
+        """Return the equations in these states, without zero parameters and constant states.
 
-        Of the impulses those stay states that something changes; H stays whole.
+        Impulses that no term changes become parameters; all components of H stay states.
         """
         present = [name for name, value in self.numbers.items() if value]
         form = Form(self.equations, states, tuple(n for n in present if n not in states))
@@ -37,8 +38,8 @@ class Choice:
         return replace(form, parameters=form.entering())
 
 
-def constants_told(asked: tuple[str, ...], form: Form) -> tuple[str, ...]:
-    """Return a sentence on the components that are no states, as nothing changes them."""
+def constant_states_sentence(asked: tuple[str, ...], form: Form) -> tuple[str, ...]:
+    """Return a sentence on the components that are no states, because no term changes them."""
     still = [name for name in asked if name not in form.states]
     verb = "is a constant" if len(still) == 1 else "are constants"
     return (f"{', '.join(still)} {verb}, and no state",) if still else ()

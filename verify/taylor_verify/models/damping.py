@@ -1,4 +1,4 @@
-"""Isotropic linear damping of any body: d z is taken from the rate of every momentum z."""
+"""Isotropic linear damping of any body: the rate of every momentum z gets the term -d z."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class WithDamping:
 
 @final
 class Damped(Mechanics[Body, State]):
-    """The mechanics of a body with damping, by those of the same body without it."""
+    """The mechanics of a damped body, built on the mechanics of the undamped body."""
 
     def __init__(self, free: Mechanics[Any, Any]) -> None:
         self._free = free
@@ -58,7 +58,7 @@ class Damped(Mechanics[Body, State]):
         return self._free.change(body)
 
     def choice(self, numbers: Mapping[str, Fraction], rung: Rung) -> Choice:
-        """Return the equations without damping where its number has become zero."""
+        """Return the equations, without damping if its rounded number is zero."""
         damping = numbers[_LETTER.name]
         others = {name: value for name, value in numbers.items() if name != _LETTER.name}
         chosen = self._free.choice(others, rung)
@@ -71,7 +71,7 @@ class Damped(Mechanics[Body, State]):
         )
 
     def units(self, body: Body, start: State, span: Fraction) -> Units:
-        """Time by the motion, or by its decay where that is faster."""
+        """Return the units, with time by the motion, or by its decay if that is faster."""
         units = self._free.units(body.undamped, start, span)
         return replace(units, time=min(units.time, 1 / binary(abs(body.damping))))
 

@@ -28,12 +28,12 @@ def momentum_rate(H: Terms, K: Sequence[Terms], M: Terms) -> list[Any]:
     """H' = H x K H + M, body axes: Euler's equations for any symmetric tensor K.
 
     Only differences of K's diagonal enter, because H x H = 0. In a nearly spherical body they are
-    small and, the rounding of a difference of neighbours being exact, known to full precision; written
-    with K itself the rate would be a difference of large numbers.
+    small and known to full precision, because the difference of neighbouring numbers is exact. With K
+    itself the rate would be a difference of large numbers.
     """
     if all(is_absent(K[i][j]) for i in range(3) for j in range(3) if i != j):
         return add(principal_rate(H, differences(K)), M)
-    # K - K33 1, a symmetric tensor again: what is left of the body when a sphere is taken away.
+    # K - K33 1 is again a symmetric tensor: the body without a spherical part.
     deviation = [
         [minus(K[i][j], K[2][2]) if i == j else K[i][j] for j in range(3)] for i in range(3)
     ]
@@ -48,15 +48,15 @@ def differences(K: Sequence[Terms]) -> list[Any]:
 
 
 def principal_rate(H: Terms, D: Terms, summed: int | None = None) -> list[Any]:
-    """Return H x K H in principal axes, where three products of the state serve for six.
+    """Return H x K H in principal axes, with three products of the state instead of six.
 
-    The difference at the place ``summed``, if there is one, is minus the sum of the two others.
+    The difference at the index ``summed``, if there is one, is minus the sum of the two others.
     """
     products = [H[1] * H[2], H[2] * H[0], H[0] * H[1]]
     rates = [times(d, product) for d, product in zip(D, products, strict=True)]
     if summed is not None:
-        one, other = (times(d, products[summed]) for i, d in enumerate(D) if i != summed)
-        rates[summed] = minus(-one, other)
+        first, second = (times(d, products[summed]) for i, d in enumerate(D) if i != summed)
+        rates[summed] = minus(-first, second)
     return rates
 
 
@@ -65,9 +65,9 @@ def turning(H: Terms, deviation: Sequence[Terms]) -> list[Any]:
     return cross(H, apply(deviation, H))
 
 
-# The equations of a form: values, so that two scenes that need the same ones share one compiled
-# integrator. An index that is ``formed`` is that of a difference which the rung cannot hold, and which the
-# arithmetic of the solver therefore forms, and rounds, itself.
+# The equations of a form. They are values, so that two scenes with equal equations share one compiled
+# integrator. ``formed`` has the indices of differences that the rung cannot represent; the arithmetic of
+# the solver computes and rounds these itself.
 
 
 def euler_equations(n: Named) -> dict[str, Any]:
@@ -101,7 +101,7 @@ class PrincipalEuler:
 
 @dataclass(frozen=True)
 class TensorEuler:
-    """Euler's equations with products of inertia: a sphere is taken away from K."""
+    """Euler's equations with products of inertia: a spherical part is subtracted from K."""
 
     formed: tuple[int, ...] = ()
 
@@ -110,8 +110,8 @@ class TensorEuler:
         deviation = [list(row) for row in K]
         deviation[2][2] = ABSENT
         for i in (1, 2):
-            kept = minus(K[i - 1][i - 1], K[2][2]) if i in self.formed else n[f"D{i}{i}"]
-            deviation[i - 1][i - 1] = kept
+            difference = minus(K[i - 1][i - 1], K[2][2]) if i in self.formed else n[f"D{i}{i}"]
+            deviation[i - 1][i - 1] = difference
         return with_frame(n, add(turning(H, deviation), n.vector("M")))
 
 
@@ -121,8 +121,8 @@ class TensorEuler:
 def heinbockel_moment(omega: Terms, omega_rate: Terms, I: Sequence[Terms]) -> list[Any]:
     """The left side of Heinbockel (2.2.70), M_m = I_im omega_i' - e_tmj I_ij omega_i omega_t.
 
-    Not integrated: it stands here so that a test can prove the form above equal to the text's, index
-    by index; (2.2.71) is its expansion and (2.2.72) its form in principal axes. For indices 0, 1, 2 the
+    It is not integrated. A test uses it to prove that the form above equals the form of the text, index by
+    index; (2.2.71) is its expansion and (2.2.72) its form in principal axes. For indices 0, 1, 2 the
     permutation symbol e_ijk is (i - j)(j - k)(k - i)/2.
     """
     return [

@@ -1,7 +1,7 @@
-"""The form of a system of equations: which states and which parameters it has, and nothing numeric.
+"""The form of a system of equations: its states and its parameters, without their numbers.
 
-Two scenes with the same form share one compiled integrator. A parameter that is zero is no
-parameter, an untracked attitude no state: `for_scene` builds only what the scene requires.
+Two scenes with the same form share one compiled integrator. Zero parameters and untracked quantities are
+left out of the form.
 """
 
 from __future__ import annotations
@@ -59,10 +59,10 @@ class Form:
         return [rates[name] for name in self.states]
 
     def text(self) -> tuple[str, ...]:
-        """Return the equations as they are built, a line for each state: what is absent is not there.
+        """Return the equations as they are built, a line for each state, without absent terms.
 
-        Equations that are too long to be read as they are have a method ``lines`` with names for parts of
-        themselves: what to write for each rate (``H1'``) and each part (``M1``).
+        Long equations have a method ``lines`` that names parts of them. It returns the text of each rate
+        (``H1'``) and of each part (``M1``).
         """
         if hasattr(self.equations, "lines"):
             names = self.states + self.parameters
@@ -84,19 +84,19 @@ class Form:
         states, parameters = map(Symbol, self.states), map(Symbol, self.parameters)
         return self.rates(list(states), list(parameters))
 
-    # Forms are few and scenes are many: a family of bodies asks for one and the same.
+    # There are few forms and many scenes: all bodies of a family have the same form.
     @lru_cache(maxsize=256)  # noqa: B019 (a form is a value, and small)
     def constants(self) -> tuple[str, ...]:
-        """Return the impulses that no term changes: x1 to y3, as far as their rates are absent.
+        """Return the impulses that no term changes: the components x1 to y3 whose rates are absent.
 
-        The momentum of a rigid body stays a state all the same: whoever steps by himself moves it.
+        The momentum of a rigid body always stays a state, because other steppers change it.
         """
         rates = zip(self.states, self.symbolic(), strict=True)
         return tuple(name for name, rate in rates if name[0] in "xy" and is_absent(rate))
 
     @lru_cache(maxsize=256)  # noqa: B019
     def entering(self) -> tuple[str, ...]:
-        """Return the parameters that occur: with y3 = 0, for one, Clebsch's r' does not."""
+        """Return the parameters that occur in the equations; Clebsch's r' does not if y3 = 0."""
         written = set(re.findall(r"[A-Za-z]\d*'?", self.written()))
         return tuple(name for name in self.parameters if name in written)
 
@@ -113,7 +113,7 @@ def frame_rates(n: Named, omega: Sequence[Any], U: Sequence[Any] | None) -> dict
 
 
 def in_unit_of_path(n: Named, U: Sequence[Any]) -> Sequence[Any]:
-    """Return s U, s the unit of length over that of the centre; U itself where the two are one."""
+    """Return s U with s the unit of length over the unit of the centre; U itself if they are equal."""
     return [times(n["s"], u) for u in U] if "s" in n else U
 
 

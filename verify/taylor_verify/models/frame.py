@@ -1,4 +1,4 @@
-"""Attitude and centre: how the body frame moves in space.
+"""The motion of the body frame in space: attitude and centre.
 
 q  unit quaternion, scalar first, body to space: v_space = R(q) v_body
 c  the body's origin in space axes
@@ -38,7 +38,7 @@ def rotation(q: Terms) -> list[list[Any]]:
 def centre_rate(q: Terms, U: Terms) -> list[Any]:
     """Return c' = U + 2 r x (r x U + q0 U), r = (q1, q2, q3): R(q) U of a unit quaternion, space axes.
 
-    It takes fifteen products of the state where R(q) and its product with U take nineteen.
+    This takes fifteen products of the state; R(q) and its product with U take nineteen.
     """
     q0, *r = q
     turned = cross(r, add(cross(r, U), [times(q0, component) for component in U]))

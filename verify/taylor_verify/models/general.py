@@ -1,4 +1,4 @@
-"""The general equations of a posed body: what the chosen, shorter ones are held and counted against.
+"""The general equations of a posed body, with which the chosen, shorter ones are compared.
 
 K  inverse inertia tensor, M moment                       (Euler)
 A, B, C  the 21 coefficients of T, X and L force, couple  (Kirchhoff)
@@ -19,12 +19,12 @@ from taylor_verify.scenes.parts import Shape
 
 _ATTITUDE = ("e0", "e1", "e2", "e3")
 _CENTRE = ("c1", "c2", "c3")
-# Letters of what a manufactured motion is made of.
+# Letters of the parameters of a manufactured motion.
 _OF_MOTION = "hknabfg"
 
 
 def in_general_form(problem: Problem, zeros: bool = False) -> Problem:
-    """Return the same body and start by the general equations, all impulses states.
+    """Return the same body and start with the general equations; all impulses are states.
 
     With ``zeros`` the coefficients and loads that are zero are parameters like any other.
     """

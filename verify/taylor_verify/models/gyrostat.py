@@ -1,7 +1,7 @@
 """A gyrostat in the numbers of Euler's equations: K, the momentum r of the wheels, M and H = I omega.
 
-H' = (H + r) x K H + M. H is the momentum without that of the wheels: omega = K H is then no difference of
-large numbers, however strong the wheels are. The rounded body is K^-1, and its wheels are r, exactly.
+H' = (H + r) x K H + M. H does not include the momentum of the wheels: so omega = K H is not a difference of
+large numbers, however strong the wheels are. The rounded body is exactly K^-1 with wheels r.
 """
 
 from __future__ import annotations
@@ -79,12 +79,12 @@ class Wheeled(Mechanics[Gyrostat, Spin]):
         return replace(chosen, equations=WithWheels(chosen.equations))
 
     def units(self, body: Gyrostat, start: Spin, span: Fraction) -> Units:
-        """H by its size, or what the moment makes of it; time by omega or by the wheels."""
+        """Return the units: H by its size or its growth by the moment, time by omega or by the wheels."""
         alone = RigidBody(body.inertia, body.moment, body.manufactured)
         units = _RIGID.units(alone, start, span)
         rate = size(tensors.apply(body.inverse_inertia, body.rotor))
         return replace(units, time=min(units.time, 1 / binary(rate))) if rate else units
 
     def derived(self, body: Gyrostat, start: Spin) -> Mapping[str, Mapping[str, Value]]:
-        """K, and I omega without the wheels."""
+        """Return K, and I omega without the wheels."""
         return _RIGID.derived(RigidBody(body.inertia, body.moment), start)

@@ -63,7 +63,7 @@ class Immersed(Mechanics[ImmersedBody, Impulse]):
         return chosen_equations(numbers, rung)
 
     def units(self, body: ImmersedBody, start: Impulse, span: Fraction) -> Units:
-        # x keeps its norm without a force; y may start at zero and take up all the energy.
+        # Without a force |x| is constant; y may start at zero and receive all the energy.
         motion = body.manufactured
         state = start.moving if motion is None else motion.reach
         linear, coupling, angular = map(largest, (body.linear, body.coupling, body.angular))
@@ -77,14 +77,14 @@ class Immersed(Mechanics[ImmersedBody, Impulse]):
             angular * momentum,
             Fraction(0) if motion is None else motion.highest,
         )
-        # Neither impulse is above twice its unit: no path is longer, unless loads or damping make it so.
+        # Each impulse is at most twice its unit, which bounds the path unless loads or damping act.
         speed = 6 * (linear * impulse + coupling * momentum)
         path = max(2 * binary(speed * span * impulse / momentum), Fraction(1))
         return Units(time=1 / binary(rate), momentum=momentum, impulse=impulse, path=path)
 
 
 def _spun_up(energy: Matrix, state: Vector, angular: Fraction) -> Fraction:
-    """Return a power of two near |y| of a motion that has all its energy in the largest entry of C."""
+    """Return a power of two near |y| for a motion with all its energy in the largest entry of C."""
     terms = [
         (a, entry, b)
         for a, row in zip(state, energy, strict=True)
@@ -100,7 +100,7 @@ def _spun_up(energy: Matrix, state: Vector, angular: Fraction) -> Fraction:
 def chosen_equations(numbers: Numbers, rung: Rung) -> Choice:
     """Return the equations of x, y, X, L and the 21 coefficients.
 
-    A difference of two of Clebsch's coefficients is a coefficient if the rung holds it.
+    A difference of two of Clebsch's coefficients becomes a coefficient if the rung can represent it.
     """
     axis = axis_of_symmetry(numbers)
     loads_and_state = {n: v for n, v in numbers.items() if n[0] not in "ABC"}
@@ -113,14 +113,16 @@ def chosen_equations(numbers: Numbers, rung: Rung) -> Choice:
     six = dict(zip(CLEBSCH_NAMES, diagonals, strict=True))
     equal = tuple(n for n in "pqr" if six[n] and six[n] == six[f"{n}'"])
     own = {name: value for name, value in six.items() if name[0] not in equal or name in equal}
-    found = {n: six[f"{n}'"] - six[n] for n in "pqr" if six[n] != six[f"{n}'"]}
-    held = {CLEBSCH_DIFFERENCES[n]: value for n, value in found.items() if rung.holds(value)}
-    said = [f"Clebsch's T about axis {axis}: 6 coefficients of 21"]
-    said += [f"{n}' = {n}" for n in equal]
-    said += [f"{d} = {n}' - {n}" for n, d in CLEBSCH_DIFFERENCES.items() if d in held]
+    differences = {n: six[f"{n}'"] - six[n] for n in "pqr" if six[n] != six[f"{n}'"]}
+    coefficients = {
+        CLEBSCH_DIFFERENCES[n]: value for n, value in differences.items() if rung.holds(value)
+    }
+    sentences = [f"Clebsch's T about axis {axis}: 6 coefficients of 21"]
+    sentences += [f"{n}' = {n}" for n in equal]
+    sentences += [f"{d} = {n}' - {n}" for n, d in CLEBSCH_DIFFERENCES.items() if d in coefficients]
     plain = axis == 3 and not equal
     equations = clebsch_equations if plain else ClebschAbout(axis, equal)
-    return Choice(equations, {**loads_and_state, **own, **held}, six, tuple(said))
+    return Choice(equations, {**loads_and_state, **own, **coefficients}, six, tuple(sentences))
 
 
 def axis_of_symmetry(numbers: Numbers) -> int | None:

@@ -28,7 +28,7 @@ from taylor_verify.models.algebra import (
 from taylor_verify.models.form import Named, frame_rates, labelled
 
 CLEBSCH_NAMES: Final = ("p", "p'", "q", "q'", "r", "r'")
-# The names of p' - p, q' - q and r' - r, for a body that has them as coefficients of its own.
+# The names of p' - p, q' - q and r' - r where they are coefficients.
 CLEBSCH_DIFFERENCES: Final = {"p": "D1", "q": "D2", "r": "D3"}
 
 
@@ -53,7 +53,7 @@ def impulse_rates(
 def clebsch_rates(
     x: Terms, y: Terms, coefficients: Terms, X: Terms, L: Terms, differences: Terms = ()
 ) -> tuple[list[Any], list[Any]]:
-    """Return both rates for Clebsch's T, where six products of the state serve for eighteen.
+    """Return both rates for Clebsch's T, with six products of the state instead of eighteen.
 
     x3' is 49 (3). y3' is the couple's third component alone, by 49 (2), whatever the force: without
     it y3 is a constant and the caller passes a parameter. ``differences`` are p' - p, q' - q and r' - r,
@@ -90,7 +90,7 @@ def clebsch_rates(
 
 
 def _by_difference(difference: Any, primed: Any, plain: Any, term: Any) -> Any:
-    """Return (primed - plain) term, with the difference where it is had."""
+    """Return (primed - plain) term, with the exact difference if it is given."""
     if difference is None:
         return minus(times(primed, term), times(plain, term))
     return times(difference, term)
@@ -129,8 +129,8 @@ class ClebschAbout:
             ABSENT if name in self.equal else n.get(difference)
             for name, difference in CLEBSCH_DIFFERENCES.items()
         ]
-        found = clebsch_rates(x, y, six, X, L, differences)
-        x_rate, y_rate = ([rate[order.index(i)] for i in range(3)] for rate in found)
+        rates = clebsch_rates(x, y, six, X, L, differences)
+        x_rate, y_rate = ([rate[order.index(i)] for i in range(3)] for rate in rates)
         A, B, C = ([[ABSENT] * 3 for _ in range(3)] for _ in range(3))
         for block, across, along in zip((A, B, C), six[::2], six[1::2], strict=True):
             for i in range(3):
@@ -139,5 +139,5 @@ class ClebschAbout:
         return labelled("x", x_rate) | labelled("y", y_rate) | frame_rates(n, Omega, U)
 
 
-# About axis 3 and with six coefficients; y3 is a state only where a couple turns it.
+# About axis 3 and with six coefficients; y3 is a state only if a couple changes it.
 clebsch_equations: Final = ClebschAbout()

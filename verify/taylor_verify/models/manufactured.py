@@ -1,4 +1,4 @@
-"""Loads that make a chosen motion one of the body's, with the cosines and sines carried as states.
+"""Loads under which a body performs a chosen motion, with the cosines and sines carried as states.
 
 h, k         z* at the start: H0, or x0 and y0         n1, n2, ..   the frequencies nu
 a1i, b1i ..  what cosine and sine put into H* or x*     u1, v1, ..   cos nu t and sin nu t: states
@@ -6,16 +6,16 @@ f1i, g1i ..  the same of y*                             e_ijk        the permuta
 
     H*_i = h_i + sum over waves of a_i (u - 1) + b_i v,      u' = -n v,  v' = n u
 
-so that H* begins at h, a number of the rung, and not at a sum that would have to be rounded. Everything
-here is a number of the rung, or formed from such by + - x: the motion H* solves the equations as they
-stand, whatever rounding made of their coefficients. Time itself does not enter.
+so that H* begins at h, a number of the rung, and not at a sum that would have to be rounded. All numbers
+here are numbers of the rung, or formed from such by + - x. So H* solves the equations exactly with their
+rounded coefficients. Time itself does not enter.
 
-A clock that rounding has put off by d, from time s on, does no lasting harm. For any u and v at all H* is
-a solution along them, so that the error at t is DH* d, that of the moment, less Phi(t, s) DH* d, which goes
-as any error of H does: with |DH*| the amplitude of the waves, it is of the order of a rounding of H.
+An error d of the clock by rounding at time s does no lasting harm. H* is a solution for any u and v. So the
+error at t is the present error DH* d, less Phi(t, s) DH* d, which evolves like any other error of H. Since
+|DH*| is the amplitude of the waves, both are of the order of a rounding of H.
 
-The loads are written out by indices and share no cross product with the equations that they load: what
-is wrong there is not undone here.
+The loads are written with indices and share no cross product with the equations: an error there is not
+cancelled by the same error here.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from taylor_verify.scenes import tensors
 from taylor_verify.scenes.manufactured import Manufactured, Wave
 from taylor_verify.scenes.tensors import Vector
 
-# For each vector the letters of its start, its cosines and its sines.
+# The letters of the start, the cosines and the sines of each vector.
 _LETTERS = (("h", "a", "b"), ("k", "f", "g"))
 # A vector of the motion, and its rate.
 Moved = tuple[Sequence[Any], Sequence[Any]]
@@ -42,7 +42,7 @@ Moved = tuple[Sequence[Any], Sequence[Any]]
 
 @dataclass(frozen=True)
 class Inverse:
-    """The equations of one kind of body turned round: the loads by name, of a motion of its momenta.
+    """The inverse equations of one kind of body: the loads, by name, for a given motion of its momenta.
 
     ``momenta`` has the letter of each momentum.
     """
@@ -55,7 +55,7 @@ class Inverse:
 class Loaded:
     """The equations ``free`` of a body under the loads of its manufactured motion.
 
-    Values: two scenes with as many waves share one compiled integrator.
+    Two scenes with the same number of waves share one compiled integrator.
     """
 
     free: Equations
@@ -72,7 +72,7 @@ class Loaded:
         return zip(self.inverse.momenta, _LETTERS, strict=False)
 
     def lines(self, n: Named) -> dict[str, Any]:
-        """Return the rates by M, or X and L, these by H*, or x* and y*, and these by the clock."""
+        """Return the rates by M, or X and L, then these by H*, or x* and y*, and by the clock."""
         written: dict[str, Any] = {}
         motion: list[Moved] = []
         for name, letters in self._vectors():
@@ -101,22 +101,22 @@ def states(motion: Manufactured) -> tuple[str, ...]:
 def numbers(motion: Manufactured) -> dict[str, Fraction]:
     """Return every parameter of a rounded motion, and the clock at its start.
 
-    The constant part does not enter: it is what the start, H0 or x0 and y0, leaves of it.
+    The constant part does not enter, because it follows from the start, H0 or x0 and y0.
     """
-    found: dict[str, Fraction] = {}
+    parameters: dict[str, Fraction] = {}
     for place, (begin, cosine, sine) in enumerate(_LETTERS[: len(motion.constant) // 3]):
         own = slice(3 * place, 3 * place + 3)
-        found |= labelled(begin, motion.start[own])
+        parameters |= labelled(begin, motion.start[own])
         for k, wave in enumerate(motion.waves, start=1):
-            found |= labelled(f"{cosine}{k}", wave.cosine[own])
-            found |= labelled(f"{sine}{k}", wave.sine[own])
+            parameters |= labelled(f"{cosine}{k}", wave.cosine[own])
+            parameters |= labelled(f"{sine}{k}", wave.sine[own])
     for k, wave in enumerate(motion.waves, start=1):
-        found |= {f"n{k}": wave.frequency, f"u{k}": Fraction(1), f"v{k}": Fraction(0)}
-    return found
+        parameters |= {f"n{k}": wave.frequency, f"u{k}": Fraction(1), f"v{k}": Fraction(0)}
+    return parameters
 
 
 def sentences(motion: Manufactured, inverse: Inverse) -> tuple[str, ...]:
-    """Return what a reader of the equations should know."""
+    """Return sentences that explain the equations to a reader."""
     starred = " and ".join(f"{letter}*" for letter in inverse.momenta)
     verb = "is" if len(inverse.momenta) == 1 else "are"
     loads = f"the loads are those under which {starred} {verb} the motion"
@@ -124,8 +124,8 @@ def sentences(motion: Manufactured, inverse: Inverse) -> tuple[str, ...]:
     return (loads, clock) if motion.waves else (loads,)
 
 
-def begun(waves: tuple[Wave, ...], start: Vector) -> Manufactured:
-    """Return the motion of these waves that is exactly there at its start."""
+def motion_from(waves: tuple[Wave, ...], start: Vector) -> Manufactured:
+    """Return the motion of these waves that begins exactly at ``start``."""
     constant = reduce(tensors.minus, (wave.cosine for wave in waves), start)
     return Manufactured(constant, waves)
 
@@ -157,7 +157,7 @@ KIRCHHOFF_INVERSE: Final = Inverse("xy", _force_and_couple)
 
 
 def _symbols(named: Mapping[str, Any]) -> list[Any]:
-    """Return names in place of components, what is absent staying so."""
+    """Return names for the components; absent terms stay absent."""
     return [ABSENT if is_absent(value) else Symbol(name) for name, value in named.items()]
 
 

@@ -1,8 +1,8 @@
-"""Mechanics of one kind of body: the numbers of its equations, their units, and the choice of equations.
+"""The mechanics of one kind of body: the numbers of its equations, their units, and their choice.
 
-The equations hold coefficients, loads and momenta under letters: K, M and H of a rigid body; A, B, C, X, L,
-x and y of a solid in a fluid. A kind of body says how its letters follow from its parts and back; the rest
-(rounding, rescaling, naming) is one loop over the letters, in problem.py and general.py.
+The equations name coefficients, loads and momenta by letters: K, M and H for a rigid body; A, B, C, X, L, x
+and y for a solid in a fluid. A kind of body converts its parts to letters and back. Rounding, rescaling and
+naming are loops over the letters, in problem.py and general.py.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ S = TypeVar("S", bound=State)
 
 
 def components(letter: Part, value: Value) -> dict[str, Fraction]:
-    """Return the components of a value by letter and indices; of a symmetric matrix the upper triangle."""
+    """Return the components of a value by letter and indices; for a symmetric matrix the upper triangle."""
     name = letter.name
     if letter.shape is Shape.NUMBER:
         return {name: value}
@@ -46,7 +46,7 @@ def components(letter: Part, value: Value) -> dict[str, Fraction]:
 
 @dataclass(frozen=True)
 class Change:
-    """The momenta by the moving part of a state, z: matrix z, or z itself without a matrix."""
+    """The map from the moving part z of a state to the momenta: matrix z, or z itself without a matrix."""
 
     matrix: Matrix | None = None
     inverse: Matrix = ()
@@ -60,11 +60,11 @@ class Change:
         return momentum if self.matrix is None else tensors.apply(self.inverse, momentum)
 
     def motion_of_momenta(self, motion: Manufactured) -> Manufactured:
-        """Return the motion of the momenta, of one of the state."""
+        """Return the motion of the momenta for a motion of the state."""
         return motion if self.matrix is None else motion.mapped(self.matrix)
 
     def motion_of_state(self, motion: Manufactured) -> Manufactured:
-        """Return the motion of the state, of one of the momenta."""
+        """Return the motion of the state for a motion of the momenta."""
         return motion if self.matrix is None else motion.mapped(self.inverse)
 
 
@@ -98,22 +98,22 @@ class Mechanics(ABC, Generic[B, S]):
     def body(self, values: Mapping[str, Value]) -> B:
         """Return the body of these coefficients and loads.
 
-        Raises ValueError, whose text says what is not positive definite, where there is none.
+        Raises ValueError, which names what is not positive definite, if there is no such body.
         """
 
     @abstractmethod
     def change(self, body: B) -> Change:
-        """Return how the momenta follow from omega or the impulses."""
+        """Return the map from omega or the impulses to the momenta."""
 
     @abstractmethod
     def choice(self, numbers: Mapping[str, Fraction], rung: Rung) -> Choice:
-        """Return the shortest equations that are exactly those of these numbers."""
+        """Return the shortest equations that are exact for these numbers."""
 
     @abstractmethod
     def units(self, body: B, start: S, span: Fraction) -> Units:
         """Return the units in which the start and the fastest rate are of order one."""
 
     def derived(self, body: B, start: S) -> Mapping[str, Mapping[str, Value]]:
-        """Return what a program may want besides the parts, by table of the question."""
+        """Return numbers that a program may need besides the parts, by table of the question."""
         del body, start
         return {}

@@ -1,8 +1,8 @@
 """A problem: one scene's equations and data on one rung, as a solver receives them.
 
-The data are rounded once, in such a way that the rounded problem is still an exact body. What a
-solver received is kept as a scene of its own, `given`, in exact numbers: the truth starts from it,
-so that an error is the solver's and never the data's.
+The data are rounded once, in such a way that the rounded problem is still an exact body. The rounded data
+that a solver receives are stored as the scene `given`, in exact numbers. The truth starts from `given`, so
+that an error comes from the solver and never from the data.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from math import isqrt, lcm
 from typing import NoReturn
 
 from taylor_verify.models import manufactured
-from taylor_verify.models.choice import Choice, constants_told
+from taylor_verify.models.choice import Choice, constant_states_sentence
 from taylor_verify.models.form import Equations, Form
 from taylor_verify.models.mechanics import components
 from taylor_verify.models.registry import mechanics, natural_units
@@ -33,21 +33,21 @@ from taylor_verify.scenes.tensors import Vector
 
 
 class NotRepresentable(Exception):
-    """The rung cannot hold this scene as a body with distinct sample times; the text says why."""
+    """The error for a scene that the rung cannot represent; the text says why."""
 
 
 @dataclass(frozen=True, eq=False)
 class Problem:
     """Question to a solver: equations, parameters, initial state and times, all on one rung.
 
-    It is equal to itself alone, so that what follows from it can be looked up.
+    Problems are compared by identity, so that results can be cached by problem.
 
-    ``given`` is what most solvers want: the body, the start (``given.initial.omega``) and the instants
-    in the scene's own units. ``parameters``, ``initial_momenta`` and ``times`` (elapsed since the
-    initial state) are the same as numbers of the rung, held exactly, in ``units`` and in the order of
-    ``form``, whose states are momenta: I omega and not omega, or both impulses, then the attitude and
-    the centre as far as they are tracked. ``replaced`` are coefficients of the body in whose place
-    others stand in the equations, and ``because`` says which equations were chosen, and why.
+    Most solvers need only ``given``: the body, the start (``given.initial.omega``) and the instants, in
+    the scene's own units. ``parameters``, ``initial_momenta`` and ``times`` (elapsed since the initial
+    state) are the same data as exact numbers of the rung, in ``units`` and in the order of ``form``. The
+    states of the form are momenta: I omega (not omega), or both impulses; then the attitude and the
+    centre if they are tracked. ``replaced`` are coefficients of the body that the equations replace by
+    others. ``because`` says which equations were chosen, and why.
     """
 
     scene: Scene
@@ -63,7 +63,7 @@ class Problem:
 
     @property
     def initial(self) -> NoReturn:
-        """Raise AttributeError, which says where each of the two starts is."""
+        """Raise AttributeError with the names of the two attributes that hold a start."""
         raise AttributeError(
             "expected problem.given.initial (omega or the impulses, in the scene's units) or "
             "problem.initial_momenta (I omega or the impulses, in problem.units), got problem.initial"
@@ -71,7 +71,7 @@ class Problem:
 
     @property
     def parameter(self) -> Mapping[str, Fraction]:
-        """Every coefficient and load by name, those that the equations do without included."""
+        """Coefficients and loads by name, including those that the equations do not use."""
         return {
             **dict(self.replaced),
             **dict(zip(self.form.parameters, self.parameters, strict=True)),
@@ -83,17 +83,17 @@ class Problem:
         return dict(zip(self.form.states, self.initial_momenta, strict=True))
 
     def with_equations(self, equations: Equations) -> Problem:
-        """Return the same data under other equations in the same states, as the negative controls need."""
+        """Return the same data with other equations in the same states, for the negative controls."""
         form = replace(self.form, equations=equations, parameters=tuple(self.parameter))
-        kept = form.entering()
-        values = tuple(self.parameter[name] for name in kept)
-        return replace(self, form=replace(form, parameters=kept), parameters=values)
+        entering = form.entering()
+        values = tuple(self.parameter[name] for name in entering)
+        return replace(self, form=replace(form, parameters=entering), parameters=values)
 
 
 def pose(scene: Scene, rung: Rung) -> Problem:
     """Round the scene onto a rung and build the equations it requires.
 
-    Raises NotRepresentable where the rounded data are no body or the sample times coincide.
+    Raises NotRepresentable if the rounded data are no valid body or sample times coincide.
     """
     units = natural_units(scene)
     times = _rounded_times(scene.clock, units, rung)
@@ -115,7 +115,7 @@ def pose(scene: Scene, rung: Rung) -> Problem:
         times=times,
         given=replace(scene, body=data.body, initial=data.initial, clock=clock),
         replaced=tuple((n, v) for n, v in choice.replaced.items() if n not in form.parameters),
-        because=choice.because + constants_told(data.states, form),
+        because=choice.because + constant_states_sentence(data.states, form),
     )
 
 
@@ -132,11 +132,11 @@ def _rounded_times(clock: Clock, units: Units, rung: Rung) -> Sequence[Fraction]
 def pose_as_stored(scene: Scene, rung: Rung) -> Problem:
     """Return the problem of a solver that stores I and omega0, as physics engines do.
 
-    Whatever it makes of I^-1 is its own affair: so I and omega0 are rounded to the rung, the 21
-    coefficients and x, y likewise, and I^-1 is exact. Of a manufactured motion it stores what the
-    scene writes, the frequencies and coefficients of omega, or of x and y; it begins where the rounded
-    ones say, and the loads are those of the rounded body. The rest is as `pose` would have it. Raises
-    NotRepresentable where the rounded data are no body.
+    I and omega0 are rounded to the rung, and so are the 21 coefficients and x, y of a solid in a fluid.
+    I^-1 is exact, because its computation belongs to the solver. For a manufactured motion the solver
+    stores the scene's frequencies and the coefficients of omega, or of x and y. The motion begins where
+    the rounded numbers say, under the loads of the rounded body. Everything else is as in `pose`. Raises
+    NotRepresentable if the rounded data are no valid body.
     """
     posed = pose(scene, rung)
     body, initial = _stored(scene, _Rounding(rung))
@@ -144,10 +144,10 @@ def pose_as_stored(scene: Scene, rung: Rung) -> Problem:
 
 
 def adopt(scene: Scene, rung: Rung, instants: Sequence[Fraction]) -> Problem:
-    """Return the problem that somebody else's answer solves, at the times it has rows for.
+    """Return the problem that an answer from another program solves, at the times of its rows.
 
-    The data are as they are stored, and the instants are exact. Raises NotRepresentable where the
-    rounded data are no body.
+    The data are rounded as in `pose_as_stored`, and the instants are exact. Raises NotRepresentable if the
+    rounded data are no valid body.
     """
     posed, clock = pose_as_stored(scene, rung), Clock(scene.clock.start, instants)
     return replace(
@@ -159,7 +159,7 @@ def adopt(scene: Scene, rung: Rung, instants: Sequence[Fraction]) -> Problem:
 
 
 def _stored(scene: Scene, rounded: _Rounding) -> tuple[Body, State]:
-    """Return body and initial state, each number of the scene rounded once where it stands."""
+    """Return body and initial state, with each number of the scene rounded once."""
     motion = scene.body.manufactured
     start = scene.initial.changed(rounded.part)
     if motion is not None:
@@ -175,7 +175,7 @@ def _stored(scene: Scene, rounded: _Rounding) -> tuple[Body, State]:
 
 @dataclass(frozen=True)
 class _Data:
-    """Equations with rounded numbers, which of these are states, and the exact body and start."""
+    """Equations with rounded numbers, the names of the states, and the exact body and start."""
 
     choice: Choice
     states: tuple[str, ...]
@@ -188,7 +188,9 @@ def _rounded_data(scene: Scene, units: Units, rounded: _Rounding) -> _Data:
     body, start = scene.body, scene.initial
     kind = mechanics(body)
     exact = kind.change(body).momentum(start.moving)
-    vectors = {one.name: exact[3 * k : 3 * k + 3] for k, one in enumerate(kind.momenta)}
+    vectors = {
+        momentum_part.name: exact[3 * k : 3 * k + 3] for k, momentum_part in enumerate(kind.momenta)
+    }
     values = _counted(kind.body_letters, kind.values(body), units, rounded)
     momenta = _counted(kind.momenta, vectors, units, rounded)
     try:
@@ -201,9 +203,9 @@ def _rounded_data(scene: Scene, units: Units, rounded: _Rounding) -> _Data:
         for part in start.PARTS
         if part.name not in start.MOVING
     }
-    begun = start.with_parts(place).with_moving(kind.change(given).moving(momentum))
+    initial = start.with_parts(place).with_moving(kind.change(given).moving(momentum))
     numbers = _named(kind.momenta, momenta) | _named(kind.body_letters, values)
-    return _Data(kind.choice(numbers, rounded.rung), kind.states, given, begun)
+    return _Data(kind.choice(numbers, rounded.rung), kind.states, given, initial)
 
 
 def numbers_of(body: Body, units: Units) -> dict[str, Fraction]:
@@ -220,18 +222,21 @@ _Values = Mapping[str, Value]
 
 def _each(letters: _Letters, values: _Values, change: Callable[[Part, Value], Value]) -> _Values:
     """Return the value of each letter in other units."""
-    return {one.name: change(one, values[one.name]) for one in letters}
+    return {letter.name: change(letter, values[letter.name]) for letter in letters}
 
 
 def _counted(letters: _Letters, values: _Values, units: Units, rounded: _Rounding) -> _Values:
     """Return the value of each letter, counted in its unit and rounded once."""
     return {
-        one.name: rounded.each(values[one.name], -units.exponent(one.dimension)) for one in letters
+        letter.name: rounded.each(values[letter.name], -units.exponent(letter.dimension))
+        for letter in letters
     }
 
 
 def _named(letters: _Letters, values: _Values) -> dict[str, Fraction]:
-    return {name: v for one in letters for name, v in components(one, values[one.name]).items()}
+    return {
+        name: v for letter in letters for name, v in components(letter, values[letter.name]).items()
+    }
 
 
 def _with_clock(
@@ -240,24 +245,26 @@ def _with_clock(
     """Return the same under the loads of a manufactured motion, with their clock among the states.
 
     The coefficients of H*, or x* and y*, and the frequencies are formed exactly and rounded once. The
-    constant part is what the rounded start leaves of it, so that the motion begins where the state does.
+    constant part follows from the rounded start, so that the motion begins at the state.
     """
     kind = mechanics(body)
-    sizes: Vector = tuple(units.of(one.dimension) for one in kind.momenta for _ in range(3))
+    sizes: Vector = tuple(units.of(part.dimension) for part in kind.momenta for _ in range(3))
     of_momenta = kind.change(body).motion_of_momenta(motion)
     scaled = of_momenta.in_units(tuple(1 / size for size in sizes), 1 / units.time)
     start = tuple(data.choice.numbers[name] for name in data.states)
-    held = manufactured.begun(rounded.waves(scaled), start)
-    given = kind.change(data.body).motion_of_state(held.in_units(sizes, units.time))
-    # The loads are formed of the general coefficients, whatever shorter equations do without.
-    known = numbers_of(data.body, units) | dict(data.choice.numbers)
+    rounded_motion = manufactured.motion_from(rounded.waves(scaled), start)
+    given = kind.change(data.body).motion_of_state(rounded_motion.in_units(sizes, units.time))
+    # The loads need the general coefficients, even if the shorter equations do not.
+    coefficients = numbers_of(data.body, units) | dict(data.choice.numbers)
     choice = replace(
         data.choice,
-        equations=manufactured.Loaded(data.choice.equations, len(held.waves), kind.inverse),
-        numbers=known | manufactured.numbers(held),
-        because=(*data.choice.because, *manufactured.sentences(held, kind.inverse)),
+        equations=manufactured.Loaded(
+            data.choice.equations, len(rounded_motion.waves), kind.inverse
+        ),
+        numbers=coefficients | manufactured.numbers(rounded_motion),
+        because=(*data.choice.because, *manufactured.sentences(rounded_motion, kind.inverse)),
     )
-    states = data.states + manufactured.states(held)
+    states = data.states + manufactured.states(rounded_motion)
     return _Data(choice, states, data.body.with_motion(given), data.initial)
 
 
@@ -322,8 +329,8 @@ def _unit_quaternion(quaternion: Quaternion, rung: Rung) -> Quaternion:
     """Return the quaternion over its norm, each component rounded once."""
     if quaternion == IDENTITY:
         return quaternion
-    # 64 guard bits: the square root's own error cannot show in the rounding but by a tie of
-    # probability 2^-64, and then by one unit in the last place.
+    # 64 guard bits: the error of the square root changes the rounding only near a tie, with
+    # probability 2^-64 and by one unit in the last place.
     scale = lcm(*(entry.denominator for entry in quaternion))
     whole = [entry.numerator * (scale // entry.denominator) for entry in quaternion]
     squared = sum(n * n for n in whole)

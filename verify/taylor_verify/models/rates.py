@@ -1,4 +1,4 @@
-"""Rate of a motion at a state, on which the longest step rests.
+"""The fastest rate of a motion at a state, which limits the step.
 
 s  state, in the problem's units       J(s)  the Jacobian of the rates
 """
@@ -36,11 +36,11 @@ Indices = np.ndarray[Any, np.dtype[np.intp]]
 
 
 class Linearised:
-    """The linearised equations of one problem, made once and evaluated at many of its states.
+    """The linearised equations of one problem, built once and evaluated at many states.
 
-    The rates of the momenta are quadratic in them, so that J(s) = J(0) + sum_k s_k dJ/ds_k exactly. Doubles
-    suffice: the rate is used to within some per cent. Momenta do not know the attitude, and the attitude
-    turns at |omega|/2, which is linear in the momenta. The centre enters no rate.
+    The rates of the momenta are quadratic in them, so that J(s) = J(0) + sum_k s_k dJ/ds_k exactly.
+    Doubles suffice, because the rate is needed to some per cent only. The momenta do not depend on the
+    attitude. The attitude turns at |omega|/2, which is linear in the momenta. The centre enters no rate.
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -56,9 +56,10 @@ class Linearised:
     def fastest(self, states: Any, squarings: int = _ENOUGH) -> float:
         """Return the fastest rate at a state, or at all rows of an array; infinite where not finite.
 
-        In radians per unit of time. A component too small for the error control to see grows or turns at
-        an eigenvalue of J, in any units. Their size is bounded by |J^N|^(1/N) with N = 2^squarings: for
-        N = 16 some tenths too much, or else the eigenvalues are taken. The attitude turns at |omega|/2.
+        The unit is radians per unit of time. A component that is too small for the error control grows or
+        turns at an eigenvalue of J, in any units. The eigenvalues are bounded by |J^N|^(1/N) with N =
+        2^squarings. For N = 16 the bound is some tenths too large; if it is worse, the eigenvalues are
+        computed. The attitude turns at |omega|/2.
         """
         rows = np.atleast_2d(states)[:, : self._momenta].astype(float)
         with np.errstate(all="ignore"):
@@ -72,15 +73,15 @@ class Linearised:
         for k in range(squarings):
             power, before = power @ power, bound
             bound = size * self._norm(power) ** (0.5 / 2**k)
-        # A norm may exceed a radius by a factor, of which the N-th root is left.
+        # A norm may exceed the spectral radius by a factor, of which only the N-th root remains.
         if squarings == _ENOUGH and not before <= _NEARLY * bound:
             bound = float(np.abs(np.linalg.eigvals(J)).max())
         return max(bound, turned, _SLOWEST)
 
     def is_within(self, states: Any, rate: float) -> bool:
-        """Return True if no row of an array of states has a rate that is faster.
+        """Return True if no row of an array of states has a faster rate.
 
-        Most are told by a bound that is soon found, |J^2|^(1/2) in Frobenius's norm.
+        Most rows are decided by a cheap bound, |J^2|^(1/2) in Frobenius's norm.
         """
         rows = states[:, : self._momenta]
         if rows.dtype != float:
@@ -146,7 +147,7 @@ def _linearised(form: Form) -> tuple[int, _Terms]:
 def _monomials(form: Form) -> Iterator[tuple[int, float, list[int], list[int]]]:
     """Yield the terms of every rate, multiplied out: the state's place, c, its variables, and parameters.
 
-    A variable stands as often as its power. Parameters are counted from 1.
+    A variable is repeated according to its power. Parameters are counted from 1.
     """
     names, n = [*form.states, *form.parameters], len(form.states)
     variables = fmpq_mpoly_ctx.get([f"v{i}" for i in range(len(names))], Ordering.lex).gens()

@@ -1,4 +1,4 @@
-"""The mechanics of every kind of body: the one table of this room by the class of a body."""
+"""The table of the mechanics of every kind of body, by the class of a body."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ _MECHANICS: Final[Mapping[type[Body], Mechanics[Any, Any]]] = {
 
 def mechanics(body: Body) -> Mechanics[Any, Any]:
     """Return the mechanics of a body."""
-    found = _MECHANICS[type(body)]
-    return Damped(found) if body.damping else found
+    undamped = _MECHANICS[type(body)]
+    return Damped(undamped) if body.damping else undamped
 
 
 def natural_units(scene: Scene) -> Units:
     """Return the units in which the initial state and the fastest rate are of order one."""
     clock = scene.clock
-    # The instants are monotonic: one of the two ends is farthest from the start.
+    # The instants are monotonic, so one of the two ends is farthest from the start.
     span = max(abs(clock.instants[end] - clock.start) for end in (0, -1))
     return mechanics(scene.body).units(scene.body, scene.initial, span)

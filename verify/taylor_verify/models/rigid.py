@@ -59,13 +59,13 @@ class Rigid(Mechanics[RigidBody, Spin]):
     def units(self, body: RigidBody, start: Spin, span: Fraction) -> Units:
         momentum, motion = tensors.apply(body.inertia, start.omega), body.manufactured
         if motion is not None:
-            # Not where the motion begins counts, but how far it goes, and how fast its waves are.
+            # The reach of the motion and the rate of its waves count, not its start.
             reached = size(motion.mapped(body.inertia).reach) or Fraction(1)
             rate = max(size(motion.reach), motion.highest) or Fraction(1)
             return Units(time=1 / binary(rate), momentum=reached)
         unit = size(momentum) or binary(size(body.moment) * span) or Fraction(1)
         rate = size(start.omega) or largest(body.inverse_inertia) * unit
-        # Where the moments differ by many orders of magnitude H may turn far faster than the body does.
+        # If the moments differ by many orders of magnitude, H may turn much faster than the body.
         rate = max(rate, _nutation(body.inverse_inertia, momentum))
         return Units(time=1 / binary(rate), momentum=unit)
 
@@ -77,7 +77,7 @@ class Rigid(Mechanics[RigidBody, Spin]):
 
 
 def _nutation(K: Matrix, H: Vector) -> Fraction:
-    """Return a power of two near the fastest rate of H' = H x K H linearised at H; 0 where nothing changes.
+    """Return a power of two near the fastest rate of H' = H x K H linearised at H; 0 if H is constant.
 
     The trace of J = [H]x K - [K H]x vanishes, so that its eigenvalues are the roots of
     z^3 + s z - d with s = -tr(J^2)/2, d = det J: not above twice the larger of |s|^(1/2), |d|^(1/3).
@@ -103,31 +103,39 @@ def _nutation(K: Matrix, H: Vector) -> Fraction:
 def chosen_equations(numbers: Numbers, rung: Rung) -> Choice:
     """Return the equations of H1..H3, the upper triangle of K and M1..M3.
 
-    A difference of K's diagonal is a coefficient if the rung holds it, and else formed as it goes.
+    A difference of K's diagonal is a coefficient if the rung can represent it; else the solver forms it.
     """
     k1, k2, k3 = (numbers[f"K{i}{i}"] for i in (1, 2, 3))
     replaced = {name: value for name, value in numbers.items() if name[0] == "K" and value}
     equations: PrincipalEuler | TensorEuler
     if any(numbers[name] for name in _PRODUCTS):
-        found = {"D11": k1 - k3, "D22": k2 - k3}
+        differences = {"D11": k1 - k3, "D22": k2 - k3}
         definitions, begin = _DEVIATIONS, "a sphere is taken away from K: "
     else:
-        found = dict(zip(_DIFFERENCES, (k3 - k2, k1 - k3, k2 - k1), strict=True))
+        differences = dict(zip(_DIFFERENCES, (k3 - k2, k1 - k3, k2 - k1), strict=True))
         definitions, begin = _DIFFERENCES, "principal axes: "
-    extra = {name: value for name, value in found.items() if rung.holds(value)}
-    formed = tuple(int(name[1]) for name in found if name not in extra)
+    extra = {name: value for name, value in differences.items() if rung.holds(value)}
+    formed = tuple(int(name[1]) for name in differences if name not in extra)
     shown = [name for name in extra if extra[name] or definitions is _DEVIATIONS]
-    said = [begin + ", ".join(f"{name} = {definitions[name]}" for name in shown)] if shown else []
+    sentences = (
+        [begin + ", ".join(f"{name} = {definitions[name]}" for name in shown)] if shown else []
+    )
     if definitions is _DEVIATIONS:
         equations = TensorEuler(formed)
     else:
-        said += [
-            f"{definitions[n]} = 0: H{n[1]} feels no gyroscopic term" for n in found if not found[n]
+        sentences += [
+            f"{definitions[n]} = 0: H{n[1]} feels no gyroscopic term"
+            for n in differences
+            if not differences[n]
         ]
         equations = PrincipalEuler(formed)
         if len(formed) == 1 and all(extra.values()):
-            said.append(f"D{formed[0]} is -({' + '.join(extra)}), as {rung.name} does not hold it")
+            sentences.append(
+                f"D{formed[0]} is -({' + '.join(extra)}), as {rung.name} does not hold it"
+            )
             equations, formed = PrincipalEuler(summed=formed[0]), ()
     if formed:
-        said.append("differences of K's diagonal that the rung does not hold are formed as it goes")
-    return Choice(equations, {**numbers, **extra}, replaced, tuple(said))
+        sentences.append(
+            "differences of K's diagonal that the rung does not hold are formed as it goes"
+        )
+    return Choice(equations, {**numbers, **extra}, replaced, tuple(sentences))

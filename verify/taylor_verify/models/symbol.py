@@ -1,4 +1,4 @@
-"""A symbol that remembers what is done to it: the equations printed and priced are those built."""
+"""A symbol that records the operations on it, to print and count the equations as they are built."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """Sample times as numbers of a rung, rounded all at once where that is provably one rounding each.
 
-Times that are equally spaced are quotients (a + k b)/d of whole numbers. Where a number of the rung
-holds numerator and denominator exactly, its division, IEEE 754's, rounds the quotient to nearest,
-once; a power of two more or less changes no digit inside the range of the rung.
+Equally spaced times are quotients (a + k b)/d of whole numbers. If numbers of the rung can represent
+numerator and denominator exactly, the IEEE 754 division rounds the quotient once to nearest. A factor that
+is a power of two changes no digit inside the range of the rung.
 """
 
 from __future__ import annotations
@@ -20,7 +20,9 @@ from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import Rung, exact_value, floor_log2, nearest, power_of_two
 
 _HARDWARE: Final[dict[str, Any]] = {
-    each.name: np.dtype(each.numpy).type for each in FORMATS.values() if each.numpy
+    number_format.name: np.dtype(number_format.numpy).type
+    for number_format in FORMATS.values()
+    if number_format.numpy
 }
 # The numerators are formed in 64-bit integers, one bit of which is the sign.
 _INTEGER_BITS: Final = 63
@@ -47,13 +49,13 @@ class BinaryTimes(Instants):
 
     @property
     def are_distinct(self) -> bool:
-        return all(one != other for one, other in pairwise(self.pairs))
+        return all(time != following for time, following in pairwise(self.pairs))
 
 
 def rounded_times(clock: Clock, unit: Fraction, rung: Rung) -> Sequence[Fraction]:
     """Return the time since the initial state over ``unit``, a power of two, each rounded once to the rung.
 
-    Raises OverflowError for a time that the rung has no number for.
+    Raises OverflowError for a time outside the range of the rung.
     """
     if isinstance(clock.instants, EquallySpaced):
         a, b, d = clock.instants.over_common_denominator(clock.start)
@@ -70,10 +72,10 @@ def rounded_times(clock: Clock, unit: Fraction, rung: Rung) -> Sequence[Fraction
 
 
 def are_distinct(times: Sequence[Fraction]) -> bool:
-    """Return True if no two are equal; the instants were monotonic, and rounding keeps their order."""
+    """Return True if no two times are equal; they are monotonic, because rounding preserves the order."""
     if isinstance(times, TypedTimes | BinaryTimes):
         return times.are_distinct
-    return all(one != other for one, other in pairwise(times))
+    return all(time != following for time, following in pairwise(times))
 
 
 def _is_in_range(largest: int, d: int, shift: int, rung: Rung) -> bool:
@@ -84,7 +86,7 @@ def _is_in_range(largest: int, d: int, shift: int, rung: Rung) -> bool:
 
 
 def _is_held(largest: int, d: int, rung: Rung) -> bool:
-    """Return True if the rung is a type of this machine that holds every numerator and the denominator."""
+    """Return True if the rung is a hardware type that can represent all these whole numbers."""
     kind = _HARDWARE.get(rung.name)
     if kind is None or np.finfo(kind).nmant + 1 != rung.bits:
         return False

@@ -1,4 +1,4 @@
-"""Units in which a problem has size one: exact powers of two, so that changing them rounds nothing.
+"""Units in which a problem has size one: powers of two, so that a change of units has no rounding.
 
 heyoka's error control is absolute below one and relative above; in these units it is relative to
 the motion itself, whatever units the scene uses.
@@ -18,9 +18,9 @@ from taylor_verify.scenes.parts import Dimension, Part, Value, entrywise
 from taylor_verify.scenes.precision import floor_log2, power_of_two
 from taylor_verify.scenes.tensors import Vector
 
-# A product of doubles that are rounded once each, and a sum of some, are right to within this part.
+# Relative error bound of sums of some products of doubles that were rounded once each.
 _DOUBTFUL: Final = 2.0**-40
-# Smaller parts of a sum are not told from what its terms lost, nor products that left the range of doubles.
+# A sum smaller than this part of its terms is too uncertain, because of rounding and underflow.
 _LEFT: Final = 2.0**-20
 _TINY, _HUGE = 1e-200, 1e200
 _ONE: Final = Fraction(1)
@@ -74,7 +74,7 @@ class Units:
         return _scaled(-self.exponent(part.dimension), value)
 
     def physical(self, part: Part, value: Value) -> Value:
-        """Return the part that is so much in its unit."""
+        """Return a part of a body or a state from its number in units."""
         return _scaled(self.exponent(part.dimension), value)
 
 
@@ -112,7 +112,7 @@ def size(vector: Vector) -> Fraction:
 def exponent_of_sum(products: Iterable[Vector], over: Fraction = _ONE) -> int | None:
     """Return the exponent of a sum of products over a number: the largest e with 2^e <= |sum / number|.
 
-    None where doubles do not tell: a unit is asked for often, and a rational is dear.
+    None if doubles cannot decide; doubles are tried first, because rationals are expensive.
     """
     try:
         terms = [prod(map(float, factors)) / float(over) for factors in products]

@@ -1,1 +1,1 @@
-"""Typed documents that every room may read, and the names that all of them share."""
+"""Typed documents that every room may read, and the names that all rooms share."""

@@ -17,7 +17,7 @@ Sentences = tuple[Annotated[str, Meta(min_length=1)], ...]
 
 @dataclass(frozen=True)
 class Convention:
-    """One convention of a file that is not the scene's."""
+    """A convention of a file that differs from the scene's."""
 
     about: Annotated[str, about("time, body, axes or a group of columns.")]
     found: str
@@ -35,8 +35,8 @@ class Convention:
 class LikelyCause:
     """A hypothesis about wrong dynamics that explains nearly all of the error of a quantity.
 
-    ``leaves`` is the part of the error that it does not explain. Of two that explain equally well both
-    are given. In the answer of `run`, which may be about many, it names its ``scene`` and ``rung``.
+    ``leaves`` is the part of the error that it does not explain. If two hypotheses explain equally well,
+    both are given. In the answer of `run`, which may have many runs, ``scene`` and ``rung`` name the run.
     """
 
     name: Annotated[str, Meta(min_length=1, description="no gyroscopic term, damping, ...")]
@@ -48,7 +48,7 @@ class LikelyCause:
 
     @property
     def line(self) -> str:
-        """The cause as a line of a text, behind its run if it names one."""
+        """The cause as a line of text, with its run in front if it names one."""
         place = f"{self.scene} {self.rung}: " if self.scene else ""
         return f"{place}likely cause: {self.sentence}"
 
@@ -65,7 +65,7 @@ class FileRead:
 
 @dataclass(frozen=True)
 class Against:
-    """The comparison with a published folder: what has left its rounding class."""
+    """The comparison with a published folder: the rows that left their rounding class."""
 
     folder: str
     compared: Count
@@ -97,7 +97,7 @@ class AgainstBaseline:
 
 @dataclass(frozen=True)
 class ExpectationsMet:
-    """The rows of the extremes that were expected to be no pass: how many came so, and what did not."""
+    """The rows of the extremes that are expected not to pass: the number that agree, and the others."""
 
     met: Count
     mismatches: Sentences
@@ -105,7 +105,7 @@ class ExpectationsMet:
 
 @dataclass(frozen=True)
 class LeftOut:
-    """A run that was not made, and why."""
+    """A run that was left out, and the reason."""
 
     scene: str
     rung: str
@@ -122,7 +122,7 @@ class Stall(StrEnum):
 
 @dataclass(frozen=True)
 class OrderPoint:
-    """The largest error of one quantity in one file, and what roundoff would leave at its step.
+    """The largest error of one quantity in one file, and the roundoff floor at its step.
 
     ``local`` is the order from the next larger step to this one.
     """
@@ -139,9 +139,9 @@ class Order:
     """The order of convergence of one quantity over files of several steps, the largest step first.
 
     ``order`` is the slope of log(error) against log(step) from the step ``largest`` to ``smallest``, and
-    ``low`` to ``high`` its 95 % interval; None where no order fits. Smaller steps than ``stalls_at`` do not
-    make the error smaller, for the reason ``stall``. The step of the file ``suspect`` does not fit the
-    others, whose order its error has at ``suspect_step``.
+    ``low`` to ``high`` its 95 % interval; None if no order fits. Steps below ``stalls_at`` do not make the
+    error smaller, for the reason ``stall``. The step of the file ``suspect`` does not fit the others; its
+    error would fit at ``suspect_step``.
     """
 
     quantity: str
@@ -180,7 +180,7 @@ class Answer:
 
 @dataclass(frozen=True)
 class FilesAnswer:
-    """The answer of `check` for several files: a document for each, and the order of convergence.
+    """The answer of `check` for several files: a document for each file, and the order of convergence.
 
     Each of ``files`` is the document of that file alone. The worst of them decides the exit status.
     """

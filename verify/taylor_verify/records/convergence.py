@@ -1,11 +1,11 @@
-"""The order of convergence of a fixed-step answer, of its errors over a sweep of steps.
+"""The order of convergence of fixed-step answers, from their errors at several steps.
 
     h, e(h)      step and error; e ~ C h^p where the order p shows
     p_i          local order between neighbouring steps, log(e_i / e_i+1) / log(h_i / h_i+1)
 
-With large steps the next power of h is not small yet; with small ones roundings take over. The order
-is read between the two: on the longest run of steps over which the local order stays the same. Pages
-show orders of stored errors, so this needs the standard library alone.
+At large steps the next power of h is not small yet; at small steps roundings dominate. The order is read
+between the two: on the longest run of steps with the same local order. Pages show orders of stored errors,
+so this file needs only the standard library.
 """
 
 from __future__ import annotations
@@ -16,18 +16,18 @@ from itertools import pairwise
 from math import fsum, isfinite, log, sqrt
 from typing import Final
 
-# An error that is not this much above the floor of rounding has some of it.
+# An error must be this many times the roundoff floor to be free of rounding.
 CLEAR: Final = 10.0
-# And one beyond this multiple of the floor is not made by rounding on this rung.
+# An error beyond this multiple of the floor is not caused by rounding on this rung.
 _FAR: Final = 100.0
-# Local orders that differ by less are the same one: the integers and halves that orders are, are apart
-# by twice as much.
+# Local orders that differ by less are equal: orders are integers or halves, which differ by at least twice
+# as much.
 SAME: Final = 0.25
-# Two local orders can agree by chance, and one cannot disagree.
+# The smallest number of steps: two local orders can agree by chance, and a single one cannot disagree.
 _FEWEST: Final = 3
-# Errors that fall more slowly than with this order have stopped falling.
+# Errors that fall more slowly than this order have stopped falling.
 _STALLED: Final = 0.5
-# Student's t for 95 % and 1 to 8 degrees of freedom; beyond, that of 8.
+# Student's t for 95 % and 1 to 8 degrees of freedom; for more, the value of 8.
 _STUDENT: Final = (12.71, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306)
 
 
@@ -35,11 +35,11 @@ _STUDENT: Final = (12.71, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306)
 class Convergence:
     """The order that a sweep of steps shows.
 
-    ``order`` is the observed one and ``spread`` half of its 95 % interval, from the scatter about a
-    straight line in log-log; None where no range of steps has an order. ``steps`` are those used,
-    falling. ``level`` is the error below which smaller steps do not lead, None if they still do;
-    ``stalls_at`` is the step from which on they do not, and ``by_rounding`` is True if rounding explains
-    it. ``reason`` says all this in words, and the order expected if it is another.
+    ``order`` is the observed order and ``spread`` half of its 95 % interval, from the scatter about a
+    straight line in log-log; None if no range of steps has an order. ``steps`` are the steps used, in
+    descending order. ``level`` is the smallest error that smaller steps reach, None if the error still
+    falls. ``stalls_at`` is the step at which it stops falling, and ``by_rounding`` is True if rounding
+    explains that. ``reason`` says all this in words, with the expected order if it differs.
     """
 
     order: float | None
@@ -65,12 +65,11 @@ def convergence(
     roundoff_floor: float | Sequence[float] = 0.0,
     expected: float | None = None,
 ) -> Convergence:
-    """Return the order seen in errors over steps, given in any order of their own.
+    """Return the order of convergence from errors and steps, which may be given in any sequence.
 
-    ``errors`` that are None or not finite belong to runs that broke. ``roundoff_floor`` is what
-    perfect rounding would leave, for all steps or for each, and ``expected`` the order that the method
-    ought to have. Raises ValueError for unlike lengths and
-    for steps that are not positive or not distinct.
+    ``errors`` that are None or not finite belong to runs that broke. ``roundoff_floor`` is the error that
+    perfect rounding would leave, for all steps or for each. ``expected`` is the nominal order of the
+    method. Raises ValueError for different lengths and for steps that are not positive or not distinct.
     """
     points, broken = _points(steps, errors, roundoff_floor)
     stop = _stop(points)
@@ -109,29 +108,31 @@ class _Point:
 
     @property
     def is_clear(self) -> bool:
-        """True if the error is one of the method: zero, and what roundings may make, is not."""
+        """True if the error comes from the method: it is not zero, and larger than roundings make."""
         return self.error > CLEAR * self.floor
 
     @property
     def is_rounding(self) -> bool:
-        """True if rounding on this rung explains the error, whatever an answer rounds besides."""
+        """True if rounding on this rung explains the error."""
         return self.floor > 0 and self.error <= _FAR * self.floor
 
 
 def _points(
     steps: Sequence[float], errors: Sequence[float | None], floors: float | Sequence[float]
 ) -> tuple[list[_Point], list[float]]:
-    """The points from the largest step to the smallest, and the steps whose runs broke."""
-    each = [floors] * len(steps) if isinstance(floors, int | float) else list(floors)
-    if not len(steps) == len(errors) == len(each):
+    """Return the points from the largest step to the smallest, and the steps whose runs broke."""
+    floor_of_step = [floors] * len(steps) if isinstance(floors, int | float) else list(floors)
+    if not len(steps) == len(errors) == len(floor_of_step):
         raise ValueError(
             f"expected an error and a floor for each of {len(steps)} steps, got {len(errors)} errors "
-            f"and {len(each)} floors"
+            f"and {len(floor_of_step)} floors"
         )
     if not all(step > 0 for step in steps) or len(set(steps)) < len(steps):
         raise ValueError(f"expected positive steps, no two the same, got {list(steps)}")
     points, broken = [], []
-    for step, error, floor in sorted(zip(steps, errors, each, strict=True), key=lambda p: -p[0]):
+    for step, error, floor in sorted(
+        zip(steps, errors, floor_of_step, strict=True), key=lambda p: -p[0]
+    ):
         if error is not None and isfinite(error):
             points.append(_Point(float(step), float(error), float(floor)))
         else:
@@ -153,8 +154,8 @@ def _locals(points: Sequence[_Point]) -> list[float]:
 def _stop(points: Sequence[_Point]) -> int:
     """The place where errors stop falling for good: the first point that no smaller step improves on.
 
-    No improvement is one that is slower, from there to the end, than an order of a half: a step that
-    happens to do well stops nothing, nor does a start that is not falling yet, or slowly.
+    An improvement counts if it is faster, from there to the end, than an order of a half. A single step
+    that does well by chance is no stop, nor is a beginning where errors do not fall yet or fall slowly.
     """
     for i, point in enumerate(points[:-1]):
         later = min(points[i + 1 :], key=lambda p: p.error)
@@ -165,14 +166,14 @@ def _stop(points: Sequence[_Point]) -> int:
 
 
 def _is_gaining(points: Sequence[_Point]) -> bool:
-    """Return True for errors that fall faster from step to step: their steps were too large at first."""
+    """Return True if errors fall faster from step to step: then the first steps were too large."""
     orders = _locals(points)
     rises = all(before < after for before, after in pairwise(orders))
     return len(orders) >= 2 and orders[0] > 0 and rises and orders[-1] >= _STALLED
 
 
 def _straight(points: Sequence[_Point]) -> Sequence[_Point] | None:
-    """The longest run of steps over which the local order is the same; of two, that of smaller steps."""
+    """Return the longest run of steps with the same local order; of two, the one of smaller steps."""
     best: Sequence[_Point] | None = None
     for first in range(len(points)):
         for last in range(first + _FEWEST, len(points) + 1):
@@ -202,9 +203,9 @@ def _centred(values: Sequence[float]) -> list[float]:
 
 
 def _agree(order: float, spread: float, expected: float) -> bool:
-    """Return True if an order is the expected one, as far as a sweep can tell.
+    """Return True if an order agrees with the expected one.
 
-    Scatter excuses nothing beyond half of the way to the next order.
+    The allowance for scatter ends half of the way to the next order.
     """
     return abs(order - expected) <= min(max(spread, SAME), 2 * SAME)
 

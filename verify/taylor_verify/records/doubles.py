@@ -1,4 +1,4 @@
-"""Many numbers of float64 in eight bytes each: in a tuple they take 32."""
+"""Compact sequences of float64: eight bytes per number, where a tuple takes 32."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ class Doubles(Sequence[float]):
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray[Any, Any]:
         import numpy as np
 
-        # Who asks for no copy gets what nobody can write to.
-        held = np.asarray(self._values)
-        held.setflags(write=False)
-        return held if copy is False else held.astype(dtype or np.float64)
+        # Without a copy, the array is read-only.
+        doubles = np.asarray(self._values)
+        doubles.setflags(write=False)
+        return doubles if copy is False else doubles.astype(dtype or np.float64)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Sequence):
@@ -63,17 +63,17 @@ def four_digits(values: Iterable[float]) -> Doubles:
     import numpy as np
 
     exact = np.asarray(values if isinstance(values, np.ndarray) else list(values), float)
-    found = exact.copy()
+    rounded = exact.copy()
     with np.errstate(all="ignore"):
         power = np.floor(np.log10(np.abs(exact))) - (_DIGITS - 1)
         counts = exact / 10.0**power
         whole = np.rint(counts)
-        # Elsewhere a rounding of the quotient cannot change the digits.
+        # Where this is False, the rounding of the quotient could change the digits.
         is_clear = (np.abs(power) < 250) & (np.abs(np.abs(counts - whole) - 0.5) > 1e-6)
     codes = whole[is_clear] + 1j * power[is_clear]
-    each, places = np.unique(codes, return_inverse=True)
-    texts = [float(f"{int(code.real)}e{int(code.imag)}") for code in each]
-    found[is_clear] = np.array(texts, dtype=float)[places]
+    unique, places = np.unique(codes, return_inverse=True)
+    texts = [float(f"{int(code.real)}e{int(code.imag)}") for code in unique]
+    rounded[is_clear] = np.array(texts, dtype=float)[places]
     others = np.flatnonzero(~is_clear)
-    found[others] = [float(f"{value:.{_DIGITS}g}") for value in exact[others].tolist()]
-    return Doubles(found)
+    rounded[others] = [float(f"{value:.{_DIGITS}g}") for value in exact[others].tolist()]
+    return Doubles(rounded)

@@ -1,4 +1,4 @@
-"""The kind of the error that is left in an answer: the word that a program reads in place of a sentence."""
+"""The kind of an answer's error: a word for programs, in place of a sentence."""
 
 from __future__ import annotations
 
@@ -6,18 +6,18 @@ from enum import StrEnum
 
 
 class ErrorKind(StrEnum):
-    """What the error of a quantity is made of, as far as its samples and its file tell."""
+    """The main component of the error of a quantity, as far as its samples and its file show."""
 
-    # Within what arithmetic of the rung would leave, at every sample.
+    # Not larger than the roundings of the rung explain, at every sample.
     ROUNDOFF = "roundoff"
-    # No larger than what the printed digits of the file leave, or storing in float32.
+    # Not larger than the rounding to the printed digits of the file, or to float32.
     PRINTED = "printed digits"
     SINGLE = "float32 storage"
-    # The right motion late or early by a constant, by a clock that runs slow or fast, at wandering times.
+    # The correct motion, but late or early: by a constant, by a slow or fast clock, or irregularly.
     TIME_SHIFT = "time shift"
     PHASE_DRIFT = "drift of phase"
     PHASE_WANDER = "wandering phase"
-    # The file departs from the scene's conventions, which explains the error.
+    # A convention of the file that differs from the scene's explains the error.
     CONVENTION = "convention"
     # About the same at every sample, the first one included.
     OFFSET = "constant size"

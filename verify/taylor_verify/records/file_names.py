@@ -1,4 +1,4 @@
-"""Names of files that are made of names of scenes and solvers: no two of these share a file.
+"""File names made from the names of scenes and solvers, different for different names.
 
 A shipped scene has a family and a name, and its files a hyphen between them: euler/generic is
 euler-generic. What is not of that form is written with everything odd in percent signs, behind a mark

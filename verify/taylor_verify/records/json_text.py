@@ -50,14 +50,16 @@ def complete(document: Any) -> Any:
     return _builtins(document, lambda field, value: True)
 
 
-def _builtins(document: Any, is_told: Callable[[Field[Any], Any], bool]) -> Any:
+def _builtins(document: Any, is_included: Callable[[Field[Any], Any], bool]) -> Any:
     if is_dataclass(document) and not isinstance(document, type):
         members = ((field, getattr(document, field.name)) for field in fields(document))
-        return {f.name: _builtins(value, is_told) for f, value in members if is_told(f, value)}
+        return {
+            f.name: _builtins(value, is_included) for f, value in members if is_included(f, value)
+        }
     if isinstance(document, (tuple, list)):
-        return [_builtins(item, is_told) for item in document]
+        return [_builtins(item, is_included) for item in document]
     if isinstance(document, Mapping):
-        return {key: _builtins(value, is_told) for key, value in document.items()}
+        return {key: _builtins(value, is_included) for key, value in document.items()}
     return document.value if isinstance(document, Enum) else finite(document)
 
 
@@ -103,17 +105,17 @@ def _fault(error: msgspec.ValidationError, document: Any) -> str:
     text = str(error).replace("Number out of range", "Expected a finite number")
     text = re.sub("Invalid enum value '.*?'", "Expected a word that is known here", text)
     match = _PLACE.search(text)
-    said = (text[: match.start()] if match else text).partition(", got ")[0]
+    expectation = (text[: match.start()] if match else text).partition(", got ")[0]
     place = match[1] if match else ""
-    if missing := _MISSING.fullmatch(said):
+    if missing := _MISSING.fullmatch(expectation):
         return f"expected a key {missing[1]}, got none @ {place or 'the document'}"
-    said = _TYPE.sub(_in_words, said)
+    expectation = _TYPE.sub(_in_words, expectation)
     where = f" @ {place}" if place else ""
-    return f"{said[:1].lower()}{said[1:]}, got {_at(document, place)}{where}"
+    return f"{expectation[:1].lower()}{expectation[1:]}, got {_at(document, place)}{where}"
 
 
-def _in_words(found: re.Match[str]) -> str:
-    return " or ".join(_WORDS.get(word, word) for word in found[1].split(" | "))
+def _in_words(match: re.Match[str]) -> str:
+    return " or ".join(_WORDS.get(word, word) for word in match[1].split(" | "))
 
 
 def _at(document: Any, place: str) -> str:

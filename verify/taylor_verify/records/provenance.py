@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class Provenance:
-    """The versions of all packages that take part, the processor's name and the command line."""
+    """The versions of all packages used, the processor's name and the command line."""
 
     versions: dict[str, str] = field(default_factory=dict)
     processor: str = ""
@@ -23,7 +23,7 @@ class SceneProvenance(Provenance):
 
 @dataclass(frozen=True, kw_only=True)
 class Machine:
-    """The machine that a measurement was made on; no number but a time depends on it."""
+    """The machine of a measurement; only times depend on it."""
 
     python: str = ""
     processor: str = ""

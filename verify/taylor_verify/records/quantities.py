@@ -1,4 +1,4 @@
-"""Records of all quantities: of the state, of what is conserved, and of the columns of a trajectory file.
+"""Records of all quantities: states, conserved quantities, and the columns of a trajectory file.
 
 Readers, solvers and the judge take names, columns and units from here. To add a state quantity is to add
 its ``Quantity`` and its ``Group`` of columns, and to say where a solver's state has it
@@ -26,10 +26,11 @@ class Measure(Enum):
 
 @dataclass(frozen=True)
 class Group:
-    """Columns of a trajectory file that belong together, and the state ``quantity`` that they tell.
+    """Columns of a trajectory file that belong together, and the state ``quantity`` that they represent.
 
-    ``dimension`` says which units they may be written in. ``moves_with`` says whose axes rename them: those
-    of the ``body``, of ``space``, or both (``frame``). ``start`` is the field of the initial state.
+    ``dimension`` determines the units they may be written in. ``moves_with`` names the axes that rename
+    them: those of the ``body``, of ``space``, or both (``frame``). ``start`` is the field of the initial
+    state.
     """
 
     name: str
@@ -68,7 +69,7 @@ class Quantity:
 class Conserved:
     """A quantity that a free motion conserves, made of the momenta and the quantities that it ``needs``.
 
-    To lose some of one that ``is_positive`` has a meaning.
+    For a quantity that ``is_positive``, a loss has a physical meaning.
     """
 
     name: str
@@ -129,11 +130,11 @@ COMPLETE: Final = "complete"
 UNIT_QUATERNION: Final = "unit quaternion"
 
 # A gate allows this many times the roundoff floor, which is the root mean square of a random sum. Ten
-# leaves room for a solver that rounds a few times a step and for the tail of the distribution, and no room
-# for one step in a hundred done wrongly.
+# leaves room for a solver that rounds a few times per step and for the tail of the distribution, but none
+# for one wrong step in a hundred.
 GATE_FACTOR: Final = 10
 
-# What follows is made of the records.
+# Tables derived from the records.
 STATES: Final = tuple(QUANTITIES)
 CONSERVED: Final = tuple(CONSERVED_QUANTITIES)
 # The quantity of each model that every run has, the groups that it consists of, and what a scene may
@@ -163,7 +164,7 @@ def state_quantities(model: str, track: Collection[str]) -> tuple[Quantity, ...]
 
 def state_groups(model: str, track: Collection[str]) -> tuple[str, ...]:
     """Return the groups of columns that a solver's states have, in their order."""
-    return tuple(name for each in state_quantities(model, track) for name in each.groups)
+    return tuple(name for quantity in state_quantities(model, track) for name in quantity.groups)
 
 
 def with_needs(track: Collection[str]) -> frozenset[str]:
@@ -172,10 +173,14 @@ def with_needs(track: Collection[str]) -> frozenset[str]:
 
 
 def changed_by(group: str) -> tuple[str, ...]:
-    """Return the state quantity that some columns tell, and what is conserved and made of it."""
+    """Return the state quantity of a group of columns, and the conserved quantities that depend on it."""
     quantity = GROUPS[group].quantity
     is_momentum = not any(quantity in tracked for tracked in TRACKED.values())
     return (
         quantity,
-        *(n for n, each in CONSERVED_QUANTITIES.items() if is_momentum or quantity in each.needs),
+        *(
+            n
+            for n, conserved in CONSERVED_QUANTITIES.items()
+            if is_momentum or quantity in conserved.needs
+        ),
     )

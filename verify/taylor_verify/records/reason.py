@@ -1,6 +1,6 @@
-"""The reason of a verdict, as values; its sentences are made of them here and nowhere else.
+"""The reason of a verdict as values, and the only place where its sentences are made.
 
-remarks   conclusions that the numbers of the verdict do not say, each with its cause
+remarks   conclusions that the numbers of the verdict do not show, each with its cause
 factor    what the gate allows, in units of the roundoff floor
 tolerance the tolerance that was asked for, in place of the bound that the factor makes of the floor
 floor     the roundoff floor at the sample of the largest error, and the terms it is made of
@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Final
 
-# So many of the rows that do not share a shift are named.
+# At most this many of the rows that do not share a shift are named.
 _MOST_NAMED: Final = 3
 _AS_A_SHIFT: Final = "as a shift of time"
 
@@ -61,7 +61,7 @@ class Kind(StrEnum):
 
 @dataclass(frozen=True)
 class Remark:
-    """One conclusion: its cause, and the sentence without a full stop."""
+    """A conclusion: its cause, and the sentence without a full stop."""
 
     cause: Cause
     text: str

@@ -1,4 +1,4 @@
-"""A record: everything one run was judged by, for pages, for `explain`, and for a reader in doubt."""
+"""The record of a run: all numbers that its judgement used, for pages and for `explain`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Generated files replaced as a whole: whoever reads the folder finds old files or new ones."""
+"""Replacement of generated files as a whole: a reader of the folder sees old files or new ones."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def replace_files(
     """
     folder.mkdir(parents=True, exist_ok=True)
     places = {name: folder / name for name in contents}
-    # Inside the folder it is sure to be the same file system, where a move is one step.
+    # A directory inside the folder is on the same file system, where a move is one step.
     with TemporaryDirectory(dir=folder, prefix=".unfinished-") as staging:
         for name, content in contents.items():
             place = Path(staging, name)

@@ -52,9 +52,9 @@ class Run:
 
 def conserved_quantities(runs: Iterable[Run]) -> tuple[str, ...]:
     """Return the conserved quantities of all these runs, each once."""
-    found = dict.fromkeys(name for run in runs for name in run.conserved)
-    known = [name for name in CONSERVED if name in found]
-    return (*known, *(name for name in found if name not in known))
+    names = dict.fromkeys(name for run in runs for name in run.conserved)
+    known = [name for name in CONSERVED if name in names]
+    return (*known, *(name for name in names if name not in known))
 
 
 def quantities_of_scene(run: Run, among: Sequence[Run]) -> tuple[str, ...]:
@@ -74,8 +74,8 @@ def runs(verdicts: Iterable[Verdict]) -> tuple[Run, ...]:
     for verdict in verdicts:
         key = (verdict.scene, verdict.solver, verdict.setting, verdict.rung)
         gathered.setdefault(key, []).append(verdict)
-    found = [Run(*key, tuple(rows)) for key, rows in gathered.items()]
-    return tuple(sorted(found, key=_place))
+    result = [Run(*key, tuple(rows)) for key, rows in gathered.items()]
+    return tuple(sorted(result, key=_place))
 
 
 def _place(run: Run) -> tuple[int, str, str, str, tuple[int, int, str]]:

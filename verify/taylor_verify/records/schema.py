@@ -42,9 +42,11 @@ _DERIVED: Final = {
 
 def schema() -> dict[str, Any]:
     """Return the schema of an answer, with what a type cannot say of a row."""
-    _, found = msgspec.json.schema_components((Answer, FilesAnswer), ref_template="#/$defs/{name}")
-    answer = _with_files(found.pop(Answer.__name__), found.pop(FilesAnswer.__name__))
-    verdict = found["Verdict"]
+    _, definitions = msgspec.json.schema_components(
+        (Answer, FilesAnswer), ref_template="#/$defs/{name}"
+    )
+    answer = _with_files(definitions.pop(Answer.__name__), definitions.pop(FilesAnswer.__name__))
+    verdict = definitions["Verdict"]
     verdict["properties"] = {**_DERIVED, **verdict["properties"]}
     verdict["properties"]["rung"]["pattern"] = RUNG_PATTERN
     verdict["properties"]["quantity"]["minLength"] = 1
@@ -68,8 +70,8 @@ def schema() -> dict[str, Any]:
         "propertyNames": {"$ref": "#/$defs/Status"},
     }
     head = {"$schema": _DIALECT, **answer, "title": "Verdicts", "description": _DESCRIPTION}
-    made: dict[str, Any] = _tidied({**head, "$defs": found})
-    return made
+    result: dict[str, Any] = _tidied({**head, "$defs": definitions})
+    return result
 
 
 def _with_files(answer: dict[str, Any], files: dict[str, Any]) -> dict[str, Any]:

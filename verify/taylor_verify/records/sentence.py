@@ -1,4 +1,4 @@
-"""The sentence about one quantity: digits that are right, the error that is left, and since when.
+"""The sentence about one quantity: its correct digits, the remaining error, and since when.
 
 It is made of the values of a verdict, here and nowhere else. The arithmetic of the bound is the reason's
 affair.
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 _POWERS: Final = {0.5: "t^1/2", 1.0: "t", 1.5: "t^3/2", 2.0: "t^2", 3.0: "t^3"}
 # A fitted power this near to one of them is called by its name.
 _NEAR: Final = 0.15
-# What of a change has one direction all the way, as a part of the largest error.
+# A change is steady if it has one direction, and at least this part of the largest error.
 _STEADY: Final = 0.5
-# Kinds of which there is nothing to say but the digits.
+# Kinds for which only the digits are reported.
 _UNSAID: Final = (None, ErrorKind.NOT_FINITE)
 _STORED: Final = {
     ErrorKind.PRINTED: "the rounding of the file's own printed digits",
@@ -33,10 +33,10 @@ _STORED: Final = {
 
 def sentence(verdict: Verdict) -> str:
     """Return one line that begins with the quantity and can stand alone."""
-    return f"{verdict.quantity}: {_said(verdict)}"
+    return f"{verdict.quantity}: {_description(verdict)}"
 
 
-def _said(verdict: Verdict) -> str:
+def _description(verdict: Verdict) -> str:
     conclusion = verdict.reason.conclusion
     if verdict.quantity in (INITIAL, COMPLETE) and verdict.error_kind not in _STORED:
         return conclusion or verdict.verdict.value

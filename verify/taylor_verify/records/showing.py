@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 
 def counts(verdicts: Iterable[Verdict]) -> str:
     """Return the number of verdicts of each status that occurs, in words."""
-    found = ", ".join(f"{count} {word}" for word, count in summary(verdicts).items() if count)
-    return found or "no verdicts"
+    words = ", ".join(f"{count} {word}" for word, count in summary(verdicts).items() if count)
+    return words or "no verdicts"
 
 
 def dataframe(rows: Iterable[Mapping[str, Any]]) -> pandas.DataFrame:

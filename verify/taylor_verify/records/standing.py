@@ -1,4 +1,4 @@
-"""The worth of a measured point of speed against accuracy."""
+"""The usability of a measured point of speed against accuracy."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import StrEnum
 
 
 class Standing(StrEnum):
-    """The worth of a point. Only SOUND ones are compared."""
+    """The usability of a point. Only SOUND points are compared."""
 
     SOUND = "sound"
     FALSE = "false success"

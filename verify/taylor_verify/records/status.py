@@ -8,7 +8,7 @@ from typing import Final
 
 
 class Status(StrEnum):
-    """What a gate decided. Only PASS is green."""
+    """The decision of a gate. Only PASS is green."""
 
     PASS = "pass"
     FAIL = "fail"
@@ -18,7 +18,7 @@ class Status(StrEnum):
     UNAVAILABLE = "unavailable"
 
 
-# The gravest first: one word for several verdicts is the gravest of theirs.
+# From worst to best: the status of several verdicts is the worst of them.
 GRAVITY: Final = (
     *(Status.FAIL, Status.UNDECIDED, Status.REFUSED),
     *(Status.VACUOUS, Status.UNAVAILABLE, Status.PASS),

@@ -1,4 +1,4 @@
-"""Verdicts and records as JSON files: what a run found, apart from how long it took and where.
+"""Verdicts and records as JSON files; the time and the machine of each run are stored separately.
 
     verdicts.json   every verdict, one a line; the same on any machine that computes the same;
                     shifts of time of failed gates alone: a passed one has them of its roundings
@@ -34,7 +34,7 @@ RECORDS: Final = "records"
 STAMP: Final = f"{RECORDS}/verdicts.sha256"
 
 _MADE_BY = {"made_by": "taylor-verify run; do not edit"}
-# What the numbers do not depend on: it may differ where verdicts.json may not.
+# Fields on which no number depends: they may differ where verdicts.json may not.
 _MACHINE = ("processor", "command")
 _SHIFT = ("time_shift", "residual", "shift", "trend", "remains")
 _RUN = ("scene", "solver", "setting", "rung")
@@ -50,15 +50,15 @@ def write(folder: Path, verdicts: Iterable[Verdict], records: Iterable[Record]) 
     Raises OSError if that cannot be done, and ValueError for verdicts of unlike versions or two
     unlike records of one run; the earlier data then stay as they are.
     """
-    found = runs(verdicts)
+    ordered_runs = runs(verdicts)
     data = folder / FOLDER
-    ordered = [verdict for run in found for verdict in run.verdicts]
+    ordered = [verdict for run in ordered_runs for verdict in run.verdicts]
     rows = [row(verdict) for verdict in ordered]
     text = laid_out({**_MADE_BY, "versions": versions(ordered), "verdicts": rows})
-    # The verdicts come last: once they are in place, what they speak of is there.
+    # The verdicts are written last, so that the files they refer to are already there.
     texts = {
         **_record_texts(records),
-        TIMINGS: laid_out({**_MADE_BY, **_timings(found)}),
+        TIMINGS: laid_out({**_MADE_BY, **_timings(ordered_runs)}),
         STAMP: _stamp(text.encode()),
         VERDICTS: text,
     }
@@ -103,17 +103,17 @@ def load(folder: Path) -> tuple[Verdict, ...]:
     timed = _timed(folder / FOLDER / TIMINGS)
     with expecting("verdicts", file):
         same = stored["versions"]
-        return tuple(verdict(each, same, timed.get(_key(each), {})) for each in stored["verdicts"])
+        return tuple(verdict(row, same, timed.get(_key(row), {})) for row in stored["verdicts"])
 
 
 def versions(verdicts: Iterable[Verdict]) -> dict[str, str]:
     """Return the versions all verdicts were made with; not Python's, on which no number depends."""
-    found = [{**verdict.provenance.get("versions", {})} for verdict in verdicts]
-    for each in found:
-        each.pop("python", None)
-        if each != found[0]:
-            raise ValueError(f"expected one set of versions, got {found[0]} and {each}")
-    return found[0] if found else {}
+    sets = [{**verdict.provenance.get("versions", {})} for verdict in verdicts]
+    for own in sets:
+        own.pop("python", None)
+        if own != sets[0]:
+            raise ValueError(f"expected one set of versions, got {sets[0]} and {own}")
+    return sets[0] if sets else {}
 
 
 # Writing.
@@ -126,12 +126,12 @@ _SELDOM = ("tolerance", "since", "change", "error_kind")
 
 
 def row(verdict: Verdict) -> dict[str, Any]:
-    """Return a verdict as it is stored, without what is another number every time, or on every machine."""
+    """Return a verdict as it is stored, without numbers that depend on the run or the machine."""
     stored = verdict.row()
     del stored["seconds"]
     left_out = {*_DERIVED, *(name for name in _SELDOM if stored[name] is None)}
     if verdict.verdict is not Status.FAIL:
-        # Which way roundings push the time is another draw on every machine.
+        # The sign of the shift by roundings differs on every machine.
         left_out |= {*_SHIFT, "change"}
     if verdict.error_kind is ErrorKind.ROUNDOFF:
         left_out.add("error_kind")
@@ -142,11 +142,11 @@ def row(verdict: Verdict) -> dict[str, Any]:
     return stored
 
 
-def _timings(found: Iterable[Run]) -> dict[str, Any]:
+def _timings(ordered_runs: Iterable[Run]) -> dict[str, Any]:
     """Return the seconds of each run, with the place of its machine in a list of them."""
     machines: list[dict[str, Any]] = []
     timings = []
-    for run in found:
+    for run in ordered_runs:
         verdict = run.verdicts[0]
         own = machine(verdict)
         if own not in machines:
@@ -234,8 +234,8 @@ def verdict(
     """Return a stored row as it was, made with the versions ``same``; seconds and machine as timed."""
     own = dict(timing.get("machine", {}))
     python = {"python": own.pop("python")} if "python" in own else {}
-    found = {**python, **same}
-    provenance: dict[str, Any] = {"versions": found} if found else {}
+    all_versions = {**python, **same}
+    provenance: dict[str, Any] = {"versions": all_versions} if all_versions else {}
     provenance |= {**own, **stored["provenance"]}
     return read_row({**stored, "provenance": provenance, "seconds": timing.get("seconds")})
 
@@ -246,5 +246,5 @@ def expecting(what: str, file: Path) -> Iterator[None]:
     try:
         yield
     except (AttributeError, LookupError, TypeError, ValueError) as fault:
-        got = f"{type(fault).__name__}: {fault}"
-        raise ValueError(f"expected {what}, got a fault, {got} @ {file}") from fault
+        description = f"{type(fault).__name__}: {fault}"
+        raise ValueError(f"expected {what}, got a fault, {description} @ {file}") from fault

@@ -1,4 +1,4 @@
-"""A verdict: one row for one quantity of one run. Tables and pages are made from these alone."""
+"""The verdict: a row for a quantity of a run. Tables and pages are made from verdicts alone."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Study = TypeVar("Study")
 
 @dataclass(frozen=True)
 class Verdict:
-    """One compared quantity of one run.
+    """The verdict on a compared quantity of a run.
 
     A number that does not exist, or is not finite, is None. ``bound`` and ``attainable`` hold at the time
     of the largest error; the gate asks every sample, so that ``ratio`` decides (of a vacuous gate: the
@@ -110,21 +110,21 @@ class Verdict:
 
     @property
     def sentence(self) -> str:
-        """The digits that are right, the kind of error that is left, and since when, in one line."""
+        """The correct digits, the kind of the remaining error, and since when, in one line."""
         return sentence(self)
 
     @property
     def digits(self) -> int | None:
-        """The decimal digits that are right at every sample, at most those that the rung has.
+        """The correct decimal digits at every sample, at most as many as the rung has.
 
         None where nothing was compared, where the truth is too wide to tell, and where an error is no
         finite number. A radian counts as a whole.
         """
         if self.verdict is Status.UNDECIDED or self.max is None or not 0 <= self.max < inf:
             return None
-        # The zeros behind the point, of the error and of the roundoff.
-        found = [max(floor(-log10(size)), 0) for size in (self.max, self.roundoff) if size]
-        return min(found, default=None)
+        # The zeros after the decimal point, of the error and of the roundoff.
+        counts = [max(floor(-log10(size)), 0) for size in (self.max, self.roundoff) if size]
+        return min(counts, default=None)
 
     @property
     def is_conserved(self) -> bool:
@@ -151,14 +151,14 @@ class Verdict:
 
         ``digits`` and ``sentence`` are made of the others. Its ``provenance`` is the verdict's own.
         """
-        found: dict[str, Any] = {}
+        values: dict[str, Any] = {}
         # A verdict that was read has its attributes in the order of the file.
-        for name, value in ((each.name, getattr(self, each.name)) for each in fields(self)):
+        for name, value in ((member.name, getattr(self, member.name)) for member in fields(self)):
             if name == "reason":
-                found |= {"because": self.because, "reason": plain(value)}
+                values |= {"because": self.because, "reason": plain(value)}
             else:
-                found[name] = finite(value)
-        return {**found, "digits": self.digits, "sentence": self.sentence}
+                values[name] = finite(value)
+        return {**values, "digits": self.digits, "sentence": self.sentence}
 
 
 def read_row(row: Mapping[str, Any]) -> Verdict:
@@ -207,7 +207,7 @@ def exit_status(verdicts: Iterable[Verdict]) -> int:
     count as undecided. Where such verdicts are expected, `batch.expectations` knows of it. A part that
     the caller has waived counts for nothing.
     """
-    found = {verdict.verdict for verdict in verdicts if not verdict.is_waived}
-    if Status.FAIL in found:
+    statuses = {verdict.verdict for verdict in verdicts if not verdict.is_waived}
+    if Status.FAIL in statuses:
         return 1
-    return 3 if found & {Status.UNDECIDED, Status.REFUSED, Status.VACUOUS} else 0
+    return 3 if statuses & {Status.UNDECIDED, Status.REFUSED, Status.VACUOUS} else 0

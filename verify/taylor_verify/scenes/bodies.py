@@ -21,7 +21,7 @@ DAMPING: Final = Part("damping", Shape.NUMBER, RATE)
 
 
 class Body(Parted):
-    """A body by its exact numbers: what every room may ask of one, whatever its model.
+    """The base class of bodies, with their exact numbers and what every room needs of them.
 
     The numbers are the PARTS. ``MODEL`` is the word of a scene's key ``model``, ``STATE`` the kind of
     its initial state, and ``ENERGY`` what ``energy_matrix`` is called in messages. A new kind of body is
@@ -44,7 +44,7 @@ class Body(Parted):
 
     @property
     def undamped(self) -> Self:
-        """The same body without damping."""
+        """Copy of the body without damping."""
         return self.with_damping(Fraction(0)) if self.damping else self
 
     def with_damping(self, damping: Fraction) -> Self:

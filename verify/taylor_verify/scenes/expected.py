@@ -1,4 +1,4 @@
-"""Expected answers of the extremes: every one that is not `pass`, and why.
+"""Expected answers of the extremes: all that are not `pass`, with reasons.
 
 The file is cases/extremes/EXPECTED.toml:
 
@@ -31,7 +31,7 @@ from taylor_verify.scenes.reading.faults import Faults, Refused, near, shown
 from taylor_verify.scenes.reading.table import Table
 
 FILE: Final = "EXPECTED.toml"
-# `fail` is not among them: what fails is mended, and not expected.
+# `fail` is not among them: a failure has to be fixed.
 WORDS: Final = ("vacuous", "refused", "undecided", "unavailable")
 _ALL: Final = "*"
 
@@ -55,12 +55,16 @@ class Expectations:
     left_out: Mapping[tuple[str, str], str] = field(default_factory=dict)
 
     def of(self, scene: str, rung: str, quantity: str) -> Expectation | None:
-        """Return what is expected of a row; None where a pass is."""
+        """Return the expectation of a row; None if a pass is expected."""
         return self.rows.get((scene, rung, quantity))
 
     def of_run(self, scene: str, rung: str) -> dict[str, Expectation]:
-        """Return what one scene is expected to answer on one rung besides `pass`, by quantity."""
-        return {row[2]: found for row, found in self.rows.items() if row[:2] == (scene, rung)}
+        """Return the expected answers of a scene on a rung other than `pass`, by quantity."""
+        return {
+            row[2]: expectation
+            for row, expectation in self.rows.items()
+            if row[:2] == (scene, rung)
+        }
 
 
 def is_extreme(scene: str) -> bool:
@@ -70,13 +74,13 @@ def is_extreme(scene: str) -> bool:
 
 @lru_cache(maxsize=1)
 def shipped() -> Expectations:
-    """Return those of the shipped file; raises Refused with every fault of it."""
+    """Return the expectations of the shipped file. Raises Refused with every fault of it."""
     file = library.cases_directory() / library.EXTREMES / FILE
     return read(file.read_text(encoding="utf-8"), library.named(library.EXTREMES))
 
 
 def left_out(words: Iterable[str], rungs: Iterable[str]) -> dict[tuple[str, str], str]:
-    """Return the runs that the folders among these words leave out, and why.
+    """Return the runs that the folders among these words leave out, with the reasons.
 
     A scene that is asked for by its own name is run.
     """
@@ -84,12 +88,12 @@ def left_out(words: Iterable[str], rungs: Iterable[str]) -> dict[tuple[str, str]
     scenes = {name for word in chosen for name in library.named(word)}.difference(chosen)
     if not any(is_extreme(scene) for scene in scenes):
         return {}
-    found = shipped().left_out
-    return {run: why for run, why in found.items() if run[0] in scenes and run[1] in on}
+    reasons = shipped().left_out
+    return {run: why for run, why in reasons.items() if run[0] in scenes and run[1] in on}
 
 
 def read(text: str, scenes: Iterable[str]) -> Expectations:
-    """Return the expectations that a text has of these scenes; Refused with every fault of it."""
+    """Return the expectations of these scenes in a text. Raises Refused with every fault of it."""
     faults = Faults()
     # Names as the file has them, with the shipped names.
     known = {name.removeprefix(f"{library.EXTREMES}/"): name for name in scenes}

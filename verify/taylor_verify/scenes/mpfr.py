@@ -27,9 +27,9 @@ def precision() -> AbstractContextManager[Any]:
 
 def to_mpfr(values: Array) -> Array:
     """Return numbers of mpmath, or Python's, as MPFR's, exactly, whatever their length."""
-    held = _each(mp.convert, values)
-    with _bits(max((value._mpf_[3] for value in held.flat), default=1)):
-        return _each(_mpfr, held)
+    converted = _each(mp.convert, values)
+    with _bits(max((value._mpf_[3] for value in converted.flat), default=1)):
+        return _each(_mpfr, converted)
 
 
 def to_mpf(values: Array) -> Array:

@@ -13,4 +13,4 @@ _CONTROL: Final = re.compile(
 
 def escaped(text: str) -> str:
     """Return the text with an escape for each character that would steer a terminal."""
-    return _CONTROL.sub(lambda found: ascii(found[0])[1:-1], text)
+    return _CONTROL.sub(lambda match: ascii(match[0])[1:-1], text)

@@ -67,8 +67,8 @@ class Pairs:
 
     def radius(self) -> Floats:
         """Return a bound of the error of hi + lo; infinite where nothing is known."""
-        found: Floats = np.broadcast_to(self.rad * _RADII, np.shape(self.hi))
-        return np.where(np.isfinite(self.hi) & (found >= 0), found, np.inf)
+        radius: Floats = np.broadcast_to(self.rad * _RADII, np.shape(self.hi))
+        return np.where(np.isfinite(self.hi) & (radius >= 0), radius, np.inf)
 
     def widened(self, error: Any) -> Pairs:
         """Return the balls with a further error."""

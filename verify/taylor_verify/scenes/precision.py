@@ -110,10 +110,10 @@ def nearest(numerator: int, denominator: int, bits: int) -> tuple[int, int]:
     else:
         whole, rest = divmod(size << -exponent, denominator)
     surplus = whole.bit_length() - bits
-    kept, low, half = whole >> surplus, whole & ((1 << surplus) - 1), 1 << (surplus - 1)
-    if low > half or (low == half and (rest or kept & 1)):
-        kept += 1
-    return (kept if numerator > 0 else -kept), exponent + surplus
+    significand, low, half = whole >> surplus, whole & ((1 << surplus) - 1), 1 << (surplus - 1)
+    if low > half or (low == half and (rest or significand & 1)):
+        significand += 1
+    return (significand if numerator > 0 else -significand), exponent + surplus
 
 
 def rounded(value: Fraction, bits: int) -> Fraction:
@@ -165,10 +165,10 @@ def shortest_decimal(value: Fraction, bits: int) -> str:
     asked = rounded(value, bits)
     for digits in itertools.count(1):
         context = Context(prec=digits, Emin=MIN_EMIN, Emax=MAX_EMAX)
-        found = context.divide(Decimal(asked.numerator), Decimal(asked.denominator))
-        if rounded(Fraction(found), bits) == asked:
+        decimal = context.divide(Decimal(asked.numerator), Decimal(asked.denominator))
+        if rounded(Fraction(decimal), bits) == asked:
             break
-    return decimal_text(found)
+    return decimal_text(decimal)
 
 
 def decimal_text(number: Decimal) -> str:

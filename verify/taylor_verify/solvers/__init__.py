@@ -1,1 +1,1 @@
-"""Answers to a problem: the solver's contract, heyoka's Taylor integrator, and a callable of one's own."""
+"""Solvers: the contract of a solver, heyoka's Taylor integrator, user-defined callables, and others."""

@@ -1,20 +1,19 @@
-"""The closed form as most of its users write it, in plain doubles: `closed-form:ellipj`.
+"""The closed form in plain doubles, as most users would write it: `closed-form:ellipj`.
 
 k_i  principal values of K, the inverse inertia tensor      h    momentum in principal axes
 a    the axis that the orbit encircles                      b    the middle axis, c the third
 w_a = s a_a dn u,   w_b = -+ s a_b sn u,   w_c = a_c cn u,   u = lam t + u0,  parameter m
 
-The formulas are right and SciPy's `ellipj` and `ellipkinc` are given what they ask for, each quantity
-as a sum without cancellation where there is one. It is an entrant like any other, and its failures are
-those of the doubles:
+The formulas are correct, and SciPy's `ellipj` and `ellipkinc` get sums without cancellation where there are
+any. It is a solver like any other. Its failures come from double precision:
 
 long times      u is rounded to 2^-53 of itself before it is reduced by the period: a phase error of
-                some 2^-53 lam |t|, in proportion to time, where no step was ever taken
-near m = 1      1 - m is known to 2^-53 and no better, and the period to 2^-53/(1 - m) of itself;
-                where 1 - m is below 10^-10, `ellipj` falls back on series about m = 1 that hold for
+                about 2^-53 lam |t|, in proportion to time, although no step is taken
+near m = 1      1 - m is known only to 2^-53, and the period to 2^-53/(1 - m) of itself;
+                where 1 - m is below 10^-10, `ellipj` uses series about m = 1 that hold for
                 less than a quarter of a period
-the separatrix  whatever the last bit of h makes of it: m = 1, or a period of some 80/lam
-middle axis     a body that turns about it has u0 infinite, and the answer is no number
+the separatrix  the last bit of h decides: m = 1, or a period of about 80/lam
+middle axis     for a rotation about it u0 is infinite, and the answer is NaN
 """
 
 from __future__ import annotations
@@ -84,7 +83,7 @@ class ClosedForm(Solver):
                 rows = _momenta(problem).tolist()
         except (ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
             return raised(error)
-        # Each sample is found for itself: no step is taken, and nothing adds up.
+        # Each sample is computed separately: there are no steps, and no errors add up.
         seconds = perf_counter() - began
         return of_rows(
             problem, rows, steps=len(rows), seconds=seconds, compile_seconds=began - asked
@@ -133,7 +132,7 @@ def _orbit(
     ab, bc, ac = abs(k_b - k_a), abs(k_c - k_b), abs(k_c - k_a)
     # | |H|^2 k_c - 2T | and | 2T - |H|^2 k_a |, sums of positive terms.
     A, C = ac * h_a**2 + bc * h_b**2, ab * h_b**2 + ac * h_c**2
-    # On the separatrix rounding makes it 1 and a little, which ellipj does not take.
+    # On the separatrix rounding may make it slightly larger than 1, which ellipj does not accept.
     m = min(bc * C / (ab * A), 1.0)
     side, turn = copysign(1.0, h_a), copysign(1.0, k_a - k_c)
     a, b, c = side * sqrt(A / ac), side * turn * sqrt(C / ab), sqrt(C / ac)
@@ -150,6 +149,6 @@ def _has_distinct_moments(K: tensors.Matrix) -> bool:
 
 
 def named(name: str) -> ClosedForm:
-    """Return the closed form of that name; ValueError for one that there is not, and for any setting."""
+    """Return the closed form of that name. Raises ValueError for an unknown name and for any setting."""
     options(name, METHODS, [])
     return ClosedForm(name)

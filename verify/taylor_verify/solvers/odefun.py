@@ -1,4 +1,4 @@
-"""mpmath's own integrator, at hand wherever SymPy is: `mpmath:odefun?tol=NUMBER&degree=NUMBER`.
+"""mpmath's own integrator: `mpmath:odefun?tol=NUMBER&degree=NUMBER`.
 
 It sums Taylor series whose coefficients come from finite differences of the equations, at a
 precision that grows with the degree. So it is a second integrator of any precision that shares no code
@@ -77,7 +77,7 @@ class Odefun(Solver):
         )
 
     def _rows(self, problem: Problem, rates: Counted) -> list[Sequence[Any]]:
-        # odefun knows no time before its start: a motion backward is that of the opposite rates.
+        # odefun only goes forwards: a motion backwards is the forward motion with opposite rates.
         direction = -1 if problem.times[-1] < 0 else 1
         state = mp.odefun(
             lambda t, state: [direction * rate for rate in rates(t, state)],

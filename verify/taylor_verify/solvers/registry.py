@@ -12,10 +12,10 @@ if TYPE_CHECKING:
     from taylor_verify.solvers.solver import Solver
 
 TAYLOR = "taylor"
-# A solver of one's own: what follows is the command that starts it.
+# A user's program: the command that starts it follows.
 PROCESS = "process:"
 CLOSED_FORM = "closed-form:"
-# Of other libraries, each in an environment of its own.
+# Solvers of other libraries, each in its own environment.
 OUTSIDE = "outside:"
 
 
@@ -58,20 +58,22 @@ FAMILIES = (
 
 def solver_names() -> tuple[str, ...]:
     """Return the names to choose from, NUMBER standing for what is to be chosen."""
-    names = (_module(each).usages() if each.names is None else each.names for each in FAMILIES)
+    names = (
+        _module(family).usages() if family.names is None else family.names for family in FAMILIES
+    )
     return tuple(chain.from_iterable(names))
 
 
 def remarks() -> dict[str, str]:
     """Return remarks on names: a title, or why it is unavailable; nothing heavy is imported for it."""
-    found: dict[str, str] = {}
+    by_name: dict[str, str] = {}
     for family in FAMILIES:
         if family.names is None:
-            found |= _module(family).remarks()
+            by_name |= _module(family).remarks()
         elif family.package and find_spec(family.package) is None:
             install = f"unavailable: pip install 'taylor-verify[{family.extra}]'"
-            found |= dict.fromkeys(family.names, install)
-    return found
+            by_name |= dict.fromkeys(family.names, install)
+    return by_name
 
 
 def solver_named(name: str) -> Solver:

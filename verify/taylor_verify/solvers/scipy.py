@@ -28,7 +28,7 @@ from taylor_verify.solvers.trajectory import Outcome, Trajectory, of_rows
 METHODS: Final = ("RK45", "DOP853", "Radau", "BDF", "LSODA")
 
 _INSTALL: Final = "pip install 'taylor-verify[scipy]'"
-# What solve_ivp takes where nothing is said.
+# The defaults of solve_ivp.
 _RTOL, _ATOL = "1e-3", "1e-6"
 # solve_ivp replaces a smaller one by this, and says so in a warning.
 _LEAST_RTOL: Final = 100 * Fraction(1, 2**52)
@@ -79,7 +79,7 @@ class SciPy(Solver):
         run = _Run(problem)
         began = perf_counter()
         try:
-            found = run.solve(self)
+            solution = run.solve(self)
         except Endless as error:
             seconds = perf_counter() - began
             return Trajectory(Outcome.STEP_LIMIT, detail=str(error), seconds=seconds)
@@ -93,9 +93,9 @@ class SciPy(Solver):
             "seconds": perf_counter() - began,
             "compile_seconds": began - asked,
         }
-        rows = found.y.T.tolist()
-        if found.status != 0 or len(rows) != len(problem.times):
-            detail = f"solve_ivp: {found.message}"
+        rows = solution.y.T.tolist()
+        if solution.status != 0 or len(rows) != len(problem.times):
+            detail = f"solve_ivp: {solution.message}"
             return Trajectory(Outcome.INTERRUPTED, detail=detail, **work)
         return of_rows(problem, rows, **work)
 

@@ -1,4 +1,4 @@
-"""The contract of a solver, and the solver that is a callable of one's own."""
+"""The contract of a solver, and the solver that calls a user's function."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from taylor_verify.records.quantities import COLUMNS, state_groups
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
-from taylor_verify.solvers.values import Value, exact, held
+from taylor_verify.solvers.values import Value, as_mpf, exact
 
 _RATIONAL_BITS = 4000
 
@@ -41,10 +41,10 @@ class Lack(str):
 class Solver(ABC):
     """Something that answers a problem with a trajectory and never raises for a failed run.
 
-    ``name`` is the word of the command line; ``setting`` tells two uses of one solver apart. A solver that
-    ``carries_velocities`` rounds U and Omega of a solid in a fluid, and not the impulses.
-    ``counts_steps`` tells the solvers whose steps are counted by code of this project. The steps that
-    anybody else claims are counted as far as the judge finds them plausible.
+    ``name`` is the word of the command line; ``setting`` distinguishes two uses of one solver. A solver
+    that ``carries_velocities`` rounds U and Omega of a solid in a fluid, not the impulses.
+    ``counts_steps`` is True for solvers whose steps are counted by code of this project. For all others
+    the judge limits the claimed steps to a plausible number.
     """
 
     name: str
@@ -80,7 +80,7 @@ class Solver(ABC):
 @final
 @dataclass(frozen=True)
 class Callback(Solver):
-    """A solver of one's own: ``answer(problem)`` returns states of shape (samples, n).
+    """A user's function as a solver: ``answer(problem)`` returns states of shape (samples, n).
 
     Columns: omega, or x and y; then q0..q3 where the attitude is tracked, then the centre where it
     is. A Python or NumPy number, a Fraction or an mpf is taken exactly. A masked number and a table with
@@ -99,7 +99,7 @@ class Callback(Solver):
             if fault := _no_array(answered):
                 return Trajectory(Outcome.MISSHAPEN, detail=fault)
             states = np.asarray(answered)
-        except (Exception, SystemExit) as error:  # a stranger's code: what it raises is its outcome
+        except (Exception, SystemExit) as error:  # a user's code: its exception is its outcome
             return raised(error)
         seconds = perf_counter() - began
         layout = columns(problem)
@@ -108,7 +108,7 @@ class Callback(Solver):
             detail = f"expected states of shape {expected}, got {states.shape}"
             return Trajectory(Outcome.MISSHAPEN, detail=detail, seconds=seconds)
         try:
-            numbers = np.array([[_held(v) for v in row] for row in states], dtype=object)
+            numbers = np.array([[_as_mpf(v) for v in row] for row in states], dtype=object)
         except TypeError as error:
             return Trajectory(Outcome.MISSHAPEN, detail=str(error), seconds=seconds)
         ends = np.cumsum([width for _, width in layout])[:-1]
@@ -160,7 +160,7 @@ def columns(problem: Problem) -> list[tuple[str, int]]:
     return [(name, len(COLUMNS[name])) for name in groups]
 
 
-def _held(value: Any) -> Any:
+def _as_mpf(value: Any) -> Any:
     """Return the mpf equal to a number; NaN and infinity stay what they are, and fail every gate.
 
     A rational that is no binary fraction is rounded to 4000 bits. Raises TypeError for what is no
@@ -174,4 +174,4 @@ def _held(value: Any) -> Any:
         number = exact(value)
     else:
         raise TypeError(f"expected real numbers, got {value!r} of type {type(value).__name__}")
-    return held(number, _RATIONAL_BITS)
+    return as_mpf(number, _RATIONAL_BITS)

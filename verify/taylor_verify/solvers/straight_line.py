@@ -1,4 +1,4 @@
-"""The equations of a form as one Python function: straight-line code, each operation done once.
+"""The equations of a form as one Python function: straight-line code with each operation done once.
 
 `Form.rates` looks every symbol up by its name, anew at each evaluation: it serves every arithmetic, and
 takes ten times as long as the operations themselves. A solver that calls the equations from Python

@@ -1,4 +1,4 @@
-"""The answer of a solver: how it ended, and where it put the body, in exactly held numbers."""
+"""The answer of a solver: its outcome, and the states of the body as exact numbers."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Outcome(Enum):
 
 
 class ByRows(Mapping[str, np.ndarray[Any, Any]]):
-    """Quantities that are formed when some of their rows are looked at; ``count`` is that of all rows."""
+    """Quantities that are formed when some of their rows are read; ``count`` is the number of all rows."""
 
     count: int
 
@@ -69,10 +69,10 @@ class ByRows(Mapping[str, np.ndarray[Any, Any]]):
 
 
 class Postponed(ByRows):
-    """The quantities of a trajectory, made of a solver's ``rows`` when somebody looks at them.
+    """The quantities of a trajectory, formed from a solver's ``rows`` when they are read.
 
-    ``exact`` makes a rational of a number of the solver's. Of a long answer only the rows that are looked
-    at are made, and none is kept.
+    ``exact`` converts a number of the solver to a rational. For a long answer only the rows that are read
+    are formed, and none is stored.
     """
 
     def __init__(
@@ -118,12 +118,12 @@ def rows_at(
 
 def motion_of(quantities: Mapping[str, np.ndarray[Any, Any]], bits: int) -> Motion:
     """Return the quantities of an answer as a Motion; ``bits`` is the precision of attitude matrices."""
-    found = {k: v for k, v in quantities.items() if k != "quaternion"}
+    by_name = {k: v for k, v in quantities.items() if k != "quaternion"}
     if "quaternion" in quantities:
         with mp.workprec(bits):
-            found["attitude"] = _rotations(quantities["quaternion"])
-    samples = len(next(iter(found.values())))
-    return Motion(found, np.array([mp.zero] * samples, dtype=object))
+            by_name["attitude"] = _rotations(quantities["quaternion"])
+    samples = len(next(iter(by_name.values())))
+    return Motion(by_name, np.array([mp.zero] * samples, dtype=object))
 
 
 @dataclass(frozen=True)
@@ -171,7 +171,7 @@ def of_rows(
 def _rotations(quaternions: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
     """Return the rotation matrices (n, 3, 3) of quaternions (n, 4) of any length, in the ambient precision.
 
-    One of length zero is no attitude at all: 0/0, and NaN fails every gate that looks at it.
+    A quaternion of length zero is not an attitude: it gives NaN, which fails every gate.
     """
     columns = to_mpfr(quaternions).T
     with precision():
@@ -201,7 +201,7 @@ def from_scaled(
     for name in kind.states:
         if name not in columns:
             columns[name] = (problem.parameter.get(name, Fraction(0)),) * len(rows)
-    parts = (_vectors(columns, one.name, units.of(one.dimension)) for one in kind.momenta)
+    parts = (_vectors(columns, part.name, units.of(part.dimension)) for part in kind.momenta)
     momenta = (tuple(chain.from_iterable(vectors)) for vectors in zip(*parts, strict=True))
     moving = list(map(kind.change(given.body).moving, momenta))
     quantities = {

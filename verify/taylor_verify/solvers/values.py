@@ -1,4 +1,4 @@
-"""The exact value of a number in somebody's file, as text or in binary.
+"""The exact value of a number in a file, as text or in binary.
 
 Decimals, ``a/b`` and hexadecimal floats become rationals; a binary number is the rational it is.
 """
@@ -86,7 +86,7 @@ def named_once(pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:
     return document
 
 
-def held(value: Value, bits: int) -> Any:
+def as_mpf(value: Value, bits: int) -> Any:
     """Return a value as an mpf: exact where it has at most so many bits."""
     if not isinstance(value, Fraction):
         return mp.mpf(value)

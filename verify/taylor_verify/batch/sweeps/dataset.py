@@ -33,7 +33,7 @@ _REPEATED: Final = ("scene", "quantity", "verdict", "outcome", "unit", "because"
 
 @dataclass(frozen=True)
 class Manifest:
-    """What a sweep asked: scenes, solver and rung, and the digests of all code that answers."""
+    """The question of a sweep: scenes, solver and rung, and the digests of the code that answers."""
 
     name: str
     digest: str
@@ -53,14 +53,14 @@ class Manifest:
         """Return a sentence for each option in which another sweep differs."""
         mine, theirs = vars(self), vars(other)
         return [
-            f"expected {_WORDS.get(name, name)} as in the sweep that is there ({_said(mine[name])}), "
-            f"got {_said(theirs[name])} @ resume"
+            f"expected {_WORDS.get(name, name)} as in the sweep that is there ({_text(mine[name])}), "
+            f"got {_text(theirs[name])} @ resume"
             for name in mine
             if mine[name] != theirs[name]
         ]
 
 
-def _said(value: object) -> str:
+def _text(value: object) -> str:
     text = str(value)
     return text if len(text) <= 40 else f"{text[:12]}..."
 

@@ -69,7 +69,7 @@ class Drawn:
 
     @property
     def described(self) -> dict[str, Any]:
-        """What a caller chose, for the record."""
+        """The caller's choices, for the record."""
         return {"count": self.count, "seed": self.seed, "points": self.spread.value}
 
     def part(self, first: int, stop: int) -> Drawn:
@@ -130,7 +130,7 @@ class Listed:
 
     @property
     def described(self) -> dict[str, Any]:
-        """What a caller chose, for the record."""
+        """The caller's choices, for the record."""
         return {"count": self.total, "seed": None, "points": None}
 
     def part(self, first: int, stop: int) -> Listed:

@@ -36,62 +36,62 @@ _SHEET: Final = (
 
 
 def write_summary(
-    folder: Path, found: SweepSummary, questions: Questions
+    folder: Path, summary: SweepSummary, questions: Questions
 ) -> tuple[SweepSummary, list[Path]]:
     """Write everything in one step; return the summary with the files of its worst cases, and all paths.
 
     Without matplotlib there is no picture. Raises OSError.
     """
-    files = {case.point: _file(rank, case) for rank, case in enumerate(found.worst, 1)}
-    found = with_files(found, files)
+    files = {case.point: _file(rank, case) for rank, case in enumerate(summary.worst, 1)}
+    summary = with_files(summary, files)
     texts = {
-        case.file: _reason(found, case, questions) + questions.text(case.point)
-        for case in found.worst
+        case.file: _reason(summary, case, questions) + questions.text(case.point)
+        for case in summary.worst
     }
     texts |= {
-        "summary.md": page(found),
-        "summary.csv": sheet(_SHEET, map(_row, found.quantities)),
-        "summary.json": json.dumps(document(found), indent=1, allow_nan=False) + "\n",
+        "summary.md": page(summary),
+        "summary.csv": sheet(_SHEET, map(_row, summary.quantities)),
+        "summary.json": json.dumps(document(summary), indent=1, allow_nan=False) + "\n",
     }
     stale = [file for file in (folder / WORST).glob("*.toml") if file.name not in files.values()]
-    written = [*replace_files(folder, texts, stale), *_drawn(folder, found)]
-    return found, written
+    written = [*replace_files(folder, texts, stale), *_drawn(folder, summary)]
+    return summary, written
 
 
-def document(found: SweepSummary) -> dict[str, Any]:
+def document(summary: SweepSummary) -> dict[str, Any]:
     """Return the document of `sweep --json`."""
-    made: dict[str, Any] = complete(found)
+    made: dict[str, Any] = complete(summary)
     return made
 
 
-def page(found: SweepSummary) -> str:
+def page(summary: SweepSummary) -> str:
     """Return the summary as Markdown."""
-    judged = f"{found.total} bodies by {code(found.solver)} on {code(found.rung)}: {counts(found)}."
+    judged = f"{summary.total} bodies by {code(summary.solver)} on {code(summary.rung)}: {counts(summary)}."
     blocks = [
-        f"# {prose(found.title or found.name)}",
+        f"# {prose(summary.title or summary.name)}",
         judged,
-        *(f"Nothing was judged: {prose(lack)}." for lack in found.lacks),
-        *(f"Refused, for one: {prose(refusal)}." for refusal in found.refusals),
-        f"Error over attainable, of the rows that passed or failed; a gate stands at {found.factor}. "
+        *(f"Nothing was judged: {prose(lack)}." for lack in summary.lacks),
+        *(f"Refused, for one: {prose(refusal)}." for refusal in summary.refusals),
+        f"Error over attainable, of the rows that passed or failed; a gate stands at {summary.factor}. "
         "A quantile is an error that occurred, at most a thousandth above the exact quantile.",
         table(
             ["quantity", "judged:", *_HEADINGS, "fail:", "undecided:"],
-            [_cells(each, each.ratio) for each in found.quantities],
+            [_cells(each, each.ratio) for each in summary.quantities],
         ),
         "The largest error of each body, in the unit of its quantity.",
         table(
             ["quantity", "judged:", *_HEADINGS, "fail:", "undecided:"],
-            [_cells(each, each.max) for each in found.quantities],
+            [_cells(each, each.max) for each in summary.quantities],
         ),
     ]
-    if found.worst:
-        blocks += ["## The worst cases", _worst_table(found.worst)]
-    return "\n\n".join([*blocks, traced(complete(found.provenance))]) + "\n"
+    if summary.worst:
+        blocks += ["## The worst cases", _worst_table(summary.worst)]
+    return "\n\n".join([*blocks, traced(complete(summary.provenance))]) + "\n"
 
 
-def counts(found: SweepSummary) -> str:
+def counts(summary: SweepSummary) -> str:
     """Return the number of bodies of each verdict that occurs, in words."""
-    return ", ".join(f"{n} {word}" for word, n in found.bodies.items() if n) or "none"
+    return ", ".join(f"{n} {word}" for word, n in summary.bodies.items() if n) or "none"
 
 
 def _cells(spread: Spread, quantiles: Quantiles | None) -> list[str]:
@@ -133,22 +133,22 @@ def _file(rank: int, case: WorstCase) -> str:
     return f"{WORST}/{rank:02d}-{stem}.toml"
 
 
-def _reason(found: SweepSummary, case: WorstCase, questions: Questions) -> str:
+def _reason(summary: SweepSummary, case: WorstCase, questions: Questions) -> str:
     """Return the comment that begins the scene of a worst case."""
     size = "no number" if case.ratio is None else f"{case.ratio:.3g}"
-    drawn = f", seed {found.seed}, {found.points} points" if found.seed is not None else ""
+    drawn = f", seed {summary.seed}, {summary.points} points" if summary.seed is not None else ""
     return (
-        f"# Why: {case.verdict} in {case.quantity} by {found.solver} on {found.rung}.\n"
+        f"# Why: {case.verdict} in {case.quantity} by {summary.solver} on {summary.rung}.\n"
         f"# Error over attainable: {size}. "
-        f"Scene {case.scene} of a sweep of {found.total}{drawn}.\n"
+        f"Scene {case.scene} of a sweep of {summary.total}{drawn}.\n"
     )
 
 
-def _drawn(folder: Path, found: SweepSummary) -> list[Path]:
+def _drawn(folder: Path, summary: SweepSummary) -> list[Path]:
     if find_spec("matplotlib") is None:
         return []
     try:
-        drawn = exceedance.picture(found)
+        drawn = exceedance.picture(summary)
     except ValueError:
         return []
     return save([drawn], folder, PICTURES)

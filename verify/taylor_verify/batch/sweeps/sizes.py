@@ -1,7 +1,7 @@
 """Quantiles of any number of sizes in bounded memory: a histogram with bins of a thousandth.
 
-What a bin holds is counted, and its largest size kept: a quantile is a size that occurred, at most a
-thousandth above the exact one. Libraries for it (t-digest, DDSketch) answer with numbers that never did.
+Each bin has a count and its largest size. So a quantile is a size that occurred, at most a thousandth above
+the exact one. Libraries for this (t-digest, DDSketch) return numbers that did not occur.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _CURVE: Final = 200
 
 
 class Sizes:
-    """Sizes that are counted as they come; NaN counts as beyond every number."""
+    """A running count of sizes; NaN counts as larger than every number."""
 
     def __init__(self) -> None:
         self._counts: dict[int, int] = {}
@@ -38,8 +38,8 @@ class Sizes:
         sizes = np.where(np.isnan(sizes), inf, np.abs(sizes)).astype(float)
         bins = sizes.view(np.uint64) >> np.uint64(_BELOW_A_BIN)
         order = np.argsort(sizes, kind="stable")
-        found, starts, counts = np.unique(bins[order], return_index=True, return_counts=True)
-        for which, start, count in zip(found.tolist(), starts, counts.tolist(), strict=True):
+        unique_bins, starts, counts = np.unique(bins[order], return_index=True, return_counts=True)
+        for which, start, count in zip(unique_bins.tolist(), starts, counts.tolist(), strict=True):
             largest = float(sizes[order][start + count - 1])
             self._counts[which] = self._counts.get(which, 0) + count
             self._largest[which] = max(self._largest.get(which, 0.0), largest)
@@ -50,8 +50,8 @@ class Sizes:
         if not self.count:
             return None
         bins, totals = self._cumulated()
-        found = (self._largest[bins[_place(totals, share * self.count)]] for share in _SHARES)
-        return Quantiles(*(size if isfinite(size) else None for size in found))
+        sizes = (self._largest[bins[_place(totals, share * self.count)]] for share in _SHARES)
+        return Quantiles(*(size if isfinite(size) else None for size in sizes))
 
     def above(self) -> tuple[tuple[float, float], ...]:
         """Return sizes, each with the share of all that are larger; the largest has the share 0."""

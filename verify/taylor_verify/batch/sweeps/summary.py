@@ -27,10 +27,10 @@ WORST: Final = 10
 _ROWS: Final = (
     *("point", "scene", "quantity", "verdict", "outcome", "max", "ratio", "unit", "because"),
 )
-# Of these the reasons are told, and of each so many.
+# Statuses whose reasons are reported, and the number of reasons for each.
 _REASONED: Final = (Status.UNAVAILABLE, Status.REFUSED)
 _MOST_REASONS: Final = 3
-# A scene that is worth a look stands before all that passed: the gravest first.
+# Scenes with these statuses come before all that passed, the worst first.
 _LOOKED_AT: Final = (Status.FAIL, Status.UNDECIDED)
 
 
@@ -64,7 +64,7 @@ def summary(
 
 
 class _Totals:
-    """What is counted while the parts of a dataset go by."""
+    """The counts over the parts of a dataset."""
 
     def __init__(self, worst: int, drawn: tuple[str, ...]) -> None:
         self.bodies: Counter[Status] = Counter()
@@ -72,7 +72,7 @@ class _Totals:
         self._most, self._drawn = worst, drawn
         self._quantities: dict[str, _Quantity] = {}
         self._outcomes: Counter[str] = Counter()
-        # By status, in the order of their coming.
+        # Reasons by status, in the order in which they occurred.
         self._reasons: dict[Status, dict[str, None]] = {status: {} for status in _REASONED}
 
     def add(self, table: Any) -> None:
@@ -80,8 +80,8 @@ class _Totals:
         rows = _Rows(table)
         self._outcomes.update(rows.words("outcome").tolist())
         for name in dict.fromkeys(rows.words("quantity").tolist()):
-            found = self._quantities.setdefault(name, _Quantity(name))
-            found.add(rows, rows.words("quantity") == name)
+            quantity = self._quantities.setdefault(name, _Quantity(name))
+            quantity.add(rows, rows.words("quantity") == name)
         gravest = np.minimum.reduceat(rows.gravity, rows.starts)
         self.bodies.update(GRAVITY[which] for which in gravest.tolist())
         for status, reasons in self._reasons.items():
@@ -95,7 +95,7 @@ class _Totals:
         return tuple(each.spread() for each in self._quantities.values())
 
     def exit_status(self) -> int:
-        """Return that of a run of all these bodies; an unjudged part of them is no failure."""
+        """Return the exit status of a run of all these bodies; unjudged bodies are no failure."""
         if self.bodies[Status.FAIL]:
             return 1
         if sum(self.bodies.values()) == self.bodies[Status.UNAVAILABLE]:
@@ -211,8 +211,8 @@ class _Rows:
         return np.asarray(self._table.column(name).to_numpy(), dtype=float)
 
 
-def with_files(found: SweepSummary, files: Mapping[int, str]) -> SweepSummary:
+def with_files(result: SweepSummary, files: Mapping[int, str]) -> SweepSummary:
     """Return the summary with the file of each worst case, by its point."""
     return replace(
-        found, worst=tuple(replace(case, file=files.get(case.point, "")) for case in found.worst)
+        result, worst=tuple(replace(case, file=files.get(case.point, "")) for case in result.worst)
     )

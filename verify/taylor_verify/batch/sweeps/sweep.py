@@ -119,9 +119,9 @@ def sweep(
                 # Nothing is left to go on from.
                 raise KeyboardInterrupt from None
             raise
-        found, _ = write_summary(folder, summary(dataset, asked, asked.title, worst), asked)
+        written, _ = write_summary(folder, summary(dataset, asked, asked.title, worst), asked)
     # What was written into a folder that is gone has no file.
-    return found if out is not None else with_files(found, {})
+    return written if out is not None else with_files(written, {})
 
 
 def _faults(

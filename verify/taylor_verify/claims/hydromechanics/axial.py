@@ -1,4 +1,4 @@
-"""Hydromechanics 49 (23)-(25): Clebsch's body moving along its axis, and whether that is stable.
+"""Hydromechanics 49 (23)-(25): Clebsch's body moving along its axis, and the stability of that motion.
 
 kappa = (p' - p)/r, lambda = (q' - q)/r      y = x3 - F, the depth below the axis: y <= 0 in motion
 A = 4 kappa F^2 + 4 lambda F G - G^2, B = 2 kappa F + lambda G, C = kappa

@@ -1,4 +1,4 @@
-"""Hydromechanics 49 (18)-(22): where the origin of the body is, the axis of space along F.
+"""Hydromechanics 49 (18)-(22): the position of the body's origin, with the axis of space along F.
 
 X, Y, Z   coordinates of the origin in space (c below), c' = R U; cos xY is the element of R in row Y
 and column x, and so on. Other symbols as in clebsch.py and angles.py.

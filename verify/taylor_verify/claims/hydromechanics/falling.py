@@ -56,10 +56,10 @@ def _turning_point(tilt: Fraction) -> Fraction:
     low, high = (as_fraction(t, _DECIMALS) for t in (guess, guess + 8 / rate))
     for _ in range(_NARROWINGS):
         times = [low + (high - low) * k / _INTERVALS for k in range(_INTERVALS + 1)]
-        found = speeds(UNSTABLE, tilt, times)
-        first = next((k for k in range(1, _INTERVALS) if found[k] > 0), _INTERVALS)
+        values = speeds(UNSTABLE, tilt, times)
+        first = next((k for k in range(1, _INTERVALS) if values[k] > 0), _INTERVALS)
         low, high = times[first - 1], times[first]
-    share = found[first - 1] / (found[first - 1] - found[first])
+    share = values[first - 1] / (values[first - 1] - values[first])
     return low + as_fraction(share, _DECIMALS) * (high - low)
 
 

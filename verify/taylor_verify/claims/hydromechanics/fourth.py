@@ -1,4 +1,4 @@
-"""Hydromechanics 48 and 49: which bodies have a fourth integral, and what it is good for.
+"""Hydromechanics 48 and 49: the bodies with a fourth integral, and its use.
 
 A polynomial integral splits into homogeneous ones, because the right sides of 48 (3), (4) are
 homogeneous quadratic: those of one degree are the null space of a matrix of rationals.
@@ -38,7 +38,7 @@ def _matrix(*rows: tuple[int, int, int]) -> tensors.Matrix:
     return tuple(tuple(Fraction(entry, 7) for entry in row) for row in rows)
 
 
-# No two of the 21 coefficients stand in a relation that a symmetry would make.
+# A body without symmetry: no relation between any two of the 21 coefficients.
 GENERIC: Final = ImmersedBody(
     linear=_matrix((17, 1, 2), (1, 23, -3), (2, -3, 31)),
     coupling=_matrix((2, 1, -1), (3, -2, 1), (1, 2, 4)),
@@ -82,7 +82,7 @@ def _rank(rows: Iterable[Sequence[Any]]) -> int:
     return int(fmpq_mat(entries).rank()) if entries else 0
 
 
-# T, F^2 and FG, of degree 2, and their products make these many and no more.
+# The numbers of integrals, by degree, that T, F^2, FG (of degree 2) and their products give.
 _OF_THREE: Final = {1: 0, 2: 3, 3: 0, 4: 6}
 
 
@@ -94,8 +94,8 @@ def no_further(body: ImmersedBody) -> Residual:
 
 def known_families() -> Residual:
     """The bodies named have exactly one more: of degree 1, 2 and 2."""
-    found = (integrals(SYMMETRIC, 1), integrals(SECOND_CASE, 2), integrals(STEKLOV, 2))
-    missed = sum(abs(a - b) for a, b in zip(found, (1, 4, 4), strict=True))
+    numbers = (integrals(SYMMETRIC, 1), integrals(SECOND_CASE, 2), integrals(STEKLOV, 2))
+    missed = sum(abs(a - b) for a, b in zip(numbers, (1, 4, 4), strict=True))
     return Residual(float(missed), 0.0, f"integrals of the known families; {_COUNTED}")
 
 
@@ -116,12 +116,12 @@ def independent(fourth: str) -> Residual:
     return Residual(float(missing), 0.0, "4 less the rank of four gradients at a rational point")
 
 
-def coefficients_left(kept: int = 7) -> Residual:
-    """The number of coefficients of T that y3' = 0 leaves free, less those of (1) and of s."""
+def coefficients_left(expected: int = 7) -> Residual:
+    """Compare the number of coefficients of T that y3' = 0 leaves free with the ``expected`` number."""
     names = [name for name in unloaded.field.names if name[0] in "ABC"]
     left = _relations([unloaded.field.partial(unloaded["dy"][2], name) for name in names])
     return Residual(
-        float(abs(left - kept)), 0.0, f"free coefficients of T beyond seven; {_COUNTED}"
+        float(abs(left - expected)), 0.0, f"free coefficients of T beyond seven; {_COUNTED}"
     )
 
 
@@ -204,7 +204,7 @@ CLAIMS: Final = (
         check=All(coefficients_left, _swing),
         transcribed=_planar("d(y3) = 0"),
         mutants={
-            "six coefficients": partial(coefficients_left, kept=6),
+            "six coefficients": partial(coefficients_left, expected=6),
             "the planar motion without r y3^2": (" - r*y3**2", ""),
         },
     ),

@@ -1,4 +1,4 @@
-"""Hydromechanics 48 (3)-(9): how linear and angular impulse change under force and couple.
+"""Hydromechanics 48 (3)-(9): the change of linear and angular impulse under force and couple.
 
 The law behind them is that of space: the impulse R x grows by the force, its moment R y + c x R x
 about a fixed point by the moment of the loads. Symbols as in solid.py; every identity is expanded in

@@ -1,4 +1,4 @@
-"""Hydromechanics 48 (i)-(iii) and (10): what a free solid keeps, and the couple that acts on y.
+"""Hydromechanics 48 (i)-(iii) and (10): the integrals of a free solid, and the couple that acts on y.
 
 Symbols as in solid.py; every identity is expanded in exact rationals with all 21 coefficients of T.
 """

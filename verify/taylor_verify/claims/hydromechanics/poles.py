@@ -1,4 +1,4 @@
-"""Poles of a solid's motion in complex time, and whether a general solution can be single-valued there.
+"""The poles of a solid's motion in complex time, with tests for single-valued solutions there.
 
 z' = v(z) is homogeneous quadratic, so that z = c/(t - t*) + ... with v(c) = -c. A solution near it may
 differ by terms (t - t*)^(rho - 1), rho the eigenvalues of Dv(c) + 1 (Kowalevski's exponents): one that
@@ -49,14 +49,14 @@ def leading_coefficients(body: ImmersedBody) -> list[Complex]:
     """
     energy = _energy(body)
     random = np.random.default_rng(1)
-    found: list[Complex] = []
+    solutions: list[Complex] = []
     for _ in range(_STARTS):
         with np.errstate(all="ignore"):  # what is not finite ends the rule
             c = _newton(energy, random.normal(size=6) + 1j * random.normal(size=6))
         size = float(np.linalg.norm(c))
         if 1e-6 < size < 1e6 and np.linalg.norm(_rates(energy, c) + c) <= _FOUND * size**2:
-            found.append(c)
-    return found
+            solutions.append(c)
+    return solutions
 
 
 def _newton(energy: Any, c: Complex) -> Complex:

@@ -1,4 +1,4 @@
-"""The axial movement of Clebsch's body disturbed: how far its axis tilts, and how often it nutates.
+"""The axial movement of Clebsch's body disturbed: the tilt of its axis, and its period of nutation.
 
 Trajectories of the Taylor route; kappa, lambda, A as in axial.py. The tilt is |xi|/F, the sine of
 the angle between the axis and F; the start has y = x, so that eta = xi.

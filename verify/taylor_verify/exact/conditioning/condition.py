@@ -1,8 +1,8 @@
-"""The condition of an orbit: how far errors that are made on it are carried, and how they add up.
+"""The condition of an orbit: how errors that are made along it grow and add up.
 
 e(s)     sizes of independent errors, made in the components of the state at time s
 Phi(t,s) the derivative of the state at t by the state at s
-P(t)     the mean squares and products of what they have become at time t
+P(t)     the mean squares and products of the grown errors at time t
 
     P(t) = sum over s <= t of Phi(t, s) diag(e(s)^2) Phi(t, s)^T.
 
@@ -35,25 +35,25 @@ from taylor_verify.scenes.instants import chosen
 from taylor_verify.scenes.precision import float_text, floor_log2
 from taylor_verify.scenes.scene import Scene
 
-# float64 has e^700, and what is formed of the errors has their squares.
+# float64 reaches e^700, and squares of the errors are formed.
 _MOST_DECAY: Final = 300
-# A derivative that outgrows 1 + rate x time by more than this comes from a passage of an unstable
-# motion: it matters then at which moments of it an error is made, and where it is looked at.
+# If a derivative exceeds 1 + rate x time by more than this, the orbit passes an unstable motion. Then the
+# moments at which an error is made and observed matter.
 REGULAR: Final = 8.0
 # Steps of float64 cost less than orbits of dozens of digits beside this one until there are many. For a
 # solid in a fluid they cost less than seven of hundreds of digits until there are thousands; the four of
 # a rigid body, in functions of real numbers, cost less than those.
 _FEW_RADIANS: Final = 200
 _MOST_RADIANS: Final = 2000
-# Norms are wanted to a digit or two, and the size of one that is too large to within a tenth.
+# Norms are needed to one or two digits, and the size of a too large norm to a tenth.
 _SHARP: Final = 1e-3
 _ROUGH: Final = 0.1
-# On a regular orbit what is injected at any time grows alike, and so many samples stand for all,
+# On a regular orbit all errors grow alike, so this many samples represent all,
 _FEW: Final = 33
-# if there are so many times beside them that no period shares: samples may meet the orbit in one phase.
+# with this many times besides that share no period: samples may meet the orbit in one phase only.
 _BETWEEN: Final = 20
 _GOLDEN: Final = Fraction(0.6180339887498949)
-# Until so many radians every radian is a point of its own, later every 64th part of the time so far.
+# Up to this many radians there is a point for each radian, later for each 64th part of the elapsed time.
 _RESOLVED: Final = 64
 _MOST_SAMPLES: Final = 401
 
@@ -134,8 +134,8 @@ class Path:
         d = self.momentum.shape[1]
         elapsed = np.array([float(t / self.flow.time) for t in self.elapsed])
         alike = np.exp(-self.flow.expansion / d * elapsed)
-        found: Floats = _spectral_norms(self.carried.since_first[:, :d, :d]) * alike
-        return found
+        growth: Floats = _spectral_norms(self.carried.since_first[:, :d, :d]) * alike
+        return growth
 
     @property
     def rate(self) -> float:
@@ -174,11 +174,11 @@ def _spectral_norms(matrices: Floats) -> Floats:
     # Divided by their size, because entries up to 1e308 would overflow when squared.
     moderate = np.where(np.isfinite(size), matrices, 0.0) / np.where(size > 0, size, 1.0)
     norms = np.linalg.norm(moderate, 2, axis=(-2, -1))
-    found: Floats = np.where(np.isfinite(size[..., 0, 0]), norms * size[..., 0, 0], inf)
-    return found
+    sizes: Floats = np.where(np.isfinite(size[..., 0, 0]), norms * size[..., 0, 0], inf)
+    return sizes
 
 
-# Which way leads to the derivative.
+# The choice of the way to compute the derivative.
 
 
 def transition(scene: Scene, elapsed: Sequence[Fraction]) -> Path:
@@ -189,9 +189,9 @@ def transition(scene: Scene, elapsed: Sequence[Fraction]) -> Path:
     _refuse_far_decay(scene, elapsed)
     flow = Flow.of(scene)
     if differs_dearly(scene):
-        found = integrated(scene, flow, elapsed)
-        if found is not None:
-            return Path(scene, flow, elapsed, found)
+        steps = integrated(scene, flow, elapsed)
+        if steps is not None:
+            return Path(scene, flow, elapsed, steps)
     differences = next(settled(scene, elapsed))
     return Path(scene, flow, elapsed, differences.steps(flow)[0], differences.exponent)
 
@@ -203,18 +203,18 @@ def path(scene: Scene) -> Path:
     """
     elapsed, flow = scene.clock.elapsed, Flow.of(scene)
     _refuse_far_decay(scene, elapsed)
-    found = _along(scene, flow, few(elapsed))
-    if found.is_regular:
-        return found
-    rate, growth = found.rate, found.growth.max()
+    coarse = _along(scene, flow, few(elapsed))
+    if coarse.is_regular:
+        return coarse
+    rate, growth = coarse.rate, coarse.growth.max()
     points = many(elapsed, rate)
-    is_solid_in_fluid = found.momentum.shape[1] == 6
+    is_solid_in_fluid = coarse.momentum.shape[1] == 6
     if is_solid_in_fluid and rate * abs(elapsed[-1]) <= _MOST_RADIANS and growth < inf:
-        # So many more digits of the truth as the growth may magnify its last one by.
+        # The growth may magnify the last digit of the truth, so the truth gets as many more digits.
         steps = integrated(scene, flow, points, ceil(log10(growth)))
         if steps is not None:
             return Path(scene, flow, points, steps)
-    return sharp(scene, flow, points, found.exponent)
+    return sharp(scene, flow, points, coarse.exponent)
 
 
 def _refuse_far_decay(scene: Scene, elapsed: Sequence[Fraction]) -> None:
@@ -237,7 +237,7 @@ def differs_dearly(scene: Scene) -> bool:
         return True
     start = momentum(scene)
     beside = (start.moved(j, unit) for j, unit in enumerate(start.units))
-    return any(solution(each).route == "taylor" for each in (scene, *beside))
+    return any(solution(start_scene).route == "taylor" for start_scene in (scene, *beside))
 
 
 def sharp(
@@ -245,14 +245,15 @@ def sharp(
 ) -> Path:
     """A path from differences so small that products of F with its inverses have their leading digits.
 
-    A step of 10^-e leaves 10^-e |F|^2 in F, and that is multiplied by F^-1. Where no precision of the
-    ladder is enough, what is found there is noise on top of what is asked: more, and not less. An orbit
-    that is not regular is left as it is ``to_tell`` that it is not: |F| is sharp before F F^-1 is.
+    A step of 10^-e leaves an error of 10^-e |F|^2 in F, and that is multiplied by F^-1. If no precision
+    of the ladder is enough, the result contains noise, which makes it larger and not smaller. With
+    ``to_tell`` the search ends as soon as the orbit is known not to be regular, because |F| is sharp
+    before F F^-1 is.
     """
-    for found in settled(scene, points, least):
-        steps, shrinkage = found.steps(flow)
-        path = Path(scene, flow, points, steps, found.exponent)
-        growth, sharpness = path.growth, 10.0**found.exponent
+    for differences in settled(scene, points, least):
+        steps, shrinkage = differences.steps(flow)
+        path = Path(scene, flow, points, steps, differences.exponent)
+        growth, sharpness = path.growth, 10.0**differences.exponent
         if (growth**2 * shrinkage <= _SHARP * sharpness).all():
             break
         if to_tell and growth.max() <= _ROUGH * sharpness and not path.is_regular:
@@ -261,11 +262,11 @@ def sharp(
 
 
 def _along(scene: Scene, flow: Flow, points: Sequence[Fraction]) -> Path:
-    """The orbit at a few points; no sharper than it takes to see that they are too few."""
+    """Return the orbit at a few points, only as sharp as needed to see whether they are too few."""
     if _is_short(scene, flow) or differs_dearly(scene):
-        found = integrated(scene, flow, points)
-        if found is not None:
-            return Path(scene, flow, points, found)
+        steps = integrated(scene, flow, points)
+        if steps is not None:
+            return Path(scene, flow, points, steps)
     return sharp(scene, flow, points, to_tell=True)
 
 
@@ -280,11 +281,11 @@ def _is_short(scene: Scene, flow: Flow) -> bool:
     return bool(rate * abs(float(scene.clock.elapsed[-1])) <= _FEW_RADIANS)
 
 
-# At which times an orbit is looked at, where it need not be at all.
+# The choice of times, where not all samples are needed.
 
 
 def few(elapsed: Sequence[Fraction]) -> list[Fraction]:
-    """Evenly chosen samples, and times that owe nothing to them: few samples leave more to these.
+    """Return evenly chosen samples, and times that are independent of them.
 
     In each of as many equal parts of the time lies one, at a multiple of the golden section modulo 1,
     which keeps away from every rhythm; two lie before the first sample, to which nothing else leads.

@@ -54,10 +54,10 @@ def settled(scene: Scene, elapsed: Sequence[Fraction], least: int = 0) -> Iterat
     for exponent, digits in ladder:
         if exponent < least:
             continue
-        found = derivatives(scene, elapsed, exponent, digits)
-        if found.volume_error() <= _VOLUME_ERROR:
+        differences = derivatives(scene, elapsed, exponent, digits)
+        if differences.volume_error() <= _VOLUME_ERROR:
             is_settled = True
-            yield found
+            yield differences
     if not is_settled:
         raise Unsettled(
             f"differences of the exact solution at {digits} digits do not conserve volume along the "
@@ -134,30 +134,30 @@ class Derivatives:
             whole = np.array([carried(0, i) for i in range(n)])
             roots = [arb(mp.root(v, d)) for v in self.volumes]
             pairs = zip(inverses, roots, strict=True)
-            sizes = [float(np.linalg.norm(_floats(one * root), 2)) for one, root in pairs]
-            found = Steps(steps, whole, self.state.astype(float), path.astype(float))
-        return found, max(sizes)
+            sizes = [float(np.linalg.norm(_floats(inverse * root), 2)) for inverse, root in pairs]
+            result = Steps(steps, whole, self.state.astype(float), path.astype(float))
+        return result, max(sizes)
 
 
 def derivatives(
     scene: Scene, elapsed: Sequence[Fraction], exponent: int, digits: int
 ) -> Derivatives:
-    """One-sided differences at ``digits`` digits, each momentum changed by 10^-exponent units."""
+    """Return one-sided differences at ``digits`` digits, each momentum changed by 10^-exponent units."""
     start, kind = momentum(scene), kind_of(scene.body)
     step = Fraction(1, 10**exponent)
     expansion = Fraction(np.trace(kind.momentum_equations(scene.body).linear))
     with mp.workdps(digits):
-        here = solution(scene).evaluate(elapsed, digits)
+        unmoved = solution(scene).evaluate(elapsed, digits)
         columns = []
         for j, unit in enumerate(start.units):
-            there = solution(start.moved(j, step * unit)).evaluate(elapsed, digits)
-            columns.append(difference(here, there, mp.convert(step)))
+            moved = solution(start.moved(j, step * unit)).evaluate(elapsed, digits)
+            columns.append(difference(unmoved, moved, mp.convert(step)))
         units = real((start.units,))
         changes = [kind.momentum_rows(scene.body, column) for column in columns]
         centre = kind.centre(scene.initial)
         path = np.empty((0, 3), dtype=object)
-        if "centre" in here and centre is not None:
-            path = here["centre"] - real((centre,))
+        if "centre" in unmoved and centre is not None:
+            path = unmoved["centre"] - real((centre,))
         return Derivatives(
             exponent=exponent,
             digits=digits,
@@ -166,9 +166,9 @@ def derivatives(
             others={
                 name: np.stack([column[name] for column in columns], axis=2)
                 for name in ("attitude", "centre")
-                if name in here
+                if name in unmoved
             },
-            state=kind.momentum_rows(scene.body, here) / units,
+            state=kind.momentum_rows(scene.body, unmoved) / units,
             centre=path,
             volumes=np.array([decayed(-expansion * t, mp.convert) for t in elapsed], dtype=object),
         )
@@ -178,10 +178,10 @@ def difference(before: Quantities, after: Quantities, step: Any) -> dict[str, Ar
     """(after - before)/step of every quantity, shape (n, 3); of attitudes the small turn between them."""
     change = {name: after[name] - before[name] for name in before if name != "attitude"}
     if "attitude" in before:
-        here, there = to_mpfr(before["attitude"]), to_mpfr(after["attitude"])
+        R, moved_R = to_mpfr(before["attitude"]), to_mpfr(after["attitude"])
         j, k = [1, 2, 0], [2, 0, 1]
         with precision():
-            turns = there @ here.transpose(0, 2, 1)
+            turns = moved_R @ R.transpose(0, 2, 1)
             change["attitude"] = to_mpf((turns[:, k, j] - turns[:, j, k]) / 2)
     return {name: change[name] / step for name in before}
 

@@ -44,10 +44,10 @@ class Steps(NamedTuple):
 
 def products(steps: Floats) -> Floats:
     """The products of the first 0, 1, 2, ... of these matrices (n, m, m), the later ones to the left."""
-    found = [np.eye(steps.shape[1])]
+    matrices = [np.eye(steps.shape[1])]
     for step in steps:
-        found.append(step @ found[-1])
-    return np.array(found)
+        matrices.append(step @ matrices[-1])
+    return np.array(matrices)
 
 
 @dataclass(frozen=True)
@@ -70,20 +70,20 @@ class Flow:
         """Return the equations of a scene's body, in units of its start."""
         kind, units = kind_of(scene.body), momentum(scene).units
         equations = kind.momentum_equations(scene.body)
-        one = exact(units)
-        scaled = in_units(equations.hessian, 1 / one, one, one)
-        linear = in_units(equations.linear, 1 / one, one)
-        every = (*scaled.flat, *linear.flat, *(equations.constant / one))
+        unit = exact(units)
+        scaled = in_units(equations.hessian, 1 / unit, unit, unit)
+        linear = in_units(equations.linear, 1 / unit, unit)
+        every = (*scaled.flat, *linear.flat, *(equations.constant / unit))
         rates = [abs(rate) for rate in every if rate]
         time = 1 / power_of_two(floor_log2(max(rates))) if rates else Fraction(1)
-        fastest = max((abs(s) for s in (equations.velocity * one).flat), default=Fraction(0))
+        fastest = max((abs(s) for s in (equations.velocity * unit).flat), default=Fraction(0))
         length = power_of_two(floor_log2(fastest * time)) if fastest else Fraction(1)
         motion = kind.manufactured_momentum(scene.body)
-        waves, turning = swing(motion or standing(len(one)))
+        waves, turning = swing(motion or standing(len(unit)))
         return cls(
             momenta=dict(zip(kind.momenta, units[::3], strict=True)),
             equations=equations.scaled(units, time, length),
-            waves=(waves / one[:, None]).astype(float),
+            waves=(waves / unit[:, None]).astype(float),
             turning=(turning * time).astype(float),
             time=time,
             length=length,
@@ -103,8 +103,8 @@ class Flow:
     def jacobian(self, z: Floats) -> Floats:
         """J (..., d, d) at z (..., d)."""
         d = z.shape[-1]
-        found: Floats = z @ self.equations.hessian.reshape(d * d, d).T
-        return found.reshape(*z.shape, d) + self.equations.linear
+        quadratic: Floats = z @ self.equations.hessian.reshape(d * d, d).T
+        return quadratic.reshape(*z.shape, d) + self.equations.linear
 
     @property
     def expansion(self) -> float:
@@ -117,13 +117,13 @@ class Flow:
 
     def load(self, clock: Floats) -> Floats:
         """The constant load, and the one that a manufactured motion takes."""
-        there, rate = clock @ self.waves.T, clock @ self.turning.T @ self.waves.T
+        z, rate = clock @ self.waves.T, clock @ self.turning.T @ self.waves.T
         constant = self.equations.constant
-        found: Floats = constant + rate - self.free(there)
-        return found
+        load: Floats = constant + rate - self.free(z)
+        return load
 
     def rate(self, z: Floats) -> Floats:
-        """The rate that a step has to resolve: h times it is the length of the step.
+        """Return the rate that a step must resolve: a step of length h covers h times this rate.
 
         A step errs by (h J)^5/120, and by h J (h rate)^4 of what J becomes. Where the moments of inertia
         lie far apart J is far from normal: |J| is then much larger than any power of it makes a step.
@@ -133,15 +133,15 @@ class Flow:
         fifth = _norm(square @ square @ jacobian) ** 0.2
         spin = np.linalg.norm(z @ self.equations.spin.T, axis=-1)
         own = np.maximum(np.maximum(fifth, spin), np.abs(self.turning).max())
-        found: Floats = np.maximum(own, (_norm(jacobian) * own**4) ** 0.2)
-        return found
+        rate: Floats = np.maximum(own, (_norm(jacobian) * own**4) ** 0.2)
+        return rate
 
 
 def applied(matrices: Floats, vectors: Floats) -> Floats:
-    """Each matrix (..., m, n) times its own vector (..., n)."""
+    """Return the products of matrices (..., m, n) and vectors (..., n), entry by entry."""
     return (matrices @ vectors[..., None])[..., 0]
 
 
 def _norm(matrices: Floats) -> Floats:
-    found: Floats = np.linalg.norm(matrices, axis=(-2, -1))
-    return found
+    norm: Floats = np.linalg.norm(matrices, axis=(-2, -1))
+    return norm

@@ -52,8 +52,8 @@ def start_inputs(scene: Scene) -> list[Input]:
     units = _block_units(z, kind.energy(scene.body))
 
     def moved(first: int, j: int, amount: Fraction) -> Scene:
-        there = kind.with_state(scene.initial, raised(z, first + j, amount))
-        return replace(scene, initial=there)
+        initial = kind.with_state(scene.initial, raised(z, first + j, amount))
+        return replace(scene, initial=initial)
 
     return [
         Input(name, components, units[3 * k : 3 * k + 3], partial(moved, 3 * k))
@@ -63,12 +63,12 @@ def start_inputs(scene: Scene) -> list[Input]:
 
 def body_input(scene: Scene) -> Input:
     """The inertia, Clebsch's six coefficients, or all 21 of T."""
-    found = kind_of(scene.body).parameters(scene.body)
+    parameters = kind_of(scene.body).parameters(scene.body)
     return Input(
-        found.name,
-        found.components,
-        tuple(map(_near, found.squares)),
-        lambda j, amount: replace(scene, body=found.changed(j, amount)),
+        parameters.name,
+        parameters.components,
+        tuple(map(_near, parameters.squares)),
+        lambda j, amount: replace(scene, body=parameters.changed(j, amount)),
     )
 
 

@@ -1,4 +1,4 @@
-"""Motions beside an exact one: where the equations lead from states that are close to it.
+"""Motions close to an exact one, computed from the equations of their difference.
 
 z, R, c   the exact momentum, attitude and centre; z + s e, R P and c + s R g those beside them
 s         a power of two near the largest of these differences
@@ -8,10 +8,10 @@ J         linear in z, with z' = load + J(z) z/2, so that loads drop out of a di
     e' = J(z + s e/2) e                        v' = (p W + v x (2 Omega + s W))/2,  W = dOmega
     g' = dU - Omega x g + 2 p v x U + 2 s v x (v x U),  U that of z + s e
 
-Nothing is neglected: these are the equations of the difference itself. It is small, so that it need not
-have more digits than a float64 has, however many the exact motion has. All arcs are followed at once, by
-Gragg's method of extrapolation. Its error is not proven but estimated, from two orders that have to agree
-and from the exact motion, at which z has to arrive; the estimate has to be negligible.
+Nothing is neglected: these are the exact equations of the difference. The difference is small, so float64
+suffices for it, however many digits the exact motion has. All arcs are followed at once, by Gragg's method
+of extrapolation. Its error is estimated and not proven: two orders must agree, z must arrive at the exact
+motion, and the estimate must be negligible.
 """
 
 from __future__ import annotations
@@ -36,14 +36,14 @@ from taylor_verify.exact.rows import cross_matrices, turned
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.scene import Scene
 
-# The parts of a step, each time fewer than the next: extrapolated from all of them, order 14.
+# The numbers of parts of a step, in ascending order; extrapolation from all of them has order 14.
 _PARTS: Final = (2, 4, 6, 8, 10, 12, 14)
-# In radians of the fastest rate. Enclosed arcs are not much dearer than more steps than these.
+# Step in radians of the fastest rate. With more steps than these, enclosed arcs cost little more.
 _STEP: Final = 0.75
 _MOST_STEPS: Final = 64
-# What the roundings of some hundred operations on float64 leave of a difference, with a margin.
+# The relative rounding error of some hundred operations on float64, with a margin.
 _NOISE: Final = 2.0**-44
-# Of the digits asked for, so many more: no digit of a verdict is to depend on which way was gone.
+# More digits than asked for, so that no digit of a verdict depends on the chosen method.
 _MORE_DIGITS: Final = 3
 # Beyond it squares are near the end of float64.
 _LARGEST: Final = 1e100
@@ -56,11 +56,11 @@ def neighbours(
     beside: Motion,
     digits: int,
 ) -> Motion | None:
-    """Return where the states ``beside`` an exact motion have come to when it has gone on by an arc.
+    """Return the ends of arcs that start from the states ``beside`` an exact motion.
 
     ``exact`` are its rows at the beginnings and at the ends of the arcs; row k of ``beside`` belongs to
     the k-th beginning. ``elapsed`` are the times of the beginnings and, behind them, of the ends. Motions
-    are in MPFR's numbers, at the ambient precision. None where the estimated error is not far below
+    are in MPFR's numbers, at the ambient precision. None if the estimated error is not far below
     ``digits`` digits of the motion.
     """
     count = len(elapsed) // 2
@@ -114,8 +114,8 @@ class _Arcs:
     def counted(self, momentum: Array) -> Floats:
         """Return momenta in the units of the flow."""
         units = np.array([gmpy2.mpfr(unit) for unit in self.flow.components], dtype=object)
-        found: Floats = (momentum / units).astype(float)
-        return found
+        counts: Floats = (momentum / units).astype(float)
+        return counts
 
     # From exact motions to differences, and back.
 
@@ -140,24 +140,24 @@ class _Arcs:
         exactly = np.array([gmpy2.mpfr(v) for v in difference.flat], dtype=object)
         whole = exactly.reshape(difference.shape) * size
         e = whole[:, :d] * np.array([gmpy2.mpfr(u) for u in self.flow.components], dtype=object)
-        found = dict(exact.quantities)
+        quantities = dict(exact.quantities)
         if self.kind.moving == ("omega",):
             K = self.kind.momentum_equations(self.scene.body).spin
-            found["omega"] = found["omega"] + mapped(tuple(map(tuple, K)), e)
+            quantities["omega"] = quantities["omega"] + mapped(tuple(map(tuple, K)), e)
         else:
             for k, name in enumerate(self.kind.moving):
-                found[name] = found[name] + e[:, 3 * k : 3 * k + 3]
+                quantities[name] = quantities[name] + e[:, 3 * k : 3 * k + 3]
         R = exact.quantities.get("attitude")
         if self._has_turn and R is not None:
             v = whole[:, d : d + 3]
             cosine = np.array([gmpy2.sqrt(1 - sum(v_i * v_i for v_i in row)) for row in v])
             crossed = cross_matrices(v)
             turn = cosine[:, None, None] * crossed + crossed @ crossed
-            found["attitude"] = R + 2 * (R @ turn)
+            quantities["attitude"] = R + 2 * (R @ turn)
         if self._has_centre and R is not None:
             shift = turned(R, whole[:, d + 3 :]) * gmpy2.mpfr(self.flow.length)
-            found["centre"] = found["centre"] + shift
-        return Motion(found, exact.radius)
+            quantities["centre"] = quantities["centre"] + shift
+        return Motion(quantities, exact.radius)
 
     def is_negligible(self, errors: Floats, size: Any, exact: Motion, digits: int) -> bool:
         """Return True if all errors are below so many digits of the largest |H|, |x|, |y|, 1 and |c|."""
@@ -180,7 +180,7 @@ class _Arcs:
     def followed(
         self, clock: Floats, z: Floats, start: Floats, size: float, spans: Floats
     ) -> tuple[_Reached, Floats]:
-        """Return where all arcs end, and the estimated errors of the differences; NaN for too long arcs."""
+        """Return the ends of all arcs and the estimated errors of the differences; NaN if too long."""
         m, d = clock.shape[1], z.shape[1]
         at = np.hstack([clock, z, start])
         radians = np.max(np.abs(spans) * self.flow.rate(z), initial=0.0)
@@ -210,7 +210,7 @@ class _Arcs:
     def _rates(self, at: Floats, size: float, m: int, d: int) -> Floats:
         flow = self.flow
         clock, z, e = at[:, :m], at[:, m : m + d], at[:, m + d : m + 2 * d]
-        found = [
+        rates = [
             clock @ flow.turning.T,
             flow.load(clock) + flow.free(z),
             applied(flow.jacobian(z + size / 2 * e), e),
@@ -219,14 +219,14 @@ class _Arcs:
             v = at[:, m + 2 * d : m + 2 * d + 3]
             cosine = np.sqrt(1 - size**2 * np.sum(v * v, axis=1))[:, None]
             spin, more = z @ flow.equations.spin.T, e @ flow.equations.spin.T
-            found.append((cosine * more + np.cross(v, 2 * spin + size * more)) / 2)
+            rates.append((cosine * more + np.cross(v, 2 * spin + size * more)) / 2)
         if self._has_centre:
             g = at[:, m + 2 * d + 3 :]
             speed = (z + size * e) @ flow.equations.velocity.T
             across = np.cross(v, speed)
             carried = 2 * cosine * across + 2 * size * np.cross(v, across)
-            found.append(e @ flow.equations.velocity.T - np.cross(spin, g) + carried)
-        return np.hstack(found)
+            rates.append(e @ flow.equations.velocity.T - np.cross(spin, g) + carried)
+        return np.hstack(rates)
 
 
 def _half_turns(rotations: Array) -> Array:
@@ -234,6 +234,6 @@ def _half_turns(rotations: Array) -> Array:
     trace = np.trace(rotations, axis1=1, axis2=2)
     skew = rotations - np.swapaxes(rotations, 1, 2)
     axes = np.stack([skew[:, 2, 1], skew[:, 0, 2], skew[:, 1, 0]], axis=1)
-    lengths = np.array([gmpy2.sqrt(1 + each) for each in trace])
-    found: Array = axes / (2 * lengths)[:, None]
-    return found
+    lengths = np.array([gmpy2.sqrt(1 + entry) for entry in trace])
+    halves: Array = axes / (2 * lengths)[:, None]
+    return halves

@@ -49,7 +49,7 @@ Pair = tuple[str, str]
 # is too wide, the exponent is doubled, half a dozen times.
 _STEP_GUARD_DIGITS: Final = 4
 _ATTEMPTS: Final = 7
-# What the base motion, which no difference is taken of, is known to beyond the digits asked for.
+# Digits of the base motion beyond those asked for; no difference of it is taken.
 _GUARD_DIGITS: Final = 8
 
 
@@ -112,25 +112,25 @@ def sensitivity(scene: Scene, times_elapsed: Sequence[Fraction], digits: int = 1
     with mp.workdps(working):
         evaluate = cache(partial(solution(scene).evaluate, elapsed))
         base = _Base(scene.name, elapsed, _sizes(motion.quantities), evaluate)
-        found = dict(_by_place(motion.quantities, working))
+        columns_of_pairs = dict(_by_place(motion.quantities, working))
         flow = _flow(scene, motion.quantities)
     inputs = [*start_inputs(scene), body_input(scene)]
-    # Beside a body with loads or wheels, and no damping, there is no damped one in closed form.
+    # An undamped body with loads or wheels has no closed form with a small damping.
     if scene.body.damping or is_solved(scene):
         inputs.append(damping_input(scene))
-    for each in inputs:
-        columns = [_column(base, each, j, digits) for j in range(len(each.units))]
+    for cause in inputs:
+        columns = [_column(base, cause, j, digits) for j in range(len(cause.units))]
         for name in base.sizes:
-            found[name, each.name] = (
+            columns_of_pairs[name, cause.name] = (
                 np.stack([column[name][0] for column in columns], axis=2),
                 np.stack([column[name][1] for column in columns], axis=1),
             )
-    components = {each.name: each.components for each in inputs}
+    components = {cause.name: cause.components for cause in inputs}
     components.update(dict.fromkeys(_places(motion.quantities), ("1", "2", "3")))
     return Sensitivity(
         elapsed=elapsed,
-        by={pair: values for pair, (values, _) in found.items()},
-        error={pair: errors for pair, (_, errors) in found.items()},
+        by={pair: values for pair, (values, _) in columns_of_pairs.items()},
+        error={pair: errors for pair, (_, errors) in columns_of_pairs.items()},
         flow=flow,
         components=components,
     )
@@ -174,10 +174,12 @@ def _attempt(base: _Base, by: Input, j: int, exponent: int, working: int) -> Col
     """The difference with a step of 10^-exponent units, and the estimate of its error."""
     # A power of two, so that perturbed data stay short.
     step = power_of_two(floor_log2(Fraction(1, 10**exponent))) * by.units[j]
-    h, here = mp.convert(step), base.at(working)
+    h, unmoved = mp.convert(step), base.at(working)
     # Each is a smooth function of the step, zero at zero; so is a small turn away from here.
     behind, ahead, wide = (
-        difference(here, solution(by.moved(j, multiple * step)).evaluate(base.elapsed, working), h)
+        difference(
+            unmoved, solution(by.moved(j, multiple * step)).evaluate(base.elapsed, working), h
+        )
         for multiple in (-1, 1, 2)
     )
     rounding = mpf(10) ** -working
@@ -213,7 +215,7 @@ def _sizes(motion: Quantities) -> dict[str, Array]:
     return sizes
 
 
-# What is known without a difference.
+# Derivatives that are known exactly.
 
 
 def _from_origin(scene: Scene) -> Scene:
@@ -253,8 +255,8 @@ def _flow(scene: Scene, motion: Quantities) -> dict[str, Array]:
     products = (z[:, :, None] * z[:, None, :]).reshape(len(z), -1)
     hessian = equations.hessian.reshape(len(equations.hessian), -1)
     rate = real([equations.constant]) + products @ real(hessian).T / 2
-    found = {name: rate[:, 3 * k : 3 * k + 3] for k, name in enumerate(moving)}
+    rates = {name: rate[:, 3 * k : 3 * k + 3] for k, name in enumerate(moving)}
     for name, form in (("attitude", equations.spin), ("centre", equations.velocity)):
         if name in motion:
-            found[name] = turned(motion["attitude"], z @ real(form).T)
-    return found
+            rates[name] = turned(motion["attitude"], z @ real(form).T)
+    return rates

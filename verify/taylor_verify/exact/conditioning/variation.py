@@ -1,8 +1,8 @@
 """Growth of errors along an orbit, by its variational equations in float64.
 
-They are integrated from one time to the next along a motion that starts at the truth, and that has to
-arrive at it: where float64 cannot follow the orbit that far there is no answer. A product of such steps
-leads from any time to any later one; nothing is inverted.
+They are integrated from one time to the next along a motion that starts at the truth and must arrive at
+the truth. If float64 cannot follow the orbit that far, there is no answer. A product of such steps leads
+from any time to any later time; no matrix is inverted.
 """
 
 from __future__ import annotations
@@ -58,12 +58,12 @@ def integrated(
             points += [begin + (end - begin) * Fraction(k, parts) for k in range(1, parts + 1)]
         truth = solution(scene).motion(points, _TRUTH_DIGITS + more_digits)
         with np.errstate(all="ignore"):  # what overflows is not finite, and then there is no answer
-            found = _steps(scene, flow, points, truth)
-            if found is not None:
-                short, momentum, centre = found
+            parts_of_steps = _steps(scene, flow, points, truth)
+            if parts_of_steps is not None:
+                short, momentum, centre = parts_of_steps
                 # Products of so many steps each.
                 steps = reduce(
-                    lambda done, part: part @ done, (short[k::parts] for k in range(parts))
+                    lambda product, part: part @ product, (short[k::parts] for k in range(parts))
                 )
                 return Steps(steps, products(steps), momentum[::parts], centre[::parts])
     return None
@@ -85,8 +85,8 @@ def _steps(
     n, d = z.shape
     R = truth.quantities.get("attitude", np.tile(np.eye(3), (n, 1, 1))).astype(float)
     clock = clocks.floats(scene.body.manufactured, points)
-    nothing, one = np.zeros((n - 1, 3, d)), np.tile(np.eye(d), (n - 1, 1, 1))
-    arcs = _Arcs(clock[:-1], z[:-1], R[:-1], one, nothing, nothing)
+    nothing, identity = np.zeros((n - 1, 3, d)), np.tile(np.eye(d), (n - 1, 1, 1))
+    arcs = _Arcs(clock[:-1], z[:-1], R[:-1], identity, nothing, nothing)
     spans = np.diff([float(t / flow.time) for t in points])
     reached = _followed(flow, arcs, spans)
     if reached is None or not _arrive(reached, z[1:], np.exp(flow.expansion * spans)):
@@ -128,27 +128,27 @@ class _Arcs(NamedTuple):
         return _Arcs(*(part[places] for part in self))
 
     def moved(self, rates: _Arcs, h: Floats) -> _Arcs:
-        """Each arc by its own h times its rates."""
+        """Return the arcs advanced by h times their rates."""
         pairs = zip(self, rates, strict=True)
         return _Arcs(*(part + h.reshape(-1, *[1] * (part.ndim - 1)) * rate for part, rate in pairs))
 
 
 def _followed(flow: Flow, arcs: _Arcs, spans: Floats) -> _Arcs | None:
-    """Each arc after its own time (n), or None if one is lost.
+    """Return every arc after its time span (n), or None if an arc is lost.
 
     By the classical Runge-Kutta method, each in steps that resolve its own Jacobian.
     """
     left, active = spans.copy(), np.arange(len(spans))
-    # A copy, which what follows is written into.
+    # A copy, because the loop below writes into it.
     reached = arcs.only(active)
     for _ in range(_MOST_STEPS):
-        here = reached.only(active)
-        rate = flow.rate(here.momentum)
+        current = reached.only(active)
+        rate = flow.rate(current.momentum)
         if not np.isfinite(rate).all():
             return None
         whole = abs(left[active]) * rate <= _STEP
         h = np.where(whole, left[active], np.copysign(_STEP / rate, left[active]))
-        for part, moved in zip(reached, _step(flow, here, h), strict=True):
+        for part, moved in zip(reached, _step(flow, current, h), strict=True):
             part[active] = moved
         left[active] -= h
         active = active[~whole]

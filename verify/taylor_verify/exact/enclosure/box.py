@@ -1,4 +1,4 @@
-"""The set that contains the state, and how a step carries it on.
+"""The box that contains the state, and its change in a step.
 
 The state lies in point + { axes u : |u_i| <= radius_i }: an exact point, an exact matrix, exact bounds.
 The axes follow the flow, so that a set which the flow stretches one way is not widened every way.
@@ -216,7 +216,7 @@ def directions(edges: Sequence[list[arb]], lengths: Sequence[arb], most: int) ->
     columns: list[list[arb]] = []
     for j in sorted(range(len(edges)), key=lambda j: -_logarithm(lengths[j])):
         direction = edges[j]
-        # Twice: one pass leaves what cancels in nearly parallel edges.
+        # Twice, because one pass loses digits for nearly parallel edges.
         for _ in range(2):
             for other in columns:
                 share = _dot(direction, other).mid()

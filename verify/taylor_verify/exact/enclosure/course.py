@@ -1,4 +1,4 @@
-"""Steps from a start to the times asked for, and when a precision is given up."""
+"""Steps from a start to the requested times, and the decision to raise the precision."""
 
 from __future__ import annotations
 
@@ -35,22 +35,22 @@ from taylor_verify.exact.solution import Unsettled
 from taylor_verify.scenes.precision import floor_log2, power_of_two
 from taylor_verify.scenes.reading.faults import shown
 
-# Steps of the radius of convergence over e^2, bits ln 2/2 orders, are the cheapest where the cost of a step
-# is that of its convolutions; what is done once in an order, or in a step, asks for more.
+# If the convolutions dominate the cost, the cheapest steps are the radius of convergence over e^2, with
+# bits ln 2/2 orders. Work that is done once per order or once per step makes higher orders cheaper.
 _ORDERS_PER_BIT: Final = 0.42
 _STEP_BITS: Final = 8
-# Beside a steady motion the series converges for ever, and the bounds do not close.
+# Near a steady motion the series converges everywhere, and the bounds do not close.
 _MOST_GROWTH: Final = 5.0
 _LEAST_CUT: Final = 0.25
 _HALVINGS: Final = 30
-# A last step is not left for less than the rest of this one.
+# A step that nearly reaches the end is extended to the end.
 _NEARLY: Final = Fraction(63, 64)
 MOST_STEPS: Final = 1_000_000
-# A box so large, as a power of two of its vector, is lost: steps shrink with it for ever.
+# A box this large, as a power of two of its vector, is lost: further steps would shrink without end.
 _LOST: Final = -10
 _SHRUNK: Final = -20
 _SEVERAL: Final = 16
-# Whoever waits for the answer may listen.
+# Progress messages for callers that wait.
 _progress: Final = logging.getLogger("taylor_verify.progress")
 _DIGITS_PER_BIT: Final = Fraction(301, 1000)
 
@@ -124,10 +124,10 @@ class Course:
         cls, system: System, start: Sequence[arb], place: Place | None, bits: int, most_bits: int
     ) -> Course:
         """The course of a system, at the ambient precision of ``bits`` bits."""
-        held = Balls.of(system)
+        coefficients = Balls.of(system)
         with ctx.workprec(BOUND_BITS):
-            bounds = held.magnitudes()
-        return cls(system, held, bounds, start, place, bits, most_bits)
+            bounds = coefficients.magnitudes()
+        return cls(system, coefficients, bounds, start, place, bits, most_bits)
 
     @property
     def order(self) -> int:
@@ -164,16 +164,16 @@ class Course:
                 time = pending.pop()
                 share = ball((time - now) / step.length)
                 state = within(box, step.state, step.tube, step.flow, share)
-                there = None if place is None or step.leg is None else step.leg.place(place, share)
-                turn, centre = ([], None) if there is None else there.balls()
+                frame = None if place is None or step.leg is None else step.leg.place(place, share)
+                turn, centre = ([], None) if frame is None else frame.balls()
                 yield time, Row(state, turn, centre, largest)
             box = carried(box, step.state, step.tube, step.flow, self.system.spans)
             place = None if place is None or step.leg is None else step.leg.carried(place)
             largest = tuple(map(max, zip(largest, self._largest(box, place), strict=True)))
             now, length = now + step.length, 2 * step.length
             if _progress.isEnabledFor(logging.INFO):
-                done = float(100 * now / last)
-                _progress.info("%.0f %% of the time, with %d bits", done, self.bits)
+                percent = float(100 * now / last)
+                _progress.info("%.0f %% of the time, with %d bits", percent, self.bits)
             lengths.append(abs(step.length))
             if pending:
                 self._watch(box, largest, lengths, now, pending)
@@ -199,17 +199,17 @@ class Course:
             with ctx.workprec(BOUND_BITS):
                 sizes = [[z.abs_upper() for z in row] for row in state]
                 try:
-                    found = tube(bounds, sizes, h.abs_upper(), box.apart)
+                    step_tube = tube(bounds, sizes, h.abs_upper(), box.apart)
                     moving = None
                     if not box.is_point:
-                        moving = flow(system, bounds, box, state, sizes, h, found)
+                        moving = flow(system, bounds, box, state, sizes, h, step_tube)
                 except StepTooLong:
-                    found = None
-            if found is not None:
-                there = None
+                    step_tube = None
+            if step_tube is not None:
+                frame_leg = None
                 if frame:
-                    there = leg(system, bounds, state, frame, h, found, moving, box)
-                return _Step(length, state, found, moving, there)
+                    frame_leg = leg(system, bounds, state, frame, h, step_tube, moving, box)
+                return _Step(length, state, step_tube, moving, frame_leg)
             length = length / 2
             state, frame = (scaled(series, arb(1) / 2) for series in (state, frame))
         raise StepTooLong
@@ -273,7 +273,7 @@ class Course:
         """
         factor, n = float("inf"), self.system.size
         for span in (*self.system.spans, range(n, min(n + 4, len(series[0])))):
-            # Of the block, or of what it first becomes.
+            # The size of the block, or of its first change.
             sizes = (_size(row, span) for row in series[:3])
             size = next((size for size in sizes if size > float("-inf")), float("-inf"))
             for k in range(max(1, self.order - 2), self.order + 1):

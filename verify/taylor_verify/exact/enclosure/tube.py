@@ -1,4 +1,4 @@
-"""A bound of how far the motion is from its Taylor polynomial within one step.
+"""A tube: a bound of the distance of the motion from its Taylor polynomial within one step.
 
 Let p be a polynomial on [0, 1] with |p' - h F(p)| <= D, the motion start within a of p(0), and M bound
 |h dF/dz| wherever |z - p(s)| <= T; all of it component by component. Let

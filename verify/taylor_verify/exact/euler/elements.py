@@ -98,28 +98,28 @@ _BEAD: Final[Mapping[WashboardRegime, tuple[str, ...]]] = {
 
 
 def elements(scene: Scene, digits: int) -> Elements:
-    """Every element of a free body; of a body under a moment a period at most, and words."""
+    """Return the elements of a free body; for a body under a moment at most a period, and sentences."""
     body, start = top(scene)
     if body.manufactured is not None:
         return Elements(REGIME, (), MANUFACTURED)
     if not body.is_free:
         return _loaded(body, start.omega, digits)
     spin = FreeSpin(body.inertia, start.omega)
-    kept = spin.twice_energy / 2, spin.momentum_squared
+    conserved = spin.twice_energy / 2, spin.momentum_squared
 
     def numbers(_: int) -> list[Element]:
-        return [*orbit(spin), *described(_KEPT, map(mp.convert, kept))]
+        return [*orbit(spin), *described(_KEPT, map(mp.convert, conserved))]
 
     return Elements(spin.regime.value, settled(numbers, digits), (story(spin), _CONSERVED))
 
 
 def story(spin: FreeSpin) -> str:
-    """What a free body does, in a sentence."""
+    """Return a sentence on the motion of a free body."""
     return _steady_story(spin) if spin.regime is Regime.STEADY else _STORY[spin.regime]
 
 
 def _loaded(body: RigidBody, omega: tensors.Vector, digits: int) -> Elements:
-    """Under a constant moment T' = M.omega and nothing of the free orbit is left."""
+    """Return the elements of a body under a constant moment; T' = M.omega, so T is not conserved."""
     try:
         free = FreeSpin(body.inertia, omega)
         if free.discriminant or not any(tensors.plus(free.torque, body.moment)):
@@ -131,15 +131,15 @@ def _loaded(body: RigidBody, omega: tensors.Vector, digits: int) -> Elements:
             "neither a period nor a modulus that could be named."
         )
         return Elements(NO_CLOSED_FORM, (), (story, _WORK))
-    found = settled(lambda _: _circle(spin), digits)
-    return Elements(spin.regime.value, found, (_LOADED_STORY[spin.regime], _WORK))
+    numbers = settled(lambda _: _circle(spin), digits)
+    return Elements(spin.regime.value, numbers, (_LOADED_STORY[spin.regime], _WORK))
 
 
 def _washboard(board: Washboard, digits: int) -> Elements:
-    """Raises NoClosedForm where the motion is too near to a separatrix to be told."""
+    """Return the elements of a washboard motion. Raises NoClosedForm too near to a separatrix."""
     kind = regime(board)
-    found = () if board.keeps_axis else settled(lambda _: _bead(board), digits)
-    return Elements(kind.value, found, _BEAD[kind])
+    numbers = () if board.keeps_axis else settled(lambda _: _bead(board), digits)
+    return Elements(kind.value, numbers, _BEAD[kind])
 
 
 # The numbers of each regime, at the ambient precision.
@@ -154,9 +154,9 @@ conserved :: omega.I (J - I) omega
 def _bead(board: Washboard) -> list[Element]:
     """The period of a swing, and what is conserved."""
     motion = course(board, located(board))
-    found = described(_PERIOD, [motion.period]) if isinstance(motion, Swing) else []
-    (kept,) = described(_DIFFERENCE, [mp.convert(board.kept)])
-    return [*found, replace(kept, size=mp.convert(board.momentum_squared))]
+    numbers = described(_PERIOD, [motion.period]) if isinstance(motion, Swing) else []
+    (conserved,) = described(_DIFFERENCE, [mp.convert(board.conserved)])
+    return [*numbers, replace(conserved, size=mp.convert(board.momentum_squared))]
 
 
 _CIRCLE: Final = """
@@ -223,13 +223,13 @@ goes round its axis :: {_LINEAR}
 
 
 def _steady(spin: FreeSpin) -> list[Element]:
-    s2, found = disturbance(spin), _turn(spin)
+    s2, numbers = disturbance(spin), _turn(spin)
     size = mp.sqrt(mp.convert(abs(s2)))
     if s2 > 0:
-        found += described(_GROWTH, [size])
+        numbers += described(_GROWTH, [size])
     elif s2 < 0:
-        found += described(_WOBBLE, [size, 2 * mp.pi / size])
-    return found
+        numbers += described(_WOBBLE, [size, 2 * mp.pi / size])
+    return numbers
 
 
 def _steady_story(spin: FreeSpin) -> str:
@@ -291,13 +291,13 @@ def _triaxial(spin: FreeSpin) -> list[Element]:
     orbit = Orbit(spin)
     period = orbit.period
     values = (period, orbit.rate, *_modulus(spin, orbit), period / 2, 4 * mp.pi / period)
-    found = described(_TRIAXIAL, values)
+    numbers = described(_TRIAXIAL, values)
     if orbit.m_prime * _NEAR.denominator <= _NEAR.numerator:
         # K = L + (L - 1) m'/4 + O(m'^2 L) with L = ln(4/sqrt m') (DLMF 19.12.1).
         L = mp.log(16 / orbit.m_prime) / 2
         laws = L, L + (L - 1) * orbit.m_prime / 4
-        found += described(_FLIPS, (2 * law / orbit.rate for law in laws))
-    return [*found, *_saddle(spin)]
+        numbers += described(_FLIPS, (2 * law / orbit.rate for law in laws))
+    return [*numbers, *_saddle(spin)]
 
 
 _SEPARATRIX: Final = """

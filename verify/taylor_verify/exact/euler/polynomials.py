@@ -72,7 +72,7 @@ class Polynomials:
             places.cosines,
             strict=True,
         )
-        omega: Rows = [[three * w, s * one * w, c * two * w] for w, three, one, two, s, c in parts]
+        omega: Rows = [[p3 * w, s * p1 * w, c * p2 * w] for w, p3, p1, p2, s, c in parts]
         return omega, over
 
     def _xi(
@@ -82,14 +82,14 @@ class Polynomials:
         rate, z0 = self._functions.drift
         # Where sig < 0, psi is the negative of the argument: the conjugate of theta_1.
         shift = acb(0, z0.imag * self._moduli.sense)
-        found: list[Sequence[arb]] = []
+        multiples: list[Sequence[arb]] = []
         for t, w, x, y in zip(
             elapsed, over, *self._series.shifted(shift, acb(1)).parts(places), strict=True
         ):
             sin, cos = (rate * t).sin_cos()
             x, y = x * w, y * w
-            found.append((cos * x - sin * y, sin * x + cos * y))
-        return found
+            multiples.append((cos * x - sin * y, sin * x + cos * y))
+        return multiples
 
     def _frames(
         self,
@@ -103,20 +103,20 @@ class Polynomials:
         J_a, J_b, J_c = (J / moduli.momentum for J in moduli.moments)
         # Entry by entry: to make a matrix of balls takes longer than the product.
         matrix = (to_space * self._unwound()).tolist()
-        found: list[Rows] = []
+        frames: list[Rows] = []
         for (w_a, w_b, w_c), (x, y) in zip(omega, self._xi(elapsed, places, over), strict=True):
             a, b, c = J_a * w_a, J_b * w_b, J_c * w_c
             w = _ONE / (a * a + b * b)
             p, q, ac, bc = x * w, y * w, a * c, b * c
             a1, b1 = p * ac + q * b, q * a - p * bc
             a2, b2 = p * b - q * ac, q * bc + p * a
-            found.append(
+            frames.append(
                 [
                     (h * a - f * a1 + g * a2, h * b + f * b1 - g * b2, h * c + f * x + g * y)
                     for f, g, h in matrix
                 ]
             )
-        return found
+        return frames
 
     def _unwound(self) -> arb_mat:
         """B(0)^T, for rows of which the first two are a constant times theirs."""

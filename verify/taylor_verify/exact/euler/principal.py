@@ -75,9 +75,9 @@ def _real_roots(coefficients: tuple[Fraction, ...]) -> list[arb]:
     scale = lcm(*(c.denominator for c in coefficients))
     cubic = fmpz_poly([int(c * scale) for c in coefficients])
     # With multiplicities, which flint's type stubs leave out.
-    found: list[Any] = list(cubic.complex_roots())
+    roots_and_counts: list[Any] = list(cubic.complex_roots())
     # The roots of a symmetric tensor are real, and the caller knows that they differ.
-    roots = sorted((acb(root).real for root, _ in found), key=lambda root: root.mid())
+    roots = sorted((acb(root).real for root, _ in roots_and_counts), key=lambda root: root.mid())
     if not (len(roots) == 3 and roots[0] < roots[1] < roots[2]):
         raise Undecidable(f"three roots do not part at {ctx.prec} bits")
     return roots

@@ -63,8 +63,8 @@ class Rotating(Kind[B, Spin]):
         K = exact(body.inverse_inertia)
         linear = K @ exact(tensors.cross_matrix(self.rotor(body)))
         turned = np.tensordot(K, cross(body.inertia, _ONE), 1)
-        found = Equations(K @ exact(body.moment), linear, turned, exact(_ONE), _NO_VELOCITY)
-        return found.damped(body.damping)
+        undamped = Equations(K @ exact(body.moment), linear, turned, exact(_ONE), _NO_VELOCITY)
+        return undamped.damped(body.damping)
 
     def units(self, body: B, z: Vector) -> Units:
         """omega by its size, or what the moment makes of it; time by omega, its fastest wave, h or c."""
@@ -93,8 +93,8 @@ class Rotating(Kind[B, Spin]):
         """H' = M + h x K H + H x K H - c H, for H = I omega."""
         K = body.inverse_inertia
         linear = exact(tensors.cross_matrix(self.rotor(body))) @ exact(K)
-        found = Equations(exact(body.moment), linear, cross(_ONE, K), exact(K), _NO_VELOCITY)
-        return found.damped(body.damping)
+        undamped = Equations(exact(body.moment), linear, cross(_ONE, K), exact(K), _NO_VELOCITY)
+        return undamped.damped(body.damping)
 
     def manufactured_momentum(self, body: B) -> Manufactured | None:
         return None if body.manufactured is None else body.manufactured.mapped(body.inertia)

@@ -1,7 +1,7 @@
 """The motion of a rigid body by either route: omega in body axes, and R from an attitude at the start.
 
-A course is one motion that is set up at one precision, and good only there. It is kept for the times that
-are asked for next: working precisions are multiples of a step, so that calls share their courses.
+A course is one motion that is set up at one precision, and valid only there. It is stored for later times:
+working precisions are multiples of a step, so that calls share their courses.
 """
 
 from __future__ import annotations
@@ -129,13 +129,15 @@ class Rotation(Settled):
             if working not in self._courses:
                 self._courses[working] = self.set_up()
             rows = [self._courses[working].at(t, attitude is not None) for t in elapsed]
-            found: Mapping[str, np.ndarray[Any, Any]] = {"omega": _array([w for w, _ in rows], 3)}
+            quantities: Mapping[str, np.ndarray[Any, Any]] = {
+                "omega": _array([w for w, _ in rows], 3)
+            }
             if attitude is not None:
                 start = start_frame(attitude)
                 frames = [product(start, turn) for _, turn in rows]
-                found = {**found, "attitude": _array(frames, 3, 3)}
+                quantities = {**quantities, "attitude": _array(frames, 3, 3)}
         with mp.workdps(digits):
-            return {name: +values for name, values in found.items()}
+            return {name: +values for name, values in quantities.items()}
 
 
 def decades(ratio: Fraction) -> float:

@@ -95,16 +95,16 @@ class Thetas(NamedTuple):
     s: Pairs
 
 
-def thetas(known: Powers, sine: Pairs, cosine: Pairs) -> Thetas:
+def thetas(factors: Powers, sine: Pairs, cosine: Pairs) -> Thetas:
     """Return the four functions, by the sine and the cosine of w."""
     twice = (1.0 - (sine * sine).scaled(2.0)).scaled(2.0)  # 2 cos 2w
     fourfold = twice * twice - 1.0  # 1 + 2 cos 4w
-    even = known.fourth * (fourfold - 1.0).scaled(0.5) + 1.0
-    odd = twice * (known.first + known.ninth * (fourfold - 2.0))
-    whole = known.sixth * fourfold + known.rest
-    change = known.change * twice
+    even = factors.fourth * (fourfold - 1.0).scaled(0.5) + 1.0
+    odd = twice * (factors.first + factors.ninth * (fourfold - 2.0))
+    whole = factors.sixth * fourfold + factors.rest
+    change = factors.change * twice
     # The rest in doubles: 2 cos 2kw, and sin (2k + 1)w / sin w, cos (2k + 1)w / cos w.
-    q, u = known.nome, twice.hi
+    q, u = factors.nome, twice.hi
     cosines, sines, others = [u * u - 2, u], [u + u * u - 1, u + 1], [u * u - u - 1, u - 1]
     more: list[Any] = [0.0, 0.0, 0.0, 0.0]
     error = np.zeros_like(q)
@@ -190,9 +190,9 @@ def exponential(x: Pairs) -> Pairs:
 def carlson(x: Pairs, y: Pairs, z: Pairs) -> Pairs:
     """Return R_F of positive numbers by duplication (Carlson, Numer. Math. 33, 1979)."""
     for _ in range(_DUPLICATIONS):
-        one, two, three = x.sqrt(), y.sqrt(), z.sqrt()
-        more = one * two + two * three + three * one
-        x, y, z = ((each + more).scaled(0.25) for each in (x, y, z))
+        root_x, root_y, root_z = x.sqrt(), y.sqrt(), z.sqrt()
+        more = root_x * root_y + root_y * root_z + root_z * root_x
+        x, y, z = ((argument + more).scaled(0.25) for argument in (x, y, z))
     middle = (x + y + z) / 3.0
     a, b = 1.0 - x / middle, 1.0 - y / middle
     c = -(a + b)

@@ -97,7 +97,7 @@ class Tumbling(BallCourse):
         return omega, (self._tilted_back * arb_mat(4, 1, tilted)).entries()
 
     def rows(self, times: Sequence[Time], start: motion.Quaternion | None) -> Moving:
-        """Both at every time: by polynomials, unless there are few times, or no short series."""
+        """Return omega and R at every time: by polynomials if there are many times and a short series."""
         polynomials = self._polynomials if len(times) >= MANY else None
         if polynomials is None:
             return super().rows(times, start)
@@ -127,7 +127,7 @@ class Tumbling(BallCourse):
 
     @cached_property
     def _order(self) -> list[tuple[int, int]]:
-        """Of each body axis, where it is one of (a, b, c) or its opposite: which one, and the sign."""
+        """Return index and sign of each body axis that is one of (a, b, c) up to sign."""
         sides = [[int(float(entry)) for entry in row] for row in self._to_body.tolist()]
         return [next((k, side) for k, side in enumerate(row) if side) for row in sides]
 

@@ -23,7 +23,7 @@ from taylor_verify.exact.euler.series import mean, nome_of, powers, sine_cosine,
 from taylor_verify.exact.euler.turns import Numbers, Turning, in_body, turning
 from taylor_verify.scenes.pairs import Floats, Pairs, difference
 
-# A body whose nome is larger is too near to its separatrix: m' is below 10^-4.
+# A body with a larger nome is too near to its separatrix: m' is below 10^-4.
 _LARGEST_NOME: Final = 0.45
 # The steps of differences, as powers of two of the size of the momentum.
 _ROUGH: Final = -36
@@ -54,7 +54,7 @@ class Transition(NamedTuple):
 class Tops:
     """Bodies of inverse moments ``inverse`` (3, n), exactly, that start with ``momentum`` (3, n).
 
-    Both are of size one: what is of another size is counted in other units. ``attitude`` (4, n) is the unit
+    Both are of size one, in suitable units. ``attitude`` (4, n) is the unit
     quaternion at the start, where attitudes are asked for.
     """
 
@@ -63,7 +63,7 @@ class Tops:
     attitude: Pairs | None = None
 
     def states(self, times: Floats) -> States:
-        """Return the states at the times (n, m) since the start; infinite radii where not known."""
+        """Return the states at the times (n, m) since the start; unknown states have infinite radii."""
         orbit = self._orbit
         with np.errstate(all="ignore"):
             sine, cosine = sine_cosine(orbit.speed * times)
@@ -73,7 +73,7 @@ class Tops:
             quaternion = None
             if self._turning is not None:
                 quaternion = self._turning.at(times, frame, sine, cosine)
-        # At the start it is the start, to the last bit.
+        # At time zero the given start is returned, to the last bit.
         start = Pairs(*(np.broadcast_to(p, H.hi.shape[:2])[:, :, None] for p in self.momentum))
         return States(start.chosen(times == 0, H), quaternion)
 
@@ -95,25 +95,27 @@ class Tops:
         beside = cross(begin, begin_rate)
         size = np.frexp(np.sqrt(_squared(begin) / _squared(beside)))[1]
         step = np.ldexp(1.0, size + (_SHARP if is_sharp else _ROUGH))
-        here, there = self.states(times), self._moved(beside * step).states(times)
-        before = self._moved(beside * -step).states(times) if is_sharp else here
+        states, after = self.states(times), self._moved(beside * step).states(times)
+        before = self._moved(beside * -step).states(times) if is_sharp else states
         length = (2 * step if is_sharp else step)[:, None]
-        H, began = here.momentum.hi, (begin, begin_rate, beside)
+        H, start_vectors = states.momentum.hi, (begin, begin_rate, beside)
         omega = K[:, :, None] * H
         rate = cross(H, omega)
-        became = (H + times * rate, rate, _change(before.momentum, there.momentum) / length)
-        widths = here.momentum.radius() + there.momentum.radius() + before.momentum.radius()
-        known = np.all(np.isfinite(widths), axis=0).reshape(*times.shape, 1, 1)
-        moved = np.where(known, _derivative(became, began), np.nan)
-        if here.quaternion is None or there.quaternion is None or before.quaternion is None:
+        vectors = (H + times * rate, rate, _change(before.momentum, after.momentum) / length)
+        widths = states.momentum.radius() + after.momentum.radius() + before.momentum.radius()
+        is_known = np.all(np.isfinite(widths), axis=0).reshape(*times.shape, 1, 1)
+        moved = np.where(is_known, _derivative(vectors, start_vectors), np.nan)
+        if states.quaternion is None or after.quaternion is None or before.quaternion is None:
             return Transition(H, None, moved, None)
-        q = here.quaternion.hi
+        q = states.quaternion.hi
         spin = turned(q, omega)
         assert self.attitude is not None
         spin_begin = turned(self.attitude.hi, K * begin)[:, :, None]
-        change = _change(before.quaternion, there.quaternion) / length
+        change = _change(before.quaternion, after.quaternion) / length
         angles = (times * spin, spin - spin_begin, 2 * between(conjugate(change), conjugate(q)))
-        return Transition(H, q, moved, np.where(known, _derivative(angles, began), np.nan))
+        return Transition(
+            H, q, moved, np.where(is_known, _derivative(angles, start_vectors), np.nan)
+        )
 
     def _moved(self, amount: Floats) -> Tops:
         return Tops(self.inverse, self.momentum + amount, self.attitude)
@@ -148,34 +150,34 @@ def conjugate(q: Floats) -> Floats:
 
 def between(p: Floats, q: Floats) -> Floats:
     """Return the vector part of p* q: half of a small turn from one to the other, in body axes."""
-    found: Floats = p[0] * q[1:] - q[0] * p[1:] - cross(p[1:], q[1:])
-    return found
+    vector: Floats = p[0] * q[1:] - q[0] * p[1:] - cross(p[1:], q[1:])
+    return vector
 
 
 def turned(q: Floats, vectors: Floats) -> Floats:
     """Return vectors turned by unit quaternions."""
     across = 2 * cross(q[1:], vectors)
-    found: Floats = vectors + q[0] * across + cross(q[1:], across)
-    return found
+    rotated: Floats = vectors + q[0] * across + cross(q[1:], across)
+    return rotated
 
 
 def _squared(vectors: Floats) -> Floats:
-    found: Floats = np.sum(vectors * vectors, axis=0)
-    return found
+    squared: Floats = np.sum(vectors * vectors, axis=0)
+    return squared
 
 
 def _change(before: Pairs, after: Pairs) -> Floats:
-    found: Floats = (after.hi - before.hi) + (after.lo - before.lo)
-    return found
+    change: Floats = (after.hi - before.hi) + (after.lo - before.lo)
+    return change
 
 
-def _derivative(became: tuple[Floats, ...], began: tuple[Floats, ...]) -> Floats:
+def _derivative(vectors: tuple[Floats, ...], start_vectors: tuple[Floats, ...]) -> Floats:
     """The matrices (n, m, 3, 3) that lead from three orthogonal vectors (3, n) to others (3, n, m)."""
-    found: Floats = sum(
+    derivative: Floats = sum(
         np.einsum("inm,jn->nmij", end, start / _squared(start))
-        for end, start in zip(became, began, strict=True)
+        for end, start in zip(vectors, start_vectors, strict=True)
     )
-    return found
+    return derivative
 
 
 class _Orbit(NamedTuple):
@@ -252,7 +254,7 @@ def _orbit(inverse: Floats, momentum: Pairs) -> _Orbit:
         signs=[sign[:, None] for sign in signs],
         speed=_column(speed),
         nome=_column(nome),
-        forms=tuple((_column(one * size), _column(other * size)) for (one, other), size in forms),
+        forms=tuple((_column(even * size), _column(odd * size)) for (even, odd), size in forms),
         squares=(_column(cn * cn), _column((sn * gamma) * (sn * gamma))),
         turning=numbers,
     )
@@ -270,6 +272,6 @@ def _functions(orbit: _Orbit, sine: Pairs, cosine: Pairs) -> list[Pairs]:
     whole = 1.0 / (cosine * (s * s) + sine * (r * r))
     pairs = ((r * s, p * t), (t * r, p * s), (t * s, p * r))
     return [
-        (one * left + other * right) * whole
-        for (one, other), (left, right) in zip(orbit.forms, pairs, strict=True)
+        (even * left + odd * right) * whole
+        for (even, odd), (left, right) in zip(orbit.forms, pairs, strict=True)
     ]

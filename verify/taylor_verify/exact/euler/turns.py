@@ -59,7 +59,7 @@ class Turning(NamedTuple):
     cosine: Pairs
     real: _Series
     imaginary: _Series
-    begun: tuple[Pairs, Pairs]
+    start_half_turn: tuple[Pairs, Pairs]
     half_rate: Pairs
     sense: Floats
     momentum: Pairs
@@ -68,9 +68,9 @@ class Turning(NamedTuple):
 
     def at(self, times: Floats, frame: list[Pairs], sine: Pairs, cosine: Pairs) -> Pairs:
         """Return unit quaternions (4, n, m), by H along a, b, c and the sine and cosine of lam agm t."""
-        there = sine * self.cosine + cosine * self.sine, cosine * self.cosine - sine * self.sine
-        x, y = _half(*_bounded(self.real, self.imaginary, *there))
-        x0, y0 = self.begun
+        angle = sine * self.cosine + cosine * self.sine, cosine * self.cosine - sine * self.sine
+        x, y = _half(*_bounded(self.real, self.imaginary, *angle))
+        x0, y0 = self.start_half_turn
         x, y = x * x0 + y * y0, (y * x0 - x * y0).scaled(self.sense)
         s, c = sine_cosine(self.half_rate * times)
         cos, sin = c * x - s * y, s * x + c * y
@@ -79,11 +79,11 @@ class Turning(NamedTuple):
         entries = [_dot([image[n] for image in self.images], rows) for n in range(4)]
         size = 1.0 / _dot(entries, entries).sqrt()
         parts = [entry * size for entry in entries]
-        found = Pairs(*(np.stack([getattr(p, name) for p in parts]) for name in _PARTS))
+        quaternion = Pairs(*(np.stack([getattr(p, name) for p in parts]) for name in _PARTS))
         start = Pairs(
             *(np.broadcast_to(p, np.shape(self.attitude.hi))[:, :, None] for p in self.attitude)
         )
-        return start.chosen(times == 0, found)
+        return start.chosen(times == 0, quaternion)
 
 
 _PARTS: Final = ("hi", "lo", "rad")
@@ -102,8 +102,8 @@ class _Series(NamedTuple):
 def turning(numbers: Numbers, attitude: Pairs) -> Turning:
     """Return the turns of bodies that start with these unit quaternions (4, n)."""
     dn, sn, cn = numbers.functions
-    one = Pairs(np.ones_like(sn.hi))
-    sine, cosine = sine_cosine(numbers.mean * (sn * carlson(cn * cn, dn * dn, one)))
+    unity = Pairs(np.ones_like(sn.hi))
+    sine, cosine = sine_cosine(numbers.mean * (sn * carlson(cn * cn, dn * dn, unity)))
     cosine = cosine.scaled(np.where(cn.hi < 0, -1.0, 1.0))
     nu = numbers.nu
     growth = exponential(numbers.mean * carlson(nu, nu + numbers.m, nu + 1.0))
@@ -119,7 +119,7 @@ def turning(numbers: Numbers, attitude: Pairs) -> Turning:
         cosine=_column(cosine),
         real=real,
         imaginary=imaginary,
-        begun=_half(*_bounded(real, imaginary, _column(sine), _column(cosine))),
+        start_half_turn=_half(*_bounded(real, imaginary, _column(sine), _column(cosine))),
         half_rate=_column(rate.scaled(0.5)),
         sense=numbers.sense[:, None],
         momentum=_column(numbers.momentum),
@@ -154,7 +154,7 @@ def _series(a: list[Pairs], sign: float) -> _Series:
         by_u=_column((a[1] + a[2] - a[3]).scaled(sign)),
         by_e=_column(a[2] + a[3]),
         by_both=_column(a[3].scaled(sign)),
-        rest=[each.hi[:, None] for each in a[_BALLS:]],
+        rest=[coefficient.hi[:, None] for coefficient in a[_BALLS:]],
     )
 
 
@@ -174,14 +174,14 @@ def _bounded(real: _Series, imaginary: _Series, sine: Pairs, cosine: Pairs) -> t
 
 def _in_doubles(factors: list[Floats], u: Floats) -> tuple[Any, Any]:
     """The terms from the fifth one on, sin (2k+1)w / sin w by its recurrence, and a bound of the error."""
-    last, here = np.ones_like(u), u + 1
+    last, current = np.ones_like(u), u + 1
     total, error = 0.0 * u, 0.0 * u
     for k in range(1, _ALL):
         if k >= _BALLS:
             factor = factors[k - _BALLS]
-            total = total + factor * here
+            total = total + factor * current
             error = error + abs(factor) * (8 * (k + 1) ** 3 * _UNIT)
-        last, here = here, u * here - last
+        last, current = current, u * current - last
     return total, error
 
 
@@ -203,13 +203,13 @@ def _images(back: list[Pairs], numbers: Numbers, attitude: Pairs) -> list[list[P
     a, b, c, d = back
     units = [[a, b, c, d], [-b, a, d, -c], [-c, -d, a, b], [-d, c, -b, a]]
     start = [attitude[i] for i in range(4)]
-    found = []
+    images = []
     for scalar, *vector in units:
         along = [v.scaled(sign) for v, sign in zip(vector, numbers.signs, strict=True)]
         body = in_body(along, numbers.axes)
         image = product(start, [scalar, *(body[i] for i in range(3))])
-        found.append([_column(entry) for entry in image])
-    return found
+        images.append([_column(entry) for entry in image])
+    return images
 
 
 def in_body(rows: list[Pairs], axes: Any) -> Pairs:

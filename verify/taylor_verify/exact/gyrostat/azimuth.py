@@ -68,17 +68,17 @@ def poles(free: FreeGyrostat, place: PointMap, frame: Frame, numbers: Arithmetic
     g = tuple(map(real, free.g))
     N = numbers.sqrt(real(free.n))
     f = [numbers.complex(p, q) for p, q in zip(a, b, strict=True)]
-    found = []
+    result = []
     for sigma in (1, -1):
         for rho in _feet(free, frame, sigma, N, numbers):
             point = [sigma * N * p + rho * q for p, q in zip(c, f, strict=True)]
             omega = [_dot(row, point) - entry for row, entry in zip(K, g, strict=True)]
-            found.append(Pole(sigma, *place.at(point, cross(point, omega))))
-    return found
+            result.append(Pole(sigma, *place.at(point, cross(point, omega))))
+    return result
 
 
 def _feet(free: FreeGyrostat, frame: Frame, sigma: int, N: Any, numbers: Arithmetic) -> list[Any]:
-    """Every rho for which sigma N c + rho f is a point of the orbit's curve."""
+    """Return all rho for which sigma N c + rho f is a point of the orbit's curve."""
     real = numbers.real
 
     def along_f(vector: Vector) -> Any:

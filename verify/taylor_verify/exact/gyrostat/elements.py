@@ -67,29 +67,29 @@ def _numbers(free: FreeGyrostat) -> list[Element]:
         turned = Azimuth(free, Swing(free)).per_period
     angle = turned - 2 * mp.pi * mp.floor(turned / (2 * mp.pi))
     meaning = "angle about H by which the attitude differs after a period, less whole turns"
-    found = [
+    elements = [
         Element("period", swing.period, "time", "omega recurs in body axes", _PENCIL),
         Element("precession", angle, "radians", meaning, "", size=2 * mp.pi),
     ]
     if swing.m is not None:
-        found += [
+        elements += [
             Element("m", swing.m, "", "parameter k^2 of the elliptic functions", _PENCIL),
             Element("m_prime", swing.m_prime, "", "1 - m", _PENCIL),
         ]
-    return found
+    return elements
 
 
 def _turning(free: FreeGyrostat) -> list[Element]:
     """The rates of a uniform turning."""
-    found = []
+    elements = []
     for name, rate, meaning in (
         ("rate", free.inner, "omega turns in body axes"),
         ("precession_rate", free.outer, "the body turns about H, or about a steady omega"),
     ):
         if rate is not None and any(rate):
             size = mp.norm([mp.convert(c) for c in rate])
-            found.append(Element(name, size, "radians/time", meaning))
-    return found
+            elements.append(Element(name, size, "radians/time", meaning))
+    return elements
 
 
 def _conserved(free: FreeGyrostat) -> list[Element]:
@@ -102,21 +102,21 @@ def _conserved(free: FreeGyrostat) -> list[Element]:
 
 def _spins(free: FreeGyrostat) -> list[Element]:
     """The steady spins with this |H|, and the growth or the frequency of a disturbance of each."""
-    found = []
+    elements = []
     for k, spin in enumerate(steady_spins(free), start=1):
         name, source = f"spin_{k}", "(I^-1 - mu) H = I^-1 h with |H| given"
         meaning = f"omega along H in steady spin number {k} with this |H|"
-        found.append(
+        elements.append(
             Element(name, spin.rate, "radians/time", meaning, source, mp.sqrt(mp.convert(free.n)))
         )
         size = mp.sqrt(abs(spin.square))
         if spin.square > 0:
             meaning = f"rate at which a disturbance of spin {k} grows: it is unstable"
-            found.append(Element(f"{name}_growth", size, "1/time", meaning))
+            elements.append(Element(f"{name}_growth", size, "1/time", meaning))
         elif spin.square < 0:
             meaning = f"frequency of a disturbance of spin {k}: it is stable"
-            found.append(Element(f"{name}_wobble", size, "radians/time", meaning))
-    return found
+            elements.append(Element(f"{name}_wobble", size, "radians/time", meaning))
+    return elements
 
 
 def _count(free: FreeGyrostat) -> str:

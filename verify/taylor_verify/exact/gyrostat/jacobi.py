@@ -304,11 +304,11 @@ def _rough_orbit(free: FreeGyrostat, period: mpf) -> list[list[mpf]]:
 
         orbit = [G]
         for _ in range(_SAMPLES):
-            one = rate(G, slope, mpf(0))
-            two = rate(G, one, h / 2)
-            three = rate(G, two, h / 2)
-            four = rate(G, three, h)
-            slopes = zip(G, one, two, three, four, strict=True)
+            k1 = rate(G, slope, mpf(0))
+            k2 = rate(G, k1, h / 2)
+            k3 = rate(G, k2, h / 2)
+            k4 = rate(G, k3, h)
+            slopes = zip(G, k1, k2, k3, k4, strict=True)
             G = [p + h * (a + 2 * b + 2 * c + d) / 6 for p, a, b, c, d in slopes]
             orbit.append(G)
         return orbit

@@ -219,8 +219,8 @@ class FreeGyrostat:
             return None
         double = self.double_moment
         simple = self._trace_of_inertia - 2 * double
-        one = tensors.diagonal((double,) * 3)
-        shifted = tuple(tensors.minus(p, q) for p, q in zip(self.inertia, one, strict=True))
+        multiple = tensors.diagonal((double,) * 3)
+        shifted = tuple(tensors.minus(p, q) for p, q in zip(self.inertia, multiple, strict=True))
         # With three different moments ``double`` is none of them, and no multiple of this is a projector.
         if simple == double:
             return None

@@ -98,8 +98,8 @@ def _quotient(free: FreeGyrostat, mu: Vector, nu: Vector) -> tuple[Fraction, ...
     a, b = (_stripped([dot(plane, c) for c in free.jet[1:]]) for plane in (mu, nu))
     terms: list[Fraction] = []
     for k in range(3):
-        known = sum((b[k - j] * terms[j] for j in range(k)), Fraction(0))
-        terms.append((a[k] - known) / b[0])
+        products = sum((b[k - j] * terms[j] for j in range(k)), Fraction(0))
+        terms.append((a[k] - products) / b[0])
     return tuple(terms)
 
 

@@ -72,10 +72,10 @@ class GyrostatBalls(Enclosed):
         if bits not in self._courses:
             self._courses[bits] = self._course()
         rows = self._courses[bits].rows(balls_of(elapsed))
-        found: dict[str, Any] = {"omega": [omega for omega, _ in rows]}
+        enclosure: dict[str, Any] = {"omega": [omega for omega, _ in rows]}
         if self._attitude is not None:
-            found["attitude"] = [R for _, R in rows]
-        return found
+            enclosure["attitude"] = [R for _, R in rows]
+        return enclosure
 
     def _course(self) -> Course:
         if self._free.outer is not None:
@@ -190,13 +190,13 @@ class Azimuth:
                 quotient * (value if sigma > 0 else value.conjugate())
                 for quotient, value in zip(quotients, values, strict=True)
             ]
-        found = []
+        turns = []
         for t, quotient in zip(times, quotients, strict=True):
             sin, cos = (self._rate * t).sin_cos()
             p, q = quotient.real, quotient.imag
             size = (p * p + q * q).rsqrt()
-            found.append(acb((cos * p - sin * q) * size, (sin * p + cos * q) * size))
-        return found
+            turns.append(acb((cos * p - sin * q) * size, (sin * p + cos * q) * size))
+        return turns
 
     def axes(self, G: Sequence[arb]) -> list[list[arb]]:
         """m1, m2 and m3, the columns of M."""

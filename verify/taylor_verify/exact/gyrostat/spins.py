@@ -1,4 +1,4 @@
-"""Every steady spin of a gyrostat with a given size of its momentum, and what a disturbance of it does.
+"""The steady spins of a gyrostat with a given size of its momentum, and their stability.
 
 Legend: as in pencil; mu = w.G/n, so that w = mu G in a steady spin and (K - mu) G = g. A disturbance of G
 in a spin goes as e^{s t} with s^2 = -G.adj(K - mu) G.
@@ -71,17 +71,17 @@ def _spins(free: FreeGyrostat, precision: int) -> list[tuple[arb, arb]]:
     simple = regular
     while (common := simple.gcd(multiple)).degree() > 0:
         simple //= common
-    found = [(mu, _regular(free, mu)) for mu in _real_roots(simple)]
+    spins = [(mu, _regular(free, mu)) for mu in _real_roots(simple)]
     for mu in _real_roots(axial // tangent):
-        found += _axial(free, mu)
-    found += [(mu, arb(0)) for border in (multiple, tangent) for mu in _real_roots(border)]
+        spins += _axial(free, mu)
+    spins += [(mu, arb(0)) for border in (multiple, tangent) for mu in _real_roots(border)]
     N, pace = ball(n).sqrt(), ball(free.trace)
     if not all(
         _is_narrow(mu, pace, precision) and _is_narrow(square, abs(square), precision)
-        for mu, square in found
+        for mu, square in spins
     ):
         raise Undecidable
-    return [(mu * N, square) for mu, square in found]
+    return [(mu * N, square) for mu, square in spins]
 
 
 def _is_narrow(value: arb, size: arb, bits: int) -> bool:

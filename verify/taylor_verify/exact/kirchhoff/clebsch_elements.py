@@ -106,9 +106,9 @@ def _orbit(kind: str, nutation: Nutation, start: Impulse, working: int) -> Itera
     elif kind == "steady":
         yield from _disturbance(nutation)
     elif kind != "rest":
-        known = NutatingBody(kind, nutation, start).elements(working)
+        values = NutatingBody(kind, nutation, start).elements(working)
         period = "period of nutation: x3 and the shape of (x, y) recur"
-        yield from recurring(known, _WAVE, period, _SOURCE)
+        yield from recurring(values, _WAVE, period, _SOURCE)
         if kind in ("hyperbolic", "heteroclinic"):
             yield _approach(kind, nutation)
         yield from _range(kind, nutation, working)

@@ -55,14 +55,14 @@ class Case:
 
 def enclosed(scene: Scene) -> Solution:
     """The motion in balls; raises NoClosedForm, with the reason, where it has none."""
-    found = case(scene)
-    return found.reduced.carried_back(found.balls())
+    solved = case(scene)
+    return solved.reduced.carried_back(solved.balls())
 
 
 def closed_form(scene: Scene) -> Solution:
     """The motion in mpmath; raises NoClosedForm likewise."""
-    found = case(scene)
-    return found.reduced.carried_back(found.floats())
+    solved = case(scene)
+    return solved.reduced.carried_back(solved.floats())
 
 
 def case(scene: Scene) -> Case:
@@ -70,15 +70,15 @@ def case(scene: Scene) -> Case:
     body, _ = solid(scene)
     whole = Reduced(scene)
     if not body.is_free:
-        found = steady(whole) if body.manufactured is None else None
-        if found is None:
+        solved = steady(whole) if body.manufactured is None else None
+        if solved is None:
             raise NoClosedForm("a force or a couple acts on the body")
-        return found
+        return solved
     whole = at_own_pace(whole)
     for find in CASES:
-        found = find(whole)
-        if found is not None:
-            return found
+        solved = find(whole)
+        if solved is not None:
+            return solved
     raise NoClosedForm(
         "the energy is not of Clebsch's form about any axis, and the motion is of no other family "
         "that is solved"
@@ -87,8 +87,8 @@ def case(scene: Scene) -> Case:
 
 def revolution(whole: Reduced) -> Case | None:
     """A body of revolution about any direction: Clebsch's, in axes of which the third is that one."""
-    found = centred(whole)
-    scene = found.scene
+    reduced = centred(whole)
+    scene = reduced.scene
     if clebsch_about(solid(scene)[0]) is None:
         return None
     nutation, start = nutation_of(scene)
@@ -97,16 +97,16 @@ def revolution(whole: Reduced) -> Case | None:
         body = nutation.solid
         return Case(
             kind,
-            found,
+            reduced,
             nutation,
             lambda: TurningBody(kind, body, start, track, rate, axes.n),
             lambda: jacobi.Screw(kind, body, start, track, rate, axes.n),
         )
     if not axes.is_upright:
-        found, start = found.then(scene, out_of(axes, start)), at_rest_in_space(start)
+        reduced, start = reduced.then(scene, out_of(axes, start)), at_rest_in_space(start)
     return Case(
         kind,
-        found,
+        reduced,
         nutation,
         lambda: weierstrass.NutatingBody(kind, nutation, start, track),
         lambda: jacobi.NutatingBody(kind, nutation, start, track),
@@ -115,10 +115,10 @@ def revolution(whole: Reduced) -> Case | None:
 
 def flat(whole: Reduced) -> Case | None:
     """A motion in a plane of the body: in balls that of the body of revolution that moves alike."""
-    found = planar(whole)
-    if found is None:
+    reduced_plane = planar(whole)
+    if reduced_plane is None:
         return None
-    reduced, place = found
+    reduced, place = reduced_plane
     kind = regime_in_plane(place)
 
     def balls() -> Solution:
@@ -145,10 +145,10 @@ def steady(whole: Reduced) -> Case | None:
 
 def turning(whole: Reduced) -> Case | None:
     """Euler's top: a body with A = p 1 and B = b 1 about some origin, or without linear impulse."""
-    found = top(whole)
-    if found is None:
+    reduced_top = top(whole)
+    if reduced_top is None:
         return None
-    reduced, spin = found
+    reduced, spin = reduced_top
     _, start = solid(reduced.scene)
     back = with_impulses(start, reduced.scene.track)
     return Case(
@@ -162,19 +162,19 @@ def turning(whole: Reduced) -> Case | None:
 
 def weber(whole: Reduced) -> Case | None:
     """Weber's motion, less the common b; raises NoClosedForm for what is degenerate in his family."""
-    found = centred(whole)
-    body, _ = solid(found.scene)
+    reduced = centred(whole)
+    body, _ = solid(reduced.scene)
     b = multiple(body.coupling)
     if b is None:
         return None
-    found = less_coupling(found, b)
-    genus_two = curve(found.scene)
+    reduced = less_coupling(reduced, b)
+    genus_two = curve(reduced.scene)
     if genus_two is None:
         return None
-    body, track = solid(found.scene)[0], whole.scene.track
+    body, track = solid(reduced.scene)[0], whole.scene.track
     return Case(
         WEBER,
-        found,
+        reduced,
         genus_two,
         lambda: WeberBalls(genus_two, body, track),
         lambda: WeberSums(genus_two, body, track),

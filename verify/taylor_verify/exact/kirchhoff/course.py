@@ -231,8 +231,8 @@ class QuadraticCourse(Course):
 
 def _about(f: Polynomial, z: Fraction) -> tuple[Fraction, ...]:
     """(a0, b1, b2, b3, b4) of f about z, by Taylor's formula."""
-    found: list[Fraction] = []
+    coefficients: list[Fraction] = []
     for divisor in (1, 4, 12, 24, 24):
-        found.append(value(f, z) / divisor)
+        coefficients.append(value(f, z) / divisor)
         f = derivative(f)
-    return tuple(reversed(found))
+    return tuple(reversed(coefficients))

@@ -65,17 +65,17 @@ class Beat:
 
 @dataclass(frozen=True)
 class Factor:
-    """The part of one pole in xi, up to a constant: one + ch times cosh + sh times sinh."""
+    """The factor of one pole in xi, up to a constant: constant + ch times cosh + sh times sinh."""
 
-    one: mpc
+    constant: mpc
     ch: mpc
     sh: mpc
 
     def at(self, beat: Beat) -> mpc:
-        return self.one + self.ch * beat.ch + self.sh * beat.sh
+        return self.constant + self.ch * beat.ch + self.sh * beat.sh
 
     def slope(self, beat: Beat, A: mpf) -> mpc:
-        """Its derivative in time."""
+        """Time derivative of the factor."""
         return (self.ch * A * beat.sh + self.sh * beat.ch) / 2
 
 
@@ -144,21 +144,21 @@ class ElementaryOrbit(Orbit):
 
     def _face_poles(self, nutation: Nutation, carrier: Carrier) -> None:
         """The factor of each pole, the upper first, and the linear parts of U and D."""
-        left = distances(nutation.F2, nutation.z)
+        gaps_at_start = distances(nutation.F2, nutation.z)
         gaps = None if carrier.d is None else distances(nutation.F2, carrier.d)
         factors: list[Factor] = []
         rates = [mpf(0), mpf(0)]
         for k, pull in enumerate(pulls(nutation)):
             if gaps is None:
-                away, delta = (2 * k - 1) * left[k], -self._r * pull
+                away, delta = (2 * k - 1) * gaps_at_start[k], -self._r * pull
             elif gaps[k] != 0:
-                away = left[k] * self._v0 / gaps[k]
+                away = gaps_at_start[k] * self._v0 / gaps[k]
                 delta = self._r * pull / gaps[k] ** 2
                 rates[k] = self._r / 2 * pull / gaps[k]
             else:  # the pole is d itself
                 factors.append(Factor(mpc(1), mpc(0), mpc(0)))
                 continue
-            if left[k] == 0:  # a start at the pole: v - a is a multiple of sh^2
+            if gaps_at_start[k] == 0:  # a start at the pole: v - a is a multiple of sh^2
                 factors.append(Factor(mpc(0), mpc(0), mpc(2)))
             else:
                 slant = mpc(self._v0_slope, delta) / away

@@ -36,10 +36,10 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix, Vector
 
 
-def centred(found: Reduced) -> Reduced:
+def centred(reduced: Reduced) -> Reduced:
     """Return the motion of a free body about the origin where B is symmetric."""
-    body, _ = solid(found.scene)
-    return about(found, symmetric_origin(body), "where B is symmetric")
+    body, _ = solid(reduced.scene)
+    return about(reduced, symmetric_origin(body), "where B is symmetric")
 
 
 def symmetric_origin(body: ImmersedBody) -> Vector:
@@ -53,14 +53,14 @@ def symmetric_origin(body: ImmersedBody) -> Vector:
     return tensors.apply(tensors.inverse(rest), askew)
 
 
-def about(found: Reduced, d: Vector, where: str) -> Reduced:
+def about(reduced: Reduced, d: Vector, where: str) -> Reduced:
     """Return the motion about the origin moved by d; ``where`` says what that origin is."""
     if not any(d):
-        return found
-    _, start = solid(found.scene)
+        return reduced
+    _, start = solid(reduced.scene)
     place = ", ".join(map(float_text, d))
     words = f"about the origin moved by ({place}), {where}"
-    return found.then(moved(found.scene, d), moved_back(d, start), words)
+    return reduced.then(moved(reduced.scene, d), moved_back(d, start), words)
 
 
 def moved(scene: Scene, d: Vector) -> Scene:

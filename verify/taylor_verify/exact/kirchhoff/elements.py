@@ -24,7 +24,7 @@ _LOADED: Final = (
 
 
 def elements(scene: Scene, digits: int) -> Elements:
-    """Every element that the orbit has, to ``digits`` significant digits."""
+    """Return the elements of the orbit, to ``digits`` significant digits."""
     body, _ = solid(scene)
     if body.manufactured is not None:
         return Elements(REGIME, (), MANUFACTURED)
@@ -32,20 +32,20 @@ def elements(scene: Scene, digits: int) -> Elements:
     if impulses is None and not body.is_free:
         return Elements(NO_CLOSED_FORM, (), _LOADED)
     if impulses is not None and isinstance(impulses.subject, Nutation):
-        found = clebsch_elements.elements(impulses.reduced.scene, digits)
+        result = clebsch_elements.elements(impulses.reduced.scene, digits)
         axes = impulses.subject.axes
         if axes.number is None:
-            found = _oblique(axes, found)
+            result = _oblique(axes, result)
         else:
-            found = found if axes.is_upright else _about(axes.number, found)
+            result = result if axes.is_upright else _about(axes.number, result)
             if body.axis_of_symmetry is None:
-                found = _beside(found, f"y{axes.number}")
+                result = _beside(result, f"y{axes.number}")
     else:
         kind = NO_CLOSED_FORM if whole is None else whole.regime
-        found = general.elements(scene, impulses, kind, digits)
+        result = general.elements(scene, impulses, kind, digits)
     solved = whole or impulses
     words = () if solved is None else solved.reduced.words
-    return replace(found, sentences=(*_reductions(words), *found.sentences))
+    return replace(result, sentences=(*_reductions(words), *result.sentences))
 
 
 def _case(scene: Scene) -> Case | None:
@@ -60,31 +60,34 @@ def _reductions(words: Sequence[str]) -> list[str]:
     return [f"Solved {'; '.join(words)}."] if words else []
 
 
-def _beside(found: Elements, y: str) -> Elements:
+def _beside(orbit_elements: Elements, y: str) -> Elements:
     """The elements of a body whose axis does not pass through the origin of the scene."""
-    told = (
-        line.replace(f"body, {y};", f"body, {y} about that origin;") for line in found.sentences
+    sentences = (
+        line.replace(f"body, {y};", f"body, {y} about that origin;")
+        for line in orbit_elements.sentences
     )
-    return replace(found, sentences=tuple(told))
+    return replace(orbit_elements, sentences=tuple(sentences))
 
 
-def _about(axis: int, found: Elements) -> Elements:
+def _about(axis: int, orbit_elements: Elements) -> Elements:
     """The elements with x3, y3 and axis 3 renamed to those of the axis of symmetry."""
-    return _renamed(found, {third: f"{third[:-1]}{axis}" for third in ("x3", "y3", "axis 3")})
+    return _renamed(
+        orbit_elements, {third: f"{third[:-1]}{axis}" for third in ("x3", "y3", "axis 3")}
+    )
 
 
-def _oblique(axes: Axes, found: Elements) -> Elements:
+def _oblique(axes: Axes, orbit_elements: Elements) -> Elements:
     """The elements with x3, y3 and axis 3 renamed to those of an axis that is no body axis."""
     direction = ", ".join(map(str, axes.n))
     place = (
         f"T is of Clebsch's form about the direction e along ({direction}): a body of revolution."
     )
     names = {"x3_": "xe_", "x3": "x.e", "y3": "y.e", "axis 3": "the axis e"}
-    renamed = _renamed(found, names)
+    renamed = _renamed(orbit_elements, names)
     return replace(renamed, sentences=(place, *renamed.sentences))
 
 
-def _renamed(found: Elements, names: Mapping[str, str]) -> Elements:
+def _renamed(orbit_elements: Elements, names: Mapping[str, str]) -> Elements:
     def renamed(text: str) -> str:
         for old, new in names.items():
             text = text.replace(old, new)
@@ -92,6 +95,6 @@ def _renamed(found: Elements, names: Mapping[str, str]) -> Elements:
 
     numbers = tuple(
         replace(e, name=renamed(e.name), meaning=renamed(e.meaning), source=renamed(e.source))
-        for e in found.numbers
+        for e in orbit_elements.numbers
     )
-    return Elements(found.regime, numbers, tuple(map(renamed, found.sentences)))
+    return Elements(orbit_elements.regime, numbers, tuple(map(renamed, orbit_elements.sentences)))

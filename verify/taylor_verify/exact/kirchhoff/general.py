@@ -101,46 +101,46 @@ _STORY: Final[Mapping[str, str]] = {
 }
 
 
-def elements(scene: Scene, found: Case | None, kind: str, digits: int) -> Elements:
+def elements(scene: Scene, solved: Case | None, kind: str, digits: int) -> Elements:
     """The elements of a body that is not Clebsch's; ``found`` is the case of x and y, if they have one."""
     body, start = solid(scene)
     fourth = fourth_integral(scene)
 
     def numbers(working: int) -> list[Element]:
-        own = [] if found is None else _paced(found.reduced, _own(found, working))
+        own = [] if solved is None else _paced(solved.reduced, _own(solved, working))
         return [*own, *conserved(body, start)]
 
     unsolved = _UNSOLVED if fourth is None else _UNBUILT
-    told = [*(_top_story(found, kind) or [_STORY.get(kind, unsolved)])]
-    told.append(_THREE if body.is_free else _BALANCED)
+    sentences = [*(_top_story(solved, kind) or [_STORY.get(kind, unsolved)])]
+    sentences.append(_THREE if body.is_free else _BALANCED)
     if fourth is not None:
-        told.append(
+        sentences.append(
             f"Conserved too: {fourth.name}, the fourth integral of {_FAMILIES[fourth.name]}."
         )
-    return Elements(kind, settled(numbers, digits), (*told, *_screw_story(scene)))
+    return Elements(kind, settled(numbers, digits), (*sentences, *_screw_story(scene)))
 
 
-def _own(found: Case, working: int) -> list[Element]:
+def _own(solved: Case, working: int) -> list[Element]:
     """The elements of x and y in one of the cases."""
-    match found.subject:
+    match solved.subject:
         case Plane() as place:
-            swing = Pendulum(found.regime, place, found.reduced.scene).elements(working)
+            swing = Pendulum(solved.regime, place, solved.reduced.scene).elements(working)
             return [*recurring(swing, _SWING, "x and y recur in body axes", _PENDULUM)]
         case Curve() as curve:
             return _weber_rates(curve, working)
         case FreeSpin() as spin:
             return tops.orbit(spin)
         case Impulse() as start:
-            body, _ = solid(found.reduced.scene)
+            body, _ = solid(solved.reduced.scene)
             return _screw(*velocities(body, start))
     return []
 
 
-def _paced(found: Reduced, numbers: Iterable[Element]) -> list[Element]:
+def _paced(reduced: Reduced, numbers: Iterable[Element]) -> list[Element]:
     """Return the elements of a motion in the time of the scene."""
-    if found.pace is None:
+    if reduced.pace is None:
         return [*numbers]
-    k = found.pace(mp.convert)
+    k = reduced.pace(mp.convert)
 
     def factor(unit: str) -> mpf:
         return 1 / k if unit == "time" else k if unit.endswith("/time") else mpf(1)
@@ -158,23 +158,23 @@ def _screw(U: Vector, Omega: Vector) -> list[Element]:
     return described(_SCREW, (period, advance, advance * period))
 
 
-def _top_story(found: Case | None, kind: str) -> list[str]:
+def _top_story(solved: Case | None, kind: str) -> list[str]:
     """Sentences on a motion in which y is that of Euler's top; none on another."""
-    if found is None or not isinstance(found.subject, FreeSpin):
+    if solved is None or not isinstance(solved.subject, FreeSpin):
         return []
     pathless = [] if kind != NO_CLOSED_FORM else ["The path of the origin has no closed form."]
-    return [_TOP, tops.story(found.subject), *pathless]
+    return [_TOP, tops.story(solved.subject), *pathless]
 
 
 def recurring(
-    known: Mapping[str, mpf], names: Sequence[str], period: str, source: str
+    values_of_form: Mapping[str, mpf], names: Sequence[str], period: str, source: str
 ) -> Iterator[Element]:
     """Yield these elements of a closed form, as far as it has them; ``period`` says what recurs."""
-    values, words = dict(known), {"period": ("time", period), **_WORDS}
-    if "period" in known:
-        values["nutation_frequency"] = 2 * mp.pi / known["period"]
-    if "m" in known:
-        values["k"] = mp.sqrt(known["m"])
+    values, words = dict(values_of_form), {"period": ("time", period), **_WORDS}
+    if "period" in values_of_form:
+        values["nutation_frequency"] = 2 * mp.pi / values_of_form["period"]
+    if "m" in values_of_form:
+        values["k"] = mp.sqrt(values_of_form["m"])
     for name in (name for name in names if name in values):
         by = "2 pi/period" if name == "nutation_frequency" else source
         yield Element(name, values[name], *words[name], by)
@@ -193,12 +193,12 @@ def conserved(body: ImmersedBody, start: Impulse) -> Iterator[Element]:
         yield Element("G", G, "angular impulse", meaning, "Hydromechanics 48 (iii)")
 
 
-def _weber_rates(found: Curve, working: int) -> list[Element]:
+def _weber_rates(curve: Curve, working: int) -> list[Element]:
     """The rates of the two angles."""
     meaning = "of the {} of two angles of which x and y are functions, of period 2 pi in each"
     return [
         Element(f"{which}_rate", rate, "radians/time", meaning.format(which), _CURVE)
-        for which, rate in zip(("first", "second"), rates(found, working), strict=True)
+        for which, rate in zip(("first", "second"), rates(curve, working), strict=True)
     ]
 
 
@@ -207,21 +207,21 @@ def _screw_story(scene: Scene) -> list[str]:
     body, start = solid(scene)
     if not body.is_free or not any(start.linear):
         return []
-    told = ["The start is itself a steady screw."] if is_steady(body, start) else []
-    found = screws_beside(scene)
-    if not found:
-        return [*told, _NOT_THREE]
-    told.append(
+    sentences = ["The start is itself a steady screw."] if is_steady(body, start) else []
+    beside = screws_beside(scene)
+    if not beside:
+        return [*sentences, _NOT_THREE]
+    sentences.append(
         "Steady screws with this F that turn about it as the start does, lambda = Omega.x/F^2 = "
-        f"{float_text(found[0].turn)}: three, by rising mu."
+        f"{float_text(beside[0].turn)}: three, by rising mu."
     )
-    for number, screw in enumerate(found, 1):
+    for number, screw in enumerate(beside, 1):
         axis = ", ".join(f"{float(entry.mid()):.3g}" for entry in screw.axis())
-        told.append(
+        sentences.append(
             f"Screw {number}, along ({axis}), advancing at {float(screw.speed.mid()):.3g}, is "
             f"{screw.stability.value}{_pace(screw)}."
         )
-    return told
+    return sentences
 
 
 def _pace(screw: Screw) -> str:

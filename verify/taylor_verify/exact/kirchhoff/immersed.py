@@ -56,11 +56,11 @@ class Immersed(Kind[ImmersedBody, Impulse]):
         U, Omega = body.energy_matrix[:3], body.energy_matrix[3:]
         hessian = np.concatenate([cross(_X, Omega), cross(_Y, Omega) + cross(_X, U)])
         loads = exact(body.force + body.couple)
-        found = Equations(loads, nothing(6), hessian, exact(Omega), exact(U))
-        return found.damped(body.damping)
+        undamped = Equations(loads, nothing(6), hessian, exact(Omega), exact(U))
+        return undamped.damped(body.damping)
 
     def units(self, body: ImmersedBody, z: Vector) -> Units:
-        """Each block by its size, or by what the loads, and x x U, make of it in the unit of time."""
+        """Return units of the blocks: their sizes, or their changes in a unit of time."""
         # What a manufactured motion reaches, not where it begins, is the size of its impulses.
         reached = z if body.manufactured is None else body.manufactured.reach
         x, y, force, couple = reached[:3], reached[3:], body.force, body.couple
@@ -89,28 +89,28 @@ class Immersed(Kind[ImmersedBody, Impulse]):
     def invariants(self, scene: Scene) -> tuple[Invariant, ...]:
         body = scene.body
         assert isinstance(body, ImmersedBody)
-        found = [energy(body), F2, FG]
+        conserved = [energy(body), F2, FG]
         about = clebsch_about(body)
         if body.axis_of_symmetry is not None:
-            found.append(axial(body.axis_of_symmetry))
+            conserved.append(axial(body.axis_of_symmetry))
         elif about is not None:
-            found.append(along(about[1].n))
+            conserved.append(along(about[1].n))
         fourth = fourth_integral(scene)
         if fourth is not None:
-            found.append(Invariant(fourth.name, fourth.value, fourth.scale, fourth.sensitivity))
+            conserved.append(Invariant(fourth.name, fourth.value, fourth.scale, fourth.sensitivity))
         if "attitude" in scene.track:
-            found.append(X_SPACE)
+            conserved.append(X_SPACE)
         if "centre" in scene.track:
-            found.append(Y_SPACE)
-        return tuple(found)
+            conserved.append(Y_SPACE)
+        return tuple(conserved)
 
     def sizes(self, scene: Scene, motion: Motion) -> list[Array]:
         assert isinstance(scene.body, ImmersedBody)
         x, y = norms(motion["linear_impulse"]), norms(motion["angular_impulse"])
-        found = [abs(energy(scene.body).value(motion)), x, y]
+        result = [abs(energy(scene.body).value(motion)), x, y]
         if "centre" in scene.track:
-            found.append(y + norms(motion["centre"]) * x)
-        return found
+            result.append(y + norms(motion["centre"]) * x)
+        return result
 
     def parameters(self, body: ImmersedBody) -> Parameters:
         """Clebsch's six coefficients, or all 21 of T."""

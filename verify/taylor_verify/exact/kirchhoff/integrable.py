@@ -166,10 +166,10 @@ def fourth_integral(scene: Scene) -> Fourth | None:
     body, start = solid(scene)
     if not body.is_free or body.axis_of_symmetry is not None:
         return None
-    found = diagonal_family(body) or _kovalevskaya_family(body, start)
-    if found is None:
+    family = diagonal_family(body) or _kovalevskaya_family(body, start)
+    if family is None:
         return None
-    name, coefficients = found
+    name, coefficients = family
     leak = _terms(chaplygin_leak, coefficients) if name == "chaplygin" else {}
     elapsed = scene.clock.elapsed
     span = elapsed[-1] if elapsed else Fraction(0)
@@ -239,10 +239,10 @@ def _slope(values: Sequence[Fraction], r: Sequence[Fraction]) -> Fraction:
 def _terms(formula: Callable[..., Any], coefficients: Sequence[Any]) -> Terms:
     """The formula multiplied out, its coefficients being rational."""
     state = fmpq_mpoly_ctx.get(IMPULSES, Ordering.lex).gens()
-    found = formula(state[:3], state[3:], *map(_rational, coefficients))
+    polynomial = formula(state[:3], state[3:], *map(_rational, coefficients))
     return {
         tuple(int(power) for power in powers): Fraction(int(c.p), int(c.q))
-        for powers, c in found.to_dict().items()
+        for powers, c in polynomial.to_dict().items()
     }
 
 

@@ -40,24 +40,26 @@ def multiple(matrix: Matrix) -> Fraction | None:
     return first if matrix == tensors.diagonal((first,) * 3) else None
 
 
-def less_coupling(found: Reduced, b: Fraction) -> Reduced:
+def less_coupling(reduced: Reduced, b: Fraction) -> Reduced:
     """Return the motion of the body with b 1 less in B."""
     if not b:
-        return found
-    scene = found.scene
+        return reduced
+    scene = reduced.scene
     body, start = solid(scene)
     words = f"less b = {float_text(b)} in B, which only turns space about the impulse"
-    return found.then(_from_zero(scene, coupling=less(body.coupling, b)), _turned(b, start), words)
+    return reduced.then(
+        _from_zero(scene, coupling=less(body.coupling, b)), _turned(b, start), words
+    )
 
 
-def less_linear(found: Reduced, p: Fraction) -> Reduced:
+def less_linear(reduced: Reduced, p: Fraction) -> Reduced:
     """Return the motion of the body with p 1 less in A."""
     if not p:
-        return found
-    scene = found.scene
+        return reduced
+    scene = reduced.scene
     body, start = solid(scene)
     words = f"less p = {float_text(p)} in A, which only drifts along the impulse"
-    return found.then(_from_zero(scene, linear=less(body.linear, p)), _drifted(p, start), words)
+    return reduced.then(_from_zero(scene, linear=less(body.linear, p)), _drifted(p, start), words)
 
 
 def less(matrix: Matrix, b: Fraction) -> Matrix:
@@ -92,11 +94,11 @@ def _turned(b: Fraction, start: Impulse) -> Back:
     def back(rows: dict[str, Any], elapsed: Sequence[Time], number: Number) -> None:
         if "attitude" not in rows:
             return
-        one, once, twice, ahead, around, aside = (_numbers(v, number) for v in (*turn, *sweep))
+        identity, once, twice, ahead, around, aside = (_numbers(v, number) for v in (*turn, *sweep))
         circle = _circle(rate_squared, number)
         for row, t in enumerate(elapsed):
             sine, versed = circle(number(t))
-            Q = one + sine * once + versed * twice
+            Q = identity + sine * once + versed * twice
             rows["attitude"][row] = Q @ rows["attitude"][row]
             if "centre" in rows:
                 swept = number(t) * ahead + sine * around + versed * aside

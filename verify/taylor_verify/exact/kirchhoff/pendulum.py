@@ -46,9 +46,9 @@ class Pendulum(Settled):
 
     route = "mpmath"
 
-    def __init__(self, kind: str, found: Plane, scene: Scene) -> None:
+    def __init__(self, kind: str, plane: Plane, scene: Scene) -> None:
         self.regime = kind
-        self._plane, self._track = found, scene.track
+        self._plane, self._track = plane, scene.track
         body, self._start = solid(scene)
         self._velocity, _ = velocities(body, self._start)
 
@@ -86,16 +86,16 @@ class Pendulum(Settled):
             path[n, place.a], path[n, place.b] = way.real, way.imag
         first = np.array(start_frame(self._start.attitude))
         centre = np.array([mp.convert(c) for c in self._start.centre])
-        found = {"linear_impulse": x, "angular_impulse": y}
+        quantities = {"linear_impulse": x, "angular_impulse": y}
         if self._track:
-            found["attitude"] = first @ frames
+            quantities["attitude"] = first @ frames
         if "centre" in self._track:
-            found["centre"] = as_given(
+            quantities["centre"] = as_given(
                 centre + path @ first.T, self._start.centre, elapsed, mp.convert
             )
-        # A y that starts from zero has no digits but exact ones, as has a centre.
+        # A y or a centre that starts from zero must be exactly zero at the start.
         as_given(y, self._start.angular, elapsed, mp.convert)
-        return found
+        return quantities
 
     def _way(self, row: Swept, t: Time) -> mpc:
         """The way of the centre since the start, along F and across it."""

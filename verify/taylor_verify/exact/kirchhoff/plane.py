@@ -73,22 +73,22 @@ class Plane:
         return self.spread * self.x[0] ** 2 - self.rate**2
 
 
-def planar(found: Reduced) -> tuple[Reduced, Plane] | None:
+def planar(reduced: Reduced) -> tuple[Reduced, Plane] | None:
     """Return the plane in which a free body moves, about a point of it and less a multiple of 1 in B.
 
     Where B is symmetric, a motion across k may have Omega_k = r y_k + B_ik x_i + B_jk x_j. About the point
     of the plane at (-B_jk, B_ik)/r from there these terms of x are gone. None for any other motion.
     """
-    body, _ = solid(found.scene)
+    body, _ = solid(reduced.scene)
     centre = symmetric_origin(body)
-    middle, start = solid(moved(found.scene, centre))
+    middle, start = solid(moved(reduced.scene, centre))
     for i, j, k in CYCLIC:
         if any((start.linear[k], start.angular[i], start.angular[j])):
             continue
         B, r = middle.coupling, middle.angular[k][k]
         rest = dict(zip((i, j, k), (-B[j][k] / r, B[i][k] / r, Fraction(0)), strict=True))
         place = tensors.plus(centre, tuple(rest[n] for n in range(3)))
-        inner = about(found, place, "the point of its plane where Omega is r y")
+        inner = about(reduced, place, "the point of its plane where Omega is r y")
         inner = less_coupling(inner, B[k][k])
         flat = plane(inner.scene)
         if flat is not None:
@@ -129,7 +129,7 @@ def _keeps_to_plane(body: ImmersedBody, i: int, j: int, k: int) -> bool:
     return not any(in_the_way) and not any(B[row][n] for row in (i, j) for n in range(3))
 
 
-def regime(found: Plane) -> str:
+def regime(place: Plane) -> str:
     """Return the word for a motion in a plane, decided in rationals.
 
     - planar-steady: x and y are constant, the body moves straight on or not at all;
@@ -138,34 +138,34 @@ def regime(found: Plane) -> str:
     - planar-turn: it turns over and over;
     - planar-front: exactly between these, it turns once from end on to end on, the other way round.
     """
-    if found.omega0_squared == 0:
-        return "planar-uniform" if found.rate else "planar-steady"
-    if found.rate == 0 and 0 in found.x:
+    if place.omega0_squared == 0:
+        return "planar-uniform" if place.rate else "planar-steady"
+    if place.rate == 0 and 0 in place.x:
         return "planar-steady"
-    if found.lack == 0:
+    if place.lack == 0:
         return "planar-front"
-    return "planar-swing" if found.lack > 0 else "planar-turn"
+    return "planar-swing" if place.lack > 0 else "planar-turn"
 
 
 # The body of revolution that moves alike: the route in balls. The other one has the pendulum's formulas.
 
 
-def of_revolution(scene: Scene, found: Plane) -> Scene:
+def of_revolution(scene: Scene, place: Plane) -> Scene:
     """The scene with the body of revolution about the axis a whose T has the same p_i, p_j and r."""
-    along, across = found.p
+    along, across = place.p
     body = ImmersedBody(
-        linear=tensors.diagonal(tuple(along if n == found.a else across for n in range(3))),
+        linear=tensors.diagonal(tuple(along if n == place.a else across for n in range(3))),
         coupling=tensors.ZERO_MATRIX,
-        angular=tensors.diagonal((found.r,) * 3),
+        angular=tensors.diagonal((place.r,) * 3),
     )
     return replace(scene, body=body)
 
 
-def in_plane(found: Plane) -> Back:
+def in_plane(place: Plane) -> Back:
     """Return the way back from ``of_revolution``, by the zeros that the plane makes, exactly."""
 
     def back(rows: dict[str, Any], elapsed: Sequence[Time], number: Number) -> None:
-        rows["linear_impulse"][:, found.k] = number(Fraction(0))
-        rows["angular_impulse"][:, [found.a, found.b]] = number(Fraction(0))
+        rows["linear_impulse"][:, place.k] = number(Fraction(0))
+        rows["angular_impulse"][:, [place.a, place.b]] = number(Fraction(0))
 
     return back

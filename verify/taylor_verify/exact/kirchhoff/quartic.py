@@ -194,16 +194,16 @@ class RealRoots:
     def _isolated(self) -> list[tuple[Fraction, Fraction]]:
         """Disjoint intervals (low, high], each with one root."""
         bound = self._bound()
-        pending, found = [(-bound, bound)], []
+        pending, intervals = [(-bound, bound)], []
         while pending:
             low, high = pending.pop()
             number = self._changes(low) - self._changes(high)
             if number == 1:
-                found.append((low, high))
+                intervals.append((low, high))
             elif number > 1:
                 middle = (low + high) / 2
                 pending += [(middle, high), (low, middle)]
-        return found
+        return intervals
 
     def _bound(self) -> Fraction:
         """A power of two above every root: none exceeds twice the largest |c_k/c_0|^(1/k) (Fujiwara).

@@ -35,10 +35,10 @@ def nutation_of(scene: Scene) -> tuple[Nutation, Impulse]:
     body, start = solid(scene)
     if not body.is_free:
         raise NoClosedForm("a force or a couple acts on the body")
-    found = clebsch_about(body)
-    if found is None:
+    six_and_axes = clebsch_about(body)
+    if six_and_axes is None:
         raise NoClosedForm("the energy is not of Clebsch's form about any axis")
-    return Nutation.of(found[0], start, found[1]), start
+    return Nutation.of(six_and_axes[0], start, six_and_axes[1]), start
 
 
 def regime(nutation: Nutation) -> str:

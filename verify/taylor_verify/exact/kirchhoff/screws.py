@@ -134,12 +134,12 @@ def screws(body: ImmersedBody, F2: Fraction, turn: Fraction) -> tuple[Screw, ...
             roots = sorted((root.real for root, _ in enclosed), key=_middle)
             axes = [_axis(arb_mat(S), roots[n - 1], roots[n - 2]) for n in range(3)]
             energy = ball_matrix(body.energy_matrix)
-            found = [
+            three = [
                 _screw(energy, n * ball(F2).sqrt(), arb_mat(to_y), turn, mu, mu is roots[0])
                 for mu, n in zip(roots, axes, strict=True)
             ]
-        if bits >= _MOST_BITS or Stability.UNDECIDED not in (s.stability for s in found):
-            return tuple(found)
+        if bits >= _MOST_BITS or Stability.UNDECIDED not in (s.stability for s in three):
+            return tuple(three)
         bits *= 2
 
 

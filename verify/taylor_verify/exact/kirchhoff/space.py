@@ -61,7 +61,7 @@ class CayleyKlein:
 
 @dataclass(frozen=True)
 class Pose:
-    """Everything about one instant, in body axes and in space axes with Z along F.
+    """The motion at an instant, in body axes and in space axes with Z along F.
 
     ``turned`` is the attitude, and ``rise`` is Z, the way of the centre along F since the start.
     """

@@ -35,13 +35,13 @@ def top(whole: Reduced) -> tuple[Reduced, FreeSpin] | None:
     if not any(start.linear) and "centre" not in whole.scene.track:
         # y is the same about every origin, and nothing else is asked for.
         return whole, _spin(body, start)
-    found = centred(whole)
-    body, start = solid(found.scene)
+    reduced = centred(whole)
+    body, start = solid(reduced.scene)
     b, p = multiple(body.coupling), multiple(body.linear)
     if b is None or (p is None and any(start.linear)):
         return None
-    found = less_coupling(found, b)
-    return found if p is None else less_linear(found, p), _spin(body, start)
+    reduced = less_coupling(reduced, b)
+    return reduced if p is None else less_linear(reduced, p), _spin(body, start)
 
 
 def _spin(body: ImmersedBody, start: Impulse) -> FreeSpin:

@@ -60,7 +60,7 @@ class TurningBody(Enclosed):
             parts = zip(*self._parts(v), strict=True)
             return [ball(a) + cosine * ball(b) + sine / length * ball(c) for a, b, c in parts]
 
-        found: dict[str, Any] = {
+        quantities: dict[str, Any] = {
             "linear_impulse": turned(self._start.linear),
             "angular_impulse": turned(self._start.angular),
         }
@@ -68,10 +68,10 @@ class TurningBody(Enclosed):
             to_space, (rotation, swept) = ball_matrix(self._to_space), self._exponential(t)
             # The rows of the inverse are the images of e1, e2, e3.
             back = arb_mat([turned(unit) for unit in _UNIT])
-            found["attitude"] = (to_space * rotation * back).tolist()
+            quantities["attitude"] = (to_space * rotation * back).tolist()
             if "centre" in self._track:
-                found["centre"] = self._centre(t, to_space * swept)
-        return found
+                quantities["centre"] = self._centre(t, to_space * swept)
+        return quantities
 
     def _parts(self, v: Vector) -> tuple[Vector, Vector, Vector]:
         """The part of v along n, the rest, and n x v."""
@@ -83,15 +83,15 @@ class TurningBody(Enclosed):
         """exp(t [a]x) and its integral from 0 to t, polynomials of [a]x."""
         a1, a2, a3 = balls(self._axis)
         once = arb_mat([[0, -a3, a2], [a3, 0, -a1], [-a2, a1, 0]])
-        one, time = arb_mat([[1, 0, 0], [0, 1, 0], [0, 0, 1]]), ball(t)
+        identity, time = arb_mat([[1, 0, 0], [0, 1, 0], [0, 0, 1]]), ball(t)
         if not any(self._axis):
-            return one, one * time
+            return identity, identity * time
         twice = once * once
         a = ball(tensors.dot(self._axis, self._axis)).sqrt()
         sine, versed = (a * time).sin() / a, 2 * ((a * time / 2).sin() / a) ** 2
         return (
-            one + once * sine + twice * versed,
-            one * time + once * versed + twice * ((time - sine) / a**2),
+            identity + once * sine + twice * versed,
+            identity * time + once * versed + twice * ((time - sine) / a**2),
         )
 
     def _centre(self, t: Time, swept: arb_mat) -> list[arb]:

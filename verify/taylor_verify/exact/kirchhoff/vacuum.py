@@ -28,23 +28,23 @@ from taylor_verify.scenes.bodies import ImmersedBody
 _WORDS: Final = "in the time k t, k = 1/mass, less which every coefficient is rational"
 
 
-def at_own_pace(found: Reduced) -> Reduced:
+def at_own_pace(reduced: Reduced) -> Reduced:
     """Return the motion of an ellipsoid in a vacuum without its mass; every other motion as it is.
 
     An ellipsoid with two equal semi-axes is of revolution however it is rounded, and stays as well.
     """
-    body, _ = solid(found.scene)
+    body, _ = solid(reduced.scene)
     shape = body.ellipsoid
     if shape is None or shape.fluid_density or body.axis_of_symmetry is not None:
-        return found
+        return reduced
     a, b, c = (axis * axis for axis in shape.semi_axes)
     rates = tensors.diagonal((5 / (b + c), 5 / (c + a), 5 / (a + b)))
-    one = tensors.diagonal((Fraction(1),) * 3)
+    identity = tensors.diagonal((Fraction(1),) * 3)
     mass = shape.density * Fraction(4, 3) * prod(shape.semi_axes)
 
     def pace(number: Number) -> Any:
         pi = arb.pi() if number is ball else +mp.pi
         return 1 / (number(mass) * pi)
 
-    light = ImmersedBody(one, tensors.ZERO_MATRIX, rates)
-    return Reduced(replace(found.scene, body=light), words=(_WORDS,), pace=pace)
+    light = ImmersedBody(identity, tensors.ZERO_MATRIX, rates)
+    return Reduced(replace(reduced.scene, body=light), words=(_WORDS,), pace=pace)

@@ -129,7 +129,7 @@ class Orbit:
             self._find_space(attitude)
 
     def rows(self, times: Sequence[arb]) -> list[dict[str, Any]]:
-        """Every tracked quantity, and maybe more, at each time since the start."""
+        """Return all tracked quantities, and possibly others, at each time since the start."""
         line, count = self._course.lattice.along(times), len(times)
         places = self._course.places(times, line)
         above = (factor.jets(line, count, 0) for factor in (self._alpha, self._beta))
@@ -139,10 +139,12 @@ class Orbit:
         rows = [
             self._row(u, place, (alpha[0], beta[0]), own) for u, place, alpha, beta, own in parts
         ]
-        found: list[dict[str, Any]] = [impulses for impulses, _ in rows]
+        quantities: list[dict[str, Any]] = [impulses for impulses, _ in rows]
         if self._track:
-            self._carry_to_space(found, [columns for _, columns in rows])
-        return [self._at_start if u.is_zero() else row for u, row in zip(times, found, strict=True)]
+            self._carry_to_space(quantities, [columns for _, columns in rows])
+        return [
+            self._at_start if u.is_zero() else row for u, row in zip(times, quantities, strict=True)
+        ]
 
     def _row(
         self, u: arb, place: tuple[arb, arb], above: tuple[acb, acb], own: Sequence[list[acb]]
@@ -187,11 +189,11 @@ class Orbit:
                 row.append(entry)
         return impulses, frame
 
-    def _carry_to_space(self, found: Sequence[dict[str, Any]], frames: Sequence[Rows]) -> None:
+    def _carry_to_space(self, rows: Sequence[dict[str, Any]], frames: Sequence[Rows]) -> None:
         """Add R and the centre in space."""
         # Entry by entry: to make a matrix of balls takes longer than the product.
         to_space, start = self._to_space.tolist(), self._at_start["centre"]
-        for row, (first, second, third) in zip(found, frames, strict=True):
+        for row, (first, second, third) in zip(rows, frames, strict=True):
             carried = [
                 [p * a + q * b + r * c for a, b, c in zip(first, second, third, strict=True)]
                 for p, q, r in to_space

@@ -1,6 +1,6 @@
-"""The errors of many free rigid bodies at once: of omega beside the exact motion, and of what is conserved.
+"""The errors of many free rigid bodies at once: errors of the states, and drifts of conserved quantities.
 
-All sizes are relative, so that the units are those of each body: its K and H are of size one.
+All sizes are relative to the units of each body, in which its K and H have size one.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 @dataclass(frozen=True)
 class Quantity:
-    """The ``errors`` (n, m) of a quantity over its ``scale`` (n); ``change`` (n) is the last with its sign.
+    """The ``errors`` (n, m) of a quantity over its ``scale`` (n); ``change`` (n) is the signed last error.
 
-    ``widths`` (n, m) are how wide the truth is.
+    ``widths`` (n, m) are the error bounds of the truth.
     """
 
     name: str
@@ -35,7 +35,7 @@ class Quantity:
 
 @dataclass(frozen=True)
 class Measured:
-    """The errors of n bodies; ``shifts`` are those of the ``states``, and ``excess`` (n, m) is |q| - 1.
+    """The errors of n bodies; ``shifts`` belong to the ``states``, and ``excess`` (n, m) is |q| - 1.
 
     ``momentum`` (3, n, m) is the exact motion.
     """
@@ -48,12 +48,13 @@ class Measured:
 
 
 def measured(tops: Tops, answer: Floats, times: Floats) -> Measured:
-    """Compare answers (3 or 7, n, m), momenta and quaternions at these times (n, m), with the truth."""
+    """Compare answers (3 or 7, n, m) with the truth: momenta and quaternions at these times (n, m)."""
     K, start = tops.inverse[:, :, None], tops.momentum.hi
     truth = tops.states(times)
     own, H = answer[:3], truth.momentum.hi
     with np.errstate(all="ignore"):
-        # Neighbours have an exact difference; of other numbers it is rounded by a part of itself.
+        # The difference of numbers that are near each other is exact; other differences have a relative
+        # rounding.
         off = (own - H) - truth.momentum.lo
         omega = K * H
         scale = np.max(lengths(omega), axis=1)
@@ -92,10 +93,10 @@ def measured(tops: Tops, answer: Floats, times: Floats) -> Measured:
 
 
 def _turn(q: Floats, truth: Pairs) -> tuple[Floats, Floats]:
-    """The turn (3, n, m) from the truth to quaternions q of either sign, in body axes, and its width."""
+    """Return the turn (3, n, m) from the truth to quaternions q or -q, in body axes, and its width."""
     sign = np.where(np.sum(q * truth.hi, axis=0) < 0, -1.0, 1.0)
     off = (sign * q - truth.hi) - truth.lo
-    # To twice its radius a turn is less than four times it away.
+    # Twice the quaternion's radius bounds its change; a turn changes by less than twice that.
     return 2 * between(truth.hi, off), 4 * lengths(truth.radius())
 
 
@@ -104,7 +105,7 @@ def _state(name: str, errors: Floats, widths: Floats, scale: Floats) -> Quantity
 
 
 def _drift(name: str, weights: Floats, answer: Floats, start: Floats) -> Quantity:
-    """The drift of sum w_i H_i^2: of w (H - H_0)(H + H_0), whose factors are pairs of doubles."""
+    """Return the drift of sum w_i H_i^2, as sum w (H - H_0)(H + H_0) in pairs of doubles."""
     begin = start[:, :, None]
     steps = [
         difference(row, first) * Pairs(*two_sum(row, first)) * weight
@@ -119,5 +120,5 @@ def _drift(name: str, weights: Floats, answer: Floats, start: Floats) -> Quantit
 
 def lengths(vectors: Floats) -> Floats:
     """Return the lengths (...) of vectors (3, ...)."""
-    found: Floats = np.sqrt(np.sum(vectors * vectors, axis=0))
-    return found
+    norms: Floats = np.sqrt(np.sum(vectors * vectors, axis=0))
+    return norms

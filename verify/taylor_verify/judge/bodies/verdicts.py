@@ -1,11 +1,11 @@
-"""The verdicts on many free rigid bodies, and which of them stand.
+"""The verdicts on many free rigid bodies that pass clearly; all others are left to the judge of one body.
 
-The floor, the truth and the bounds are those of the judge of one body, to some digits. The answers are
-not: a lane steps by other instructions than the integrator of one body, and the roundings of both are two
+The floor, the truth and the bounds agree with those of the judge of one body to some digits. The answers
+differ: a lane uses other instructions than the integrator of one body. The roundings of the two are two
 draws of one sum, whose root mean square is the floor. A body is judged here only if its lane passes every
-gate with an error below a quarter of the bound, 2.5 floors. The other draw would have to exceed ten floors
-to be judged otherwise, as a sum of hundreds of roundings does in no sample that anybody will see. Every
-other body, and so every one that fails, is left to the judge of one body.
+gate with an error below a quarter of the bound, 2.5 floors. The other draw would get another verdict only
+above ten floors, which a sum of hundreds of roundings practically never reaches. Every other body, and so
+every body that fails, is left to the judge of one body.
 """
 
 from __future__ import annotations
@@ -33,15 +33,15 @@ from taylor_verify.solvers.trajectory import Outcome
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
-# A gate is far away at this part of its bound.
+# An error below this part of the bound is far from it.
 _FAR: Final = 1 / 4
-# A bound is far from the size of the motion, at which it would forbid nothing.
+# A bound below this is far from 1, the size of the motion, at which it would forbid nothing.
 _LARGEST_BOUND: Final = 1e-3
 
 
 @dataclass(frozen=True)
 class Gate:
-    """A quantity of n bodies with what is attainable (n, m), carried by the orbit or by a gradient."""
+    """A quantity of n bodies, with its roundoff floor ``attainable`` (n, m)."""
 
     quantity: Quantity
     attainable: Floats
@@ -49,7 +49,7 @@ class Gate:
 
     @property
     def is_far(self) -> Any:
-        """Return the bodies (n) that would pass if every error were four times as large."""
+        """Return True for the bodies (n) that would pass even if every error were four times as large."""
         bounds = GATE_FACTOR * self.attainable
         passes = (self.quantity.errors <= _FAR * bounds) & (bounds <= _LARGEST_BOUND)
         passes &= TRUTH_SHARE * self.quantity.widths <= _FAR * bounds
@@ -57,26 +57,28 @@ class Gate:
 
 
 def gates(measured: Measured, floors: Floors, inverse: Floats, roundoff: float) -> list[Gate]:
-    """Return the gates of the states and of what is conserved, of these inverse moments (3, n)."""
+    """Return the gates of states and conserved quantities, for bodies of these inverse moments (3, n)."""
     H = measured.momentum[:, :, nodes(measured.momentum.shape[2])]
     gradients: dict[str, tuple[Floats, Floats | float]] = {
         "T": (inverse[:, :, None] * H, 0.0),
         "H2": (2 * H, 0.0),
         "H_space": (np.ones_like(H), lengths(H)),
     }
-    found = []
-    for each, by_orbit in zip(measured.states, (floors.omega, floors.attitude), strict=False):
+    result = []
+    for quantity, by_orbit in zip(measured.states, (floors.omega, floors.attitude), strict=False):
         assert by_orbit is not None
-        found.append(Gate(each, roundoff * by_orbit / each.scale[:, None], Carried.ORBIT))
-    for each in measured.conserved:
-        momentum, turn = (gradient / each.scale[:, None] for gradient in gradients[each.name])
+        result.append(Gate(quantity, roundoff * by_orbit / quantity.scale[:, None], Carried.ORBIT))
+    for quantity in measured.conserved:
+        momentum, turn = (
+            gradient / quantity.scale[:, None] for gradient in gradients[quantity.name]
+        )
         drift = roundoff * floors.of_gradients(momentum, turn)
-        found.append(Gate(each, drift, Carried.GRADIENT))
-    return found
+        result.append(Gate(quantity, drift, Carried.GRADIENT))
+    return result
 
 
 def are_unit(excess: Floats, floors: Floors, roundoff: float) -> Any:
-    """Return the bodies (n) whose quaternions are far from being no unit quaternions."""
+    """Return True for the bodies (n) whose quaternions are clearly of unit length."""
     bounds = GATE_FACTOR * roundoff * np.maximum(floors.reached, 1.0)
     return (abs(excess) <= _FAR * bounds).all(axis=1)
 
@@ -85,9 +87,9 @@ def are_unit(excess: Floats, floors: Floors, roundoff: float) -> Any:
 class Run:
     """The solver, the rung and the lanes of n bodies.
 
-    ``times`` (n, m) are those of the samples since the start; ``unit`` (n) is the unit of time in
-    which shifts are counted.
-    ``steps`` (n) are those of each lane, of so many ``evaluations`` each; a lane took ``seconds``.
+    ``times`` (n, m) are the times of the samples since the start; ``unit`` (n) is the unit of time of the
+    shifts. ``steps`` (n) are the steps of each lane, each of ``evaluations`` evaluations; a lane took
+    ``seconds``.
     """
 
     solver: str
@@ -102,13 +104,13 @@ class Run:
 def verdicts(
     run: Run, scenes: Mapping[int, Scene], gates: Sequence[Gate], measured: Measured, floors: Floors
 ) -> dict[int, list[Verdict]]:
-    """Return the verdicts on bodies that pass, by their places, in the order of the judge of one body.
+    """Return the verdicts on passing bodies, by place, each list in the order of the judge of one body.
 
-    ``scenes`` are those of the bodies that are asked for.
+    ``scenes`` maps the places of the bodies asked for to their scenes.
     """
     columns = [_columns(run, gate, floors) for gate in gates]
     known = provenance("")
-    found = {}
+    by_place = {}
     for k, scene in scenes.items():
         shared: dict[str, Any] = {
             "scene": scene.name,
@@ -133,8 +135,8 @@ def verdicts(
             states = columns[: len(measured.states)]
             starts = [_start(column, k, instants, shared) for column in states]
             rows.insert(0, max(starts, key=lambda start: start.ratio or 0.0))
-        found[k] = rows
-    return found
+        by_place[k] = rows
+    return by_place
 
 
 @dataclass(frozen=True)
@@ -149,7 +151,7 @@ class _Instants:
 
 @dataclass(frozen=True)
 class _Columns:
-    """The numbers of one gate, each as a list over the bodies; ``at`` and ``ratio_at`` are places."""
+    """The numbers of one gate, as lists over the bodies; ``at`` and ``ratio_at`` are sample indices."""
 
     gate: Gate
     bits: int
@@ -213,7 +215,7 @@ def _row(column: _Columns, k: int, instants: _Instants, shared: dict[str, Any]) 
 
 
 def _start(column: _Columns, k: int, instants: _Instants, shared: dict[str, Any]) -> Verdict:
-    """The verdict on the row at the start, by the four digits that a record has."""
+    """Return the verdict on the row at the start, from the four digits that a record stores."""
     quantity, at = column.gate.quantity, instants[0]
     error = shown(float(quantity.errors[k, 0]))
     value = shown(float(column.gate.attainable[k, 0]))

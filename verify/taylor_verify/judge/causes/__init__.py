@@ -1,1 +1,1 @@
-"""Named hypotheses about wrong dynamics, tried from row to row of an answer."""
+"""Named hypotheses about wrong dynamics, tested from each row of an answer to the next."""

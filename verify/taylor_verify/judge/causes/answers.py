@@ -1,4 +1,4 @@
-"""Files and trajectories as the material of hypotheses: body axes, float64, one row for each time."""
+"""Conversion of files and trajectories to material for hypotheses: body axes, float64, a row per time."""
 
 from __future__ import annotations
 
@@ -31,25 +31,27 @@ from taylor_verify.solvers.trajectory import Trajectory
 
 _DIGITS: Final = 20
 _MOST_ROWS: Final = 4096
-# The range of float64 or a decomposition does not suffice: then no cause is named.
+# If the range of float64 or a matrix decomposition fails, no cause is named.
 _NO_CAUSE: Final = (OverflowError, np.linalg.LinAlgError)
 
 
 def causes_of_file(
-    file: TrajectoryFile, rung: Rung, found: Conventions, judged: Judgement
+    file: TrajectoryFile, rung: Rung, conventions: Conventions, judged: Judgement
 ) -> tuple[LikelyCause, ...]:
-    """Return the likely causes of what failed in a file, read by its conventions.
+    """Return the likely causes of the failures in a file, read by its conventions.
 
-    They are sought in the first rows of a long file: each acts from row to row.
+    Only the first rows of a long file are examined, because every cause acts from row to row.
     """
     first = file.at(range(min(len(file.times), _MOST_ROWS)))
     with np.errstate(all="ignore"), suppress(*_NO_CAUSE):
-        return likely_causes(_of_file(first, rung, found, judged.verdicts), found.world.scene)
+        return likely_causes(
+            _of_file(first, rung, conventions, judged.verdicts), conventions.world.scene
+        )
     return ()
 
 
 def with_causes(judged: Judgement, problem: Problem, trajectory: Trajectory) -> Judgement:
-    """Return the judgement of a trajectory with the likely causes of what failed."""
+    """Return the judgement of a trajectory with the likely causes of its failures added."""
     if not any(verdict.verdict is Status.FAIL for verdict in judged.verdicts):
         return judged
     scene, causes = problem.scene, tuple[LikelyCause, ...]()
@@ -60,28 +62,28 @@ def with_causes(judged: Judgement, problem: Problem, trajectory: Trajectory) -> 
 
 
 def _of_file(
-    file: TrajectoryFile, rung: Rung, found: Conventions, verdicts: Iterable[Verdict]
+    file: TrajectoryFile, rung: Rung, conventions: Conventions, verdicts: Iterable[Verdict]
 ) -> Material | None:
-    """A file as material; None if its body is of another kind or has loads that change."""
-    given = adopt(found.world.scene, rung, found.world.times(file.times)).given
+    """Return a file as material; None if its body is of another kind or has variable loads."""
+    given = adopt(conventions.world.scene, rung, conventions.world.times(file.times)).given
     if not Equations.are_known(given.body):
         return None
-    attitudes = _attitudes(file, given, found)
+    attitudes = _attitudes(file, given, conventions)
     groups = [name for name in MOMENTA[given.model] if name in file.groups]
-    values = {name: _read(file, name, found, attitudes) for name in groups}
+    values = {name: _read(file, name, conventions, attitudes) for name in groups}
     columns = np.hstack([file.groups[name].doubles() for name in groups]) if groups else None
     if not groups and has_velocities(given.body) and set(VELOCITIES) <= set(file.groups):
-        own = {name: _read(file, name, found, attitudes) for name in VELOCITIES}
+        own = {name: _read(file, name, conventions, attitudes) for name in VELOCITIES}
         values = {name: rows.astype(float) for name, rows in momenta(given.body, own).items()}
     q = None if attitudes is None else _unit(quaternion_columns(attitudes))
-    made = _material(given, values, q, rung, verdicts)
-    return replace(made, digits=file.digits, columns=columns)
+    material = _material(given, values, q, rung, verdicts)
+    return replace(material, digits=file.digits, columns=columns)
 
 
 def _of_trajectory(
     problem: Problem, trajectory: Trajectory, verdicts: Iterable[Verdict]
 ) -> Material | None:
-    """A solver's trajectory as material; None if its body is of another kind or has loads that change."""
+    """Return a trajectory as material; None if its body is of another kind or has variable loads."""
     given, rows = problem.given, trajectory.quantities
     if not rows or not Equations.are_known(given.body):
         return None
@@ -113,23 +115,25 @@ def _material(
     )
 
 
-def _read(file: TrajectoryFile, name: str, found: Conventions, attitudes: Floats | None) -> Floats:
-    """A group of vectors in body axes; from space axes they are taken by the file's own attitude."""
-    rows, reading = file.groups[name].doubles(), found.readings.get(name)
+def _read(
+    file: TrajectoryFile, name: str, conventions: Conventions, attitudes: Floats | None
+) -> Floats:
+    """Return a group of vectors in body axes; space axes are converted by the file's own attitude."""
+    rows, reading = file.groups[name].doubles(), conventions.readings.get(name)
     if reading is None:
         return rows
     R = attitudes if attitudes is not None else np.full((len(rows), 3, 3), np.nan)
     return reading.read(rows, R)
 
 
-def _attitudes(file: TrajectoryFile, given: Scene, found: Conventions) -> Floats | None:
-    """The file's own attitudes; the exact ones where it has none and its omega is in space axes."""
+def _attitudes(file: TrajectoryFile, given: Scene, conventions: Conventions) -> Floats | None:
+    """Return the file's attitudes; the exact ones if it has none and its omega is in space axes."""
     for group in ("quaternion", "attitude"):
         if group in file.groups:
-            reading = found.readings.get(group, readings(group)[0])
+            reading = conventions.readings.get(group, readings(group)[0])
             read = reading.read(file.groups[group].doubles(), np.empty(0))
             return rotations(read) if group == "quaternion" else read
-    if not found.readings:
+    if not conventions.readings:
         return None
     tracked = replace(given, track=frozenset({"attitude"}))
     exact: Floats = (
@@ -139,10 +143,10 @@ def _attitudes(file: TrajectoryFile, given: Scene, found: Conventions) -> Floats
 
 
 def _unit(quaternions: Floats) -> Floats:
-    found: Floats = quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)
-    return found
+    unit: Floats = quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)
+    return unit
 
 
 def _doubles(rows: Any) -> Floats:
-    """Numbers as float64."""
+    """Return numbers as float64."""
     return np.array([[float(value) for value in row] for row in rows], dtype=float)

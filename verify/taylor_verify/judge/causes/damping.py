@@ -1,9 +1,9 @@
-"""Damping that was left on: isotropic, or against the angular velocity; with and without gyroscopic term.
+"""Hypotheses of damping that was left on: isotropic, or against the angular velocity.
 
-With z' = Q(z, z) - c z the size of the momentum decays as exp(-c t), whatever the body, and the motion is
-exp(-c t) Z((1 - exp(-c t))/c), Z the motion without damping. An engine that multiplies by 1 - c h or by
-1/(1 + c h) in each step has the same law with a slightly different c; where the scene has damping, its step
-is sought in damping_step.py.
+With z' = Q(z, z) - c z the size of the momentum decays as exp(-c t) for every body. The motion is
+exp(-c t) Z((1 - exp(-c t))/c), where Z is the motion without damping. An engine that multiplies by 1 - c h
+or by 1/(1 + c h) in each step has the same law with a slightly different c. If the scene has damping,
+damping_step.py looks for the engine's step.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from taylor_verify.judge.causes.fit import fitted
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.material import Candidate, Material, Pairs
 
-# Where the parameter is counted in units of a rate of turn, a decay by more than this is no damping.
+# A decay faster than this many rates of turn is not damping.
 _FAST: Final = 1e3
 # For a rigid body, and for a solid in a fluid.
 _RIGID: Final = {
@@ -39,7 +39,7 @@ def damping(material: Material) -> Iterator[Candidate]:
     rate = _decay(right, pairs)
     if not 0 < abs(rate) < _FAST / float(np.min(np.abs(pairs.spans))):
         return
-    # A moment of inertia, or a mass, makes a coefficient of drag of a rate.
+    # A moment of inertia, or a mass, turns a rate into a coefficient of drag.
     sizes = np.linalg.eigvalsh(right.tensor)
     inertia = float(np.mean(sizes if right.is_rigid else 1 / sizes))
     tried = [("another damping" if right.damping else "damping left on", right)]
@@ -54,7 +54,7 @@ def damping(material: Material) -> Iterator[Candidate]:
 
 
 def _decay(right: Equations, pairs: Pairs) -> float:
-    """The rate at which the momentum decays, by the median of all pairs."""
+    """Return the rate at which the momentum decays, as the median over all pairs."""
     before, after = (
         np.linalg.norm(rows @ right.tensor if right.is_rigid else rows[:, :3], axis=1)
         for rows in (pairs.begin, pairs.end)
@@ -64,7 +64,7 @@ def _decay(right: Equations, pairs: Pairs) -> float:
 
 
 def _fit(equations: Equations, key: str, unit: float, pairs: Pairs) -> tuple[float, Floats]:
-    """The best number for a key of the equations, counted in ``unit``, and its states."""
+    """Return the best number for a key of the equations, in multiples of ``unit``, and its states."""
 
     def model(parameters: Floats) -> Floats:
         return pairs.moved([replace(equations, **{key: unit * p}) for (p,) in parameters])

@@ -1,12 +1,11 @@
-"""Damping of a scene left out, turned round, of the wrong vector, or applied as a factor in each step.
+"""Wrong damping: left out, of the wrong sign, of the wrong vector, or applied as a factor in each step.
 
-An engine damps by a factor f once in a step h: 1 - c h (explicit), 1/(1 + c h) (implicit) or e^{-c h}. It
-does so after the step of the motion without damping or before it. With f = e^{-c' h} it solves, exactly,
+An engine multiplies by a factor f once per step h: 1 - c h (explicit), 1/(1 + c h) (implicit) or e^{-c h}.
+It does so before or after the step of the undamped motion. With f = e^{-c' h} it solves exactly
 
     z' = k Q(z) - c' z,    k = c' h/(1 - f) where the factor comes after the motion, f times that before it,
 
-where Q is quadratic: after n steps the motion without damping has gone through the time
-h (1 + f + ... + f^{n-1}).
+where Q is quadratic: after n steps the undamped motion has advanced by the time h (1 + f + ... + f^{n-1}).
 """
 
 from __future__ import annotations
@@ -23,9 +22,9 @@ from taylor_verify.judge.causes.fit import fitted
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.material import Candidate, Material, Pairs
 
-# The search for h begins where a step damps by this much, or at the space between two rows.
+# The search for h begins where a step damps by this much, or at the interval between two rows.
 _FIRST_STEP: Final = 0.05
-# The factor of one step by x = c h.
+# The factor of one step as a function of x = c h.
 _FACTORS: Final[tuple[tuple[str, str, Callable[[float], float]], ...]] = (
     ("explicit damping step", "1 - c h", lambda x: 1 - x),
     ("implicit damping step", "1/(1 + c h)", lambda x: 1 / (1 + x)),
@@ -72,7 +71,7 @@ def damping_step(material: Material) -> Iterator[Candidate]:
 def _best_step(
     pairs: Pairs, equations: Callable[[float], Equations], unit: float
 ) -> tuple[float, Floats]:
-    """The step whose equations lead nearest to the answer, counted in ``unit``, and its states."""
+    """Return the step whose equations fit the answer best, in multiples of ``unit``, and its states."""
 
     def model(parameters: Floats) -> Floats:
         return pairs.moved([equations(unit * p) for (p,) in parameters])
@@ -84,7 +83,7 @@ def _best_step(
 def stepped(
     right: Equations, factor: Callable[[float], float], is_after: bool, h: float
 ) -> Equations:
-    """Return the equations that an engine of this step follows from row to row."""
+    """Return the equations that an engine with this step and factor solves."""
     f = factor(right.damping * h)
     if not f > 0 or f == 1:
         return replace(right, damping=np.nan)

@@ -1,8 +1,8 @@
-"""Equations of motion, right and with one thing wrong, as homogeneous quadratic rates of float64 rows.
+"""Equations of motion, correct or with one error, as homogeneous quadratic rates of float64 rows.
 
 Euler:      z = (omega, 1), I omega' = (I omega + h) x omega + M, h the momentum of wheels
 Kirchhoff:  z = (x, y, 1), x' = x x W + X, y' = y x W + x x U + L, U = A x + B y, W = B^T x + C y
-with the attitude: q' = q W / 2 besides, q a quaternion, scalar first.
+with the attitude: also q' = q W / 2, where q is a quaternion, scalar first.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _KNOWN: Final = (RigidBody, Gyrostat, ImmersedBody)
 
 @dataclass(frozen=True)
 class Equations:
-    """A body's equations of motion with weights for their terms.
+    """A body's equations of motion, with a weight for each term.
 
     ``tensor`` is I, or the 6x6 matrix of the energy. ``load`` is M, or (X, L). ``gyroscopic`` weighs
     (I omega) x omega, or y x W; ``munk`` weighs x x U and ``turning`` x x W. ``damping`` c adds -c z, and
@@ -40,20 +40,20 @@ class Equations:
 
     @staticmethod
     def are_known(body: Body) -> bool:
-        """Return True if this kind of body has equations here, and its loads are constant."""
+        """Return True if this kind of body has equations here and its loads are constant."""
         return type(body) in _KNOWN and body.manufactured is None
 
     @classmethod
     def of(cls, body: Body) -> Equations:
-        """Return the right equations of a body whose loads are constant."""
+        """Return the correct equations of a body whose loads are constant."""
         values = body.parts()
         loads = [entry for name in body.load_names() for entry in values[name]]
-        found = cls(np.array(body.energy_matrix, dtype=float), np.array(loads, dtype=float))
-        rotor = tuple(map(float, values.get("rotor", found.rotor)))
-        return replace(found, rotor=rotor, damping=float(body.damping))
+        plain = cls(np.array(body.energy_matrix, dtype=float), np.array(loads, dtype=float))
+        rotor = tuple(map(float, values.get("rotor", plain.rotor)))
+        return replace(plain, rotor=rotor, damping=float(body.damping))
 
     def slowed(self, factor: float) -> Equations:
-        """Return the equations with this factor at all that is quadratic in the state."""
+        """Return the equations with all terms that are quadratic in the state multiplied by a factor."""
         return replace(self, gyroscopic=factor, munk=factor, turning=factor)
 
     @property
@@ -62,7 +62,7 @@ class Equations:
 
     @property
     def moving(self) -> int:
-        """The number of components that move: 3 or 6."""
+        """Number of components that change in time: 3 or 6."""
         return len(self.tensor)
 
     @cached_property
@@ -76,8 +76,8 @@ class Equations:
 
     def rates(self, z: Floats) -> Floats:
         """Return z' of rows z = (omega, 1) or (x, y, 1)."""
-        made = self._rigid(z) if self.is_rigid else self._immersed(z)
-        return np.column_stack([made, np.zeros(len(z))])
+        rates = self._rigid(z) if self.is_rigid else self._immersed(z)
+        return np.column_stack([rates, np.zeros(len(z))])
 
     def omega(self, z: Floats) -> Floats:
         """Return the angular velocity of every row, body axes."""
@@ -85,22 +85,22 @@ class Equations:
 
     @property
     def map(self) -> Floats:
-        """Q of the rates."""
+        """Quadratic map Q of the rates."""
         return bilinear(self.rates, self.moving + 1)
 
     def _rigid(self, z: Floats) -> Floats:
-        omega, one = z[:, :3], z[:, 3:]
-        torque = self.gyroscopic * np.cross(omega @ self.tensor, omega) + one**2 * self.load
-        torque = torque + one * np.cross(self.rotor, omega)
-        driven = (torque - self.drag * one * omega) @ self.inverse
-        return driven - self.damping * one * omega
+        omega, unit = z[:, :3], z[:, 3:]
+        torque = self.gyroscopic * np.cross(omega @ self.tensor, omega) + unit**2 * self.load
+        torque = torque + unit * np.cross(self.rotor, omega)
+        driven = (torque - self.drag * unit * omega) @ self.inverse
+        return driven - self.damping * unit * omega
 
     def _immersed(self, z: Floats) -> Floats:
-        state, one = z[:, :6], z[:, 6:]
+        state, unit = z[:, :6], z[:, 6:]
         x, y = state[:, :3], state[:, 3:]
         velocities = state @ self.tensor
         U, W = velocities[:, :3], velocities[:, 3:]
         x_rate = self.turning * np.cross(x, W)
         y_rate = self.gyroscopic * np.cross(y, W) + self.munk * np.cross(x, U)
-        found: Floats = np.column_stack([x_rate, y_rate]) + one**2 * self.load
-        return found - one * (self.damping * state + self.drag * velocities)
+        rates: Floats = np.column_stack([x_rate, y_rate]) + unit**2 * self.load
+        return rates - unit * (self.damping * state + self.drag * velocities)

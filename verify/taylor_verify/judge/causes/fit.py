@@ -1,4 +1,4 @@
-"""Least squares by Gauss and Newton, for hypotheses with numbers that only the answer knows."""
+"""Gauss-Newton least squares, for hypotheses whose numbers are fitted to the answer."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ import numpy as np
 
 from taylor_verify.judge.causes.flow import Floats
 
-# A central difference over this part of a parameter's unit errs by its square and by roundoff alike.
+# Step of a central difference in a parameter's unit: truncation and roundoff errors are about equal.
 _DIFFERENCE: Final = 1e-5
 _ITERATIONS: Final = 8
 _SETTLED: Final = 1e-10
-# Directions that move the motion less than this part of the best one stay as they are.
+# Directions that change the motion less than this part of the strongest direction are left alone.
 _UNSEEN: Final = 1e-7
 
-# States (m, n, d) for parameters (m, p); NaN where they are impossible.
+# A function from parameters (m, p) to states (m, n, d); NaN for impossible parameters.
 Model = Callable[[Floats], Floats]
 
 
 def fitted(model: Model, target: Floats, sizes: Floats, start: Floats) -> tuple[Floats, Floats]:
-    """Return the parameters whose states are nearest to the target, and these states."""
+    """Return the parameters whose states are nearest to the target, and those states."""
     count = len(start)
     best, nearest = start, np.full(target.shape, np.nan)
     least, parameters = np.inf, start

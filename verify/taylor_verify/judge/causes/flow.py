@@ -1,8 +1,8 @@
-"""Motions of homogeneous quadratic equations in float64, by Taylor series.
+"""Solutions of homogeneous quadratic equations in float64, by Taylor series.
 
-z' = Q(z, z), with Q a bilinear map. A constant component 1 makes room for linear and constant terms. The
-coefficients obey (k + 1) z_k+1 = sum of Q(z_i, z_k-i), and several equations, each for many starts, are
-summed at once.
+z' = Q(z, z) with a bilinear map Q. A constant component 1 allows linear and constant terms. The
+coefficients obey (k + 1) z_k+1 = sum of Q(z_i, z_k-i). Several equations, each for many starts, are
+solved at once.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from typing import Any, Final
 import numpy as np
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
-# z' for every row of z; homogeneous of degree two.
+# A function that returns z' for every row of z; homogeneous of degree two.
 Rate = Callable[[Floats], Floats]
 
-# With 20 terms a sixth of the radius of convergence is as far as float64 goes: (1/6)^20 is a roundoff.
+# With 20 terms a step may be a sixth of the radius of convergence: (1/6)^20 is a roundoff of float64.
 _TERMS: Final = 20
 _ROUNDOFF: Final = 2.0**-53
-# No more steps than this are made from one row to the next.
+# Limit for the number of steps from one row to the next.
 _MOST_STEPS: Final = 400
 
 
@@ -29,17 +29,17 @@ def bilinear(rate: Rate, size: int) -> Floats:
     single = rate(unit)
     j, k = np.triu_indices(size, 1)
     mixed = (rate(unit[j] + unit[k]) - single[j] - single[k]) / 2
-    found = np.zeros((size, size, size))
-    found[:, range(size), range(size)] = single.T
-    found[:, j, k] = found[:, k, j] = mixed.T
-    return found
+    Q = np.zeros((size, size, size))
+    Q[:, range(size), range(size)] = single.T
+    Q[:, j, k] = Q[:, k, j] = mixed.T
+    return Q
 
 
 def flow(maps: Floats, begin: Floats, spans: Floats, sizes: Floats) -> Floats:
     """Return z after these spans, (m, n, d), for m maps (m, d, d, d) and n starts (n, d).
 
-    ``sizes`` (d,) are usual sizes of the components, infinite for a component that does not move. A
-    motion that would take too many steps, or runs away, is NaN.
+    ``sizes`` (d,) are typical sizes of the components, infinite for a component that does not move. A
+    motion that would take too many steps, or that diverges, is NaN.
     """
     count, size = maps.shape[:2]
     columns = maps.reshape(count, size, size * size).transpose(0, 2, 1)
@@ -61,7 +61,7 @@ def flow(maps: Floats, begin: Floats, spans: Floats, sizes: Floats) -> Floats:
 
 
 def _series(columns: Floats, state: Floats) -> Floats:
-    """The Taylor coefficients (k, m, n, d) of the motion at each state (m, n, d)."""
+    """Return the Taylor coefficients (k, m, n, d) of the motion at each state (m, n, d)."""
     series = np.empty((_TERMS + 1, *state.shape))
     series[0] = state
     products = (*state.shape[:2], state.shape[2] ** 2)

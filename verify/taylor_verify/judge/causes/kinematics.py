@@ -1,8 +1,8 @@
-"""Wrong kinematics of the attitude: in the wrong axes, backwards, or at another rate.
+"""Hypotheses of wrong attitude kinematics: in the wrong axes, backwards, or at another rate.
 
-R' = R [omega]x is right. From each row to the next the answer's own omega is taken: the exact flow from
-it, plus the defect of omega, spread evenly over the time. So a wrong omega is no error of the attitude's
-kinematics.
+R' = R [omega]x is correct. Between two rows the answer's own omega is used: the exact flow from the first
+row, plus the defect of omega, spread evenly over the time. So a wrong omega does not count as an error of
+the attitude's kinematics.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from taylor_verify.judge.causes.material import FEWEST_PAIRS, Candidate, Materia
 _NOISE: Final = 1e-13
 
 
-# The weights (b, a) of q' = (b W q + a q W) / 2, W the angular velocity in body axes.
+# The weights (b, a) of q' = (b W q + a q W) / 2, where W is the angular velocity in body axes.
 _RIGHT: Final = (0.0, 1.0)
 _WRONG: Final = (
     (
@@ -52,7 +52,7 @@ _WRONG: Final = (
 
 
 def kinematics(material: Material) -> Iterator[Candidate]:
-    """Yield each wrong kinematics of the attitude beside what it leaves of the attitude's defects."""
+    """Yield each wrong kinematics with the part of the attitude's defects that it leaves."""
     if len(material.places) < FEWEST_PAIRS:
         return
     pairs = material.pairs
@@ -71,13 +71,13 @@ def kinematics(material: Material) -> Iterator[Candidate]:
 
 
 def _map(equations: Equations, before: float, after: float) -> Floats:
-    """Q of z = (states, their constant drift, 1, q)."""
+    """Return Q for z = (states, their constant drift, 1, q)."""
     count = equations.moving
 
     def rate(z: Floats) -> Floats:
-        drift, one, q = z[:, count : 2 * count], z[:, 2 * count : 2 * count + 1], z[:, -4:]
-        state = np.column_stack([z[:, :count], one])
-        states = equations.rates(state)[:, :-1] + one * drift
+        drift, unit, q = z[:, count : 2 * count], z[:, 2 * count : 2 * count + 1], z[:, -4:]
+        state = np.column_stack([z[:, :count], unit])
+        states = equations.rates(state)[:, :-1] + unit * drift
         omega = equations.omega(state)
         turned = (before * _times(omega, q, 1) + after * _times(omega, q, -1)) / 2
         return np.column_stack([states, np.zeros((len(z), count + 1)), turned])
@@ -86,7 +86,7 @@ def _map(equations: Equations, before: float, after: float) -> Floats:
 
 
 def _times(omega: Floats, q: Floats, sign: int) -> Floats:
-    """omega q for the sign +1, q omega for -1: products of quaternions."""
+    """Return the quaternion product omega q for sign +1, q omega for -1."""
     scalar, vector = q[:, :1], q[:, 1:]
     return np.column_stack(
         [-np.sum(omega * vector, axis=1), scalar * omega + sign * np.cross(omega, vector)]
@@ -94,7 +94,7 @@ def _times(omega: Floats, q: Floats, sign: int) -> Floats:
 
 
 def _angle(q: Floats, other: Floats) -> float:
-    """The largest angle between attitudes; q and -q are one attitude."""
+    """Return the largest angle between attitudes; q and -q are the same attitude."""
     other = other / np.linalg.norm(other, axis=1, keepdims=True)
     apart = np.minimum(np.linalg.norm(q - other, axis=1), np.linalg.norm(q + other, axis=1))
     largest = float(np.max(apart))

@@ -1,9 +1,9 @@
-"""Data that every hypothesis is tried on: rows of an answer, and its defects from each row to the next.
+"""Data on which every hypothesis is tested: rows of an answer, and the defects from each row to the next.
 
     defect = z_k+1 - flow(z_k)
 
-with flow the exact motion over the same time. A bounded number of pairs of rows, evenly chosen, stands
-for all. All is float64, so that defects near its roundoff have no cause here.
+where flow is the exact motion over the same time. A limited number of evenly chosen pairs of rows
+represents all rows. Everything is float64, so defects near its roundoff get no cause here.
 """
 
 from __future__ import annotations
@@ -23,18 +23,18 @@ from taylor_verify.scenes.instants import evenly
 
 Places = np.ndarray[Any, np.dtype[np.intp]]
 
-# So many pairs of rows, evenly chosen, stand for all; a single pair may agree by chance.
+# Number of evenly chosen pairs of rows that represent all; a single pair may agree by chance.
 _MOST_PAIRS: Final = 24
 FEWEST_PAIRS: Final = 2
-# Float64 and the series of the flow are off by less than so many roundoffs of the state.
+# Bound of the errors of float64 and of the series of the flow, relative to the state.
 _NOISE: Final = 64 * 2.0**-53
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """A hypothesis that was tried: the part of the error that it ``leaves``, and its ``fitted`` numbers.
+    """A tested hypothesis: the part of the error that it ``leaves``, and its count of ``fitted`` numbers.
 
-    Beside one that ``is_sure`` no hypothesis about the dynamics is needed.
+    If a candidate ``is_sure``, no hypothesis about the dynamics is needed.
     """
 
     name: str
@@ -53,14 +53,13 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Material:
-    """An answer in body axes as float64, with NaN in rows that are no numbers.
+    """An answer in body axes as float64, with NaN in rows that are not finite.
 
-    ``start`` and ``start_attitude`` are the scene's own initial state, ``elapsed`` the times since then.
+    ``start`` and ``start_attitude`` are the scene's initial state, ``elapsed`` the times since then.
     ``states`` (n, d) are omega, or x and y; NaN if the answer lacks them. ``quaternions`` (n, 4) are of
-    unit length, body to space; None if the answer has no attitude. ``columns`` are the states as a file
-    has them, in whatever axes; None if they are the states. ``digits`` is the number of decimals
-    that a file is written with, ``bits`` those of the arithmetic, ``failed`` the verdicts of states that
-    failed.
+    unit length, body to space; None if the answer has no attitude. ``columns`` are the states as written
+    in a file, in any axes; None if they equal ``states``. ``digits`` is the number of decimals in the file,
+    ``bits`` the precision of the arithmetic, ``failed`` the verdicts of states that failed.
     """
 
     equations: Equations
@@ -76,12 +75,12 @@ class Material:
 
     @property
     def quantity(self) -> str:
-        """The name of the states' quantity."""
+        """Name of the quantity that the states belong to."""
         return "omega" if self.equations.is_rigid else "impulse"
 
     @cached_property
     def places(self) -> Places:
-        """The first rows of the pairs that are compared."""
+        """Indices of the first rows of the compared pairs."""
         known = (
             self.states if self.quaternions is None else np.hstack([self.states, self.quaternions])
         )
@@ -102,7 +101,7 @@ class Material:
 
     @cached_property
     def is_telling(self) -> bool:
-        """Return True if the defects of the states are far above what float64 and printing leave."""
+        """Return True if the defects are far above the errors of float64 and of printed digits."""
         if len(self.places) < FEWEST_PAIRS:
             return False
         printed = 0.0 if self.digits is None else 10.0 ** (1 - self.digits)
@@ -110,13 +109,13 @@ class Material:
 
     @property
     def start_row(self) -> int | None:
-        """The row at the start, if there is one."""
+        """Index of the row at the start, if there is one."""
         rows = np.flatnonzero(self.elapsed == 0)
         return int(rows[0]) if len(rows) else None
 
     @property
     def start_error(self) -> float | None:
-        """The error of the row at the start, relative to the scene's state; None without such a row."""
+        """Error of the row at the start, relative to the scene's state; None without such a row."""
         row, size = self.start_row, float(np.linalg.norm(self.start))
         if row is None or not size > 0:
             return None
@@ -147,14 +146,14 @@ class Pairs:
 
     @cached_property
     def sizes(self) -> Floats:
-        """The size of every component: the largest |omega|, or |x| and |y| apart."""
+        """Size of every component: the largest |omega|, or the largest |x| and |y|."""
         vectors = np.stack([self.begin, self.end]).reshape(-1, len(self.begin[0]) // 3, 3)
         largest = np.max(np.linalg.norm(vectors, axis=2), axis=0)
         return np.repeat(np.where(largest > 0, largest, 1.0), 3)
 
     @cached_property
     def flow(self) -> Floats:
-        """The exact states at the second row of every pair."""
+        """Exact states at the second row of every pair."""
         exact: Floats = self.moved([self.equations])[0]
         return exact
 
@@ -164,21 +163,21 @@ class Pairs:
 
     @cached_property
     def largest(self) -> float:
-        """The largest defect, relative to the size of its vector; infinite if it is no number."""
+        """Largest defect, relative to the size of its vector; infinite for NaN."""
         return self.size(self.defect)
 
     def moved(self, equations: Sequence[Equations]) -> Floats:
         """Return the states (m, n, d) after the spans by each of these equations."""
         begin = np.column_stack([self.begin, np.ones(len(self.begin))])
-        maps = np.stack([one.map for one in equations])
+        maps = np.stack([hypothesis.map for hypothesis in equations])
         return flow(maps, begin, self.spans, np.append(self.sizes, np.inf))[:, :, :-1]
 
     def size(self, rows: Floats) -> float:
-        """Return the largest vector of rows, relative to its usual size; infinite if it is no number."""
+        """Return the largest vector of rows, relative to its typical size; infinite for NaN."""
         vectors = (rows / self.sizes).reshape(len(rows), -1, 3)
         largest = float(np.max(np.linalg.norm(vectors, axis=2)))
         return largest if np.isfinite(largest) else np.inf
 
     def left(self, states: Floats) -> float:
-        """Return the part of the largest defect that is left if the motion leads to these states."""
+        """Return the part of the largest defect that remains if the motion leads to these states."""
         return self.size(self.end - states) / self.largest if self.largest > 0 else np.inf

@@ -1,4 +1,4 @@
-"""Readings of an answer in other axes or another order, proven by its row at the start or by its motion."""
+"""Readings of an answer in other axes or another order, proven by its first row or by its motion."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.material import Candidate, Material
 from taylor_verify.judge.errors.shift import LEAVES
 
-# A row at the start that is off by more than the first is another start; within the second it is the same.
+# A relative error of the start above OFF means another start; up to PRINTED it is the same start.
 OFF: Final = 1e-3
 PRINTED: Final = 1e-6
 _CONJUGATE: Final = np.array([1, -1, -1, -1])
 
 
 def attitude_reading(material: Material) -> tuple[list[Candidate], Material]:
-    """Return the reading under which the attitude at the start is the scene's, and the answer so read."""
+    """Return the reading that makes the attitude at the start correct, and the answer read in that way."""
     q, row = material.quaternions, material.start_row
     if q is None or row is None or "attitude" not in material.failed:
         return [], material
@@ -36,9 +36,9 @@ def attitude_reading(material: Material) -> tuple[list[Candidate], Material]:
     ):
         after = _apart(read[row], material.start_attitude)
         if before > OFF and after <= PRINTED:
-            said = f"{why}, by the row at the start"
-            found = Candidate(name, "attitude", after / before, said)
-            return [found], replace(material, quaternions=read)
+            reason = f"{why}, by the row at the start"
+            candidate = Candidate(name, "attitude", after / before, reason)
+            return [candidate], replace(material, quaternions=read)
     return [], material
 
 
@@ -49,16 +49,17 @@ def _apart(q: Floats, other: Floats) -> float:
 def omega_reading(
     material: Material, dynamics: Callable[[Material], list[Candidate]]
 ) -> tuple[list[Candidate], Material, list[Candidate]]:
-    """Return a proven reading of omega in space axes, the answer so read, and its ``dynamics``.
+    """Return a proven reading of omega in space axes, the answer read in that way, and its ``dynamics``.
 
-    It is read by the answer's own attitude or by the transposed one. The row at the start proves or
-    refutes it. Where that is right in both axes, as with an attitude of 1, the motion proves it: it must
-    be exact, or have a cause with at most one fitted number, and as it stands have none.
+    The answer's own attitude, or its transpose, converts the axes. The row at the start proves or refutes
+    the reading. If that row is correct in both axes, as for the identity attitude, the motion decides:
+    after the reading it must be exact, or have a cause with at most one fitted number; without the
+    reading it must have no cause.
     """
     plain, q = dynamics(material), material.quaternions
     if q is None or not material.equations.is_rigid or "omega" not in material.failed:
         return [], material, plain
-    by_motion = bool(plain) and not any(one.leaves <= LEAVES for one in plain)
+    by_motion = bool(plain) and not any(candidate.leaves <= LEAVES for candidate in plain)
     for turn, words in ((q, ""), (q * _CONJUGATE, ", if that is the transposed one")):
         read = replace(material, states=to_body(turn, material.states))
         before, after = material.start_error, read.start_error
@@ -69,7 +70,7 @@ def omega_reading(
             leaves, tried = after / before, dynamics(read)
         elif by_motion:
             tried = dynamics(read)
-            simple = [1.0, *(one.leaves for one in tried if one.fitted <= 1)]
+            simple = [1.0, *(candidate.leaves for candidate in tried if candidate.fitted <= 1)]
             leaves = min(simple) * read.pairs.largest / material.pairs.largest
         if leaves <= LEAVES:
             why = f"by the answer's own attitude it is taken to body axes{words}"

@@ -1,4 +1,4 @@
-"""Rows that hold the state of another time, or of another scene."""
+"""Hypotheses that rows belong to another time or to another scene."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 
 _FEWEST_ROWS: Final = 3
-# Rows are evenly spaced if no space differs by more than this part.
+# Rows are evenly spaced if no interval differs by more than this part.
 _EVEN: Final = 1e-6
-# A shift is known no better than this part, nor than a few times what it leaves of the error.
+# A shift is known to this part at best, and to a few times the error that remains after it.
 _KNOWN: Final = 1e-6
 _LEAVES_TIMES: Final = 3.0
-# What is known of the shift must tell a whole number of steps from any other.
+# The shift must be known well enough to recognise a whole number of steps.
 _WHOLE: Final = 0.05
-# The first rows are compared with the exact motion of a scene that has the same start; to so much they fit.
+# The first rows are compared with the exact motion of scenes that have the same start, to this accuracy.
 _FIRST_ROWS: Final = 5
 _FITS: Final = 1e-2
 _DIGITS: Final = 20
 
 
 def other_rows(material: Material) -> Iterator[Candidate]:
-    """Yield the row or the step that a constant shift of time amounts to."""
+    """Yield the number of rows or of steps that equals a constant shift of time."""
     spaces = np.diff(material.elapsed)
     if len(spaces) < _FEWEST_ROWS - 1 or np.ptp(spaces) > _EVEN * np.max(np.abs(spaces)):
         return
@@ -80,7 +80,7 @@ def another_scene(material: Material, scene: Scene) -> Iterator[Candidate]:
 
 
 def _error(material: Material, scene: Scene) -> float:
-    """The largest error of the rows about the start as an answer to a scene, over its largest state."""
+    """Return the largest relative error of the rows near the start, as an answer to a scene."""
     order = np.argsort(np.abs(material.elapsed))[:_FIRST_ROWS]
     elapsed = [Fraction(float(material.elapsed[k])) for k in order]
     try:
@@ -90,7 +90,7 @@ def _error(material: Material, scene: Scene) -> float:
     errors = []
     for i, name in enumerate(MOMENTA[scene.model]):
         right = exact[name].astype(float)
-        got = material.states[order, 3 * i : 3 * i + 3]
+        answer = material.states[order, 3 * i : 3 * i + 3]
         size = np.max(np.linalg.norm(right, axis=1)) or 1.0
-        errors.append(float(np.max(np.linalg.norm(got - right, axis=1)) / size))
+        errors.append(float(np.max(np.linalg.norm(answer - right, axis=1)) / size))
     return max(errors)

@@ -1,4 +1,4 @@
-"""The likely causes of a failure: every hypothesis tried on one answer, the best of them said.
+"""Search for the likely causes of a failure: every hypothesis is tested, and the best ones are returned.
 
 To add a hypothesis: write a function from Material to candidates in the file of its family, name it in
 DYNAMICS or OTHERS, write its broken twin in tests/judge/test_causes.py and its line in docs/verdicts.md.
@@ -25,63 +25,65 @@ from taylor_verify.scenes.scene import Scene
 
 Hypothesis = Callable[[Material], Iterator[Candidate]]
 
-# Two candidates explain equally well if the better one leaves at least a third of what the other leaves,
+# Two candidates explain equally well if the error that one leaves is at most three times the other's,
 _ALIKE: Final = 3.0
 # or if both leave less than this part of the error.
 _NOTHING: Final = 1e-3
 
-# Those about the states' own equations, those with no number to fit first.
+# Hypotheses about the equations of the states; those without fitted numbers come first.
 DYNAMICS: Final[tuple[Hypothesis, ...]] = (
     *(other_tensors, loads, space_loads, wrong_terms, wrong_damping),
     *(gyroscopic_step, damping, damping_step, another_body),
 )
-# Those about rows, attitudes and numbers.
+# Hypotheses about rows, attitudes and number formats.
 OTHERS: Final[tuple[Hypothesis, ...]] = (other_rows, kinematics, single_precision)
 
 
 def likely_causes(material: Material | None, scene: Scene) -> tuple[LikelyCause, ...]:
-    """Return the causes that explain nearly all of an error, quantity by quantity; none by chance."""
+    """Return the causes that explain nearly all of an error, quantity by quantity."""
     if material is None or not material.failed:
         return ()
     attitude, turned = attitude_reading(material)
     omega, read, tried = omega_reading(turned, _dynamics)
     for hypothesis in OTHERS:
-        tried += [one for one in hypothesis(read) if one.quantity in material.failed]
+        tried += [
+            candidate for candidate in hypothesis(read) if candidate.quantity in material.failed
+        ]
     others = list(another_scene(material, scene))
-    if any(one.is_sure for one in others):
+    if any(candidate.is_sure for candidate in others):
         omega, attitude, tried = [], [], []
     every = ([*omega, *attitude], tried, others)
     return tuple(cause for candidates in every for cause in _causes_of(candidates))
 
 
 def _dynamics(material: Material) -> list[Candidate]:
-    """The candidates for the equations of the states, where their defects tell anything."""
+    """Return the candidates for the equations of the states; none if the defects are roundoff."""
     if material.quantity not in material.failed or not material.is_telling:
         return []
-    return [one for hypothesis in DYNAMICS for one in hypothesis(material)]
+    return [candidate for hypothesis in DYNAMICS for candidate in hypothesis(material)]
 
 
 # The choice.
 
 
 def _causes_of(candidates: Iterable[Candidate]) -> tuple[LikelyCause, ...]:
-    """Return the best candidates for each quantity; none where no candidate explains nearly all."""
-    good = [one for one in candidates if one.leaves <= LEAVES]
-    quantities = dict.fromkeys(one.quantity for one in good)
+    """Return the best candidates for each quantity; none if none explains nearly all of the error."""
+    good = [candidate for candidate in candidates if candidate.leaves <= LEAVES]
+    quantities = dict.fromkeys(candidate.quantity for candidate in good)
     return tuple(
-        one.cause()
+        candidate.cause()
         for quantity in quantities
-        for one in _best([one for one in good if one.quantity == quantity])
+        for candidate in _best([other for other in good if other.quantity == quantity])
     )
 
 
 def _best(good: list[Candidate]) -> Iterable[Candidate]:
-    """The candidates that explain as well as any with the fewest fitted numbers, by name."""
-    least = max(min(one.leaves for one in good), _NOTHING)
-    alike = [one for one in good if one.leaves <= _ALIKE * least]
-    fewest = min(one.fitted for one in alike)
-    simple = sorted((one for one in alike if one.fitted == fewest), key=lambda one: one.leaves)
+    """Return the candidates that explain best, with the fewest fitted numbers; one for each name."""
+    least = max(min(candidate.leaves for candidate in good), _NOTHING)
+    alike = [candidate for candidate in good if candidate.leaves <= _ALIKE * least]
+    fewest = min(candidate.fitted for candidate in alike)
+    simple = [candidate for candidate in alike if candidate.fitted == fewest]
     first: dict[str, Candidate] = {}
-    for one in simple:
-        first.setdefault(one.name, one)
+    for candidate in sorted(simple, key=lambda candidate: candidate.leaves):
+        first.setdefault(candidate.name, candidate)
     return first.values()

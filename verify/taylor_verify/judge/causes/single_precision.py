@@ -1,9 +1,9 @@
-"""A state that was kept in float32 in the midst of wider arithmetic.
+"""Hypothesis that a state was stored in float32 inside wider arithmetic.
 
-The numbers of such an answer are float32 numbers. That alone may come of the storing, so that three things
-must come together. The defects from row to row have the size of float32 roundings. They are independent
-of each other, where those of stored roundings are not: what is cut off one row is missing in the next
-defect too, with the other sign. And they add up, beyond what one rounding of a row is.
+The numbers of such an answer are float32 numbers. Writing the file in float32 has the same effect, so
+three more conditions must hold. The defects from row to row have the size of float32 roundings. They are
+independent of each other; the roundings of a written file are not, because the rounding of one row enters
+the next defect with the other sign. And the errors add up to more than one rounding of a row.
 """
 
 from __future__ import annotations
@@ -21,31 +21,31 @@ from taylor_verify.scenes.instants import evenly
 
 _BITS: Final = bits_of("f32")
 _ROUNDOFF: Final = 2.0**-_BITS
-# Numbers as narrow as this are small integers and simple fractions in any precision.
+# Numbers with fewer bits than this are small integers or simple fractions in any precision.
 _TELLING: Final = 2.0**18
-# A sum of a few products in float64 is off by no more than this part of its largest term.
+# Bound of the error of a sum of a few products in float64, relative to its largest term.
 _FLOAT64: Final = 2.0**-49
-# So many neighbouring pairs are looked at, and fewer than these tell nothing of independence.
+# The largest number of neighbouring pairs that are used, and the smallest that can show independence.
 _MOST_PAIRS: Final = 400
 _FEWEST_PAIRS: Final = 40
-# A row is a sum of many roundings, of a few at least, and no more than this.
+# The size of a defect in roundoffs lies between these limits: it is a sum of a few to many roundings.
 _LEAST: Final = 0.25
 _MOST: Final = 32.0
-# The correlation of neighbouring defects: 0 of independent ones, -1/2 of stored roundings, near 1 of a
-# method's truncation. So many standard errors of a correlation of independent numbers are allowed.
+# The correlation of neighbouring defects is 0 if independent, -1/2 for stored roundings, near 1 for a
+# method's truncation. This many standard errors of the correlation are allowed.
 _ERRORS: Final = 3.0
 _STORED: Final = -0.5
-# Stored roundings stay below one roundoff.
+# The error must exceed this many roundoffs; stored roundings stay below one.
 _ADDED_UP: Final = 4.0
 
 
 def single_precision(material: Material) -> Iterator[Candidate]:
-    """Yield the candidate if all its evidence is there; it leaves what is not of independent roundings."""
+    """Yield the candidate if all conditions hold; it leaves the part that is not independent roundings."""
     if material.bits <= _BITS or material.quantity not in material.failed:
         return
     verdict = material.failed[material.quantity]
     if (
-        not any(map(_are_float32, _held(material)))
+        not any(map(_are_float32, _stored_numbers(material)))
         or not (verdict.max or 0.0) > _ADDED_UP * _ROUNDOFF
     ):
         return
@@ -72,10 +72,10 @@ def single_precision(material: Material) -> Iterator[Candidate]:
     yield Candidate("float32 inside", material.quantity, correlation**2, why, fitted=0)
 
 
-def _held(material: Material) -> Iterator[Floats]:
-    """The numbers that may have been held in float32: the columns as they are, and the momentum I omega.
+def _stored_numbers(material: Material) -> Iterator[Floats]:
+    """Yield the numbers that may have been stored in float32: the columns, and the momentum I omega.
 
-    The row at the start may be the scene's own.
+    The row at the start is left out, because it may be a copy of the scene's state.
     """
     yield (material.states if material.columns is None else material.columns)[1:]
     if material.equations.is_rigid:
@@ -83,7 +83,7 @@ def _held(material: Material) -> Iterator[Floats]:
 
 
 def _are_float32(numbers: Floats) -> bool:
-    """Return True if every number is one of float32, up to float64's rounding, and not by chance."""
+    """Return True if every number is a float32 number up to float64's rounding, and not by chance."""
     single = numbers.astype(np.float32).astype(float)
     sizes = np.max(np.abs(numbers), axis=1, keepdims=True)
     if not np.all(np.abs(single - numbers) <= _FLOAT64 * sizes):
@@ -93,5 +93,5 @@ def _are_float32(numbers: Floats) -> bool:
 
 
 def _moved_back(later: Pairs, defect: Floats) -> Floats:
-    """The second rows that would follow if the first ones had not the defects of the rows before."""
+    """Return the second rows that would follow if the first rows had no defects."""
     return replace(later, begin=later.begin - defect).flow

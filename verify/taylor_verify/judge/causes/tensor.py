@@ -1,4 +1,4 @@
-"""Motions of another body: a tensor cut to its diagonal, its axes dropped or reordered, or slightly off."""
+"""Hypotheses of another body: a tensor cut to its diagonal, with other axes, or slightly wrong."""
 
 from __future__ import annotations
 
@@ -15,29 +15,29 @@ from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.material import Candidate, Material, Pairs
 from taylor_verify.judge.errors.shift import LEAVES
 
-# Two tensors nearer than this are one.
+# Tensors nearer than this are equal.
 _SAME: Final = 1e-13
-# A body is fitted where the numbers of the pairs are so many times as many as its own.
+# A body is fitted only if the data have this many numbers for each parameter.
 _EQUATIONS_PER_NUMBER: Final = 6
-# A defect across the orbit that is less than this part of all is no witness of another body.
+# Defects across the orbit must be at least this part of all defects to indicate another body.
 _ACROSS: Final = 1e-3
-# So many numbers fit much by themselves: a body that explains an answer leaves a hundredth of the error.
+# Many parameters fit much by themselves, so a body must leave at most a hundredth of the error.
 _LEAVES: Final = LEAVES**2
-# The axes of two tensors are compared where the principal moments are so many differences apart.
+# Axes are compared if the principal moments differ by this many times the difference of the tensors.
 _APART: Final = 10.0
-# The signs of the axes by which turns differ.
+# The signs of axes that differ by a half turn.
 _TURNS: Final = ((1, 1, 1), (1, 1, -1), (1, -1, 1), (-1, 1, 1))
 
 
 def other_tensors(material: Material) -> Iterator[Candidate]:
-    """Yield the tensors that a misread one leads to; none of them has a number to fit."""
+    """Yield the tensors that result from misreading the scene's tensor; none has a number to fit."""
     right = material.equations
     tried: list[tuple[str, str, Equations]] = []
     for name, why, tensor in _misread(right):
         known = [right.tensor, *(other.tensor for *_, other in tried)]
         if all(_distance(tensor, other) > _SAME for other in known):
             tried.append((name, why, replace(right, tensor=tensor)))
-    yield from material.tried([one for one in tried if one[2].is_possible])
+    yield from material.tried([hypothesis for hypothesis in tried if hypothesis[2].is_possible])
 
 
 def _distance(tensor: Floats, other: Floats) -> float:
@@ -45,7 +45,7 @@ def _distance(tensor: Floats, other: Floats) -> float:
 
 
 def _misread(right: Equations) -> Iterator[tuple[str, str, Floats]]:
-    """Yield name, reason and tensor of each way to misread the scene's."""
+    """Yield name, reason and tensor of each way to misread the scene's tensor."""
     tensor, diagonal = right.tensor, np.diag(right.tensor)
     noun = "inertia tensor" if right.is_rigid else "energy"
     yield (
@@ -88,9 +88,10 @@ def _misread(right: Equations) -> Iterator[tuple[str, str, Floats]]:
 
 
 def another_body(material: Material) -> Iterator[Candidate]:
-    """Yield the body that fits best, if the answer has more to say than such a body has numbers.
+    """Yield the body that fits best, if the answer has more data than such a body has parameters.
 
-    It must explain what leads across the exact orbit too: along it, any error of the clock would do.
+    It must also explain the defects across the exact orbit, because any error of the clock explains those
+    along it.
     """
     right, pairs = material.equations, material.pairs
     rows, columns = np.triu_indices(right.moving)
@@ -124,18 +125,18 @@ def another_body(material: Material) -> Iterator[Candidate]:
 
 
 def _across(pairs: Pairs, defects: Floats) -> Floats:
-    """The part of defects at right angles to the exact motion, at the second row of every pair."""
+    """Return the part of the defects perpendicular to the exact motion, at the second row of every pair."""
     ahead = np.column_stack([pairs.flow, np.ones(len(pairs.flow))])
     along = pairs.equations.rates(ahead)[:, :-1] / pairs.sizes
     length = np.linalg.norm(along, axis=1, keepdims=True)
     along = np.divide(along, length, out=np.zeros_like(along), where=length > 0)
     scaled = defects / pairs.sizes
-    found: Floats = (scaled - np.sum(scaled * along, axis=1, keepdims=True) * along) * pairs.sizes
-    return found
+    across: Floats = (scaled - np.sum(scaled * along, axis=1, keepdims=True) * along) * pairs.sizes
+    return across
 
 
 def _difference(right: Equations, tensor: Floats) -> str:
-    """The relative difference of a tensor and the turn of its axes, in words."""
+    """Return the relative difference of a tensor and the turn of its axes, in words."""
     if not np.any(right.load):  # a free motion does not tell the scale of a tensor
         tensor = tensor * (np.sum(tensor * right.tensor) / np.sum(tensor**2))
     difference = _distance(tensor, right.tensor)

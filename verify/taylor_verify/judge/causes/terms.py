@@ -1,4 +1,4 @@
-"""Terms of the equations that are left out, have the other sign, or stand still in space."""
+"""Hypotheses of wrong terms: left out, of the wrong sign, or loads that are fixed in space."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from taylor_verify.judge.causes.readings import to_body
 
 _Terms = tuple[tuple[str, str, dict[str, Any]], ...]
 
-# Words, the equation that is left, and the weights of its terms.
+# Words, the remaining equation, and the weights of its terms.
 _RIGID: Final[_Terms] = (
     (
         "no gyroscopic term",
@@ -48,7 +48,7 @@ _FLUID: Final[_Terms] = (
 
 
 def wrong_terms(material: Material) -> Iterator[Candidate]:
-    """Yield the equations without one of their terms, or with the other sign of it."""
+    """Yield the equations without one of their terms, or with its sign changed."""
     right = material.equations
     terms = _RIGID if right.is_rigid else _FLUID
     tried = [(name, why, replace(right, **weights)) for name, why, weights in terms]
@@ -68,7 +68,7 @@ def wrong_terms(material: Material) -> Iterator[Candidate]:
 
 
 def loads(material: Material) -> Iterator[Candidate]:
-    """Yield the constant loads left out, or with the other sign: each of them, and both."""
+    """Yield the equations with constant loads left out or of the other sign: each load, and both."""
     right = material.equations
     parts = {"moment": [0]} if right.is_rigid else {"force": [0], "couple": [1], "loads": [0, 1]}
     vectors = right.load.reshape(-1, 3)
@@ -88,7 +88,7 @@ def loads(material: Material) -> Iterator[Candidate]:
 
 
 def space_loads(material: Material) -> Iterator[Candidate]:
-    """Yield the equations whose loads keep their components in space, by the answer's own attitude."""
+    """Yield the equations whose loads are constant in space, by the answer's own attitude."""
     right, pairs = material.equations, material.pairs
     if pairs.turned is None or not np.any(right.load):
         return
@@ -106,14 +106,14 @@ def space_loads(material: Material) -> Iterator[Candidate]:
 
 
 def _map(right: Equations) -> Floats:
-    """Q of z = (states, their loads, 1), where loads turn backwards in body axes: v' = v x W."""
+    """Return Q for z = (states, their loads, 1), where loads turn backwards in body axes: v' = v x W."""
     count, free = right.moving, replace(right, load=np.zeros_like(right.load))
 
     def rate(z: Floats) -> Floats:
-        load, one = z[:, count:-1], z[:, -1:]
-        state = np.column_stack([z[:, :count], one])
+        load, unit = z[:, count:-1], z[:, -1:]
+        state = np.column_stack([z[:, :count], unit])
         omega = right.omega(state)
-        driven = one * (load @ right.inverse if right.is_rigid else load)
+        driven = unit * (load @ right.inverse if right.is_rigid else load)
         turned = [np.cross(load[:, i : i + 3], omega) for i in range(0, count, 3)]
         return np.column_stack([free.rates(state)[:, :-1] + driven, *turned, np.zeros(len(z))])
 

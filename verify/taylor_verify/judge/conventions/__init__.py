@@ -1,1 +1,1 @@
-"""Conventions of somebody else's columns, found by trying them on the exact motion."""
+"""Search for the conventions of a file's columns, by comparison with the exact motion."""

@@ -1,8 +1,8 @@
-"""Renamings of axes: a file may count the axes of the body, of space, or of both in another order.
+"""Renamings of axes: a file may number the axes of the body, of space, or of both in another order.
 
 A renaming is a proper rotation P that maps axes to axes: a signed permutation of determinant +1.
-It takes the file's axes to the scene's, v_scene = P v_file. A reflection is no renaming: no frame has
-its axes so, and a file with one sign wrong has an error.
+It takes the file's axes to the scene's, v_scene = P v_file. A reflection is not a renaming, because no
+right-handed frame has such axes: a file with one wrong sign has an error.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from mpmath import mp
 
 Array = np.ndarray[Any, Any]
 
-# There are many ways to name axes, so that each is worth less than another convention.
+# There are many ways to name axes, so a renaming costs more than another convention.
 _COST: Final = 2
 
 
@@ -30,7 +30,7 @@ class Axes:
     signs: tuple[int, ...]
 
     def names(self, columns: Sequence[str]) -> str:
-        """Return the file's column, with its sign, of every axis that is not in its place."""
+        """Return the file's column, with its sign, for every renamed axis."""
         return ", ".join(
             f"axis {i + 1} is {'-' if self.signs[i] < 0 else ''}{columns[self.order[i]]}"
             for i in self.moved
@@ -46,33 +46,33 @@ class Axes:
         return bool(np.linalg.det(self.vectors(np.eye(3))) > 0)
 
     def effect(self, active: Collection[int]) -> tuple[tuple[int, int] | None, ...]:
-        """Return the part of the permutation that shows if the file's other columns are zero."""
+        """Return the part of the permutation that is visible if only ``active`` columns are nonzero."""
         pairs = zip(self.order, self.signs, strict=True)
         return tuple((k, sign) if k in active else None for k, sign in pairs)
 
     def vectors(self, rows: Array) -> Array:
         """Return P v for every row v."""
-        found: Array = rows[:, self.order] * np.array(self.signs)
-        return found
+        renamed: Array = rows[:, self.order] * np.array(self.signs)
+        return renamed
 
     def left(self, matrices: Array) -> Array:
         """Return P R for every matrix R."""
-        found: Array = matrices[:, self.order, :] * np.array(self.signs)[:, None]
-        return found
+        renamed: Array = matrices[:, self.order, :] * np.array(self.signs)[:, None]
+        return renamed
 
     def right(self, matrices: Array) -> Array:
         """Return R P^T for every matrix R."""
-        found: Array = matrices[:, :, self.order] * np.array(self.signs)
-        return found
+        renamed: Array = matrices[:, :, self.order] * np.array(self.signs)
+        return renamed
 
     @cached_property
     def quaternion(self) -> tuple[int, ...]:
-        """A quaternion of P in integers, scalar first, of any length."""
+        """Quaternion of P in integers, scalar first, not normalised."""
         (column,) = quaternion_columns(self.vectors(np.eye(3, dtype=int)).T[None])
         return tuple(column.tolist())
 
 
-# The 24 rotations of a cube, the simplest first.
+# The 24 rotations of a cube, simplest first.
 AXES: Final = tuple(
     sorted(
         (
@@ -89,7 +89,7 @@ UNMOVED: Final = AXES[0]
 
 @dataclass(frozen=True)
 class Frames:
-    """A renaming of the body's axes and of space's, the same for every quantity of a file."""
+    """A renaming of the body's axes and of the space axes, valid for every quantity of a file."""
 
     body: Axes = UNMOVED
     space: Axes = UNMOVED
@@ -99,7 +99,7 @@ class Frames:
         return _COST * bool(self.body.moved or self.space.moved)
 
     def words(self, columns: Sequence[str]) -> str:
-        """Return the renaming in words; ``columns`` are the three of a file that has no other vector."""
+        """Return the renaming in words; ``columns`` are the names of the file's three vector columns."""
         if not self.cost:
             return ""
         axes = self.body if self.body.moved else self.space
@@ -111,11 +111,11 @@ class Frames:
         return f"{'the body' if self.body.moved else 'space'} has other axes: {names}"
 
     def attitudes(self, matrices: Array) -> Array:
-        """Return R of the scene, Q R P^T, for every R of the file; Q renames space's axes."""
+        """Return the scene's attitude Q R P^T for every R of the file; Q renames the space axes."""
         return self.space.left(self.body.right(matrices))
 
     def quaternions(self, rows: Array) -> Array:
-        """Return the quaternions of ``attitudes``, of the length that they have in the file."""
+        """Return the quaternions of ``attitudes``, with the length that they have in the file."""
         if not self.cost:
             return rows
         s, *vector = self.body.quaternion
@@ -123,15 +123,15 @@ class Frames:
         turned = _product(_product(self.space.quaternion, list(rows.T)), backward)
         square = sum(e * e for e in self.space.quaternion) * sum(e * e for e in backward)
         length = mp.sqrt(square) if rows.dtype == object else np.sqrt(square)
-        found: Array = np.array(turned).T / length
-        return found
+        renamed: Array = np.array(turned).T / length
+        return renamed
 
 
 def renamings(body: Collection[int], space: Collection[int], joined: bool) -> Iterator[Frames]:
-    """Yield every renaming of one frame, and of both alike, that shows in a file; none at all first.
+    """Yield every renaming of one frame, or of both alike, that can be seen in a file; the identity first.
 
-    ``body`` and ``space`` are the file's components along these axes that are not always zero.
-    Both frames are renamed at once only where quantities of the file have them ``joined``.
+    ``body`` and ``space`` are the axes along which the file has components that are not always zero.
+    Both frames are renamed together only if quantities of the file connect them (``joined``).
     """
     shown = set()
     both = [Frames(axes, axes) for axes in AXES[1:]] if joined else []
@@ -144,7 +144,7 @@ def renamings(body: Collection[int], space: Collection[int], joined: bool) -> It
 
 
 def quaternion_columns(matrices: Array) -> Array:
-    """Return quaternions of rotation matrices (n, 3, 3), of any length: the largest column of 4 q q^T."""
+    """Return quaternions of rotation matrices (n, 3, 3), not normalised: the largest column of 4 q q^T."""
     transposed, trace = matrices.transpose(0, 2, 1), np.trace(matrices, axis1=1, axis2=2)
     odd = matrices - transposed
     squares = np.empty((len(matrices), 4, 4), matrices.dtype)
@@ -153,12 +153,12 @@ def quaternion_columns(matrices: Array) -> Array:
     squares[:, 1:, 1:] = matrices + transposed
     squares[:, range(1, 4), range(1, 4)] += (1 - trace)[:, None]
     largest = np.argmax(np.einsum("nii->ni", np.nan_to_num(squares)), axis=1)
-    found: Array = squares[np.arange(len(squares)), largest]
-    return found
+    quaternions: Array = squares[np.arange(len(squares)), largest]
+    return quaternions
 
 
 def _product(a: Sequence[Any], b: Sequence[Any]) -> tuple[Any, ...]:
-    """The product of two quaternions, component by component."""
+    """Return the product of two quaternions, component by component."""
     return (
         a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
         a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],

@@ -1,4 +1,4 @@
-"""The conventions that explain a file, chosen among fits: worlds with the best reading of each group."""
+"""The choice of the conventions that explain a file, among worlds with the best reading of each group."""
 
 from __future__ import annotations
 
@@ -11,19 +11,20 @@ from taylor_verify.judge.conventions.axes import Frames
 from taylor_verify.judge.conventions.readings import Reading, readings
 from taylor_verify.judge.conventions.worlds import World
 
-# A convention explains an error if it leaves no more than this part of it: the rest is the solver's.
+# A convention explains an error if at most this part remains: the remainder is the solver's error.
 EXPLAINS: Final = 1e-2
-# Another one that leaves up to ten times as much as the best explains as well.
+# A convention that leaves up to this many times as much as the best one explains equally well.
 AS_WELL: Final = 10.0
 FLOAT64: Final = 2.0**-53
 
 
 @dataclass(frozen=True)
 class Finding:
-    """A convention of the file that is not the scene's.
+    """A convention of the file that differs from the scene's.
 
     ``subject`` is ``time``, ``body``, ``axes`` or a group of columns; ``before`` and ``after`` are
-    relative errors (radians for an attitude) without and with it. With ``alternatives`` it is ambiguous.
+    relative errors (radians for an attitude) without and with the convention. A finding with
+    ``alternatives`` is ambiguous.
     """
 
     subject: str
@@ -47,7 +48,7 @@ class Finding:
 
 @dataclass(frozen=True)
 class Conventions:
-    """The findings, and the world and readings that correct the file; only what is certain."""
+    """The findings, and the world and readings that correct the file where the finding is certain."""
 
     findings: tuple[Finding, ...]
     world: World
@@ -60,10 +61,10 @@ class Conventions:
 
 @dataclass(frozen=True)
 class BestReading:
-    """The simplest reading of a group that is as good as any, and others as simple and as good.
+    """The simplest reading of a group among the best, and other readings as simple and as good.
 
-    ``plain`` is the error of the scene's own reading. ``motion`` is how far the exact motion goes over
-    the rows, in the unit of the errors.
+    ``plain`` is the error of the scene's own reading. ``motion`` is the distance that the exact motion goes
+    over the rows, in the unit of the errors.
     """
 
     reading: Reading
@@ -83,7 +84,7 @@ class Fit:
 
     @property
     def worst(self) -> float:
-        """The largest error of all groups in the scene's own conventions."""
+        """Largest error of all groups in the scene's own conventions."""
         return max(read.plain for read in self.groups.values())
 
     @property
@@ -101,10 +102,10 @@ class Fit:
         )
 
     def explains(self, plain: Fit, noise: float) -> bool:
-        """Return True if the world explains some group, and leaves no group unexplained.
+        """Return True if the world explains at least one group and leaves no group unexplained.
 
-        A file that stands still has any unit of time in which the truth does not move either: a map
-        of time explains a motion only where there is one.
+        A file without motion agrees with any unit of time in which the truth does not move either. So a map
+        of time explains a file only if the file moves.
         """
         best = self.gain(plain)
         gained, worst = self.groups[best], plain.groups[best].error
@@ -117,7 +118,7 @@ class Fit:
 
 
 def simplest(fits: Sequence[Fit], noise: float) -> tuple[Fit, list[Fit]]:
-    """Return the world of least cost among those as good as the best; and others, as good and as simple."""
+    """Return the simplest of the best worlds, and the other worlds that are as good and as simple."""
     best = min(fit.size(noise) for fit in fits)
     good = [fit for fit in fits if fit.size(noise) <= best + log10(AS_WELL)]
     cost = min(fit.cost for fit in good)
@@ -126,7 +127,7 @@ def simplest(fits: Sequence[Fit], noise: float) -> tuple[Fit, list[Fit]]:
 
 
 def findings_of(plain: Fit, best: Fit, others: Sequence[Fit]) -> Conventions:
-    """Return the departures of the best fit from the plain one; ``others`` are as good and as simple."""
+    """Return the departures of the best fit from the plain fit; ``others`` are as good and as simple."""
     gained = best.gain(plain)
     before, after = plain.groups[gained].error, best.groups[gained].error
     alternatives = tuple(o.world.words or "the scene's own" for o in others)
@@ -134,7 +135,7 @@ def findings_of(plain: Fit, best: Fit, others: Sequence[Fit]) -> Conventions:
         Finding(subject, words, before, after, alternatives)
         for subject, words in best.world.subjects.items()
     ]
-    # Where the axes are ambiguous none are renamed.
+    # If the axes are ambiguous, no axis is renamed.
     frames = Frames() if others else best.world.frames
     certain = {group: readings(group, frames)[0] for group in best.groups if frames.cost}
     for group, read in best.groups.items():

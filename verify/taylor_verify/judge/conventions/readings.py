@@ -1,8 +1,8 @@
-"""The ways in which a group of columns may be meant, each as a map onto the scene's conventions.
+"""Possible meanings of a group of columns, each a map to the scene's conventions.
 
-v_space = R v_body; q is R's quaternion, scalar first. Axes are renamed for all groups of a file alike
-(judge.conventions.axes), and every reading is one under such a renaming. A reading works on NumPy
-arrays of floats and of mpf alike.
+v_space = R v_body; q is R's quaternion, scalar first. A renaming of axes applies to all groups of a file
+(judge.conventions.axes), and every reading includes such a renaming. A reading works on NumPy arrays of
+floats and of mpf.
 """
 
 from __future__ import annotations
@@ -22,16 +22,17 @@ from taylor_verify.judge.errors.state import norms
 from taylor_verify.records.quantities import GROUPS
 
 Array = np.ndarray[Any, Any]
-# The columns of one group, shaped (n, k), and the exact R at the same times, (n, 3, 3).
+# A function of the columns of one group (n, k), and of the exact R at the same times (n, 3, 3).
 Read = Callable[[Array, Array], Array]
 
 
 @dataclass(frozen=True)
 class Reading:
-    """A way to read a group; ``words`` say how it departs from the scene's conventions.
+    """A way to read a group; ``words`` name its departures from the scene's conventions.
 
-    Of two readings that explain a file alike, the one with fewer departures is the explanation. ``read``
-    returns the group in the scene's conventions: vectors (n, 3), quaternions (n, 4) or matrices (n, 3, 3).
+    If two readings explain a file equally well, the reading with fewer departures is taken. ``read``
+    returns the group in the scene's conventions: vectors (n, 3), quaternions (n, 4) or matrices (n, 3,
+    3).
     """
 
     words: tuple[str, ...]
@@ -39,7 +40,7 @@ class Reading:
 
     @property
     def cost(self) -> int:
-        """The number of departures."""
+        """Number of departures."""
         return len(self.words)
 
     @property
@@ -47,7 +48,7 @@ class Reading:
         return "; ".join(self.words)
 
 
-# Words, the rational part of the factor, and the power of pi in it.
+# Words, the rational part of the factor, and its power of pi.
 _UNITS: Final = (
     ("", Fraction(1), 0),
     ("in degrees per unit of time", Fraction(1, 180), 1),
@@ -58,7 +59,7 @@ _UNITS: Final = (
 
 @lru_cache
 def readings(group: str, frames: Frames = Frames()) -> tuple[Reading, ...]:  # noqa: B008 (frozen)
-    """Return all readings of a group of columns under a renaming of axes, the scene's own first."""
+    """Return all readings of a group of columns under a renaming of axes, the scene's own reading first."""
     families = {"quaternion": _quaternions, "attitude": _matrices}
     family = families.get(group, partial(_vectors, group))
     return tuple(sorted(family(frames), key=lambda reading: reading.cost))
@@ -84,8 +85,7 @@ def _read_vectors(
         vectors = vectors * (mp.convert(rational) * mp.pi**power)
     elif rational != 1:
         vectors = vectors * (float(rational) * np.pi**power)
-    # Components in space axes, taken to body axes by the exact attitude: R^T is a rotation, so
-    # that the error keeps its size.
+    # Space axes are converted by the exact attitude. R^T is a rotation, so the error has the same size.
     return np.matmul(R.transpose(0, 2, 1), vectors[:, :, None])[:, :, 0] if in_space else vectors
 
 

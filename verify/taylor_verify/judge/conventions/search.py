@@ -1,14 +1,14 @@
-"""Finding out conventions: hypotheses tried on the exact motion, and the simplest one that explains.
+"""Search for a file's conventions: hypotheses are compared with the exact motion, the simplest one wins.
 
 A hypothesis about the whole file is a *world*: a body as the file's author may have understood it, a
-map of time, and names of axes. In each world every group of columns has its readings. The finding is
-the world and the readings with the fewest departures whose error is as small as any. They leave a
-hundredth of the error of the scene's own conventions, in every group and in every row that is looked
-at, the first among them. Where two that are equally simple leave equally little, the file cannot tell
-them apart, and neither is taken.
+map of time, and names of axes. In each world every group of columns has several readings. The result is
+the world and the readings with the fewest departures among those with the smallest error. They must leave
+at most a hundredth of the error of the scene's own conventions, in every group and in every tested row,
+the first row included. If two equally simple hypotheses leave equally little, the file cannot decide
+between them, and neither is taken.
 
-The first rows decide, for there even a poor answer is still right. A convention that shows only after
-a while, such as space axes of a body that starts in line with them, is tried on longer beginnings too.
+The first rows decide, because even a poor answer is still correct there. Some conventions show only later,
+for example space axes of a body that starts aligned with them, so longer beginnings are tested too.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from math import ceil, inf
+from operator import attrgetter
 from typing import Any, Final
 
 import numpy as np
@@ -49,37 +50,38 @@ from taylor_verify.solvers.files.file import TrajectoryFile
 Array = np.ndarray[Any, Any]
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
-# Errors of so many units of roundoff, or of float64's, are not told apart.
+# Errors below this many units of roundoff, of the rung or of float64, count as equal.
 _NOISE_ROUNDOFFS: Final = 64
-# The start and one step, which is all that is right to a hundredth without a gyroscopic term; then a few
-# steps, and beginnings so many times as long each. The longest one is half of the file.
+# The shortest beginning is the start and one step: an answer without a gyroscopic term is correct to a
+# hundredth only there. Then a few steps, and beginnings that are this many times longer each time. The
+# longest beginning is half of the file.
 _FEWEST_ROWS: Final = 2
 _FIRST_ROWS: Final = 5
 _LONGER: Final = 8
 _FEW_ROWS: Final = 12
-# So many rows, evenly chosen, stand for a beginning.
+# Number of evenly chosen rows that represent a beginning.
 _MOST_ROWS: Final = 24
 _DIGITS: Final = 20
-# The Taylor route is not sent further than this many spans of the scene for a hypothesis.
+# For a hypothesis the Taylor route goes at most this many spans of the scene.
 _MOST_SPANS: Final = 10
 
 
-@np.errstate(over="ignore", invalid="ignore")  # an answer may run away
+@np.errstate(over="ignore", invalid="ignore")  # an answer may diverge
 def conventions(file: TrajectoryFile, scene: Scene, rung: Rung) -> Conventions:
-    """Return the conventions of a file of groups that the scene can be compared with.
+    """Return the conventions of a file whose groups can be compared with the scene.
 
-    Raises Unsettled where there is no exact motion, and NotRepresentable where the rung cannot hold
-    the scene.
+    Raises Unsettled if there is no exact motion, and NotRepresentable if the rung cannot represent the
+    scene.
     """
     searches = [_Search(file, scene, rung, rows) for rows in _beginnings(file)]
     if not searches or searches[-1].is_explained:
         return Conventions((), World(scene), {})
-    # Of two beginnings that tell as much the shorter one comes first, and max takes the first.
-    return max((search.conventions() for search in searches), key=lambda found: found.rank)
+    # Shorter beginnings come first, and max takes the first of equal ranks.
+    return max((search.conventions() for search in searches), key=attrgetter("rank"))
 
 
 def _beginnings(file: TrajectoryFile) -> list[tuple[int, ...]]:
-    """Finite rows of ever longer beginnings of a file, the shortest first."""
+    """Return the finite rows of longer and longer beginnings of a file, the shortest first."""
     finite = np.flatnonzero(file.finite).tolist()
     longest = min(max(ceil(len(finite) / 2), _FEW_ROWS), len(finite))
     lengths, length = [_FEWEST_ROWS] if longest > _FEWEST_ROWS else [], _FIRST_ROWS
@@ -92,7 +94,7 @@ def _beginnings(file: TrajectoryFile) -> list[tuple[int, ...]]:
 
 @dataclass(frozen=True)
 class _Search:
-    """Some rows of the file as floats, beside the exact motion in any world."""
+    """Some rows of the file as floats, for comparison with the exact motion in any world."""
 
     file: TrajectoryFile
     scene: Scene
@@ -100,10 +102,10 @@ class _Search:
     rows: tuple[int, ...]
 
     def conventions(self) -> Conventions:
-        """Return the conventions that these rows tell."""
+        """Return the conventions that these rows show."""
         if self.is_explained:
             return Conventions((), World(self.scene), {})
-        # Every body and clock that can be tried here, the scene's own first.
+        # Every body and clock that can be tested here, the scene's own first.
         others = [w for w in worlds(self.scene, self.file.times) if self._is_possible(w)]
         tried = (fit for world in (World(self.scene), *others) for fit in self.fits(world))
         fits = [self.plain, *(fit for fit in tried if fit.explains(self.plain, self.noise))]
@@ -115,12 +117,12 @@ class _Search:
 
     @property
     def is_explained(self) -> bool:
-        """True if the scene's own conventions leave no error that another could explain."""
+        """True if the scene's own conventions leave no error that others could explain."""
         return self.plain.worst <= self.noise / EXPLAINS
 
     @cached_property
     def plain(self) -> Fit:
-        """The best readings in the scene's own world."""
+        """Best readings in the scene's own world."""
         return self.fits(World(self.scene), (Frames(),))[0]
 
     @cached_property
@@ -129,7 +131,7 @@ class _Search:
 
     @cached_property
     def frames(self) -> tuple[Frames, ...]:
-        """The renamings of axes that show in the file."""
+        """Renamings of axes that can be seen in the file."""
         active: dict[str, set[int]] = {"body": set(), "space": set()}
         vectors = [group for group in self.values if not GROUPS[group].is_frame]
         for group in vectors:
@@ -144,7 +146,7 @@ class _Search:
         return tuple(renamings(active["body"], active["space"], joined))
 
     def solution(self, world: World) -> tuple[Scene, Solution]:
-        """Return the rounded scene of a world at the file's rows, with the attitude for space axes."""
+        """Return the rounded scene of a world at the file's rows, and its solution with the attitude."""
         track = {"attitude", *(GROUPS[group].quantity for group in self.file.groups)}
         track &= set(TRACKED[self.scene.model])
         given = adopt(
@@ -156,7 +158,7 @@ class _Search:
     def fits(self, world: World, frames: Sequence[Frames] = ()) -> list[Fit]:
         """Return the best readings in a world under each renaming of axes.
 
-        Without ``frames``, under those that leave no group unexplained: no other one is the finding.
+        Without ``frames``, only renamings that leave no group unexplained are used.
         """
         near, truth = self._truth(world)
         only = [group for group in self.values if not GROUPS[group].is_frame]
@@ -174,7 +176,7 @@ class _Search:
         return fits
 
     def _truth(self, world: World) -> tuple[list[int], dict[str, Floats]]:
-        """The rows that are within reach in a world, and the exact motion there."""
+        """Return the rows within reach in a world, and the exact motion there."""
         given, exact = self.solution(world)
         reach = _MOST_SPANS * max(abs(t) for t in self.scene.clock.elapsed)
         elapsed = given.clock.elapsed
@@ -196,12 +198,12 @@ class _Search:
             return BestReading(known[0], 1.0, 1.0, 0.0, ())
         columns = self.values[group][list(near)]
         right = truth["attitude" if GROUPS[group].is_frame else group]
-        # A row out of reach of this world is not known to be right.
+        # A row out of reach of this world cannot be confirmed.
         beyond, errors = 1.0 if len(near) < len(self.rows) else 0.0, []
         for reading in known:
-            got = reading.read(columns, truth["attitude"])
-            got = rotations(got) if group == "quaternion" else got
-            errors.append(max(_distance(group, got, right), beyond))
+            values = reading.read(columns, truth["attitude"])
+            values = rotations(values) if group == "quaternion" else values
+            errors.append(max(_distance(group, values, right), beyond))
         enough = AS_WELL * max(min(errors), self.noise)
         good = [(r, e) for r, e in zip(known, errors, strict=True) if e <= enough]
         cost = good[0][0].cost
@@ -220,7 +222,7 @@ class _Search:
 
 
 def is_far(scene: Scene, times: Sequence[Fraction], spans: int = _MOST_SPANS) -> bool:
-    """Return True if the Taylor route would have to go so many spans for these times in order."""
+    """Return True if the Taylor route would have to go more than ``spans`` spans to reach these times."""
     span = max(abs(t) for t in scene.clock.elapsed)
     reach = max(abs(t - scene.clock.start) for t in (times[0], times[-1]))
     return reach > spans * span and solution(scene).route == "taylor"
@@ -229,20 +231,20 @@ def is_far(scene: Scene, times: Sequence[Fraction], spans: int = _MOST_SPANS) ->
 # The errors of the groups.
 
 
-def _distance(group: str, got: Floats, right: Floats) -> float:
-    """The largest distance over the rows, relative to the largest vector (absolute where all are zero).
+def _distance(group: str, values: Floats, right: Floats) -> float:
+    """Return the largest distance over the rows, relative to the largest vector (absolute if all are zero).
 
-    Of a frame turned by a small angle, that angle. Infinite where anything is not finite.
+    For a frame turned by a small angle this is the angle. Infinite if any value is not finite.
     """
-    largest = _largest(got - right)
+    largest = _largest(values - right)
     if not largest < inf:
         return inf
     size = np.sqrt(2) if GROUPS[group].is_frame else _largest(right) or 1.0
-    # Beyond doubles both may be infinite: no reading is right then.
+    # Beyond doubles both may be infinite: then no reading is correct.
     return float(largest / size) if size < inf else inf
 
 
 def _largest(rows: Floats) -> float:
-    """The largest norm of a row."""
+    """Return the largest norm of a row."""
     flat = rows.reshape(len(rows), -1)
     return float(np.sqrt(np.einsum("ij,ij->i", flat, flat).max()))

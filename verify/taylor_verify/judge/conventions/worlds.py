@@ -1,8 +1,8 @@
-"""Hypotheses about a whole file: its unit and origin of time, its axes, and how its author read the body.
+"""Hypotheses about a whole file: unit and origin of time, axes, and the author's reading of the body.
 
-A shift of the clock is a hypothesis only where it is anchored: the file's first row becomes the scene's
-start, or its first instant. Any other shift would take the row at the start away from the start, and
-with it the one row that says whether the file begins at the scene's initial state.
+A shift of the clock is a hypothesis only if the file's first row becomes the scene's start or its first
+instant. Any other shift would move the row at the start away from the start. That row alone shows whether
+the file begins at the scene's initial state.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class World:
 
     @property
     def subjects(self) -> dict[str, str]:
-        """The departures in words, by what they are about."""
+        """Departures in words, by their subject."""
         time = "; ".join(self.time_words)
         every = {"time": time, "body": self.body_words, "axes": self.axes_words}
         return {subject: words for subject, words in every.items() if words}
@@ -64,7 +64,7 @@ class World:
 
 
 def worlds(scene: Scene, times: Sequence[Fraction]) -> list[World]:
-    """Return every body and clock but the scene's own, for a file with rows at these times."""
+    """Return every world except the scene's own, for a file with rows at these times."""
     every = [
         replace(clock, scene=other, body_words=words)
         for other, words in [(scene, ""), *_other_bodies(scene)]
@@ -74,7 +74,7 @@ def worlds(scene: Scene, times: Sequence[Fraction]) -> list[World]:
 
 
 def _clocks(scene: Scene, times: Sequence[Fraction]) -> Iterator[World]:
-    """Units of time, each with the file's origin and with its first row at the scene's own."""
+    """Yield units of time, each with the file's origin and with its first row at the scene's start."""
     start, instants = scene.clock.start, scene.clock.instants
     first = min(times[0], times[-1]) if instants[-1] > start else max(times[0], times[-1])
     for scale, unit in ((Fraction(1), ""), *_SCALES):
@@ -89,23 +89,23 @@ def _clocks(scene: Scene, times: Sequence[Fraction]) -> Iterator[World]:
 
 
 def _is_among(time: Fraction, times: Sequence[Fraction]) -> bool:
-    """Return True if a time is one of strictly monotonic ones."""
+    """Return True if a time is among strictly monotonic times."""
     sign = 1 if times[-1] >= times[0] else -1
     place = bisect_left(times, sign * time, key=lambda t: sign * t)
     return place < len(times) and times[place] == time
 
 
 def _other_bodies(scene: Scene) -> list[tuple[Scene, str]]:
-    """The scene with a part of its body read by the other convention, where there is one."""
-    body, found = scene.body, []
+    """Return the scene with a part of its body read by another convention, for each such part."""
+    body, scenes = scene.body, []
     parts = body.parts()
     for name, (misread, words) in _MISREAD.items():
         if name not in parts or misread(parts[name]) == parts[name]:
             continue
         other = body.with_parts({name: misread(parts[name])})
         if tensors.is_positive_definite(other.energy_matrix):
-            found.append((replace(scene, body=other), words))
-    return found
+            scenes.append((replace(scene, body=other), words))
+    return scenes
 
 
 def _with_products_negated(tensor: Matrix) -> Matrix:
@@ -115,7 +115,7 @@ def _with_products_negated(tensor: Matrix) -> Matrix:
     )
 
 
-# Parts that have two conventions: how to get from one to the other, and what a reader is told.
+# Parts with two conventions: the function from one to the other, and the words for the reader.
 _MISREAD: Final = {
     "inertia": (
         _with_products_negated,

@@ -1,1 +1,1 @@
-"""Measures of error: state, drift, balance, shift of time."""
+"""Measures of error: errors of states, drifts, balances, shifts of time."""

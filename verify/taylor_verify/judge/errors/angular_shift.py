@@ -1,7 +1,8 @@
-"""The shift of time behind the error of U = A x + B y or Omega = B^T x + C y, which are no states.
+"""The shift of time that explains the error of U = A x + B y or Omega = B^T x + C y.
 
-For states judge.shift says more; here it is one constant c with answer(t) ~ Omega(t - c), by least
-squares over the samples that share it. The velocity of Omega is a difference of the exact motion.
+U and Omega are not states. For states judge.errors.shift gives more; here the shift is one constant c with
+answer(t) ~ Omega(t - c), by least squares over the samples that share it. The velocity of Omega is a
+difference quotient of the exact motion.
 """
 
 from __future__ import annotations
@@ -25,19 +26,19 @@ from taylor_verify.scenes.scene import Scene
 
 Array = np.ndarray[Any, Any]
 
-# A difference over this part of the span has a velocity to ten digits, where one would do.
+# A difference over this part of the span gives the velocity to ten digits; one digit would suffice.
 _DIFFERENCE: Final = power_of_two(-35)
 _MORE_DIGITS: Final = 12
 _EVALUATIONS: Final = 8
-# A step that moves Omega by so much less than what is left needs no further one.
+# The iteration ends when a step moves Omega by less than this part of the remaining error.
 _NEGLIGIBLE: Final = 1e-3
 
 
 @dataclass(frozen=True)
 class AngularShift:
-    """``time_shift`` leaves ``residual`` of the largest error, as Omega has it.
+    """A constant ``time_shift`` and the largest error ``residual`` after it, in the unit of Omega.
 
-    Samples that do not share a constant shift are left out of both.
+    Samples that do not share the shift are left out of both numbers.
     """
 
     time_shift: Fraction
@@ -47,7 +48,7 @@ class AngularShift:
 
 @dataclass(frozen=True)
 class _Fit:
-    """Omega of the answer at some samples beside the exact one at t - shift."""
+    """Omega of the answer at some samples, and the exact Omega at t - shift."""
 
     shift: Fraction
     answer: Array
@@ -63,12 +64,12 @@ class _Fit:
         return largest(norms(self.error))
 
     def step(self) -> Any:
-        """Return the further shift that leaves least, to first order."""
+        """Return the further shift that leaves the least error, to first order."""
         weight = np.sum(self.velocity**2)
         return -np.sum(self.velocity * self.error) / weight if weight else mp.zero
 
     def strays(self) -> tuple[int, ...]:
-        """Return the samples that do not share the median of all shifts; none where they are many."""
+        """Return the samples that do not share the median of all shifts; none if there are many."""
         error, velocity = self.error.astype(float), self.velocity.astype(float)
         speed = np.linalg.norm(velocity, axis=1)
         if not np.all(speed > 0):
@@ -82,9 +83,9 @@ class _Fit:
 def angular_shift(
     given: Scene, answer: Array, digits: int, group: str = "omega"
 ) -> AngularShift | None:
-    """Return the constant shift, at the ambient precision; None where the answer is not finite.
+    """Return the constant shift, at the ambient precision; None if the answer is not finite.
 
-    ``answer`` holds Omega, or the velocity of another ``group`` of columns, at the instants of ``given``.
+    ``answer`` is Omega, or the velocity of another ``group`` of columns, at the instants of ``given``.
     """
     if not all(mp.isfinite(value) for value in answer.flat):
         return None
@@ -105,7 +106,7 @@ class _Compared:
     group: str
 
     def shift(self, rows: Sequence[int]) -> tuple[AngularShift, _Fit]:
-        """Return the shift of some samples, and their fit by least squares."""
+        """Return the shift of some samples and their least-squares fit."""
         fit = first = self.fit(Fraction(0), rows)
         for _ in range(_EVALUATIONS):
             step = fit.step()
@@ -115,14 +116,14 @@ class _Compared:
             fit = further
             if abs(step) * mp.sqrt(np.sum(fit.velocity**2)) <= _NEGLIGIBLE * fit.left:
                 break
-        # An answer that stands still has no clock.
+        # An answer without motion shows no time.
         reach = largest(norms(first.answer - first.answer[:1]))
         explains = fit.shift != 0 and fit.largest <= LEAVES * min(first.largest, reach)
         kind = Kind.CONSTANT if explains else Kind.NONE
         return AngularShift(fit.shift, float(fit.largest), kind), fit
 
     def fit(self, shift: Fraction, samples: Sequence[int]) -> _Fit:
-        """Return the answer at some samples beside the exact motion at t - shift."""
+        """Return the fit that compares the answer at some samples with the exact motion at t - shift."""
         elapsed = [self.given.clock.elapsed[k] - shift for k in samples]
         h = _DIFFERENCE * (max(abs(t) for t in elapsed) or 1)
         both = [*elapsed, *(t + h for t in elapsed)]

@@ -1,20 +1,20 @@
-"""The work that the errors of a rounding clock do on the balances of a manufactured motion, for ever.
+"""The drift of a manufactured motion's balances that the rounding of the solver's clock causes.
 
 z*, N  the motion that the loads are made for, and the rates of the free body: the load is z*' - N(z*)
-a      by how much the clock, cosine and sine of a wave of frequency nu, is off, in axes that turn with it
-zeta   what an offset of one in either of these axes makes of z*; J the derivative of N
+a      error of the clock, cosine and sine of a wave of frequency nu, in axes that turn with the clock
+zeta   change of z* by an offset of one in either of these axes; J the derivative of N
 Q, u   the quantity of a balance; the unit roundoff
 
-A solver carries the clock as states, and what a step rounds there stays: a is the sum of all roundings so
-far. The state follows the clock and stays beside the motion, but the loads that did it were not those
-asked for, by zeta' - J(z*) zeta for each unit of a. So the balance of Q moves at a rate p a, and with P
-the integral of p, all N steps of a span T together leave by the time t
+A solver carries the clock as states, and the rounding of a step there stays for ever: a is the sum of all
+roundings so far. The state follows the clock and stays near the motion. But the loads of the run differ
+from the given loads by zeta' - J(z*) zeta for each unit of a. So the balance of Q moves at a rate p a. With
+P the integral of p, all N steps of a span T together leave by the time t
 
     p = dQ(z) . (zeta' - J(z*) zeta),     u r [ N/T int_0^t |P(t) - P(s)|^2 ds ]^(1/2),
 
-r^2 = (1 + h nu)^2 / 2, the mean square of what one step of length h rounds in either of the two. It is
-added to what rounding the momenta leaves, as independent errors are. Where p has a mean it grows as the
-three halves power of time, and in the end it is what decides.
+where r^2 = (1 + h nu)^2 / 2 is the mean square of the rounding of one step of length h in either axis. This
+drift and the drift by rounding the momenta are added as independent errors. If p has a nonzero mean, the
+drift grows as the power 3/2 of time and finally dominates.
 """
 
 from __future__ import annotations
@@ -43,16 +43,16 @@ Column = np.ndarray[Any, Any]
 
 # The rate p is made of products of four waves at most.
 _PRODUCTS: Final = 4
-# Of the fastest of them, so many nodes a period: the midpoint rule is then right to some percent.
+# Nodes per period of the fastest product: the midpoint rule is then correct to some percent.
 _NODES_A_PERIOD: Final = 6
 _LEAST_NODES, _MOST_NODES = 64, 2000
-# Of the motion at the nodes: norms are wanted to a digit or two.
+# Digits of the motion at the nodes: norms are needed to one or two digits.
 _DIGITS: Final = 12
 
 
 @dataclass(frozen=True)
 class ClockWork:
-    """The work on one quantity that an offset of the clock has done by the ends of equal parts of a span.
+    """The work of a clock offset on one quantity, accumulated at the ends of equal parts of a span.
 
     ``done`` (n + 1, m) is P over ``scale``, one column for an axis of a wave and a component of Q;
     ``turns`` (m) is nu T of its wave. ``span`` is T.
@@ -64,7 +64,7 @@ class ClockWork:
     done: Floats
 
     def drift(self, unit_roundoff: Fraction, steps: int, times: Floats, scale: Any) -> Floats:
-        """Return what the roundings of the clock leave at these times, over ``scale``."""
+        """Return the drift by the roundings of the clock at these times, over ``scale``."""
         parts, count = len(self.done) - 1, max(steps, 1)
         rounding = (1 + np.minimum(self.turns / count, 1.0)) ** 2 / 2
         P = self.done
@@ -72,27 +72,27 @@ class ClockWork:
         first = np.vstack([np.zeros_like(P[:1]), np.cumsum(middle, axis=0)]) / parts
         second = np.vstack([np.zeros_like(P[:1]), np.cumsum(middle**2, axis=0)]) / parts
         share = np.arange(parts + 1)[:, None] / parts
-        # int |P(t) - P(s)|^2 ds, multiplied out; what is left of a difference of equals is no work.
+        # int |P(t) - P(s)|^2 ds, multiplied out; cancellation may make it slightly negative.
         squares = np.maximum(share * P**2 - 2 * P * first + second, 0.0)
         left = np.sqrt(count * np.sum(rounding * squares, axis=1))
-        # Of the two ends of a part the later one.
+        # The later end of each part counts.
         places = np.minimum(np.ceil(times / self.span * parts).astype(int), parts)
-        found: Floats = float(unit_roundoff) * float(self.scale / scale) * left[places]
-        return found
+        over_scale: Floats = float(unit_roundoff) * float(self.scale / scale) * left[places]
+        return over_scale
 
 
 @lru_cache(maxsize=16)
 def clock_work(scene: Scene) -> Mapping[str, ClockWork]:
-    """Return the work on every quantity that has a balance, by its name; empty without waves.
+    """Return the work on every quantity that has a balance, by name; empty without waves.
 
-    Raises Unsettled where the motion cannot be had.
+    Raises Unsettled if the motion cannot be computed.
     """
     motion = scene.body.manufactured
     if motion is None or not motion.waves or not scene.clock.elapsed[-1]:
         return {}
     span = scene.clock.elapsed[-1]
     times = _middles(span, motion)
-    # Enough for a difference of two motions of which one is as small as float64 has them.
+    # Enough digits for the difference of two motions if one is as small as a float64 can be.
     with mp.workdps(2 * _DIGITS):
         truth = in_mpfr(solution(scene).motion(times, _DIGITS))
         pushes = [
@@ -107,7 +107,7 @@ def clock_work(scene: Scene) -> Mapping[str, ClockWork]:
 
 
 def _middles(span: Fraction, motion: Manufactured) -> list[Fraction]:
-    """The middles of equal parts of the span, small beside the waves as long as that is affordable."""
+    """Return the midpoints of equal parts of the span, short beside the waves where that is affordable."""
     periods = _PRODUCTS * float(motion.highest * abs(span)) / (2 * pi)
     count = min(max(ceil(_NODES_A_PERIOD * periods), _LEAST_NODES), _MOST_NODES)
     return [span * Fraction(2 * k + 1, 2 * count) for k in range(count)]
@@ -123,29 +123,29 @@ def _work(
     scale = invariant.scale(truth)
     turns, columns = [], []
     for turn, push in pushes:
-        # Q is of second degree at most in the momenta, and such a difference is its derivative.
+        # Q has at most degree two in the momenta, so the central difference is the exact derivative.
         there, back = (
             invariant.value(_displaced(scene, truth, sign * to_mpfr(push))) for sign in (1, -1)
         )
-        found = ((there - back) / 2 / scale).astype(float).reshape(len(push), -1)
-        turns += [turn] * found.shape[1]
-        columns.append(found)
+        increment = ((there - back) / 2 / scale).astype(float).reshape(len(push), -1)
+        turns += [turn] * increment.shape[1]
+        columns.append(increment)
     increments = np.hstack(columns)
     done = np.vstack([np.zeros_like(increments[:1]), np.cumsum(increments, axis=0)])
     return ClockWork(span, to_mpf(np.array([scale], dtype=object))[0], np.array(turns), done)
 
 
 def _displaced(scene: Scene, motion: Motion, by: Column) -> Motion:
-    """The motion with its momenta moved, the frame as it is."""
+    """Return the motion with displaced momenta and the same frame."""
     moved = {name: motion[name] + part for name, part in _parts(scene, by).items()}
     return Motion({**motion.quantities, **moved}, motion.radius)
 
 
-# The loads of a clock that is off.
+# The loads that a wrong clock gives.
 
 
 def _pushes(scene: Scene, motion: Manufactured, times: Sequence[Fraction]) -> list[Any]:
-    """The wave, for either of its axes, and zeta' - J(z*) zeta at every time, (n, d)."""
+    """Return, for both axes of each wave, the wave and zeta' - J(z*) zeta at every time, (n, d)."""
     angles = [[mp.cos_sin(mp.convert(w.frequency * t)) for t in times] for w in motion.waves]
     there = np.array([[mp.convert(z) for z in motion.constant]] * len(times), dtype=object)
     offsets = []
@@ -157,7 +157,7 @@ def _pushes(scene: Scene, motion: Manufactured, times: Sequence[Fraction]) -> li
         )
         along, across = a * c + b * s, b * c - a * s
         there = there + along
-        # A unit of offset along the clock is a larger wave, across it a later one; both turn.
+        # An offset along the clock enlarges the wave, an offset across it delays the wave.
         nu = mp.convert(wave.frequency)
         offsets += [(wave, along, nu * across), (wave, across, -nu * along)]
     return [
@@ -167,12 +167,13 @@ def _pushes(scene: Scene, motion: Manufactured, times: Sequence[Fraction]) -> li
 
 
 def _free(scene: Scene, rows: Column) -> Column:
-    """The rates of the body without loads; of second degree, so that differences are derivatives."""
+    """Return the rates of the body without loads; they have degree two, so differences are derivatives."""
     free = replace(scene, body=scene.body.with_motion(None), track=frozenset())
     zeros = np.array([mp.zero] * len(rows), dtype=object)
-    found = rates(free, Motion(_parts(scene, rows), zeros))
+    derivative = rates(free, Motion(_parts(scene, rows), zeros))
     columns = [
-        found.velocity[name] * np.array([mp.ldexp(1, found.units[name] - found.time)], dtype=object)
+        derivative.velocity[name]
+        * np.array([mp.ldexp(1, derivative.units[name] - derivative.time)], dtype=object)
         for name in MOMENTA[scene.model]
     ]
     return np.concatenate(columns, axis=1)

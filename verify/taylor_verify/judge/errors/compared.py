@@ -1,8 +1,8 @@
-"""An answer beside the exact motion at shifted times, and what first order makes of a further shift.
+"""Comparison of an answer with the exact motion at shifted times, and the first-order effect of shifts.
 
 c            shift of time: answer(t) ~ exact(t - c), positive for an answer that is late
 e            answer(t) - exact(t - c), relative to the scale of its error
-v, a         velocity and acceleration of exact(t - c), relative likewise
+v, a         velocity and acceleration of exact(t - c), relative to the same scale
 """
 
 from __future__ import annotations
@@ -31,23 +31,23 @@ from taylor_verify.scenes.scene import Scene
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 Shifts = tuple[Fraction, ...]
 
-# A sum of a dozen products of float64 cannot tell less than this part of its terms.
+# A sum of a dozen products of float64 has a rounding error of up to this part of its terms.
 FLOAT_NOISE: Final = 2.0**-48
-# Many shifts are tried on a few samples, to a few digits.
+# Many shifts are tested on a few samples, to a few digits.
 _SEARCH_SAMPLES: Final = 16
 _SEARCH_DIGITS: Final = 15
-# Below 2^-1000 the numbers of a verdict end; a double has 53 bits above this size.
+# A verdict has no numbers below 2^-1000; above 2^-960 a double keeps all 53 bits.
 _LEAST_EXPONENT: Final = -1000
 _LEAST: Final = 2.0**-960
 
 
 @dataclass(frozen=True)
 class Shifted:
-    """The answer beside exact(t - shifts), as float64 and flattened: rows are samples.
+    """The comparison of the answer with exact(t - shifts), in flattened float64 rows, one for each sample.
 
-    ``error`` counts ``size``, a power of two near the largest error, and is relative to the scale of
-    the error. ``velocity`` and ``acceleration`` are relative likewise, per ``unit`` of time. ``more``
-    is a further shift, in unit x size, that first order has taken out of ``error``.
+    ``error`` is relative to the scale of the error and in multiples of ``size``, a power of two near the
+    largest error. ``velocity`` and ``acceleration`` are relative to the same scale, per ``unit`` of time.
+    ``more`` is a further shift, in unit x size, that was subtracted from ``error`` by first order.
     """
 
     shifts: Shifts
@@ -60,63 +60,63 @@ class Shifted:
 
     @property
     def shift(self) -> Floats:
-        """The whole shift of every sample, in the scene's unit of time."""
-        begun = np.array([float(c) for c in self.shifts]) if any(self.shifts) else 0.0
-        return begun + self.more * (float(self.unit) * self.size)
+        """Whole shift of every sample, in the scene's unit of time."""
+        evaluated = np.array([float(c) for c in self.shifts]) if any(self.shifts) else 0.0
+        return evaluated + self.more * (float(self.unit) * self.size)
 
     @property
     def is_finite(self) -> bool:
-        """True if float64 holds all of it."""
+        """True if all values are finite in float64."""
         with np.errstate(all="ignore"):
             total = np.sum(self.error**2) + np.sum(self.velocity**2) + np.sum(self.acceleration**2)
         return bool(np.isfinite(total))
 
     @cached_property
     def weight(self) -> Floats:
-        """|v|^2: how sharply every sample tells the time."""
-        found: Floats = np.sum(self.velocity**2, axis=1)
-        return found
+        """Squared speed |v|^2: the weight of every sample in the least squares for a shift."""
+        squared_speed: Floats = np.sum(self.velocity**2, axis=1)
+        return squared_speed
 
     @cached_property
     def wanted(self) -> Floats:
-        """The shift that every sample asks for by itself, times its weight."""
-        found: Floats = -np.sum(self.error * self.velocity, axis=1)
-        return found
+        """Shift that would remove the error of each single sample, times its weight."""
+        weighted_shift: Floats = -np.sum(self.error * self.velocity, axis=1)
+        return weighted_shift
 
     @property
     def left(self) -> float:
-        """The root mean square of the error."""
+        """Root mean square of the error."""
         return float(np.sqrt(np.mean(np.sum(self.error**2, axis=1)))) * self.size
 
     @property
     def rate(self) -> float:
-        """The fastest rate of the motion, per unit."""
+        """Fastest rate of the motion, per unit."""
         fastest = float(np.max(np.linalg.norm(self.velocity, axis=1)))
         bend = float(np.max(np.linalg.norm(self.acceleration, axis=1)))
         return bend / fastest if fastest else 0.0
 
     def neglects(self, step: Floats) -> float:
-        """Return what first order does not see of a further shift, in ``size``."""
+        """Return the effect of a further shift that first order neglects, in ``size``."""
         bend = np.linalg.norm(self.acceleration, axis=1) * step**2 * self.size / 2
         noise = FLOAT_NOISE * np.linalg.norm(self.velocity, axis=1) * np.abs(step)
         return float(np.max(bend + noise))
 
     def moved(self, step: Floats) -> Shifts:
-        """Return the shifts with a further one, exactly."""
+        """Return the shifts with a further shift added, exactly."""
         unit = self.unit * Fraction(self.size)
         return tuple(
             c + Fraction(s) * unit for c, s in zip(self.shifts, step.tolist(), strict=True)
         )
 
     def with_first_order(self, step: Floats) -> Shifted:
-        """Return what first order makes of a further shift."""
+        """Return the comparison after a further shift, to first order."""
         error = self.error + step[:, None] * self.velocity
         return replace(self, error=error, more=self.more + step)
 
 
 @dataclass(frozen=True)
 class Run:
-    """An answer beside the exact motion, for all quantities of a scene."""
+    """An answer and the exact motion, for all quantities of a scene."""
 
     scene: Scene
     exact: Solution
@@ -142,17 +142,17 @@ class Run:
 
     @cached_property
     def times(self) -> Floats:
-        """The samples' times as parts of the span, the first at 0 and the last at 1."""
+        """Times of the samples as fractions of the span, the first 0 and the last 1."""
         elapsed = np.array([float(t) for t in self.elapsed])
-        found: Floats = (elapsed - elapsed[0]) / (self.span or 1.0)
-        return found
+        shares: Floats = (elapsed - elapsed[0]) / (self.span or 1.0)
+        return shares
 
     @property
     def unshifted(self) -> Shifts:
         return (Fraction(0),) * len(self.elapsed)
 
     def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion | None:
-        """Return the exact motion; None where it cannot be had."""
+        """Return the exact motion; None if it cannot be computed."""
         try:
             return self.exact.motion(elapsed, digits)
         except Unsettled:
@@ -161,23 +161,23 @@ class Run:
 
 @dataclass(frozen=True)
 class Compared:
-    """A quantity of an answer beside the exact motion at any shifts."""
+    """A quantity of an answer, compared with the exact motion at any shifts."""
 
     run: Run
     errors: Errors
 
     def without(self, strays: Collection[int]) -> Compared:
-        """Return the comparison of all samples but these."""
+        """Return the comparison without these samples."""
         run = self.run
-        kept = [k for k in range(len(run.elapsed)) if k not in strays]
-        clock = Clock(run.scene.clock.start, tuple(run.scene.clock.instants[k] for k in kept))
+        places = [k for k in range(len(run.elapsed)) if k not in strays]
+        clock = Clock(run.scene.clock.start, tuple(run.scene.clock.instants[k] for k in places))
         scene = replace(run.scene, clock=clock)
-        rows = replace(run, scene=scene, truth=run.truth.at(kept), answer=run.answer.at(kept))
+        rows = replace(run, scene=scene, truth=run.truth.at(places), answer=run.answer.at(places))
         return replace(self, run=rows)
 
     @cached_property
     def reach(self) -> float:
-        """The distance that the answer goes from its first sample, in the unit of the error."""
+        """Largest distance of the answer from its first sample, in the unit of the error."""
         parts = []
         for part, scale in self._scales.items():
             rows = to_mpfr(self.run.answer[part].reshape(len(self.run.elapsed), -1))
@@ -188,23 +188,23 @@ class Compared:
 
     @cached_property
     def doubt(self) -> float:
-        """The width of the truth: less than this cannot be said to be left."""
+        """Width of the truth: a smaller remaining error cannot be resolved."""
         return float(max(self.errors.truth_radius))
 
     def evaluated(self, shifts: Shifts) -> Shifted | None:
-        """Return the exact motion at t - shifts beside the answer; None where it cannot be had."""
+        """Return the comparison with the exact motion at t - shifts; None if it cannot be computed."""
         run = self.run
         elapsed = [t - c for t, c in zip(run.elapsed, shifts, strict=True)]
         motion = run.motion(elapsed, run.digits)
         if motion is None:
             return None
-        found = self.fit(motion, rates(run.scene, motion, elapsed), shifts)
-        return found if found.is_finite else None
+        fit = self.fit(motion, rates(run.scene, motion, elapsed), shifts)
+        return fit if fit.is_finite else None
 
-    def fit(self, truth: Motion, found: Rates, shifts: Shifts) -> Shifted:
+    def fit(self, truth: Motion, derivatives: Rates, shifts: Shifts) -> Shifted:
         error, size = self._relative(truth, slice(None))
         factors = {
-            part: float(mp.ldexp(1, found.units[part]) / scale)
+            part: float(mp.ldexp(1, derivatives.units[part]) / scale)
             for part, scale in self._scales.items()
         }
         velocity, acceleration = (
@@ -212,7 +212,7 @@ class Compared:
                 [factor * rows[part].reshape(len(shifts), -1) for part, factor in factors.items()],
                 axis=1,
             )
-            for rows in (found.velocity, found.acceleration)
+            for rows in (derivatives.velocity, derivatives.acceleration)
         )
         return Shifted(
             shifts=shifts,
@@ -220,12 +220,12 @@ class Compared:
             velocity=velocity,
             acceleration=acceleration,
             size=size,
-            unit=power_of_two(found.time),
+            unit=power_of_two(derivatives.time),
             more=np.zeros(len(shifts)),
         )
 
     def left_by(self, tried: Sequence[Shifts]) -> list[float] | None:
-        """Return the mean square error that each of these shifts leaves, on a few samples."""
+        """Return the mean square error after each of these shifts, on a few samples."""
         run, count = self.run, len(self.run.elapsed)
         rows = evenly(count, _SEARCH_SAMPLES)
         elapsed = [run.elapsed[k] - shifts[k] for shifts in tried for k in rows]
@@ -239,7 +239,7 @@ class Compared:
         return left
 
     def largest(self, fit: Shifted) -> float:
-        """Return the largest error that is left, in the unit of the error."""
+        """Return the largest remaining error, in the unit of the error."""
         ends = accumulate((self.run.answer[part][0].size for part in self._scales), initial=0)
         parts = [fit.error[:, left:right] for left, right in pairwise(ends)]
         left = float(max(np.max(np.linalg.norm(part, axis=1)) for part in parts)) * fit.size
@@ -253,24 +253,24 @@ class Compared:
 
     @cached_property
     def _scales(self) -> dict[str, Any]:
-        """A frame turned by a small angle is off by sqrt 2 of it in the Frobenius norm."""
+        """Scales of the parts. A small turn changes a frame by sqrt 2 times the angle (Frobenius norm)."""
         if self._is_angle:
             return {self.errors.quantity: mp.sqrt(2)}
         return self.errors.parts
 
     def _relative(self, truth: Motion, rows: Sequence[int] | slice) -> tuple[Floats, float]:
-        """The error of these rows of the answer, in units of a power of two near the largest."""
+        """Return the error of these rows of the answer, in units of a power of two near the largest."""
         parts, count = self._scales, len(truth.radius)
         errors = {p: (self.run.answer[p][rows] - truth[p]).reshape(count, -1) for p in parts}
-        with np.errstate(all="ignore"):  # what a double cannot hold is seen below
-            found = np.concatenate(
+        with np.errstate(all="ignore"):  # overflow and underflow are handled below
+            relative = np.concatenate(
                 [e.astype(float) * float(1 / parts[p]) for p, e in errors.items()], axis=1
             )
-        largest = float(np.max(np.abs(found)))
+        largest = float(np.max(np.abs(relative)))
         if _LEAST <= largest < inf:
             size = 2.0 ** frexp(largest)[1]
-            return found / size, size
-        # Too small for a double, or zero: counted in a unit first.
+            return relative / size, size
+        # Too small for a double, or zero: scaled by a power of two before conversion.
         exact = np.concatenate([e / parts[p] for p, e in errors.items()], axis=1)
         largest = max(abs(value) for value in exact.flat)
         exponent = max(int(mp.mag(largest)), _LEAST_EXPONENT) if largest else 0

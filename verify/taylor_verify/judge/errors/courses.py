@@ -1,9 +1,9 @@
-"""The courses of a shift in time, and the least squares along each of them.
+"""Courses of a shift in time (constant, linear, free), and the least-squares fit along each.
 
-To first order a further shift dc leaves e + v dc of an error e, v being the velocity. What first order
-neglects, v' dc^2/2 and the roundings of float64, is held against what is left; while it is not small
-beside it, the exact motion is evaluated anew at t - c (Gauss-Newton). A shift of a sizeable part of a
-turn is looked for among many on a few samples first.
+To first order a further shift dc changes an error e to e + v dc, where v is the velocity. First order
+neglects v' dc^2/2 and the roundings of float64. While this is not small beside the remaining error, the
+exact motion is evaluated again at t - c (Gauss-Newton). A shift of a large part of a turn is first
+searched among many shifts on a few samples.
 """
 
 from __future__ import annotations
@@ -16,18 +16,18 @@ import numpy as np
 
 from taylor_verify.judge.errors.compared import Compared, Floats, Shifted
 
-# What is neglected is to be this much smaller than what is left.
+# The neglected part must be at most this part of the remaining error.
 NEGLIGIBLE: Final = 1 / 16
-# A sample at which the motion is slower than this part of its fastest tells no time.
+# A sample at which the motion is slower than this part of its fastest speed shows no time.
 AT_REST: Final = 1e-3
-# Convergence is quadratic: 2^-4 becomes 2^-237 in six evaluations, the rest is for a poor start.
+# Convergence is quadratic: 2^-4 becomes 2^-237 in six evaluations; the others serve a poor start.
 _EVALUATIONS: Final = 10
 _HALVINGS: Final = 3
-# An evaluation that leaves more than this part of the error before it is worth no further one.
+# The iteration ends if an evaluation leaves more than this part of the error before it.
 _PROGRESS: Final = 0.9
-# Beyond this error (relative, or radians) first order may not even know the direction.
+# Beyond this error (relative, or radians) first order may have the wrong direction.
 FAR: Final = 0.1
-# The search: this many steps of half a radian of the fastest turn, each way.
+# The search: this many steps of half a radian of the fastest turn, in each direction.
 _SEARCH_STEPS: Final = 16
 _SEARCH_STEP: Final = 0.5
 
@@ -35,12 +35,12 @@ Course = Callable[[Shifted, Floats], Floats]
 
 
 def constant(fit: Shifted, times: Floats) -> Floats:
-    """Return one shift for all samples."""
+    """Return the constant shift that fits all samples best."""
     return _along(np.ones((len(times), 1)), fit)
 
 
 def linear(fit: Shifted, times: Floats) -> Floats:
-    """Return a shift that is linear in t; ``times`` run over the span from 0 to 1."""
+    """Return the best shift that is linear in t; ``times`` run over the span from 0 to 1."""
     return _along(np.stack([np.ones(len(times)), times], axis=1), fit)
 
 
@@ -51,17 +51,17 @@ def _along(basis: Floats, fit: Shifted) -> Floats:
 
 
 def single(fit: Shifted, times: Floats) -> Floats:
-    """Return a shift for every sample by itself; none where the motion rests and tells no time."""
+    """Return the best shift of each sample by itself; 0 where the motion rests and shows no time."""
     return np.divide(fit.wanted, fit.weight, out=np.zeros(len(times)), where=moving(fit))
 
 
 def moving(fit: Shifted) -> np.ndarray[Any, np.dtype[np.bool_]]:
-    """Return the samples at which the motion is fast enough to tell the time."""
+    """Return True for the samples at which the motion is fast enough to show the time."""
     return fit.weight > AT_REST**2 * np.max(fit.weight)
 
 
 def fitted(compared: Compared, fit: Shifted, course: Course) -> Shifted:
-    """Return the least squares along a course that begins where ``fit`` stands."""
+    """Return the least-squares fit along a course, starting from ``fit``."""
     for _ in range(_EVALUATIONS):
         step = course(fit, compared.run.times)
         better = fit.with_first_order(step)
@@ -78,19 +78,19 @@ def fitted(compared: Compared, fit: Shifted, course: Course) -> Shifted:
 
 
 def _closer(compared: Compared, fit: Shifted, step: Floats) -> Shifted | None:
-    """The evaluation at a further shift, halved until it leaves less; None if it never does."""
+    """Return the evaluation at a further shift, halved until the error decreases; None if it never does."""
     for halvings in range(_HALVINGS + 1):
-        found = compared.evaluated(fit.moved(step / 2**halvings))
-        if found is None or found.left < fit.left:
-            return found
+        closer = compared.evaluated(fit.moved(step / 2**halvings))
+        if closer is None or closer.left < fit.left:
+            return closer
     return None
 
 
 def best_start(compared: Compared, fit: Shifted, course: Course) -> Shifted:
-    """Return the fit to begin with: ``fit``, or that at one of many shifts if the error is large.
+    """Return the fit to start from: ``fit``, or the best of many shifts if the error is large.
 
-    A motion that comes back has many shifts that are equally good: the smallest is taken of those
-    that leave the least but for what the distance between two of them may add.
+    For a periodic motion many shifts are equally good. The smallest shift is taken among those whose
+    error equals the least, up to the error that half the distance between two of them can cause.
     """
     is_far = np.max(np.abs(fit.error)) * fit.size > FAR
     if not is_far or not fit.rate:
@@ -105,6 +105,6 @@ def best_start(compared: Compared, fit: Shifted, course: Course) -> Shifted:
     if left is None:
         return fit
     between = (pace / 2) ** 2 * float(np.mean(fit.weight))
-    best = next(k for k, one in enumerate(left) if one <= min(left) + between)
-    found = compared.evaluated(tried[best])
-    return fit if found is None or not found.left < fit.left else found
+    best = next(k for k, error in enumerate(left) if error <= min(left) + between)
+    start = compared.evaluated(tried[best])
+    return fit if start is None or not start.left < fit.left else start

@@ -1,19 +1,19 @@
-"""Drift of the conserved quantities, and for a loaded body the balances that take their place.
+"""Drifts of the conserved quantities, and the balances that replace them for a loaded body.
 
-Both are one sum over the samples. With Q a quantity and flow the exact motion over the time between
-two samples,
+Both are the same sum over the samples. With Q a quantity and flow the exact motion over the time
+between two samples,
 
     drift(t_n) = | sum over k < n of Q(state_k+1) - Q(flow(state_k)) |.
 
-Without loads Q(flow(state)) = Q(state) and the sum telescopes to Q(state_n) - Q(start). With loads
-Q(flow(state)) - Q(state) is the work, or impulse, done along the arc, and the sum is the balance.
+Without loads Q(flow(state)) = Q(state), and the sum telescopes to Q(state_n) - Q(start). With loads
+Q(flow(state)) - Q(state) is the work or impulse along the arc, and the sum is the balance.
 
-Of a damped body without loads Q is taken at e^{ct} times the momenta: T e^{2ct}, |H|^2 e^{2ct} and so on
-are conserved. With loads or wheels nothing of the kind is, and Q itself has a balance.
+For a damped body without loads Q is evaluated at e^{ct} times the momenta: T e^{2ct}, |H|^2 e^{2ct} and so
+on are conserved. With loads or wheels they are not conserved, and Q itself has a balance.
 
-Of a manufactured motion it is likewise, and each arc takes up the loads of the time at which it begins.
-A solver integrates the clock of these loads with the rest; what rounding does to it does work, which adds
-up from step to step, and which the bound of the balance has to hold (judge.balances).
+A manufactured motion has balances too, and each arc starts with the loads of the time at which it begins.
+A solver integrates the clock of these loads with the state. The roundings of the clock do work that adds
+up from step to step, and the bound of the balance includes it (judge.errors.balances).
 """
 
 from __future__ import annotations
@@ -45,19 +45,19 @@ def drifts(
     start: Motion,
     truth: Motion,
     answer: Motion,
-    held: Mapping[str, Column],
+    own: Mapping[str, Column],
     digits: int,
 ) -> list[tuple[Invariant, Errors]]:
-    """Return the drift of every conserved quantity, at the ambient precision of mpmath and in its numbers.
+    """Return the drift of every conserved quantity, as mpmath numbers at the ambient precision.
 
-    ``start`` is the exact initial state as a Motion of one row. The exact motion ``truth`` has the scales,
-    so that an answer that runs away does not hide its own drift. ``held`` are the answer's own exact
+    ``start`` is the exact initial state as a Motion of one row. The scales come from the exact motion
+    ``truth``, so that an answer that diverges does not hide its own drift. ``own`` are the answer's exact
     numbers with its quaternions, from which arcs start; ``digits`` is the precision of the arcs. An
     answer that is not finite drifts by NaN.
     """
-    found = Drifts(scene, start, digits)
-    found.add(scene.clock.elapsed, truth, answer, held)
-    return found.errors()
+    total = Drifts(scene, start, digits)
+    total.add(scene.clock.elapsed, truth, answer, own)
+    return total.errors()
 
 
 class Drifts:
@@ -65,15 +65,15 @@ class Drifts:
 
     def __init__(self, scene: Scene, start: Motion, digits: int) -> None:
         self._scene, self._digits = scene, digits
-        self._found = invariants(scene)
-        self._series = {invariant.name: Series() for invariant in self._found}
+        self._invariants = invariants(scene)
+        self._series = {invariant.name: Series() for invariant in self._invariants}
         self._begin = in_mpfr(start)
-        # Where the last block ended, and the sums of all increments.
+        # The end of the last block, and the sums of all increments.
         self._end = _End(Fraction(0), scene.initial, self._begin, self._begin)
         self._sums: dict[str, Column] = {}
-        # The signed drift of the last row, over its scale, of what is a number.
+        # The signed drift of the last row over its scale, for scalar quantities.
         self._changes: dict[str, float] = {}
-        # The rows of the exact motion so far that the scales are made of.
+        # The rows of the exact motion so far from which the scales are computed.
         self._largest: Motion | None = None
         self._is_lost = False
 
@@ -82,20 +82,20 @@ class Drifts:
         elapsed: Sequence[Fraction],
         truth: Motion,
         answer: Motion,
-        held: Mapping[str, Column],
+        own: Mapping[str, Column],
     ) -> None:
-        """Take in the next rows. Raises Unsettled where an arc cannot be had."""
+        """Add the next rows. Raises Unsettled if an arc cannot be computed."""
         scene, quick = self._scene, in_mpfr(answer)
         is_free = scene.body.is_conservative
         self._is_lost = self._is_lost or not (is_free or _is_finite(answer))
         moved = None if is_free or self._is_lost else in_mpfr(truth)
-        ends = None if moved is None else self._arc_ends(elapsed, moved, quick, held)
+        ends = None if moved is None else self._arc_ends(elapsed, moved, quick, own)
         with precision():
             if is_free:
                 quick = without_damping(scene, quick, elapsed)
             self._widen(without_damping(scene, moved or in_mpfr(truth), elapsed))
             assert self._largest is not None
-            for invariant in self._found:
+            for invariant in self._invariants:
                 if is_free:
                     change = invariant.value(quick) - invariant.value(self._begin)[0]
                 elif ends is None:
@@ -109,9 +109,9 @@ class Drifts:
                     self._changes[invariant.name] = float(change[-1] / scale)
 
     def errors(self) -> list[tuple[Invariant, Errors]]:
-        """Return the drifts of all rows; if one is not finite under loads, NaN for all."""
-        found = []
-        for invariant in self._found:
+        """Return the drifts of all rows; NaN for all rows if one row of a loaded body is not finite."""
+        drifts = []
+        for invariant in self._invariants:
             name = invariant.name
             with precision():
                 values, scale = self._series[name].joined()
@@ -120,8 +120,8 @@ class Drifts:
             parts = {name: to_mpf(np.array([scale], dtype=object))[0]}
             widths, change = np.zeros(len(values)), self._changes.get(name)
             errors = Errors(name, f"scale of {name}", values, widths, parts, change=change)
-            found.append((invariant, errors))
-        return found
+            drifts.append((invariant, errors))
+        return drifts
 
     def _widen(self, truth: Motion) -> None:
         rows = truth.at(decisive(self._scene, truth))
@@ -142,11 +142,11 @@ class Drifts:
         elapsed: Sequence[Fraction],
         truth: Motion,
         answer: Motion,
-        held: Mapping[str, Column],
+        own: Mapping[str, Column],
     ) -> Motion:
-        """The exact motion at each sample that sets out from the sample before, or from the start.
+        """Return the exact motion at each sample that starts from the sample before, or from the start.
 
-        Followed beside the exact motion of the scene, where it is close to it; else enclosed.
+        It is computed as a neighbour of the scene's exact motion if it is close to it, else enclosed.
         """
         scene, end, last = self._scene, self._end, [len(elapsed) - 1]
         begins = (end.time, *elapsed[:-1])
@@ -155,15 +155,17 @@ class Drifts:
                 joined(before, rows).at(range(len(elapsed)))
                 for before, rows in ((end.truth, truth), (end.answer, answer))
             )
-            found = neighbours(scene, [*begins, *elapsed], (earlier, truth), beside, self._digits)
-        if found is None:
-            states = _states(scene, held)
+            arc_ends = neighbours(
+                scene, [*begins, *elapsed], (earlier, truth), beside, self._digits
+            )
+        if arc_ends is None:
+            states = _states(scene, own)
             spans = [b - a for a, b in zip(begins, elapsed, strict=True)]
             starts = [end.state, *states[:-1]]
-            found = in_mpfr(arcs(scene, starts, spans, self._digits, begins))
-        (state,) = _states(scene, {name: rows[last] for name, rows in held.items()})
+            arc_ends = in_mpfr(arcs(scene, starts, spans, self._digits, begins))
+        (state,) = _states(scene, {name: rows[last] for name, rows in own.items()})
         self._end = _End(elapsed[-1], state, truth.at(last), answer.at(last))
-        return found
+        return arc_ends
 
 
 # The arcs.
@@ -171,7 +173,7 @@ class Drifts:
 
 @dataclass(frozen=True)
 class _End:
-    """A sample: its time, the answer as an exact state, the exact motion and the answer there."""
+    """The last sample of a block: time, exact state of the answer, exact motion and answer."""
 
     time: Fraction
     state: State
@@ -179,11 +181,11 @@ class _End:
     answer: Motion
 
 
-def _states(scene: Scene, held: Mapping[str, Column]) -> list[State]:
-    """The answer's samples as exact initial states."""
+def _states(scene: Scene, own: Mapping[str, Column]) -> list[State]:
+    """Return the answer's samples as exact initial states."""
     columns = {
         GROUPS[name].start: [tuple(exact_value(value) for value in row) for row in rows]
-        for name, rows in held.items()
+        for name, rows in own.items()
     }
     samples = zip(*columns.values(), strict=True)
     return [replace(scene.initial, **dict(zip(columns, row, strict=True))) for row in samples]

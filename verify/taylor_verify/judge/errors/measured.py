@@ -1,7 +1,8 @@
-"""The errors of an answer, measured block of rows by block of rows.
+"""The errors of an answer, measured in blocks of rows.
 
-The exact motion and the answer are there for one block at a time; of every row remain its errors, in
-doubles. Shifts of time are sought on some thousands of the rows, the rows of the largest errors among them.
+Only one block of the exact motion and of the answer is in memory at a time. The errors of all rows are
+stored as doubles. Shifts of time are searched on some thousands of rows, with the rows of the largest
+errors among them.
 """
 
 from __future__ import annotations
@@ -41,20 +42,20 @@ from taylor_verify.solvers.trajectory import motion_of, rows_at
 Quantities = Mapping[str, np.ndarray[Any, Any]]
 
 _PROGRESS: Final = logging.getLogger("taylor_verify.progress")
-# So many rows are compared at once. A row takes some kB in numbers of mpmath.
+# Number of rows that are compared at once. A row takes some kB in numbers of mpmath.
 BLOCK: Final = 4096
-# Taylor series begin at the start again for every block.
+# Larger blocks for the Taylor route, which begins at the start again for every block.
 BLOCK_OF_SERIES: Final = 32768
-# Shifts of time are sought on so many rows at most, evenly chosen, and on the worst.
+# Shifts of time are searched on at most this many evenly chosen rows, and on the worst rows.
 MOST_SHIFTED: Final = 4096
 
 
 @dataclass(frozen=True)
 class Measured:
-    """The errors of all rows; ``at_nodes`` is the exact motion at the samples that were asked for.
+    """The errors of all rows; ``at_nodes`` is the exact motion at the requested samples.
 
-    ``excess`` is |q| - 1, where the answer has quaternions. ``shifts`` are those behind the errors of
-    ``states``; ``is_shifted_whole`` tells that no row was left out of them.
+    ``excess`` is |q| - 1, if the answer has quaternions. ``shifts`` explain the errors of ``states``;
+    ``is_shifted_whole`` is True if the shifts use all rows.
     """
 
     states: list[Errors]
@@ -67,7 +68,7 @@ class Measured:
 
 @dataclass(frozen=True)
 class Block:
-    """Some rows: their places among all, a scene at their instants, the exact motion and the answer."""
+    """Some rows: their indices, a scene at their instants, the exact motion and the answer."""
 
     places: Sequence[int]
     scene: Scene
@@ -76,18 +77,18 @@ class Block:
     answer: Motion
 
     def is_whole_of(self, scene: Scene) -> bool:
-        """Return True if these are all rows."""
+        """Return True if the block has all rows of the scene."""
         return len(self.places) == len(scene.clock.instants)
 
     def add_to(self, states: States, arc: Arc) -> None:
-        """Give the distances of these rows to the ``states`` of all, whose path so far is ``arc``."""
-        for found in state_distances(self.scene, self.truth, self.answer, arc):
-            states.add(found)
+        """Add the distances of these rows to ``states``; ``arc`` is the path up to here."""
+        for distances in state_distances(self.scene, self.truth, self.answer, arc):
+            states.add(distances)
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """An answer and the exact motion of the same scene, to be compared at the scene's instants.
+    """A comparison of an answer with the exact motion of the same scene, at the scene's instants.
 
     ``digits`` is the precision of the exact motion, ``bits`` that of the errors.
     """
@@ -99,7 +100,7 @@ class Comparison:
     bits: int
 
     def measured(self, nodes: Sequence[int], costs: Costs) -> Measured:
-        """Measure everything. Raises Unsettled where the exact motion cannot be had."""
+        """Measure states, drifts and shifts. Raises Unsettled if the exact motion cannot be computed."""
         states, excess, arc = States(), list[Floats](), Arc()
         with costs.of(TRUTH):
             start = self.exact.motion([Fraction(0)], self.digits + MORE_DIGITS)
@@ -129,7 +130,7 @@ class Comparison:
         return Measured(errors, drifts.errors(), lengths, truth, shifts, is_whole)
 
     def states(self) -> list[Errors]:
-        """Measure the states alone. Raises Unsettled likewise."""
+        """Measure the states only. Raises Unsettled if the exact motion cannot be computed."""
         states, arc = States(), Arc()
         for block in self.blocks(Costs()):
             with mp.workprec(self.bits):
@@ -137,7 +138,7 @@ class Comparison:
         return states.errors()
 
     def blocks(self, costs: Costs) -> Iterator[Block]:
-        """Yield all rows, some thousands at once, and say how far this has come."""
+        """Yield all rows in blocks of some thousands, and log the progress."""
         count = len(self.scene.clock.instants)
         size = BLOCK_OF_SERIES if self.exact.route == "taylor" else BLOCK
         for begin in range(0, count, size):
@@ -157,9 +158,9 @@ class Comparison:
         return Block(places, scene, truth, own, motion_of(own, self.bits))
 
     def _shifted(self, errors: Sequence[Errors], last: Block) -> Block:
-        """The rows on which shifts are sought."""
+        """Return the rows on which shifts are searched."""
         if last.is_whole_of(self.scene):
             return last
         count = len(self.scene.clock.instants)
-        worst = {index_of_largest(each.doubles) for each in errors}
+        worst = {index_of_largest(error.doubles) for error in errors}
         return self._block(sorted(worst.union(evenly(count, MOST_SHIFTED))), Costs())

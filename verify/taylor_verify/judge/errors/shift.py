@@ -1,11 +1,11 @@
-"""The shift of time behind an error of the state: an answer that is right but late, and what is left.
+"""The shift of time that explains an error of the state: an answer that is correct but late or early.
 
 With answer(t) ~ exact(t - c), c is positive if the answer is late. The shift is constant, or linear in t,
-or another one for every sample (judge.courses).
+or different at every sample (judge.errors.courses).
 
-A few samples may not share the course of the others, as a first row that is the given start. The median
-of the shifts of single samples does not see them, nor does the line of Theil and Sen for a drift. They
-are left out, named, and the rest is fitted again by least squares.
+A few samples may not share the course of the others, for example a first row that is the given start. Such
+strays do not influence the median of the shifts of single samples, nor the Theil-Sen line for a drift. They
+are left out and named, and the other samples are fitted again by least squares.
 """
 
 from __future__ import annotations
@@ -29,18 +29,18 @@ from taylor_verify.scenes.scene import Scene
 
 Places = np.ndarray[Any, np.dtype[np.bool_]]
 
-# A shift is the cause of an error only if it leaves no more than this part of it. A wrong equation also
-# moves a body along its orbit, by about as much as across it, so that a third or a half proves nothing.
+# A shift is the cause of an error only if at most this part remains. A wrong equation also moves a body
+# along its orbit, by about as much as across it, so removing a half or two thirds proves nothing.
 LEAVES: Final = 0.1
-# So large a part of the samples, and one at least, may be without the shift that the others share;
+# At most this part of the samples, and at least one, may be without the shift that the others share;
 STRAYS: Final = 0.1
-# a shift that fewer than this share explains nothing.
+# a shift explains nothing if fewer samples than this share it.
 FEWEST: Final = 3
-# A stray is off by so many times what is usual.
+# A stray is this many times further off than the median sample.
 UNUSUAL: Final = 10.0
-# The line of Theil and Sen looks at all pairs of so many samples.
+# The Theil-Sen line uses all pairs of at most this many samples.
 MOST_PAIRED: Final = 201
-# Its square is a double. No shift of time makes an error of that size, nor one that is not finite.
+# The square of this is still a double. No shift of time causes larger errors or NaN.
 _LARGEST_ERROR: Final = 2**500
 
 
@@ -49,11 +49,11 @@ class Shift:
     """The shift of one quantity.
 
     ``kind`` is the simplest course of the shift that explains the error, and ``remains`` the largest
-    error that this course leaves, in the unit of the error. ``time_shift`` is the constant c that leaves
-    least, in the scene's unit of time, and ``residual`` what it leaves. ``trend`` is the shift per unit of
-    time of the best course linear in t. ``strays`` are the times of samples that do not share the course:
-    all these numbers are of the others. ``course`` is the shift of every sample on the course, and
-    ``at_samples`` the shift of every sample by itself; where the motion rests, that of the course.
+    error after this course, in the unit of the error. ``time_shift`` is the best constant c, in the scene's
+    unit of time, and ``residual`` the error after it. ``trend`` is the shift per unit of time of the best
+    course linear in t. ``strays`` are the times of samples that do not share the course; the numbers above
+    do not include them. ``course`` is the shift of every sample on the course. ``at_samples`` is the shift
+    of every sample by itself, or the shift of the course where the motion rests.
     """
 
     time_shift: float
@@ -77,29 +77,29 @@ class Shift:
         }
 
     def terms(self) -> TimeShift:
-        """Return the shift as a reason has it, at the sample where it is largest."""
+        """Return the terms of the shift for a reason, at the sample where the shift is largest."""
         if self.kind is Kind.NONE:
             return TimeShift(self.kind)
-        found = TimeShift(
+        shift = TimeShift(
             self.kind, self.time_shift, self.remains, rows=len(self.times), strays=self.strays
         )
         if self.kind is Kind.CONSTANT:
-            return found
+            return shift
         worst = int(np.argmax(np.abs(self.course)))
         first, largest = self.course[0], self.course[worst]
-        found = replace(found, late=largest, at=self.times[worst], trend=self.trend)
+        shift = replace(shift, late=largest, at=self.times[worst], trend=self.trend)
         if abs(first) <= LEAVES * abs(largest):
-            return found
-        return replace(found, begins=first, begins_at=self.times[0])
+            return shift
+        return replace(shift, begins=first, begins_at=self.times[0])
 
 
 def time_shifts(
     scene: Scene, exact: Solution, truth: Motion, answer: Motion, digits: int, of: Sequence[Errors]
 ) -> list[Shift | None]:
-    """Return the shift behind the errors of each state quantity, at the ambient precision of mpmath.
+    """Return the shift that explains the errors of each state quantity, at the ambient precision of mpmath.
 
-    ``truth`` is the exact motion of ``scene`` at its own instants to ``digits`` digits. None where an
-    error is not finite or a rate is beyond float64. Where the motion rests no shift explains anything.
+    ``truth`` is the exact motion of ``scene`` at its instants to ``digits`` digits. The shift is None if an
+    error is not finite or a rate is beyond float64. If the motion rests, no shift explains anything.
     """
     run = Run(scene, exact, truth, answer, digits)
     return [_shift(Compared(run, errors)) for errors in of]
@@ -136,7 +136,7 @@ def _shift(compared: Compared) -> Shift | None:
 
 @dataclass(frozen=True)
 class _Fits:
-    """The constant and the drifting shift of some samples; ``strays`` are the places of the others."""
+    """The constant and the drifting fit of some samples; ``strays`` are the indices of the others."""
 
     compared: Compared
     start: Shifted
@@ -152,9 +152,9 @@ class _Fits:
         line: Shifted | None = None,
         strays: tuple[int, ...] = (),
     ) -> _Fits:
-        """Return the least squares from ``start`` without a shift; a drifting fit begins at ``line``.
+        """Return the fits that begin at ``start``, without a shift; the drifting fit begins at ``line``.
 
-        The constant fit begins at a constant: what a fit begins with stays part of it.
+        The constant fit must begin at a constant, because a fit contains the shift that it begins with.
         """
         begin = courses.best_start(compared, start, courses.constant)
         constant = courses.fitted(compared, begin, courses.constant)
@@ -163,9 +163,9 @@ class _Fits:
         return cls(compared, start, constant, linear, strays)
 
     def explains(self, fit: Shifted) -> bool:
-        """Return True if the shift leaves next to nothing of the error, and of the answer's motion.
+        """Return True if the remaining error is small beside the error and beside the answer's motion.
 
-        An answer that stands still is the truth at a clock that stands still, which is no cause.
+        An answer without motion equals the truth at a constant time, which does not explain its error.
         """
         some = min(self.compared.largest(self.start), self.compared.reach)
         return bool(some > 0 and self.compared.largest(fit) <= LEAVES * some)
@@ -187,19 +187,19 @@ class _Fits:
         return float(line[-1] - line[0]) / span if span else 0.0
 
     def course(self, run: Run) -> Floats:
-        """Return the shift of all samples of a run, strays among them."""
+        """Return the shift of all samples of a run, including strays."""
         if self.kind is not Kind.DRIFTING:
             return np.full(len(run.instants), float(self.constant.shift[0]))
         since: Floats = np.array(run.instants) - self.compared.run.instants[0]
-        found: Floats = self.linear.shift[0] + self.trend * since
-        return found
+        line: Floats = self.linear.shift[0] + self.trend * since
+        return line
 
 
 # The samples that do not share the course of the others.
 
 
 def _without_strays(compared: Compared, single: Shifted) -> Iterator[_Fits]:
-    """The fits of the samples that share a robust course, constant or linear in t."""
+    """Yield the fits of the samples that share a robust course, constant or linear in t."""
     moving = courses.moving(single)
     if np.count_nonzero(moving) < FEWEST:
         return
@@ -211,18 +211,18 @@ def _without_strays(compared: Compared, single: Shifted) -> Iterator[_Fits]:
         if not strays:
             continue
         shared = compared.without(strays)
-        run, kept = shared.run, np.delete(course, strays)
-        line = shared.evaluated(tuple(Fraction(c) for c in kept.tolist()))
+        run, shared_course = shared.run, np.delete(course, strays)
+        line = shared.evaluated(tuple(Fraction(c) for c in shared_course.tolist()))
         if line is not None:
             start = shared.fit(run.truth, run.rates, run.unshifted)
             yield _Fits.of(shared, start, line, strays)
 
 
 def strays_from(course: Floats, shifts: Floats, speed: Floats, across: Floats) -> tuple[int, ...]:
-    """Return the samples that are off a course by an unusual part of the shift; none where they are many.
+    """Return the samples that lie unusually far from a course; none if there are many.
 
-    ``shifts`` are those of single samples, which leave ``across`` of the error, and ``speed`` is the
-    error that a shift of one makes.
+    ``shifts`` are the shifts of single samples, ``across`` the errors after them, and ``speed`` is the
+    error that a unit shift causes.
     """
     off = np.hypot((shifts - course) * speed, across)
     is_off = (off > LEAVES * np.abs(course) * speed) & (off > UNUSUAL * np.median(off))
@@ -236,14 +236,14 @@ def _median(shifts: Floats, moving: Places, times: Floats) -> Floats:
 
 
 def _theil_sen(shifts: Floats, moving: Places, times: Floats) -> Floats:
-    """The line whose slope is the median of those between all pairs of samples."""
+    """Return the line whose slope is the median slope between all pairs of samples."""
     places = np.flatnonzero(moving)
     chosen = places[evenly(len(places), MOST_PAIRED)]
     first, second = np.triu_indices(len(chosen), 1)
     t, c = times[chosen], shifts[chosen]
     gaps = t[second] - t[first]
     if not gaps.all():
-        # Beside a large start, instants may be one number in float64: there is no slope to tell.
+        # After a large start time, all instants may be equal in float64: then there is no slope.
         return _median(shifts, moving, times)
     slope = float(np.median((c[second] - c[first]) / gaps))
     return np.median(c - slope * t) + slope * times

@@ -1,9 +1,9 @@
-"""Errors of a trajectory against the truth, sample by sample, in the units of design section 6.
+"""Errors of a trajectory relative to the truth, at every sample.
 
-Of a long answer only some rows are there at a time. An error is divided by a scale that is known when all
-rows have come, as the largest size of the motion is. All rows are divided by the scale of the first block,
-and at the end by what is missing of the whole one. So a row takes eight bytes, equal errors stay equal, and
-errors that came in one block are what they would be.
+A long answer is read in blocks of rows. An error is divided by a scale, such as the largest size of the
+motion, that is known only after the last block. So all rows are divided by the scale of the first block,
+and at the end by the ratio of the two scales. A row takes eight bytes, equal errors stay equal, and
+errors of a single block are not changed.
 """
 
 from __future__ import annotations
@@ -32,12 +32,11 @@ _LEAST: Final = ulp(0.0)
 
 @dataclass(frozen=True)
 class Errors:
-    """The error of one quantity at every sample, as mpf or float64, in ``unit``.
+    """Errors of one quantity at every sample, as mpf or float64, in ``unit``.
 
-    ``parts`` names the quantities of the motion that it compares, each with the scale its error is
-    divided by; ``truth_radius`` is how wide the truth is, in the same unit. ``is_state`` tells the
-    quantities that say where the body is from those it conserves. ``change`` is the error of the last
-    sample with its sign, of a conserved number.
+    ``parts`` maps each compared quantity of the motion to the scale of its error. ``truth_radius`` is the
+    error bound of the truth, in the same unit. ``is_state`` is True for states and False for conserved
+    quantities. ``change`` is the signed error of the last sample, for a conserved scalar.
     """
 
     quantity: str
@@ -50,17 +49,17 @@ class Errors:
 
     @cached_property
     def doubles(self) -> Floats:
-        """The values in float64, as bounds are."""
+        """Values in float64."""
         return in_doubles(self.values)
 
     @cached_property
     def widths(self) -> Floats:
-        """The truth's radii in float64."""
+        """Radii of the truth in float64."""
         return in_doubles(self.truth_radius)
 
 
 def in_doubles(values: Column) -> Floats:
-    """Return the values as float64. What is not zero does not become it."""
+    """Return the values as float64. A value that is not zero does not underflow to zero."""
     if values.dtype != object:
         return values
     return np.array([float(value) or (_LEAST if value else 0.0) for value in values])
@@ -68,10 +67,10 @@ def in_doubles(values: Column) -> Floats:
 
 @dataclass(frozen=True)
 class Distances:
-    """The distances of one quantity from the truth at some samples, part by part, without a scale.
+    """Distances of one quantity from the truth at some samples, by part, not divided by a scale.
 
-    ``widths`` are those of the truth, in the unit of the distances. ``sizes`` are what the scales are made
-    of: the scale of a part is its size, or 1 where that is zero.
+    ``widths`` are the error bounds of the truth, in the unit of the distances. The scale of a part is its
+    entry in ``sizes``, or 1 if that is zero.
     """
 
     quantity: str
@@ -81,7 +80,7 @@ class Distances:
     sizes: Mapping[str, Any]
 
     def errors(self) -> Errors:
-        """Return the errors over the scales of these samples; the larger part counts."""
+        """Return the errors relative to the scales of these samples; the larger part counts."""
         scales = {part: or_one(size) for part, size in self.sizes.items()}
         values = _larger([rows / scales[part] for part, rows in self.distances.items()])
         radius = _larger([rows / scales[part] for part, rows in self.widths.items()])
@@ -89,27 +88,27 @@ class Distances:
 
 
 def state_errors(scene: Scene, truth: Motion, answer: Motion) -> list[Errors]:
-    """Return the errors of everything tracked, evaluated at the ambient precision of mpmath."""
-    return [found.errors() for found in state_distances(scene, truth, answer)]
+    """Return the errors of all tracked quantities, at the ambient precision of mpmath."""
+    return [distances.errors() for distances in state_distances(scene, truth, answer)]
 
 
 def state_distances(
     scene: Scene, truth: Motion, answer: Motion, arc: Arc | None = None
 ) -> list[Distances]:
-    """Return the distances of everything tracked; ``arc`` is the path before these samples."""
-    found = []
+    """Return the distances of all tracked quantities; ``arc`` is the path before these samples."""
+    distances = []
     for quantity in state_quantities(scene.model, scene.track):
         if quantity.measure is Measure.ANGLE:
-            found.append(_angles(quantity, truth, answer))
+            distances.append(_angles(quantity, truth, answer))
             continue
         is_path = quantity.measure is Measure.PATH
         length = (arc or Arc()).through(scene, truth) if is_path else None
-        found.append(_vectors(quantity, truth, answer, length))
-    return found
+        distances.append(_vectors(quantity, truth, answer, length))
+    return distances
 
 
 def _vectors(quantity: Quantity, truth: Motion, answer: Motion, size: Any) -> Distances:
-    """Return the distances of vectors; without a ``size`` that of each part is its largest norm."""
+    """Return the distances of vectors; without a ``size`` the size of each part is its largest norm."""
     parts = quantity.groups
     sizes = {part: norms(truth[part]) for part in parts}
     return Distances(
@@ -122,18 +121,18 @@ def _vectors(quantity: Quantity, truth: Motion, answer: Motion, size: Any) -> Di
 
 
 def _larger(by_part: Sequence[Column]) -> Column:
-    """Sample by sample the largest of all parts."""
+    """Return the largest of all parts at each sample."""
     if len(by_part) == 1:
         return by_part[0]
     return np.array([largest(row) for row in zip(*by_part, strict=True)], dtype=object)
 
 
 def _angles(quantity: Quantity, truth: Motion, answer: Motion) -> Distances:
-    """Return the angle of R_exact^T R: |R - R_exact| in the Frobenius norm is 2 sqrt 2 sin(angle/2)."""
+    """Return the angles of R_exact^T R, from the Frobenius norm |R - R_exact| = 2 sqrt 2 sin(angle/2)."""
     name = quantity.name
     chords = norms(answer[name] - truth[name]) / (2 * mp.sqrt(2))
     angles = [2 * mp.asin(chord) if chord <= 1 else mp.pi + 0 * chord for chord in chords]
-    # |R|_F is sqrt 3, so a relative radius is less than this many radians.
+    # |R|_F is sqrt 3, so an angle in radians is at most twice the relative radius.
     widths = 2 * truth.radius_of(name)
     distances = np.array(angles, dtype=object)
     return Distances(name, quantity.unit, {name: distances}, {name: widths}, {name: mpf(1)})
@@ -143,14 +142,14 @@ def _angles(quantity: Quantity, truth: Motion, answer: Motion) -> Distances:
 class Arc:
     """The length of the centre's path, by the trapezium rule from the speed |U| at the samples.
 
-    ``length`` is that so far, up to the time and the speed of ``end``.
+    ``length`` is the length so far, up to ``end``, a pair of time and speed.
     """
 
     length: Any = 0
     end: tuple[Any, Any] | None = None
 
     def through(self, scene: Scene, truth: Motion) -> Any:
-        """Take in further samples, at the instants of the scene, and return the length so far."""
+        """Add further samples, at the instants of the scene, and return the length so far."""
         forms = velocity_forms(scene.body).forms["linear_velocity"]
         terms = [(to_mpfr(truth[name]), to_mpfr(exact_matrix(m))) for name, m in forms.items()]
         with precision():
@@ -158,7 +157,7 @@ class Arc:
             speeds = to_mpf(sqrt(np.sum(U * U, axis=1)))
         for elapsed, speed in zip(scene.clock.elapsed, speeds, strict=True):
             time = mp.convert(elapsed)
-            # The start is not always sampled; the speed there is close enough to the first sample's.
+            # The start is not always sampled; the speed of the first sample is close enough.
             since, before = self.end or (mpf(0), speed)
             self.length = self.length + abs(time - since) * (before + speed) / 2
             self.end = time, speed
@@ -180,21 +179,21 @@ def largest(values: Any) -> Any:
 
 
 def or_one(scale: Any) -> Any:
-    """Return the scale, or 1 for one that is zero or no number."""
+    """Return the scale, or 1 if it is zero or NaN."""
     return scale if scale > 0 else mpf(1)
 
 
-# Rows that come in blocks.
+# Rows in blocks.
 
 
-def joined(one: Motion, other: Motion) -> Motion:
-    """Return the rows of a motion and those of another one behind them."""
-    both = {n: np.concatenate([rows, other[n]]) for n, rows in one.quantities.items()}
-    return Motion(both, np.concatenate([one.radius, other.radius]))
+def joined(first: Motion, second: Motion) -> Motion:
+    """Return the rows of two motions, one after the other."""
+    both = {n: np.concatenate([rows, second[n]]) for n, rows in first.quantities.items()}
+    return Motion(both, np.concatenate([first.radius, second.radius]))
 
 
 class Series:
-    """Numbers of which blocks come one by one, over a scale of all of them, as float64."""
+    """Blocks of numbers, divided by one scale that is known after the last block, as float64."""
 
     def __init__(self) -> None:
         self._blocks: list[Floats] = []
@@ -202,24 +201,24 @@ class Series:
         self._scale: Any = None
 
     def add(self, values: Column, scale: Any) -> None:
-        """Take in further numbers, and the scale of all that have come."""
+        """Add further numbers, and the scale of all numbers so far."""
         self._scale = scale
         if not self._blocks:
             self._first = scale
         self._blocks.append(in_doubles(values / self._first))
 
     def joined(self) -> tuple[Floats, Any]:
-        """Return all of them over the last scale, and that scale."""
-        found = np.concatenate(self._blocks)
+        """Return all numbers over the last scale, and that scale."""
+        values = np.concatenate(self._blocks)
         if self._first != self._scale:
-            found *= float(self._first / self._scale)
-        # The blocks are not kept beside it.
-        self._blocks, self._first = [found], self._scale
-        return found, self._scale
+            values *= float(self._first / self._scale)
+        # The joined array replaces the blocks, to save memory.
+        self._blocks, self._first = [values], self._scale
+        return values, self._scale
 
 
 class States:
-    """The errors of all state quantities of an answer whose rows come in blocks."""
+    """Errors of all state quantities of an answer that is read in blocks."""
 
     def __init__(self) -> None:
         self._about: dict[str, Distances] = {}
@@ -228,23 +227,23 @@ class States:
         self._errors: defaultdict[tuple[str, str], Series] = defaultdict(Series)
         self._widths: defaultdict[tuple[str, str], Series] = defaultdict(Series)
 
-    def add(self, found: Distances) -> dict[str, Any]:
-        """Take in the next rows of one quantity, and return its scales so far."""
+    def add(self, rows: Distances) -> dict[str, Any]:
+        """Add the next rows of one quantity, and return its scales so far."""
         scales = {}
-        self._about[found.quantity] = found
-        for part, distances in found.distances.items():
-            key = found.quantity, part
-            before, size = self._sizes.get(key), found.sizes[part]
-            # The larger size; NaN stays.
+        self._about[rows.quantity] = rows
+        for part, distances in rows.distances.items():
+            key = rows.quantity, part
+            before, size = self._sizes.get(key), rows.sizes[part]
+            # Keep the larger size; NaN stays NaN.
             if before is None or size > before or size != size:
                 self._sizes[key] = size
             scales[part] = scale = or_one(self._sizes[key])
             self._errors[key].add(distances, scale)
-            self._widths[key].add(found.widths[part], scale)
+            self._widths[key].add(rows.widths[part], scale)
         return scales
 
     def errors(self) -> list[Errors]:
-        """Return the errors of all rows, in the order in which the quantities came first."""
+        """Return the errors of all rows, in the order of the first block's quantities."""
         return [self._joined(about) for about in self._about.values()]
 
     def _joined(self, about: Distances) -> Errors:

@@ -1,8 +1,8 @@
-"""The part of the scene's question that a file answers: its columns, its span, and sentences on the rest.
+"""Coverage of the scene's question by a file: its columns, its span, and notes on missing parts.
 
-The times of the samples are the file's own affair. It has to reach the scene's end, to begin no later
-than one of its own sampling intervals after the start, and to have more than one row. Where it lacks a part
-there is the row `complete`.
+A file may have samples at any times. But it must reach the scene's end, begin at most one of its own
+sampling intervals after the start, and have more than one row. If a part is missing, the judgement has the
+row `complete`.
 """
 
 from __future__ import annotations
@@ -35,17 +35,17 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import Recorded, TrajectoryFile
 from taylor_verify.solvers.trajectory import Outcome
 
-# A clock that adds up its step errs by a roundoff of the span in each of them: steps of 1e-4 up to 100.
+# A clock that sums its steps errs by up to a roundoff of the span per step: 10^6 steps of 1e-4 reach 100.
 _CLOCK_STEPS: Final = 10**6
-# So many rows show an interval of their own.
+# At least this many rows show a sampling interval.
 _FEWEST_ROWS: Final = 3
 
 
 @dataclass(frozen=True)
 class Extent:
-    """The rows of a file beside the scene's span, both as times since its start in the direction of motion.
+    """The rows of a file and the scene's span, as times since the start in the direction of motion.
 
-    ``times`` are those of the file in that direction. ``begin`` and ``end`` are the first and the last
+    ``times`` are the file's times in that direction. ``begin`` and ``end`` are the first and the last
     instant of the scene.
     """
 
@@ -64,7 +64,7 @@ class Extent:
             times = times[::-1]
         end = sign * elapsed[-1]
         rounded = _CLOCK_STEPS * rung.unit_roundoff * (end + abs(start))
-        # In less than half an interval no row of the file is missing.
+        # If less than half an interval is left, no row of the file is missing.
         last = abs(times[-1] - times[-2]) if len(times) > 1 else Fraction(0)
         return cls(times, start, sign, sign * elapsed[0], end, min(rounded, last / 2))
 
@@ -74,7 +74,7 @@ class Extent:
 
     @property
     def last(self) -> Fraction:
-        """The last row."""
+        """Time of the last row."""
         return self.since(self.times[-1])
 
     @property
@@ -83,20 +83,20 @@ class Extent:
 
     @cached_property
     def inside(self) -> range:
-        """The places of the rows within the scene's span."""
+        """Indices of the rows within the scene's span."""
         first = bisect_left(self.times, -self.slack, key=self.since)
         return range(first, bisect_right(self.times, self.end + self.slack, key=self.since))
 
     @property
     def first(self) -> Fraction:
-        """The first row within the span."""
+        """Time of the first row within the span."""
         return self.since(self.times[self.inside[0]])
 
     @property
     def reaches_start(self) -> bool:
-        """True if the first row within the span is at the first instant, or one interval after it.
+        """True if the first row within the span is at the first instant, or at most one interval later.
 
-        Of two rows nobody can tell the interval.
+        Two rows alone show no interval.
         """
         if not self.inside or self.first <= self.begin + self.slack:
             return bool(self.inside)
@@ -106,12 +106,12 @@ class Extent:
 
     @property
     def is_one_state(self) -> bool:
-        """True if one row is all there is within the span, of a scene that asks for several."""
+        """True if only one row is within the span, although the scene asks for several."""
         return len(self.inside) <= 1 and self.begin != self.end
 
 
 def not_judged(extent: Extent, missing: Sequence[str]) -> Iterator[str]:
-    """Yield the parts of the scene's question that a file does not answer; ``missing`` are groups."""
+    """Yield the parts of the scene's question that a file does not answer, with its ``missing`` groups."""
     yield from (f"the {GROUPS[name].noun}" for name in missing)
     span = f"the scene's span of {float(extent.end):g}"
     if extent.is_one_state:
@@ -126,13 +126,13 @@ def not_judged(extent: Extent, missing: Sequence[str]) -> Iterator[str]:
 def complete_verdict(
     scene: Scene, file: str, rung: Rung, lack: Sequence[str], partial: bool
 ) -> Verdict:
-    """Return the row that says what was not judged: undecided, or vacuous where a part was asked for."""
+    """Return the row on what was not judged: undecided, or vacuous if a ``partial`` answer is accepted."""
     status = Status.VACUOUS if partial else Status.UNDECIDED
     whole = f"`taylor-verify question {scene.name} --csv` prints the header and the times of a whole file"
     asked = "a part is all that --partial asks for" if partial else "--partial accepts a part"
-    said = f"not judged: {', '.join(lack)}; {whole}; {asked}"
+    sentence = f"not judged: {', '.join(lack)}; {whole}; {asked}"
     row = (scene, Recorded({}, setting=file), rung, COMPLETE, status, Outcome.FINISHED)
-    reason, roundoff = stated(Cause.INCOMPLETE, said), float(rung.unit_roundoff)
+    reason, roundoff = stated(Cause.INCOMPLETE, sentence), float(rung.unit_roundoff)
     return verdict_on(*row, reason=reason, roundoff=roundoff)
 
 
@@ -140,9 +140,9 @@ def complete_verdict(
 
 
 def comparable(file: TrajectoryFile, scene: Scene) -> list[str]:
-    """Return the groups that the scene's motion has. A file without any is refused."""
+    """Return the file's groups that can be compared with the scene. Raises Refused if there are none."""
     known = _known(scene)
-    # A scene might track what the columns tell, and does not.
+    # Quantities that the scene could track but does not track.
     untracked = {name for name in TRACKED[scene.model] if name not in scene.track}
     groups = [n for n in file.groups if n in known and GROUPS[n].quantity not in untracked]
     if groups:
@@ -152,15 +152,15 @@ def comparable(file: TrajectoryFile, scene: Scene) -> list[str]:
         expected = f"expected columns of a scene of model {scene.model} ({_columns(known)})"
         raise Refused([f"{expected}, got {_columns([name])} @ {file.name}" for name in foreign])
     wanted = state_groups(scene.model, scene.track)
-    # Whoever has velocities has no impulses.
+    # A file with velocities needs no impulses.
     instead = [VELOCITIES] if scene.model == "kirchhoff" else []
     expected = " or ".join(_columns(names) for names in (*instead, *([name] for name in wanted)))
     notes = "; ".join(
         (*file.notes, f"name other columns: --columns {COLUMNS[wanted[0]][0]}=NAME,...")
     )
-    got = _columns(file.groups) or "t alone"
+    columns = _columns(file.groups) or "t alone"
     raise Refused(
-        [f"expected {expected}, which {scene.name} tracks, got {got} @ {file.name} ({notes})"]
+        [f"expected {expected}, which {scene.name} tracks, got {columns} @ {file.name} ({notes})"]
     )
 
 
@@ -169,14 +169,14 @@ def _columns(groups: Iterable[str]) -> str:
 
 
 def _known(scene: Scene) -> list[str]:
-    """Return the groups that scenes of this model may have; of a solid in a fluid also its velocities."""
+    """Return the groups that a file for this model may have; for a solid in a fluid also its velocities."""
     quantities = {MAIN[scene.model], *TRACKED[scene.model]}
     velocities = VELOCITIES if scene.model == "kirchhoff" else ()
     return [n for n, group in GROUPS.items() if group.quantity in quantities or n in velocities]
 
 
 def coverage_notes(file: TrajectoryFile, groups: Sequence[str], scene: Scene) -> Iterator[str]:
-    """Yield a sentence for each group that is not compared, those without a meaning here first."""
+    """Yield a sentence for each group that is not compared; groups of other models come first."""
     known = _known(scene)
     for name in sorted(file.groups, key=lambda name: name in known):
         if name not in known:
@@ -195,7 +195,7 @@ def missing_groups(groups: Sequence[str], scene: Scene) -> list[str]:
     """Return the groups that the scene asks for and the file lacks."""
     has = {"quaternion" if GROUPS[name].is_frame else name for name in groups}
     if scene.model == "kirchhoff" and has.issuperset(VELOCITIES):
-        # Together they stand for the impulses.
+        # Both velocities together replace the impulses.
         has |= set(MOMENTA["kirchhoff"])
     return [name for name in state_groups(scene.model, scene.track) if name not in has]
 

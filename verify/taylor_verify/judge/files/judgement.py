@@ -1,7 +1,7 @@
-"""The judgement of somebody's trajectory: conventions first, then every quantity it has.
+"""The judgement of a trajectory file: first its conventions, then every quantity in it.
 
-The file is taken as the scene writes things, or as it was found to write them where that is accepted.
-Rows before the scene's start and rows after it are two runs that begin at the start.
+The file is read by the scene's conventions, or by the conventions that the search returned if the caller
+accepts them. Rows before the scene's start and rows after it are two runs that begin at the start.
 """
 
 from __future__ import annotations
@@ -44,16 +44,16 @@ from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import Recorded, TrajectoryFile
 
-# The Taylor route goes no further than so many times the scene's span for a file.
+# For a file the Taylor route goes at most this many times the scene's span.
 _MOST_SPANS: Final = 100
 
 
 @dataclass(frozen=True, repr=False)
 class FileJudgement(Judgement):
-    """The verdicts on a file, and what was found out about it.
+    """The verdicts on a file, its conventions and notes.
 
-    ``conventions`` are those that are not the scene's, ``accepted`` says whether they were corrected,
-    ``notes`` are sentences about what was not compared and why.
+    ``conventions`` are those that differ from the scene's, ``accepted`` is True if they were corrected,
+    ``notes`` are sentences on what was not compared and why.
     """
 
     file: TrajectoryFile
@@ -67,16 +67,16 @@ class FileJudgement(Judgement):
         file = FileRead(self.file.name, len(self.file.times), ("t", *columns), self.notes)
         conventions = [
             Convention(
-                about=found.subject,
-                found=found.words,
-                ambiguous=not found.is_certain,
-                corrected=self.accepted and found.is_certain,
-                sentence=found.sentence,
-                alternatives=found.alternatives,
-                error_without=found.before,
-                error_with=found.after,
+                about=finding.subject,
+                found=finding.words,
+                ambiguous=not finding.is_certain,
+                corrected=self.accepted and finding.is_certain,
+                sentence=finding.sentence,
+                alternatives=finding.alternatives,
+                error_without=finding.before,
+                error_with=finding.after,
             )
-            for found in self.conventions
+            for finding in self.conventions
         ]
         return {
             "verdicts": [verdict.row() for verdict in self.verdicts],
@@ -95,24 +95,26 @@ def judge_file(
     partial: bool = False,
     tolerances: Tolerances = NO_TOLERANCES,
 ) -> FileJudgement:
-    """Judge a file as arithmetic of the rung.
+    """Judge a file as a result of arithmetic on the rung.
 
-    What its columns are is that of solvers.file; its times are absolute, in the scene's unit, and each
-    row is compared at its own time. With ``accept_conventions`` what was found out about it is corrected
-    before it is judged. A file that lacks a part of what the scene asks has a row `complete` that is
-    undecided, or vacuous if a ``partial`` answer is asked for. ``tolerances`` take the place of bounds.
-    Raises Refused if it has nothing to compare.
+    solvers.files defines the columns. Times are absolute, in the scene's unit, and each row is compared
+    at its own time. With ``accept_conventions`` the file's conventions are corrected before it is judged.
+    If the file lacks a part of what the scene asks, there is a row `complete`: undecided, or vacuous if
+    ``partial`` answers are accepted. ``tolerances`` replace the bounds. Raises Refused if nothing can be
+    compared.
     """
     groups = comparable(file, scene)
     asked, notes = scene, (*file.notes, *coverage_notes(file, groups, scene))
     compared = replace(file, groups={name: file.groups[name] for name in groups})
     tracked = with_needs({GROUPS[name].quantity for name in groups})
     scene = replace(scene, track=scene.track & tracked)
-    found = Conventions((), World(scene), {})
+    file_conventions = Conventions((), World(scene), {})
     try:
-        found = conventions(compared, scene, rung)
-        answer = FileRows.of(compared, scene, rung, found if accept_conventions else None)
-        judged = _judged(answer, compared, rung, found, tolerances)
+        file_conventions = conventions(compared, scene, rung)
+        answer = FileRows.of(
+            compared, scene, rung, file_conventions if accept_conventions else None
+        )
+        judged = _judged(answer, compared, rung, file_conventions, tolerances)
         extent = Extent.of(answer.scene, answer.times, rung)
         notes += tuple(span_notes(answer.scene, answer.times, extent))
         lack = list(not_judged(extent, missing_groups(groups, asked)))
@@ -125,24 +127,28 @@ def judge_file(
         judged = _alone(scene, file, rung, Status.UNDECIDED, str(doubt), Cause.NO_TRUTH)
     causes: tuple[LikelyCause, ...] = ()
     if any(verdict.verdict is Status.FAIL for verdict in judged.verdicts):
-        causes = causes_of_file(compared, rung, found, judged)
+        causes = causes_of_file(compared, rung, file_conventions, judged)
         stored = storing(file, rung)
         notes += () if stored is None else (stored.note,)
-    left = () if accept_conventions else found.findings
+    left = () if accept_conventions else file_conventions.findings
     verdicts = with_file_kinds(judged.verdicts, file, rung, left)
-    of_file = (file, found.findings, accept_conventions, notes)
+    of_file = (file, file_conventions.findings, accept_conventions, notes)
     return FileJudgement(verdicts, judged.record, *of_file, causes=causes)
 
 
 def _judged(
-    answer: FileRows, file: TrajectoryFile, rung: Rung, found: Conventions, tolerances: Tolerances
+    answer: FileRows,
+    file: TrajectoryFile,
+    rung: Rung,
+    file_conventions: Conventions,
+    tolerances: Tolerances,
 ) -> Judgement:
-    """The judgement of either side of the start, and of both together."""
+    """Judge the rows before and after the start, and return both judgements in one."""
     scene = answer.scene
-    if found.world.scale != 1 and is_far(scene, answer.times):
+    if file_conventions.world.scale != 1 and is_far(scene, answer.times):
         why = (
-            f"{found.world.words}; as it stands the file asks for times far beyond the scene, which has "
-            "no closed form, and they are not computed: the rows near the start are wrong already"
+            f"{file_conventions.world.words}; as it stands the file asks for times far beyond the scene, "
+            "which has no closed form, and they are not computed: the rows near the start are wrong already"
         )
         return _alone(scene, file, rung, Status.FAIL, why, Cause.TOO_FAR)
     if is_far(scene, answer.times, _MOST_SPANS):

@@ -1,7 +1,7 @@
-"""The judgement of an answer that has only some of the quantities, or velocities besides.
+"""The judgement of an answer with only some of the quantities, or with additional velocities.
 
-What is missing is taken from the truth, so that the equations of the judge have all they ask for; no
-row that rests on it is reported.
+Missing quantities are filled in from the truth, because the judge needs all of them; no row that depends
+on a filled-in quantity is reported.
 """
 
 from __future__ import annotations
@@ -43,16 +43,16 @@ from taylor_verify.solvers.trajectory import ByRows, rows_at
 Quantities = Mapping[str, np.ndarray[Any, Any]]
 
 _GUARD_DIGITS: Final = 6
-# The names that a sensitivity has for the quantities of a state.
+# The names of a state's quantities in a sensitivity, where they differ.
 _BLOCKS: Final = {"momentum": "omega"}
 
 
 def partial_judgement(
     problem: Problem, solver: Recorded, tolerances: Tolerances = NO_TOLERANCES
 ) -> Judgement:
-    """Return the verdicts on what the answer has. Raises Unsettled where there is no truth.
+    """Return the verdicts on the quantities of the answer. Raises Unsettled if there is no truth.
 
-    The problem's scenes track what the answer has of attitude and centre, and no more.
+    The problem's scenes track attitude and centre only if the answer has them.
     """
     own, given = solver.quantities, problem.given
     exact = solution(given)
@@ -73,8 +73,8 @@ def partial_judgement(
         if group in own and group not in one_row.quantities
     ]
     if "attitude" in filled and not given.body.is_conservative:
-        # The balances of a loaded body start an arc of the exact motion from every row, for which a
-        # matrix that is no rotation to the last digit will not do. States alone are compared.
+        # The balances of a loaded body start an arc of the exact motion from every row. They need a
+        # matrix that is a rotation to the last digit, so only the states are compared here.
         apart += _states_apart(run, exact, filled)
         filled = filled.without("attitude", "centre")
         problem = replace(problem, given=replace(given, track=frozenset()))
@@ -84,16 +84,16 @@ def partial_judgement(
         return whole
     sound = _rows_resting_on(problem, one_row, has)
     pairs = [*zip(whole.verdicts, whole.record.gates, strict=True), *apart]
-    kept = [(verdict, gate) for verdict, gate in pairs if verdict.quantity in sound]
-    record = replace(whole.record, gates=tuple(gate for _, gate in kept))
-    return Judgement(tuple(verdict for verdict, _ in kept), record)
+    sound_pairs = [(verdict, gate) for verdict, gate in pairs if verdict.quantity in sound]
+    record = replace(whole.record, gates=tuple(gate for _, gate in sound_pairs))
+    return Judgement(tuple(verdict for verdict, _ in sound_pairs), record)
 
 
 @dataclass(frozen=True)
 class Filled(ByRows):
-    """The quantities that an answer has, and the truth in place of those that it lacks.
+    """The quantities of an answer, with the truth in place of missing quantities.
 
-    ``exact`` is the truth in some rows, and ``count`` the number of all.
+    ``exact`` returns the truth in some rows, and ``count`` is the number of all rows.
     """
 
     own: Quantities
@@ -104,11 +104,11 @@ class Filled(ByRows):
 
     def rows(self, places: Sequence[int]) -> dict[str, np.ndarray[Any, Any]]:
         own = rows_at(self.own, places)
-        found = {name: own[name] for name in self.has}
+        rows = {name: own[name] for name in self.has}
         if self.lacks:
             truth = self.exact(places)
-            found |= {name: truth[name] for name in self.lacks}
-        return found
+            rows |= {name: truth[name] for name in self.lacks}
+        return rows
 
     def without(self, *names: str) -> Filled:
         has, lacks = (
@@ -121,13 +121,13 @@ class Filled(ByRows):
 
 
 def _rows_resting_on(problem: Problem, truth: Motion, has: set[str]) -> set[str]:
-    """The quantities of a verdict all of whose ingredients the answer has."""
-    found = {UNIT_QUATERNION, *(GROUPS[name].quantity for name in has)}
+    """Return the quantities of verdicts that need nothing but what the answer has."""
+    quantities = {UNIT_QUATERNION, *(GROUPS[name].quantity for name in has)}
     for invariant in invariants(problem.given):
         blocks = {_BLOCKS.get(block, block) for block in invariant.sensitivity(truth)}
         if blocks <= has:
-            found.add(invariant.name)
-    return found
+            quantities.add(invariant.name)
+    return quantities
 
 
 def _comparison(run: Run, exact: Solution, quantities: Quantities) -> Comparison:
@@ -143,7 +143,7 @@ def _floor(run: Run) -> Floor:
 
 
 def _states_apart(run: Run, exact: Solution, filled: Quantities) -> list[Gated]:
-    """Attitude and centre against the truth, and nothing that is conserved."""
+    """Return the gates of attitude and centre, without conserved quantities."""
     compared = _comparison(run, exact, filled)
     tracked, rows = TRACKED[compared.scene.model], []
     states = [errors for errors in compared.states() if errors.quantity in tracked]
@@ -182,7 +182,7 @@ def _velocity(run: Run, exact: Solution, group: str) -> Gated:
 
 
 def _velocity_errors(compared: Comparison, group: str) -> tuple[Errors, Floats]:
-    """The errors of a velocity, and its own size at every sample over the largest."""
+    """Return the errors of a velocity, and its size at every sample relative to the largest."""
     body, quantity = compared.scene.body, QUANTITIES[GROUPS[group].quantity]
     states, sizes, radii = States(), Series(), Series()
     for block in compared.blocks(Costs()):
@@ -190,8 +190,10 @@ def _velocity_errors(compared: Comparison, group: str) -> tuple[Errors, Floats]:
             rows = velocity(group, body, block.truth.quantities)
             size, distances = norms(rows), norms(block.own[group] - rows)
             zeros, most = {group: 0 * block.truth.radius}, {group: largest(size)}
-            found = Distances(quantity.name, quantity.unit, {group: distances}, zeros, most)
-            scale = states.add(found)[group]
+            block_distances = Distances(
+                quantity.name, quantity.unit, {group: distances}, zeros, most
+            )
+            scale = states.add(block_distances)[group]
             sizes.add(size, scale)
             radii.add(block.truth.radius, mpf(1))
     (errors,) = states.errors()
@@ -200,7 +202,7 @@ def _velocity_errors(compared: Comparison, group: str) -> tuple[Errors, Floats]:
 
 
 def _velocity_attainable(run: Run, group: str, sizes: Floats, scale: Any) -> Floats:
-    """The error that a rounding of x and y, and of the velocity itself, leaves."""
+    """Return the error that the rounding of x and y, and of the velocity itself, leaves."""
     base = _floor(run)
     squares = (base.unit_roundoff * sizes) ** 2
     for part, matrix in velocity_forms(run.problem.given.body).forms[group].items():

@@ -1,4 +1,4 @@
-"""The rows of a trajectory file in exact numbers, corrected where its conventions were accepted."""
+"""The rows of a trajectory file as exact numbers, corrected if its conventions were accepted."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ from taylor_verify.solvers.trajectory import ByRows
 
 Array = np.ndarray[Any, Any]
 
-# What is not dyadic in a file, and a correction, is rounded so far below the rung.
+# Numbers that are not dyadic, and corrected numbers, are rounded with this many more bits than the rung.
 _SPARE_BITS: Final = 128
 
 
 @dataclass(frozen=True)
 class FileRows(ByRows):
-    """Rows of a file, and the scene it is held against. ``times`` are those of all its rows.
+    """Rows of a file, and the scene that they are compared with. ``times`` are the times of all rows.
 
-    ``places`` are the rows that count, in the order away from the start.
+    ``places`` are the compared rows, in the order away from the start.
     """
 
     scene: Scene
@@ -60,34 +60,34 @@ class FileRows(ByRows):
 
     @property
     def instants(self) -> tuple[Fraction, ...]:
-        """The times of the rows that count."""
+        """Times of the compared rows."""
         return tuple(self.times[k] for k in self.places)
 
     def __iter__(self) -> Iterator[str]:
-        made = MOMENTA[self.scene.model] if self.has_velocities else ()
-        return iter((*self.file.groups, *made))
+        momenta_names = MOMENTA[self.scene.model] if self.has_velocities else ()
+        return iter((*self.file.groups, *momenta_names))
 
     def rows(self, places: Sequence[int]) -> dict[str, Array]:
         asked, bits = _within(self.places, places), self.rung.bits + _SPARE_BITS
-        found = {name: rows.held(asked, bits) for name, rows in self.file.groups.items()}
-        if "attitude" in found:
-            found["attitude"] = found["attitude"].reshape(-1, 3, 3)
+        values = {name: rows.as_mpf(asked, bits) for name, rows in self.file.groups.items()}
+        if "attitude" in values:
+            values["attitude"] = values["attitude"].reshape(-1, 3, 3)
         if self.readings:
-            # The exact attitude, for vectors that are in space axes.
+            # The exact attitude converts vectors that are in space axes.
             given = adopt(self.scene, self.rung, tuple(self.times[k] for k in asked)).given
             tracked, digits = replace(given, track=frozenset({"attitude"})), truth_digits(bits, 0)
             R = solution(tracked).motion(given.clock.elapsed, digits)["attitude"]
             with mp.workprec(bits):
                 for name, reading in self.readings.items():
-                    found[name] = reading.read(found[name], R)
+                    values[name] = reading.read(values[name], R)
         if self.has_velocities:
             with mp.workprec(bits):
-                found |= momenta(self.scene.body, found)
-        return found
+                values |= momenta(self.scene.body, values)
+        return values
 
     @property
     def has_velocities(self) -> bool:
-        """True if the impulses are made of the velocities, since the file has none of its own."""
+        """True if the impulses are computed from velocities, because the file has no impulses."""
         has = set(self.file.groups)
         stands_for = has_velocities(self.scene.body) and has.issuperset(VELOCITIES)
         return stands_for and not has & set(MOMENTA[self.scene.model])
@@ -100,7 +100,7 @@ class FileRows(ByRows):
         at, beyond = (find(times, value, key=key) for find in (bisect_left, bisect_right))
         above, below = range(at - 1, -1, -1), range(beyond, len(times))
         later, earlier = (below, above) if rises else (above, below)
-        # Rows at the start begin the later side, or the only one.
+        # A row at the start belongs to the later side, or to the only side.
         first, second = (later, earlier) if later else (earlier, later)
         begin = first.start - first.step * (beyond - at)
         first = range(begin, first.stop, first.step) if first else range(at, beyond)
@@ -108,18 +108,18 @@ class FileRows(ByRows):
 
 
 def _within(rows: range, places: Sequence[int]) -> Sequence[int]:
-    """The places of some of these rows in the file."""
+    """Return the indices of some of these rows in the file."""
     if isinstance(places, range) and places.step == 1:
         return rows[places.start : places.stop]
     return [rows[k] for k in places]
 
 
 def first_flaw(file: TrajectoryFile, quantity: str) -> str:
-    """The place of the first value of a quantity that is no finite number; empty if there is none."""
+    """Return the place of the first value of a quantity that is not finite; empty if there is none."""
     made_of = [name for name, group in GROUPS.items() if group.quantity == quantity]
     if quantity == MAIN["kirchhoff"]:
         made_of += VELOCITIES
-    # What is conserved may need any of them.
+    # A conserved quantity may need any group.
     groups = [name for name in made_of or GROUPS if name in file.groups]
     lost = {name: np.flatnonzero(~file.groups[name].finite) for name in groups}
     first = {name: int(rows[0]) for name, rows in lost.items() if len(rows)}

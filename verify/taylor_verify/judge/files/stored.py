@@ -1,8 +1,8 @@
-"""The kinds of error that the file itself explains: its printed digits, float32, another convention.
+"""Errors that the file's format explains: its printed digits, float32, another convention.
 
 u is half a unit in the last printed place of the largest component, or 2^-24 for float32. Storing one row
-moves a vector of three components by at most sqrt(3) u of the largest of them, a quaternion by 2 u and so
-the attitude by 4 u radians, and a conserved quantity by u times its gradient, which stands in the reason.
+changes a vector of three components by at most sqrt(3) u of the largest component, a quaternion by 2 u, so
+the attitude by 4 u radians, and a conserved quantity by u times its gradient, which the reason contains.
 """
 
 from __future__ import annotations
@@ -28,27 +28,27 @@ from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.solvers.files.file import TrajectoryFile
 
-# A file with two digits less than the rung has is cut off.
+# A file with this many digits less than the rung is truncated.
 _SPARE_DIGITS: Final = 2
 _VECTOR: Final = sqrt(3)
 _ATTITUDE: Final = 4.0
-# The momenta in a conserved quantity are a state each, and the start has its own.
+# Both the row and the start of a conserved quantity are rounded.
 _GRADIENT: Final = 2 * _VECTOR
-# The quantities that a convention of each subject changes; a map of time changes nothing conserved.
+# The quantities that a convention changes, by subject; a map of time changes no conserved quantity.
 _CHANGED: Final = {
     "time": STATES,
     "body": (*STATES, *CONSERVED),
     "axes": (*STATES, *CONSERVED),
     **{group: changed_by(group) for group in GROUPS},
 }
-# A shift that leaves no more than so many times as much is the clock that was found.
+# A shift after which at most this many times as much remains is the finding about the clock.
 _AS_WELL: Final = 1e6
 _SHIFTED: Final = (ErrorKind.TIME_SHIFT, ErrorKind.PHASE_DRIFT)
 
 
 @dataclass(frozen=True)
 class Storing:
-    """The way in which the numbers of a file were cut off: the kind of error, its u, and a sentence."""
+    """The truncation of a file's numbers: the kind of error, its u, and a sentence."""
 
     kind: ErrorKind
     u: float
@@ -56,7 +56,7 @@ class Storing:
 
 
 def storing(file: TrajectoryFile, rung: Rung) -> Storing | None:
-    """Return how the numbers were cut off; None where they have all that the rung has."""
+    """Return the truncation of a file's numbers; None if they have all digits of the rung."""
     bits = bits_of("f32")
     if rung.bits > bits and file.is_single_precision:
         note = (
@@ -77,23 +77,23 @@ def storing(file: TrajectoryFile, rung: Rung) -> Storing | None:
 def with_file_kinds(
     verdicts: Iterable[Verdict], file: TrajectoryFile, rung: Rung, findings: Sequence[Finding]
 ) -> tuple[Verdict, ...]:
-    """Return the verdicts, the error of each as the file explains it where it does.
+    """Return the verdicts, with the kind of error changed where the file explains the error.
 
-    ``findings`` are those conventions that were not corrected.
+    ``findings`` are the conventions that were not corrected.
     """
     verdicts = tuple(verdicts)
     if not any(_is_open(verdict) for verdict in verdicts):
         return verdicts
-    stored, certain = storing(file, rung), [found for found in findings if found.is_certain]
-    changed = {name for found in certain for name in _CHANGED[found.subject]}
-    # The error that a map of time leaves.
-    left = next((found.after for found in certain if found.subject == "time"), inf)
-    made = []
+    stored, certain = storing(file, rung), [finding for finding in findings if finding.is_certain]
+    changed = {name for finding in certain for name in _CHANGED[finding.subject]}
+    # The error after the map of time.
+    left = next((finding.after for finding in certain if finding.subject == "time"), inf)
+    diagnosed = []
     for verdict in verdicts:
         kind = _kind(verdict, stored, changed, left)
         is_own = kind is verdict.error_kind
-        made.append(verdict if is_own else replace(verdict, error_kind=kind, exponent=None))
-    return tuple(made)
+        diagnosed.append(verdict if is_own else replace(verdict, error_kind=kind, exponent=None))
+    return tuple(diagnosed)
 
 
 def _is_open(verdict: Verdict) -> bool:

@@ -1,1 +1,1 @@
-"""The error that perfect rounding would leave, and the inputs that it follows from."""
+"""The roundoff floor, the error that perfect rounding would leave, and the data it depends on."""

@@ -1,14 +1,14 @@
-"""The error that perfect rounding would leave: the floor under every solver that works on a rung.
+"""The roundoff floor: the error that perfect rounding would leave, for every solver on a rung.
 
-A solver that rounds each component on its own commits in every step, at time s, an error of about
-u r_i(s) in component i, up or down, with r_i = |x_i| + h S_i(x): the state itself and what a step of
-length h adds to it, every term of the rate S_i in magnitude (judge.magnitude). The orbit's own
-transition matrix Phi carries it on, so that after N steps
+A solver that rounds each component separately makes an error of about +-u r_i(s) in component i in the step
+at time s. Here r_i = |x_i| + h S_i(x): the state itself plus the change in a step of length h, where S_i is
+the rate with all terms in magnitude (judge.floor.magnitude). The transition matrix Phi of the orbit carries
+the error on, so that after N steps
 
     attainable(t) = u [ sum over steps s and components i of |Phi(t, s) e_i|^2 r_i(s)^2 ]^(1/2).
 
-For a conserved quantity its gradient takes the place of Phi, because the orbit carries a change of
-it unchanged. This is a model of independent roundings, not a bound; gates leave a factor for it.
+For a conserved quantity its gradient replaces Phi, because the motion does not change an error of it. This
+is a model of independent roundings, not a bound; gates allow a factor for that.
 """
 
 from __future__ import annotations
@@ -37,23 +37,23 @@ from taylor_verify.scenes.scene import Scene
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
-# The gradient of a conserved quantity is as smooth as the motion: more nodes than this refine the sum
-# over the steps by nothing that shows in two digits.
+# The gradient of a conserved quantity is as smooth as the motion: more nodes than this do not change two
+# digits of the sum over the steps.
 MOST_NODES = 41
-# Below this floor, rounding the scene's data moves the orbit too little to change its condition.
+# Below this floor the rounding of the scene's data does not change the orbit's condition noticeably.
 _SAME_ORBIT = 1e-3
-# A length is written out where six digits show that it is not 1.
+# A length is written in full if six digits show that it is not 1.
 _SHOWN = 1e-4
 
 
 @dataclass(frozen=True)
 class Floor:
-    """The terms of what is attainable on one run.
+    """The terms of the roundoff floor of one run.
 
-    The roundings of the steps between two times of the path count at the later one: ``steps_at[k]`` of
-    size u ``rounded[k]``, component by component, in the path's units. ``carried`` is what they have
-    become, by quantity, without the factor u. ``times`` are those of the samples. With ``velocities`` the
-    roundings are those of U and Omega.
+    The roundings of the steps between two times of the path count at the later time: ``steps_at[k]``
+    roundings of size u ``rounded[k]``, by component, in the path's units. ``carried`` is their
+    accumulated effect, by quantity, without the factor u. ``times`` are the times of the samples. With
+    ``velocities`` the solver rounds U and Omega.
     """
 
     unit_roundoff: float
@@ -65,17 +65,17 @@ class Floor:
     velocities: bool = False
 
     def of_state(self, errors: Errors) -> Floats:
-        """Return the attainable error at every sample, in the unit of the errors, of the larger part."""
+        """Return the attainable error at every sample, for the larger part, in the unit of the errors."""
         parts = [
             self.carried[part] * float(mp.convert(self.orbit.units[part]) / scale)
             for part, scale in errors.parts.items()
         ]
-        found: Floats = self.unit_roundoff * np.max(parts, axis=0)
-        return larger_neighbour(found, self._path_times(), self.times)
+        attainable: Floats = self.unit_roundoff * np.max(parts, axis=0)
+        return larger_neighbour(attainable, self._path_times(), self.times)
 
     @property
     def nodes(self) -> list[int]:
-        """The samples at which the gradients of conserved quantities are looked at."""
+        """Samples at which the gradients of conserved quantities are evaluated."""
         return evenly(len(self.times), MOST_NODES)
 
     def of_gradients(self, invariant: Invariant, at_nodes: Motion, scale: Any) -> Floats:
@@ -92,7 +92,7 @@ class Floor:
             gradients = invariant.sensitivity(without_damping(scene, at_nodes, elapsed))
             for block, gradient in gradients.items():
                 (unit,) = to_mpfr(np.array([mp.convert(self.orbit.units[block])], dtype=object))
-                # Divided before it is a float: the square of a small motion would be none.
+                # Divided before conversion to float: the square of a small motion would underflow.
                 relative = (gradient * unit / whole).astype(float)
                 rounded = np.diff(self._squares(block)[ends - 1], axis=0, prepend=0.0)
                 shares = np.broadcast_to(relative.reshape(len(nodes), -1) ** 2, rounded.shape)
@@ -111,11 +111,11 @@ class Floor:
         return RoundoffFloor(carried, shown(value), bits, steps, growth, velocities=self.velocities)
 
     def lengths(self, excess: Floats) -> tuple[Errors, Floats, Reason]:
-        """Return the errors of the length of quaternions, what is attainable, and its terms.
+        """Return the errors of the length of quaternions, the attainable error, and its terms.
 
-        ``excess`` (n,) is |q| - 1. An attitude is read from a quaternion of any length, so that no other
-        gate sees the length. A solver that rounds q in every step and takes none of it back leaves, all
-        roundings going one way, | |q| - 1 | <= u N after N steps.
+        ``excess`` (n,) is |q| - 1. An attitude is read from a quaternion of any length, so no other gate
+        depends on the length. A solver that rounds q in every step and never normalises it leaves | |q| -
+        1 | <= u N after N steps, even if all roundings have the same sign.
         """
         errors = Errors(UNIT_QUATERNION, "1", np.abs(excess), np.zeros(len(excess)), {})
         elapsed = self.times / (np.max(self.times) or 1.0)
@@ -140,12 +140,12 @@ class Floor:
         return self.unit_roundoff * max(shares)
 
     def _squares(self, block: str) -> Floats:
-        """The sums over the steps so far of squared roundings of a block, component by component."""
+        """Return the sums of squared roundings of a block over the steps so far, by component."""
         first = 3 * self.orbit.blocks.index(block)
         rows = self.rounded[:, first : first + 3]
         factors = growths(self.orbit.scene, self.orbit.elapsed)
         if factors is not None and block in self.orbit.flow.momenta:
-            # An invariant has e^{ct} times the momenta.
+            # With damping, conserved quantities use e^{ct} times the momenta.
             rows = rows * factors.astype(float)[:, None]
         return np.cumsum(self.steps_at[:, None] * rows**2, axis=0)
 
@@ -154,14 +154,14 @@ class Floor:
 
 
 def _length(excess: float, roundings: float) -> str:
-    """The length 1 + excess, with the digits that tell it from 1."""
+    """Return the length 1 + excess as text, with the digits that distinguish it from 1."""
     if abs(excess) <= roundings:
         return "1"
     return f"{1 + excess:.6g}" if abs(excess) > _SHOWN else f"1{excess:+.2g}"
 
 
 def larger_neighbour(values: Floats, nodes: Floats, places: Floats) -> Floats:
-    """Return a value for each of the places: between two nodes the larger of both."""
+    """Return a value for each place: between two nodes the larger of their values."""
     later = np.searchsorted(nodes, places)
     earlier = np.searchsorted(nodes, places, side="right") - 1
     last = len(nodes) - 1
@@ -175,17 +175,17 @@ def floor(
 
     With ``velocities`` each step rounds U and Omega of a solid in a fluid, and not its impulses.
 
-    The condition of the orbit is that of the scene as asked, computed once for all rungs, unless the
-    rounding of the data moves the orbit so much that the rounded one needs a condition of its own.
+    The condition of the orbit is computed once for all rungs, from the scene ``asked``. Only if the
+    rounding of the data moves the orbit too much is it computed from the rounded scene.
     """
-    # A row is at least one rounding.
+    # Every row has at least one rounding.
     count = max(steps, len(given.clock.instants))
     bits = unit_roundoff.denominator.bit_length() - 1
     for conditioned in (asked, given):
         orbit = _orbit(conditioned)
         steps_at = _steps_at(orbit.elapsed, count)
         rounded = roundings(given, orbit, bits, count, velocities)
-        found = Floor(
+        result = Floor(
             unit_roundoff=float(unit_roundoff),
             times=np.array([abs(float(t)) for t in conditioned.clock.elapsed]),
             orbit=orbit,
@@ -194,9 +194,9 @@ def floor(
             carried=orbit.gathered(rounded * np.sqrt(steps_at)[:, None]),
             velocities=velocities,
         )
-        if found.worst() <= _SAME_ORBIT:
+        if result.worst() <= _SAME_ORBIT:
             break
-    return found
+    return result
 
 
 @lru_cache(maxsize=32)
@@ -205,7 +205,7 @@ def _orbit(scene: Scene) -> Path:
 
 
 def radians(scene: Scene) -> float:
-    """Return the angle that the fastest of an orbit's rates turns through by its end."""
+    """Return the angle that the fastest rate of an orbit covers by its end."""
     orbit = _orbit(scene)
     rates = orbit.flow.rate(orbit.momentum) / float(orbit.flow.time)
     times = np.array([abs(float(t)) for t in orbit.elapsed])
@@ -213,21 +213,21 @@ def radians(scene: Scene) -> float:
 
 
 def looked_at(scene: Scene) -> list[int]:
-    """Return the samples at which the floor is computed: all or many where passages are short."""
+    """Return the samples at which the floor is computed: many or all if the orbit has short passages."""
     points = set(_orbit(scene).elapsed)
     return [k for k, t in enumerate(scene.clock.elapsed) if t in points]
 
 
 @lru_cache(maxsize=8)
 def condition(scene: Scene) -> Path:
-    """Return how errors travel along the scene's own orbit, between evenly chosen samples."""
+    """Return the transition matrices along the scene's orbit, between evenly chosen samples."""
     return transition(scene, chosen(scene.clock.elapsed, MOST_NODES))
 
 
 def _steps_at(elapsed: Sequence[Fraction], steps: int) -> Floats:
-    """The steps up to each time since the one before, in proportion to time; one at the start."""
+    """Return the number of steps between consecutive times, in proportion to time; one at the start."""
     span = elapsed[-1] or Fraction(1)
     shares = np.diff([float(t / span) for t in elapsed], prepend=0.0)
-    found: Floats = shares * steps
-    found[0] = 1.0
-    return found
+    steps_at: Floats = shares * steps
+    steps_at[0] = 1.0
+    return steps_at

@@ -1,4 +1,4 @@
-"""Factors by which an error of the state at the first sample grows along an orbit."""
+"""The growth of an error of the state along an orbit, from the first sample on."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from taylor_verify.judge.errors.state import largest, norms
 from taylor_verify.judge.floor.attainable import condition
 from taylor_verify.scenes.scene import Scene
 
-# The sizes of the state are wanted to the digits of a sentence.
+# The sizes of the state are needed only to the digits of a sentence.
 _DIGITS: Final = 15
-# Growth in proportion to time doubles with the time. What swings within a period lies on top of it,
-# hence the margin on either side.
+# Growth in proportion to time doubles when the time doubles. Oscillations within a period are added to it,
+# hence the margins.
 _DOUBLING: Final = (1.5, 2.7)
 
 
 @dataclass(frozen=True)
 class Carrying:
-    """The factors by which a relative error made at ``times[0]`` is larger at each of ``times``.
+    """Growth factors of a relative error made at ``times[0]``, at each of ``times``.
 
-    The error there is relative to |H|, |x| or |y| as they are there; later it is relative to the
-    largest |omega|, |x| or |y| of the run, as the errors of a verdict are. The largest factor of all
-    pairs counts. Infinite beyond float64.
+    The first error is relative to |H|, |x| or |y| at that time. Later errors are relative to the largest
+    |omega|, |x| or |y| of the run, as in a verdict. The largest factor of all pairs counts. Factors beyond
+    float64 are infinite.
     """
 
     times: tuple[float, ...]
@@ -35,12 +35,12 @@ class Carrying:
 
     @property
     def worst(self) -> int:
-        """The index of the largest factor."""
+        """Index of the largest factor."""
         return self.factors.index(max(self.factors))
 
     @property
     def pace(self) -> float | None:
-        """The largest factor per unit of time, if the factors grow in proportion to time."""
+        """Largest factor per unit of time, if the factors grow in proportion to time."""
         since, span = self.times[0], self.times[-1] - self.times[0]
         quarter, half, whole = (self._largest_until(since + span * part) for part in (0.25, 0.5, 1))
         low, high = _DOUBLING
@@ -57,12 +57,12 @@ class Carrying:
 
 
 def carrying(scene: Scene) -> Carrying | None:
-    """Return the factors of the scene's own orbit; None for a body that is at rest.
+    """Return the growth factors of the scene's orbit; None for a body at rest.
 
-    Raises Unsettled where the transition matrix is not known.
+    Raises Unsettled if the transition matrix is not known.
     """
-    kind, found = kind_of(scene.body), condition(scene)
-    states = solution(replace(scene, track=frozenset())).evaluate(found.elapsed, _DIGITS)
+    kind, path = kind_of(scene.body), condition(scene)
+    states = solution(replace(scene, track=frozenset())).evaluate(path.elapsed, _DIGITS)
     momentum = kind.momentum_rows(scene.body, {n: rows[:1] for n, rows in states.items()})
     factors = []
     for out, rows in states.items():
@@ -70,8 +70,8 @@ def carrying(scene: Scene) -> Carrying | None:
         for k, into in enumerate(kind.momenta):
             (at_first,) = norms(momentum[:, 3 * k : 3 * k + 3])
             if at_first and at_most:
-                factors.append(found.norms(out, into) * float(at_first) / at_most)
+                factors.append(path.norms(out, into) * float(at_first) / at_most)
     if not factors:
         return None
-    instants = [float(scene.clock.start + elapsed) for elapsed in found.elapsed]
+    instants = [float(scene.clock.start + elapsed) for elapsed in path.elapsed]
     return Carrying(tuple(instants), tuple(float(factor) for factor in np.max(factors, axis=0)))

@@ -1,17 +1,16 @@
-"""The error that a rounding of the input leaves: an answer of a body half a unit in the last place off.
+"""The error that a rounding of the input causes: half a unit in the last place of each number.
 
-Somebody else's program has its own numbers for the body and the start: decimals read once, a tensor
-put together from parts, a quaternion normalised. Each of them is moved here by u of its size, on the
-exact solution and not on its derivative, and what the motion makes of it is counted in the unit of
-every gate:
+Another program rounds the numbers of the body and the start in its own way: it reads decimals, computes
+a tensor from parts, normalises a quaternion. Here each number is changed by u of its size, in the exact
+solution and not in its derivative. The effect is measured in the unit of every gate:
 
     input(t) = [ sum_j |exact(p_j (1 + u), t) - exact(p_j, t)|^2 ]^(1/2).
 
-Where there are many inputs all of them are moved at once, up or down at random: the mean square over
-some such draws has the same sum for its expectation.
+If there are many inputs, all of them are changed at once, up or down at random. The expected mean square
+over such draws is the same sum.
 
-A manufactured motion has its coefficients and frequencies for inputs too, and the start apart from them:
-the motion moved is that from the moved start, under the loads of the moved motion and body.
+The coefficients and frequencies of a manufactured motion are inputs too, and so is the start. The changed
+motion begins at the changed start, under the loads of the changed motion and body.
 """
 
 from __future__ import annotations
@@ -43,16 +42,16 @@ from taylor_verify.scenes.scene import Scene
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
-# Up to this many inputs one at a time; of more, this many draws give the sum to a third.
+# Up to this many inputs are changed one at a time; for more, this many draws give the sum to a third.
 _MOST_DRAWS: Final = 8
 _MORE_DIGITS: Final = 6
 
 
 @dataclass(frozen=True)
 class InputRounding:
-    """The response of every gate, in its unit and at every sample, to a rounding of the input.
+    """The change of every gate's quantity by a rounding of the input, in its unit and at every sample.
 
-    ``moved`` says in words what was moved.
+    ``moved`` names the changed inputs in words.
     """
 
     moved: str
@@ -60,11 +59,11 @@ class InputRounding:
 
 
 def input_rounding(given: Scene, rung: Rung, asked: Scene | None = None) -> InputRounding:
-    """Return the response to a rounding of each number of the body and of the start that is not zero.
+    """Return the response to a rounding of each nonzero number of the body and of the start.
 
-    Where the rung does not hold every time, as it holds no 0.1, the times are moved likewise. The response
-    is found where the floor looks at the orbit, of the scene as ``asked``: a body beside its unstable
-    axis answers in the short times of its passages, and those may lie between samples chosen evenly.
+    If the rung cannot represent every time, such as 0.1, the times are changed too. The response is
+    computed at the samples of the floor, for the scene ``asked``: near an unstable axis the response is
+    large during short passages, which evenly chosen samples could miss.
     """
     nodes = looked_at(given if asked is None else asked)
     instants = tuple(given.clock.instants[k] for k in nodes)
@@ -73,12 +72,15 @@ def input_rounding(given: Scene, rung: Rung, asked: Scene | None = None) -> Inpu
     with mp.workprec(working_bits(rung.bits)):
         here = _motion(scene, digits)
         moved = [_squares(scene, here, _motion(s, digits)) for s in _moved(scene, rung)]
-        # Of single moves the sum is taken as it is, of draws their mean.
+        # Single changes are summed, random draws are averaged.
         draws = 1 if numbers <= _MOST_DRAWS else len(moved)
         names = moved[0] if moved else ()
-        total = {name: np.sum([each[name] for each in moved], axis=0) / draws for name in names}
-        what = "body and start" if scene.body.manufactured is None else "body, motion and start"
-        words = f"each of the {numbers} numbers of {what} that are not zero"
+        total = {
+            name: np.sum([squares_of_move[name] for squares_of_move in moved], axis=0) / draws
+            for name in names
+        }
+        data = "body and start" if scene.body.manufactured is None else "body, motion and start"
+        words = f"each of the {numbers} numbers of {data} that are not zero"
         if not all(rung.holds(t) for t in instants):
             later = tuple(t * (1 + rung.unit_roundoff) for t in instants)
             late = replace(scene, clock=Clock(scene.clock.start, later))
@@ -94,32 +96,32 @@ def input_rounding(given: Scene, rung: Rung, asked: Scene | None = None) -> Inpu
 
 
 def _squares(scene: Scene, here: Motion, there: Motion) -> dict[str, Floats]:
-    """The squares of what one move does to every gate, in the units of the gates."""
-    found = {e.quantity: e.values for e in state_errors(scene, here, there)}
+    """Return the squared change of every gate's quantity by one move, in the units of the gates."""
+    changes = {e.quantity: e.values for e in state_errors(scene, here, there)}
     both = here, there
-    here, there = (without_damping(scene, each, scene.clock.elapsed) for each in (here, there))
+    here, there = (without_damping(scene, motion, scene.clock.elapsed) for motion in (here, there))
     for invariant in invariants(scene):
         change = invariant.value(there) - invariant.value(here)
         sizes = norms(change) if change.ndim > 1 else abs(change)
-        found[invariant.name] = sizes / invariant.scale(here)
+        changes[invariant.name] = sizes / invariant.scale(here)
     if has_velocities(scene.body):
         for group in VELOCITIES:
-            one, other = (velocity(group, scene.body, m.quantities) for m in both)
-            found[GROUPS[group].quantity] = norms(other - one) / (max(norms(one)) or 1)
-    return {name: values.astype(float) ** 2 for name, values in found.items()}
+            before, after = (velocity(group, scene.body, m.quantities) for m in both)
+            changes[GROUPS[group].quantity] = norms(after - before) / (max(norms(before)) or 1)
+    return {name: values.astype(float) ** 2 for name, values in changes.items()}
 
 
 def _motion(scene: Scene, digits: int) -> Motion:
-    """The exact motion; beside a degenerate orbit, where a closed form may not settle, by Taylor series."""
+    """Return the exact motion; by Taylor series if no closed form settles, as near a degenerate orbit."""
     elapsed = scene.clock.elapsed
     try:
-        found = solution(scene).evaluate(elapsed, digits)
+        quantities = solution(scene).evaluate(elapsed, digits)
     except Unsettled:
-        found = TaylorSolution(scene).evaluate(elapsed, digits)
-    return Motion(found, np.array([mp.zero] * len(elapsed), dtype=object))
+        quantities = TaylorSolution(scene).evaluate(elapsed, digits)
+    return Motion(quantities, np.array([mp.zero] * len(elapsed), dtype=object))
 
 
-# Scenes with their numbers moved.
+# Scenes with changed numbers.
 
 
 def _moved(scene: Scene, rung: Rung) -> Iterator[Scene]:
@@ -138,7 +140,7 @@ Place = tuple[str, int, int]
 
 
 def _numbers(scene: Scene) -> list[Place]:
-    """The places of all numbers that are not zero; what symmetry makes equal counts once."""
+    """Return the places of all nonzero numbers; numbers that symmetry makes equal count once."""
     places: dict[Place, None] = {}
 
     def note(place: Place, number: Fraction) -> Fraction:
@@ -150,17 +152,17 @@ def _numbers(scene: Scene) -> list[Place]:
     start = scene.initial
     unasked = {part.name for part in start.PARTS} - {*start.MOVING, *scene.track}
     asked = [place for place in places if place[0] not in unasked]
-    # A quaternion is the last one.
+    # The attitude comes last.
     return sorted(asked, key=lambda place: place[0] == "attitude")
 
 
 def _with_factors(scene: Scene, factors: Mapping[Place, Fraction]) -> Scene:
-    """The scene with these numbers multiplied."""
+    """Return the scene with these numbers multiplied by factors."""
     return _changed(scene, lambda place, number: number * factors.get(place, 1))
 
 
 def _changed(scene: Scene, change: Callable[[Place, Fraction], Fraction]) -> Scene:
-    """The scene with every number changed; numbers that symmetry makes equal have one place."""
+    """Return the scene with every number changed; numbers that symmetry makes equal share one place."""
 
     def row(name: str, vector: Sequence[Fraction]) -> tuple[Fraction, ...]:
         return tuple(change((name, i, i), entry) for i, entry in enumerate(vector))
@@ -168,7 +170,7 @@ def _changed(scene: Scene, change: Callable[[Place, Fraction], Fraction]) -> Sce
     def place(part: Part, i: int, k: int) -> Place:
         if part.shape is Shape.SYMMETRIC and i > k:
             return part.name, k, i
-        # Axes 1 and 2 of a body of revolution are one number: rounding leaves it one.
+        # Axes 1 and 2 of a body of revolution share one number, and rounding must not make two of it.
         twins = scene.body.is_revolved and i == k == 1
         return (part.name, 0, 0) if twins else (part.name, i, k)
 

@@ -1,14 +1,14 @@
-"""The rounding that one step puts into each component of a state: the terms of its rate in magnitude.
+"""The rounding of one step in each component of a state, from the magnitudes of the terms of its rate.
 
     r_i = |x_i| + h S_i(x)
 
-S_i is the rate of x_i with every term taken in absolute value, and all sums and differences added up: an
-arithmetic that rounds each operation to within u errs by some u S_i in the rate, whatever cancels in
-it. The equations are those of models, with numbers of a kind whose difference is a sum. What is
-formed of the body's data alone is a number like any other: it is known, and cancels.
+S_i is the rate of x_i with every term in absolute value and every difference replaced by a sum. Arithmetic
+that rounds each operation to within u has an error of about u S_i in the rate, even if terms cancel. The
+equations of models are evaluated with numbers whose difference is a sum. Numbers that depend on the body's
+data alone are computed as usual, with cancellation.
 
-Who carries the velocities (U, Omega) of a solid in a fluid rounds those. By (x, y) = M (U, Omega) this
-moves x_i by u m_i, with
+A solver whose state is the velocities (U, Omega) of a solid in a fluid rounds these. By (x, y) = M (U,
+Omega) this changes x_i by u m_i, with
 
     m_i = [ sum over j of (M_ij V_j)^2 ]^(1/2),  V = (U, Omega),
 
@@ -40,11 +40,11 @@ from taylor_verify.scenes.scene import Scene
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
-# The components of a unit quaternion are as large as this on an average.
+# Root mean square of the components of a unit quaternion.
 COMPONENT: Final = 0.5
-# A rounding of the components of a unit quaternion turns the frame by twice as much.
+# A change of a unit quaternion turns the frame by twice as much, in radians.
 ANGLE: Final = 2.0
-# No cosine is larger.
+# The largest size of a cosine or sine.
 _WAVE: Final = np.ones(1)
 _QUATERNION: Final = ("e0", "e1", "e2", "e3")
 _COMPONENTS: Final = {
@@ -55,11 +55,11 @@ _COMPONENTS: Final = {
 
 @dataclass(frozen=True)
 class Magnitude:
-    """The sizes of the terms of an expression, added up; rows of numbers that are not negative."""
+    """The sum of the magnitudes of an expression's terms, as rows of nonnegative numbers."""
 
     size: Any
 
-    # NumPy's numbers leave the operations to this class.
+    # NumPy leaves operations with this class to the class.
     __array_ufunc__ = None
 
     def __add__(self, other: Any) -> Magnitude:
@@ -84,11 +84,12 @@ def _size(term: Any) -> Any:
 
 
 def roundings(given: Scene, path: Path, bits: int, steps: int, velocities: bool = False) -> Floats:
-    """r at every time of the path, shape (n, components), in the path's units.
+    """Return r at every time of the path, shape (n, components), in the path's units.
 
-    A step is the span over their number, but no longer than the terms of the rates take to add up
-    to the state: who steps further does as much inside a step. A rounding of a quaternion turns
-    the frame about any axis alike. With ``velocities`` m_i takes the place of |x_i| where it is more.
+    The length of a step is the span over the number of steps, but at most the time in which the terms of
+    the rates add up to the state, because a longer step does as much work inside. A rounding of a
+    quaternion turns the frame about all axes equally. With ``velocities`` m_i replaces |x_i| where it is
+    larger.
     """
     problem = _posed(given, bits)
     sizes = _sizes(problem, path)
@@ -98,7 +99,7 @@ def roundings(given: Scene, path: Path, bits: int, steps: int, velocities: bool 
     h = min(span / max(steps, 1), _largest(sizes, moving) / (_largest(rates, moving) or 1.0))
     rounded = {name: size + h * rates[name] for name, size in sizes.items()}
     if given.body.damping:
-        # What has decayed below the least normal number has an absolute rounding.
+        # Below the least normal number the rounding is absolute.
         for name in moving:
             rounded[name] = np.where(sizes[name] > 0, np.maximum(rounded[name], _least(bits)), 0.0)
     columns = []
@@ -109,69 +110,74 @@ def roundings(given: Scene, path: Path, bits: int, steps: int, velocities: bool 
         else:
             unit = float(_unit(problem, block) / path.units[block])
             columns += [rounded[name] * unit for name in _COMPONENTS[block]]
-    found: Floats = np.column_stack(columns)
+    roundings_at: Floats = np.column_stack(columns)
     if velocities and has_velocities(given.body):
         by_inertia = _through_velocities(given.body, path)
-        found[:, :6] = np.maximum(found[:, :6], by_inertia)
-    return found
+        roundings_at[:, :6] = np.maximum(roundings_at[:, :6], by_inertia)
+    return roundings_at
 
 
 def _through_velocities(body: Body, path: Path) -> Floats:
-    """m at every time, shape (n, 6), in the path's units."""
+    """Return m at every time, shape (n, 6), in the path's units."""
     units = np.array([path.units[block] for block in path.blocks[:2] for _ in range(3)])
     energy, M = np.array(body.energy_matrix), np.array(tensors.inverse(body.energy_matrix))
     velocity = path.momentum @ (energy * units).astype(float).T
     terms = velocity[:, None, :] * (M / units[:, None]).astype(float)
-    found: Floats = np.sqrt(np.sum(terms**2, axis=2))
-    return found
+    magnitudes: Floats = np.sqrt(np.sum(terms**2, axis=2))
+    return magnitudes
 
 
 def _posed(given: Scene, bits: int) -> Problem:
-    """The equations that the body asks for; its data are numbers of the rung, or nearly so."""
+    """Return the posed equations of the body at this precision."""
     end = given.clock.instants[-1]
     return pose(replace(given, clock=Clock(given.clock.start, (end,))), Rung(f"mp{bits}", bits))
 
 
 def _sizes(problem: Problem, path: Path) -> dict[str, Floats]:
-    """|component| by name at every time, in the problem's units."""
-    found: dict[str, Floats] = {}
+    """Return |component| at every time, by name, in the problem's units."""
+    sizes: dict[str, Floats] = {}
     momenta = [block for block in path.blocks if block not in ("attitude", "centre")]
     for k, block in enumerate(momenta):
         unit = float(path.units[block] / _unit(problem, block))
         rows = np.abs(path.momentum[:, 3 * k : 3 * k + 3]) * unit
-        found |= dict(zip(_COMPONENTS[block], rows.T, strict=True))
+        sizes |= dict(zip(_COMPONENTS[block], rows.T, strict=True))
     if "attitude" in path.blocks:
-        found |= {name: np.full(len(path.elapsed), COMPONENT) for name in _QUATERNION}
+        sizes |= {name: np.full(len(path.elapsed), COMPONENT) for name in _QUATERNION}
     if "centre" in path.blocks:
         length = problem.units.centre
         start = np.array([float(c / length) for c in problem.given.initial.parts()["centre"]])
         rows = np.abs(path.centre * float(path.units["centre"] / length) + start)
-        found |= dict(zip(_COMPONENTS["centre"], rows.T, strict=True))
-    return found
+        sizes |= dict(zip(_COMPONENTS["centre"], rows.T, strict=True))
+    return sizes
 
 
 def _rates(problem: Problem, sizes: Mapping[str, Floats]) -> dict[str, Floats]:
-    """S by name, likewise; zero for what nothing changes."""
+    """Return S at every time, by name, in the problem's units; zero for a constant component."""
     form = problem.form
-    # What is no part of the body's state is a cosine or a sine, of the loads of a manufactured motion.
+    # States that do not belong to the body are cosines and sines in the loads of a manufactured motion.
     states = [Magnitude(sizes.get(name, _WAVE)) for name in form.states]
     rates = form.rates(states, [float(value) for value in problem.parameters])
-    found = {name: np.zeros_like(size) for name, size in sizes.items()}
+    magnitudes = {name: np.zeros_like(size) for name, size in sizes.items()}
     for name, rate in zip(form.states, rates, strict=True):
-        if name in found and not is_absent(rate):
-            found[name] = found[name] + _size(rate)
-    return found
+        if name in magnitudes and not is_absent(rate):
+            magnitudes[name] = magnitudes[name] + _size(rate)
+    return magnitudes
 
 
 def _least(bits: int) -> float:
-    """The least normal number of the format with so many bits; 0 of MPFR's numbers."""
+    """Return the least normal number of the format with this many bits; 0 for MPFR's numbers."""
     return next(
-        (2.0 ** max(each.emin, -1074) for each in FORMATS.values() if each.bits == bits), 0.0
+        (
+            2.0 ** max(number_format.emin, -1074)
+            for number_format in FORMATS.values()
+            if number_format.bits == bits
+        ),
+        0.0,
     )
 
 
 def _largest(columns: Mapping[str, Floats], names: Sequence[str]) -> float:
-    """The largest norm at any time."""
+    """Return the largest norm at any time."""
     return float(np.sqrt(np.max(sum(columns[name] ** 2 for name in names))))
 
 

@@ -1,14 +1,14 @@
-"""The steps that a gate counts: a solver's own count, or somebody else's claim as far as it is plausible.
+"""The number of steps that a gate counts: a solver's own count, or the plausible part of a claim.
 
-A gate grows with the square root of the steps, so that a claim of many steps would buy a wide gate. The
-judge knows the samples, the radians of the orbit and the seconds that the answer took, and counts
+A gate grows with the square root of the steps, so a false claim of many steps would give a wide gate. The
+judge knows the samples, the radians of the orbit and the seconds that the answer took. It counts
 
     min(claim, WIDENING^2 (samples + STEPS_PER_RADIAN radians), STEPS_PER_SECOND seconds).
 
-The first limit is that of a method that resolves every sample and every hundredth of a radian, whose gate
-is widened by WIDENING. So 10^4 steps a radian count: an RK4 of step 1e-4 on an orbit of one radian per unit
-of time claims no more. The second is what a processor can do: a step is some dozens of
-dependent operations.
+The first limit allows a gate that is WIDENING times as wide as the gate of a method that resolves every
+sample and every hundredth of a radian. So 10^4 steps per radian count: as many as an RK4 of step 1e-4 takes
+on an orbit of one radian per unit of time. The second limit is what a processor can do: a step is some
+dozens of dependent operations.
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ STEPS_PER_SECOND: Final = 10**8
 
 @dataclass(frozen=True)
 class Steps:
-    """The steps that are counted, and the claim where they are fewer than the solver says."""
+    """The counted steps, and the solver's claim if it is larger."""
 
     counted: int
     claim: ClaimedSteps | None = None
 
 
 def count_steps(problem: Problem, solver: Solver, claimed: int, seconds: float | None) -> Steps:
-    """Return the claimed steps, or as many of them as are plausible.
+    """Return the claimed steps, limited to a plausible number.
 
-    ``seconds`` is the time that the answer took by the judge's own clock; None where it has none. A
-    solver that counts its own steps is believed.
+    ``seconds`` is the time that the answer took by the judge's own clock; None if it was not measured. The
+    count of a solver of this package is taken as it is.
     """
     samples = len(problem.times)
     if solver.counts_steps or claimed <= samples:

@@ -1,1 +1,1 @@
-"""Several files of one solver: order of convergence and best step."""
+"""The judgement of several files of one solver: order of convergence and best step."""

@@ -1,4 +1,4 @@
-"""The order of convergence of a solver with fixed steps: it is judged at every step of a sweep."""
+"""The order of convergence of a solver with fixed steps, which is judged at every step of a sweep."""
 
 from __future__ import annotations
 
@@ -24,24 +24,24 @@ from taylor_verify.solvers.trajectory import Trajectory
 
 @dataclass(frozen=True)
 class Sweep:
-    """The convergence of every quantity of a scene, and the verdicts it was read from."""
+    """The convergence of every quantity of a scene, and the verdicts with its errors."""
 
     quantities: Mapping[str, Convergence]
     verdicts: tuple[Verdict, ...]
 
     @property
     def reason(self) -> str:
-        """The orders in one line: `omega is 4th order, attitude 2nd`."""
-        orders = {name: found.order for name, found in self.quantities.items()}
+        """Orders in one line: `omega is 4th order, attitude 2nd`."""
+        orders = {name: convergence_of.order for name, convergence_of in self.quantities.items()}
         known = [(name, _ordinal(order)) for name, order in orders.items() if order is not None]
         words = [f"{n} {o}" if i else f"{n} is {o} order" for i, (n, o) in enumerate(known)]
         words += [f"{name} has none" for name, order in orders.items() if order is None]
         return ", ".join(words)
 
     def __str__(self) -> str:
-        """Return that line, and under it the reason of every quantity."""
+        """Return the line ``reason``, followed by the reason of every quantity."""
         wide = max(map(len, self.quantities), default=0)
-        rows = [f"  {name:{wide}}  {found.reason}" for name, found in self.quantities.items()]
+        rows = [f"  {name:{wide}}  {quantity.reason}" for name, quantity in self.quantities.items()]
         return "\n".join([self.reason, *rows])
 
 
@@ -54,9 +54,9 @@ def sweep(
 ) -> Sweep:
     """Judge ``solve_with_step(problem, step) -> states`` at every step, in the scene's unit of time.
 
-    ``states`` are as taylor_verify.check has them; ``expected`` is the order that the method ought to
-    have. A run that raises, or answers what is no number, has no error at its step. Raises
-    ValueError where the rung cannot hold the scene, and for a step that is no positive number.
+    ``states`` have the form that taylor_verify.check expects; ``expected`` is the nominal order of the
+    method. A run that raises, or returns NaN, has no error at its step. Raises ValueError if the rung
+    cannot represent the scene, and for a step that is not a positive number.
     """
     scene, rung = as_scene(scene), rung_named(rung)
     steps = [positive(step, f"steps[{i}]") for i, step in enumerate(steps)]
@@ -65,13 +65,13 @@ def sweep(
     except NotRepresentable as reason:
         raise ValueError(f"expected a scene that {rung.name} can hold, got: {reason}") from reason
     solvers = [_AtStep(solve_with_step, step, f"step {step:g}") for step in steps]
-    judged = [judgement(problem, each, each.solve(problem)).verdicts for each in solvers]
+    judged = [judgement(problem, solver, solver.solve(problem)).verdicts for solver in solvers]
     by_step = [{verdict.quantity: verdict for verdict in verdicts} for verdicts in judged]
-    verdicts = tuple(verdict for each in judged for verdict in each)
+    verdicts = tuple(verdict for solver in judged for verdict in solver)
     quantities = {}
     for name in dict.fromkeys(v.quantity for v in verdicts if v.at is not None):
-        rows = [each.get(name) for each in by_step]
-        # A truth that is wider than a gate allows measures no error either.
+        rows = [solver.get(name) for solver in by_step]
+        # If the truth is wider than a gate allows, the error is unknown too.
         errors = [r.max if r and r.verdict is not Status.UNDECIDED else None for r in rows]
         floors = [(row.attainable or 0.0) if row else 0.0 for row in rows]
         quantities[name] = convergence(steps, errors, floors, expected)
@@ -81,7 +81,7 @@ def sweep(
 @final
 @dataclass(frozen=True)
 class _AtStep(Solver):
-    """A callable at one step: it takes as many steps as fit into the span."""
+    """A solver that calls a function with one fixed step; it counts as many steps as fit into the span."""
 
     answer: Callable[[Problem, float], Any]
     step: float
@@ -89,13 +89,13 @@ class _AtStep(Solver):
     name: str = "fixed step"
 
     def solve(self, problem: Problem) -> Trajectory:
-        found = Callback(lambda posed: self.answer(posed, self.step)).solve(problem)
+        trajectory = Callback(lambda posed: self.answer(posed, self.step)).solve(problem)
         span = max(abs(t) for t in problem.given.clock.elapsed)
-        return replace(found, steps=ceil(float(span) / self.step))
+        return replace(trajectory, steps=ceil(float(span) / self.step))
 
 
 def _ordinal(order: float) -> str:
-    """4th for 3.97; an order that is no integer is told as it is."""
+    """Return an order as text: `4th` for 3.97, and the number itself if it is not nearly an integer."""
     nearest = round(order)
     if not abs(order - nearest) <= SAME:
         return f"{order:.2f}th"

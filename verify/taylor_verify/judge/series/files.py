@@ -1,4 +1,4 @@
-"""The judgement of several files of one solver: each by itself, and their order of convergence."""
+"""The judgement of several files of one solver: of each file, and of their order of convergence."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ from taylor_verify.solvers.files.step import FileStep, Source, step_in_name, ste
 
 Asked = TypeVar("Asked")
 
-# Orders of the state that differ by half a one are those of unlike methods.
+# Orders of two states that differ by more than this belong to different methods.
 _LOWER: Final = 0.5
-# Steps that differ by less show no order: the ratio of two errors is noise beside it.
+# Steps with a smaller ratio show no order, because noise dominates the ratio of the errors.
 _ALIKE: Final = 1.01
 _HOW: Final = (
     "say them with --steps 0.1,0.05,... (in Python steps=[...]), in the files' names (run_h0.05.csv) or "
@@ -40,9 +40,10 @@ _HOW: Final = (
 class FilesJudgement(Judgement):
     """The verdicts on several files of one solver, and the order of convergence of each quantity.
 
-    ``verdicts`` are those of all files; the ``setting`` of each is its file. ``files`` are the judgements
-    one by one, ``steps`` the step of each (None where it is not known), ``order`` a record for each
-    quantity, and ``notes`` sentences on where the steps are from and what has no part in the order.
+    ``verdicts`` are the verdicts of all files; the ``setting`` of each names its file. ``files`` are the
+    judgements of the single files, ``steps`` their steps (None if not known), ``order`` has a record for
+    each quantity. ``notes`` are sentences on the source of the steps and on files that the order does not
+    use.
     """
 
     files: tuple[FileJudgement, ...]
@@ -51,7 +52,7 @@ class FilesJudgement(Judgement):
     notes: tuple[str, ...]
 
     def document(self) -> dict[str, Any]:
-        """Return the document that `check --json` prints of several files."""
+        """Return the document that `check --json` prints for several files."""
         files = []
         for judged, step in zip(self.files, self.steps, strict=True):
             known = {} if step is None else {"step": step.value, "step_from": step.source.value}
@@ -81,10 +82,10 @@ class FilesJudgement(Judgement):
 def files_judgement(
     judged: Sequence[FileJudgement], steps: Sequence[float] | None = None
 ) -> FilesJudgement:
-    """Return the judgement of several files that are judged one by one, with their order of convergence.
+    """Return the judgement of several judged files, with their order of convergence.
 
-    ``steps`` are those of the files, if the caller states them; otherwise each file, its name or the
-    spacing of its rows says its step.
+    ``steps`` are the steps of the files, if the caller knows them. Otherwise a step is read from the file,
+    its name or the spacing of its rows.
     """
     known = steps_of([judgement.file for judgement in judged], steps)
     samples = [
@@ -92,12 +93,12 @@ def files_judgement(
         for judgement, step in zip(judged, known, strict=True)
         if step is not None
     ]
-    # A file ends no more than a row before the longest one: errors grow with time.
+    # Errors grow with time, so a file may end at most one row before the longest file.
     longest = max((_span(sample.times) for sample in samples), default=Fraction(0))
     ends = [_span(sample.times) + _span(sample.times[-2:]) for sample in samples]
     whole = [sample for sample, end in zip(samples, ends, strict=True) if end >= longest]
     short = [sample for sample in samples if sample not in whole]
-    # Steps that are too near to each other show no order.
+    # Steps that are nearly equal show no order.
     neighbours = pairwise(sorted(whole, key=lambda sample: sample.step))
     alike = [(small, large) for small, large in neighbours if large.step < _ALIKE * small.step]
     order = orders(whole) if len(whole) > 1 and not alike else ()
@@ -109,9 +110,9 @@ def files_judgement(
 def judge_files(
     files: Sequence[Any], steps: Iterable[Any] | None, judge: Callable[[Any], Judgement]
 ) -> FilesJudgement:
-    """Return the judgement of a list of files, each judged by itself by ``judge(file)``.
+    """Return the judgement of a list of files, each judged by ``judge(file)``.
 
-    Raises ValueError for an empty list, a file that is there twice, and what `checked_steps` refuses.
+    Raises ValueError for an empty list, for a repeated file, and for steps that `checked_steps` refuses.
     """
     if not files:
         raise ValueError("expected at least one trajectory file, got an empty list")
@@ -122,7 +123,7 @@ def judge_files(
 
 
 def judge_each(files: Iterable[Asked], judge: Callable[[Asked], Judgement]) -> list[FileJudgement]:
-    """Return ``judge(file)`` for each file. Raises Refused with the faults of all that are refused."""
+    """Return ``judge(file)`` for each file. Raises Refused with the faults of all refused files."""
     judged: list[FileJudgement] = []
     faults: list[str] = []
     for file in files:
@@ -140,15 +141,15 @@ def judge_each(files: Iterable[Asked], judge: Callable[[Asked], Judgement]) -> l
 
 
 def checked_steps(steps: Iterable[Any], count: int) -> list[float]:
-    """Return a step for each of ``count`` files as doubles.
+    """Return a step for each of ``count`` files, as doubles.
 
-    Raises ValueError for another number of steps, for one that is no positive number, and for one that
-    stands there twice.
+    Raises ValueError for another number of steps, for a step that is not a positive number, and for a
+    repeated step.
     """
     asked = None if isinstance(steps, str) or not isinstance(steps, Iterable) else [*steps]
     if asked is None or len(asked) != count:
-        got = brief(steps) if asked is None else len(asked)
-        raise ValueError(f"expected a step for each of {count} files, got {got} @ steps")
+        received = brief(steps) if asked is None else len(asked)
+        raise ValueError(f"expected a step for each of {count} files, got {received} @ steps")
     values = [positive(step, f"steps[{i}]") for i, step in enumerate(asked)]
     if len(set(values)) < count:
         twice = next(value for value in values if values.count(value) > 1)
@@ -161,10 +162,10 @@ def checked_steps(steps: Iterable[Any], count: int) -> list[float]:
 def steps_of(
     files: Sequence[TrajectoryFile], given: Sequence[float] | None = None
 ) -> tuple[FileStep | None, ...]:
-    """Return the step of each file: as given, as the file states it, or as its name does.
+    """Return the step of each file: as given, or from the file, its name or its rows.
 
-    Where no file has one of these, equally spaced rows whose spacing differs from file to file are
-    taken for the steps.
+    The spacing of the rows is used only if no file or name states a step, the rows are equally spaced, and
+    the spacing differs from file to file.
     """
     if given is not None:
         return tuple(FileStep(step, Source.CALL) for step in given)
@@ -178,7 +179,7 @@ def steps_of(
 
 
 def repeated(files: Iterable[str | PathLike[str]]) -> list[str]:
-    """Return a fault for each file that is named twice, by one path or by two."""
+    """Return a fault for each file that is named twice, by the same path or by another."""
     once: list[str] = []
     faults = []
     for name in [fspath(file) for file in files]:
@@ -188,9 +189,9 @@ def repeated(files: Iterable[str | PathLike[str]]) -> list[str]:
     return faults
 
 
-def _is_same(one: str, other: str) -> bool:
+def _is_same(first: str, second: str) -> bool:
     try:
-        return samefile(one, other)
+        return samefile(first, second)
     except (OSError, ValueError):
         return False
 
@@ -218,7 +219,7 @@ def _notes(
             f"no order of convergence: {names} have the same step, h = {small.step:g}; "
             "--steps says others"
         )
-    known = {each.quantity: each.order for each in order if each.order is not None}
+    known = {record.quantity: record.order for record in order if record.order is not None}
     # The body's own state comes first.
     states = [name for name in STATES if name in known]
     for name in states[1:]:

@@ -1,8 +1,8 @@
-"""The order of convergence of each quantity, from files of one solver at several steps.
+"""Order of convergence of each quantity, from files of one solver at several steps.
 
-Only errors that are clear of roundoff show an order, and only steps between which it is the same. What is
-left of that is said: a lower order at smaller steps, a file whose step does not fit, the step below which
-roundoff takes over.
+An order needs errors clearly above roundoff, and steps between which the local order is the same. Other
+observations are reported in words: a lower order at smaller steps, a file whose step does not fit, the
+step below which roundoff dominates.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ if TYPE_CHECKING:
     from taylor_verify.records.verdict import Verdict
 
 _NOT_OF_THE_STEP: Final = (INITIAL, COMPLETE, UNIT_QUATERNION)
-# Three others show an order without the file that is in doubt.
+# Without the suspect, three files are needed to show an order.
 _FEWEST_WITH_A_SUSPECT: Final = 4
-# An error is that of d printed digits within this factor of 10^-d.
+# An error within this factor of 10^-d is explained by d printed digits.
 _OF_DIGITS: Final = 30.0
 
 
@@ -45,7 +45,7 @@ class Sample:
     step: float
 
     def row(self, quantity: str) -> Verdict | None:
-        """Return the verdict on a quantity; None where its error was not measured."""
+        """Return the verdict on a quantity; None if its error was not measured."""
         for verdict in self.judged.verdicts:
             if verdict.quantity == quantity and verdict.is_compared:
                 return None if verdict.verdict is Status.UNDECIDED else verdict
@@ -53,20 +53,20 @@ class Sample:
 
     @property
     def times(self) -> tuple[Fraction, ...]:
-        """The times of the rows."""
+        """Times of the rows."""
         return self.judged.file.times
 
     @property
     def roundings(self) -> float:
-        """The factor by which the floor of so many steps is above that of a step for each row."""
+        """Ratio of the floor for the integrator's steps to the floor for one step per row."""
         steps = float(abs(self.times[-1] - self.times[0])) / self.step
         return sqrt(max(1.0, steps / len(self.times)))
 
 
 def orders(samples: Sequence[Sample]) -> tuple[Order, ...]:
-    """Return the order of every quantity that all steps might share, in the order of the verdicts.
+    """Return the order of every quantity that depends on the step, in the order of the verdicts.
 
-    Raises ValueError for two files of one step.
+    Raises ValueError for two files with the same step.
     """
     samples = sorted(samples, key=lambda sample: -sample.step)
     verdicts = (v for sample in samples for v in sample.judged.verdicts if v.is_compared)
@@ -78,27 +78,27 @@ def _order(quantity: str, samples: Sequence[Sample]) -> Order:
     rows = [sample.row(quantity) for sample in samples]
     unit = next((row.unit for row in rows if row is not None), "")
     points = tuple(_points(samples, rows))
-    found = convergence(
+    fit = convergence(
         [point.step for point in points],
         [point.error for point in points],
         [point.attainable or 0.0 for point in points],
     )
-    # Errors of the method: far above roundoff, and above the level where errors stall.
+    # Errors of the method itself: far above roundoff, and above the level at which errors stall.
     clear = [
         point
         for point in points
         if point.error
-        and point.error > CLEAR * max(point.attainable or 0.0, found.level or 0.0)
-        and (found.stalls_at is None or point.step > found.stalls_at)
+        and point.error > CLEAR * max(point.attainable or 0.0, fit.level or 0.0)
+        and (fit.stalls_at is None or point.step > fit.stalls_at)
     ]
     order = Order(quantity, unit, points, "")
     measured = [point for point in points if point.error is not None]
     if measured:
         best = min(measured, key=lambda point: point.error or 0.0)
         order = replace(order, best_step=best.step, best_error=best.error)
-    if found.level is not None:
-        order = replace(order, stalls_at=found.stalls_at, stall=_stall(found, samples))
-    order = _with_order(order, found, clear)
+    if fit.level is not None:
+        order = replace(order, stalls_at=fit.stalls_at, stall=_stall(fit, samples))
+    order = _with_order(order, fit, clear)
     return replace(order, sentence="; ".join(_sentences(order, clear)))
 
 
@@ -118,24 +118,24 @@ def _points(samples: Sequence[Sample], rows: Sequence[Verdict | None]) -> Iterat
 # The order, and the file that does not fit.
 
 
-def _with_order(order: Order, found: Convergence, clear: Sequence[OrderPoint]) -> Order:
-    fits = {point.step for point in clear} <= {*found.steps}
+def _with_order(order: Order, fit: Convergence, clear: Sequence[OrderPoint]) -> Order:
+    fits = {point.step for point in clear} <= {*fit.steps}
     if not fits and (suspect := _suspect(clear)) is not None:
         file, step = suspect
         return replace(order, suspect=file, suspect_step=step)
-    beyond = [point for point in clear if found.steps and point.step < found.steps[-1]]
+    beyond = [point for point in clear if fit.steps and point.step < fit.steps[-1]]
     if beyond:
-        # What smaller steps show counts: a lower order comes out below a higher one.
-        found = _read(beyond)
-    if found.order is None or found.spread is None:
+        # The order at smaller steps counts: a lower order dominates there.
+        fit = _read(beyond)
+    if fit.order is None or fit.spread is None:
         return order
     return replace(
         order,
-        order=found.order,
-        low=found.order - found.spread,
-        high=found.order + found.spread,
-        largest=found.steps[0],
-        smallest=found.steps[-1],
+        order=fit.order,
+        low=fit.order - fit.spread,
+        high=fit.order + fit.spread,
+        largest=fit.steps[0],
+        smallest=fit.steps[-1],
     )
 
 
@@ -144,23 +144,23 @@ def _read(points: Sequence[OrderPoint]) -> Convergence:
 
 
 def _suspect(points: Sequence[OrderPoint]) -> tuple[str, float] | None:
-    """Return the one file without which all others agree, and the step that its error would fit.
+    """Return the single file without which all others agree, and the step that fits its error.
 
-    A wrong step makes one of its two local orders too high and the other too low. Errors that are not
-    asymptotic yet depart to one side alone.
+    A wrong step makes one of its two local orders too high and the other too low. Errors that are not yet
+    asymptotic depart to one side only.
     """
     if len(points) < _FEWEST_WITH_A_SUSPECT:
         return None
     for i, (before, after) in enumerate(pairwise(_locals(points)), start=1):
         others = [*points[:i], *points[i + 1 :]]
-        found = _read(others)
-        if found.order is None or len(found.steps) < len(others):
+        fit = _read(others)
+        if fit.order is None or len(fit.steps) < len(others):
             continue
-        low, high = sorted((before - found.order, after - found.order))
+        low, high = sorted((before - fit.order, after - fit.order))
         if low < -SAME and high > SAME:
             near, point = points[i - 1], points[i]
             fall = log((point.error or 1.0) / (near.error or 1.0))
-            return point.file, float(f"{near.step * exp(fall / found.order):.3g}")
+            return point.file, float(f"{near.step * exp(fall / fit.order):.3g}")
     return None
 
 
@@ -168,16 +168,16 @@ def _locals(points: Sequence[OrderPoint]) -> tuple[float, ...]:
     return local_orders([p.step for p in points], [p.error or 0.0 for p in points])
 
 
-def _stall(found: Convergence, samples: Sequence[Sample]) -> Stall:
-    """The reason why errors stop falling below the best step."""
-    if found.by_rounding:
+def _stall(fit: Convergence, samples: Sequence[Sample]) -> Stall:
+    """Return the reason why errors stop falling below the best step."""
+    if fit.by_rounding:
         return Stall.ROUNDOFF
-    stalled = [sample for sample in samples if sample.step <= (found.stalls_at or 0)]
+    stalled = [sample for sample in samples if sample.step <= (fit.stalls_at or 0)]
     digits = [sample.judged.file.digits for sample in stalled]
     known = [number for number in digits if number is not None]
     if known and len(known) == len(digits):
         printed = 10.0 ** -max(known)
-        if printed / _OF_DIGITS <= (found.level or 0.0) <= printed * _OF_DIGITS:
+        if printed / _OF_DIGITS <= (fit.level or 0.0) <= printed * _OF_DIGITS:
             return Stall.DIGITS
     return Stall.OTHER
 
@@ -204,10 +204,10 @@ def _order_words(order: Order, clear: Sequence[OrderPoint]) -> str:
         spread = order.high - order.order
         uncertain = f" ± {spread:.1f}" if spread >= 0.05 else ""
         steps = f"from h = {order.largest:g} to {order.smallest:g}"
-        # Larger steps are not asymptotic or hide a lower order.
+        # Larger steps may not be asymptotic, or may hide a lower order.
         larger = _locals([point for point in clear if point.step >= order.largest])
-        seen = ", ".join(f"{local:.1f}" for local in larger)
-        left_out = f" ({seen} at larger steps)" if seen else ""
+        local_orders = ", ".join(f"{local:.1f}" for local in larger)
+        left_out = f" ({local_orders} at larger steps)" if local_orders else ""
         return f"order {order.order:.1f}{uncertain} {steps}{left_out}"
     between = [f"{local:.1f}" for local in _locals(clear)]
     no_fit = f"no one order fits: from step to step it is {', '.join(between)}"
@@ -237,7 +237,7 @@ def _accuracy(order: Order, error: float) -> str:
 
 
 def _below_the_best(order: Order, step: float, error: float) -> str:
-    """The course of the error at smaller steps than the best one, in words."""
+    """Return the course of the error at steps smaller than the best one, in words."""
     if order.stall is None or order.stalls_at is None:
         last = order.points[-1]
         falls = "near roundoff" if _is_at_the_floor(last) else "the error still falls"

@@ -67,20 +67,20 @@ class Family:
 
         Raises Refused where a formula has no value there.
         """
-        shares, found = iter(place), dict[str, Fraction]()
+        shares, values = iter(place), dict[str, Fraction]()
         for variable in self.variables:
             rule = variable.rule
             if isinstance(rule, Draw):
-                found[variable.path] = Fraction(rule.value(float(next(shares))))
+                values[variable.path] = Fraction(rule.value(float(next(shares))))
             elif isinstance(rule, Grid):
                 node, which = divmod(node, len(rule.values))
-                found[variable.path] = Fraction(rule.values[which])
+                values[variable.path] = Fraction(rule.values[which])
             else:
                 try:
-                    found[variable.path] = rule.value(found)
+                    values[variable.path] = rule.value(values)
                 except NoValue as error:
                     raise Refused([f"{error} @ {variable.path}"]) from None
-        return found
+        return values
 
     def drawn(self, numbers: Mapping[str, Fraction]) -> dict[str, float]:
         """Return the variables that were drawn or come from a grid, as doubles that read back the same."""

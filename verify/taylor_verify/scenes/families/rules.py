@@ -110,14 +110,14 @@ class _Parameters:
         if not isinstance(self._value, list) or not least <= len(self._value) <= most:
             self._fault(f"an array of {count} {'number' if count.endswith('1') else 'numbers'}")
             return None
-        found: list[Decimal] = []
+        numbers: list[Decimal] = []
         for i, value in enumerate(self._value):
             place = f"{self._place}[{i}]"
             try:
-                found.append(_decimal(exact_number(value)))
+                numbers.append(_decimal(exact_number(value)))
             except ValueError as error:
                 self._faults.add(str(error), shown(value), place)
-        return tuple(found) if len(found) == len(self._value) else None
+        return tuple(numbers) if len(numbers) == len(self._value) else None
 
     def _fault(self, expected: str) -> None:
         self._faults.add(expected, shown(self._value), self._place)

@@ -53,10 +53,10 @@ def import_scene(path: Path, link: str | None = None) -> Imported:
     reading = Reading(path.name, Faults())
     chosen = _chosen(form.candidates(root), link, form, path)
     assert chosen.inertial is not None
-    found = form.link(root, chosen.name, chosen.inertial, reading)
-    if found is None or reading.faults.lines:
+    parsed_link = form.link(root, chosen.name, chosen.inertial, reading)
+    if parsed_link is None or reading.faults.lines:
         raise Refused(reading.faults.lines)
-    return Imported(scene_text(found, form.name, path.name), found.name, form.name)
+    return Imported(scene_text(parsed_link, form.name, path.name), parsed_link.name, form.name)
 
 
 def _format(root: Node, path: Path) -> Format:

@@ -61,13 +61,13 @@ def link(root: Node, name: str, inertial: Node, reading: Reading) -> Link | None
     if mass is None or tensor is None or placed is None or (added_node and added is None):
         return None
     centre, turn, remarks = placed
-    found = Link(name, mass, centre, rotation.turned(tensor, turn), added, remarks)
-    if added_node and not tensors.is_positive_definite(found.mass_matrix):
+    result = Link(name, mass, centre, rotation.turned(tensor, turn), added, remarks)
+    if added_node and not tensors.is_positive_definite(result.mass_matrix):
         expected = "a positive definite mass matrix of link and added mass"
         mend = "an added mass is minus a naval derivative"
         reading.fault(expected, "one that is not", added_node, mend)
         return None
-    return found
+    return result
 
 
 def _is_true(text: str | None) -> bool:

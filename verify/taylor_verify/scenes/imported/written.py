@@ -62,17 +62,17 @@ samples = {samples}
 
 
 def _rigid(link: Link) -> str:
-    said = (
+    comment = (
         "The tensor of inertia about the centre of mass, in the axes of the link; products are tensor "
         "components, -int xy dm. "
         f"The mass, {_decimal(link.mass)}, and the place of the centre of mass, "
         f"({_listed(link.centre)}), do not enter: the rotation is about the centre of mass."
     )
-    return f"{_comment(said, *link.remarks)}\n{_matrix('inertia', link.inertia)}"
+    return f"{_comment(comment, *link.remarks)}\n{_matrix('inertia', link.inertia)}"
 
 
 def _vehicle(link: Link) -> str:
-    said = (
+    comment = (
         "The inertia of link and fluid together, about the origin of the link and in its axes: "
         "M = [[m 1, -m [c]x], [m [c]x, I - m [c]x [c]x]] + fluid_added_mass, with the mass "
         f"m = {_decimal(link.mass)}, the centre of mass c = ({_listed(link.centre)}) and the tensor I "
@@ -80,7 +80,7 @@ def _vehicle(link: Link) -> str:
         *(f"I: {_listed(row)}" for row in link.inertia),
         "Left out: drag, weight and buoyancy, thrusters, and every other link.",
     )
-    return f"{_comment(*said, *link.remarks)}\n{_matrix('mass_matrix', link.mass_matrix)}"
+    return f"{_comment(*comment, *link.remarks)}\n{_matrix('mass_matrix', link.mass_matrix)}"
 
 
 def _matrix(key: str, matrix: Matrix) -> str:

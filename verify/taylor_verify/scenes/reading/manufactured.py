@@ -45,19 +45,19 @@ def manufactured(table: Table, vectors: Sequence[str]) -> Manufactured | None:
 def _terms(table: Table, name: str) -> _Terms | None:
     """Return the terms of one vector, no frequency twice."""
     entries = table.tables(name)
-    found: dict[Fraction, tuple[Vector, Vector]] = {}
+    waves: dict[Fraction, tuple[Vector, Vector]] = {}
     is_sound = entries is not None
     for entry in entries or ():
         term = _term(entry)
-        if term is not None and term[0] in found:
+        if term is not None and term[0] in waves:
             expected = "a frequency that no term before has"
             entry.fault(expected, shown(term[0]), "frequency", "write one term for it")
             term = None
         if term is None:
             is_sound = False
         else:
-            found[term[0]] = term[1:]
-    return found if is_sound else None
+            waves[term[0]] = term[1:]
+    return waves if is_sound else None
 
 
 def _term(entry: Table) -> tuple[Fraction, Vector, Vector] | None:

@@ -65,8 +65,8 @@ def _open_without_waiting(path: str, flags: int) -> int:
     return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
 
 
-def _check(found: os.stat_result, path: Path, expected: str, most: Limit) -> None:
-    if not stat.S_ISREG(found.st_mode):
-        kind = _KINDS.get(stat.S_IFMT(found.st_mode), "no regular file")
+def _check(status: os.stat_result, path: Path, expected: str, most: Limit) -> None:
+    if not stat.S_ISREG(status.st_mode):
+        kind = _KINDS.get(stat.S_IFMT(status.st_mode), "no regular file")
         raise Refused([f"expected {expected}, got {kind} @ {path}"])
-    most.check(found.st_size, path)
+    most.check(status.st_size, path)

@@ -1,9 +1,9 @@
 """Solvers of other libraries and engines: `outside:NAME?version=VERSION&SETTING=VALUE`.
 
-The scripts in solvers/outside are the registry. A script answers by the protocol of a program of one's
-own, and runs in an environment of its own with the versions that its metadata pins; `version` replaces
-the pin of its main package. An environment is made when a solver is asked to solve, or by `prepare`:
-neither the standard run nor a list makes one.
+The scripts in solvers/outside are the registry. A script answers by the protocol of user programs, and runs
+in its own environment with the versions that its metadata pins; `version` replaces the pin of its main
+package. An environment is made when a solver solves, or by `prepare`; neither the standard run nor a list
+of solvers makes one.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ SCRIPTS: Final = Path(__file__).parents[1] / "outside"
 _VERSION: Final = "version"
 
 _log = logging.getLogger(__name__)
-# The words that start the script of each block, or why there are none: not tried again for every scene.
+# Cache of the words that start the script of each block, or the reason why there are none.
 _commands: dict[str, list[str] | Lack] = {}
 
 
@@ -63,7 +63,7 @@ class Engine:
 
     @property
     def unavailable(self) -> str:
-        """The reason why nothing here can run it; empty where it is ready, or would be after a download."""
+        """The reason why it cannot run here; empty if it is ready, or would be after a download."""
         return (
             self.script.about.unavailable
             or process.unavailable()
@@ -73,7 +73,7 @@ class Engine:
 
 @cache
 def engines() -> Mapping[str, Engine]:
-    """Return all engines by name, those that cannot be had included; no environment is made for it."""
+    """Return all engines by name, including unavailable ones; no environment is made."""
     every = (
         Engine(script, method)
         for script in scripts(SCRIPTS)
@@ -99,7 +99,7 @@ def remarks() -> dict[str, str]:
 def prepare(name: str, tell: Tell = _log.warning) -> None:
     """Make the environment of an engine, by `cvode-bdf` or a solver's whole name, if it is not there.
 
-    ``tell`` hears what is being done: it may take minutes. Raises NotMade with the reason, and
+    ``tell`` receives progress messages, because this may take minutes. Raises NotMade with the reason, and
     ValueError for a name that is none.
     """
     solver = named(name if name.startswith(PREFIX) else f"{PREFIX}{name}")
@@ -165,7 +165,7 @@ class Outside(Solver):
         return ""
 
     def problem(self, scene: Scene, rung: Rung) -> Problem:
-        # The truth starts from the numbers that the engine is given.
+        # The truth starts from the same numbers as the engine.
         takes_tensor = self.engine.script.about.data == "tensor"
         return pose_as_stored(scene, rung) if takes_tensor else pose(scene, rung)
 
@@ -175,7 +175,7 @@ class Outside(Solver):
         command = _command(self, _log.warning)
         if isinstance(command, Lack):
             return not_started(command)
-        # Engines leave logs where they are run, which is no place of the user's.
+        # Engines write logs into their working folder, so they get a temporary one.
         with TemporaryDirectory(ignore_cleanup_errors=True) as folder:
             words = [*command, *self.words]
             return process.program(words, self.time_limit, folder).solve(problem)
@@ -188,21 +188,21 @@ class Outside(Solver):
 
 
 def solve_together(asked: Sequence[tuple[Outside, Problem]]) -> list[Trajectory]:
-    """Return what solvers of one script and version answer; one process loads the library for all.
+    """Return the answers of solvers of one script and version; one process loads the library for all.
 
-    What it leaves open, by an end, a fault or its time limit, is asked again in a process of its own. So a
-    failure is that of one question, and the same as without the others.
+    Questions that this process leaves open, by its end, a fault or its time limit, are asked again in
+    separate processes. So a failure belongs to one question, and is the same as without the others.
     """
     first, _ = asked[0]
     command = _command(first, _log.warning)
-    found: list[Trajectory | None] = [None] * len(asked)
+    answers: list[Trajectory | None] = [None] * len(asked)
     if len(asked) > 1 and not isinstance(command, Lack):
         questions = [(solver.words, problem) for solver, problem in asked]
         with TemporaryDirectory(ignore_cleanup_errors=True) as folder:
-            found = process.together(command, questions, first.time_limit, folder)
+            answers = process.together(command, questions, first.time_limit, folder)
     return [
         answer or solver.solve(problem)
-        for answer, (solver, problem) in zip(found, asked, strict=True)
+        for answer, (solver, problem) in zip(answers, asked, strict=True)
     ]
 
 

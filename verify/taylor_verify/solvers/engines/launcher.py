@@ -1,4 +1,4 @@
-"""The contract of what runs the scripts of one language, each in an environment of its own."""
+"""The contract of launchers, which run the scripts of one language in separate environments."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from platformdirs import user_cache_path
 # Seconds. The largest of them is some 600 MB, which at a megabyte a second take ten minutes.
 _LONGEST_INSTALL: Final = 3600.0
 _LONGEST_REASON: Final = 300
-# What begins a line of an error, of uv and of npm, and what npm ends with.
+# The prefixes of error lines of uv and npm, and the last line of npm.
 _MARKS: Final = re.compile(r"^(error: |npm error Log files .*|npm (error|ERR!) ?)", re.MULTILINE)
 
 Tell = Callable[[str], object]
@@ -59,7 +59,7 @@ def cache_folder() -> Path:
 def output(
     words: Sequence[str], folder: Path | None = None, settings: Mapping[str, str] | None = None
 ) -> str:
-    """Return the standard output of a program that installs; NotMade with what a failed one said."""
+    """Return the standard output of an installing program. Raises NotMade with its error message."""
     name = Path(words[0]).name
     try:
         done = subprocess.run(
@@ -76,13 +76,13 @@ def output(
     except subprocess.TimeoutExpired:
         raise NotMade(f"{name}: no end after {_LONGEST_INSTALL:g} s") from None
     if done.returncode:
-        said = _one_line(done.stderr.decode(errors="replace"))
-        raise NotMade(f"{name}: {said or f'exit status {done.returncode}'}")
+        message = _one_line(done.stderr.decode(errors="replace"))
+        raise NotMade(f"{name}: {message or f'exit status {done.returncode}'}")
     return done.stdout.decode()
 
 
-def _one_line(said: str) -> str:
+def _one_line(message: str) -> str:
     """Return the words of an error and of its causes, each of which uv and npm give a line."""
-    said = _MARKS.sub("", said)
-    words = "".join(c if c.isascii() and c.isprintable() else " " for c in said).split()
+    message = _MARKS.sub("", message)
+    words = "".join(c if c.isascii() and c.isprintable() else " " for c in message).split()
     return " ".join(words).replace(" cause: ", ": ")[:_LONGEST_REASON]

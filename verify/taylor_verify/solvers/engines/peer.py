@@ -1,9 +1,9 @@
-"""A peer: an integrator of another library that is asked many questions in one process of its own.
+"""A peer: an integrator of another library that answers many questions in one separate process.
 
-It is an engine (`outside:NAME`) whose script stays (`serves` in its metadata). It is given the equations
-that heyoka is given, as lines of + - * /, in the problem's own units, and compiles them once. So its times
-have no start of a process, no compiling and no reading of questions in them, and can be taken in turns
-with those of solvers in this process. Tolerances count in the problem's own units.
+It is an engine (`outside:NAME`) whose script stays running (`serves` in its metadata). It gets the same
+equations as heyoka, as lines of + - * /, in the problem's own units, and compiles them once. So its times
+do not include starting a process, compiling or reading questions, and can be measured alternately with
+solvers in this process. Tolerances are in the problem's own units.
 """
 
 from __future__ import annotations

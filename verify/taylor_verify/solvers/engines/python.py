@@ -1,8 +1,8 @@
 """Environments of scripts in Python, as `uv run --script` makes them.
 
-uv makes an environment, keeps it in its own cache, shares it between processes, and mends what is half
-made. Here stands what calls uv: first without a network, which is enough for all that was ever
-downloaded. Nothing is built but what the block names under `[tool.uv]`: nothing is compiled by surprise.
+uv makes an environment, stores it in its own cache, shares it between processes, and repairs incomplete
+ones. This file calls uv, first without a network, which suffices for packages that were downloaded before.
+Only packages that the block names under `[tool.uv]` are built from source.
 """
 
 from __future__ import annotations

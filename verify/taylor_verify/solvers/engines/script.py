@@ -91,22 +91,22 @@ class Script:
             raise ValueError(f"expected a version such as 1.2.0, got {version!r:.60} @ version")
         if not self.package:
             raise ValueError(f"expected no version: {self.path.name} has no library @ version")
-        packages = "|".join(re.escape(each + pin) for each in (self.package, *self.about.alike))
+        packages = "|".join(re.escape(name + pin) for name in (self.package, *self.about.alike))
         return re.sub(rf'"({packages})[^"]*"', rf'"\g<1>{version}"', self.block)
 
 
 def scripts(folder: Path) -> list[Script]:
     """Read the scripts of a folder that answer for a library, by name; Refused with the faults of all."""
-    found, faults = list[Script](), list[str]()
+    result, faults = list[Script](), list[str]()
     files = (file for file in folder.glob(f"{_PREFIX}*") if file.suffix in _LAUNCHERS)
     for path in sorted(files):
         try:
-            found.append(read_script(path))
+            result.append(read_script(path))
         except ValueError as error:
             faults += str(error).splitlines()
     if faults:
         raise Refused(faults)
-    return found
+    return result
 
 
 def read_script(path: Path) -> Script:

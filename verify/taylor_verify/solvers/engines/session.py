@@ -1,7 +1,7 @@
-"""A program that stays: it is asked line by line, and ends with this process at the latest.
+"""A session with a running program, which answers line by line and ends with this process at the latest.
 
-Between the program and this process stands the supervisor of the programs that are asked once: it ends
-the program, and all that this has started, as soon as it is let go of.
+The same supervisor as for single questions stands between the program and this process. It ends the
+program, and all processes that the program started, as soon as the session is closed.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _open: dict[tuple[str, ...], Session] = {}
 
 
 class Broken(Exception):
-    """The program has no answer any more; ``outcome`` is its end, and the text says how it came."""
+    """The error for a program that no longer answers; ``outcome`` is its end, and the text the reason."""
 
     def __init__(self, outcome: Outcome, detail: str) -> None:
         super().__init__(detail)
@@ -38,11 +38,11 @@ class Broken(Exception):
 
 
 class Session:
-    """A running program. ``places`` is a memory for whoever asks it, and ends with it."""
+    """A running program; ``places`` is a memory for its callers, as long as it runs."""
 
     def __init__(self, command: Sequence[str]) -> None:
         self.places: dict[str, int] = {}
-        self._said = tempfile.TemporaryFile()  # noqa: SIM115 (open as long as the program runs)
+        self._stderr = tempfile.TemporaryFile()  # noqa: SIM115 (open as long as the program runs)
         self._rest = b""
         self._link, theirs = socket.socketpair()
         words = [sys.executable, "-I", "-S", supervisor.__file__, str(theirs.fileno()), *command]
@@ -51,7 +51,7 @@ class Session:
                 words,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
-                stderr=self._said,
+                stderr=self._stderr,
                 pass_fds=[theirs.fileno()],
                 start_new_session=True,
                 bufsize=0,
@@ -80,9 +80,9 @@ class Session:
             self._process.wait(_PATIENCE)
         self._process.kill()
         self._process.wait()
-        for one in (self._process.stdin, self._process.stdout, self._link, self._said):
-            if one is not None:
-                one.close()
+        for stream in (self._process.stdin, self._process.stdout, self._link, self._stderr):
+            if stream is not None:
+                stream.close()
 
     def _line(self, deadline: float) -> bytes:
         """Return the next line of the program."""
@@ -99,8 +99,8 @@ class Session:
         return line
 
     def _last_words(self) -> str:
-        self._said.seek(0)
-        words = self._said.read().decode(errors="replace").split()
+        self._stderr.seek(0)
+        words = self._stderr.read().decode(errors="replace").split()
         return "".join(c for c in " ".join(words) if c.isprintable())[-_LAST_WORDS:]
 
 

@@ -1,1 +1,1 @@
-"""Trajectories that somebody brings, as files or as objects of Python."""
+"""Trajectories from other programs, as files or as Python objects."""

@@ -1,4 +1,4 @@
-"""A trajectory in somebody's file: every number exactly as written, or every fault with its place.
+"""A trajectory file: every number exactly as written, or every fault with its place.
 
 t                 time                          q0 q1 q2 q3      quaternion of R, scalar first
 w1 w2 w3          angular velocity, body axes   r11 r12 ... r33  R itself, r12 is row 1, column 2
@@ -44,10 +44,10 @@ _TELLING_BITS: Final = 18
 @final
 @dataclass(frozen=True)
 class Recorded(Solver):
-    """A solver whose answer is already written down, in ``quantities`` as a Trajectory has them.
+    """A solver with a recorded answer, in ``quantities`` as in a Trajectory.
 
-    ``setting`` is the file. How many steps it took is not known. With ``carries_velocities`` the impulses
-    were made of velocities, which are what was rounded.
+    ``setting`` is the file. The number of its steps is not known. With ``carries_velocities`` the impulses
+    were computed from velocities, which were rounded.
     """
 
     quantities: Mapping[str, np.ndarray[Any, Any]]
@@ -124,9 +124,10 @@ def from_columns(
     """
     faults = Faults()
     selection = select(_named_once(columns, place, faults), wanted, place, faults)
-    taken = {one.name: one for one in selection.columns}
+    taken = {column.name: column for column in selection.columns}
     read = {
-        name: one.column._replace(values=_packed(one.column.values)) for name, one in taken.items()
+        name: column.column._replace(values=_packed(column.column.values))
+        for name, column in taken.items()
     }
     _refuse_ragged(read, place, faults)
     finite = {name: check_numbers(column, place, faults) for name, column in read.items()}

@@ -1,6 +1,6 @@
 """Columns in objects of Python: tables, data sets, arrays by name, SciPy's results.
 
-An object is known by what it has, so that no library is imported for it. Arrays of vectors become a
+An object is recognised by its attributes, so that no library is imported for it. Arrays of vectors become a
 column for each component: ``omega`` (n, 3) is ``w1 w2 w3``, another name ``gyro`` is ``gyro[0] gyro[1]
 gyro[2]``. Numbers are taken exactly, as the doubles, floats or long doubles that they are.
 """
@@ -25,12 +25,12 @@ _ACCEPTED: Final = (
 )
 
 
-def trajectory(held: Any, scene: Scene, columns: Request = ()) -> TrajectoryFile:
+def trajectory(answer: Any, scene: Scene, columns: Request = ()) -> TrajectoryFile:
     """Return the trajectory that a Python object holds.
 
     Parameters
     ----------
-    held
+    answer
         A DataFrame, a Dataset, a record array, arrays by name, or SciPy's OdeResult.
     scene
         The scene that it answers: it has the order of the states of an OdeResult.
@@ -49,24 +49,24 @@ def trajectory(held: Any, scene: Scene, columns: Request = ()) -> TrajectoryFile
     ValueError
         For an object of another kind.
     """
-    place = f"the {type(held).__name__}"
+    place = f"the {type(answer).__name__}"
     gathered = _Gathered(place)
-    if hasattr(held, "data_vars") and hasattr(held, "dims"):
-        gathered.take_data_set(held)
-    elif hasattr(held, "columns") and hasattr(held, "__getitem__"):
-        gathered.take_table(held)
-    elif getattr(getattr(held, "y", None), "ndim", 0) == 2 and hasattr(held, "t"):
-        gathered.take_states(held, scene, in_order=not columns)
-    elif names := getattr(getattr(held, "dtype", None), "names", None):
+    if hasattr(answer, "data_vars") and hasattr(answer, "dims"):
+        gathered.take_data_set(answer)
+    elif hasattr(answer, "columns") and hasattr(answer, "__getitem__"):
+        gathered.take_table(answer)
+    elif getattr(getattr(answer, "y", None), "ndim", 0) == 2 and hasattr(answer, "t"):
+        gathered.take_states(answer, scene, in_order=not columns)
+    elif names := getattr(getattr(answer, "dtype", None), "names", None):
         for name in names:
-            gathered.take(name, held[name])
-    elif isinstance(held, Mapping):
-        for name, values in held.items():
+            gathered.take(name, answer[name])
+    elif isinstance(answer, Mapping):
+        for name, values in answer.items():
             gathered.take(name, values)
     else:
-        got = f"{type(held).__name__}: {brief(held)}"
-        if hasattr(held, "as_quat"):
-            got = f'a {type(held).__name__} alone (write {{"t": times, "attitude": rotations}})'
+        got = f"{type(answer).__name__}: {brief(answer)}"
+        if hasattr(answer, "as_quat"):
+            got = f'a {type(answer).__name__} alone (write {{"t": times, "attitude": rotations}})'
         raise ValueError(f"expected {_ACCEPTED}, got {got}")
     if gathered.faults.lines:
         raise Refused(gathered.faults.lines)
@@ -76,7 +76,7 @@ def trajectory(held: Any, scene: Scene, columns: Request = ()) -> TrajectoryFile
 
 
 class _Gathered:
-    """The columns so far, sentences about them, and what is wrong with others."""
+    """The columns so far, notes about them, and faults of other columns."""
 
     def __init__(self, place: str) -> None:
         self.place, self.faults = place, Faults()
@@ -182,10 +182,10 @@ class _Gathered:
         self._refuse(f"the shape {expected}", str(array.shape), name)
         return ""
 
-    def _own(self, group: str, rows: Any, said: str, unit: str = "") -> None:
+    def _own(self, group: str, rows: Any, subject: str, unit: str = "") -> None:
         names = COLUMNS[group]
         order = ", scalar first" if group == "quaternion" else ""
-        self.notes.append(f"{said} taken as {' '.join(names)}{order}")
+        self.notes.append(f"{subject} taken as {' '.join(names)}{order}")
         for name, values in zip(names, rows.T, strict=True):
             self._add(name + unit, values)
 

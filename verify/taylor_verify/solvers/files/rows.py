@@ -1,4 +1,4 @@
-"""The numbers of a trajectory file, packed, and formed exactly when somebody looks at their rows.
+"""The numbers of a trajectory file in compact form; exact values are formed when rows are read.
 
 A million rows of eight numbers take 5 GB as rationals, and 0.4 GB as the text that they were read from.
 """
@@ -17,14 +17,14 @@ from mpmath import mp
 from taylor_verify.scenes.mpfr import to_mpf
 from taylor_verify.scenes.reading.faults import Faults
 from taylor_verify.solvers.files.formats.column import CHUNK, Column, alike, shown
-from taylor_verify.solvers.values import Value, exact, held
+from taylor_verify.solvers.values import Value, as_mpf, exact
 
 Array = np.ndarray[Any, Any]
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 Flags = np.ndarray[Any, np.dtype[np.bool_]]
 Raw = Sequence[Any]
 
-# Errors are told as doubles, and so is whatever is as large as the answer itself.
+# Errors are reported as doubles, so the numbers of an answer must be in the range of doubles.
 _LARGEST: Final = 2**1000
 # A short decimal is a finite number far below that; whatever else is a number is read one by one.
 _SHORT: Final = r"[+-]?[0-9]{1,40}(?:\.[0-9]{0,40})?(?:[eE][+-]?[0-9]{1,2})?"
@@ -37,7 +37,7 @@ _NO_DIGITS: Final = re.compile(r"[eE][+-]?[0-9]+|[+. -]")
 class Rows(Sequence[tuple[Value, ...]]):
     """Rows of some columns, each number exactly as it was written; equal to any sequence of the same rows.
 
-    ``finite`` tells the rows of which every number is one. The number of a row is the factor of its
+    ``finite`` is True for the rows whose numbers are all finite. The number of a row is the factor of its
     column times the number that is written.
     """
 
@@ -89,9 +89,9 @@ class Rows(Sequence[tuple[Value, ...]]):
                 doubles[part.start : part.stop, i] = _doubles(entries)
         return doubles
 
-    def held(self, places: Sequence[int], bits: int) -> Array:
+    def as_mpf(self, places: Sequence[int], bits: int) -> Array:
         """Return some of the rows as numbers of mpmath, exact where a number has at most so many bits."""
-        columns = [_held(entries, bits) for entries in self._some(places)]
+        columns = [_as_mpf(entries, bits) for entries in self._some(places)]
         return np.stack(columns, axis=1) if len(places) else np.empty((0, len(columns)), object)
 
     def _some(self, places: Sequence[int]) -> Iterator[Raw]:
@@ -149,14 +149,14 @@ def _doubles(values: Raw) -> Floats:
     return np.array([float(value) for value in _exact(values)])
 
 
-def _held(values: Raw, bits: int) -> Array:
+def _as_mpf(values: Raw, bits: int) -> Array:
     if _is_short(values):
         with gmpy2.context(precision=bits):
             return to_mpf(np.array([gmpy2.mpfr(text) for text in values], dtype=object))
     if _is_double(values):
         numbers = list(map(mp.mpf, np.asarray(values, dtype=np.float64).tolist()))
     else:
-        numbers = [held(value, bits) for value in _exact(values)]
+        numbers = [as_mpf(value, bits) for value in _exact(values)]
     return np.fromiter(numbers, dtype=object, count=len(numbers))
 
 
@@ -164,7 +164,7 @@ def _held(values: Raw, bits: int) -> Array:
 
 
 def check_numbers(column: Column, file: str, faults: Faults) -> Flags:
-    """Return which entries are finite numbers; what is no number, or too large, is a fault."""
+    """Return True for the entries that are finite numbers; add a fault for text and too large numbers."""
     finite = np.ones(len(column.values), dtype=bool)
     with alike(faults, f"{file}, column {column.name}") as wrong:
         for part in _chunks(len(column.values)):
@@ -202,7 +202,7 @@ def written_digits(columns: Iterable[Column]) -> int | None:
             if not _is_short(texts) and not all(_is_decimal(text) for text in texts):
                 return None
             digits = _NO_DIGITS.sub("", "\n".join(text.strip() for text in texts))
-            most = max(most, *(len(one.lstrip("0")) for one in digits.split("\n")))
+            most = max(most, *(len(text.lstrip("0")) for text in digits.split("\n")))
     # Zeros alone are exact however they are written.
     return most or None
 

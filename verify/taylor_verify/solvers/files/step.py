@@ -66,8 +66,8 @@ def step_in_name(name: str) -> FileStep | None:
     """Return the step that the name of a file states, or that of its folder, as in ``run_h0.01.csv``."""
     path = Path(name)
     for part in (path.stem, path.parent.name):
-        if found := _only(_IN_NAME.finditer(part), Source.NAME):
-            return found
+        if step := _only(_IN_NAME.finditer(part), Source.NAME):
+            return step
     return None
 
 

@@ -88,7 +88,7 @@ def named(name: str) -> Fmu:
     asked = options(name, [path], [_STEP, _FIXED, *_SET, *_READ])
     step = repr(float(asked.positive(_STEP, ""))) if _STEP in asked else None
     fixed = _names(asked.values.get(_FIXED, ""))
-    if strange := [one for one in fixed if one not in _SET]:
+    if strange := [name for name in fixed if name not in _SET]:
         raise ValueError(f"expected a quantity ({', '.join(_SET)}), got {strange[0]!r} @ {_FIXED}")
     names = {key: _names(asked.values[key]) for key in (*_SET, *_READ) if key in asked}
     settings = {"step": step, "names": names, "fixed": fixed}

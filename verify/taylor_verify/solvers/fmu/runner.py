@@ -53,7 +53,9 @@ def floats(number: Any) -> Any:
     """Return the doubles of a number, vector or matrix: each is there as `text` and as `hex`."""
     if isinstance(number, dict):
         return floats(number["hex"])
-    return [floats(one) for one in number] if isinstance(number, list) else float.fromhex(number)
+    return (
+        [floats(entry) for entry in number] if isinstance(number, list) else float.fromhex(number)
+    )
 
 
 def flat(value: Any, first: int, index: str = "") -> Iterator[tuple[str, float]]:
@@ -90,9 +92,9 @@ class Variables:
 
     def __init__(self, description: Any, names: Names) -> None:
         self.references = {
-            one.name: one.valueReference
-            for one in description.modelVariables
-            if one.type in ("Real", "Float64") and not getattr(one, "dimensions", None)
+            variable.name: variable.valueReference
+            for variable in description.modelVariables
+            if variable.type in ("Real", "Float64") and not getattr(variable, "dimensions", None)
         }
         self.names = names
 
@@ -121,7 +123,7 @@ class Variables:
     def settings(self, question: Any, fixed: Sequence[str]) -> Iterator[tuple[int, float]]:
         """Yield references and values of all that is set; raise Fault for what the FMU cannot be told."""
         wanted = values_to_set(question)
-        told = {key for key in wanted if key in fixed or neutral(key, wanted[key])}
+        covered = {key for key in wanted if key in fixed or neutral(key, wanted[key])}
         for key, values in wanted.items():
             unknown, known = False, []
             for name, value in zip(self.of(key, list(values)), values.values(), strict=True):
@@ -131,11 +133,11 @@ class Variables:
                     unknown = unknown or value != 0
             if known and key not in fixed:
                 yield from known
-                told |= set() if unknown else {key}
+                covered |= set() if unknown else {key}
         for first, other in _SAME:
-            told |= {first, other} if told & {first, other} else set()
+            covered |= {first, other} if covered & {first, other} else set()
         others = {other for first, other in _SAME if first in wanted}
-        if missing := [key for key in wanted if key not in told | others]:
+        if missing := [key for key in wanted if key not in covered | others]:
             names = {key: list(wanted[key]) for key in missing}
             listed = ", ".join(f"{key} ({n[0]} ... {n[-1]})" for key, n in names.items())
             raise Fault(

@@ -1,1 +1,1 @@
-"""The geometric integrators that a rigid-body specialist asks for first, at a fixed step in float64."""
+"""Common geometric integrators for rigid bodies, at a fixed step in float64."""

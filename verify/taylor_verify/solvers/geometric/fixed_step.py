@@ -1,4 +1,4 @@
-"""Equal steps to each sample, with a body in float64: the part that geometric integrators share.
+"""Fixed steps to each sample, with a body in float64: the part that all geometric integrators share.
 
 H  angular momentum, body axes        K  inverse inertia tensor, omega = K H
 r  momentum of wheels, not part of H
@@ -35,7 +35,7 @@ _MOST_STEPS: Final = 10**8
 
 
 class Unsolved(Exception):
-    """The equation of an implicit step has no solution that can be found; the text says so."""
+    """The error for an implicit step whose equation could not be solved."""
 
 
 class Stepped(NamedTuple):
@@ -123,7 +123,8 @@ class FixedStep(Solver):
     def solve(self, problem: Problem) -> Trajectory:
         if reason := self.unsuited(problem) or self.unavailable(problem.rung):
             return Trajectory(Outcome.NOT_STARTED, detail=reason)
-        # Of the scene's own times: rounded ones may be a whisker longer than a multiple of the step.
+        # Counts use the scene's exact times: rounded ones may be slightly longer than a multiple of the
+        # step.
         counts = [ceil(abs(t) / self.step) for t in _spans(problem.scene.clock.elapsed)]
         if not sum(counts) <= _MOST_STEPS:
             detail = f"{float(sum(counts)):.3g} steps, more than {float(_MOST_STEPS):.3g}"
@@ -138,8 +139,8 @@ class FixedStep(Solver):
             # Python's floats raise where those of NumPy are no number: sin(inf), 1/0.
             return run.ended(Outcome.NON_FINITE, began)
         ended = run.ended(Outcome.FINISHED, began)
-        found = of_rows(problem, rows)
-        return replace(ended, outcome=found.outcome, quantities=found.quantities)
+        trajectory = of_rows(problem, rows)
+        return replace(ended, outcome=trajectory.outcome, quantities=trajectory.quantities)
 
 
 class _Run:

@@ -33,7 +33,7 @@ from taylor_verify.solvers.geometric.vectors import (
 @final
 @dataclass(frozen=True)
 class ImplicitMidpoint(FixedStep):
-    """Any tensor, and a constant moment; for the latter neither T nor |H|^2 has anything to keep."""
+    """The implicit midpoint rule for any tensor; with a constant moment T and |H|^2 are not conserved."""
 
     name: str = "geometric:implicit-midpoint"
     takes_moment: ClassVar[bool] = True

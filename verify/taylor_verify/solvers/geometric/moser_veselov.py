@@ -49,7 +49,7 @@ from taylor_verify.solvers.geometric.vectors import (
 @final
 @dataclass(frozen=True)
 class MoserVeselov(FixedStep):
-    """Any tensor. Preprocessed, the modified tensor is rounded: by some units of roundoff of K."""
+    """The Moser-Veselov algorithm for any tensor; the preprocessed tensor has a rounding error."""
 
     name: str = "geometric:moser-veselov"
     preprocessed: bool = False

@@ -32,7 +32,7 @@ from taylor_verify.solvers.geometric.vectors import (
 @final
 @dataclass(frozen=True)
 class MuntheKaas(FixedStep):
-    """Any tensor; the series of dexp^-1 ends where what is left out is of fifth order in a step."""
+    """The Munthe-Kaas method for any tensor; the truncated series of dexp^-1 has an error of order five."""
 
     name: str = "geometric:lie-rk4"
     takes_damping: ClassVar[bool] = True

@@ -29,7 +29,7 @@ _EVALUATIONS = 2
 @final
 @dataclass(frozen=True)
 class Splitting(FixedStep):
-    """A full tensor goes through its principal axes, which float64 knows to its own roundoff."""
+    """The splitting method; a full tensor is converted to its principal axes, to roundoff."""
 
     name: str = "geometric:splitting"
     in_principal_axes: ClassVar[bool] = True

@@ -53,7 +53,7 @@ _TURNS = 15
 
 @dataclass(frozen=True)
 class Body:
-    """What every body of an engine has: the question that asks for its motion."""
+    """The base of all bodies for engines: the question that asks for the motion."""
 
     question: Question
 

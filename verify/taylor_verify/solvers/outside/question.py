@@ -57,7 +57,7 @@ class Question:
 
     @property
     def equations(self) -> Hashable:
-        """All that compiled equations depend on."""
+        """The data that compiled equations depend on."""
         numbers = tuple(self.parameters), self.sign, len(self.state)
         return self.code, tuple(self.columns), *numbers
 
@@ -86,7 +86,7 @@ class Solved:
 class Unsuited(SystemExit):
     """The question is not one for the library or its script; the text says why.
 
-    It is told to the caller as such, and is no failure.
+    The caller is told so, and the run is not a failure.
     """
 
     def document(self) -> dict[str, Any]:
@@ -151,14 +151,14 @@ def twice(propagate: Callable[[], Any]) -> tuple[Any, float, float]:
     It is done twice: the first may compile, load and allocate, the second one propagates alone.
     """
     _, first = _timed(propagate)
-    found, second = _timed(propagate)
-    return found, second, max(0.0, first - second)
+    result, second = _timed(propagate)
+    return result, second, max(0.0, first - second)
 
 
 def _timed(propagate: Callable[[], Any]) -> tuple[Any, float]:
     began = time.perf_counter()
-    found = propagate()
-    return found, time.perf_counter() - began
+    result = propagate()
+    return result, time.perf_counter() - began
 
 
 def once_for_equations(make: Callable[[Question], Any]) -> Callable[[Question], Any]:
@@ -180,8 +180,8 @@ def equations_of(question: Question, jit: Any = None) -> Rates:
         return rates(question.columns, compiled)
     made: dict[str, Any] = {}
     exec(question.code, made)
-    found: Rates = compiled(made["rates"])
-    return found
+    equations: Rates = compiled(made["rates"])
+    return equations
 
 
 @once_for_equations
@@ -193,12 +193,12 @@ def compiled_rates(question: Question) -> Any:
     # Equations that come with the question are compiled as C and heyoka's are: a product and a sum in one
     # rounding, and no look whether a divisor is zero.
     jit = njit(fastmath={"contract"}, error_model="numpy") if question.code else njit
-    found = equations_of(question, jit)
+    equations = equations_of(question, jit)
     parameters = numpy.array(question.parameters)
     sign, n = question.sign, len(question.state)
 
     def fill(state: Any, out: Any) -> None:
-        f = found(state, parameters)
+        f = equations(state, parameters)
         for i in range(n):
             out[i] = sign * f[i]
 

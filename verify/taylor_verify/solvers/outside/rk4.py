@@ -202,10 +202,10 @@ def main() -> None:
         rows.append(free(state[:3])[1] + state[3:] if scene["model"] == "euler" else state)
 
     # Hexadecimal floats are exact; plain numbers would do on f32 and f64.
-    found = dict(zip(names, zip(*rows, strict=True), strict=True))
+    columns = dict(zip(names, zip(*rows, strict=True), strict=True))
     answer: dict[str, Any] = {"t": time["times"]["hex"], "steps": steps, "evaluations": 4 * steps}
     for name in scene["columns"][1:]:
-        answer[name] = [value.hex() for value in found[name]]
+        answer[name] = [value.hex() for value in columns[name]]
     json.dump(answer, sys.stdout)
 
 

@@ -1,4 +1,4 @@
-"""Service of a script that stays: many problems, asked line by line, and timed again as often as asked.
+"""The service of a script that stays running: it answers problems line by line, and times them again.
 
 A request and its answer are one line of JSON each, on the standard input and output.
 
@@ -33,29 +33,29 @@ Solve = Callable[[Question, Settings], Solved]
 
 def stay(solve: Solve) -> None:
     """Answer the requests on the standard input until it ends."""
-    # What a library says on the standard output would stand among the answers.
+    # Output that a library prints would stand among the answers, so it goes to standard error.
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)
-    kept: list[Callable[[], Any]] = []
+    propagations: list[Callable[[], Any]] = []
     for line in sys.stdin:
         try:
-            answer = _answer(json.loads(line), solve, kept)
+            answer = _answer(json.loads(line), solve, propagations)
         except (Exception, SystemExit) as error:  # a library's own: the caller hears of it
             answer = {"fault": f"{type(error).__name__}: {error}"}
         print(json.dumps(answer), file=answers, flush=True)
 
 
-def _answer(request: Any, solve: Solve, kept: list[Callable[[], Any]]) -> dict[str, Any]:
+def _answer(request: Any, solve: Solve, propagations: list[Callable[[], Any]]) -> dict[str, Any]:
     if "again" in request:
-        return {"seconds": _timed(kept[request["again"]], request["count"])}
+        return {"seconds": _timed(propagations[request["again"]], request["count"])}
     began = time.process_time()
     solved = solve(_read(request["problem"]), Settings(**request["settings"]))
     spent = time.process_time() - began
     assert solved.again is not None
-    kept.append(solved.again)
+    propagations.append(solved.again)
     seconds = _timed(solved.again, 1)
     return {
-        "place": len(kept) - 1,
+        "place": len(propagations) - 1,
         "states": [[float(value).hex() for value in state] for state in solved.states],
         "steps": int(solved.steps),
         "evaluations": int(solved.evaluations),

@@ -62,11 +62,11 @@ def solve(question: Question, settings: Settings) -> Solved:
     def propagate() -> Any:
         return solver.solve(question.instants, start)
 
-    found, seconds, more = twice(propagate)
-    if not found.success:
-        raise SystemExit(f"CVODE: {found.message}")
+    solution, seconds, more = twice(propagate)
+    if not solution.success:
+        raise SystemExit(f"CVODE: {solution.message}")
     steps = _steps(solver, question, start)
-    return Solved(found.y, steps, found.nfev, seconds, compiling + more, again=propagate)
+    return Solved(solution.y, steps, solution.nfev, seconds, compiling + more, again=propagate)
 
 
 def _steps(solver: Any, question: Question, start: Any) -> int:

@@ -85,7 +85,7 @@ def _propagated(address: int, question: Question, settings: Settings) -> tuple[A
 
     start, instants = numpy.array(question.state), numpy.array(question.instants)
     rtol, atol, count = (numpy.array([value]) for value in (settings.rtol, settings.atol, 0.0))
-    found = c.c_numba_cysolve_ivp(
+    solution = c.c_numba_cysolve_ivp(
         *(address, 0.0, question.end, start.ctypes.data, start.size),
         *(find_ode_method_int(METHODS[settings.method]), 0, 0),  # no size expected, nothing extra
         *(count.ctypes.data, count.nbytes),
@@ -96,14 +96,14 @@ def _propagated(address: int, question: Question, settings: Settings) -> tuple[A
         *(MAX_SIZE, 0.0, True),  # the longest step, the first step, and the counts are kept
     )
     try:
-        size = c.c_get_size(found)
-        if not c.c_get_success(found) or size != instants.size:
-            raise SystemExit(f"CyRK: status {c.c_get_status(found)} after {size} samples")
-        states = numpy.ctypeslib.as_array(c.c_get_y_ptr(found), (size, start.size)).copy()
-        counted = ctypes.cast(c.c_get_args_ptr(found), ctypes.POINTER(ctypes.c_double))
-        return states, c.c_get_steps(found), int(counted[0])
+        size = c.c_get_size(solution)
+        if not c.c_get_success(solution) or size != instants.size:
+            raise SystemExit(f"CyRK: status {c.c_get_status(solution)} after {size} samples")
+        states = numpy.ctypeslib.as_array(c.c_get_y_ptr(solution), (size, start.size)).copy()
+        counted = ctypes.cast(c.c_get_args_ptr(solution), ctypes.POINTER(ctypes.c_double))
+        return states, c.c_get_steps(solution), int(counted[0])
     finally:
-        c.c_free(found)
+        c.c_free(solution)
 
 
 if __name__ == "__main__":

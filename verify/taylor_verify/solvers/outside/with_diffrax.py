@@ -58,11 +58,11 @@ def solve(question: Question, settings: Settings) -> Solved:
     def propagate() -> Any:
         return jax.block_until_ready(compiled(*given))
 
-    found, seconds, compiling = twice(propagate)
-    if found.result != diffrax.RESULTS.successful:
-        raise SystemExit(f"diffrax: {found.result}")
-    steps = int(found.stats["num_steps"])
-    return Solved(found.ys.tolist(), steps, 0, seconds, compiling, again=propagate)
+    solution, seconds, compiling = twice(propagate)
+    if solution.result != diffrax.RESULTS.successful:
+        raise SystemExit(f"diffrax: {solution.result}")
+    steps = int(solution.stats["num_steps"])
+    return Solved(solution.ys.tolist(), steps, 0, seconds, compiling, again=propagate)
 
 
 @once_for_equations

@@ -161,9 +161,9 @@ def _text(n: int) -> str:
     }
     text = _METHOD
     for name, code in lines.items():
-        (line,) = [one for one in text.splitlines() if one.strip() == f"{{{name}}}"]
+        (line,) = [row for row in text.splitlines() if row.strip() == f"{{{name}}}"]
         indent = line[: -len(line.lstrip())]
-        text = text.replace(line, "\n".join(indent + one for one in code))
+        text = text.replace(line, "\n".join(indent + row for row in code))
     text = text.replace("{error5}", _sum(of.E5)).replace("{error3}", _sum(of.E3))
     return "import numpy as np\n" + text.replace("{n}", str(n))
 

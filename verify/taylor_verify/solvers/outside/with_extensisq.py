@@ -69,10 +69,10 @@ def solve(question: Question, settings: Settings) -> Solved:
             atol=settings.atol,
         )
 
-    found, seconds, compiling = twice(propagate)
-    if found.status != 0:
-        raise SystemExit(f"extensisq: {found.message}")
-    return Solved(found.y.T, steps, found.nfev, seconds, compiling)
+    solution, seconds, compiling = twice(propagate)
+    if solution.status != 0:
+        raise SystemExit(f"extensisq: {solution.message}")
+    return Solved(solution.y.T, steps, solution.nfev, seconds, compiling)
 
 
 if __name__ == "__main__":

@@ -13,4 +13,4 @@
 # rtol = 1e-9
 # atol = "rtol"
 # ///
-"""numbalsoda, which nothing can install as the others are: this file is its name and the reason."""
+"""numbalsoda, which cannot be installed like the others: this file gives its name and the reason."""

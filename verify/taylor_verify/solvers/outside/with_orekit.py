@@ -64,8 +64,8 @@ def motion(body: FreeBody) -> list[Any]:
     provider = TorqueFree(start, Inertia(*axes))
     rows = []
     for instant in body.instants:
-        found = provider.getAttitude(None, epoch.shiftedBy(instant), frame)
-        spin, turned = found.getSpin(), found.getRotation()
+        attitude_of_body = provider.getAttitude(None, epoch.shiftedBy(instant), frame)
+        spin, turned = attitude_of_body.getSpin(), attitude_of_body.getRotation()
         omega = [spin.getX(), spin.getY(), spin.getZ()]
         attitude = [turned.getQ0(), turned.getQ1(), turned.getQ2(), turned.getQ3()]
         rows.append(body.row(omega, attitude))

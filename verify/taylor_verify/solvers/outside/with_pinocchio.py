@@ -13,7 +13,7 @@
 # integrator = ["RK4", "semi-implicit"]
 # step = 0.01
 # ///
-"""Pinocchio, which has no integrator: its accelerations and its step on the group are what is judged.
+"""Pinocchio, which has no integrator: its accelerations and its step on the group are judged.
 
 These are `aba` and `integrate`. The integrators are ours, and as thin as they can be. ``semi-implicit``
 turns by the new velocity, as simulators on Pinocchio do. ``RK4`` is Munthe-Kaas' form of the classical

@@ -1,1 +1,1 @@
-"""Somebody's program as a solver: the question on its standard input, a trajectory on its output."""
+"""A user's program as a solver: the question on its standard input, a trajectory on its output."""

@@ -1,4 +1,4 @@
-"""A run of a program that may do anything: it is asked, heard, and ended with all that it started.
+"""A run of an arbitrary program: question, answer, and the end of all processes that it started.
 
 supervisor.py stands between the program and this process. psutil could not do its work: it finds a
 process by its parent, and an orphan that has left the session has another one.
@@ -27,9 +27,9 @@ LIMIT_VARIABLE: Final = "TAYLOR_VERIFY_TIME_LIMIT"
 
 _SUPERVISOR: Final = Path(__file__).with_name("supervisor.py")
 _log = logging.getLogger(__name__)
-# Seconds to listen for output after the last word of the supervisor: until then all of it was there.
+# Seconds to read remaining output after the last report of the supervisor.
 _GLANCE = 0.05
-# Seconds for the supervisor to end what is left, which it gives up after five itself.
+# Seconds for the supervisor to end remaining processes; it gives up after five itself.
 _PATIENCE = 10.0
 _CHUNK = 2**16
 _KEPT_OF_STDERR = 2**13
@@ -38,7 +38,7 @@ _LINES_SHOWN, _LINE_SHOWN = 5, 300
 
 @dataclass(frozen=True)
 class Ended:
-    """The end of a program: its outcome, its answer, and the last of its words on stderr.
+    """The end of a program: its outcome, its answer, and its last lines on stderr.
 
     ``seconds`` it ran; ``left`` says which of its processes are not known to have ended.
     """
@@ -51,8 +51,8 @@ class Ended:
     left: str = ""
 
     def detail(self) -> str:
-        said = _last_lines(self.stderr)
-        parts = (self.what, self.left, said and f"stderr: {said}")
+        last_lines = _last_lines(self.stderr)
+        parts = (self.what, self.left, last_lines and f"stderr: {last_lines}")
         return "; ".join(part for part in parts if part)
 
 
@@ -66,7 +66,7 @@ def _last_lines(stderr: bytes) -> str:
 def converse(
     command: Sequence[str], asked: bytes, limit: float, longest: int, folder: str | None = None
 ) -> Ended:
-    """Start a program, ask it, and have its answer or the outcome; it never outlives the call.
+    """Start a program, send the question, and return its answer or outcome; it never outlives the call.
 
     It runs in ``folder``, or in the working folder of this process.
     """
@@ -111,7 +111,7 @@ _UNKNOWN: Final = "processes that have left its session, if any, could not be en
 
 
 class _Report(NamedTuple):
-    """The words of the supervisor, read: see there.
+    """The parsed reports of the supervisor (see supervisor.py).
 
     ``left`` is a sentence on the processes that are left; it ``is_certain`` where they are known.
     """
@@ -127,14 +127,14 @@ class _Report(NamedTuple):
     @classmethod
     def read(cls, text: bytes) -> _Report:
         words = (line.partition(" ") for line in text.decode(errors="replace").splitlines())
-        said = {word: rest for word, space, rest in words if space}
-        if "refused" in said:
-            return cls(refused=said["refused"])
-        program = int(said.get("started", 0))
-        if "ended" not in said:
-            # The program, or somebody else, has killed it.
+        reports = {word: rest for word, space, rest in words if space}
+        if "refused" in reports:
+            return cls(refused=reports["refused"])
+        program = int(reports.get("started", 0))
+        if "ended" not in reports:
+            # The supervisor itself was killed.
             return cls(program=program, status=-signal.SIGKILL, left=_UNKNOWN, is_lost=True)
-        status, seconds, numbers = said["ended"].split()
+        status, seconds, numbers = reports["ended"].split()
         is_certain = numbers not in ("none", "unknown")
         left = {"none": "", "unknown": _UNKNOWN}.get(
             numbers, f"processes that could not be ended: {numbers}"
@@ -143,7 +143,7 @@ class _Report(NamedTuple):
 
 
 class _Talk:
-    """The pipes of a running program and the link to its supervisor; none is waited for alone."""
+    """The pipes of a running program and the link to its supervisor, all watched together."""
 
     def __init__(self, process: subprocess.Popen[bytes], link: socket.socket, asked: bytes) -> None:
         self.process, self.link = process, link
@@ -151,7 +151,7 @@ class _Talk:
         self.answer, self.stderr, self.report = bytearray(), bytearray(), bytearray()
 
     def listen(self, deadline: float, longest: int) -> tuple[Outcome, str]:
-        """Exchange question and answer until the program ends, its time is up, or it says too much."""
+        """Exchange question and answer until the program ends, time is up, or the answer is too long."""
         has_ended = False
         with selectors.DefaultSelector() as waiting:
             self._register(waiting)
@@ -181,7 +181,7 @@ class _Talk:
         try:
             self.link.settimeout(_PATIENCE)
             with suppress(OSError):
-                # The sign to end everything; after its own end nobody hears it.
+                # Closing the link tells the supervisor to end everything.
                 self.link.shutdown(socket.SHUT_WR)
                 while read := self.link.recv(_CHUNK):
                     self.report += read
@@ -201,7 +201,7 @@ class _Talk:
         return report
 
     def _register(self, waiting: selectors.BaseSelector) -> None:
-        """Wait for all at once: to say what is unsaid, or to hear into a buffer."""
+        """Register all pipes: the question to be written, and the buffers to be read."""
         for pipe, buffer in (
             (self.process.stdin, None),
             (self.process.stdout, self.answer),
@@ -214,16 +214,16 @@ class _Talk:
             waiting.register(pipe, event, buffer)
 
     def _say(self) -> bool:
-        """Say as much as is taken; True if there is more to say."""
+        """Write as much as the pipe accepts; return True if more remains."""
         assert self.process.stdin
         try:
-            said = os.write(self.process.stdin.fileno(), self.unsaid[:_CHUNK])
+            count = os.write(self.process.stdin.fileno(), self.unsaid[:_CHUNK])
         except BlockingIOError:
             return True
         except OSError:
             # A program may answer without reading to the end.
             return False
-        self.unsaid = self.unsaid[said:]
+        self.unsaid = self.unsaid[count:]
         return bool(self.unsaid)
 
 

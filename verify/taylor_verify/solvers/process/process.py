@@ -1,10 +1,10 @@
-"""A solver that is a program of one's own, in any language: `--solver "process:./my_simulator"`.
+"""A user's program in any language as a solver: `--solver "process:./my_simulator"`.
 
-The program is asked and answers as protocol.py says. It is stopped when its time is up
-or when it says more than any answer needs; whatever it does, the run ends with an outcome. With it
-end all the processes it started, also those that left its session: supervisor.py stands
-between, and does so even if this process is killed. Where the system cannot do that (Linux can), a
-process that left the session goes on, and the detail of the outcome says that it may.
+Question and answer follow protocol.py. The program is stopped when its time is up or when its output is
+longer than any answer. So every run ends with an outcome. All processes that the program started end with
+it, also those that left its session: supervisor.py sees to that, even if this process is killed. Linux
+can do this. On other systems a process that left the session may go on, and the detail of the outcome
+says so.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ _MANY: Final = "many"
 # Seconds for one scene: a hundred times what rk4.py takes for any shipped one at a step of 0.02.
 DEFAULT_LIMIT: Final = 300.0
 
-# A step of any method is many operations, and no processor does one in a tenth of a nanosecond. To
-# claim more steps than that is false, and would widen the bound of the judge.
+# A step of any method is many operations, and takes more than a tenth of a nanosecond. A claim of
+# more steps is false, and would widen the bound of the judge.
 _STEPS_PER_SECOND = 1e10
 
 
@@ -67,8 +67,10 @@ class Process(Solver):
         if ended.outcome is not Outcome.FINISHED:
             return Trajectory(ended.outcome, detail=ended.detail(), seconds=seconds)
         try:
-            found = _trajectory(ended.answer, problem, ended.seconds)
-            return replace(found, detail="; ".join(filter(None, (found.detail, ended.left))))
+            trajectory = _trajectory(ended.answer, problem, ended.seconds)
+            return replace(
+                trajectory, detail="; ".join(filter(None, (trajectory.detail, ended.left)))
+            )
         except protocol.Unsuited as reason:
             return Trajectory(Outcome.UNSUITED, detail=str(reason), seconds=seconds)
         except protocol.Misanswer as fault:
@@ -85,10 +87,10 @@ def together(
     limit: float,
     folder: str | None = None,
 ) -> list[Trajectory | None]:
-    """Return what one process of the command answers to many questions, each with its settings.
+    """Return the answers of one process of the command to many questions, each with its settings.
 
-    The command knows the argument `many` (solvers/outside/question.py). None stands where it gave no sound
-    answer, and for all that came after: these questions have to be asked alone. ``limit`` is for all.
+    The command must know the argument `many` (solvers/outside/question.py). None marks a question without a
+    valid answer, and all questions after it; these have to be asked alone. ``limit`` is for all together.
     """
     lines = [
         json.dumps({"settings": [*settings], "question": protocol.question(problem)})
@@ -97,13 +99,13 @@ def together(
     longest = sum(protocol.longest_answer(problem) for _, problem in asked)
     text = "".join(f"{line}\n" for line in lines).encode()
     ended = converse([*words, _MANY], text, limit, longest, folder)
-    # What stands behind the last end of a line is no whole answer.
+    # Text after the last line end is not a complete answer.
     answers = [] if ended.left else ended.answer.split(b"\n")[:-1]
-    found: list[Trajectory | None] = [None] * len(asked)
+    trajectories: list[Trajectory | None] = [None] * len(asked)
     for place, (answer, (_, problem)) in enumerate(zip(answers, asked, strict=False)):
         with suppress(protocol.Misanswer, protocol.NotFinite, protocol.Unsuited):
-            found[place] = _trajectory(answer, problem, ended.seconds)
-    return found
+            trajectories[place] = _trajectory(answer, problem, ended.seconds)
+    return trajectories
 
 
 def unavailable() -> str:
@@ -121,7 +123,7 @@ def program(words: Sequence[str], limit: float, folder: str | None = None) -> Pr
 
 
 def named(name: str) -> Process:
-    """Return the solver `process:COMMAND`, its time limit from the environment variable if that is set.
+    """Return the solver `process:COMMAND`, with the time limit of the environment variable if it is set.
 
     Raises ValueError for a command that is empty or not closed, and for a limit that is no number.
     """
@@ -149,23 +151,23 @@ def time_limit() -> float:
 
 def _trajectory(answer: bytes, problem: Problem, waited: float) -> Trajectory:
     """Return the trajectory; ``waited`` are the seconds of the whole run, start and pipes included."""
-    found = protocol.read(answer, problem)
-    if not found.steps <= _STEPS_PER_SECOND * waited:
-        raise protocol.Misanswer(f"{found.steps} steps in {waited:.3g} seconds @ steps")
-    seconds = waited if found.seconds is None else found.seconds
-    if not seconds + found.compile_seconds <= waited:
-        claimed = f"{seconds:.3g} + {found.compile_seconds:.3g}"
+    answered = protocol.read(answer, problem)
+    if not answered.steps <= _STEPS_PER_SECOND * waited:
+        raise protocol.Misanswer(f"{answered.steps} steps in {waited:.3g} seconds @ steps")
+    seconds = waited if answered.seconds is None else answered.seconds
+    if not seconds + answered.compile_seconds <= waited:
+        claimed = f"{seconds:.3g} + {answered.compile_seconds:.3g}"
         raise protocol.Misanswer(
             f"expected seconds + compile_seconds within the {waited:.3g} that the whole run took, "
             f"got {claimed} @ seconds"
         )
-    # The rows are from here on those of any solver of one's own.
-    trajectory = Callback(lambda _: found.states).solve(problem)
+    # From here on the rows are treated like those of a callback.
+    trajectory = Callback(lambda _: answered.states).solve(problem)
     return replace(
         trajectory,
-        steps=found.steps,
-        evaluations=found.evaluations,
+        steps=answered.steps,
+        evaluations=answered.evaluations,
         seconds=seconds,
-        compile_seconds=found.compile_seconds,
-        detail="; ".join(filter(None, (trajectory.detail, found.remark))),
+        compile_seconds=answered.compile_seconds,
+        detail="; ".join(filter(None, (trajectory.detail, answered.remark))),
     )

@@ -1,4 +1,4 @@
-"""The question to a program of one's own, and the reading of its answer: JSON in, JSON out.
+"""The protocol of user programs: a question in JSON on standard input, an answer in JSON on its output.
 
 The question is one JSON document on the program's standard input. Every key but ``text`` and ``hex``
 occurs once in it and has one meaning, whatever its table, so that a reader may search the text for
@@ -101,14 +101,14 @@ from taylor_verify.solvers.solver import columns
 from taylor_verify.solvers.values import exact, named_once
 
 VERSION = 1
-# A program that knows constant loads alone has to be able to tell.
+# Versions let a program refuse questions that it does not know: loads that change with time,
 VERSION_WITH_WAVES = 2
-# So has one that knows a rigid body alone.
+# wheels,
 VERSION_WITH_WHEELS = 3
-# And one that knows no damping.
+# and damping.
 VERSION_WITH_DAMPING = 4
 
-# A time is read from a decimal, formed as start + k dt and printed again: three roundings, and one.
+# A time is read from a decimal, formed as start + k dt and printed again: three roundings, plus one.
 _TIME_ROUNDINGS = 4
 _DOUBLE_BITS = 53
 _PLACES = 30
@@ -118,15 +118,15 @@ _LONGEST = 10**10
 
 
 class Misanswer(Exception):
-    """The answer is not what was asked for; the text says how."""
+    """The error for an answer that does not follow the protocol; the text says how."""
 
 
 class NotFinite(Exception):
-    """The answer holds a number that is not finite; the text says where."""
+    """The error for an answer with a number that is not finite; the text says where."""
 
 
 class Unsuited(Exception):
-    """The program is not made for the question; the text is its reason."""
+    """The error for a program that is not made for the question; the text is its reason."""
 
 
 @dataclass(frozen=True)

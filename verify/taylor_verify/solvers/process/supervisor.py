@@ -1,4 +1,4 @@
-"""Run one program, and end every process that came of it: `python supervisor.py LINK COMMAND...`.
+"""Run one program, and end all its descendants: `python supervisor.py LINK COMMAND...`.
 
 The program has the standard streams of this process. LINK is a socket to the caller, who is told
 

@@ -1,4 +1,4 @@
-"""Many starts at once: heyoka's batch where it has one, a lane for each start, none at another's cost.
+"""Many starts at once, in heyoka's batches where it has them: one lane for each start.
 
 On f32 and f64 a processor steps several lanes in one instruction. heyoka then stops all lanes as soon as
 one of them is not finite: here that lane is taken out, another's numbers step in its place unseen, and
@@ -97,7 +97,10 @@ class Ensemble:
 
         A lane that does not get there is left where it was, with an outcome that says why.
         """
-        ready = [self._prepared(*each) for each in zip(self._linearised, lanes, until, strict=True)]
+        ready = [
+            self._prepared(*arguments)
+            for arguments in zip(self._linearised, lanes, until, strict=True)
+        ]
         # heyoka steps without the interpreter: threads are as good as processes.
         with ThreadPoolExecutor(_processors()) as pool:
             jobs = [

@@ -1,4 +1,4 @@
-"""Many bodies of one form by heyoka's batch in float64: a lane for each, none at another's cost.
+"""Many bodies of one form in heyoka's batches in float64: one lane for each body.
 
 heyoka steps the lanes of a batch together, and stops all of them where one is not finite. That one is
 left out, and the others go again from their starts. A lane whose rate has grown beyond the one that its
@@ -70,7 +70,7 @@ class _Propagation:
         self._outcomes = [Outcome.INTERRUPTED] * count
 
     def ended(self) -> Lanes:
-        waiting = self._begun()
+        waiting = self._startable()
         while waiting.size:
             waiting = waiting[np.argsort(self._radians(waiting), kind="stable")]
             width = self._stepper.batch_size
@@ -88,18 +88,18 @@ class _Propagation:
         )
 
     def _radians(self, lanes: Any) -> Floats:
-        found: Floats = self._rates[lanes] * abs(self._grid[lanes, -1])
-        return found
+        radians: Floats = self._rates[lanes] * abs(self._grid[lanes, -1])
+        return radians
 
-    def _begun(self) -> Any:
-        """The lanes that are finite, and not too long."""
+    def _startable(self) -> Any:
+        """Return the lanes whose rates are finite and whose ways are not too long."""
         lanes = np.arange(len(self._rates))
         given = np.concatenate([self._bodies.parameters, self._bodies.starts, self._rates[None]])
         is_finite = np.isfinite(given).all(axis=0)
         is_short = self._radians(lanes) <= MOST_RADIANS
         for k in np.flatnonzero(~(is_finite & is_short)):
             self._outcomes[k] = Outcome.STEP_LIMIT if is_finite[k] else Outcome.NON_FINITE
-        # A body that is all but at rest has a step all the same.
+        # A body that is almost at rest has a finite step too.
         self._rates = np.maximum(self._rates, 2.0**-10)
         return lanes[is_finite & is_short]
 
@@ -136,7 +136,7 @@ class _Propagation:
         return np.array(stopped, dtype=np.intp)
 
     def _grown(self, lanes: Any) -> Any:
-        """The lanes that are to go again at the rate that they have met."""
+        """Return the lanes that must go again, because their rate has grown."""
         whole = np.array([k for k in lanes if self._outcomes[k] is Outcome.FINISHED], dtype=np.intp)
         if not whole.size:
             return whole

@@ -1,6 +1,6 @@
 """The pace of heyoka's steps: one compiled form, run again and again over a stretch, unsampled.
 
-This is for measuring what a form costs. A run that is to be believed is the driver's.
+This measures the cost of a form. Use the driver for runs whose results count.
 """
 
 from __future__ import annotations

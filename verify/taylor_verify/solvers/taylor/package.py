@@ -1,4 +1,4 @@
-"""The package heyoka: whether it can be imported, and how to install it.
+"""The package heyoka: a check that it can be imported, and the command that installs it.
 
 It is an extra, and it is imported inside functions: only its own integrator needs it.
 """

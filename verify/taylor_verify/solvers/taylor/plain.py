@@ -86,11 +86,11 @@ class Plain(Solver):
         moments = list(numbers.array(diagonal)) if self.typed else [float(I) for I in diagonal]
         w, times = numbers.array(start.omega), numbers.array(problem.given.clock.elapsed)
         ran = free_body(moments, w, times, numbers.fp_type)
-        said = str(ran.outcome.name)
-        outcome = _READ.get(said, Outcome.INTERRUPTED)
+        word = str(ran.outcome.name)
+        outcome = _READ.get(word, Outcome.INTERRUPTED)
         quantities = {}
         if outcome is Outcome.FINISHED:
             rows = [[held_exactly(numbers.exact(v)) for v in row] for row in ran.rows]
             quantities["omega"] = np.array(rows, dtype=object)
         seconds = perf_counter() - began
-        return Trajectory(outcome, quantities, said, steps=ran.steps, seconds=seconds)
+        return Trajectory(outcome, quantities, word, steps=ran.steps, seconds=seconds)

@@ -1,4 +1,4 @@
-"""The way of one problem through its instants: heyoka's steps, capped, bounded, looked at and counted."""
+"""The way of one problem through its instants: heyoka's steps, limited, checked and counted."""
 
 from __future__ import annotations
 
@@ -87,9 +87,9 @@ class Way:
         grid, samples = self._grid
         ran = self._went(_stretches(grid, self._calls), self._rate)
         if self._was_too_fast(ran):
-            looks = max(self._calls, _looks(self._radians))
-            grid, samples = self._instants(looks)
-            ran = self._went(_stretches(grid, looks), self._rate, is_watched=True)
+            look_count = max(self._calls, _look_count(self._radians))
+            grid, samples = self._instants(look_count)
+            ran = self._went(_stretches(grid, look_count), self._rate, is_watched=True)
         if ran.outcome is not Outcome.FINISHED:
             return ran
         if len(ran.rows) != len(grid):
@@ -152,7 +152,7 @@ class Way:
 
     @property
     def _callback(self) -> Any:
-        """What listens to an interrupt."""
+        """The callback that lets heyoka react to an interrupt."""
         return None if self._problem.rung.name in _RADIANS_AT_ONCE else _go_on
 
     def _instants(self, pieces: int) -> tuple[np.ndarray[Any, Any], Places]:
@@ -191,15 +191,15 @@ def _outcomes() -> dict[Any, Outcome]:
     }
 
 
-def _looks(radians: float) -> int:
-    """Return how often the rate is looked at on a way so long."""
+def _look_count(radians: float) -> int:
+    """Return the number of times that the rate is checked on a way of this length."""
     if not radians <= MOST_RADIANS:
         return _MOST_LOOKS
     return min(max(_FEWEST_LOOKS, ceil(radians / _RADIANS_APART)), _MOST_LOOKS)
 
 
 def _calls(radians: float, rung: Rung) -> int:
-    """Return how often heyoka is called on a way so long, that an interrupt may be heard."""
+    """Return the number of calls of heyoka on a way of this length, so that an interrupt can be handled."""
     at_once = _RADIANS_AT_ONCE.get(rung.name)
     return 1 if at_once is None or not radians <= MOST_RADIANS else max(1, ceil(radians / at_once))
 

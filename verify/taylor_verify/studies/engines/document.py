@@ -1,4 +1,4 @@
-"""What the board stores: a row for each run, apart from the time that it took and the machine."""
+"""The document of the board: a row for each run; times and machine are stored separately."""
 
 from __future__ import annotations
 

@@ -70,8 +70,8 @@ class _Course(BallCourse):
         if spin.regime is MomentRegime.SPHERICAL:
             gained = tensors.scaled(t / spin.free.double_moment, spin.moment)
             return balls(tensors.plus(spin.omega, gained))
-        found = _added(balls(spin.along(t)), acb(0, phi).exp(), *self._start)
-        return _added(found, self._gathered(t), *self._push) if self._is_pushed else found
+        omega = _added(balls(spin.along(t)), acb(0, phi).exp(), *self._start)
+        return _added(omega, self._gathered(t), *self._push) if self._is_pushed else omega
 
     def _gathered(self, t: Fraction) -> acb:
         """Y."""

@@ -103,8 +103,8 @@ class _Course:
     def _gathered(self, time: mpf) -> mpc:
         """int_0^t e^(-i phi) dt."""
         if self._spin.bending:
-            found = self._fresnel(time + self._half_way) - self._at_start
-            return mp.expj(self._c * self._half_way**2) * found
+            integral = self._fresnel(time + self._half_way) - self._at_start
+            return mp.expj(self._c * self._half_way**2) * integral
         if self._spin.free.turning:
             sine = mp.sin(self._b * time / 2)
             return mpc(mp.sin(self._b * time), -2 * sine * sine) / self._b

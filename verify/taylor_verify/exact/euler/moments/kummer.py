@@ -53,5 +53,5 @@ class KummerTurn:
         vector = zip(self._across, self._ahead, self._axis, strict=True)
         return [
             p.real,
-            *(q.real * one - q.imag * two - p.imag * three for one, two, three in vector),
+            *(q.real * e1 - q.imag * e2 - p.imag * e3 for e1, e2, e3 in vector),
         ]

@@ -82,7 +82,7 @@ class Line:
         return not (is_moderate and self.pace * self.lead**4 <= 4 * _LARGEST_ANGLE**2)
 
     def restarted(self, t: Fraction) -> Line:
-        """The same line with its times counted from t."""
+        """Return the line with its times counted from t."""
         return Line(tensors.plus(self.a, tensors.scaled(t, self.b)), self.b)
 
     def is_short(self, t: Fraction, most: int) -> bool:

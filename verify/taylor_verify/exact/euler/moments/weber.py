@@ -76,7 +76,7 @@ class WeberTurn:
         vector = zip(self._across, self._ahead, self._axis, strict=True)
         return [
             x.real,
-            *(y.real * one - y.imag * two - x.imag * three for one, two, three in vector),
+            *(y.real * e1 - y.imag * e2 - x.imag * e3 for e1, e2, e3 in vector),
         ]
 
 

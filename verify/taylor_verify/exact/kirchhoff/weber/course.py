@@ -35,12 +35,12 @@ from taylor_verify.scenes.motion import Impulse
 
 @final
 class WeberBalls(Enclosed):
-    """One motion of Weber's."""
+    """A motion of Weber's case in balls."""
 
     regime = REGIME
 
-    def __init__(self, found: Curve, body: ImmersedBody, track: frozenset[str]) -> None:
-        self._curve, self._body, self._track = found, body, track
+    def __init__(self, curve: Curve, body: ImmersedBody, track: frozenset[str]) -> None:
+        self._curve, self._body, self._track = curve, body, track
         self.by_quadrature = bool(track)
         self._sides: dict[int, Panels] = {}
         self._frames: dict[int, Frames] = {}
@@ -49,14 +49,14 @@ class WeberBalls(Enclosed):
         if bits not in self._frames:
             self._frames[bits] = Frames(self._curve, self._body, self._sides, bits)
         frames, start = self._frames[bits], self._curve.start
-        # As told: a y that starts from zero has no digits but exact ones.
-        told = {
+        # The start as given: a zero of the start must be exactly zero.
+        given_start = {
             "linear_impulse": balls(start.linear),
             "angular_impulse": balls(start.angular),
             "attitude": ball_matrix(rotation_matrix(start.attitude)).tolist(),
             "centre": balls(start.centre),
         }
-        rows = [told if t == 0 else frames.at(ball(t), self._track) for t in elapsed]
+        rows = [given_start if t == 0 else frames.at(ball(t), self._track) for t in elapsed]
         names = ("linear_impulse", "angular_impulse", *sorted(self._track))
         return {name: [row[name] for row in rows] for name in names}
 
@@ -73,17 +73,17 @@ class Frames:
     """The motion at one precision, to be used at that precision."""
 
     def __init__(
-        self, found: Curve, body: ImmersedBody, sides: dict[int, Panels], bits: int
+        self, curve: Curve, body: ImmersedBody, sides: dict[int, Panels], bits: int
     ) -> None:
-        self._curve, self._body, self._sides, self._bits = found, body, sides, bits
-        self._motion = Quotients(found)
+        self._curve, self._body, self._sides, self._bits = curve, body, sides, bits
+        self._motion = Quotients(curve)
         self._integrands = Integrands.of(body, self._motion.F, ball)
         self._ends: dict[int, list[_End]] = {}
         self._integrals: dict[tuple[Fraction, Fraction], tuple[arb, arb]] = {}
-        self._space = _Space(found.start, self._motion.F)
+        self._space = _Space(curve.start, self._motion.F)
 
     def at(self, t: arb, track: frozenset[str]) -> dict[str, Any]:
-        """Every tracked quantity at a time that is not zero."""
+        """Return all tracked quantities at a time that is not zero."""
         x, y = self._motion.at(t)
         row: dict[str, Any] = {"linear_impulse": x, "angular_impulse": y}
         if track:
@@ -163,7 +163,7 @@ def _gauss(count: int, bits: int) -> list[tuple[arb, arb]]:
 
 @final
 class _Space:
-    """What is constant in space, in balls."""
+    """The quantities that are constant in space, in balls."""
 
     def __init__(self, start: Impulse, F: arb) -> None:
         self._F, self._start = F, start

@@ -88,8 +88,8 @@ class Curve:
         return tensors.scaled(self.rho, tensors.cross(self.start.linear, self.start.angular))
 
     @cached_property
-    def told(self) -> tuple[tuple[Fraction, Fraction], ...]:
-        """sigma^2 x_i and x_i' at the start, which decide the sign of c_i.
+    def sign_data(self) -> tuple[tuple[Fraction, Fraction], ...]:
+        """Pairs of sigma^2 x_i and x_i' at the start, which decide the sign of c_i.
 
         With n_i and n_i' of the right sign, but for a common one, both products are positive, so that
         their sum has its digits as long as one of the two is not small. Both are zero on a degenerate
@@ -176,10 +176,10 @@ def curve(scene: Scene) -> Curve | None:
         return None
     if tensors.dot(start.linear, start.angular) != 0:
         raise NoClosedForm(_ORTHOGONAL)
-    found = _curve(body, start, *family)
-    if found is None or found.is_degenerate:
+    genus_two = _curve(body, start, *family)
+    if genus_two is None or genus_two.is_degenerate:
         raise NoClosedForm(_DEGENERATE)
-    return found
+    return genus_two
 
 
 def _curve(

@@ -8,8 +8,8 @@ because n_i^2 = U(a_i)/A'(a_i) has its zeros where P1 or P2 is a_i, and its pole
 period where the points are e_p and e_q, U(a_i) = (a_i - e_p)(a_i - e_q): that is c_i^2, and the start
 has its sign.
 
-Every number here is a ball, and every choice is made in rationals or by a ball without a zero: what is
-said of the error is proven, given the theorems. FLINT encloses the theta functions.
+Every number here is a ball, and every choice is made in rationals or by a ball without a zero. So the error
+bounds are proven, given the theorems. FLINT encloses the theta functions.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ from taylor_verify.exact.solution import Unsettled
 _DOUBLINGS: Final = 8
 
 
-def rates(found: Curve, digits: int) -> tuple[mpf, mpf]:
-    """The rates of the two angles of the motion, in radians per unit of time, without a claim.
+def rates(curve: Curve, digits: int) -> tuple[mpf, mpf]:
+    """The rates of the two angles of the motion, in radians per unit of time; their error is not bounded.
 
     A shift of Z by a whole real period may turn signs of x_i and y_i; by two of them it does not.
     """
@@ -40,7 +40,7 @@ def rates(found: Curve, digits: int) -> tuple[mpf, mpf]:
     for doubled in range(_DOUBLINGS):
         try:
             with ctx.workprec(bits << doubled):
-                first, second = (arb.pi() * abs(rate) for rate in jacobian(found).rate)
+                first, second = (arb.pi() * abs(rate) for rate in jacobian(curve).rate)
                 if first.is_finite() and second.is_finite():
                     return midpoint(first), midpoint(second)
         except (Undecidable, ZeroDivisionError):
@@ -59,16 +59,16 @@ class Jet(NamedTuple):
 class Quotients:
     """The motion set up at the ambient precision of flint, and good only there."""
 
-    def __init__(self, found: Curve) -> None:
-        self.jacobian = jacobian(found)
-        self._places = found.places
-        self.F, self._rho = ball(found.F2).sqrt(), ball(found.rho)
-        sizes = _sizes(found, self.jacobian)
+    def __init__(self, curve: Curve) -> None:
+        self.jacobian = jacobian(curve)
+        self._places = curve.places
+        self.F, self._rho = ball(curve.F2).sqrt(), ball(curve.rho)
+        sizes = _sizes(curve, self.jacobian)
         self._c = [arb(1)] * 3
         n, rate = self._direction(self.jets(arb(0)))
         self._c = [
             size * sign(ball(x) * entry + ball(x_rate) * slope)
-            for size, entry, slope, (x, x_rate) in zip(sizes, n, rate, found.told, strict=True)
+            for size, entry, slope, (x, x_rate) in zip(sizes, n, rate, curve.sign_data, strict=True)
         ]
 
     def at(self, t: arb) -> tuple[list[arb], list[arb]]:
@@ -78,10 +78,10 @@ class Quotients:
 
     def jets(self, t: arb | acb) -> list[Jet]:
         """theta[0] and those of x_1, x_2 and x_3 at a time, which may be complex."""
-        found = self.jacobian
-        pairs = zip(found.phase, found.rate, strict=True)
+        place = self.jacobian
+        pairs = zip(place.phase, place.rate, strict=True)
         Z = [acb(start) + acb(rate) * acb(t) for start, rate in pairs]
-        jets = found.tau.theta_jets(acb_mat(2, 1, Z), 1)
+        jets = place.tau.theta_jets(acb_mat(2, 1, Z), 1)
 
         def jet(which: int) -> Jet:
             row = (jets[which, order] for order in range(3))
@@ -89,7 +89,7 @@ class Quotients:
             value, first, second = (entry.real if isinstance(t, arb) else entry for entry in row)
             along, rate = (
                 direction[0] * first + direction[1] * second
-                for direction in (found.neumann, found.rate)
+                for direction in (place.neumann, place.rate)
             )
             return Jet(value, along, rate)
 
@@ -97,7 +97,7 @@ class Quotients:
 
     @property
     def characteristics(self) -> list[int]:
-        """Those of ``jets``."""
+        """The characteristics of the theta functions in ``jets``."""
         return [0, *(HALF_PERIODS[place] for place in self._places)]
 
     def impulses(self, jets: Sequence[Jet]) -> tuple[list[Any], list[Any]]:
@@ -117,16 +117,16 @@ class Quotients:
         return n, rate
 
 
-def _sizes(found: Curve, place: Jacobian) -> list[arb]:
+def _sizes(curve: Curve, place: Jacobian) -> list[arb]:
     """|c_i|, from the half period of the two lowest e that are not a_i."""
-    e = branch_points(found)
+    e = branch_points(curve)
     constants = place.tau.theta(acb_mat([[0], [0]]))
     sizes = []
     for i, j, k in CYCLIC:
-        own = found.places[i]
+        own = curve.places[i]
         p, q = [branch for branch in range(5) if branch != own][:2]
         below, above = at_branches(p, q), at_branches(p, q) ^ HALF_PERIODS[own]
-        slope = ball((found.a[i] - found.a[j]) * (found.a[i] - found.a[k]))
+        slope = ball((curve.a[i] - curve.a[j]) * (curve.a[i] - curve.a[k]))
         square = abs((e[own] - e[p]) * (e[own] - e[q]) / slope)
         sizes.append(square.sqrt() * abs(constants[0, below].real / constants[0, above].real))
     return sizes

@@ -108,10 +108,10 @@ def _share(e: Sequence[arb], k: int, point: Point, to_turns: arb_mat) -> tuple[a
 
 
 def _turned(matrix: arb_mat, vector: Sequence[arb]) -> tuple[arb, arb]:
-    found = matrix * arb_mat([[entry] for entry in vector])
-    return found[0, 0], found[1, 0]
+    product = matrix * arb_mat([[entry] for entry in vector])
+    return product[0, 0], product[1, 0]
 
 
 def _ball(surd: Surd) -> arb:
-    found: arb = surd.form(ball, arb.sqrt)
-    return found
+    value: arb = surd.form(ball, arb.sqrt)
+    return value

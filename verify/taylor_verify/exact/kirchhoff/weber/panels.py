@@ -52,7 +52,7 @@ _HALVINGS_OF_ARCS: Final = 4
 _HALVINGS: Final = 40
 # A disc is used if its radius is less than this part of its middle: without zero, whatever floats round.
 _SLENDER: Final = 0.75
-# Some hours.
+# Limit of the number of panels: some hours of work.
 _MOST: Final = 20_000
 _OTHERS: Final = ((1, 2), (2, 0), (0, 1))
 
@@ -124,8 +124,8 @@ class _Sizes(NamedTuple):
 class Panels:
     """The panels of one motion on one side of its start, found as they are asked for."""
 
-    def __init__(self, found: Curve, body: ImmersedBody, side: int) -> None:
-        self._curve, self._body, self._side = found, body, side
+    def __init__(self, curve: Curve, body: ImmersedBody, side: int) -> None:
+        self._curve, self._body, self._side = curve, body, side
         self._bits = _BITS
         self._panels: list[Panel] = []
         self._sizes: dict[Fraction, list[_Sizes]] = {}
@@ -155,12 +155,12 @@ class Panels:
         for halved in range(_HALVINGS):
             try:
                 with ctx.workprec(self._bits):
-                    found = self._bounded(start + self._side * half, half)
+                    bounds = self._bounded(start + self._side * half, half)
             except Undecidable:
-                found = None
-            if found is not None:
+                bounds = None
+            if bounds is not None:
                 self._half = half if halved else 2 * half
-                return Panel(start, start + 2 * self._side * half, *found)
+                return Panel(start, start + 2 * self._side * half, *bounds)
             half /= 2
         raise Unsettled(f"no panel of Weber's integrals is free of poles at t = {float(start):.3g}")
 
@@ -208,7 +208,7 @@ class Panels:
         return axis, bounds[axis], rise
 
     def _arc(self, middle: Fraction, half: Fraction, at: Fraction, spread: Fraction) -> _Arc:
-        """What lies on the arc of the ellipse about the angle pi ``at``, pi ``spread`` to both sides."""
+        """Return the discs and balls on the arc of the ellipse at pi ``at`` +- pi ``spread``."""
         sine, cosine = arb.sin_cos_pi(ball(at))
         t = acb(ball(middle) + ball(half * _ACROSS) * cosine, ball(half * _UP) * sine)
         reach = (ball(half * _ACROSS * spread) * arb.pi()).upper()
@@ -237,8 +237,8 @@ class Panels:
 
             def size(which: int, g: Sequence[arb]) -> arb:
                 # Taylor's coefficients, and cosh for cos.
-                once, both, twice = (jets[which & 0b1100, order].real for order in (3, 4, 5))
-                return -2 * (once * g[0] * g[0] + both * g[0] * g[1] + twice * g[1] * g[1])
+                by_11, by_12, by_22 = (jets[which & 0b1100, order].real for order in (3, 4, 5))
+                return -2 * (by_11 * g[0] * g[0] + by_12 * g[0] * g[1] + by_22 * g[1] * g[1])
 
             self._sizes[half] = [
                 _Sizes(bend, (bend * size(which, place.neumann)).sqrt())

@@ -101,11 +101,11 @@ def stretch(e: Sequence[mpf], s: int, angle: mpf, rest: mpf) -> mpc:
         weight = angle / mp.sqrt(mp.fprod(near))
         return mpc(weight, weight * (e[s] + up if up <= down else e[s + 1] - down))
 
-    found, error = mp.quad(both, [0, 1], error=True, maxdegree=_LEVELS)
+    integral, error = mp.quad(both, [0, 1], error=True, maxdegree=_LEVELS)
     # Every integral is near 1 in the unit sigma.
     if not error <= mp.eps:
         raise Unsettled("an integral along Weber's curve does not settle")
-    return found
+    return integral
 
 
 def _real(surd: Surd) -> mpf:

@@ -1,4 +1,4 @@
-"""Riemann's theta functions of two variables as a sum of one's own, in mpmath: tau = iY, Z real.
+"""Riemann's theta functions of two variables, summed by this package in mpmath: tau = iY, Z real.
 
 With half-integer points m/2 = n + a/2, every term of theta[a, b](Z) (characteristics.py) has a twin at
 -m of the same value, so that
@@ -73,25 +73,25 @@ class Thetas:
         return {c: series.value(waves[c >> 2]) for c, series in self._series.items()}
 
     def slopes(self, Z: Sequence[mpf], along: Sequence[mpf]) -> Mapping[int, mpf]:
-        """Its rate at Z along a direction.
+        """The rates of theta at Z along a direction, by characteristic.
 
-        What is left out of a rate is larger by the size of m: it serves where a sign is asked for.
+        The truncation error of a rate is larger by the size of m, so it is used only for a sign.
         """
         waves = self._waves(Z)
         return {c: series.slope(waves[c >> 2], along) for c, series in self._series.items()}
 
     def _waves(self, Z: Sequence[mpf]) -> Mapping[int, Waves]:
         """The waves of every a."""
-        kept = [term for terms in self._terms.values() for term in terms]
-        first = _powers(Z[0], max((m1 for m1, _, _ in kept), default=0))
-        second = _powers(Z[1], max((abs(m2) for _, m2, _ in kept), default=0))
-        found = {}
+        all_terms = [term for terms in self._terms.values() for term in terms]
+        first = _powers(Z[0], max((m1 for m1, _, _ in all_terms), default=0))
+        second = _powers(Z[1], max((abs(m2) for _, m2, _ in all_terms), default=0))
+        waves_by_a = {}
         for a, terms in self._terms.items():
             waves = [
                 first[m1] * (second[m2] if m2 >= 0 else mp.conj(second[-m2])) for m1, m2, _ in terms
             ]
-            found[a] = ([wave.real for wave in waves], [wave.imag for wave in waves])
-        return found
+            waves_by_a[a] = ([wave.real for wave in waves], [wave.imag for wave in waves])
+        return waves_by_a
 
 
 def _series(terms: Sequence[Term], characteristic: int) -> Series:
@@ -117,7 +117,7 @@ def _terms(Y: Symmetric, reach: mpf, a: int) -> list[Term]:
     a1, a2 = a >> 1, a & 1
     det = Y11 * Y22 - Y12**2
     farthest = int(mp.ceil(2 * mp.sqrt(reach * Y22 / det)))
-    found = []
+    terms = []
     for m1 in range(a1, farthest + 1, 2):
         middle, half = -Y12 * m1 / Y22, mp.sqrt(max(4 * reach * Y22 - det * m1**2, mpf(0))) / Y22
         low, high = int(mp.floor(middle - half)), int(mp.ceil(middle + half))
@@ -125,8 +125,8 @@ def _terms(Y: Symmetric, reach: mpf, a: int) -> list[Term]:
             if m1 or m2 >= 0:
                 square = (Y11 * m1**2 + 2 * Y12 * m1 * m2 + Y22 * m2**2) / 4
                 twins = 2 if m1 or m2 else 1
-                found.append((m1, m2, twins * mp.exp(-mp.pi * square)))
-    return found
+                terms.append((m1, m2, twins * mp.exp(-mp.pi * square)))
+    return terms
 
 
 def _reach(Y: Symmetric) -> mpf:
@@ -143,7 +143,7 @@ def _reach(Y: Symmetric) -> mpf:
 
 def _powers(z: mpf, largest: int) -> list[mpf]:
     """e^{i pi m z} for m = 0, 1, ..."""
-    step, found = mp.expjpi(z), [mp.mpc(1)]
+    step, powers = mp.expjpi(z), [mp.mpc(1)]
     for _ in range(largest):
-        found.append(found[-1] * step)
-    return found
+        powers.append(powers[-1] * step)
+    return powers

@@ -1,4 +1,4 @@
-"""Weber's motion in mpmath, by theta series of one's own and without a derivative of them.
+"""Weber's motion in mpmath, by this package's own theta series, without their derivatives.
 
 Legend: that of curve.py and characteristics.py; j(i) says which e_j is a_i. Beside x_i as in enclosure.py,
 
@@ -32,7 +32,7 @@ from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.precision import exact_value
 
 _GUARD_DIGITS: Final = 12
-# Enough for a sign of what is not small, and for the size of a rate.
+# Enough digits for the sign of a number that is not small, and for the size of a rate.
 _FEW_DIGITS: Final = 20
 _ORIGIN: Final = 0
 # Where the sign of d_k is looked up: a coarse grid of parts of the two periods.
@@ -43,13 +43,13 @@ _PLACES: Final = tuple(
 
 @final
 class WeberSums(Settled):
-    """One motion of Weber's."""
+    """A motion of Weber's case in mpmath."""
 
     route = "mpmath"
     regime = REGIME
 
-    def __init__(self, found: Curve, body: ImmersedBody, track: frozenset[str]) -> None:
-        self._curve, self._body, self._track = found, body, track
+    def __init__(self, curve: Curve, body: ImmersedBody, track: frozenset[str]) -> None:
+        self._curve, self._body, self._track = curve, body, track
         self.by_quadrature = bool(track)
         self._paths: dict[int, tuple[Sums, Path]] = {}
 
@@ -105,24 +105,24 @@ def _stacked(rows: Sequence[Any], name: str) -> np.ndarray[Any, Any]:
 class Sums:
     """The motion set up at the ambient precision of mpmath, and good only there."""
 
-    def __init__(self, found: Curve) -> None:
-        self._jacobian = real_jacobian(found)
-        places = found.places
+    def __init__(self, curve: Curve) -> None:
+        self._jacobian = real_jacobian(curve)
+        places = curve.places
         self._x = [HALF_PERIODS[place] for place in places]
         self._y = [of_pair(places[i], places[j]) for _, i, j in CYCLIC]
         self._thetas = Thetas(self._jacobian.Y, (_ORIGIN, *self._x, *self._y))
-        self._F, self._rho = mp.sqrt(mp.convert(found.F2)), mp.convert(found.rho)
+        self._F, self._rho = mp.sqrt(mp.convert(curve.F2)), mp.convert(curve.rho)
         constants = Thetas(self._jacobian.Y, range(16)).values((mpf(0), mpf(0)))
         self._c = [mpf(1)] * 3
         place = self._jacobian
         n, rate = _direction(self._thetas, place.phase, place.neumann, self._c, self._x)
         signs = [
             mp.sign(mp.convert(x) * entry + mp.convert(x_rate) * slope)
-            for (x, x_rate), entry, slope in zip(found.told, n, rate, strict=True)
+            for (x, x_rate), entry, slope in zip(curve.sign_data, n, rate, strict=True)
         ]
-        sizes = _sizes_of_x(found, constants)
+        sizes = _sizes_of_x(curve, constants)
         self._c = [sign * size for sign, size in zip(signs, sizes, strict=True)]
-        heights = _sizes_of_y(found, constants)
+        heights = _sizes_of_y(curve, constants)
         self._d = [sign * size for sign, size in zip(self._signs_of_y(), heights, strict=True)]
 
     def at(self, t: Time) -> tuple[list[mpf], list[mpf]]:
@@ -165,29 +165,29 @@ def _direction(
     return n, rate
 
 
-def _sizes_of_x(found: Curve, constants: Mapping[int, mpf]) -> list[mpf]:
+def _sizes_of_x(curve: Curve, constants: Mapping[int, mpf]) -> list[mpf]:
     """|c_i|, from the half period of the two highest e that are not a_i."""
-    e = branch_points(found)
+    e = branch_points(curve)
     sizes = []
     for i, j, k in CYCLIC:
-        own = found.places[i]
+        own = curve.places[i]
         p, q = [branch for branch in range(5) if branch != own][-2:]
         below, above = at_branches(p, q), at_branches(p, q) ^ HALF_PERIODS[own]
-        slope = mp.convert((found.a[i] - found.a[j]) * (found.a[i] - found.a[k]))
+        slope = mp.convert((curve.a[i] - curve.a[j]) * (curve.a[i] - curve.a[k]))
         square = abs((e[own] - e[p]) * (e[own] - e[q]) / slope)
         sizes.append(mp.sqrt(square) * abs(constants[below] / constants[above]))
     return sizes
 
 
-def _sizes_of_y(found: Curve, constants: Mapping[int, mpf]) -> list[mpf]:
+def _sizes_of_y(curve: Curve, constants: Mapping[int, mpf]) -> list[mpf]:
     """|d_k|, from the half period of a_i and a_k; B(a_i) = F_i A'(a_i)."""
     sizes = []
     for k in range(3):
         i, j = (k + 1) % 3, (k + 2) % 3
-        square = found.uhlenbeck[i] * (found.a[i] - found.a[j])
-        below = at_branches(found.places[i], found.places[k])
-        above = at_branches(found.places[j], found.places[k])
+        square = curve.uhlenbeck[i] * (curve.a[i] - curve.a[j])
+        below = at_branches(curve.places[i], curve.places[k])
+        above = at_branches(curve.places[j], curve.places[k])
         ratio = abs(constants[below] / constants[above])
-        size = mp.sqrt(abs(mp.convert(square))) * mp.convert(found.sigma) * ratio
-        sizes.append(size / mp.convert(found.rho))
+        size = mp.sqrt(abs(mp.convert(square))) * mp.convert(curve.sigma) * ratio
+        sizes.append(size / mp.convert(curve.rho))
     return sizes

@@ -1,1 +1,1 @@
-"""The columns of a trajectory: their names, their units, and which one stands for what."""
+"""The columns of a trajectory: their names, their units, and their meanings."""

@@ -66,7 +66,7 @@ def shown_names(names: Sequence[Name]) -> str:
 
 @dataclass(frozen=True)
 class Candidates:
-    """The names of a file, and those of them that somebody asked for, by our names."""
+    """The names of a file, and those that the caller assigned to our names."""
 
     names: Sequence[Name]
     asked: Mapping[str, Name]

@@ -93,7 +93,7 @@ class Name:
 
     @cached_property
     def readings(self) -> tuple[Reading, ...]:
-        """Every reading; of each spelling the one with the shortest path, and without a suffix."""
+        """Possible readings; for each spelling the reading with the shortest path and without a suffix."""
         if len(self.text) > _LONGEST:
             return ()
         readings: dict[tuple[Spelling, int], Reading] = {}

@@ -1,4 +1,4 @@
-"""The columns that somebody asks for by name: ``w1=wx,t=Time [s]``, each NAME one of ours.
+"""The columns that a caller assigns by name: ``w1=wx,t=Time [s]``, each NAME one of ours.
 
 A NAME may also be a whole group, ``omega=gyro``: then ``gyro_x gyro_y gyro_z`` or ``gyro[0] ...`` are its
 columns, in our order.
@@ -81,8 +81,10 @@ def _of_group(
     if len(sets) == 1:
         return list(zip(GROUPS[group], sets[0], strict=True))
     ways = " or ".join(f"{theirs}_{c[0]} ... {theirs}_{c[-1]}" for c in COMPONENTS[group])
-    got = "several of them" if sets else f"none ({_near(theirs, names)})"
-    faults.add(f"columns {cut(ways)}", got, at, f"name each of {' '.join(GROUPS[group])}")
+    count_in_words = "several of them" if sets else f"none ({_near(theirs, names)})"
+    faults.add(
+        f"columns {cut(ways)}", count_in_words, at, f"name each of {' '.join(GROUPS[group])}"
+    )
     return []
 
 

@@ -164,7 +164,9 @@ def _add(segment: Segment, texts: Mapping[str, str], place: str) -> None:
 
 
 def _texts(element: ElementTree.Element) -> dict[str, str]:
-    return {_tag(one): one.text.strip() for one in element.iter() if one.text and one.text.strip()}
+    return {
+        _tag(part): part.text.strip() for part in element.iter() if part.text and part.text.strip()
+    }
 
 
 def _tag(element: ElementTree.Element) -> str:

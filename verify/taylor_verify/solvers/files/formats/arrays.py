@@ -1,4 +1,4 @@
-"""Columns of the named arrays in a file: whose length is that of the times, and how they are called.
+"""Columns from the named arrays in a file: the arrays as long as the times, and their names.
 
 A vector is a column of its own name. An array N of n rows and k columns is k columns N[0] ... N[k-1], one
 of n matrices is N[0][0] ... . The names of groups stand before a dot: sim.omega[0]. A group that holds

@@ -1,4 +1,4 @@
-"""A column of a trajectory file as it is written, and how much of a file is read.
+"""A column of a trajectory file as it is written, and the limits of what is read.
 
 Every format holds a file to these limits before it makes anything of its content.
 """

@@ -86,8 +86,8 @@ def _columns(lines: _Lines, path: Path) -> list[Column]:
 
 def _rows(lines: _Lines) -> Iterator[list[str]]:
     """Return the cells of each line, by the separator of the first one."""
-    each = iter(lines)
-    first = next(each, "")
+    remaining = iter(lines)
+    first = next(remaining, "")
     separator = next((mark for mark in ",;\t" if mark in first), None)
-    every = chain([first] if first else [], each)
+    every = chain([first] if first else [], remaining)
     return csv.reader(every, delimiter=separator) if separator else (line.split() for line in every)

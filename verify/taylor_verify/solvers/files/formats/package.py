@@ -1,4 +1,4 @@
-"""Refusals for what a library makes of a file: that it is not installed, or that the file is broken."""
+"""Refusals of files that need a missing library, or that a library cannot read."""
 
 from __future__ import annotations
 

@@ -110,11 +110,11 @@ def parted(file: str) -> tuple[Path, str]:
 def _reader(content: BinaryIO, path: Path) -> Reader:
     if aem.is_text(content):
         return aem.read
-    found = FORMATS.get(path.suffix.lower())
-    if found is None:
+    known = FORMATS.get(path.suffix.lower())
+    if known is None:
         expected = f"a file that ends in {', '.join(FORMATS)}"
         raise refusal(expected, path.suffix or "no suffix", path)
-    return found.read
+    return known.read
 
 
 def _is_there(package: str) -> bool:

@@ -68,8 +68,8 @@ def _table(path: Path, part: str) -> Table:
         with rosbag1.Reader(path) if is_ros1 else rosbag2.Reader(path) as reader:
             if is_ros1:
                 _bound_chunks(reader, path)
-            counts = ((one.topic, one.msgtype, one.msgcount) for one in reader.connections)
-            topic = messages.chosen([Topic(*one) for one in sorted(counts)], part, path)
+            counts = ((entry.topic, entry.msgtype, entry.msgcount) for entry in reader.connections)
+            topic = messages.chosen([Topic(*count) for count in sorted(counts)], part, path)
             return messages.table(topic, _decoded(reader, topic, path), path)
 
 
@@ -81,8 +81,8 @@ def _decoded(reader: Any, topic: Topic, path: Path) -> Iterator[Any]:
     types = get_typestore(Stores.ROS1_NOETIC if is_ros1 else Stores.LATEST)
     decode = types.deserialize_ros1 if is_ros1 else types.deserialize_cdr
     own = types.generate_msgdef(topic.kind)[1] if is_ros1 else types.hash_rihs01(topic.kind)
-    connections = [one for one in reader.connections if one.topic == topic.name]
-    if foreign := [one for one in connections if one.digest not in ("", own)]:
+    connections = [entry for entry in reader.connections if entry.topic == topic.name]
+    if foreign := [entry for entry in connections if entry.digest not in ("", own)]:
         raise refusal(f"{topic.kind} as ROS defines it", cut(foreign[0].digest), path)
     for connection, _, data in reader.messages(connections=connections):
         yield decode(data, connection.msgtype)

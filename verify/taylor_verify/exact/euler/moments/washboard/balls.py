@@ -97,9 +97,9 @@ class Turn:
         reach = abs(missing).upper() * self._root(y).upper()
         for _ in range(_WIDENINGS):
             about = arb(y, reach)
-            found = y + missing * self._root(about) / 2
-            if about.contains_interior(found):
-                return side * found
+            better = y + missing * self._root(about) / 2
+            if about.contains_interior(better):
+                return side * better
             reach *= 2
         raise Undecidable
 
@@ -184,10 +184,10 @@ class Turn:
 
     def _root(self, y: arb) -> arb:
         """g^(1/2), which is positive."""
-        found = self._g(acb(y)).real
-        if not found > 0:
+        g = self._g(acb(y)).real
+        if not g > 0:
             raise Undecidable
-        return found.sqrt()
+        return g.sqrt()
 
     def _integrand(self, y: acb, analytic: bool) -> acb:
         return 2 / self._g(y).sqrt(analytic=analytic)

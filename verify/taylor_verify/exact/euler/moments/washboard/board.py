@@ -126,7 +126,7 @@ class Washboard:
         return self.moment_squared * (J * both - J**2 - product) / product
 
     @property
-    def kept(self) -> Fraction:
+    def conserved(self) -> Fraction:
         """2T J - |H|^2 at the start, conserved: M.w and M.I w grow in proportion."""
         return self._free.twice_energy * self.axial_moment - self.momentum_squared
 

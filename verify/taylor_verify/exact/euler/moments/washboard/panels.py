@@ -42,10 +42,10 @@ class Panel:
     def at(self, x: mpf) -> mpf:
         """The integral from 0 to x, by Clenshaw's recurrence."""
         s = (2 * x - self.left - self.right) / (self.right - self.left)
-        one, two, twice = mpf(0), mpf(0), 2 * s
+        b, b_next, twice = mpf(0), mpf(0), 2 * s
         for coefficient in reversed(self.series[1:]):
-            one, two = twice * one - two + coefficient, one
-        return self.before + s * one - two + self.series[0]
+            b, b_next = twice * b - b_next + coefficient, b
+        return self.before + s * b - b_next + self.series[0]
 
 
 class Panels:

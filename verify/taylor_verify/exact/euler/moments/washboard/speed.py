@@ -83,8 +83,8 @@ class Speed(ABC):
             return self.squared(sigma)
         middle = sigma.mid()
         d = sigma - middle
-        found = self.squared(middle) + self.derivative(middle) * d
-        return found - self._wave(sigma, 2) * d * d / 2
+        tangent = self.squared(middle) + self.derivative(middle) * d
+        return tangent - self._wave(sigma, 2) * d * d / 2
 
     def _is_wide(self, z: acb) -> bool:
         """Return True if a ball of sigma is wider than a node of a quadrature."""
@@ -170,11 +170,11 @@ class Growing(Speed):
 
     def across(self, sigma: arb) -> list[arb]:
         up, down = self._powers(sigma)
-        found = [(v - u) / 2 * down for v, u in zip(self._across, self._ahead, strict=True)]
+        shrunk = [(v - u) / 2 * down for v, u in zip(self._across, self._ahead, strict=True)]
         if self.board.never_climbs:
-            return found
+            return shrunk
         grown = [(v + u) / 2 * up for v, u in zip(self._across, self._ahead, strict=True)]
-        return [g + f for g, f in zip(grown, found, strict=True)]
+        return [g + f for g, f in zip(grown, shrunk, strict=True)]
 
     def _powers(self, sigma: Number) -> tuple[Number, Number]:
         """e^(Omega sigma) and its inverse."""

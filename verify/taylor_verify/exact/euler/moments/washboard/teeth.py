@@ -51,10 +51,10 @@ class FarTeeth:
         summed = acb.integral(self._integrand, *span).real
         # F/d is at least ``first`` on the tooth, and a^(1/2) times the term left out falls with a.
         error = self._rest * arb(self.first).sqrt() * self.width
-        found = (summed + arb(0, error.upper())) / self._rise.sqrt()
-        if not found.rad() <= abs(found) * arb(2) ** (-ctx.prec // 2):
+        level = (summed + arb(0, error.upper())) / self._rise.sqrt()
+        if not level.rad() <= abs(level) * arb(2) ** (-ctx.prec // 2):
             raise Undecidable
-        return found
+        return level
 
     def _integrand(self, sigma: acb, analytic: bool) -> acb:
         a = self._speed.around(sigma) / self._rise
@@ -63,12 +63,12 @@ class FarTeeth:
 
 def _coefficients(a: int, bits: int) -> list[fmpq]:
     """The numbers beside u^k, up to the first whose term is below so many bits at this a."""
-    found = [fmpq(-2), fmpq(1, 2)]
+    numbers = [fmpq(-2), fmpq(1, 2)]
     factor, j = Fraction(1, 4), 1  # (1/2)_(2j-1)/(2j)!
     while True:
-        found += [fmpq.bernoulli(2 * j) * fmpq(factor.numerator, factor.denominator)]
-        if abs(found[-1]) * fmpq(2) ** bits < fmpq(a) ** (2 * j):
-            return found
-        found += [fmpq(0)]
+        numbers += [fmpq.bernoulli(2 * j) * fmpq(factor.numerator, factor.denominator)]
+        if abs(numbers[-1]) * fmpq(2) ** bits < fmpq(a) ** (2 * j):
+            return numbers
+        numbers += [fmpq(0)]
         factor *= Fraction((4 * j - 1) * (4 * j + 1), 4 * (2 * j + 1) * (2 * j + 2))
         j += 1

@@ -73,10 +73,10 @@ def turnings(board: Washboard) -> Turnings:
 
     Raises Undecidable where the precision does not tell, NoClosedForm where there are too many teeth.
     """
-    found = speed(board)
-    if isinstance(found, Growing):
-        return _of_growth(found)
-    return _of_steep(found) if board.tilt_squared >= 0 else _of_teeth(found)
+    F = speed(board)
+    if isinstance(F, Growing):
+        return _of_growth(F)
+    return _of_steep(F) if board.tilt_squared >= 0 else _of_teeth(F)
 
 
 def _of_growth(F: Growing) -> Turnings:

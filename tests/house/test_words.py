@@ -1,0 +1,150 @@
+"""Words of the package: the beginnings of docstrings, and names that say nothing."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Final
+
+import pytest
+
+TESTS: Final = Path(__file__).resolve().parents[1]
+PACKAGE: Final = TESTS.parent / "verify" / "taylor_verify"
+
+# Prepositions, relatives, conjunctions and pronouns: such a first line names no thing and no action.
+BEGINNING: Final = re.compile(
+    r"(About|Above|After|Against|And|As|At|Before|Behind|Below|Beside|Between|Beyond|But|By|During|Each|Every"
+    r"|Everything|For|From|How|If|In|Inside|Into|It|Its|Nor|Nothing|Of|Off|On|One|Or|Out|Over|Since|So|Than"
+    r"|That|The same|Those|Through|To|Towards|Under|Until|Upon|What|When|Where|Wherever|Whether|Which|While"
+    r"|Who|Whose|Why|With|Within|Without)\b"
+)
+# Participles, pronouns and verbs that do not say what a variable holds.
+NAMELESS: Final = re.compile(r"_*(found|told|kept|held|seen|looks|said|gone|begun|it)_*")
+# The rooms without such names, in the package and among the tests.
+ROOMS: Final = ("judge", "exact", "models", "solvers", "scenes", "records", "claims", "batch")
+TEST_ROOMS: Final[tuple[str, ...]] = ()
+# A key of published JSON.
+KEYS: Final = frozenset({("Convention", "found")})
+
+
+def docstrings(source: str) -> Iterator[tuple[int, str]]:
+    """Yield the line and the text of every docstring of a module, its classes and its functions."""
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
+            text = ast.get_docstring(node)
+            if text is not None:
+                yield getattr(node, "lineno", 1), text
+
+
+def bad_beginnings(source: str) -> Iterator[str]:
+    """Yield the place and the first line of every docstring that begins with a word of BEGINNING."""
+    for line, text in docstrings(source):
+        if BEGINNING.match(text):
+            yield f"{line}: {text.splitlines()[0]}"
+
+
+def is_key(node: ast.AST, parent: str) -> bool:
+    """Return True for the field of a class that is a key of published JSON."""
+    match node:
+        case ast.AnnAssign(target=ast.Name(id=name)):
+            return (parent, name) in KEYS
+    return False
+
+
+def nodes_below(tree: ast.AST, parent: str = "") -> Iterator[ast.AST]:
+    """Yield all nodes but the fields that are keys; ``parent`` is the class around them."""
+    yield tree
+    for child in ast.iter_child_nodes(tree):
+        if not is_key(child, parent):
+            yield from nodes_below(child, child.name if isinstance(child, ast.ClassDef) else parent)
+
+
+def bound_names(tree: ast.AST) -> Iterator[tuple[int, str]]:
+    """Yield the line and the name of every variable, argument, function, class and import."""
+    for node in nodes_below(tree):
+        match node:
+            case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name):
+                yield node.lineno, name
+            case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name):
+                yield node.lineno, name
+            case ast.ClassDef(name=name):
+                yield node.lineno, name
+            case ast.Attribute(attr=name, ctx=ast.Store()):
+                yield node.lineno, name
+            case ast.alias(name=name, asname=None) | ast.alias(asname=str(name)):
+                yield node.lineno, name
+
+
+def nameless(source: str) -> Iterator[str]:
+    """Yield the line and the name of every variable that is called by a word of NAMELESS."""
+    for line, name in bound_names(ast.parse(source)):
+        if NAMELESS.fullmatch(name):
+            yield f"{line}: {name}"
+
+
+def faults_in(folder: Path, rule: object) -> list[str]:
+    """Return the faults by a rule in all files below a folder, with their places."""
+    assert callable(rule)
+    return [
+        f"{file.relative_to(TESTS.parent)}:{fault}"
+        for file in sorted(folder.rglob("*.py"))
+        for fault in rule(file.read_text(encoding="utf-8"))
+    ]
+
+
+def test_no_docstring_begins_with_a_preposition() -> None:
+    """The first line of every docstring of the package begins with a thing or an action."""
+    assert faults_in(PACKAGE, bad_beginnings) == []
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_variables_are_named_by_nouns(room: str) -> None:
+    """No variable of these rooms is called found, told, kept or by another word that says nothing."""
+    assert faults_in(PACKAGE / room, nameless) == []
+
+
+@pytest.mark.parametrize("room", TEST_ROOMS)
+def test_variables_of_tests_are_named_by_nouns(room: str) -> None:
+    """No variable in the tests of these rooms is called by such a word either."""
+    assert faults_in(TESTS / room, nameless) == []
+
+
+@pytest.mark.parametrize(
+    "text", ["Of a body the mass.", "What a body does.", "Whether it moves.", "In units of time."]
+)
+def test_a_preposition_is_noticed(text: str) -> None:
+    """A docstring that begins with a preposition or a relative is a fault, of functions as well."""
+    assert list(bad_beginnings(f'"""{text}"""')) == [f"1: {text}"]
+    assert list(bad_beginnings(f'def f():\n    """{text}"""')) == [f"1: {text}"]
+
+
+@pytest.mark.parametrize(
+    "text", ["Inertia of a body.", "Return the mass.", "Offset.", "Format it."]
+)
+def test_a_noun_or_a_verb_may_begin(text: str) -> None:
+    """A word that only begins like a preposition is no fault."""
+    assert list(bad_beginnings(f'"""{text}"""')) == []
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "found = 1",
+        "def f(held): ...",
+        "def told(): ...",
+        "[kept for kept in ()]",
+        "self._seen = 1",
+        "if (said := 1): ...",
+        "from a import b as gone",
+    ],
+)
+def test_a_nameless_variable_is_noticed(source: str) -> None:
+    """Assignments, arguments, functions, comprehensions, attributes and imports are all looked through."""
+    assert len(list(nameless(source))) == 1
+
+
+def test_a_longer_name_is_no_fault() -> None:
+    """A word is a fault as a whole name only: foundation and held_row are names."""
+    assert list(nameless("foundation = held_row = 1")) == []
