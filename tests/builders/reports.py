@@ -182,7 +182,7 @@ def small() -> Path:
     write_tradeoff(place, NUMBERS_MADE, TIMES_MADE)
     REACH.write(place, reach_study())
     GROWTH.write(place, followed([_ENSEMBLE], None, lambda label, done, of: None))
-    WORST.write(place, hunt.study([worst_of("euler-a", 1.5)], 60.0, 3))
+    WORST.write(place, hunt.study([worst_of("euler-a", 1.5)], 60, 3))
     EXTREMES.write(place, extremes_study())
     CLAIMS.write(place, STUDY)
     errors = {"omega": 1e-5, "attitude": 1e-4, "T": 1e-9}

@@ -74,7 +74,9 @@ def test_the_pages_are_built_without_a_warning(tmp_path: Path) -> None:
 
 def test_every_page_is_found_from_the_first() -> None:
     """index.md names all pages, and none that is not there."""
-    told = re.findall(r"^(?:tutorials/|reference/)?[a-z-]+$", text_of("index.md"), re.MULTILINE)
+    told = re.findall(
+        r"^(?:tutorials/|gallery/|reference/)?[a-z-]+$", text_of("index.md"), re.MULTILINE
+    )
     pages = {page.relative_to(DOCS).with_suffix("").as_posix() for page in PAGES}
     assert set(told) == pages - {"index"}
 
