@@ -30,7 +30,11 @@ WORSE_BELOW: Final = 2.0
 
 
 def advice(board: Board, entries: EntryList) -> list[str]:
-    """Return the sentences that say what a user should do, the most useful first."""
+    """Return the sentences that say what a user should do, the most useful first.
+
+    They follow from the rows of the ``board``; ``entries`` is the list of the engines, which names the
+    scenes that an advice rests on.
+    """
     names = {row.name: row.title for row in entries.entry}
     plain = {row.name for row in entries.entry if row.plain}
     every, scenes = settings(board.study), advised(board, entries)

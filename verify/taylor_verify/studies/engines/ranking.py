@@ -83,7 +83,7 @@ class Score:
 
 
 def settings(study: EnginesStudy) -> list[Setting]:
-    """Return all settings, in the order of the list."""
+    """Return all settings of a study, in the order of the list."""
     rows: dict[tuple[str, str, str, str, bool], list[EngineRow]] = {}
     for row in study.rows:
         key = (row.engine, row.version, row.variant, row.rung, row.shipped)
@@ -92,7 +92,11 @@ def settings(study: EnginesStudy) -> list[Setting]:
 
 
 def newest(every: Iterable[Setting], shipped: bool = False) -> list[Setting]:
-    """Return the settings of the version of each engine that the list names last, which is run first."""
+    """Return the settings of the newest version of each engine, of ``every`` setting there is.
+
+    The list names that version last, and it is run first. With ``shipped`` they are those as shipped, with
+    sleep and damping left on, in place of those that the board sets.
+    """
     first: dict[str, str] = {}
     found = []
     for setting in every:

@@ -45,7 +45,10 @@ class Panel:
 
 
 def pictures(board: Board, entries: EntryList) -> list[Picture]:
-    """Return error against time and error against step; none without a judged run above zero."""
+    """Return error against time and error against step, of each engine of the ``board``.
+
+    ``entries`` is the list of the engines. No picture is made without a judged run above zero.
+    """
     scene = entries.advised[0]
     time = panels(board, entries, scene, board.pace, 1e6)
     step = panels(board, entries, scene, _step, 1.0)
