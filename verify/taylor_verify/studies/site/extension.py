@@ -1,4 +1,4 @@
-"""A Sphinx extension: MathML without a script, names of scenes as links, tables kept out of the search.
+"""A Sphinx extension: MathML without a script, names of scenes and terms as links, tables apart.
 
 It also gives the kernels of notebooks settings of their own.
 """
@@ -15,6 +15,7 @@ from sphinx import addnodes
 
 from taylor_verify.publish.mathml import inline, mathml
 from taylor_verify.records.file_names import of_scene
+from taylor_verify.studies.site.glossary import link_terms
 
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
@@ -35,6 +36,7 @@ def setup(app: Sphinx) -> dict[str, Any]:
     app.connect("builder-inited", _set_kernels)
     app.connect("source-read", _read_formulas)
     app.connect("doctree-read", _link_scenes)
+    app.connect("doctree-read", link_terms)
     app.connect("doctree-read", _leave_out_of_search)
     app.add_html_math_renderer("mathml", (_write_inline, None), (_write_block, None))
     return {"parallel_read_safe": True, "parallel_write_safe": True}
