@@ -75,7 +75,7 @@ def links(page: str) -> list[tuple[str, str]]:
 
 
 def test_the_first_use_is_a_link(pages: dict[str, str]) -> None:
-    """The first of a sentence leads to its definition; none in code, headings, tables and other links does."""
+    """The first word in a sentence leads to its definition; code, headings, tables and links do not."""
     assert links(pages["index"]) == [("ball", "ball"), ("rung", "rungs")]
 
 

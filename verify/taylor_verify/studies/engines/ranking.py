@@ -15,7 +15,7 @@ from taylor_verify.studies.engines.document import EngineRow, EnginesStudy
 
 
 @dataclass(frozen=True)
-class Setting:
+class EngineSetting:
     """The rows of one setting, in the order of the list: scene by scene, from coarse to fine."""
 
     engine: str
@@ -72,7 +72,7 @@ class Setting:
 class Score:
     """A setting at one step: ``row`` is that of the scene on which it is worst."""
 
-    setting: Setting
+    setting: EngineSetting
     value: str
     row: EngineRow
 
@@ -82,16 +82,16 @@ class Score:
         return self.row.worst
 
 
-def settings(study: EnginesStudy) -> list[Setting]:
+def settings(study: EnginesStudy) -> list[EngineSetting]:
     """Return all settings of a study, in the order of the list."""
     rows: dict[tuple[str, str, str, str, bool], list[EngineRow]] = {}
     for row in study.rows:
         key = (row.engine, row.version, row.variant, row.rung, row.shipped)
         rows.setdefault(key, []).append(row)
-    return [Setting(*key, tuple(each)) for key, each in rows.items()]
+    return [EngineSetting(*key, tuple(each)) for key, each in rows.items()]
 
 
-def newest(every: Iterable[Setting], shipped: bool = False) -> list[Setting]:
+def newest(every: Iterable[EngineSetting], shipped: bool = False) -> list[EngineSetting]:
     """Return the settings of the newest version of each engine, of ``every`` setting there is.
 
     The list names that version last, and it is run first. With ``shipped`` they are those as shipped, with
