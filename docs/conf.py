@@ -6,6 +6,7 @@ what Sphinx reads here, so that |x|, R_ij and an indented formula stay what they
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -26,6 +27,9 @@ autodoc_typehints = "signature"
 autodoc_class_signature = "mixed"
 python_use_unqualified_type_names = True
 maximum_signature_line_length = 88
+
+# A notebook that reads what is published finds it here, wherever its kernel runs.
+os.environ["TAYLOR_VERIFY_CLONE"] = str(HERE.parent)
 
 LITERAL = re.compile(r"(``.+?``)")
 MARKUP = re.compile(r"([\\*|`]|_(?!\w))")

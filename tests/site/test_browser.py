@@ -18,6 +18,9 @@ KINDS = (
     "index.html",
     "docs/method.html",
     "docs/tutorials/check-my-simulator.html",
+    "docs/gallery/dzhanibekov.html",
+    "docs/gallery/simulator.html",
+    "docs/glossary.html",
     "docs/reference/calls.html",
     "reports/README.html",
     "reports/claims.html",
@@ -156,6 +159,20 @@ def test_a_phone_never_scrolls_sideways(reader: Reader, page: str, theme: str) -
     reader.draw()
     assert reader.run("return document.documentElement.scrollWidth") <= PHONE[0]
     assert reader.complaints() == []
+
+
+@pytest.mark.parametrize("page", KINDS)
+def test_a_phone_page_begins_with_content(reader: Reader, page: str) -> None:
+    """At 390 pixels the title is within the first quarter of the screen, and text within the first half."""
+    reader.set(PHONE)
+    reader.open(page)
+    tops = (
+        "return Array.from(document.querySelectorAll(arguments[0]))"
+        ".map(element => element.getBoundingClientRect().top)"
+    )
+    assert reader.run(tops, "article h1")[0] <= PHONE[1] / 4
+    first = reader.run(tops, "article :is(p, ul, table, figure)")
+    assert min(top for top in first if top > 0) <= PHONE[1] / 2
 
 
 @pytest.mark.parametrize("size", [WIDE, PHONE], ids=["wide", "phone"])
@@ -372,6 +389,38 @@ def test_the_search_finds_pages(reader: Reader) -> None:
         reader.until(
             lambda at=place: at in "\n".join(reader.run(links)), f"{place} among the found"
         )
+    assert reader.complaints() == []
+
+
+def test_the_search_finds_what_can_be_named(reader: Reader) -> None:
+    """A verb, a key, a verdict, an error and a call are each found on the page that explains them."""
+    links = "return Array.from(document.querySelectorAll('#search-results li a')).map(a => a.href)"
+    for word, place in {
+        "sweep": "docs/sweeps.html",
+        "mass_matrix": "docs/scenes.html",
+        "vacuous": "docs/verdicts.html",
+        "NotRepresentable": "docs/errors.html",
+        "run_many": "docs/reference/calls.html",
+        "polhode": "docs/glossary.html",
+    }.items():
+        reader.open(f"search.html?q={word}")
+        reader.until(lambda at=place: at in "\n".join(reader.run(links)), f"{place} for {word}")
+    assert reader.complaints() == []
+
+
+def test_a_notebook_has_what_it_puts_out(reader: Reader) -> None:
+    """Pictures of the gallery are drawn, each with its text, and the moving page has its body."""
+    reader.open("docs/gallery/dzhanibekov.html")
+    widths = reader.run(
+        "return Array.from(document.querySelectorAll('article .cell_output img'))"
+        ".map(image => [image.naturalWidth, image.alt.length])"
+    )
+    assert len(widths) == 2
+    assert all(width > 300 and words > 60 for width, words in widths)
+    frame = reader.driver.find_element("css selector", ".turning iframe")
+    reader.driver.switch_to.frame(frame)
+    assert reader.run("return document.querySelector('.pane.body canvas').width") > 300
+    reader.driver.switch_to.default_content()
     assert reader.complaints() == []
 
 

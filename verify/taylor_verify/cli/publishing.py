@@ -56,7 +56,7 @@ def add_options(verb: argparse.ArgumentParser, in_full: bool) -> None:
         "--site",
         metavar="SITE",
         help="instead make static pages of docs and of what DIR holds, into the folder SITE (sphinx, "
-        "myst-parser, furo, sphinx-copybutton, latex2mathml, plotly)",
+        "myst-nb, furo, sphinx-copybutton, latex2mathml, plotly)",
     )
     if in_full:
         _add_options_of_studies(verb)

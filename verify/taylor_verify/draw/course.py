@@ -47,7 +47,8 @@ FIGURES: Final = 9
 def motion(scene: Scene, intervals: int = INTERVALS) -> Document:
     """Return the document that every picture of a motion is drawn from, attitude and centre included.
 
-    Raises Unsettled where the motion cannot be had to the figures of a picture.
+    It has so many ``intervals`` of time, or more where the body turns fast. Raises Unsettled where the
+    motion cannot be had to the figures of a picture.
     """
     whole = replace(scene, track=frozenset(TRACKED[scene.model]))
     exact, orbit = solution(formed_to(whole, DIGITS)), orbit_of(scene)

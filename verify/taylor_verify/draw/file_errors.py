@@ -78,7 +78,11 @@ def _above_zero(values: Sequence[float]) -> Numbers:
 
 
 def picture(document: Document, records: Mapping[str, Record]) -> Picture:
-    """Return the picture of all files. Raises NotDrawn where no error is above zero."""
+    """Return the errors of all files in one picture, beside the roundoff floor.
+
+    ``document`` is the motion that they answer, ``records`` those of their judgements by the names that the
+    picture shows. Raises NotDrawn where no error is above zero.
+    """
     panels = panels_of(records, document["course"]["t"][0])
     if not panels:
         raise NotDrawn(f"expected an error above zero, got none @ {', '.join(records)}")

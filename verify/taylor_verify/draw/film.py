@@ -56,7 +56,11 @@ _TAIL: Final = 60
 
 
 def film(motion: Moving, ending: str, frames: int | None = None) -> bytes:
-    """Return the file of a film. Raises NotDrawn where the machine cannot make an MP4."""
+    """Return the file of a film of a motion, of which a long one shows the beginning.
+
+    ``ending`` is ``.gif`` or ``.mp4``; ``frames`` is their number, by its length unless given. Raises
+    NotDrawn where the machine cannot make an MP4.
+    """
     if ending == ".mp4" and shutil.which("ffmpeg") is None:
         raise NotDrawn(
             "expected ffmpeg for .mp4, got none on this machine; .gif and .html need none"

@@ -105,7 +105,10 @@ class Moving:
 
 
 def moving(document: Document) -> Moving:
-    """Return what is shown of a motion. Raises NotDrawn for a body that does not move."""
+    """Return what is shown of the motion in a document of draw.course.motion, from instant to instant.
+
+    Raises NotDrawn for a body that does not move.
+    """
     course = document["course"]
     attitudes = np.array(course["attitude"]).reshape(-1, 3, 3)
     centres = np.array(course["centre"]) if "centre" in course else None

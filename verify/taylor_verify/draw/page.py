@@ -21,7 +21,7 @@ _DIGITS: Final = 4
 
 
 def page(motion: Moving) -> str:
-    """Return the page of a motion."""
+    """Return the page of a motion: one HTML file, which plays and turns and needs no network."""
     text = json.dumps(document(motion), allow_nan=False, ensure_ascii=False, separators=(",", ":"))
     # No text of the data may end the script element.
     template = _TEMPLATE.read_text(encoding="utf-8").replace("TITLE", escape(motion.title), 1)

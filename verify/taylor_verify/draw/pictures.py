@@ -37,7 +37,8 @@ KINDS: Final[Mapping[str, Callable[[Document], Picture]]] = {
 def pictures(document: Document, names: Sequence[str] = ()) -> dict[str, Picture]:
     """Return the pictures of these names, or all that the scene has.
 
-    Raises NotDrawn for a name that is none, and for one that the scene has not, all of them at once.
+    ``document`` is the motion (draw.course.motion); ``names`` are those of `draw --only`. Raises NotDrawn
+    for a name that is none, and for one that the scene has not, all of them at once.
     """
     if not names:
         return dict(_all(document))

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from base64 import b64encode
 from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from html import escape
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -40,6 +42,11 @@ class Picture:
     title: str
     alt: str
     figure: Callable[[], Figure]
+
+    def _repr_html_(self) -> str:
+        """Return the drawing as a notebook shows it, with its text for who cannot see it."""
+        drawn = b64encode(content(self, "svg")).decode()
+        return f'<p><img alt="{escape(self.alt)}" src="data:image/svg+xml;base64,{drawn}"></p>'
 
 
 def save(

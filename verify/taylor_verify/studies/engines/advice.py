@@ -12,8 +12,8 @@ from taylor_verify.publish.markdown import bold, prose
 from taylor_verify.studies.engines.document import Board, EngineRow
 from taylor_verify.studies.engines.entry import EntryList
 from taylor_verify.studies.engines.ranking import (
+    EngineSetting,
     Score,
-    Setting,
     best_of,
     newest,
     settings,
@@ -30,7 +30,11 @@ WORSE_BELOW: Final = 2.0
 
 
 def advice(board: Board, entries: EntryList) -> list[str]:
-    """Return the sentences that say what a user should do, the most useful first."""
+    """Return the sentences that say what a user should do, the most useful first.
+
+    They follow from the rows of the ``board``; ``entries`` is the list of the engines, which names the
+    scenes that an advice rests on.
+    """
     names = {row.name: row.title for row in entries.entry}
     plain = {row.name for row in entries.entry if row.plain}
     every, scenes = settings(board.study), advised(board, entries)
@@ -55,14 +59,14 @@ def error(size: float) -> str:
     return figure(size) if isfinite(size) else "beyond every number"
 
 
-def named(setting: Setting, names: dict[str, str]) -> str:
+def named(setting: EngineSetting, names: dict[str, str]) -> str:
     """Return an engine with its version and the words that are set."""
     words = f" with {prose(setting.words)}" if setting.words else ""
     return f"{bold(prose(f'{names[setting.engine]} {setting.version}'.strip()))}{words}"
 
 
 def _take(
-    board: Board, engines: Sequence[Setting], scenes: Sequence[str], names: dict[str, str]
+    board: Board, engines: Sequence[EngineSetting], scenes: Sequence[str], names: dict[str, str]
 ) -> Iterator[str]:
     scores = [score for one in engines for score in one.scores(scenes)]
     if (best := best_of(scores)) is None:
@@ -81,7 +85,7 @@ def _take(
 
 
 def _never(
-    engines: Sequence[Setting], scenes: Sequence[str], names: dict[str, str]
+    engines: Sequence[EngineSetting], scenes: Sequence[str], names: dict[str, str]
 ) -> Iterator[str]:
     """Yield the methods that lose the motion, and the engines of which every method does."""
     methods, without = [], []
@@ -118,8 +122,8 @@ def _either(words: Sequence[str]) -> str:
 
 
 def _as_shipped(
-    engines: Sequence[Setting],
-    shipped: Sequence[Setting],
+    engines: Sequence[EngineSetting],
+    shipped: Sequence[EngineSetting],
     names: dict[str, str],
     entries: EntryList,
 ) -> Iterator[str]:
@@ -140,7 +144,7 @@ def _as_shipped(
         yield f"Never {'; '.join(found)}."
 
 
-def like(row: EngineRow, engines: Sequence[Setting], entries: EntryList) -> EngineRow | None:
+def like(row: EngineRow, engines: Sequence[EngineSetting], entries: EntryList) -> EngineRow | None:
     """Return the row with what the board sets, all else being equal; None where there is none."""
     bare = {
         word
@@ -164,7 +168,7 @@ def like(row: EngineRow, engines: Sequence[Setting], entries: EntryList) -> Engi
 
 
 def _too_fine(
-    engines: Sequence[Setting], scenes: Sequence[str], names: dict[str, str]
+    engines: Sequence[EngineSetting], scenes: Sequence[str], names: dict[str, str]
 ) -> Iterator[str]:
     """Yield the engines whose best step is not their smallest one."""
     said = []

@@ -9,7 +9,7 @@ from taylor_verify.publish.markdown import bullets, code, prose, table
 from taylor_verify.publish.page import whole
 from taylor_verify.studies.engines.document import STATES, Board, EngineRow, Standing
 from taylor_verify.studies.engines.entry import EntryList
-from taylor_verify.studies.engines.ranking import Setting, digits, settings
+from taylor_verify.studies.engines.ranking import EngineSetting, digits, settings
 
 # Conserved quantities of a rigid body, and of a solid in a fluid.
 _CONSERVED = ("T", "H2", "H_space", "F2", "FG", "x_space", "y_space")
@@ -45,7 +45,7 @@ def page(board: Board, engine: str, title: str) -> str:
     )
 
 
-def _section(board: Board, own: Sequence[Setting], scene: str) -> Iterator[str]:
+def _section(board: Board, own: Sequence[EngineSetting], scene: str) -> Iterator[str]:
     rows = [row for one in own for row in one.on(scene)]
     if not rows:
         return
@@ -78,7 +78,7 @@ def _cells(
     ]
 
 
-def _order(setting: Setting, scene: str, states: Sequence[str]) -> str:
+def _order(setting: EngineSetting, scene: str, states: Sequence[str]) -> str:
     """Return the orders of one setting in a line; empty where a setting has no steps."""
     found = {name: setting.order(scene, name) for name in states}
     said = [f"{name}: {prose(order.reason)}" for name, order in found.items() if order]
@@ -87,7 +87,7 @@ def _order(setting: Setting, scene: str, states: Sequence[str]) -> str:
     return f"{named}. {'. '.join(said)}." if said else ""
 
 
-def _not_judged(own: Iterable[Setting]) -> Iterator[str]:
+def _not_judged(own: Iterable[EngineSetting]) -> Iterator[str]:
     """Yield what was asked for and has no numbers, each reason once."""
     reasons: dict[str, list[EngineRow]] = {}
     for one in own:
@@ -107,7 +107,7 @@ def _not_judged(own: Iterable[Setting]) -> Iterator[str]:
         yield "An engine that is unavailable could not be installed on the machine of the measurement."
 
 
-def _commands(own: Iterable[Setting]) -> str:
+def _commands(own: Iterable[EngineSetting]) -> str:
     """Return a command for each setting, as a block: with the first of its steps."""
     lines = []
     for one in own:

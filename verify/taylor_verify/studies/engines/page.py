@@ -21,7 +21,7 @@ from taylor_verify.studies.engines.entry import FILE, EntryList, entry_list
 from taylor_verify.studies.engines.findings import findings
 from taylor_verify.studies.engines.pictures import sweeps, work
 from taylor_verify.studies.engines.ranking import (
-    Setting,
+    EngineSetting,
     best_of_each,
     digits,
     newest,
@@ -113,7 +113,7 @@ def _entries(board: Board) -> EntryList:
     return entries
 
 
-def _best(board: Board, entries: EntryList, every: Sequence[Setting]) -> str:
+def _best(board: Board, entries: EntryList, every: Sequence[EngineSetting]) -> str:
     """Return a line for each engine: its best setting on the scenes that all of them take."""
     scene = entries.advised[0]
     titles, rows = {row.name: row.title for row in entries.entry}, []
@@ -133,7 +133,7 @@ COLUMNS: Final = (
 )
 
 
-def cells(board: Board, setting: Setting, row: EngineRow) -> list[str]:
+def cells(board: Board, setting: EngineSetting, row: EngineRow) -> list[str]:
     """Return the cells of a row behind the name of its engine."""
     orders = [setting.order(row.scene, name) for name in ("omega", "attitude")]
     said = [f"{o.order:.1f}" if o and o.order is not None else NOTHING for o in orders]
@@ -155,7 +155,7 @@ def _knob(row: EngineRow) -> str:
     return row.value if row.knob == "step" else f"{row.knob} {row.value}"
 
 
-def _scenes(board: Board, entries: EntryList, every: Sequence[Setting]) -> Iterator[str]:
+def _scenes(board: Board, entries: EntryList, every: Sequence[EngineSetting]) -> Iterator[str]:
     """Yield a section for each scene: every engine with its best setting there."""
     titles = {row.name: row.title for row in entries.entry}
     for scene in dict.fromkeys(row.scene for row in board.study.rows):
@@ -197,7 +197,7 @@ def _states(board: Board, scene: str) -> set[str]:
     return {name for row in board.study.rows if row.scene == scene for name in row.floors}
 
 
-def _as_shipped(board: Board, entries: EntryList, every: Sequence[Setting]) -> Iterator[str]:
+def _as_shipped(board: Board, entries: EntryList, every: Sequence[EngineSetting]) -> Iterator[str]:
     """Yield the table of the engines as people get them, beside what the board sets."""
     titles, rows, usual = {row.name: row.title for row in entries.entry}, [], newest(every)
     for one in newest(every, shipped=True):

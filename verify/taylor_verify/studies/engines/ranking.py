@@ -16,7 +16,7 @@ from taylor_verify.studies.engines.document import EngineRow, EnginesStudy
 
 
 @dataclass(frozen=True)
-class Setting:
+class EngineSetting:
     """The rows of one setting, in the order of the list: scene by scene, from coarse to fine."""
 
     engine: str
@@ -73,7 +73,7 @@ class Setting:
 class Score:
     """A setting at one step: ``row`` is that of the scene on which it is worst."""
 
-    setting: Setting
+    setting: EngineSetting
     value: str
     row: EngineRow
 
@@ -83,17 +83,21 @@ class Score:
         return self.row.worst
 
 
-def settings(study: EnginesStudy) -> list[Setting]:
-    """Return all settings, in the order of the list."""
+def settings(study: EnginesStudy) -> list[EngineSetting]:
+    """Return all settings of a study, in the order of the list."""
     rows: dict[tuple[str, str, str, str, bool], list[EngineRow]] = {}
     for row in study.rows:
         key = (row.engine, row.version, row.variant, row.rung, row.shipped)
         rows.setdefault(key, []).append(row)
-    return [Setting(*key, tuple(each)) for key, each in rows.items()]
+    return [EngineSetting(*key, tuple(each)) for key, each in rows.items()]
 
 
-def newest(every: Iterable[Setting], shipped: bool = False) -> list[Setting]:
-    """Return the settings of the version of each engine that the list names last, which is run first."""
+def newest(every: Iterable[EngineSetting], shipped: bool = False) -> list[EngineSetting]:
+    """Return the settings of the newest version of each engine, of ``every`` setting there is.
+
+    The list names that version last, and it is run first. With ``shipped`` they are those as shipped, with
+    sleep and damping left on, in place of those that the board sets.
+    """
     first: dict[str, str] = {}
     found = []
     for setting in every:

@@ -22,7 +22,7 @@ FRONT: Final = "index.html"
 _SCRIPT: Final = "plotly.min.js"
 # Modules to import; pip knows them by these names with hyphens.
 _NEEDED: Final = (
-    *("sphinx", "myst_parser", "furo", "sphinx_copybutton"),
+    *("sphinx", "myst_nb", "ipykernel", "furo", "sphinx_copybutton"),
     *("latex2mathml", "matplotlib", "plotly"),
 )
 # Other Markdown comes along as files.

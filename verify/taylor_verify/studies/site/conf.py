@@ -10,11 +10,17 @@ project = "taylor-verify"
 author = "The taylor-verify authors"
 version = release = __version__
 
-extensions = ["myst_parser", "sphinx_copybutton", "taylor_verify.studies.site.extension"]
+# It reads notebooks in Markdown, and other Markdown as MyST's parser does.
+extensions = ["myst_nb", "sphinx_copybutton", "taylor_verify.studies.site.extension"]
 exclude_patterns = ["_build"]
 # GitHub sets a formula between dollars, and anchors every heading by its words.
 myst_enable_extensions = ["deflist", "dollarmath", "fieldlist"]
 myst_heading_anchors = 4
+# A notebook is executed whenever its page is made: no stored output can go stale. An error is a warning.
+nb_execution_mode = "force"
+nb_execution_in_temp = nb_execution_show_tb = nb_merge_streams = True
+nb_execution_timeout = 300
+nb_output_stderr = "error"
 # A transcript is text: a lexer that stumbles over it says nothing about the page.
 highlight_language = "text"
 # Pages are written with the quotation marks they mean.

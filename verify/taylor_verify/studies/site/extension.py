@@ -1,8 +1,13 @@
-"""A Sphinx extension: MathML without a script, names of scenes as links, tables kept out of the search."""
+"""A Sphinx extension: MathML without a script, names of scenes and terms as links, tables apart.
+
+It also gives the kernels of notebooks settings of their own.
+"""
 
 from __future__ import annotations
 
+import os
 import re
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from docutils import nodes
@@ -10,6 +15,7 @@ from sphinx import addnodes
 
 from taylor_verify.publish.mathml import inline, mathml
 from taylor_verify.records.file_names import of_scene
+from taylor_verify.studies.site.glossary import link_terms
 
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
@@ -19,17 +25,30 @@ SCENES: Final = "reports/scenes"
 # GitHub's formula within a line is a code span between dollars; MyST's has the dollars alone.
 _FORMULA: Final = re.compile(r"\$`([^`\n]+)`\$")
 _SCENE: Final = re.compile(r"\w+(?:/[\w-]+)+")
+# A kernel on this machine alone needs no encryption, which it would remark; nor a history of its cells.
+_KERNEL: Final = "c.IPKernelApp.log_level = 40\nc.HistoryManager.enabled = False\n"
 # A table of more rows is a list of numbers: nobody looks for one, and the index would be mostly these.
 _SEARCHED_ROWS: Final = 20
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
     """Register everything with Sphinx."""
+    app.connect("builder-inited", _set_kernels)
     app.connect("source-read", _read_formulas)
     app.connect("doctree-read", _link_scenes)
+    app.connect("doctree-read", link_terms)
     app.connect("doctree-read", _leave_out_of_search)
     app.add_html_math_renderer("mathml", (_write_inline, None), (_write_block, None))
     return {"parallel_read_safe": True, "parallel_write_safe": True}
+
+
+def _set_kernels(app: Sphinx) -> None:
+    """Keep kernels from reading the user's settings of IPython, and from writing beside them."""
+    folder = Path(app.doctreedir, "ipython")
+    settings = folder / "profile_default" / "ipython_kernel_config.py"
+    settings.parent.mkdir(parents=True, exist_ok=True)
+    settings.write_text(_KERNEL, encoding="utf-8")
+    os.environ["IPYTHONDIR"] = str(folder)
 
 
 def _read_formulas(_app: Sphinx, _page: str, content: list[str]) -> None:

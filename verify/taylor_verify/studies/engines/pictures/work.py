@@ -17,7 +17,7 @@ from taylor_verify.publish.pictures.style import DASHED, Look, look_of_line
 from taylor_verify.publish.pictures.wording import plain
 from taylor_verify.studies.engines.document import Board, EngineRow
 from taylor_verify.studies.engines.entry import EntryList
-from taylor_verify.studies.engines.ranking import Setting, newest, settings
+from taylor_verify.studies.engines.ranking import EngineSetting, newest, settings
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -45,7 +45,10 @@ class Panel:
 
 
 def pictures(board: Board, entries: EntryList) -> list[Picture]:
-    """Return error against time and error against step; none without a judged run above zero."""
+    """Return error against time and error against step, of each engine of the ``board``.
+
+    ``entries`` is the list of the engines. No picture is made without a judged run above zero.
+    """
     scene = entries.advised[0]
     time = panels(board, entries, scene, board.pace, 1e6)
     step = panels(board, entries, scene, _step, 1.0)
@@ -91,7 +94,7 @@ def panels(
     return [Panel(heading, tuple(own)) for heading, own in lines.items() if own]
 
 
-def _best(group: Sequence[Setting], scene: str) -> Setting | None:
+def _best(group: Sequence[EngineSetting], scene: str) -> EngineSetting | None:
     """Return the setting of an engine with the smallest error of the scene."""
     found = [(row.worst, one) for one in group if (row := one.best(scene)) is not None]
     return min(found, key=lambda pair: pair[0])[1] if found else None

@@ -1,0 +1,191 @@
+"""Completeness of the docs: every verb, option, key, word, error and public call has its place.
+
+Each list is made from the code, so that a name that is new and nowhere explained fails here.
+"""
+
+from __future__ import annotations
+
+import builtins
+import inspect
+import re
+from collections.abc import Iterable
+from contextlib import redirect_stdout
+from dataclasses import fields, is_dataclass
+from io import StringIO
+from pathlib import Path
+
+import pytest
+from builders.worked import DOCS, ROOT
+
+import taylor_verify
+from taylor_verify.cli.arguments import parse
+from taylor_verify.records import answers, reason
+from taylor_verify.records.error_kind import ErrorKind
+from taylor_verify.scenes.library import cases_directory, names
+from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.reading.table import Table
+
+PACKAGE = Path(taylor_verify.__file__).parent
+COMMAND_LINE = DOCS / "command-line.md"
+VERDICTS = DOCS / "verdicts.md"
+SCENES = ROOT / "cases" / "README.md"
+PAGES = (
+    *(page for page in sorted(DOCS.rglob("*.md")) if "_build" not in page.parts),
+    *(ROOT / "README.md", SCENES),
+)
+
+
+def code_of(page: Path) -> str:
+    """Everything on a page that is marked as code: spans and blocks."""
+    text = page.read_text(encoding="utf-8")
+    blocks = re.findall(r"^ *```.*?^ *```", text, re.MULTILINE | re.DOTALL)
+    rest = re.sub(r"^ *```.*?^ *```", "", text, flags=re.MULTILINE | re.DOTALL)
+    return "\n".join([*blocks, *re.findall(r"`([^`\n]+)`", rest)])
+
+
+def missing(words: Iterable[str], page: Path) -> list[str]:
+    """The words that no code of a page has."""
+    code = code_of(page)
+    return sorted(
+        w for w in set(words) if not re.search(rf"(?<![\w-]){re.escape(w)}(?![\w-])", code)
+    )
+
+
+def help_of(*words: str) -> str:
+    with redirect_stdout(StringIO()) as out, pytest.raises(SystemExit):
+        parse([*words, "--help"])
+    return out.getvalue()
+
+
+VERBS = re.findall(r"^    (\w+)  ", help_of(), re.MULTILINE)
+
+
+# The command line.
+
+
+def test_every_verb_has_a_section() -> None:
+    """Each verb of --help has a heading on the page of the command line, and a call in its first block."""
+    assert {"list", "run", "sweep", "question"} <= set(VERBS)
+    page = COMMAND_LINE.read_text(encoding="utf-8")
+    headings = re.findall(r"^## (\w+)$", page, re.MULTILINE)
+    assert set(VERBS) <= set(headings)
+    first = re.findall(r"^```\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)[0]
+    assert {verb for verb in VERBS if f"taylor-verify {verb} " not in first} <= {"list"}
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_every_option_is_documented(verb: str) -> None:
+    """The page of the command line, or that of sweeps for its verb, has each option of --help."""
+    options = re.findall(r"--[a-z][a-z-]*", help_of(verb))
+    assert "--json" in options
+    assert missing(options, COMMAND_LINE) == []
+
+
+# Scenes.
+
+
+def test_every_key_of_a_scene_is_documented(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each key that the reader asks for, of any shipped or refused scene, is in the tables of cases."""
+    asked, has = set(), Table.has
+
+    def recorded(table: Table, key: str) -> bool:
+        asked.add(re.sub(r"\[\d+\]", "", key))
+        return has(table, key)
+
+    monkeypatch.setattr(Table, "has", recorded)
+    refused = sorted((cases_directory() / "refused").glob("*.toml"))
+    for scene in [*names(), *refused]:
+        try:
+            load(scene)
+        except Refused:
+            assert scene in refused
+    assert {"title", "omega", "samples", "fluid_density", "cosine", "rotor", "damping"} <= asked
+    assert missing(asked, SCENES) == []
+
+
+# Verdicts.
+
+
+@pytest.mark.parametrize("words", [reason.Cause, reason.Kind, ErrorKind])
+def test_every_word_of_a_verdict_is_documented(words: type[reason.Cause]) -> None:
+    """The page of verdicts has each word that a program may read in a row."""
+    assert missing((word.value for word in words), VERDICTS) == []
+
+
+PARTS = [
+    kind
+    for module in (reason, answers)
+    for kind in vars(module).values()
+    if inspect.isclass(kind) and is_dataclass(kind) and kind.__module__ == module.__name__
+]
+
+
+@pytest.mark.parametrize("part", PARTS, ids=lambda part: part.__name__)
+def test_every_key_of_an_answer_is_documented(part: type) -> None:
+    """Each key of the JSON documents, and of the reason in a row, stands on the page of verdicts."""
+    assert missing((field.name for field in fields(part)), VERDICTS) == []
+
+
+# Errors.
+
+
+def exceptions() -> set[str]:
+    """Every exception of the package that has a public name, as it is imported.
+
+    They are read from the sources: to import all of these would take seconds.
+    """
+    kinds = [
+        (".".join(file.relative_to(PACKAGE.parent).with_suffix("").parts), name, base)
+        for file in PACKAGE.rglob("*.py")
+        if "outside" not in file.parts
+        for name, base in re.findall(r"^class ([A-Z]\w+)\((\w+)\):", file.read_text("utf-8"), re.M)
+    ]
+    known = {
+        n
+        for n, kind in vars(builtins).items()
+        if inspect.isclass(kind) and issubclass(kind, BaseException)
+    }
+    found: set[str] = set()
+    while more := {(m, n) for m, n, base in kinds if base in known and f"{m}.{n}" not in found}:
+        found |= {f"{module}.{name}" for module, name in more}
+        known |= {name for _, name in more}
+    return found
+
+
+def test_every_exception_is_documented() -> None:
+    """The tables of errors have each exception of the package and no other, with the text when."""
+    page = (DOCS / "errors.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| `(taylor_verify[\w.]+)` \| (.+) \| (.+) \|$", page, re.MULTILINE)
+    assert {name for name, *_ in rows} == exceptions()
+    assert len(rows) == len({name for name, *_ in rows})
+
+
+# Python.
+
+
+def referenced() -> set[str]:
+    """The names that the pages of the reference document."""
+    texts = [page.read_text(encoding="utf-8") for page in (DOCS / "reference").glob("*.md")]
+    return {name for text in texts for name in re.findall(r"^\.\. auto\w+:: ([\w.]+)", text, re.M)}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+def test_what_a_page_imports_is_in_the_reference(page: Path) -> None:
+    """Each name that the code of a page takes from a module of the package is documented."""
+    imports = re.findall(
+        r"^ *from (taylor_verify[\w.]*) import ([\w, ]+)$", code_of(page), re.MULTILINE
+    )
+    taken = {
+        f"{module}.{name.split(' as ')[0].strip()}"
+        for module, line in imports
+        for name in line.split(",")
+    }
+    assert taken - referenced() == set()
+
+
+def test_a_name_that_is_new_is_missed(tmp_path: Path) -> None:
+    """A word in prose, or within a longer one, is no documentation of it."""
+    page = tmp_path / "page.md"
+    page.write_text("The key omega, `omegas`, `--omega-x`.\n\n```\nspin\n```\n", encoding="utf-8")
+    assert missing(["omega", "--omega", "spin", "omegas"], page) == ["--omega", "omega"]
