@@ -105,8 +105,9 @@ def _alt(found: Sequence[Line], span: str) -> str:
     """Return the finding in words: the engine that is most wrong for all the energy that it keeps."""
     worst, best = max(found, key=lambda line: line.motion / line.energy), found[0]
     return (
-        f"{_headline(found, span)}. {worst.name} keeps the energy to {_percent(worst.energy)}, and its angular "
-        f"velocity is {_percent(worst.motion)} wrong. That of {best.name} is {_percent(best.motion)} wrong."
+        f"{_headline(found, span)}. {worst.name} keeps the energy to {_percent(worst.energy)}, and its "
+        f"angular velocity is {_percent(worst.motion)} wrong. "
+        f"That of {best.name} is {_percent(best.motion)} wrong."
     )
 
 
