@@ -9,7 +9,7 @@ PIP = $(BIN)/python -m pip --disable-pip-version-check
 SOLVING = .venv/.solving
 INSTALLED = .venv/.installed
 
-.PHONY: help verify verify-all test test-all docs site test-site bench mutants reports traps release-data tradeoff
+.PHONY: help verify verify-all test test-all docs site test-site dist bench mutants reports traps release-data tradeoff
 .PHONY: engines check-reports lint clean
 
 help:  ## Print this list
@@ -53,6 +53,14 @@ test-site: site  ## Look at those pages in a browser without a window (Debian: i
 
 bench: $(INSTALLED)  ## Time the exact solutions and check, in ratios within one run
 	@$(BIN)/python tests/bench.py
+
+# Each tool has an environment of its own, which uv makes and keeps.
+dist: $(INSTALLED)  ## Build wheel and sdist into dist, and check what is in them and what they say
+	@rm -f dist/taylor_verify-*
+	@$(BIN)/python -m hatchling build -d dist
+	@$(BIN)/uvx --quiet twine@7.0.0 check --strict dist/taylor_verify-*
+	@$(BIN)/uvx --quiet check-wheel-contents@0.6.3 dist/taylor_verify-*.whl
+	@$(BIN)/uvx --quiet pyroma@5.0.1 --min 8 dist/taylor_verify-*.tar.gz
 
 # At the lowest priority, for an hour or more: first which tests run which line, then COUNT mutants.
 mutants: $(INSTALLED)  ## Change single signs and constants of exact, judge and claims: do the tests notice?
