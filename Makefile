@@ -3,11 +3,14 @@ FITS = import sys, venv, ensurepip; sys.exit(not (3, 11) <= sys.version_info < (
 PYTHON ?= $(shell for python in python3 python3.14 python3.13 python3.12 python3.11; do \
 	$$python -c '$(FITS)' 2>/dev/null && echo $$python && break; done)
 BIN = .venv/bin
-PIP = $(BIN)/python -m pip --quiet --disable-pip-version-check
+# pip says what it downloads, and shows how far it is.
+PIP = $(BIN)/python -m pip --disable-pip-version-check
+# What `make verify` needs, and the libraries of the tests, the docs and the site on top.
+SOLVING = .venv/.solving
 INSTALLED = .venv/.installed
 
-.PHONY: help verify verify-all test test-all docs site test-site bench mutants reports paper traps release-data tradeoff
-.PHONY: engines check-reports lint clean
+.PHONY: help verify verify-all test test-all docs site test-site dist bench mutants reports paper traps
+.PHONY: release-data tradeoff engines check-reports lint clean
 
 help:  ## Print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
@@ -17,7 +20,7 @@ verify-all:  ## The same with the extremes on all rungs
 verify-all: EXTREMES_ON = --rung f32 f64 f80 f128 mp237
 
 # Both are run, whatever the first one finds; an interrupt (130) ends both.
-verify verify-all: $(INSTALLED)
+verify verify-all: $(SOLVING)
 	@status=0; $(BIN)/taylor-verify run --out reports/local || status=$$?; \
 		[ $$status -ne 130 ] || exit 130; \
 		$(BIN)/taylor-verify run extremes $(EXTREMES_ON) --out reports/local/extremes && exit $$status
@@ -50,6 +53,14 @@ test-site: site  ## Look at those pages in a browser without a window (Debian: i
 
 bench: $(INSTALLED)  ## Time the exact solutions and check, in ratios within one run
 	@$(BIN)/python tests/bench.py
+
+# Each tool has an environment of its own, which uv makes and keeps.
+dist: $(INSTALLED)  ## Build wheel and sdist into dist, and check what is in them and what they say
+	@rm -f dist/taylor_verify-*
+	@$(BIN)/python -m hatchling build -d dist
+	@$(BIN)/uvx --quiet twine@7.0.0 check --strict dist/taylor_verify-*
+	@$(BIN)/uvx --quiet check-wheel-contents@0.6.3 dist/taylor_verify-*.whl
+	@$(BIN)/uvx --quiet pyroma@5.0.1 --min 8 dist/taylor_verify-*.tar.gz
 
 # At the lowest priority, for an hour or more: first which tests run which line, then COUNT mutants.
 mutants: $(INSTALLED)  ## Change single signs and constants of exact, judge and claims: do the tests notice?
@@ -85,7 +96,7 @@ engines: $(INSTALLED)  ## Measure the engine board: what is not stored, or all o
 	@$(BIN)/taylor-verify publish engines $(if $(ENGINE),--anew --only $(ENGINE)) > /dev/null
 
 # The rungs of hardware: they differ most between processors, and the wider ones take longer.
-check-reports: $(INSTALLED)  ## Run part of what is published anew: has a number left its rounding class?
+check-reports: $(SOLVING)  ## Run part of what is published anew: has a number left its rounding class?
 	@$(BIN)/taylor-verify run --rung f32 f64 f80 --against reports
 
 lint: $(INSTALLED)  ## Check style and types only
@@ -97,15 +108,20 @@ clean:  ## Remove the environment, the caches and the local reports
 	rm -rf .venv .hypothesis .mypy_cache .pytest_cache .ruff_cache dist docs/_build reports/local reports/site
 	find verify tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
-# The stamp is written last: an environment that was only half made has none, and is made again.
-$(INSTALLED): requirements.txt pyproject.toml verify/taylor_verify/records/version.py
+# A stamp is written last: an environment that was only half made has none, and is made again.
+$(SOLVING): requirements-verify.txt pyproject.toml verify/taylor_verify/records/version.py
 	@'$(PYTHON)' -c '$(FITS)' 2>/dev/null || { \
 		found="$$('$(or $(PYTHON),python3)' --version 2>&1 | tail -n 1)"; \
 		echo "expected Python 3.11 to 3.14 with venv (on Debian the package python3-venv)," \
 			"got $$found; name another interpreter with make PYTHON=..." >&2; exit 2; }
-	@echo 'setting up .venv (once)' >&2
+	@echo 'setting up .venv (once): a download of 140 MB, 400 MB on disk, less than a minute on a fast line' >&2
 	@rm -rf .venv
 	@'$(PYTHON)' -m venv .venv
-	@$(PIP) install --require-hashes -r requirements.txt
-	@$(PIP) install --no-deps --no-build-isolation -e .
+	@$(PIP) install --require-hashes -r requirements-verify.txt >&2
+	@$(PIP) --quiet install --no-deps --no-build-isolation -e .
+	@touch $@
+
+$(INSTALLED): $(SOLVING) requirements.txt
+	@echo 'adding the libraries of the tests, the docs and the site to .venv (once): 310 MB more to download, 1.6 GB on disk in all, one to three minutes' >&2
+	@$(PIP) install --require-hashes -r requirements.txt >&2
 	@touch $@

@@ -485,7 +485,6 @@ def test_a_name_that_means_nothing_is_a_wrong_call(capsys: Captured, arguments: 
 @pytest.mark.parametrize(
     "arguments",
     [
-        [],
         ["bogus"],
         ["run", "--rung"],
         ["run", "euler/generic", "--bogus"],

@@ -325,7 +325,7 @@ def test_short_table_is_short() -> None:
 
 
 def test_short_table_tells_the_defects_that_are_made_most() -> None:
-    """Every one that has been met in a published simulator or in a textbook is in the README."""
+    """Every one that has been met in a published simulator or in a textbook is in the short table."""
     met = {
         *("no-gyroscopic-term", "diagonal-tensor", "averaged-exponential", "angular-damping"),
         *("explicit-gyroscopic-update", "implicit-gyroscopic-update", "float32-state"),

@@ -7,32 +7,90 @@ from pathlib import Path
 
 import pytest
 
+from taylor_verify.scenes.reading.reader import load
+
 ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```(\w*)\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
+# Each use, and the pages where it is worked or listed.
 USES = {
-    "Check my simulator": "docs/tutorials/check-my-simulator.md",
+    "Check my file": "docs/tutorials/check-my-simulator.md",
     "Gate my CI": "docs/tutorials/gate-my-ci.md",
-    "Choose my precision": "docs/tutorials/choose-my-precision.md",
+    "Look up a truth": "reports/reference/README.md",
 }
+# Words of the docs, which a reader of the first page does not know yet.
+UNEXPLAINED = (
+    *(
+        "rung",
+        "ball",
+        "attainable",
+        "floor",
+        "vacuous",
+        "separatrix",
+        "polhode",
+        "impulse",
+        "theta",
+    ),
+    *("enclosure", "enclosed", "conditioning", "manufactured", "washboard", "roundoff", "orbit"),
+)
 
 
 def test_what_comes_first() -> None:
-    """The order is title, two commands, one table, one picture, the three uses; all on a few screens."""
+    """The order is title, picture, what it is and is not, installing, the three uses, on two screens."""
     places = [
         README.index("# taylor-verify"),
-        *(README.index(command) for command in ("make verify ", "make test ")),
-        README.index("<!-- controls:"),
-        README.index("!["),
+        README.index("![A body"),
+        README.index("It is **not**"),
+        README.index("pip install"),
         *(README.index(f"## {use}\n") for use in USES),
+        *(README.index(command) for command in ("make verify ", "make test ")),
     ]
     assert places == sorted(places)
     assert README.count("![") == 1
-    assert len(README.splitlines()) <= 200
+    assert len(README.splitlines()) <= 150
+
+
+def test_no_word_is_used_before_it_is_explained() -> None:
+    """Words of the docs stay in the docs; `scene`, which the first page needs, is explained there."""
+    prose = re.sub(r"```.*?```|`[^`]*`|\]\([^)]*\)", "", README, flags=re.DOTALL).lower()
+    assert [word for word in UNEXPLAINED if re.search(rf"\b{word}s?\b", prose)] == []
+    assert README.index("A **scene** is") < README.index("## Install")
+
+
+def test_the_scene_shown_is_a_scene(tmp_path: Path) -> None:
+    """The file that the page shows is read, and is the shipped scene of the uses below it."""
+    (shown,) = (text for language, text in BLOCKS if language == "toml")
+    file = tmp_path / "shown.toml"
+    file.write_text(shown, encoding="utf-8")
+    scene, shipped = load(file), load("euler/generic")
+    assert (scene.body, scene.initial, scene.clock.instants) == (
+        shipped.body,
+        shipped.initial,
+        shipped.clock.instants,
+    )
+
+
+def test_the_picture_is_the_published_one() -> None:
+    """Its text says what the picture of the engine board says, with the same number."""
+    (alt, file) = re.findall(r"!\[([^]]*)\]\(([^)]*)\)", README)[0]
+    svg = (ROOT / file).read_text(encoding="utf-8")
+    (wrong,) = re.findall(r"(\d+ %) wrong", alt)
+    (engines,) = re.findall(r"in (\d+) physics engines", alt)
+    assert f"{wrong} wrong" in svg
+    assert f"in {engines} physics engines" in svg
+
+
+def test_what_the_set_up_costs_is_said() -> None:
+    """The sizes that the page names are those that the set-up says on the terminal."""
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    said = " ".join(re.findall(r"@echo '(.*)' >&2", makefile))
+    sizes = re.findall(r"\d+(?:\.\d+)? [MG]B", said)
+    assert len(sizes) == 4
+    assert [size for size in sizes if size not in README] == []
 
 
 @pytest.mark.parametrize("use", USES)
-def test_a_use_leads_to_its_tutorial(use: str) -> None:
+def test_a_use_leads_further(use: str) -> None:
     """Each of the three uses shows a command and links to the page where it is worked."""
     section = README.split(f"## {use}\n")[1].split("\n## ")[0]
     assert f"]({USES[use]})" in section
@@ -56,7 +114,7 @@ def test_every_target_of_make_exists() -> None:
         name for line in re.findall(r"^([a-z][a-z -]*):", makefile, re.M) for name in line.split()
     }
     told = set(re.findall(r"`?make ([a-z-]+)[` ]", README))
-    assert {"verify", "test", "docs"} <= told <= rules
+    assert {"verify", "test", "site"} <= told <= rules
 
 
 def test_the_python_shown_is_python() -> None:

@@ -25,7 +25,7 @@ from taylor_verify.studies.engines.advice import advice
 from taylor_verify.studies.engines.document import EngineRow, Standing
 from taylor_verify.studies.engines.engine_page import pages
 from taylor_verify.studies.engines.entry import Entry, EntryList
-from taylor_verify.studies.engines.pictures import sweeps, work
+from taylor_verify.studies.engines.pictures import energy, sweeps, work
 from taylor_verify.studies.engines.ranking import digits, settings
 from taylor_verify.studies.engines.study import STUDY
 
@@ -123,6 +123,7 @@ def test_the_page_has_what_was_measured(tmp_path: Path) -> None:
     stored.write(tmp_path, document, file)
     made = {path.name for path in STUDY.publish(tmp_path).written}
     assert {"engines.md", "engines.csv", "engines-time.svg", "engines-step.svg"} <= made
+    assert "engines-energy.svg" in made
     assert {f"engines-{name}.md" for name in ("spinner", "wobbler", "scipy")} <= made
     text = (tmp_path / "tables/engines.md").read_text(encoding="utf-8")
     assert re.search(r"\[Spinner\]\(engines-spinner\.md\) +\| lie-rk4 +\| +0\.025 \|", text)
@@ -226,6 +227,23 @@ def test_engines_in_float32_have_a_panel_of_their_own() -> None:
         ["Wobbler", "SciPy"],
         ["Spinner", "SciPy"],
     ]
+
+
+def test_energy_stands_beside_the_motion() -> None:
+    """Each engine once, at its best; the text names the one that keeps the energy and loses the motion."""
+    rows = [
+        *with_errors(SPINNER, 1e-3, 1e-5, 1e-4),
+        *with_errors(WOBBLER, 1.5, 1.4, 1.39),
+        *with_errors(PLAIN, 1e-12),
+    ]
+    document = board_with(*rows)
+    drawn = energy.lines(document, ENTRIES, SCENE)
+    assert [(line.name, line.motion) for line in drawn] == [("Spinner", 1e-5), ("Wobbler", 1.39)]
+    (picture,) = energy.pictures(document, ENTRIES)
+    assert "Wobbler keeps the energy to 1.0e-5 %, and its angular velocity is 139 %" in picture.alt
+    assert "139 %" in content(picture, "svg").decode()
+    lost = board_with(*made_up(SPINNER, {"omega": 0.1, "attitude": 0.1}))
+    assert energy.pictures(lost, ENTRIES) == []
 
 
 def test_a_sweep_shows_what_a_version_changed() -> None:

@@ -13,6 +13,7 @@ a verb are a text: a line for each, with its help two blanks behind it, which go
 from __future__ import annotations
 
 import argparse
+import difflib
 import re
 from collections.abc import Iterable, Sequence
 from functools import partial
@@ -21,9 +22,11 @@ from typing import Any, Final, NoReturn
 
 from taylor_verify.cli import publishing
 from taylor_verify.cli.answer import Answer
+from taylor_verify.cli.completion import SHELLS
 from taylor_verify.records.version import __version__
 from taylor_verify.scenes.names import escaped
 
+_VERB: Final = "VERB"
 # What may be meant as a rung, misspelt or not: a scene of such a name is written ./f64.
 _RUNG = re.compile(r"(f|mp)\d*", re.IGNORECASE)
 _NEGATIVE_TIME = re.compile(r"-[\d.]")
@@ -194,7 +197,12 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
     Raises SystemExit for --help and for a wrong call.
     """
     parser = _parser("publish" in arguments)
-    options, left = parser.parse_known_args(_with_times_attached(arguments))
+    try:
+        options, left = parser.parse_known_args(_with_times_attached(arguments))
+    except argparse.ArgumentError as error:
+        parser.error(_unknown_verb(arguments) if error.argument_name == _VERB else str(error))
+    if options.completion:
+        options.act = partial(_complete, options.completion)
     scenes = getattr(options, "scenes", None)
     files = getattr(options, "files", None)
     studies = getattr(options, "studies", None)
@@ -202,7 +210,7 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
         # An option that is none is named by the verb, beside what there is: `--growth` was one.
         options.studies, left = [*studies, *left], []
     if left and ((scenes is None and files is None) or any(word.startswith("-") for word in left)):
-        parser.error(f"unrecognized arguments: {' '.join(left)}")
+        options.verb.error(_unknown_words(left, options.verb))
     if scenes is not None:
         # argparse gives `--rung` every word up to the next option, and takes scenes in one place.
         options.rung, taken = _split(options.rung)
@@ -211,6 +219,42 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
         # Files may stand before and behind the options.
         options.files = [*files, *left]
     return options
+
+
+def _unknown_verb(arguments: Sequence[str]) -> str:
+    """Return the message for a first word that is no verb, with those that are near to it."""
+    word = next(word for word in arguments if not word.startswith("-"))
+    return (
+        f"expected a verb, got {word} ({_near(word, _VERBS, '`taylor-verify --help` names them')})"
+    )
+
+
+def _unknown_words(words: Sequence[str], verb: argparse.ArgumentParser) -> str:
+    """Return the message for words that a verb does not take, with the options that may be meant."""
+    known = re.findall(r"--[a-z-]+", verb.format_usage())
+    options = [word for word in words if word.startswith("-")]
+    named = [f"{word} ({_near(word, known, 'there is none like it')})" for word in options]
+    expected = "the options" if named else "no words but those"
+    return f"expected {expected} above, got {', '.join(named or words)}"
+
+
+def _near(word: str, known: Iterable[str], otherwise: str) -> str:
+    close = difflib.get_close_matches(word.partition("=")[0], [*known], n=3, cutoff=0.65)
+    return f"did you mean {', '.join(close)}?" if close else otherwise
+
+
+def _greet(options: argparse.Namespace) -> Answer:
+    from taylor_verify.cli.greeting import greeting
+
+    del options
+    return greeting()
+
+
+def _complete(shell: str, options: argparse.Namespace) -> Answer:
+    from taylor_verify.cli.completion import completion
+
+    del options
+    return completion(_parser(True), shell)
 
 
 def _with_times_attached(arguments: Sequence[str]) -> list[str]:
@@ -255,9 +299,18 @@ def _parser(is_publishing: bool) -> argparse.ArgumentParser:
         "Exit status: 0 pass, 1 a gate failed, 2 the input or the call was wrong, 3 undecided. "
         "`taylor-verify VERB --help` has an example.",
         allow_abbrev=False,
+        # A wrong verb is told by `parse`, beside the verbs that are near to it.
+        exit_on_error=False,
     )
     parser.add_argument("--version", action="version", version=f"taylor-verify {__version__}")
-    found = parser.add_subparsers(title="verbs", metavar="VERB", required=True)
+    parser.add_argument(
+        "--completion",
+        metavar="SHELL",
+        choices=SHELLS,
+        help=f"print the script that makes a shell complete words: {', '.join(SHELLS)} (shtab)",
+    )
+    parser.set_defaults(act=_greet, verb=parser, json=False)
+    found = parser.add_subparsers(title="verbs", metavar=_VERB)
     for name, (what, example, arguments) in _VERBS.items():
         verb = found.add_parser(
             name,
@@ -267,7 +320,7 @@ def _parser(is_publishing: bool) -> argparse.ArgumentParser:
             allow_abbrev=False,
         )
         verb.add_argument("--json", action="store_true", help="print one JSON document on stdout")
-        verb.set_defaults(act=partial(_act, name))
+        verb.set_defaults(act=partial(_act, name), verb=verb)
         for line in arguments.replace("\n  ", " ").split("\n"):
             if line:
                 _add(verb, line)

@@ -17,7 +17,7 @@ from taylor_verify.cli.folders import writable_file
 from taylor_verify.cli.inputs import (
     known_rungs,
     read_number,
-    read_scenes,
+    read_scene,
     read_tolerances,
     require_matplotlib,
 )
@@ -93,13 +93,13 @@ def _asked(
             faults.append(str(error))
 
     steps = attempt(_steps, options)
-    scenes = attempt(read_scenes, [options.scene])
+    scene = attempt(read_scene, options.scene)
     columns = options.columns or ()
     names = dict.fromkeys(options.files)
     files = [attempt(lambda name: read(name, request(columns)), name) for name in names]
     if faults:
         raise WrongCall("\n".join(faults))
-    return scenes[0], files, steps
+    return scene, files, steps
 
 
 def _steps(options: argparse.Namespace) -> list[float] | None:

@@ -11,7 +11,7 @@ from typing import Any, Final
 from taylor_verify.cli.answer import PASS, Answer, WrongCall, wrong_calls
 from taylor_verify.cli.console import Page, bold
 from taylor_verify.cli.folders import unwritable, writable_file
-from taylor_verify.cli.inputs import known_rungs, read_scenes, require_matplotlib
+from taylor_verify.cli.inputs import known_rungs, read_scene, require_matplotlib
 from taylor_verify.cli.progress import working
 from taylor_verify.draw import file_errors
 from taylor_verify.draw.caption import NotDrawn
@@ -83,13 +83,13 @@ def _asked(options: argparse.Namespace) -> tuple[Scene, list[TrajectoryFile]]:
         except (WrongCall, Refused) as error:
             faults.append(str(error))
 
-    scenes = attempt(lambda: read_scenes([options.scene]))
+    scene = attempt(lambda: read_scene(options.scene))
     columns = options.columns or ()
     names = dict.fromkeys(options.files)
     files = [attempt(partial(lambda name: read(name, request(columns)), name)) for name in names]
     if faults:
         raise WrongCall("\n".join(faults))
-    return scenes[0], files
+    return scene, files
 
 
 def _document(scene: Scene) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from typing import Any
 
 from taylor_verify.cli.answer import PASS, UNDECIDED, Answer, WrongCall
 from taylor_verify.cli.console import Page, bold
-from taylor_verify.cli.inputs import read_number, read_scenes
+from taylor_verify.cli.inputs import read_number, read_scene
 from taylor_verify.cli.progress import working
 from taylor_verify.exact.ellipsoid import formed_to
 from taylor_verify.exact.printed import document
@@ -23,7 +23,7 @@ def answer(options: argparse.Namespace) -> Answer:
     if not 1 <= options.digits <= MOST_DIGITS:
         raise WrongCall(f"expected --digits from 1 to {MOST_DIGITS}, got {options.digits}")
     times = [(text.strip(), read_number(text, "--at")) for text in options.at.split(",")]
-    (scene,) = read_scenes([options.scene])
+    scene = read_scene(options.scene)
     try:
         with working(f"exact {scene.name}"):
             scene = formed_to(scene, options.digits)

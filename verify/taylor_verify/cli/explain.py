@@ -11,7 +11,7 @@ from rich.text import Text
 
 from taylor_verify.cli.answer import PASS, Answer
 from taylor_verify.cli.console import Page, bold
-from taylor_verify.cli.inputs import known_rungs, read_scenes
+from taylor_verify.cli.inputs import known_rungs, read_scene
 from taylor_verify.cli.progress import working
 from taylor_verify.cli.sentences import figure, status_text
 from taylor_verify.explain.explanation import explanation
@@ -30,7 +30,7 @@ _UNITS = {
 def answer(options: argparse.Namespace) -> Answer:
     """Explain one run."""
     (rung,) = known_rungs([options.rung])
-    (scene,) = read_scenes([options.scene], warn=False)
+    scene = read_scene(options.scene, warn=False)
     with working(f"explain {options.scene}"):
         found = explanation(scene, rung)
     return Answer(PASS, found, partial(_text, found))

@@ -5,17 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from importlib.util import find_spec
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from taylor_verify.batch.selection import read_all
 from taylor_verify.cli.answer import WrongCall, wrong_calls
 from taylor_verify.cli.streams import say
+from taylor_verify.scenes.library import named
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.table import exact_number
 from taylor_verify.scenes.scene import Scene
 
 if TYPE_CHECKING:
     from taylor_verify.judge.tolerances import Tolerances
+
+# Of the scenes that a word stands for, a message names so many.
+_SHOWN: Final = 3
 
 
 def known_rungs(rungs: Iterable[str]) -> list[str]:
@@ -24,9 +28,22 @@ def known_rungs(rungs: Iterable[str]) -> list[str]:
         return [rung(name).name for name in dict.fromkeys(rungs)]
 
 
-def read_scenes(names: Sequence[str], warn: bool = True) -> list[Scene]:
-    """Read every scene before any work begins. Raises Refused with the faults of all of them."""
-    scenes = read_all(names)
+def read_scene(name: str, warn: bool = True) -> Scene:
+    """Read the scene of a verb that takes one. Raises WrongCall for a folder or a pattern of several."""
+    names = named(name)
+    if len(names) > 1:
+        others = "" if len(names) <= _SHOWN else f" and {len(names) - _SHOWN} more"
+        raise WrongCall(f"expected one scene, got {', '.join(names[:_SHOWN])}{others} @ {name}")
+    (scene,) = read_scenes(names, warn)
+    return scene
+
+
+def read_scenes(words: Sequence[str], warn: bool = True) -> list[Scene]:
+    """Read every scene of some names, folders and patterns before any work begins.
+
+    Raises Refused with the faults of all of them.
+    """
+    scenes = read_all(list(dict.fromkeys(name for word in words for name in named(word))))
     for scene in scenes if warn else ():
         for warning in scene.warnings:
             say(f"warning: {warning} @ {scene.name}")

@@ -7,7 +7,7 @@ import json
 from functools import partial
 
 from taylor_verify.cli.answer import PASS, Answer, WrongCall
-from taylor_verify.cli.inputs import known_rungs, read_scenes
+from taylor_verify.cli.inputs import known_rungs, read_scene
 from taylor_verify.models.problem import NotRepresentable, Problem, pose
 from taylor_verify.scenes.precision import rung, shortest_decimal
 from taylor_verify.solvers.process.protocol import column_names, question
@@ -18,7 +18,7 @@ def answer(options: argparse.Namespace) -> Answer:
     if options.csv and options.json:
         raise WrongCall("expected one of --csv and --json, got both @ question")
     (name,) = known_rungs([options.rung])
-    (scene,) = read_scenes([options.scene])
+    scene = read_scene(options.scene)
     try:
         problem = pose(scene, rung(name))
     except NotRepresentable as reason:
@@ -26,7 +26,7 @@ def answer(options: argparse.Namespace) -> Answer:
     document = question(problem)
     if not options.csv:
         return Answer(PASS, document, partial(json.dumps, document, indent=1))
-    how = f"fill in the empty cells, then: taylor-verify check FILE --scene {options.scene}"
+    how = f"fill in the empty cells, then: taylor-verify check FILE --scene {scene.name}"
     how += f" --rung {name}" * (name != "f64")
     return Answer(PASS, document, partial(_csv, problem), [how])
 

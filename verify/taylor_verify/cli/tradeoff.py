@@ -63,7 +63,7 @@ def answer(options: argparse.Namespace) -> Answer:
     found: list[dict[str, Any]] = []
     missed: list[str] = []
     with alone_in(place), cold_caches():
-        for scene in read_scenes(list(dict.fromkeys(options.scenes))):
+        for scene in read_scenes(options.scenes):
             with working(f"tradeoff {scene.name}"):
                 trade = trade_off(scene, asked(scene), options.repeats, options.seed)
                 document = trade.document()

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import difflib
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from fnmatch import fnmatchcase
+from glob import glob
 from pathlib import Path
 from types import MappingProxyType
 from typing import Final
@@ -34,6 +36,8 @@ GUIDE: Final[Mapping[str, str]] = MappingProxyType(
 )
 
 _MOST_SUGGESTED = 3
+_PATTERN: Final = frozenset("*?[")
+_ENDING: Final = ".toml"
 
 
 def cases_directory() -> Path:
@@ -69,8 +73,27 @@ def names(*folders: str) -> tuple[str, ...]:
     )
 
 
+def fitting(pattern: str, known: Iterable[str]) -> tuple[str, ...]:
+    """Return the names that a pattern such as ``euler/*`` fits; a star stands for slashes too."""
+    return tuple(name for name in known if fnmatchcase(name, pattern))
+
+
+def is_pattern(scene: str) -> bool:
+    """Return True for a text with ``*``, ``?`` or ``[`` that is not the name of a file."""
+    return not _PATTERN.isdisjoint(scene) and not os.path.exists(scene)
+
+
 def named(scene: str) -> tuple[str, ...]:
-    """Return what a word of the command line stands for: all scenes of a folder (``extremes``), or one."""
+    """Return the scenes that a word of the command line stands for.
+
+    A folder (``extremes``) is all its scenes. A pattern (``euler/*``) is the scenes whose names it fits, or
+    the files if it ends in ``.toml``. Any other word is one scene.
+    """
+    if is_pattern(scene):
+        is_of_files = scene.endswith(_ENDING)
+        return tuple(sorted(glob(scene)) if is_of_files else fitting(scene, _all_names())) or (
+            scene,
+        )
     folders = (EXTREMES, WORST) if scene == EXTREMES else (scene,)
     is_folder = scene in (*STANDARD_SET, EXTREMES, WORST, ENGINES)
     return (names(*folders) if is_folder else ()) or (scene,)
@@ -88,7 +111,7 @@ def find(scene: str | os.PathLike[str]) -> Path:
     path = Path(scene)
     name = str(scene)
     try:
-        if path.suffix == ".toml" or path.is_file():
+        if path.suffix == _ENDING or path.is_file():
             return path
         shipped = cases_directory() / f"{name}.toml"
         if name and shipped.is_file():
@@ -98,8 +121,14 @@ def find(scene: str | os.PathLike[str]) -> Path:
     raise Refused([f"expected {expected}, got {name} ({_near(name)})"])
 
 
+def _all_names() -> tuple[str, ...]:
+    return names(*STANDARD_SET, EXTREMES, WORST, ENGINES)
+
+
 def _near(scene: str) -> str:
-    known = names(*STANDARD_SET, EXTREMES, WORST, ENGINES)
+    if is_pattern(scene):
+        return "no scene fits the pattern; `list` names them all"
+    known = _all_names()
     close = difflib.get_close_matches(scene, known, n=_MOST_SUGGESTED, cutoff=0.5)
     # The part after the slash is often all that somebody remembers.
     close += [name for name in known if scene and scene in name and name not in close]

@@ -28,7 +28,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, final
 
@@ -231,13 +230,13 @@ def _cases(mark: pytest.Mark) -> Iterator[Case]:
 
 
 def _scenes(pattern: str | Path) -> list[str]:
-    from taylor_verify.scenes.library import find, names
+    from taylor_verify.scenes.library import find, fitting, is_pattern, names
 
     text = str(pattern)
-    if not set(text) & set("*?["):
+    if not is_pattern(text):
         find(text)
         return [text]
-    found = [name for name in names() if fnmatchcase(name, text)]
+    found = list(fitting(text, names()))
     if not found:
         raise ValueError(f"expected a pattern that some shipped scene fits, got {text!r}")
     return found

@@ -173,7 +173,7 @@ def questions(
     if path.is_dir():
         files = sorted(str(f) for f in path.glob("*.toml") if not f.stem.isupper())
         return _listed(what, files, count, seed, spread)
-    if not is_family(what) and len(shipped := named(what)) > 1:
+    if not is_family(what) and (shipped := named(what)) != (what,):
         return _listed(what, shipped, count, seed, spread)
     return _drawn(family(what), count, seed, spread)
 

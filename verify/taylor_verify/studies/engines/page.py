@@ -19,7 +19,7 @@ from taylor_verify.studies.engines.document import Board, EngineRow
 from taylor_verify.studies.engines.engine_page import place
 from taylor_verify.studies.engines.entry import FILE, EntryList, entry_list
 from taylor_verify.studies.engines.findings import findings
-from taylor_verify.studies.engines.pictures import sweeps, work
+from taylor_verify.studies.engines.pictures import energy, sweeps, work
 from taylor_verify.studies.engines.ranking import (
     EngineSetting,
     best_of_each,
@@ -96,9 +96,9 @@ def page(board: Board, folder: Path) -> str:
 
 
 def pictures(board: Board) -> list[Picture]:
-    """Return the pictures of the board: error against time and step, and error against version."""
+    """Return the pictures of the board: energy and motion, error against time, step and version."""
     entries = _entries(board)
-    return [*work.pictures(board, entries), *sweeps.pictures(board, entries)]
+    return [made for kind in (energy, work, sweeps) for made in kind.pictures(board, entries)]
 
 
 def _entries(board: Board) -> EntryList:

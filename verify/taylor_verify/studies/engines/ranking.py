@@ -112,7 +112,7 @@ def best_of(scores: Iterable[Score]) -> Score | None:
     return min(finite, key=lambda score: score.error, default=None)
 
 
-def best_of_each(every: Iterable[Setting], scene: str) -> list[Score]:
+def best_of_each(every: Iterable[EngineSetting], scene: str) -> list[Score]:
     """Return the best score of each engine in its newest version on a scene, in the order of the list."""
     found = []
     for _, group in groupby(newest(every), key=lambda one: one.engine):

@@ -1,0 +1,211 @@
+"""Help where people are: a greeting, the near word, the usage of the verb, patterns, completion."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from builders.scenes import LISTED_INSTANTS
+
+from taylor_verify.cli import main
+from taylor_verify.cli.arguments import parse
+from taylor_verify.records.version import __version__
+from taylor_verify.scenes import library
+
+ROOT = Path(__file__).resolve().parents[2]
+
+Captured = pytest.CaptureFixture[str]
+
+
+def refusal(capsys: Captured, *arguments: str) -> str:
+    """What a call that cannot be read prints on stderr; it ends with status 2 and an empty stdout."""
+    with pytest.raises(SystemExit) as ended:
+        main(arguments)
+    out, error = capsys.readouterr()
+    assert (ended.value.code, out) == (2, "")
+    return error
+
+
+def test_a_call_without_a_verb_greets_with_three_commands(capsys: Captured) -> None:
+    """Each of the three can be typed, and is of a use that the README has too."""
+    assert main([]) == 0
+    out, error = capsys.readouterr()
+    commands = [line.strip() for line in out.splitlines() if line.startswith("    taylor-verify ")]
+    verbs = [shlex.split(command)[1] for command in commands]
+    assert verbs == ["check", "run", "exact"]
+    for command in commands:
+        assert callable(parse(shlex.split(command)[1:]).act)
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert all(f"\ntaylor-verify {verb} " in readme for verb in verbs)
+    assert __version__ in out
+    assert error == ""
+
+
+def test_the_version_is_printed(capsys: Captured) -> None:
+    """`--version` prints name and version, and ends with status 0."""
+    with pytest.raises(SystemExit) as ended:
+        main(["--version"])
+    assert ended.value.code == 0
+    assert capsys.readouterr().out == f"taylor-verify {__version__}\n"
+
+
+@pytest.mark.parametrize(
+    ("word", "meant"),
+    [("rnu", "run"), ("chekc", "check"), ("exactly", "exact"), ("sweeps", "sweep")],
+)
+def test_a_wrong_verb_suggests_the_near_one(capsys: Captured, word: str, meant: str) -> None:
+    """The message names the word and the verb that is like it."""
+    assert f"expected a verb, got {word} (did you mean {meant}" in refusal(capsys, word, "x")
+
+
+def test_a_verb_like_none_is_told_where_they_are(capsys: Captured) -> None:
+    """Nothing is suggested that is not near."""
+    error = refusal(capsys, "zzz")
+    assert "expected a verb, got zzz (`taylor-verify --help` names them)" in error
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["run", "euler/rest", "--jbos", "3"], "got --jbos (did you mean --jobs"),
+        (
+            ["exact", "euler/rest", "--at", "1", "--digit=5"],
+            "got --digit=5 (did you mean --digits?)",
+        ),
+        (["list", "--zzz"], "got --zzz (there is none like it)"),
+        (["exact", "euler/rest", "euler/apollo", "--at", "1"], "got euler/apollo"),
+        (["run", "euler/rest", "--jobs", "x"], "--jobs: invalid int value: 'x'"),
+        (["run", "euler/rest", "--gate", "x"], "--gate: invalid choice: 'x'"),
+        (["check", "mine.csv"], "required: --scene"),
+        (["draw"], "required: SCENE"),
+    ],
+)
+def test_an_error_of_an_option_shows_the_usage_of_its_verb(
+    capsys: Captured, arguments: list[str], said: str
+) -> None:
+    """The usage is that of the verb, with its options, and the message names the fault."""
+    error = refusal(capsys, *arguments)
+    assert error.startswith(f"usage: taylor-verify {arguments[0]} [-h]")
+    assert said in error
+
+
+# Patterns.
+
+
+def test_a_pattern_is_the_scenes_that_it_fits() -> None:
+    """A star stands for any letters; a pattern that nothing fits stays what it was."""
+    middle = library.named("euler/*middle*")
+    assert len(middle) > 1
+    assert set(middle) == {name for name in library.names("euler") if "middle" in name}
+    assert library.named("extremes/worst/*") == library.names(library.WORST)
+    assert library.named("euler/ap?ll[o]") == ("euler/apollo",)
+    assert library.named("zz*") == ("zz*",)
+
+
+def test_a_pattern_of_files_is_those_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A shell that expands nothing passes it on as it is; a file that is named like a pattern is a file."""
+    monkeypatch.chdir(tmp_path)
+    for name in ("b.toml", "a.toml", "[c].toml"):
+        Path(name).write_text(LISTED_INSTANTS)
+    assert library.named("?.toml") == ("a.toml", "b.toml")
+    assert library.named("[c].toml") == ("[c].toml",)
+
+
+@pytest.mark.parametrize(
+    "call",
+    ["exact {} --at 0", "question {}", "explain {}", "run {}", "draw {} --only time", "sweep {}"],
+)
+def test_every_verb_takes_a_pattern(
+    call: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One that fits a single scene is that scene."""
+    monkeypatch.chdir(tmp_path)
+    assert main(call.format("euler/spherical*").split()) == 0
+
+
+def test_check_takes_a_pattern(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    """Behind --scene too."""
+    monkeypatch.chdir(tmp_path)
+    assert main(["question", "euler/rest", "--csv"]) == 0
+    header, *rows = capsys.readouterr().out.splitlines()
+    zeros = [f"{row.partition(',')[0]},0,0,0" for row in rows]
+    Path("mine.csv").write_text("\n".join([header, *zeros]))
+    assert main(["check", "mine.csv", "--scene", "euler/re?t"]) == 0
+
+
+@pytest.mark.parametrize("call", ["exact {} --at 1", "question {}", "explain {}", "draw {}"])
+def test_a_verb_of_one_scene_refuses_several(call: str, capsys: Captured) -> None:
+    """The scenes that a pattern or a folder stands for are named, the first of them."""
+    for word in ("euler/*middle*", "euler"):
+        assert main(call.format(word).split()) == 2
+        first = library.named(word)[0]
+        error = capsys.readouterr().err
+        assert f"expected one scene, got {first}, " in error
+        assert error.endswith(f"@ {word}\n")
+
+
+def test_a_pattern_that_nothing_fits_is_refused(capsys: Captured) -> None:
+    """No run passes for want of scenes."""
+    for verb in ("run", "tradeoff", "explain"):
+        assert main([verb, "euler/zz*"]) == 2
+        assert "got euler/zz* (no scene fits the pattern" in capsys.readouterr().err
+
+
+def test_the_hint_of_a_question_names_the_scene(capsys: Captured) -> None:
+    """Not the pattern, which a shell might expand."""
+    assert main(["question", "euler/spherical*", "--csv"]) == 0
+    assert "--scene euler/spherical\n" in capsys.readouterr().err
+
+
+# Completion.
+
+
+def completed(script: str, *words: str) -> list[str]:
+    """What bash offers for the last of some words, with that script."""
+    line = shlex.join(words)
+    call = f"COMP_WORDS=({line}); COMP_CWORD={len(words) - 1}; COMP_LINE={shlex.quote(line)}"
+    asked = f'_shtab_taylor_verify {words[0]} "{words[-1]}" {words[-2]}'
+    show = 'printf "%s\\n" "${COMPREPLY[@]}"'
+    done = subprocess.run(
+        ["bash", "-c", f"{script}\n{call}\n{asked}\n{show}"],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return done.stdout.split()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no bash of its own")
+def test_bash_completes_verbs_options_and_scenes(capsys: Captured) -> None:
+    """The script is that of the library; shipped scenes are offered where a scene belongs."""
+    assert main(["--completion", "bash"]) == 0
+    script = capsys.readouterr().out
+    assert completed(script, "taylor-verify", "tra") == ["tradeoff"]
+    assert completed(script, "taylor-verify", "run", "--jo") == ["--jobs"]
+    assert completed(script, "taylor-verify", "run", "euler/tennis") == ["euler/tennis-racket"]
+    assert completed(script, "taylor-verify", "check", "--scene", "euler/apol") == ["euler/apollo"]
+    assert "--periods" in completed(script, "taylor-verify", "publish", "--per")
+
+
+@pytest.mark.parametrize("shell", ["zsh", "fish"])
+def test_other_shells_have_scripts(shell: str, capsys: Captured) -> None:
+    """With every verb and the scenes."""
+    assert main(["--completion", shell]) == 0
+    script = capsys.readouterr().out
+    assert all(re.search(rf"\b{verb}\b", script) for verb in ("check", "tradeoff", "euler/apollo"))
+
+
+def test_without_the_library_its_command_is_told(
+    monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    """shtab is an extra: one line names it."""
+    monkeypatch.setitem(sys.modules, "shtab", None)
+    assert main(["--completion", "bash"]) == 2
+    expected = "expected shtab (pip install 'taylor-verify[completion]'), got none @ --completion"
+    assert capsys.readouterr().err == f"taylor-verify: {expected}\n"

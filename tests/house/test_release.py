@@ -1,0 +1,191 @@
+"""Files that services read: each is what its service expects, and all tell the same facts."""
+
+from __future__ import annotations
+
+import json
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from taylor_verify.records.version import __version__
+
+ROOT = Path(__file__).resolve().parents[2]
+WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
+FORMS = sorted(set((ROOT / ".github" / "ISSUE_TEMPLATE").glob("*.yml")))
+ACTION = ROOT / ".github" / "actions" / "verify" / "action.yml"
+# Of each action the newest version that was known when the workflows were last looked at.
+NEWEST = {
+    "actions/checkout": "v7",
+    "actions/setup-python": "v7",
+    "actions/upload-artifact": "v7",
+    "actions/download-artifact": "v8",
+    "pypa/gh-action-pypi-publish": "release/v1",
+}
+
+
+def text_of(name: str) -> str:
+    return (ROOT / name).read_text(encoding="utf-8")
+
+
+def read(path: Path) -> Any:
+    """A YAML file; the key `on` of a workflow is read as True by YAML 1.1."""
+    return yaml.safe_load(path.read_text(encoding="utf-8"))
+
+
+def project() -> dict[str, Any]:
+    return tomllib.loads(text_of("pyproject.toml"))
+
+
+# What is said of the project.
+
+
+def test_the_version_is_one() -> None:
+    """The package, the citation and the archive say the same."""
+    assert str(read(ROOT / "CITATION.cff")["version"]) == __version__
+    assert json.loads(text_of(".zenodo.json"))["version"] == __version__
+
+
+def test_the_citation_is_one() -> None:
+    """Names, licence, keywords and description agree in the citation, the archive and the package."""
+    cited, stored = read(ROOT / "CITATION.cff"), json.loads(text_of(".zenodo.json"))
+    required = {"cff-version", "message", "title", "authors", "version", "license", "abstract"}
+    assert required <= set(cited)
+    authors = [person["name"] for person in cited["authors"]]
+    assert authors == [person["name"] for person in stored["creators"]]
+    assert authors == [person["name"] for person in project()["project"]["authors"]]
+    assert cited["license"] == stored["license"] == project()["project"]["license"]
+    assert cited["keywords"] == stored["keywords"]
+    assert f"<p>{cited['abstract'].strip()}</p>" == stored["description"]
+    assert (cited["type"], stored["upload_type"]) == ("software", "software")
+    assert all({"type", "title", "authors"} <= set(each) for each in cited["references"])
+
+
+def test_the_classifiers_are_the_pythons_that_are_allowed() -> None:
+    """requires-python, the classifiers and the workflow name the same versions."""
+    metadata = project()["project"]
+    low, high = re.fullmatch(r">=3\.(\d+),<3\.(\d+)", metadata["requires-python"]).groups()
+    allowed = [f"3.{minor}" for minor in range(int(low), int(high))]
+    named = [c.rpartition(" ")[2] for c in metadata["classifiers"] if ":: Python ::" in c]
+    jobs = read(ROOT / ".github" / "workflows" / "check.yml")["jobs"]
+    assert named == jobs["check"]["strategy"]["matrix"]["python"] == allowed
+
+
+# The pinned versions.
+
+
+def pins(name: str) -> dict[str, str]:
+    return dict(re.findall(r"^([\w.-]+)==(\S+)", text_of(name), re.MULTILINE))
+
+
+def test_the_small_set_up_is_a_part_of_the_whole() -> None:
+    """What `make verify` installs has the versions that `make test` adds to, and nothing else."""
+    small, whole = pins("requirements-verify.txt"), pins("requirements.txt")
+    assert {"heyoka", "numpy", "python-flint", "hatchling"} <= set(small)
+    assert small.items() <= whole.items()
+    assert len(small) < len(whole) / 4
+
+
+def test_publishing_has_a_group_of_its_own() -> None:
+    """The libraries of the site and of the paper are in no other group, and `make verify` lacks them."""
+    groups = project()["dependency-groups"]
+    names = {re.match(r"[\w-]+", line)[0].lower() for line in groups["publishing"]}
+    assert {"sphinx", "plotly", "pypandoc-binary", "selenium"} <= names
+    assert names.isdisjoint(pins("requirements-verify.txt"))
+    assert {"include-group": "publishing"} in groups["dev"]
+
+
+# The workflows.
+
+
+@pytest.mark.parametrize("file", WORKFLOWS, ids=lambda file: file.stem)
+def test_a_workflow_is_one(file: Path) -> None:
+    """It has a trigger, the least permissions, and for every job a machine, a time limit and steps."""
+    workflow = read(file)
+    assert {"name", True, "permissions", "jobs"} <= set(workflow)
+    assert workflow["permissions"] == {"contents": "read"}
+    for job in workflow["jobs"].values():
+        assert {"runs-on", "timeout-minutes", "steps"} <= set(job)
+        assert all(("uses" in step) != ("run" in step) for step in job["steps"])
+
+
+@pytest.mark.parametrize("file", [*WORKFLOWS, ACTION], ids=lambda file: file.stem)
+def test_actions_are_of_their_newest_version(file: Path) -> None:
+    """Every action is known, and of one version everywhere."""
+    used = re.findall(r"uses: ([\w/-]+)@(\S+)", file.read_text(encoding="utf-8"))
+    assert used == [(name, NEWEST[name]) for name, _ in used]
+
+
+def test_every_command_of_make_in_a_workflow_exists() -> None:
+    """A target that a workflow makes has a rule in the Makefile."""
+    rules = set(re.findall(r"^([a-z-]+):", text_of("Makefile"), re.MULTILINE))
+    named = {
+        name for file in WORKFLOWS for name in re.findall(r"run: make ([a-z-]+)", file.read_text())
+    }
+    assert {"dist", "release-data"} <= named <= rules
+
+
+def test_a_release_is_published_without_a_password() -> None:
+    """PyPI trusts the workflow, by the one job that may ask for a token, and on a tag alone."""
+    jobs = read(ROOT / ".github" / "workflows" / "release.yml")["jobs"]
+    tokens = {name for name, job in jobs.items() if "id-token" in job.get("permissions", {})}
+    assert tokens == {"pypi"}
+    assert jobs["pypi"]["environment"] == "pypi"
+    assert set(jobs["pypi"]["needs"]) == {"packages", "installed"}
+    for name in ("pypi", "github"):
+        assert jobs[name]["if"] == "startsWith(github.ref, 'refs/tags/')"
+    assert "secrets." not in text_of(".github/workflows/release.yml")
+
+
+# What other services read.
+
+
+def test_dependabot_watches_actions_and_libraries() -> None:
+    """Both places that use actions, and the pinned versions."""
+    found = read(ROOT / ".github" / "dependabot.yml")
+    assert found["version"] == 2
+    kinds = {update["package-ecosystem"]: update for update in found["updates"]}
+    assert set(kinds) == {"github-actions", "pip"}
+    assert kinds["github-actions"]["directories"] == ["/", "/.github/actions/verify"]
+    assert all("interval" in update["schedule"] for update in found["updates"])
+
+
+def test_the_docs_are_built_of_what_is_there() -> None:
+    """Configuration and requirements are files of the repository, and a warning is an error."""
+    found = read(ROOT / ".readthedocs.yaml")
+    assert (found["version"], found["sphinx"]["fail_on_warning"]) == (2, True)
+    first, second = found["python"]["install"]
+    files = [found["sphinx"]["configuration"], first["requirements"], second["path"]]
+    assert all((ROOT / file).exists() for file in files)
+
+
+@pytest.mark.parametrize("file", FORMS, ids=lambda file: file.stem)
+def test_a_form_of_an_issue_is_one(file: Path) -> None:
+    """Name, description and fields with labels; the ids differ, and something must be filled in."""
+    form = read(file)
+    if file.stem == "config":
+        assert set(form) == {"blank_issues_enabled"}
+        return
+    assert {"name", "description", "body"} <= set(form)
+    fields = [field for field in form["body"] if field["type"] != "markdown"]
+    assert len({field["id"] for field in fields}) == len(fields)
+    assert all(field["attributes"]["label"] for field in fields)
+    assert any(field.get("validations", {}).get("required") for field in fields)
+
+
+def test_there_is_a_form_for_each_purpose() -> None:
+    """A wrong number, an engine, a scene."""
+    assert {file.stem for file in FORMS} == {"config", "engine", "scene", "wrong-number"}
+
+
+@pytest.mark.parametrize(
+    "name", ["SECURITY.md", "CITATION.cff", ".zenodo.json", ".readthedocs.yaml"]
+)
+def test_no_address_is_invented(name: str) -> None:
+    """No web address and no mail address; a DOI is of somebody else's article."""
+    text = text_of(name)
+    assert re.findall(r"https?://|[\w.]+@[\w-]+\.\w+", text) == []
+    assert set(re.findall(r"10\.\d{4,}/\S+", text)) <= {"10.1093/mnras/stab1032"}
