@@ -336,6 +336,14 @@ def test_unoptimised_code_takes_the_same_steps(name: str, monkeypatch: pytest.Mo
         assert np.array_equal(rows, found[1].quantities[quantity])
 
 
+def test_optimised_code_passes_the_same_gates() -> None:
+    """It rounds otherwise, since it fuses products with sums, and is as good."""
+    names = ("taylor", "taylor?code=optimised")
+    plain, optimised = (run("euler/with-attitude", name) for name in names)
+    assert [v.verdict for v in optimised.verdicts] == [v.verdict for v in plain.verdicts]
+    assert [v.max for v in optimised.verdicts] != [v.max for v in plain.verdicts]
+
+
 def test_two_bodies_of_one_form_share_one_compiled_integrator() -> None:
     """Coefficients are parameters: another body, start and span compile nothing."""
     scene = spinning((Fraction(1), Fraction(3, 4), Fraction(2)), Fraction(10))

@@ -78,10 +78,10 @@ class Held:
 
 
 def hold(baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
-    """Compare every new row with its row of the baseline. Rungs that a machine lacks are left out.
+    """Compare every row that was ``made`` with its row of the baseline.
 
-    Four things are regressions: a missing row, a worse verdict, a quaternion that is no longer a unit
-    quaternion, and an error above ten times the larger of the former error and half of the attainable one.
+    Rungs that a machine lacks are left out. Four things are regressions: a missing row, a worse verdict, a
+    quaternion that is no longer a unit quaternion, and an error above ten times the larger of the former error and half of the attainable one.
     Below that limit, other roundings may explain the growth.
     """
     # Whether the row COMPLETE exists depends on the options of each call, so it is not compared.
@@ -118,7 +118,7 @@ def _parted(rows: Iterable[Verdict]) -> tuple[list[Verdict], list[Verdict]]:
 
 
 def decided_alone(comparison: Held, baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
-    """Return the ``comparison`` with a status that ignores the gates of the new rows.
+    """Return the ``comparison`` with a status that ignores the gates of the rows ``made``.
 
     A failed row without a finite error is a regression, even if the baseline has no finite error either.
     A row that shows nothing counts as not compared: it is undecided, vacuous or refused, or it fails and

@@ -32,7 +32,7 @@ from taylor_verify.solvers.taylor.numbers import arithmetic, unavailable
 from taylor_verify.solvers.taylor.way import Way
 from taylor_verify.solvers.trajectory import Outcome, Postponed, Trajectory
 
-# Beyond this many states optimising straight-line code takes longer than it runs.
+# Beyond this many states optimising straight-line code takes longer than it runs once.
 _LARGEST_STRAIGHT_LINE = 5
 # Where code may be left as it is, it is optimised for ways longer than this, in the units of time. Loops
 # run up to twice as fast then (f80), MPFR's calls by a quarter, f128's not at all; in some hundred steps
@@ -40,6 +40,10 @@ _LARGEST_STRAIGHT_LINE = 5
 _LONG_WAY = 50
 # The standard set asks for nearly four hundred, a scene's rungs one after the other.
 _MOST_COMPILED = 128
+# Ways are kept for whoever asks many questions in turns, and their instants only where they are few.
+_MOST_WAYS, _MOST_INSTANTS = 128, 1000
+# `taylor?tol=1e-9&code=optimised`.
+_SETTINGS, _OPTIMISED = ("tol", "code"), "optimised"
 
 
 @final
@@ -47,12 +51,14 @@ _MOST_COMPILED = 128
 class Taylor(Solver):
     """heyoka at a tolerance, which bounds the error of a step: the rung's machine epsilon if None.
 
-    heyoka takes the order from it.
+    heyoka takes the order from it. With ``is_optimised`` its code is compiled for seconds, and runs up
+    to twice as fast from six states on.
     """
 
     name: str = "taylor"
     setting: str = ""
     tolerance: Fraction | None = None
+    is_optimised: bool = False
     counts_steps = True
 
     def unavailable(self, rung: Rung) -> str:
@@ -64,11 +70,10 @@ class Taylor(Solver):
     def solve(self, problem: Problem) -> Trajectory:
         began = perf_counter()
         numbers = arithmetic(problem.rung)
-        # Of doubles there is one code for every way.
-        is_long = numbers.is_quick_plain or _is_long(numbers.times(problem.times))
-        integrator = compiled(problem.form, problem.rung, self.tolerance, is_long=is_long)
+        is_optimised = self.is_optimised or pays(problem.form, problem.rung, _is_long(problem))
+        integrator = compiled(problem.form, problem.rung, self.tolerance, is_optimised)
         compile_seconds = perf_counter() - began
-        way = _way(integrator, problem)
+        way = (_way if len(problem.times) <= _MOST_INSTANTS else Way)(integrator, problem)
         outcome, rows, _, steps, inner = way.run()
         seconds = perf_counter() - began - compile_seconds
         quantities: Mapping[str, Any] = {}
@@ -92,8 +97,15 @@ def at_tolerance(text: str) -> Taylor:
 
 
 def named(name: str) -> Taylor:
-    """Return the driver that `taylor` or `taylor?tol=NUMBER` names; ValueError for any other name."""
-    return Taylor(name, tolerance=tolerance(name))
+    """Return the driver that `taylor`, `taylor?tol=NUMBER` or `taylor?code=optimised` names.
+
+    Raises ValueError for any other name.
+    """
+    chosen = options(name, [TAYLOR], _SETTINGS)
+    code = chosen.values.get("code", _OPTIMISED)
+    if code != _OPTIMISED:
+        raise ValueError(f"expected {_OPTIMISED}, got {code!r:.60} @ code")
+    return Taylor(name, tolerance=tolerance(name), is_optimised="code" in chosen)
 
 
 def tolerance(name: str) -> Fraction | None:
@@ -101,9 +113,10 @@ def tolerance(name: str) -> Fraction | None:
 
     Raises ValueError for a tolerance that is no positive number, and for a name of something else.
     """
-    if name == TAYLOR:
+    chosen = options(name, [TAYLOR], _SETTINGS)
+    if "tol" not in chosen and (name == TAYLOR or "code" in chosen):
         return None
-    return options(name, [TAYLOR], ["tol"]).positive("tol", default="")
+    return chosen.positive("tol", default="")
 
 
 @lru_cache(maxsize=_MOST_COMPILED)
@@ -111,14 +124,14 @@ def compiled(
     form: Form,
     rung: Rung,
     tolerance: Fraction | None,
+    is_optimised: bool,
     literals: tuple[Fraction, ...] | None = None,
-    is_long: bool = True,
 ) -> Any:
     """Return the one compiled integrator of a form, rung and tolerance; the rest is filled in per problem.
 
-    Parameters cost what literals cost, and serve every body: literals are for measuring that. What it
-    computes does not depend on ``is_long``, which tells what pays: optimised loops compute the same to the
-    last bit. Optimised straight-line code of doubles does not, because it fuses products with sums.
+    Parameters cost what literals cost, and serve every body: literals are for measuring that. Optimised
+    loops compute the same as others to the last bit. Optimised straight-line code of doubles does not,
+    because it fuses products with sums.
     """
     import heyoka as hy
 
@@ -130,14 +143,13 @@ def compiled(
         coefficients = [hy.expression(numbers.number(value)) for value in literals]
     system = equations(form, coefficients)
     passed = len(form.parameters) if literals is None else 0
-    is_small = len(system) <= _LARGEST_STRAIGHT_LINE
-    is_optimised = is_small if numbers.is_quick_plain else is_long
+    is_straight_line = numbers.is_quick_plain or len(system) <= _LARGEST_STRAIGHT_LINE
     options = {
         "state": np.array([zero] * len(system), dtype=numbers.fp_type),
         "time": zero,
         "pars": np.array([zero] * passed, dtype=numbers.fp_type),
         "fp_type": numbers.fp_type,
-        "compact_mode": numbers.compact or not (is_small or numbers.is_quick_plain),
+        "compact_mode": numbers.compact or not is_straight_line,
         "opt_level": 3 if is_optimised else 0,
         # heyoka takes 0 for the machine epsilon of the type.
         "tol": zero if tolerance is None else numbers.number(rung.round(tolerance)),
@@ -160,11 +172,19 @@ def equations(form: Form, coefficients: Sequence[Any]) -> list[tuple[Any, Any]]:
     ]
 
 
-def _is_long(times: Any) -> bool:
-    return abs(float(times[-1])) > _LONG_WAY
+def pays(form: Form, rung: Rung, is_long: bool = True) -> bool:
+    """Return True where one way costs less with optimised code, its optimising included."""
+    if arithmetic(rung).is_quick_plain:
+        # One code for short and long ways, so that a longer one begins as a shorter one does.
+        return len(form.states) <= _LARGEST_STRAIGHT_LINE
+    return is_long
+
+
+def _is_long(problem: Problem) -> bool:
+    return abs(float(arithmetic(problem.rung).times(problem.times)[-1])) > _LONG_WAY
 
 
 # Whoever times a solver asks it one question many times: what follows from the question is made once.
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=_MOST_WAYS)
 def _way(integrator: Any, problem: Problem) -> Way:
     return Way(integrator, problem)

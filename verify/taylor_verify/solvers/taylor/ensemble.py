@@ -27,7 +27,7 @@ from taylor_verify.models.problem import Problem
 from taylor_verify.models.rates import Linearised
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.solvers.taylor.cache import stored
-from taylor_verify.solvers.taylor.driver import compiled, equations
+from taylor_verify.solvers.taylor.driver import compiled, equations, pays
 from taylor_verify.solvers.taylor.numbers import arithmetic, unavailable
 from taylor_verify.solvers.taylor.way import (
     LEAST_STEPS,
@@ -241,7 +241,7 @@ def stepper(
 ) -> Any:
     """Return one compiled integrator of so many lanes; straight-line code up to so many states."""
     if width == 1:
-        return compiled(form, rung, tolerance)
+        return compiled(form, rung, tolerance, pays(form, rung))
     import heyoka as hy
 
     numbers = arithmetic(rung)

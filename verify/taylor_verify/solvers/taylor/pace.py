@@ -10,7 +10,7 @@ from typing import Any
 
 from taylor_verify.models.problem import Problem
 from taylor_verify.models.rates import Linearised
-from taylor_verify.solvers.taylor.driver import compiled
+from taylor_verify.solvers.taylor.driver import compiled, pays
 from taylor_verify.solvers.taylor.numbers import arithmetic
 from taylor_verify.solvers.taylor.way import LONGEST_STEP
 
@@ -30,7 +30,9 @@ class Pace:
     ) -> None:
         numbers = arithmetic(problem.rung)
         values = problem.parameters if literals else None
-        self._integrator: Any = compiled(problem.form, problem.rung, tolerance, values)
+        self._integrator: Any = compiled(
+            problem.form, problem.rung, tolerance, pays(problem.form, problem.rung), values
+        )
         self._zero, self._end = numbers.array([Fraction(0), problem.rung.round(span)])
         self._start = numbers.array(problem.initial_momenta)
         self._parameters = numbers.array(() if literals else problem.parameters)

@@ -17,7 +17,7 @@ TRADEOFF: Final = (tradeoff.NUMBERS.name, tradeoff.TIMINGS.name)
 
 @dataclass(frozen=True)
 class Caption:
-    """What is shown in Markdown, the files of the report that it is made of, and the processor."""
+    """A sentence in Markdown on what is shown, the files that it is made of, and the processor."""
 
     words: str
     data: tuple[str, ...]

@@ -29,6 +29,7 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines.engine import prepare
 from taylor_verify.solvers.engines.launcher import NotMade
 from taylor_verify.solvers.engines.session import end_sessions
+from taylor_verify.solvers.registry import TAYLOR
 from taylor_verify.studies.tradeoff.cold import in_a_new_process
 from taylor_verify.studies.tradeoff.document import (
     UNTIL,
@@ -85,6 +86,8 @@ _ODEFUN: Final = "mpmath:odefun?tol=1e-6"
 PEERS: Final = ("dop853", "cyrk-dop853", "cvode-adams", "diffrax-dopri8")
 _FOR_THE_COLUMNS: Final = tuple(f"1e-{digits}" for digits in range(5, 16))
 _OF_TAYLOR: Final = ("1e-3", *_FOR_THE_COLUMNS)
+# Each of these is compiled for seconds, in every process anew.
+_OF_OPTIMISED: Final = _FOR_THE_COLUMNS[::2]
 _OWN_TOLERANCE: Final = ("f32", "f80", "f128", "mp237")
 
 # A scene with the settings that are timed on it.
@@ -166,6 +169,8 @@ def published_settings(scene: Scene, with_outside: bool = False) -> Iterator[Set
     if not is_long:
         yield from _for_short_scenes(scene)
     if with_outside:
+        for tolerance in _OF_OPTIMISED:
+            yield setting(f"{TAYLOR}?tol={tolerance}&code=optimised", f64)
         yield from outside(["f64"], PEERS, _FOR_THE_COLUMNS)
 
 

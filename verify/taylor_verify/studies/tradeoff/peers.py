@@ -13,6 +13,7 @@ from taylor_verify.studies.tradeoff.stored import TimedPoint, Trade, Trades, che
 DIGITS: Final = (6, 9, 12)
 OUTSIDE: Final = "outside "
 TAYLOR: Final = "taylor f64"
+OPTIMISED: Final = "taylor f64 optimised"
 _NOT_REACHED: Final = "not reached"
 _NONE: Final = (
     "Not measured: `taylor-verify publish tradeoff --outside` does, and makes their environments."
@@ -23,11 +24,12 @@ _WHAT: Final = (
     "every round. All have the same equations, generated from one form, the same samples, and an error "
     "measured by the same exact motion. A cell is the processor's time of the cheapest tolerance, of all "
     "powers of ten from 1e-5 to 1e-15, that leaves so many digits, over that of the yardstick. *ahead* "
-    "is the fastest, with its lead: over the next where that is taylor, else over taylor. It is *level* "
-    "where the intervals of the two overlap."
+    "is the fastest, with its lead: over the next peer where that is taylor, else over taylor. It is "
+    "*level* where the intervals of the two overlap."
 )
 # Families of the columns in words; any other goes by its own name.
 TITLES: Final = {
+    OPTIMISED: "taylor, optimised code",
     "outside dop853": "DOP853 in numba",
     "outside cyrk-dop853": "CyRK DOP853",
     "outside cvode-adams": "SUNDIALS CVODE",
@@ -41,6 +43,8 @@ _HOW: Final = (
     "want of another.",
     "diffrax is compiled as a whole by XLA (`jit`).",
     "The time of taylor has in it what its driver does in Python around heyoka's compiled steps.",
+    "Optimised code is `taylor?code=optimised`: it compiles for seconds, and is found again on disk. Every "
+    "second power of ten was measured.",
 )
 _SET_UP: Final = (
     "Set-up, which no time above has in it: the processor's seconds before the first solve of a process, "
@@ -62,9 +66,14 @@ def _peers(trade: Trade) -> list[str]:
     return list(dict.fromkeys(p.family for p in trade.points if p.family.startswith(OUTSIDE)))
 
 
+def _is_ours(row: TimedPoint) -> bool:
+    return row.point.family in (TAYLOR, OPTIMISED)
+
+
 def _families(found: Trades) -> list[str]:
     """Return the families of the columns: taylor, those with a title in that order, and any other."""
-    asked = dict.fromkeys(family for trade in found.trades for family in _peers(trade))
+    points = [point for trade in found.trades for point in trade.points]
+    asked = dict.fromkeys(p.family for p in points if p.family.startswith((OUTSIDE, OPTIMISED)))
     known = [family for family in TITLES if family in asked]
     return [TAYLOR, *known, *(family for family in asked if family not in known)]
 
@@ -109,18 +118,16 @@ def _inner(row: TimedPoint | None) -> str:
 
 
 def _ahead(reached: Sequence[TimedPoint]) -> str:
-    """Return the fastest in words, with its lead over the next, or over taylor."""
+    """Return the fastest in words, with its lead over the next peer, or over taylor."""
     if not reached:
         return "nobody"
     first, *others = sorted(reached, key=lambda row: row.timing.ratio)
     name = _title(first.point.family)
-    if not others:
-        return f"{name}, alone"
-    is_taylor = first.point.family == TAYLOR
-    ours = next((row for row in others if row.point.family == TAYLOR), None)
-    other = others[0] if is_taylor else ours
+    is_taylor = _is_ours(first)
+    other = next((row for row in others if _is_ours(row) is not is_taylor), None)
     if other is None:
-        return f"{bold(name)}: taylor does not reach them"
+        is_alone = is_taylor or not others
+        return f"{name}, alone" if is_alone else f"{bold(name)}: taylor does not reach them"
     if _overlap(first, other):
         return f"level: {name} and {_title(other.point.family)}"
     lead = f"{other.timing.ratio / first.timing.ratio:.1f} times"

@@ -143,7 +143,8 @@ def setting(name: str, rung: Rung) -> Setting:
         solver = Peer(solver)
     if isinstance(solver, Taylor):
         tolerance = 2 * rung.unit_roundoff if solver.tolerance is None else solver.tolerance
-        return Setting(solver, rung, float(tolerance), TOLERANCE, f"taylor {rung.name}")
+        code = " optimised" if solver.is_optimised else ""
+        return Setting(solver, rung, float(tolerance), TOLERANCE, f"taylor {rung.name}{code}")
     if name.startswith(PROCESS):
         # Nobody knows which of its own options a command reads as an accuracy.
         return Setting(solver, rung, None, NOTHING, name)
