@@ -81,8 +81,8 @@ def hold(baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
     """Compare every row that was ``made`` with its row of the baseline.
 
     Rungs that a machine lacks are left out. Four things are regressions: a missing row, a worse verdict, a
-    quaternion that is no longer a unit quaternion, and an error above ten times the larger of the former error and half of the attainable one.
-    Below that limit, other roundings may explain the growth.
+    quaternion that is no longer a unit quaternion, and an error above ten times the larger of the former
+    error and half of the attainable one. Below that limit, other roundings may explain the growth.
     """
     # Whether the row COMPLETE exists depends on the options of each call, so it is not compared.
     before, now = ([v for v in verdicts if v.quantity != COMPLETE] for verdicts in (baseline, made))
