@@ -59,22 +59,22 @@ def baseline(tmp_path: Path, results: Judgements) -> Path:
 
 def test_a_result_is_no_regression_from_itself(baseline: Path, results: Judgements) -> None:
     """All rows are compared, and the comparison passes."""
-    found = compare_with_baseline(results, baseline)
-    assert found.compared == len(results.verdicts)
-    assert found
-    assert found.exit_status == 0
-    found.raise_for_failure()
+    comparison = compare_with_baseline(results, baseline)
+    assert comparison.compared == len(results.verdicts)
+    assert comparison
+    assert comparison.exit_status == 0
+    comparison.raise_for_failure()
 
 
 def test_an_error_that_grew_is_a_regression(baseline: Path, results: Judgements) -> None:
     """It fails by name, also where the gate itself still passes."""
     worse = changed(results, "euler/generic", "omega", max=1e-3)
-    found = compare_with_baseline(worse, baseline)
-    (failure,) = found.failures
+    comparison = compare_with_baseline(worse, baseline)
+    (failure,) = comparison.failures
     assert "euler/generic f64 omega max" in str(failure)
-    assert (found.exit_status, found.passed) == (1, False)
+    assert (comparison.exit_status, comparison.passed) == (1, False)
     with pytest.raises(NotPassed, match="euler/generic f64 omega max"):
-        found.raise_for_failure()
+        comparison.raise_for_failure()
 
 
 def test_only_what_was_asked_for_again_is_compared(baseline: Path, results: Judgements) -> None:
@@ -91,9 +91,9 @@ def test_only_what_was_asked_for_again_is_compared(baseline: Path, results: Judg
 
 def test_a_judgement_of_one_run_is_compared_alone(baseline: Path, results: Judgements) -> None:
     """The rows of the baseline that belong to this run count, and no others."""
-    found = compare_with_baseline(results[1], baseline)
-    assert found.passed
-    assert found.compared == len(results[1].verdicts)
+    comparison = compare_with_baseline(results[1], baseline)
+    assert comparison.passed
+    assert comparison.compared == len(results[1].verdicts)
 
 
 def test_what_is_no_baseline_is_refused(tmp_path: Path) -> None:
@@ -109,8 +109,8 @@ def test_a_report_is_compared_both_ways(tmp_path: Path, results: Judgements) -> 
     paths = write_report(tmp_path, results)
     assert {tmp_path / "data" / "verdicts.json", tmp_path / "tables" / "accuracy.md"} <= set(paths)
     assert len(read_report(tmp_path).verdicts) == len(results.verdicts)
-    found = compare_with_published(results, tmp_path)
-    assert (found.passed, found.compared) == (True, len(results.verdicts))
+    comparison = compare_with_published(results, tmp_path)
+    assert (comparison.passed, comparison.compared) == (True, len(results.verdicts))
     large = changed(results, "euler/generic", "omega", max=1e-3)
     write_report(tmp_path, large)
     (failure,) = compare_with_published(results, tmp_path).failures
@@ -147,9 +147,9 @@ def test_a_junit_file_is_as_red_as_the_result(
 
 def test_the_page_of_the_extremes_has_what_was_run() -> None:
     """Its document has the verdicts, the titles of the scenes and what was expected of each row."""
-    found = extremes_study(taylor_verify.run_many([LONG]))
-    assert [scene.scene for scene in found.scenes] == [LONG]
-    assert found.mismatches == ()
-    expected = {row.quantity: row.expected.verdict for row in found.verdicts if row.expected}
+    study = extremes_study(taylor_verify.run_many([LONG]))
+    assert [scene.scene for scene in study.scenes] == [LONG]
+    assert study.mismatches == ()
+    expected = {row.quantity: row.expected.verdict for row in study.verdicts if row.expected}
     assert expected["omega"] is Status.VACUOUS
     assert expected["T"] is Status.PASS

@@ -46,10 +46,10 @@ def _words(verdicts: Sequence[Verdict]) -> list[tuple[object, ...]]:
 
 
 def _agree(scenes: Sequence[Scene]) -> None:
-    for scene, found in zip(scenes, judged(scenes), strict=True):
+    for scene, judgement in zip(scenes, judged(scenes), strict=True):
         expected = run(scene).verdicts
-        assert _words(found) == _words(expected)
-        for one, other in zip(found, expected, strict=True):
+        assert _words(judgement) == _words(expected)
+        for one, other in zip(judgement, expected, strict=True):
             assert one.until == other.until
             # Where the errors are largest at one sample, both floors there are those of their steps. A
             # step has the length of the time over their number, which takes part in its rounding too.
@@ -82,9 +82,9 @@ def test_other_questions_go_through_the_chain(one_by_one: list[str]) -> None:
     loaded = satellite("loaded", (one, 2 * one, 3 * one), (one, one, one))
     loaded = replace(loaded, body=replace(loaded.body, moment=(one, Fraction(0), Fraction(0))))
     scenes = [round_body, steady, resting, loaded]
-    found = judged(scenes)
+    judgements = judged(scenes)
     assert one_by_one == ["round", "steady", "resting", "loaded"]
-    assert [_words(rows) for rows in found] == [_words(run(s).verdicts) for s in scenes]
+    assert [_words(rows) for rows in judgements] == [_words(run(s).verdicts) for s in scenes]
 
 
 def test_a_lane_that_is_wrong_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -94,9 +94,9 @@ def test_a_lane_that_is_wrong_is_caught(monkeypatch: pytest.MonkeyPatch) -> None
     names: list[str] = []
 
     def disturbed(bodies: Bodies) -> lanes.Lanes:
-        found = propagate(bodies)
-        found.rows[0, 2, 20:] *= 1 + 1e-11
-        return found
+        states = propagate(bodies)
+        states.rows[0, 2, 20:] *= 1 + 1e-11
+        return states
 
     def noted(scene: Scene, *_: str) -> object:
         names.append(scene.name)
@@ -149,9 +149,9 @@ def test_lanes_whose_rate_grew_go_again(monkeypatch: pytest.MonkeyPatch) -> None
     slow = bodies.rates.copy()
     slow[3] /= 8
     monkeypatch.setattr(Bodies, "rates", property(lambda _: slow))
-    found = propagate(bodies)
-    assert found.ways.tolist() == [1, 1, 1, 2, 1]
-    assert all(outcome is Outcome.FINISHED for outcome in found.outcomes)
+    states = propagate(bodies)
+    assert states.ways.tolist() == [1, 1, 1, 2, 1]
+    assert all(outcome is Outcome.FINISHED for outcome in states.outcomes)
 
 
 @pytest.mark.parametrize("seed", [9, 10])
@@ -160,8 +160,8 @@ def test_exact_motions_lie_in_their_balls(seed: int) -> None:
     scenes = satellites(6, seed, tracks_attitude=True)
     bodies = _bodies(scenes)
     assert bodies.quaternion is not None
-    found = Tops(bodies.inverse, Pairs(bodies.momentum), bodies.quaternion).states(bodies.times)
-    assert found.quaternion is not None
+    states = Tops(bodies.inverse, Pairs(bodies.momentum), bodies.quaternion).states(bodies.times)
+    assert states.quaternion is not None
     places = [0, 1, 20, 40]
     for k, scene in enumerate(scenes):
         given = pose(scene, rung("f64")).given
@@ -173,11 +173,11 @@ def test_exact_motions_lie_in_their_balls(seed: int) -> None:
         for row, place in enumerate(places):
             for i in range(3):
                 exact = exact_value(omega[row][i]) / Fraction(bodies.inverse[i, k])
-                assert _distance(found.momentum, (i, k, place), exact) <= 0
-            same = q[row][0] * found.quaternion.hi[0, k, place] > 0
+                assert _distance(states.momentum, (i, k, place), exact) <= 0
+            same = q[row][0] * states.quaternion.hi[0, k, place] > 0
             for i in range(4):
                 exact = exact_value(q[row][i]) * (1 if same else -1)
-                assert _distance(found.quaternion, (i, k, place), exact) <= 0
+                assert _distance(states.quaternion, (i, k, place), exact) <= 0
 
 
 def _distance(balls: Pairs, place: tuple[int, int, int], exact: Fraction) -> Fraction:

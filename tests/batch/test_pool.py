@@ -166,14 +166,14 @@ def test_terminate_ends_workers_in_the_middle(tmp_path: Any) -> None:
     """Work, and a result half handed over, are cut off; what waits is cancelled; no process is left."""
     before = set(multiprocessing.active_children())
     pool = LocalPool(2)
-    begun = [pool.submit(long_result, 400_000_000), pool.submit(time.sleep, 60)]
+    futures = [pool.submit(long_result, 400_000_000), pool.submit(time.sleep, 60)]
     waiting = [pool.submit(time.sleep, 60) for _ in range(3)]
     time.sleep(0.8)
     began = time.monotonic()
     pool.terminate()
     # The aim is a second; the machine may be busy.
     assert time.monotonic() - began < 5
-    assert isinstance(begun[1].exception(timeout=0), WorkerLost)
+    assert isinstance(futures[1].exception(timeout=0), WorkerLost)
     assert all(future.cancelled() for future in waiting)
     assert set(multiprocessing.active_children()) <= before
 

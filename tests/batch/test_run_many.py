@@ -72,18 +72,18 @@ def results(alone: list[Judgement]) -> Judgements:
 )
 def test_any_executor_gives_the_verdicts_of_run(executor: Any, alone: list[Judgement]) -> None:
     """Equal to the last bit, in the order asked for: threads do not share a precision."""
-    told: list[tuple[int, int, str]] = []
+    progress: list[tuple[int, int, str]] = []
     with executor() or ThreadPoolExecutor() as given:
-        found = taylor_verify.run_many(
+        judgements = taylor_verify.run_many(
             SCENES,
             rungs=RUNGS,
             executor=None if executor() is None else given,
-            progress=lambda finished, total, job: told.append((finished, total, str(job))),
+            progress=lambda finished, total, job: progress.append((finished, total, str(job))),
         )
-    assert numbers(found) == numbers(alone)
-    assert told[0] == (0, 3, "None")
-    assert [k for k, *_ in told] == [0, 1, 2, 3]
-    assert {name for *_, name in told[1:]} == {f"{scene} on f32 mp120" for scene in SCENES}
+    assert numbers(judgements) == numbers(alone)
+    assert progress[0] == (0, 3, "None")
+    assert [k for k, *_ in progress] == [0, 1, 2, 3]
+    assert {name for *_, name in progress[1:]} == {f"{scene} on f32 mp120" for scene in SCENES}
 
 
 def test_a_single_scene_goes_to_an_executor_that_is_given() -> None:
@@ -105,9 +105,15 @@ def test_a_scene_made_in_memory_runs_in_other_processes(tmp_path: Path) -> None:
     file = tmp_path / "made.toml"
     file.write_text(THREE_INSTANTS)
     made = [read(THREE_INSTANTS, "made in memory"), load("euler/rest"), file]
-    found = taylor_verify.run_many(made, jobs=2)
-    assert [one.verdicts[0].scene for one in found] == ["made in memory", "euler/rest", str(file)]
-    assert [row[2:] for row in numbers(found[:1])] == [row[2:] for row in numbers(found[2:])]
+    judgements = taylor_verify.run_many(made, jobs=2)
+    assert [one.verdicts[0].scene for one in judgements] == [
+        "made in memory",
+        "euler/rest",
+        str(file),
+    ]
+    assert [row[2:] for row in numbers(judgements[:1])] == [
+        row[2:] for row in numbers(judgements[2:])
+    ]
 
 
 def test_a_run_with_an_executor_goes_on_where_it_was(
@@ -125,17 +131,17 @@ def test_a_run_with_an_executor_goes_on_where_it_was(
         with pytest.raises(Interrupted) as interrupted:
             taylor_verify.run_many(**asked, executor=executor, progress=interrupt)
         assert (interrupted.value.finished, interrupted.value.jobs) == (2, 3)
-        told: list[int] = []
+        progress: list[int] = []
         submitted: list[Any] = []
         submit = executor.submit
         monkeypatch.setattr(
             executor, "submit", lambda *call: submitted.append(call) or submit(*call)
         )
-        found = taylor_verify.run_many(
-            **asked, executor=executor, resume=True, progress=lambda k, *_: told.append(k)
+        judgements = taylor_verify.run_many(
+            **asked, executor=executor, resume=True, progress=lambda k, *_: progress.append(k)
         )
-    assert numbers(found) == numbers(alone)
-    assert told == [0, 1, 2, 3]
+    assert numbers(judgements) == numbers(alone)
+    assert progress == [0, 1, 2, 3]
     assert len(submitted) == 1
     assert [file for file in tmp_path.rglob("*") if file.is_file()] == []
 
@@ -281,15 +287,15 @@ def test_its_truth_value_is_whether_it_passed(
     results: Judgements, status: Status, exit_status: int
 ) -> None:
     """A single verdict among passes decides, as in the command; a failure is raised with its row."""
-    found = marred(results, status)
-    assert found.exit_status == exit_status
-    assert found.passed is bool(found) is (exit_status == 0)
+    judgements = marred(results, status)
+    assert judgements.exit_status == exit_status
+    assert judgements.passed is bool(judgements) is (exit_status == 0)
     if exit_status:
         with pytest.raises(NotPassed, match=rf"^{status}  euler/rest f32 .*: "):
-            found.raise_for_failure()
+            judgements.raise_for_failure()
     else:
-        found.raise_for_failure()
-    assert found.summary[status.value] >= 1
+        judgements.raise_for_failure()
+    assert judgements.summary[status.value] >= 1
 
 
 def test_nothing_judged_is_no_pass() -> None:
@@ -302,14 +308,14 @@ def test_nothing_judged_is_no_pass() -> None:
 
 def test_what_was_expected_is_part_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
     """A vacuous extreme passes as expected; where nobody expects it, it fails by name."""
-    found = taylor_verify.run_many([LONG])
-    assert found.summary["vacuous"] == 1
-    assert found.passed
-    assert found.document()["expected"] == {"met": 1, "mismatches": []}
+    judgements = taylor_verify.run_many([LONG])
+    assert judgements.summary["vacuous"] == 1
+    assert judgements.passed
+    assert judgements.document()["expected"] == {"met": 1, "mismatches": []}
     monkeypatch.setattr("taylor_verify.batch.expectations.shipped", lambda: SimpleNamespace(
         of_run=lambda *_: {}
     ))  # fmt: skip
-    again = replace(found)
+    again = replace(judgements)
     assert again.exit_status == 1
     with pytest.raises(NotPassed, match=f"expected pass, got vacuous @ {LONG} f64 omega"):
         again.raise_for_failure()
@@ -318,11 +324,11 @@ def test_what_was_expected_is_part_of_it(monkeypatch: pytest.MonkeyPatch) -> Non
 def test_what_a_folder_leaves_out_is_part_of_it() -> None:
     """The scene, the rung and the reason, as in the document."""
     selection = select(["extremes"], ["mp237"])
-    found = Judgements((), selection, "taylor")
-    assert found.left_out
-    assert found.document()["left_out"] == [complete(one) for one in found.left_out]
+    judgements = Judgements((), selection, "taylor")
+    assert judgements.left_out
+    assert judgements.document()["left_out"] == [complete(one) for one in judgements.left_out]
     jobs = {(job.name, rung) for job in selection.jobs("taylor") for rung in job.rungs}
-    assert not jobs & {(one.scene, one.rung) for one in found.left_out}
+    assert not jobs & {(one.scene, one.rung) for one in judgements.left_out}
 
 
 def test_the_command_prints_its_document(
@@ -375,7 +381,7 @@ def test_a_data_frame_has_a_row_for_each_verdict(
 
 def test_out_writes_what_the_command_writes(tmp_path: Path) -> None:
     """A call from Python and the command write the same files, and no lock is left."""
-    found = taylor_verify.run_many(["euler/rest"], out=tmp_path / "mine")
+    judgements = taylor_verify.run_many(["euler/rest"], out=tmp_path / "mine")
     assert main(["run", "euler/rest", "--out", str(tmp_path / "its")]) == 0
     mine, its = (
         {file.relative_to(folder) for file in folder.rglob("*") if file.is_file()}
@@ -383,7 +389,7 @@ def test_out_writes_what_the_command_writes(tmp_path: Path) -> None:
     )
     assert mine == its
     assert Path(LOCK) not in mine
-    assert found.passed
+    assert judgements.passed
 
 
 def test_a_second_run_into_one_folder_is_refused(tmp_path: Path) -> None:

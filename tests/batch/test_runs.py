@@ -37,11 +37,13 @@ EXECUTORS: dict[str, Callable[[], Executor]] = {
 @pytest.mark.parametrize("make", EXECUTORS.values(), ids=EXECUTORS)
 def test_any_executor_gives_the_order_asked_for(make: Callable[[], Executor]) -> None:
     """Equal pieces too are each answered and each told of, and the executor is left open."""
-    told: list[tuple[int, int]] = []
+    ended: list[tuple[int, int]] = []
     executor = make()
-    found = run_all(square, ASKED, executor, ended=lambda one, result: told.append((one, result)))
-    assert found == [9, 1, 16, 1, 25]
-    assert sorted(told) == sorted(zip(ASKED, found, strict=True))
+    results = run_all(
+        square, ASKED, executor, ended=lambda one, result: ended.append((one, result))
+    )
+    assert results == [9, 1, 16, 1, 25]
+    assert sorted(ended) == sorted(zip(ASKED, results, strict=True))
     if not isinstance(executor, Backwards):
         assert executor.submit(square, 7).result() == 49
         executor.shutdown()
@@ -55,15 +57,15 @@ def test_processes_of_this_machine_give_the_order_asked_for() -> None:
 
 def test_the_dearest_begins_first() -> None:
     """Work is submitted by expense, and the results keep their order."""
-    begun: list[int] = []
+    started: list[int] = []
     with ThreadPoolExecutor(1) as executor:
 
         def work(one: int) -> int:
-            begun.append(one)
+            started.append(one)
             return one
 
         assert run_all(work, ASKED, executor, expense=lambda one: -one) == ASKED
-    assert begun == sorted(ASKED, reverse=True)
+    assert started == sorted(ASKED, reverse=True)
 
 
 def test_threads_of_one_process_take_turns() -> None:
@@ -95,11 +97,11 @@ def test_threads_of_one_process_take_turns() -> None:
 @pytest.mark.parametrize("of_work", [True, False], ids=["in the work", "in this thread"])
 def test_an_error_cancels_what_has_not_begun(error: BaseException, of_work: bool) -> None:
     """It is raised as it is, from the work or from the caller's own function."""
-    begun: list[int] = []
+    started: list[int] = []
     first_has_ended = threading.Event()
 
     def work(one: int) -> int:
-        begun.append(one)
+        started.append(one)
         if one:
             first_has_ended.wait(20)
         elif of_work:
@@ -115,7 +117,7 @@ def test_an_error_cancels_what_has_not_begun(error: BaseException, of_work: bool
             run_all(work, range(50), executor, ended=ended)
         first_has_ended.set()
     # The second may have begun meanwhile.
-    assert begun in ([0], [0, 1])
+    assert started in ([0], [0, 1])
 
 
 class Broken(Executor):

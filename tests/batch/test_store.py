@@ -42,7 +42,7 @@ ASKED = select(["euler/rest", "euler/generic"], ["f64", "f80"]).jobs("taylor")
 def test_what_is_kept_is_what_was_judged(cache: Path) -> None:
     """Verdicts, records and costs come back as they were, of this job and no other."""
     job = ASKED[1]
-    found = [
+    verdicts = [
         run("euler/generic"),
         run("kirchhoff/whole-motion"),
         run("euler/generic", "scipy:RK45?rtol=1e-3"),
@@ -52,11 +52,11 @@ def test_what_is_kept_is_what_was_judged(cache: Path) -> None:
     with unfinished(ASKED, None, resume=False) as store:
         assert store is not None
         assert store.recall(job) is None
-        store.keep(job, found)
+        store.keep(job, verdicts)
         again = store.recall(job)
         # Equal, NaN included: repr shows every digit of a double.
         assert again is not None
-        assert list(map(repr, map(vars, again))) == list(map(repr, map(vars, found)))
+        assert list(map(repr, map(vars, again))) == list(map(repr, map(vars, verdicts)))
         for other in (
             Job("euler/rest", job.solver, job.rungs),
             Job(job.scene, "taylor?tol=1e-9", job.rungs),
@@ -67,7 +67,7 @@ def test_what_is_kept_is_what_was_judged(cache: Path) -> None:
             assert store.recall(other) is None
 
 
-def kept(resume: bool, asked: list[Job] = ASKED, out: Path | None = None) -> int:
+def count_finished(resume: bool, asked: list[Job] = ASKED, out: Path | None = None) -> int:
     """Count the jobs that a run would find finished."""
     with unfinished(asked, out, resume) as store:
         return sum(store.recall(job) is not None for job in asked) if store else 0
@@ -83,9 +83,9 @@ def keep(out: Path | None = None) -> None:
 def test_a_run_begins_anew_unless_it_is_resumed(cache: Path) -> None:
     """The same run with --resume finds everything; a run without removes it."""
     keep()
-    assert kept(resume=True) == kept(resume=True) == 2
-    assert kept(resume=False) == 0
-    assert kept(resume=True) == 0
+    assert count_finished(resume=True) == count_finished(resume=True) == 2
+    assert count_finished(resume=False) == 0
+    assert count_finished(resume=True) == 0
 
 
 def test_another_run_touches_nothing(
@@ -98,15 +98,19 @@ def test_another_run_touches_nothing(
     assert len(content) == 4
     others = [ASKED[:1], select(SCENES).jobs("taylor"), select(SCENES[:2]).jobs("scipy:RK45")]
     for asked in others:
-        assert kept(False, asked) == kept(True, asked) == 0
-    assert kept(True, out=tmp_path / "elsewhere") == 0
-    assert kept(False, out=tmp_path / "elsewhere") == 0
+        assert (
+            count_finished(resume=False, asked=asked)
+            == count_finished(resume=True, asked=asked)
+            == 0
+        )
+    assert count_finished(resume=True, out=tmp_path / "elsewhere") == 0
+    assert count_finished(resume=False, out=tmp_path / "elsewhere") == 0
     (tmp_path / "below").mkdir()
     with monkeypatch.context() as moved:
         moved.chdir(tmp_path / "below")
-        assert kept(True) == kept(False) == 0
+        assert count_finished(resume=True) == count_finished(resume=False) == 0
     assert {file: file.read_bytes() for file in files(cache)} == content
-    assert kept(True) == kept(True, out=tmp_path / "out") == 2
+    assert count_finished(resume=True) == count_finished(resume=True, out=tmp_path / "out") == 2
 
 
 def test_the_same_run_twice_at_once_keeps_apart(cache: Path) -> None:
@@ -124,7 +128,7 @@ def test_other_code_takes_up_nothing(cache: Path, monkeypatch: pytest.MonkeyPatc
     """A judgement by another text of this package is not this one's."""
     keep()
     monkeypatch.setattr(module, "package_digest", lambda: "another")
-    assert kept(resume=True) == 0
+    assert count_finished(resume=True) == 0
 
 
 def test_another_program_takes_up_nothing(cache: Path, tmp_path: Path) -> None:
@@ -136,9 +140,9 @@ def test_another_program_takes_up_nothing(cache: Path, tmp_path: Path) -> None:
     with unfinished(asked, None, resume=False) as store:
         assert store is not None
         store.keep(asked[0], [run(asked[0].scene, asked[0].solver)])
-    assert kept(True, asked) == 1
+    assert count_finished(resume=True, asked=asked) == 1
     program.write_text("#!/bin/sh\nexit 2\n")
-    assert kept(True, asked) == 0
+    assert count_finished(resume=True, asked=asked) == 0
 
 
 def _truncated(content: bytes) -> bytes:
@@ -203,8 +207,8 @@ def test_a_damaged_entry_is_run_again_with_a_warning(
         return [[] for job in asked]
 
     monkeypatch.setattr(judging, "run_all", run_all)
-    found = judging.judge_all(ASKED, resume=True)
-    assert [each.verdicts[0].scene for each in found] == ["euler/rest"]
+    judgements = judging.judge_all(ASKED, resume=True)
+    assert [each.verdicts[0].scene for each in judgements] == ["euler/rest"]
     assert judged == ["euler/generic"]
     (warning,) = caplog.messages
     assert warning == f"taylor-verify: warning: damaged, and run again: euler/generic @ {file}"
@@ -298,11 +302,11 @@ def test_an_interrupted_run_goes_on_where_it_was(tmp_path: Path) -> None:
     assert "of 4 scenes are finished and kept, no report is written" in error or (
         error == "taylor-verify: interrupted\n"
     )
-    kept = len(files(place))
-    assert kept >= 1
+    stored = len(files(place))
+    assert stored >= 1
     done = subprocess.run([*command, "--resume"], capture_output=True, text=True, env=environment)
     assert done.returncode == 0, done.stderr
-    found = {row["scene"] for row in json.loads(done.stdout)["verdicts"]}
-    assert found == set(SCENES)
+    scenes = {row["scene"] for row in json.loads(done.stdout)["verdicts"]}
+    assert scenes == set(SCENES)
     assert files(place) == []
     assert list(place.iterdir()) == []

@@ -65,8 +65,8 @@ def template(tmp_path: Path) -> str:
 
 def rows(folder: Path) -> list[dict[str, Any]]:
     """Every row of a dataset, in the order of its parts."""
-    found: list[dict[str, Any]] = dataset.dataset(folder / "verdicts").to_table().to_pylist()
-    return found
+    table: list[dict[str, Any]] = dataset.dataset(folder / "verdicts").to_table().to_pylist()
+    return table
 
 
 def parts(folder: Path) -> dict[str, bytes]:
@@ -120,30 +120,30 @@ class Later(Executor):
 def test_a_sweep_leaves_rows_a_summary_and_the_worst_cases(template: str, tmp_path: Path) -> None:
     """A grid of two is gone through for each of ten points; what is written is what was judged."""
     out = tmp_path / "out"
-    found = swept(template, out, worst=3)
-    assert found.total == 20
+    result = swept(template, out, worst=3)
+    assert result.total == 20
     table = rows(out)
     assert [row["point"] for row in table] == sorted(row["point"] for row in table)
     assert {row["point"] for row in table} == set(range(20))
     assert set(table[0]) == {*COLUMNS, "drawn.g", "drawn.body.inertia[0]", "drawn.initial.omega[2]"}
     assert [row["drawn.g"] for row in table if row["quantity"] == "T"] == [0.5, 1.0] * 10
-    (omega,) = (each for each in found.quantities if each.quantity == "omega")
+    (omega,) = (each for each in result.quantities if each.quantity == "omega")
     ratios = sorted(row["ratio"] for row in table if row["quantity"] == "omega")
     assert omega.ratio is not None
     assert omega.ratio.largest == ratios[-1]
     assert ratios[9] <= omega.ratio.median <= ratios[9] * 1.001
     assert {file.name for file in out.iterdir()} >= {"summary.md", "summary.csv", "summary.png"}
     assert json.loads((out / "summary.json").read_text())["total"] == 20
-    assert [case.ratio for case in found.worst] == sorted(
-        (case.ratio for case in found.worst), reverse=True
+    assert [case.ratio for case in result.worst] == sorted(
+        (case.ratio for case in result.worst), reverse=True
     )
 
 
 def test_a_worst_case_is_a_scene_that_runs(template: str, tmp_path: Path) -> None:
     """Run alone, the scene of a worst case has the numbers that the sweep has; a failure fails both."""
-    found = swept(template, tmp_path / "out", solver=FAILING, count=1, worst=1)
-    (case,) = found.worst
-    assert (found.exit_status, case.verdict) == (1, Status.FAIL)
+    result = swept(template, tmp_path / "out", solver=FAILING, count=1, worst=1)
+    (case,) = result.worst
+    assert (result.exit_status, case.verdict) == (1, Status.FAIL)
     mine = [row for row in rows(tmp_path / "out") if row["point"] == case.point]
     verdicts = run(tmp_path / "out" / case.file, FAILING).verdicts
     for name in ("max", "ratio", "bound", "steps", "quantity", "because"):
@@ -161,12 +161,12 @@ def test_numbers_that_make_no_body_are_refused_rows(tmp_path: Path) -> None:
     """They are counted, undecided as a whole, and their reason is told; they are no worst case."""
     file = tmp_path / "some.toml"
     file.write_text(TEMPLATE.replace("uniform = [1, 2]", "uniform = [-1, 2]"))
-    found = swept(str(file), tmp_path / "out")
+    result = swept(str(file), tmp_path / "out")
     refused = [row for row in rows(tmp_path / "out") if row["quantity"] == "scene"]
-    assert found.bodies["refused"] == len(refused) > 0
-    assert found.exit_status == (1 if found.bodies["fail"] else 3)
-    assert "positive moment" in found.refusals[0]
-    assert not {row["point"] for row in refused} & {case.point for case in found.worst}
+    assert result.bodies["refused"] == len(refused) > 0
+    assert result.exit_status == (1 if result.bodies["fail"] else 3)
+    assert "positive moment" in result.refusals[0]
+    assert not {row["point"] for row in refused} & {case.point for case in result.worst}
 
 
 def test_a_scene_that_breaks_the_code_stops_no_other(
@@ -180,12 +180,12 @@ def test_a_scene_that_breaks_the_code_stops_no_other(
         return bodies.judged(scenes, solver, rung)
 
     monkeypatch.setattr(chunks, "judged", broken)
-    found = swept(template, tmp_path / "out")
-    assert found.bodies["undecided"] == 1
+    result = swept(template, tmp_path / "out")
+    assert result.bodies["undecided"] == 1
     (row,) = (row for row in rows(tmp_path / "out") if row["point"] == 3)
     assert (row["quantity"], row["verdict"]) == ("scene", "undecided")
     assert "ArithmeticError: on purpose" in row["because"]
-    assert found.total == 20
+    assert result.total == 20
 
 
 # Executors, interrupts.
@@ -315,8 +315,8 @@ def test_a_folder_of_scenes_is_swept(template: str, tmp_path: Path) -> None:
     swept(template, tmp_path / "out", worst=4)
     for file in (tmp_path / "out" / "worst").iterdir():
         (folder / file.name).write_bytes(file.read_bytes())
-    found = sweep(str(folder), solver=SOLVER, jobs=1)
-    assert (found.total, found.seed, found.exit_status) == (4, None, 0)
+    result = sweep(str(folder), solver=SOLVER, jobs=1)
+    assert (result.total, result.seed, result.exit_status) == (4, None, 0)
     with pytest.raises(ValueError, match="expected none beside a folder of scenes, got 3 @ count"):
         sweep(str(folder), count=3)
     (folder / "wrong.toml").write_text("x = 1\n")
@@ -328,9 +328,9 @@ def test_a_folder_of_scenes_is_swept(template: str, tmp_path: Path) -> None:
 def test_json_is_one_document(template: str, capsys: pytest.CaptureFixture[str]) -> None:
     """`sweep --json` prints the summary and nothing else; without --out no file is named."""
     assert main(["sweep", template, *WORDS, "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert (found["total"], found["exit_status"], found["bodies"]["pass"]) == (20, 0, 20)
-    assert {case["file"] for case in found["worst"]} == {""}
+    document = json.loads(capsys.readouterr().out)
+    assert (document["total"], document["exit_status"], document["bodies"]["pass"]) == (20, 0, 20)
+    assert {case["file"] for case in document["worst"]} == {""}
 
 
 # Quantiles.
@@ -342,23 +342,27 @@ def test_quantiles_are_sizes_that_occurred() -> None:
     sizes = Sizes()
     for part in np.array_split(drawn, 7):
         sizes.add(part)
-    found = sizes.quantiles()
-    assert found is not None
-    for share, size in ((0.5, found.median), (0.9, found.ninety), (0.99, found.ninety_nine)):
+    quantiles = sizes.quantiles()
+    assert quantiles is not None
+    for share, size in (
+        (0.5, quantiles.median),
+        (0.9, quantiles.ninety),
+        (0.99, quantiles.ninety_nine),
+    ):
         exact = np.sort(drawn)[int(np.ceil(share * len(drawn))) - 1]
         assert size in drawn
         assert exact <= size <= exact * 1.001
-    assert found.largest == drawn.max()
+    assert quantiles.largest == drawn.max()
 
 
 def test_nan_is_beyond_every_number() -> None:
     """One NaN among a hundred is the largest, and no number."""
     sizes = Sizes()
     sizes.add(np.array([*np.linspace(0, 1, 99), np.nan]))
-    found = sizes.quantiles()
-    assert found is not None
-    assert found.largest is None
-    assert found.ninety is not None
+    quantiles = sizes.quantiles()
+    assert quantiles is not None
+    assert quantiles.largest is None
+    assert quantiles.ninety is not None
     assert Sizes().quantiles() is None
 
 

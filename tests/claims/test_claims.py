@@ -176,9 +176,9 @@ def test_the_quaternion_makes_a_rotation() -> None:
 
 def test_equations_without_differences_satisfy_nothing() -> None:
     """A form that compares nothing is a NaN, which is neither true nor false."""
-    found = CIRCLE()()
-    assert not found.is_satisfied
-    assert not found.is_refuted
+    outcome = CIRCLE()()
+    assert not outcome.is_satisfied
+    assert not outcome.is_refuted
     with pytest.raises(ValueError, match="expected members with ' = ' between them, got 'x'"):
         CIRCLE("x")()
 
@@ -187,9 +187,9 @@ def test_a_nan_along_a_trajectory_satisfies_nothing() -> None:
     """One time without a number is enough, wherever it stands."""
     rows = [{"a": mp.mpf(0)}, {"a": mp.nan}, {"a": mp.mpf(1)}]
     for turned in (rows, rows[::-1]):
-        found = Numeric(lambda turned=turned: turned, 15, 10.0, "")("a = 0")()
-        assert math.isnan(found.size)
-        assert not found.is_satisfied
+        outcome = Numeric(lambda turned=turned: turned, 15, 10.0, "")("a = 0")()
+        assert math.isnan(outcome.size)
+        assert not outcome.is_satisfied
 
 
 # The equations of the ledger against those of the solvers, across the wall.
@@ -199,20 +199,20 @@ def test_the_laws_are_those_that_solvers_are_given() -> None:
     """48 (3), (4) with all 21 coefficients and Clebsch's form agree with models, written apart."""
     loads = loaded["force"], loaded["couple"]
     x_rate, y_rate = impulse_rates(*(loaded[n] for n in ("x", "y", "vel", "Omega")), *loads)
-    for found, own in zip(x_rate + y_rate, [*loaded["dx"], *loaded["dy"]], strict=True):
-        assert (found - own).is_zero
+    for rate, own in zip(x_rate + y_rate, [*loaded["dx"], *loaded["dy"]], strict=True):
+        assert (rate - own).is_zero
     x, y = clebsch["x"], clebsch["y"]
     six = [clebsch[name] for name in ("p", "pp", "q", "qq", "r", "rr")]
     rates = clebsch_rates(x, y, six, [0, 0, 0], [0, 0, 0])
-    for found, own in zip([*rates[0], *rates[1]], [*x, *y], strict=True):
-        assert (clebsch.field.element(found) - clebsch.field.rate(own)).is_zero
+    for rate, own in zip([*rates[0], *rates[1]], [*x, *y], strict=True):
+        assert (clebsch.field.element(rate) - clebsch.field.rate(own)).is_zero
 
 
 def test_the_tensor_form_of_euler_is_that_of_models() -> None:
     """(2.2.70) written twice, in models and in the ledger, with nine free entries of I."""
     theirs = heinbockel_moment(*(unsymmetric[name] for name in ("w", "dw", "I")))
-    for found, own in zip(theirs, unsymmetric["left_of_70"], strict=True):
-        assert (found - own).is_zero
+    for rate, own in zip(theirs, unsymmetric["left_of_70"], strict=True):
+        assert (rate - own).is_zero
 
 
 # Counterexamples, number by number.
@@ -270,10 +270,10 @@ def test_poles_have_the_exponents_that_the_integrals_give() -> None:
     np = pytest.importorskip("numpy")
     from taylor_verify.claims.hydromechanics.poles import jacobian
 
-    found = leading_coefficients(GENERIC)
-    assert found
+    leading = leading_coefficients(GENERIC)
+    assert leading
     energy = np.array([[float(entry) for entry in row] for row in GENERIC.energy_matrix])
-    for c in found:
+    for c in leading:
         exponents = sorted(
             np.linalg.eigvals(jacobian(energy, c) + np.eye(6)), key=lambda e: abs(e - 2)
         )
@@ -343,9 +343,9 @@ def test_a_check_that_comes_to_no_number_is_a_nan() -> None:
     def check() -> Residual:
         raise ArithmeticError("two evaluations do not agree")
 
-    found = measured(check)
-    assert math.isnan(found.size)
-    assert "do not agree" in found.because
+    outcome = measured(check)
+    assert math.isnan(outcome.size)
+    assert "do not agree" in outcome.because
     row = examine(replace(SOUND, check=check)).row()
     assert row.document()["residual"] == {"statement": None}
 

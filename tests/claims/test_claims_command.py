@@ -50,7 +50,7 @@ def test_the_table_tells_an_entry_in_full(capsys: Captured) -> None:
     """Statement, correction and counterexample of an entry that was asked for, and the counts."""
     assert main(["claims", QUICK]) == 0
     text = capsys.readouterr().out
-    for told in (
+    for line in (
         "false as transcribed",
         "statement",
         "correct",
@@ -58,7 +58,7 @@ def test_the_table_tells_an_entry_in_full(capsys: Captured) -> None:
         "36 + 4 i",
         "checked by",
     ):
-        assert told in text
+        assert line in text
     assert text.rstrip().endswith("1 false as transcribed")
 
 

@@ -23,11 +23,11 @@ def test_every_number_of_the_texts_has_an_entry_and_no_other() -> None:
 
 def test_no_number_is_left_out_of_the_list() -> None:
     """Heinbockel's run from (2.2.67) to (2.2.72); section 48 has (3)-(10) and (i)-(iii), 49 (1)-(29)."""
-    found = {
+    numbers = {
         text: [id for id in NUMBERED if id.startswith(text)]
         for text in ("heinbockel", "hydromechanics 48", "hydromechanics 49")
     }
-    assert [len(ids) for ids in found.values()] == [6, 11, 29]
+    assert [len(ids) for ids in numbers.values()] == [6, 11, 29]
     plain = [re.search(r"\((?:2\.2\.)?(\d+)\)$", id) for id in NUMBERED]
     counted = [int(match[1]) for match in plain if match]
     steps = [after - before for before, after in pairwise(counted)]
@@ -57,8 +57,8 @@ def test_an_entry_gets_its_recorded_verdict(claim: Claim) -> None:
 @pytest.mark.parametrize(("claim", "name"), MUTATIONS, ids=lambda part: getattr(part, "id", part))
 def test_a_mutation_is_rejected(claim: Claim, name: str) -> None:
     """A statement with one thing changed misses its bound by a factor that no carelessness explains."""
-    found = measured(claim.changed(claim.mutants[name]))
-    assert found.is_refuted, found
+    outcome = measured(claim.changed(claim.mutants[name]))
+    assert outcome.is_refuted, outcome
 
 
 def test_every_entry_has_a_mutation() -> None:

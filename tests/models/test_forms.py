@@ -129,8 +129,8 @@ def test_differences_are_coefficients_where_the_rung_holds_them(
         assert problem.form.equations.formed
     else:
         assert problem.form.equations == expected
-    held = [problem.parameter[n] for n in problem.form.parameters]
-    assert all(problem.rung.holds(value) for value in held)
+    coefficients = [problem.parameter[n] for n in problem.form.parameters]
+    assert all(problem.rung.holds(value) for value in coefficients)
     assert_same_equations(problem, seed=3)
 
 
@@ -245,16 +245,16 @@ def test_fastest_rate_is_a_close_bound_of_the_spectral_radius(name: str) -> None
     """
     problem = pose(tracking_all(load(name)), rung("f64"))
     linearised, random = Linearised(problem), np.random.default_rng(len(name))
-    kept = [i for i, n in enumerate(problem.form.states) if n[0] != "c"]
+    moving = [i for i, n in enumerate(problem.form.states) if n[0] != "c"]
     parameters = [float(value) for value in problem.parameters]
     states = random.normal(size=(3, len(problem.form.states)))
     for state in states:
 
         def rates(at: np.ndarray) -> np.ndarray:
-            found = problem.form.rates(list(at), parameters)
-            return np.array([float(found[i]) for i in kept])
+            derivatives = problem.form.rates(list(at), parameters)
+            return np.array([float(derivatives[i]) for i in moving])
 
-        ends = [(rates(state + e) - rates(state - e)) / 2 for e in np.eye(len(state))[kept]]
+        ends = [(rates(state + e) - rates(state - e)) / 2 for e in np.eye(len(state))[moving]]
         expected = max(abs(np.linalg.eigvals(np.array(ends).T)).max(), 2.0**-10)
         # Double eigenvalues are known to half the digits: 1e-8 of the largest.
         assert (1 - 1e-6) * expected <= linearised.fastest(state) <= 1.35 * expected

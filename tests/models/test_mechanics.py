@@ -47,8 +47,8 @@ def in_units(scene: Scene) -> Scene:
 
 def rates(problem: Problem, state: dict[str, Fraction]) -> dict[str, Fraction]:
     form = problem.form
-    found = form.rates([state[name] for name in form.states], problem.parameters)
-    return dict(zip(form.states, found, strict=True))
+    derivatives = form.rates([state[name] for name in form.states], problem.parameters)
+    return dict(zip(form.states, derivatives, strict=True))
 
 
 @pytest.mark.parametrize("kind", [*kinds(Body), *kinds(State)], ids=lambda kind: kind.__name__)

@@ -218,8 +218,8 @@ def test_clebsch_without_couple_has_y3_as_a_parameter() -> None:
 def test_posed_data_are_numbers_of_the_rung_and_an_exact_body(name: str, rung_name: str) -> None:
     """Every number handed to a solver is held by its rung, and `given` is the body they define."""
     problem = pose(load(name), rung(rung_name))
-    held = (*problem.parameters, *problem.initial_momenta, *problem.times)
-    assert all(problem.rung.holds(value) for value in held)
+    numbers = (*problem.parameters, *problem.initial_momenta, *problem.times)
+    assert all(problem.rung.holds(value) for value in numbers)
     units, parameter = problem.units, problem.parameter
     if problem.scene.model == "euler":
         K = tensors.inverse(problem.given.body.inertia)
@@ -250,8 +250,8 @@ def test_the_fastest_rate_is_of_order_one_however_far_apart_the_moments_are(rati
     moments = tensors.diagonal((Fraction(ratio), Fraction(1), Fraction(9, 10)))
     scene = replace(load("euler/generic"), body=RigidBody(moments))
     problem = pose(scene, rung("f64"))
-    found = Linearised(problem).fastest([float(value) for value in problem.initial_momenta])
-    assert 2**-3 <= found <= 2**2
+    fastest = Linearised(problem).fastest([float(value) for value in problem.initial_momenta])
+    assert 2**-3 <= fastest <= 2**2
 
 
 @pytest.mark.parametrize("exponent", [-300, -7, 12, 500])

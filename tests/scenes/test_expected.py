@@ -73,11 +73,13 @@ GOOD = ENTRY + 'verdict = "vacuous"\nwhy = "w"\n'
 def test_words_lists_and_wildcards() -> None:
     """A scene, a rung or a quantity is a word or an array; "*" stands for all scenes or rungs."""
     text = GOOD.replace('"f64"', '"*"').replace('"omega"', '["omega", "T"]')
-    found = read(text.replace('"euler-a"', '"*"'), SCENES)
-    assert set(found.rows) == {(s, r, q) for s in SCENES for r in LADDER for q in ("omega", "T")}
-    assert found.of(SCENE, "f80", "T") == Expectation("vacuous", "w")
-    assert found.of(SCENE, "f80", "H2") is None
-    assert set(found.of_run(SCENE, "f32")) == {"omega", "T"}
+    expectations = read(text.replace('"euler-a"', '"*"'), SCENES)
+    assert set(expectations.rows) == {
+        (s, r, q) for s in SCENES for r in LADDER for q in ("omega", "T")
+    }
+    assert expectations.of(SCENE, "f80", "T") == Expectation("vacuous", "w")
+    assert expectations.of(SCENE, "f80", "H2") is None
+    assert set(expectations.of_run(SCENE, "f32")) == {"omega", "T"}
 
 
 FAULTS = {
@@ -118,16 +120,16 @@ def test_faults_are_reported_all_at_once() -> None:
 def test_only_what_was_expected_is_met(wanted: str, came: Status) -> None:
     """For every expectation and every verdict: equal is green, anything else fails, a pass too."""
     verdict = row(came)
-    held = compare_with_expectations([verdict], expecting(wanted))
+    comparison = compare_with_expectations([verdict], expecting(wanted))
     agrees = came.value == wanted
-    assert (held.met(verdict) is not None) is agrees
-    assert held.exit_status([verdict]) == (0 if agrees else 1)
-    assert held.row(verdict)["expected"] == {
+    assert (comparison.met(verdict) is not None) is agrees
+    assert comparison.exit_status([verdict]) == (0 if agrees else 1)
+    assert comparison.row(verdict)["expected"] == {
         "verdict": wanted,
         "why": "so it is",
         "met": agrees,
     }
-    assert held.row(verdict)["verdict"] == came.value
+    assert comparison.row(verdict)["verdict"] == came.value
 
 
 @pytest.mark.parametrize("came", list(Status))
@@ -139,11 +141,11 @@ def test_a_row_that_is_not_listed_must_pass(came: Status) -> None:
 
 def test_a_row_that_is_listed_must_come() -> None:
     """An entry for a quantity that the run has no row for is a mismatch that names it."""
-    held = compare_with_expectations([row()], expecting("vacuous", "attitude"))
-    (mismatch,) = held.mismatches
+    comparison = compare_with_expectations([row()], expecting("vacuous", "attitude"))
+    (mismatch,) = comparison.mismatches
     text = "expected vacuous (so it is), got no row @ extremes/euler-a f64 attitude"
     assert str(mismatch) == text
-    assert held.exit_status([row()]) == 1
+    assert comparison.exit_status([row()]) == 1
 
 
 def test_an_entry_waits_for_its_own_rung() -> None:
@@ -160,10 +162,10 @@ def test_an_entry_waits_for_its_own_rung() -> None:
 def test_nothing_else_is_held_to_it(came: Status, changed: dict[str, str]) -> None:
     """For all other scenes and solvers the exit status is that of the verdicts, and rows are as ever."""
     verdict = row(came, **changed)
-    held = compare_with_expectations([verdict], expecting("vacuous"))
-    assert held == Agreement()
-    assert held.exit_status([verdict]) == exit_status([verdict])
-    assert "expected" not in held.row(verdict)
+    comparison = compare_with_expectations([verdict], expecting("vacuous"))
+    assert comparison == Agreement()
+    assert comparison.exit_status([verdict]) == exit_status([verdict])
+    assert "expected" not in comparison.row(verdict)
 
 
 # In the command
@@ -192,10 +194,10 @@ def test_an_expected_verdict_is_shown_as_such(capsys: Captured) -> None:
     assert f"omega: as expected: {why.why}" in text
     assert "1 vacuous; 1 of them as expected" in text
     assert main(["run", LONG, "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert found["summary"]["vacuous"] == 1
-    assert found["expected"] == {"met": 1, "mismatches": []}
-    rows = {v["quantity"]: v["expected"] for v in found["verdicts"]}
+    document = json.loads(capsys.readouterr().out)
+    assert document["summary"]["vacuous"] == 1
+    assert document["expected"] == {"met": 1, "mismatches": []}
+    rows = {v["quantity"]: v["expected"] for v in document["verdicts"]}
     assert rows["omega"] == {"verdict": "vacuous", "why": why.why, "met": True}
     assert rows["T"] == {"verdict": "pass", "why": "", "met": True}
 
@@ -221,8 +223,8 @@ def test_an_unforeseen_verdict_fails(
     """A vacuous row that the file does not list fails; on another scene it would be undecided."""
     start, omega, T, *others = solved.verdicts
     marred = replace(T, verdict=Status.VACUOUS)
-    found = replace(solved, verdicts=(start, omega, marred, *others))
-    monkeypatch.setattr("taylor_verify.batch.judging.judge_all", lambda *_: [found])
+    judgement = replace(solved, verdicts=(start, omega, marred, *others))
+    monkeypatch.setattr("taylor_verify.batch.judging.judge_all", lambda *_: [judgement])
     assert main(["run", LONG]) == 1
     assert f"expected pass, got vacuous @ {LONG} f64 T" in capsys.readouterr().out
 

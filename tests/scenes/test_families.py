@@ -103,8 +103,8 @@ def test_a_random_point_is_that_of_any_machine() -> None:
 
 def test_a_formula_is_exact() -> None:
     """0.1 is one tenth, and + - * / and powers of rationals are rationals."""
-    found = formula("-(a + 0.1)**2 / 3").value({"a": Fraction(1, 5)})
-    assert found == Fraction(-3, 100)
+    value = formula("-(a + 0.1)**2 / 3").value({"a": Fraction(1, 5)})
+    assert value == Fraction(-3, 100)
 
 
 def test_functions_are_rounded_to_twenty_digits() -> None:

@@ -231,7 +231,7 @@ def test_principal_moments_are_turned_into_the_axes_of_the_body(
 def test_a_turn_by_angles_in_radians_is_exact_to_the_digits_stated(tmp_path: Path) -> None:
     """The tensor of a URDF with rpy is Rz Ry Rx I (Rz Ry Rx)^T to 19 digits, its invariants exactly."""
     scene = imported(tmp_path, urdf(I, "0.3 -1.1 2.5"))
-    found = inertia(scene)
+    turned = inertia(scene)
     with mp.workdps(40):
         R = product_of_turns((("z", "2.5"), ("y", "-1.1"), ("x", "0.3")))
         tensor = mp.matrix([[mp.convert(entry) for entry in row] for row in I])
@@ -239,9 +239,9 @@ def test_a_turn_by_angles_in_radians_is_exact_to_the_digits_stated(tmp_path: Pat
         largest = max(abs(entry) for entry in expected)
         for i in range(3):
             for k in range(3):
-                assert abs(mp.convert(found[i][k]) - expected[i, k]) <= mp.mpf("1e-19") * largest
-    assert trace(found) == trace(I)
-    assert trace(tensors.product(found, found)) == trace(tensors.product(I, I))
+                assert abs(mp.convert(turned[i][k]) - expected[i, k]) <= mp.mpf("1e-19") * largest
+    assert trace(turned) == trace(I)
+    assert trace(tensors.product(turned, turned)) == trace(tensors.product(I, I))
 
 
 def product_of_turns(turns: Iterable[tuple[str, str]]) -> mp.matrix:
@@ -276,21 +276,21 @@ def test_the_order_of_euler_angles_is_that_of_the_letters(sequence: str, tmp_pat
     """Small letters multiply from the left to the right, capitals from the right to the left."""
     angles = ("0.3", "-1.1", "2.5")
     words = f'diaginertia="1 2 2.5" euler="{" ".join(angles)}"'
-    found = inertia(imported(tmp_path, mjcf(words, f'angle="radian" eulerseq="{sequence}"')))
+    tensor = inertia(imported(tmp_path, mjcf(words, f'angle="radian" eulerseq="{sequence}"')))
     turns = list(zip(sequence.lower(), angles, strict=True))
     with mp.workdps(40):
         R = product_of_turns(turns if sequence.islower() else turns[::-1])
         expected = R * mp.diag([1, 2, mp.mpf("2.5")]) * R.T
         for i in range(3):
             for k in range(3):
-                assert abs(mp.convert(found[i][k]) - expected[i, k]) <= mp.mpf("1e-18")
+                assert abs(mp.convert(tensor[i][k]) - expected[i, k]) <= mp.mpf("1e-18")
 
 
 def test_two_equal_moments_stay_equal_when_they_are_turned(tmp_path: Path) -> None:
     """A body of revolution is one behind any angles: its regime is decided in rationals."""
     tensor = tensors.diagonal(vector("0.02", "0.02", "0.01"))
-    found = inertia(imported(tmp_path, urdf(tensor, "1.5708 0.3 -0.2")))
-    shifted = tuple(map(tensors.plus, found, tensors.diagonal(vector(*["-0.02"] * 3))))
+    turned = inertia(imported(tmp_path, urdf(tensor, "1.5708 0.3 -0.2")))
+    shifted = tuple(map(tensors.plus, turned, tensors.diagonal(vector(*["-0.02"] * 3))))
     # A tensor of rank one: every 2x2 minor is zero.
     assert shifted[0][0] * shifted[1][1] == shifted[0][1] ** 2
     assert shifted[1][1] * shifted[2][2] == shifted[1][2] ** 2
@@ -356,21 +356,21 @@ def test_a_vehicle_is_written_as_a_mass_matrix_and_velocities(tmp_path: Path) ->
 def test_what_is_written_says_what_is_a_placeholder(tmp_path: Path) -> None:
     """Start and times are said to be none of the file; the source of the body is named, not its folder."""
     (tmp_path / "arm.urdf").write_text(urdf())
-    found = import_scene(tmp_path / "arm.urdf").text
-    assert found.count("# A placeholder") == 2
-    assert "out of arm.urdf (URDF), link base_link" in found
-    assert str(tmp_path) not in found
-    assert all(len(line) <= 100 for line in found.splitlines())
+    text = import_scene(tmp_path / "arm.urdf").text
+    assert text.count("# A placeholder") == 2
+    assert "out of arm.urdf (URDF), link base_link" in text
+    assert str(tmp_path) not in text
+    assert all(len(line) <= 100 for line in text.splitlines())
 
 
 def test_angles_are_remarked_upon(tmp_path: Path) -> None:
     """The scene says that angles were rounded, to how many digits, and that 1.5708 is no quarter turn."""
     (tmp_path / "arm.urdf").write_text(urdf(I, "1.5708 0 0.3"))
-    said = " ".join(import_scene(tmp_path / "arm.urdf").text.replace("#", "").split())
-    assert "rpy = (1.5708, 0.0, 0.3) radians" in said
-    assert "rounded to 20 decimals" in said
-    assert "The angle 1.5708 is taken as written, and is near a quarter turn but none." in said
-    assert "0.3 is taken" not in said
+    text = " ".join(import_scene(tmp_path / "arm.urdf").text.replace("#", "").split())
+    assert "rpy = (1.5708, 0.0, 0.3) radians" in text
+    assert "rounded to 20 decimals" in text
+    assert "The angle 1.5708 is taken as written, and is near a quarter turn but none." in text
+    assert "0.3 is taken" not in text
 
 
 def test_a_name_cannot_write_into_the_scene(tmp_path: Path) -> None:
@@ -497,9 +497,9 @@ def test_a_deep_and_a_large_file_are_refused(tmp_path: Path) -> None:
 def test_text_between_many_elements_is_read_once(tmp_path: Path) -> None:
     """Ten megabytes of text with a hundred thousand elements in it take seconds, not hours."""
     content = f"<robot>{'x' * 10**7}{'<a/>y' * 10**5}</robot>"
-    begun = time.monotonic()
+    start = time.monotonic()
     assert "expected a link" in str(refusal(tmp_path, content))
-    assert time.monotonic() - begun < PATIENCE
+    assert time.monotonic() - start < PATIENCE
 
 
 def test_a_pipe_is_never_opened(tmp_path: Path) -> None:

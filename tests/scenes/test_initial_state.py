@@ -33,8 +33,8 @@ def answered(change: Callable[[Rows], Rows]) -> Callable[[Problem], Any]:
     """A sound solver of free bodies whose rows are changed."""
 
     def solve(problem: Problem) -> Any:
-        found = Taylor().solve(problem)
-        return change(found.quantities["omega"].astype(float))
+        trajectory = Taylor().solve(problem)
+        return change(trajectory.quantities["omega"].astype(float))
 
     return solve
 
@@ -97,17 +97,17 @@ def test_a_run_that_is_not_asked_at_its_start_has_no_such_row() -> None:
     assert INITIAL not in {verdict.quantity for verdict in run(late).verdicts}
 
 
-def rows(found: Judgement) -> list[Verdict]:
-    return list(found.verdicts)
+def rows(judgement: Judgement) -> list[Verdict]:
+    return list(judgement.verdicts)
 
 
 def test_older_rows_without_it_are_compared_in_an_orderly_way() -> None:
     """A baseline calls the row a new one and regresses nothing; published rows have to be made anew."""
     now = rows(run("euler/generic"))
     before = now[1:]
-    held = hold(before, now)
-    assert (held.status, held.compared) == (0, len(before))
-    assert [change.quantity for change in held.changes] == [INITIAL]
+    comparison = hold(before, now)
+    assert (comparison.status, comparison.compared) == (0, len(before))
+    assert [change.quantity for change in comparison.changes] == [INITIAL]
     (departure,) = compare(before, now).departures
     assert departure.quantity == INITIAL
     assert compare(now, now).departures == ()
@@ -115,11 +115,11 @@ def test_older_rows_without_it_are_compared_in_an_orderly_way() -> None:
 
 def test_a_start_that_got_worse_is_a_regression() -> None:
     """With the row in the baseline a start that is wrong now has regressed."""
-    before = rows(taylor_verify.check("euler/generic", answered(lambda found: found)))
+    before = rows(taylor_verify.check("euler/generic", answered(lambda motion: motion)))
     now = rows(taylor_verify.check("euler/generic", answered(first_moved)))
-    held = hold(before, now)
-    assert held.status == 1
-    assert INITIAL in {found.quantity for found in held.regressions}
+    comparison = hold(before, now)
+    assert comparison.status == 1
+    assert INITIAL in {regression.quantity for regression in comparison.regressions}
 
 
 def test_it_is_published(tmp_path: Path) -> None:

@@ -91,12 +91,12 @@ def test_the_matrix_is_inverted_and_the_impulses_formed_exactly(
 def test_the_inverse_lies_in_the_balls_of_another_library() -> None:
     """FLINT's inverse of the same matrix, in balls of 200 bits, meets every coefficient."""
     matrix = remus_inertia()
-    found = solid(vehicle(written(matrix))).energy_matrix
+    inverse = solid(vehicle(written(matrix))).energy_matrix
     with ctx.workprec(200):
         balls = arb_mat([[ball(entry) for entry in row] for row in matrix]).inv()
         for i in range(6):
             for k in range(6):
-                assert balls[i, k].overlaps(ball(found[i][k]))
+                assert balls[i, k].overlaps(ball(inverse[i][k]))
                 assert balls[i, k].rad() < arb(2) ** -150
 
 
@@ -121,10 +121,10 @@ def test_the_impulses_of_an_ellipsoid_are_those_of_lambs_integrals() -> None:
     scene = vehicle(ELLIPSOID)
     shape = solid(scene).ellipsoid
     assert shape is not None
-    found = inertias(shape, COEFFICIENT_BITS + 40)
+    integrals = inertias(shape, COEFFICIENT_BITS + 40)
     with ctx.workprec(COEFFICIENT_BITS + 80):
-        masses = [found.mass + m for m in found.added_mass]
-        masses += [I + j for I, j in zip(found.inertia, found.added_inertia, strict=True)]
+        masses = [integrals.mass + m for m in integrals.added_mass]
+        masses += [I + j for I, j in zip(integrals.inertia, integrals.added_inertia, strict=True)]
         for mass, v, impulse in zip(masses, U + OMEGA, impulses(scene), strict=True):
             if v == 0:
                 assert impulse == 0

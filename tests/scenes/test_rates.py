@@ -70,8 +70,8 @@ REGIMES = {
 @pytest.mark.parametrize(("bare", "degrees"), REGIMES.values(), ids=REGIMES)
 def test_the_regime_is_that_of_the_numbers_without_their_unit(bare: str, degrees: str) -> None:
     """A common factor changes no regime: not even the separatrix, which a rounded rate would miss."""
-    found = solution(body(degrees, "[2, 3, 6]"), "arb").regime
-    assert found == solution(body(bare, "[2, 3, 6]"), "arb").regime
+    regime = solution(body(degrees, "[2, 3, 6]"), "arb").regime
+    assert regime == solution(body(bare, "[2, 3, 6]"), "arb").regime
 
 
 def test_the_separatrix_is_met_exactly_in_degrees() -> None:

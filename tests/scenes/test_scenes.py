@@ -379,8 +379,8 @@ def test_the_oblique_axis_of_symmetry_survives_rounding() -> None:
 def test_every_regime_of_a_free_rigid_body_has_its_scene() -> None:
     """Rest, spherical, steady, axisymmetric, separatrix and both families of orbits occur."""
     scenes = [load(name) for name in library.names() if name.startswith("euler/")]
-    found = {solution(scene).regime for scene in scenes if scene.body.is_free}
-    assert found >= {
+    regimes = {solution(scene).regime for scene in scenes if scene.body.is_free}
+    assert regimes >= {
         *("rest", "spherical", "steady", "axisymmetric", "separatrix", "max-axis", "min-axis"),
     }
 
