@@ -6,6 +6,7 @@ Each list is made from the code, so that a name that is new and nowhere explaine
 from __future__ import annotations
 
 import builtins
+import importlib
 import inspect
 import re
 from collections.abc import Iterable
@@ -18,6 +19,7 @@ import pytest
 from builders.worked import DOCS, ROOT
 
 import taylor_verify
+from taylor_verify.claims.document import Verdict as ClaimVerdict
 from taylor_verify.cli.arguments import parse
 from taylor_verify.records import answers, reason
 from taylor_verify.records.error_kind import ErrorKind
@@ -107,7 +109,7 @@ def test_every_key_of_a_scene_is_documented(monkeypatch: pytest.MonkeyPatch) -> 
 # Verdicts.
 
 
-@pytest.mark.parametrize("words", [reason.Cause, reason.Kind, ErrorKind])
+@pytest.mark.parametrize("words", [reason.Cause, reason.Kind, ErrorKind, ClaimVerdict])
 def test_every_word_of_a_verdict_is_documented(words: type[reason.Cause]) -> None:
     """The page of verdicts has each word that a program may read in a row."""
     assert missing((word.value for word in words), VERDICTS) == []
@@ -182,6 +184,45 @@ def test_what_a_page_imports_is_in_the_reference(page: Path) -> None:
         for name in line.split(",")
     }
     assert taken - referenced() == set()
+
+
+def classes_in(annotations: Iterable[object], module: str) -> set[str]:
+    """The classes of the package that annotations of a module name, as they are imported."""
+    text = (PACKAGE.parent / f"{module.replace('.', '/')}.py").read_text(encoding="utf-8")
+    found = set()
+    for name in re.findall(r"[A-Z]\w+", " ".join(map(str, annotations))):
+        source = re.search(rf"^ *from (taylor_verify[\w.]*) import [^\n]*\b{name}\b", text, re.M)
+        if source or re.search(rf"^class {name}\b", text, re.M):
+            kind = getattr(importlib.import_module(source[1] if source else module), name)
+            found |= {f"{kind.__module__}.{name}"} if inspect.isclass(kind) else set()
+    return found
+
+
+CALLS = [name for name in taylor_verify.__all__ if name != "__version__"]
+# These return a dictionary, whose keys are those of --json.
+PLAIN = {"explain"}
+# The words of these stand in a table of docs/verdicts.md.
+WITHIN = {"taylor_verify.claims.document.Verdict"}
+
+
+@pytest.mark.parametrize("call", CALLS)
+def test_what_a_call_returns_is_in_the_reference(call: str) -> None:
+    """The class that a public call returns is documented, and so is every class that its fields hold."""
+    function = getattr(taylor_verify, call)
+    module = function.__module__
+    file = (
+        module
+        if (PACKAGE.parent / f"{module.replace('.', '/')}.py").exists()
+        else f"{module}.__init__"
+    )
+    returned = classes_in([inspect.signature(function).return_annotation], file)
+    assert bool(returned) != (call in PLAIN)
+    assert returned <= referenced()
+    for name in returned:
+        module, _, last = name.rpartition(".")
+        kind = getattr(importlib.import_module(module), last)
+        held = classes_in(getattr(kind, "__annotations__", {}).values(), module)
+        assert held - referenced() - WITHIN == set()
 
 
 def test_a_name_that_is_new_is_missed(tmp_path: Path) -> None:

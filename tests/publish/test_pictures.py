@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from base64 import b64decode
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations, pairwise
@@ -475,6 +476,18 @@ def test_a_file_is_text_without_a_date(tmp_path: Path) -> None:
     assert b"CreationDate" not in pdf.read_bytes()
     assert pdf.read_bytes().startswith(b"%PDF")
     assert b"/FontFile2" in pdf.read_bytes()
+
+
+def test_a_notebook_shows_a_picture_with_its_words(tmp_path: Path) -> None:
+    """What a notebook shows is the file that is published, beside a text for who cannot see it."""
+    picture = priced()
+    (svg,) = save([picture], tmp_path, ["svg"])
+    html = ElementTree.fromstring(picture._repr_html_())
+    (image,) = html.iter("img")
+    kind, _, drawn = image.attrib["src"].partition(",")
+    assert kind == "data:image/svg+xml;base64"
+    assert b64decode(drawn) == svg.read_bytes()
+    assert image.attrib["alt"] == picture.alt
 
 
 def test_settings_of_the_user_stay(tmp_path: Path) -> None:

@@ -46,7 +46,7 @@ class Picture:
     def _repr_html_(self) -> str:
         """Return the drawing as a notebook shows it, with its text for who cannot see it."""
         drawn = b64encode(content(self, "svg")).decode()
-        return f'<p><img alt="{escape(self.alt)}" src="data:image/svg+xml;base64,{drawn}"></p>'
+        return f'<p><img alt="{escape(self.alt)}" src="data:image/svg+xml;base64,{drawn}"/></p>'
 
 
 def save(

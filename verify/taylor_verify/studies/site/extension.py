@@ -27,8 +27,10 @@ _FORMULA: Final = re.compile(r"\$`([^`\n]+)`\$")
 _SCENE: Final = re.compile(r"\w+(?:/[\w-]+)+")
 # A kernel on this machine alone needs no encryption, which it would remark; nor a history of its cells.
 _KERNEL: Final = "c.IPKernelApp.log_level = 40\nc.HistoryManager.enabled = False\n"
-# A table of more rows is a list of numbers: nobody looks for one, and the index would be mostly these.
+# A table of more rows in a report is a list of numbers: nobody looks for one, and the index would be mostly
+# these. The tables of docs are words, which somebody may look for.
 _SEARCHED_ROWS: Final = 20
+_NUMBERS: Final = "reports/"
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
@@ -78,7 +80,9 @@ def _is_within_link_or_heading(node: nodes.Node | None) -> bool:
     return False
 
 
-def _leave_out_of_search(_app: Sphinx, doctree: nodes.document) -> None:
+def _leave_out_of_search(app: Sphinx, doctree: nodes.document) -> None:
+    if not app.env.docname.startswith(_NUMBERS):
+        return
     for table in doctree.findall(nodes.table):
         if len(list(table.findall(nodes.row))) > _SEARCHED_ROWS:
             table["classes"].append("no-search")
