@@ -124,6 +124,7 @@ def test_a_second_run_into_one_folder_is_refused(
         assert "(--from)" in capsys.readouterr().err
 
 
+@pytest.mark.heyoka
 def test_of_two_runs_at_once_one_is_refused(tmp_path: Path) -> None:
     """The first comes to its end with the reports it would have had alone."""
     folder = tmp_path / "out"
@@ -161,7 +162,7 @@ def test_every_option_of_publish_is_here() -> None:
 
     known = vars(parse(["publish"])).keys()
     of_studies = {option.name for study in STUDIES for option in study.options}
-    others = {"studies", "folder", "list", "json", "act"}
+    others = {"studies", "folder", "list", "json", "act", "verb", "completion"}
     assert known - others - of_studies == {*MADE, "site", "archive"}
 
 
