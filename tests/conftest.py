@@ -1,9 +1,17 @@
-"""What every test is held to: it leaves the precision of mpmath and python-flint as it found it."""
+"""What every test is held to: it leaves the precision of mpmath and python-flint as it found it.
+
+Without heyoka a test that needs it is skipped, with one reason: a test that imports it, and a test that is
+marked `heyoka` because it starts a process that does. `make test` has heyoka, and skips none.
+"""
 
 from __future__ import annotations
 
 import gc
-from collections.abc import Iterator
+import sys
+from collections.abc import Iterable, Iterator
+from importlib.abc import MetaPathFinder
+from importlib.util import find_spec
+from typing import Final
 
 import flint
 import pytest
@@ -18,6 +26,29 @@ settings.register_profile("search", deadline=None)
 settings.load_profile("house")
 # An assertion in a shared builder shows its values as one in a test does.
 pytest.register_assert_rewrite("builders")
+
+
+WITHOUT_HEYOKA: Final = find_spec("heyoka") is None
+REASON: Final = "needs heyoka, which is not installed (pip install 'taylor-verify[taylor]')"
+
+
+class Absent(MetaPathFinder):
+    """Skips the test, or the file of tests, that imports heyoka where it is not installed."""
+
+    def find_spec(self, name: str, *_: object) -> None:
+        if name == "heyoka":
+            pytest.skip(REASON, allow_module_level=True)
+
+
+if WITHOUT_HEYOKA:
+    sys.meta_path.insert(0, Absent())
+
+
+def pytest_collection_modifyitems(items: Iterable[pytest.Item]) -> None:
+    """Skip what is marked to need heyoka where it is not installed."""
+    for item in items:
+        if WITHOUT_HEYOKA and item.get_closest_marker("heyoka") is not None:
+            item.add_marker(pytest.mark.skip(reason=REASON))
 
 
 def pytest_collection_finish() -> None:

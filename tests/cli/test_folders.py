@@ -124,6 +124,7 @@ def test_a_second_run_into_one_folder_is_refused(
         assert "(--from)" in capsys.readouterr().err
 
 
+@pytest.mark.heyoka
 def test_of_two_runs_at_once_one_is_refused(tmp_path: Path) -> None:
     """The first comes to its end with the reports it would have had alone."""
     folder = tmp_path / "out"

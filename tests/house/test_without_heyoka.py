@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
 import shlex
+import subprocess
 import sys
 from pathlib import Path
 
@@ -14,6 +16,7 @@ import taylor_verify
 from taylor_verify.solvers.taylor.package import INSTALL
 from taylor_verify.studies.registry import STUDIES
 
+TESTS = Path(__file__).resolve().parents[1]
 HEYOKA = ("heyoka",)
 # The environments of the other libraries have none of this package; `__main__` is a run.
 EVERY_MODULE = """
@@ -175,6 +178,57 @@ def test_a_verb_that_needs_heyoka_says_so(tmp_path: Path) -> None:
     assert done.returncode == 2
     told = done.stderr.splitlines()[-1]
     assert told == f"taylor-verify: expected heyoka, got no such package: {INSTALL}"
+
+
+# Tests of this project where heyoka is not installed. It is hidden here, not blocked.
+HIDDEN = """
+from importlib.machinery import PathFinder
+real = PathFinder.find_spec
+def visible(cls, name, path=None, target=None):
+    return None if name == "heyoka" else real(name, path, target)
+PathFinder.find_spec = classmethod(visible)
+"""
+NEEDY = """
+import pytest
+
+def test_import():
+    import heyoka
+
+def test_lack():
+    from taylor_verify.solvers.taylor.package import lack
+    lack()
+
+@pytest.mark.heyoka
+def test_marked():
+    pytest.fail("it ran")
+
+def test_free():
+    from taylor_verify import exact
+    assert exact("euler/rest", [0], 20)["omega"].shape == (1, 3)
+"""
+
+
+def test_tests_that_need_it_are_skipped_with_one_reason(tmp_path: Path) -> None:
+    """Those that import it, and those that are marked; all others run."""
+    (tmp_path / "conftest.py").write_text((TESTS / "conftest.py").read_text(encoding="utf-8"))
+    (tmp_path / "test_needy.py").write_text(NEEDY)
+    (tmp_path / "site").mkdir()
+    (tmp_path / "site" / "sitecustomize.py").write_text(HIDDEN)
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path / "site"), *sys.path])}
+    options = ["-p", "no:cacheprovider", "-q", "-rs", "-o", "markers=heyoka"]
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", *options, "test_needy.py"],
+        cwd=tmp_path,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert "1 passed, 3 skipped" in done.stdout, done.stdout
+    reasons = [line.partition(": ")[2] for line in done.stdout.splitlines() if "SKIPPED" in line]
+    assert set(reasons) == {
+        "needs heyoka, which is not installed (pip install 'taylor-verify[taylor]')"
+    }
 
 
 def test_the_verbs_that_judge_no_solver_of_ours_work(tmp_path: Path) -> None:

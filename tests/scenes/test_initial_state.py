@@ -122,6 +122,7 @@ def test_a_start_that_got_worse_is_a_regression() -> None:
     assert INITIAL in {regression.quantity for regression in comparison.regressions}
 
 
+@pytest.mark.heyoka
 def test_it_is_published(tmp_path: Path) -> None:
     """What `run --out` writes has the row, and can be held against itself."""
     out = str(tmp_path / "out")
