@@ -148,11 +148,11 @@ def exceptions() -> set[str]:
         for n, kind in vars(builtins).items()
         if inspect.isclass(kind) and issubclass(kind, BaseException)
     }
-    found: set[str] = set()
-    while more := {(m, n) for m, n, base in kinds if base in known and f"{m}.{n}" not in found}:
-        found |= {f"{module}.{name}" for module, name in more}
+    public: set[str] = set()
+    while more := {(m, n) for m, n, base in kinds if base in known and f"{m}.{n}" not in public}:
+        public |= {f"{module}.{name}" for module, name in more}
         known |= {name for _, name in more}
-    return found
+    return public
 
 
 def test_every_exception_is_documented() -> None:
@@ -189,20 +189,20 @@ def test_what_a_page_imports_is_in_the_reference(page: Path) -> None:
 def classes_in(annotations: Iterable[object], module: str) -> set[str]:
     """The classes of the package that annotations of a module name, as they are imported."""
     text = (PACKAGE.parent / f"{module.replace('.', '/')}.py").read_text(encoding="utf-8")
-    found = set()
+    classes = set()
     for name in re.findall(r"[A-Z]\w+", " ".join(map(str, annotations))):
         source = re.search(rf"^ *from (taylor_verify[\w.]*) import [^\n]*\b{name}\b", text, re.M)
         if source or re.search(rf"^class {name}\b", text, re.M):
             kind = getattr(importlib.import_module(source[1] if source else module), name)
-            found |= {f"{kind.__module__}.{name}"} if inspect.isclass(kind) else set()
-    return found
+            classes |= {f"{kind.__module__}.{name}"} if inspect.isclass(kind) else set()
+    return classes
 
 
 CALLS = [name for name in taylor_verify.__all__ if name != "__version__"]
 # These return a dictionary, whose keys are those of --json.
 PLAIN = {"explain"}
 # The words of these stand in a table of docs/verdicts.md.
-WITHIN = {"taylor_verify.claims.document.Verdict"}
+WORDS_ELSEWHERE = {"taylor_verify.claims.document.Verdict"}
 
 
 @pytest.mark.parametrize("call", CALLS)
@@ -221,8 +221,8 @@ def test_what_a_call_returns_is_in_the_reference(call: str) -> None:
     for name in returned:
         module, _, last = name.rpartition(".")
         kind = getattr(importlib.import_module(module), last)
-        held = classes_in(getattr(kind, "__annotations__", {}).values(), module)
-        assert held - referenced() - WITHIN == set()
+        within = classes_in(getattr(kind, "__annotations__", {}).values(), module)
+        assert within - referenced() - WORDS_ELSEWHERE == set()
 
 
 def test_a_name_that_is_new_is_missed(tmp_path: Path) -> None:
