@@ -48,8 +48,10 @@ test-site: site  ## Look at those pages in a browser without a window (Debian: i
 		{ apt-get --quiet update && apt-get --quiet --yes install chromium chromium-driver; }
 	@$(BIN)/python -m pytest -m browser tests/site
 
-bench: $(INSTALLED)  ## Time the exact solutions and check, in ratios within one run
-	@$(BIN)/python tests/bench.py
+# Five minutes of one core at most; with AGAINST some ten on two.
+bench: $(INSTALLED)  ## Take the costs in ratios: targets missed, changes since the last (KEEP=1 keeps them)
+	@PYTHONPATH=tests $(BIN)/python -m benches $(ONLY) $(if $(KEEP),--keep) $(if $(STRICT),--strict) \
+		$(if $(AGAINST),--against '$(AGAINST)')
 
 # At the lowest priority, for an hour or more: first which tests run which line, then COUNT mutants.
 mutants: $(INSTALLED)  ## Change single signs and constants of exact, judge and claims: do the tests notice?
