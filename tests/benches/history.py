@@ -11,12 +11,11 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Final
 
+from benches.ratio import RESOLUTION
 from benches.suite import Measured
 from taylor_verify.records.version import __version__
 
 FILE: Final = Path(__file__).with_name("history.csv")
-# Two processes of one code differ by so much: another order of the code in memory is enough.
-RESOLUTION: Final = 0.02
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,8 @@ from typing import Any, Final, Literal, Protocol, final
 
 # What one call of the clock costs, and what interrupts it for microseconds, is below a thousandth of this.
 LEAST_SECONDS: Final = 0.01
+# Ratios of one code differ by so much: another order of the code in memory is enough.
+RESOLUTION: Final = 0.02
 # A first call that took so many times as long is no short call.
 _FIRST: Final = 10
 
