@@ -36,10 +36,7 @@ def in_turns(ratio: Ratio, seconds: float = 0) -> Costs:
     taken: tuple[list[float], list[float]] = ([], [])
     end = float("inf")
     with _no_garbage():
-        while True:
-            done = len(taken[0])
-            if done == (ratio.rounds or _MOST):
-                break
+        while (done := len(taken[0])) < (ratio.rounds or _MOST):
             if done == 1:
                 end = time.perf_counter() + seconds
             if done >= _FEWEST and ratio.rounds is None and time.perf_counter() > end:
