@@ -51,8 +51,10 @@ test-site: site  ## Look at those pages in a browser without a window (Debian: i
 		{ apt-get --quiet update && apt-get --quiet --yes install chromium chromium-driver; }
 	@$(BIN)/python -m pytest -m browser tests/site
 
-bench: $(INSTALLED)  ## Time the exact solutions and check, in ratios within one run
-	@$(BIN)/python tests/bench.py
+# Five minutes of one core at most; with AGAINST some ten on two.
+bench: $(INSTALLED)  ## Take the costs in ratios: targets missed, changes since the last (KEEP=1 keeps them)
+	@PYTHONPATH=tests $(BIN)/python -m benches $(ONLY) $(if $(KEEP),--keep) $(if $(STRICT),--strict) \
+		$(if $(AGAINST),--against '$(AGAINST)')
 
 # Each tool has an environment of its own, which uv makes and keeps.
 dist: $(INSTALLED)  ## Build wheel and sdist into dist, and check what is in them and what they say

@@ -1,0 +1,86 @@
+"""The work of `make verify` by this checkout beside that by another one, cold and warm."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Final
+
+from benches.ratio import Ratio, Side, Target
+
+_HERE: Final = Path(__file__).resolve().parents[2]
+_RUNS: Final = (("run",), ("run", "extremes"))
+_CACHES: Final = ("XDG_CACHE_HOME", "HEYOKA_CACHE_DIR")
+_PAIRS: Final = 2
+
+_NO_SLOWER: Final = Target(
+    1.05, "a change makes the standard set no slower; a twentieth are apart two runs of one code"
+)
+
+
+@dataclass(frozen=True)
+class Verification:
+    """The standard set and the extremes by the sources of a checkout.
+
+    ``cache`` is the folder of caches, its own. It is emptied before each run that ``is_cold``, and filled
+    by a run of its own before the first that is not.
+    """
+
+    checkout: Path
+    cache: Path
+    is_cold: bool
+
+    def cost(self) -> float:
+        """Return the seconds that somebody waits.
+
+        Raises ChildProcessError where a scene does not pass: less work would be quicker.
+        """
+        if self.is_cold:
+            shutil.rmtree(self.cache, ignore_errors=True)
+        elif not self.cache.exists():
+            self._run()
+        began = time.perf_counter()
+        self._run()
+        return time.perf_counter() - began
+
+    def _run(self) -> None:
+        environment = os.environ | dict.fromkeys(_CACHES, str(self.cache))
+        environment["PYTHONPATH"] = str(self.checkout / "verify")
+        with TemporaryDirectory() as place:
+            for words in _RUNS:
+                command = [sys.executable, "-m", "taylor_verify", *words, "--out", words[-1]]
+                done = subprocess.run(
+                    command, cwd=place, env=environment, check=False, capture_output=True, text=True
+                )
+                if done.returncode:
+                    said = done.stderr or done.stdout
+                    got = f"{done.returncode} of `{' '.join(words)}` @ {self.checkout}"
+                    raise ChildProcessError(f"expected status 0, got {got}: {said}")
+
+
+def ratios(other: Path, caches: Path) -> Iterator[Ratio]:
+    """Yield this checkout over the other one, their caches in a folder that exists as long as these."""
+
+    def pair(is_cold: bool) -> tuple[Side, Side]:
+        return (
+            Verification(_HERE, caches / "here", is_cold),
+            Verification(other.resolve(), caches / "other", is_cold),
+        )
+
+    for word, is_cold in (("cold", True), ("warm", False)):
+        yield Ratio(
+            f"verify/{word}",
+            f"the standard set and extremes with {'empty' if is_cold else 'filled'} caches, over {other}",
+            partial(pair, is_cold),
+            _NO_SLOWER,
+            unit="command",
+            rounds=_PAIRS,
+        )

@@ -1,0 +1,105 @@
+"""The ratios that were kept, a row for each in a file of the repository, the latest last."""
+
+from __future__ import annotations
+
+import csv
+import platform
+import subprocess
+from collections.abc import Iterable, Sequence
+from dataclasses import astuple, dataclass, fields
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Final
+
+from benches.ratio import RESOLUTION
+from benches.suite import Measured
+from taylor_verify.records.version import __version__
+
+FILE: Final = Path(__file__).with_name("history.csv")
+
+
+@dataclass(frozen=True)
+class Row:
+    """A ratio as it was on a day, of a commit, on a processor; ``cost`` is in seconds or bytes."""
+
+    date: str
+    commit: str
+    version: str
+    processor: str
+    name: str
+    ratio: float
+    spread: float
+    cost: float
+
+
+_HEADER: Final = [field.name for field in fields(Row)]
+_NUMBERS: Final = ("ratio", "spread", "cost")
+
+
+def last(file: Path, processor: str) -> dict[str, Row]:
+    """Return the latest row of each ratio on a processor, by its name.
+
+    Raises ValueError for a file that is no history.
+    """
+    return {row.name: row for row in _rows(file) if row.processor == processor}
+
+
+def _rows(file: Path) -> list[Row]:
+    if not file.exists():
+        return []
+    with file.open(encoding="utf-8", newline="") as lines:
+        header, *rows = [*csv.reader(lines)] or [[]]
+    if header != _HEADER:
+        raise ValueError(f"expected {','.join(_HEADER)}, got {','.join(header)} @ {file}:1")
+    return [_row(row, f"{file}:{n}") for n, row in enumerate(rows, 2)]
+
+
+def _row(cells: Sequence[str], place: str) -> Row:
+    try:
+        words = dict(zip(_HEADER, cells, strict=True))
+        return Row(**words | {name: float(words[name]) for name in _NUMBERS})
+    except ValueError as error:
+        raise ValueError(
+            f"expected {len(_HEADER)} cells, the last three numbers, got {cells} @ {place}"
+        ) from error
+
+
+def keep(measured: Iterable[Measured], file: Path, processor: str, commit: str) -> None:
+    """Append the ratios to the history, which begins with its header."""
+    date = datetime.now(UTC).date().isoformat()
+    rows = [
+        Row(
+            *(date, commit, __version__, processor, one.ratio.name),
+            *(float(f"{number:.4g}") for number in (one.value, one.spread, one.cost)),
+        )
+        for one in measured
+    ]
+    is_new = not file.exists()
+    with file.open("a", encoding="utf-8", newline="") as lines:
+        writer = csv.writer(lines, lineterminator="\n")
+        writer.writerows([_HEADER] if is_new else [])
+        writer.writerows(map(astuple, rows))
+
+
+def has_moved(now: Measured, row: Row) -> bool:
+    """Return True if a ratio is farther from the last than both spreads, and the resolution, explain."""
+    apart = abs(now.value - row.ratio)
+    return not apart <= max(now.spread + row.spread, RESOLUTION * row.ratio)
+
+
+def processor() -> str:
+    """Return the name of the processor as the kernel has it, or as Python does."""
+    listing = Path("/proc/cpuinfo")
+    for line in listing.read_text("utf-8").splitlines() if listing.exists() else []:
+        if line.startswith("model name"):
+            return line.partition(":")[2].strip()
+    return platform.processor() or platform.machine()
+
+
+def commit() -> str:
+    """Return the commit that is checked out, with a plus where files differ from it; empty without git."""
+    asked = ["git", "describe", "--always", "--exclude", "*", "--dirty=+"]
+    found = subprocess.run(
+        asked, cwd=Path(__file__).parent, capture_output=True, text=True, check=False
+    )
+    return found.stdout.strip()

@@ -1,0 +1,127 @@
+"""The driver beside heyoka: solving, posing, and the first solve of a body."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Final
+
+from benches.ratio import RESOLUTION, Action, Ratio, Side, Target
+from benches.scenes import sampled
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.taylor.driver import Taylor, compiled
+from taylor_verify.solvers.taylor.numbers import arithmetic
+from taylor_verify.studies.tradeoff.measurement import SCENES, UNTIL, scene_named
+
+_RUNG: Final = rung("f64")
+_SAMPLES: Final = 10_000
+_SHORT: Final = tuple(name for name in SCENES if UNTIL not in name)
+_LONG: Final = tuple(name for name in SCENES if UNTIL in name)
+# Bodies with nothing but moments and a spin.
+_PLAIN: Final = ("euler/generic", "euler/with-attitude")
+
+_ADDED: Final = 0.3
+_SHORT_SOLVE: Final = Target(
+    1 + _ADDED,
+    "what is made for a problem and one look at its rate are a part of the shortest ways",
+)
+_POSED: Final = Target(3e-4, "0.3 ms for moments and a spin: as long as some of the shortest ways")
+_FIRST: Final = Target(
+    2.0,
+    "what is made once for a body costs no more than its way; compiling would be a hundred ways",
+)
+
+
+def plain(problem: Problem) -> Callable[[], object]:
+    """Return heyoka's own call for a problem of which time 0 is a sample: no cap, no look, no outcome."""
+    numbers = arithmetic(problem.rung)
+    integrator = compiled(problem.form, problem.rung, None, is_long=True)
+    start, parameters = map(numbers.array, (problem.initial_momenta, problem.parameters))
+    grid = numbers.times(problem.times)
+    assert grid[0] == 0
+
+    def propagate() -> object:
+        integrator.time = 0.0
+        integrator.state[:] = start
+        integrator.pars[:] = parameters
+        return integrator.propagate_grid(grid)
+
+    return propagate
+
+
+def _call(work: Callable[[], object]) -> Action:
+    return Action(lambda _: work())
+
+
+def _long_solve(name: str) -> Target:
+    """Return the target of a scene beyond its own end."""
+    scene = scene_named(name)
+    share = load(name.partition(UNTIL)[0]).clock.elapsed[-1] / scene.clock.elapsed[-1]
+    return Target(
+        1 + RESOLUTION + _ADDED * float(share),
+        "to a long way as much is added as to the short one; two hundredths are apart what is equal",
+    )
+
+
+def _solve_over_plain(name: str) -> tuple[Side, Side]:
+    problem = pose(scene_named(name), _RUNG)
+    return _call(partial(Taylor().solve, problem)), _call(plain(problem))
+
+
+def _pose_over_plain(name: str) -> tuple[Side, Side]:
+    # A scene remembers what was made of it: each is read anew.
+    posed = Action(lambda scene: pose(scene, _RUNG), partial(load, name))
+    return posed, _call(plain(pose(load(name), _RUNG)))
+
+
+def _both_over_plain(name: str) -> tuple[Side, Side]:
+    def work(scene: Scene) -> object:
+        return Taylor().solve(pose(scene, _RUNG))
+
+    scene = sampled(load(name), _SAMPLES)
+    both = Action(work, partial(sampled, load(name), _SAMPLES))
+    return both, _call(plain(pose(scene, _RUNG)))
+
+
+def _first_over_second(name: str) -> tuple[Side, Side]:
+    known = pose(load(name), _RUNG)
+    first = Action(Taylor().solve, lambda: pose(load(name), _RUNG))
+    return first, _call(partial(Taylor().solve, known))
+
+
+def ratios() -> Iterator[Ratio]:
+    """Yield what the driver adds to heyoka, in the order of the trade-off's scenes."""
+    for name in (*_SHORT, *_LONG):
+        yield Ratio(
+            f"solve/{name.replace(UNTIL, '-to-')}",
+            "a solve of a problem that the driver knows, over heyoka's call with the same integrator",
+            partial(_solve_over_plain, name),
+            _long_solve(name) if UNTIL in name else _SHORT_SOLVE,
+            unit="solve",
+        )
+    for name in _SHORT:
+        yield Ratio(
+            f"first-solve/{name}",
+            "the first solve of a body whose equations are compiled, over a further one",
+            partial(_first_over_second, name),
+            _FIRST,
+            unit="solve",
+        )
+    for name in _SHORT:
+        yield Ratio(
+            f"pose/{name}",
+            "posing a body that was just read, over heyoka's call for it",
+            partial(_pose_over_plain, name),
+            limit=_POSED if name in _PLAIN else None,
+            unit="body",
+        )
+    for name in (_SHORT[0], _SHORT[2]):
+        yield Ratio(
+            f"samples/{name}",
+            f"posing and solving with {_SAMPLES:,} samples, over heyoka's call for as many",
+            partial(_both_over_plain, name),
+            unit="propagation",
+        )

@@ -1,0 +1,329 @@
+"""The ratios of `make bench`: taken in turns, kept, and set beside what they were and what is wanted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from io import StringIO
+from pathlib import Path
+
+import pytest
+from benches import __main__ as bench
+from benches import commands, history
+from benches.history import Row, has_moved, keep, last
+from benches.propagation import plain
+from benches.ratio import LEAST_SECONDS, Action, Ratio, Side, Target
+from benches.registry import RATIOS
+from benches.rounds import Costs, in_turns
+from benches.suite import Measured, add, summary
+from benches.table import remarks, table
+from rich.console import Console
+
+from taylor_verify.models.problem import pose
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.solvers.taylor.driver import Taylor
+from taylor_verify.solvers.trajectory import Postponed
+
+PROCESSOR, COMMIT = "some processor", "1234567"
+ENOUGH = Target(2.5, "half as much again may be added")
+
+
+class Time:
+    """A clock that goes on only where an action says so."""
+
+    def __init__(self) -> None:
+        self.now, self.order = 0.0, ""
+
+    def __call__(self) -> float:
+        return self.now
+
+    def action(self, letter: str, seconds: float, units: int = 1) -> Action:
+        """Return an action that takes so many seconds."""
+
+        def run(_: None) -> None:
+            self.now += seconds
+            self.order += letter
+
+        return Action(run, units=units, clock=self)
+
+
+def invented(slower: float = 1, rounds: int | None = None) -> Ratio:
+    """Return a ratio of two, whose action may be slower by a factor."""
+
+    def pair() -> tuple[Side, Side]:
+        time = Time()
+        return time.action("a", 0.5 * slower), time.action("y", 0.25)
+
+    return Ratio("invented/twice", "twice the work over the work", pair, ENOUGH, rounds=rounds)
+
+
+def measured(ratio: Ratio, folder: Path) -> Measured:
+    """Return a ratio that two processes have taken, by way of pyperf's file."""
+    file = folder / f"{len([*folder.iterdir()])}.json"
+    for _ in range(2):
+        add(ratio, in_turns(ratio), file)
+    (one,) = summary([ratio], file)
+    return one
+
+
+def printed(found: list[Measured], before: dict[str, Row]) -> str:
+    page = Console(file=StringIO(), width=200)
+    page.print(table(found, before))
+    for line in remarks(found, before):
+        page.print(line)
+    return page.file.getvalue()  # type: ignore[attr-defined]
+
+
+# Taking
+
+
+def test_a_short_call_is_repeated_until_the_clock_can_tell() -> None:
+    """The cost is that of one unit, whatever the number of calls; what is given is not timed."""
+    time = Time()
+
+    def given() -> float:
+        time.now += 5
+        return LEAST_SECONDS / 40
+
+    def run(seconds: float) -> None:
+        time.now += seconds
+        time.order += "r"
+
+    action = Action(run, given, units=3, clock=time)
+    assert action.cost() == pytest.approx(LEAST_SECONDS / 120)
+    before = len(time.order)
+    assert action.cost() == pytest.approx(LEAST_SECONDS / 120)
+    assert len(time.order) - before >= 40
+
+
+def test_a_long_call_is_made_once_before_it_is_timed() -> None:
+    """What its first call fills is not timed, and it is not made more often than that."""
+    time = Time()
+    assert time.action("l", 1.0).cost() == 1.0
+    assert time.order == "ll"
+
+
+def test_both_sides_take_turns_and_each_is_first_in_every_other_round() -> None:
+    """The first cost of each is after a call that is not timed."""
+    time = Time()
+    pair = time.action("a", 1.0), time.action("y", 2.0)
+    costs = in_turns(Ratio("x", "x", lambda: pair, rounds=4))
+    assert time.order == "aayy" + "ya" + "ay" + "ya"
+    assert costs == Costs((1.0,) * 4, (2.0,) * 4)
+
+
+def test_rounds_go_on_for_the_seconds_that_are_given() -> None:
+    """There are two at least, and no more than can matter."""
+    assert len(in_turns(invented(), 0).action) == 2
+    assert len(in_turns(invented(), 60).action) == 15
+
+
+def test_a_ratio_is_the_median_of_quotients_of_single_rounds(tmp_path: Path) -> None:
+    """A machine that grows slower in the meantime changes costs, and not the ratio."""
+    ratio, file = invented(), tmp_path / "suite.json"
+    add(ratio, Costs((2.0, 4.0, 8.0), (1.0, 2.0, 4.0)), file)
+    add(ratio, Costs((30.0, 20.0), (10.0, 10.0)), file)
+    (one,) = summary([ratio], file)
+    assert (one.value, one.spread, one.cost) == (2.0, 0.0, 8.0)
+
+
+# What is named
+
+
+def test_a_slower_twin_is_named(tmp_path: Path) -> None:
+    """Half as slow again misses its target and is worse than what was kept; the sound one is neither."""
+    sound, slower = (measured(invented(factor), tmp_path) for factor in (1, 1.5))
+    keep([sound], tmp_path / "history.csv", PROCESSOR, COMMIT)
+    before = last(tmp_path / "history.csv", PROCESSOR)
+    assert before["invented/twice"].ratio == 2.0
+    assert not sound.misses
+    assert "worse" not in printed([sound], before)
+    said = printed([slower], before)
+    assert slower.misses
+    assert f"missed ({ENOUGH.because}): invented/twice" in said
+    assert f"worse: invented/twice is 3 ±0, was 2 ±0 at {COMMIT}" in said
+    assert "better: " in printed(
+        [sound], {"invented/twice": replace(before["invented/twice"], ratio=3)}
+    )
+
+
+@pytest.mark.parametrize(
+    ("value", "spread", "moved"),
+    [
+        (2.0, 0.0, False),
+        (2.05, 0.0, True),
+        (2.03, 0.0, False),
+        (2.2, 0.15, False),
+        (2.3, 0.15, True),
+    ],
+)
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_ratio_has_moved_beyond_both_spreads_and_the_resolution(
+    value: float, spread: float, moved: bool, sign: int
+) -> None:
+    """Upwards and downwards alike."""
+    row = Row(
+        "2026-01-01", COMMIT, "1", PROCESSOR, "invented/twice", 2.0, 0.1 if spread else 0.0, 1.0
+    )
+    assert has_moved(Measured(invented(), 2 + sign * (value - 2), spread, 1.0), row) is moved
+
+
+def test_a_ratio_that_is_no_number_misses_and_has_moved() -> None:
+    """NaN is never as good as it was."""
+    one = Measured(invented(), float("nan"), 0.0, 1.0)
+    row = Row("2026-01-01", COMMIT, "1", PROCESSOR, "invented/twice", 2.0, 0.0, 1.0)
+    assert one.misses_target
+    assert has_moved(one, row)
+
+
+def test_a_cost_beyond_its_own_target_misses() -> None:
+    """The ratio may be as good as it likes."""
+    ratio = replace(invented(), limit=Target(0.5, "half a second"))
+    assert not Measured(ratio, 2.0, 0.0, 0.5).misses
+    assert Measured(ratio, 2.0, 0.0, 0.6).misses
+
+
+# The history
+
+
+def test_the_history_answers_with_the_latest_row_of_the_same_processor(tmp_path: Path) -> None:
+    """Rows are appended, and another machine's ratios are no yardstick."""
+    file = tmp_path / "history.csv"
+    assert last(file, PROCESSOR) == {}
+    for value, processor in ((1.0, PROCESSOR), (1.5, PROCESSOR), (9.0, "another, older")):
+        keep([Measured(invented(), value, 0.1, 1e-3)], file, processor, COMMIT)
+    assert last(file, PROCESSOR)["invented/twice"].ratio == 1.5
+    assert last(file, "another, older")["invented/twice"].ratio == 9.0
+    assert file.read_text().count("date,commit") == 1
+    assert len(file.read_text().splitlines()) == 4
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ("date,ratio\n", "history.csv:1"),
+        ("", "history.csv:1"),
+        ("HEADER\n2026-01-01,1,1,p,n,1,2\n", "history.csv:2"),
+        ("HEADER\n2026-01-01,1,1,p,n,1,2,3\n2026-01-01,1,1,p,n,one,2,3\n", "history.csv:3"),
+    ],
+)
+def test_what_is_no_history_is_refused(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    text: str,
+    place: str,
+) -> None:
+    """The place is named, and nothing is measured."""
+    file = tmp_path / "history.csv"
+    header = "date,commit,version,processor,name,ratio,spread,cost"
+    file.write_text(text.replace("HEADER", header))
+    monkeypatch.setattr(history, "FILE", file)
+    with pytest.raises(SystemExit, match="2"):
+        bench.main(["--processes", "1"])
+    assert f"@ {tmp_path}/{place}" in capsys.readouterr().err
+
+
+def test_the_history_of_the_repository_can_be_read() -> None:
+    """Each of its rows is that of a ratio that there is, or was."""
+    assert all(row.ratio > 0 for row in last(history.FILE, history.processor()).values())
+
+
+# The command
+
+
+@pytest.fixture
+def shipped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """Put one invented ratio in the place of all others, and an empty history; yield the history."""
+    monkeypatch.setattr(bench, "RATIOS", (invented(1.5, rounds=2),))
+    monkeypatch.setattr(history, "FILE", tmp_path / "history.csv")
+    return tmp_path / "history.csv"
+
+
+def test_a_missed_target_fails_only_where_that_is_asked_for(
+    shipped: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It is named all the same, and nothing is kept unasked."""
+    assert bench.main([]) == 0
+    assert "missed" in capsys.readouterr().out
+    assert not shipped.exists()
+    assert bench.main(["--strict", "--keep"]) == 1
+    assert last(shipped, history.processor())["invented/twice"].ratio == 3.0
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["nonsense"], "expected the beginning of a ratio's name (invented), got nonsense"),
+        (["--against", "/nowhere"], "expected a checkout of this project, got /nowhere"),
+        (["--processes", "0"], "expected a positive number, got 0"),
+        (["--out", __file__], "expected a file that is not there yet"),
+    ],
+)
+def test_a_wrong_call_is_refused(
+    shipped: Path, capsys: pytest.CaptureFixture[str], words: list[str], said: str
+) -> None:
+    """In one sentence, before anything is measured."""
+    with pytest.raises(SystemExit, match="2"):
+        bench.main(words)
+    assert said in capsys.readouterr().err
+    assert not shipped.exists()
+
+
+def test_another_checkout_has_caches_of_its_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A cold run begins with an empty folder and leaves it to the warm one."""
+    seen: list[tuple[str, bool]] = []
+
+    @dataclass
+    class Done:
+        returncode: int = 0
+
+    def run(command: list[str], env: dict[str, str], **_: object) -> Done:
+        cache = Path(env["HEYOKA_CACHE_DIR"])
+        assert env["XDG_CACHE_HOME"] == str(cache)
+        seen.append((cache.name, cache.exists()))
+        cache.mkdir(exist_ok=True)
+        return Done()
+
+    monkeypatch.setattr(commands.subprocess, "run", run)
+    cold, warm = commands.ratios(tmp_path, tmp_path / "caches")
+    (tmp_path / "caches").mkdir()
+    in_turns(replace(cold, rounds=1))
+    assert seen == [("here", False), ("here", True), ("other", False), ("other", True)]
+    seen.clear()
+    in_turns(replace(warm, rounds=1))
+    assert seen == [("here", True)] * 2 + [("other", True)] * 2
+
+
+def test_a_verification_that_fails_is_not_timed(tmp_path: Path) -> None:
+    """A checkout whose standard set does not pass is an error, and no time."""
+    package = tmp_path / "verify" / "taylor_verify"
+    package.mkdir(parents=True)
+    (package / "__init__.py").touch()
+    (package / "__main__.py").write_text("raise SystemExit('a gate failed')")
+    side, _ = next(commands.ratios(tmp_path, tmp_path / "caches")).pair()
+    with pytest.raises(ChildProcessError, match=r"status 0, got 1 of `run`.*a gate failed"):
+        replace(side, checkout=tmp_path).cost()  # type: ignore[type-var]
+
+
+# The ratios
+
+
+def test_names_are_single_and_fit_into_a_command_line() -> None:
+    """A name has a family, and no blank."""
+    names = [ratio.name for ratio in RATIOS]
+    assert len(set(names)) == len(names)
+    assert all("/" in name and len(name.split()) == 1 for name in names)
+
+
+@pytest.mark.parametrize("name", ["euler/with-attitude", "kirchhoff/general-body"])
+def test_heyokas_own_call_solves_what_the_driver_solves(name: str) -> None:
+    """The yardstick does the same work: its states are the driver's, to roundings."""
+    problem = pose(load(name), rung("f64"))
+    rows = Postponed(problem, plain(problem)()[5], Fraction)
+    for quantity, states in Taylor().solve(problem).quantities.items():
+        assert abs(rows[quantity] - states).max() <= 1e-12 * abs(states).max()
