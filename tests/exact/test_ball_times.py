@@ -35,7 +35,7 @@ LONG = [
 
 def free_forms() -> list[str]:
     """The shipped scenes without loads and wheels that have a closed form."""
-    found = []
+    forms = []
     for name in names():
         scene = load(name)
         body = scene.body
@@ -44,8 +44,8 @@ def free_forms() -> list[str]:
                 solution(scene, "arb")
             except NoClosedForm:
                 continue
-            found.append(name)
-    return found
+            forms.append(name)
+    return forms
 
 
 def everything(scene: Scene) -> Scene:
@@ -83,7 +83,7 @@ def test_a_ball_of_a_rational_gives_the_motion_at_the_rational(name: str, route:
     inner = solution(everything(load(name)), route)
     end = load(name).clock.elapsed[-1]
     times = [end / 7, Fraction(0), -end / 3, 5 * end]
-    here, there = (found.motion(times, DIGITS) for found in (inner, at_numbers(inner)))
+    here, there = (body.motion(times, DIGITS) for body in (inner, at_numbers(inner)))
     assert set(here.quantities) == set(there.quantities)
     with mp.workdps(DIGITS + 20):
         for name, rows in here.quantities.items():

@@ -110,13 +110,13 @@ def test_one_bad_number_is_enough(quantity: str, row: int, bad: arb) -> None:
     """A number that is none, in whichever row and quantity, sends the whole motion back."""
 
     def bad_at_first(elapsed: Sequence[Fraction], bits: int) -> Enclosure:
-        found: dict[str, Any] = {
+        rows_of: dict[str, Any] = {
             "omega": [[ball(t + 1)] * 3 for t in elapsed],
             "attitude": [[[ball(t + 2)] * 3] * 3 for t in elapsed],
         }
         if len(solution.asked) == 1:
-            found[quantity][row] = [bad] * 3 if quantity == "omega" else [[bad] * 3] * 3
-        return found
+            rows_of[quantity][row] = [bad] * 3 if quantity == "omega" else [[bad] * 3] * 3
+        return rows_of
 
     solution = Told(bad_at_first)
     times = [Fraction(t, 3) for t in range(3)]
@@ -131,17 +131,17 @@ def test_one_bad_number_is_enough(quantity: str, row: int, bad: arb) -> None:
 
 def test_the_ambient_precision_is_restored() -> None:
     """An attempt works at its own precision and leaves that of python-flint alone, failing or not."""
-    seen = []
+    precisions = []
 
     def looking(elapsed: Sequence[Fraction], bits: int) -> Enclosure:
-        seen.append((ctx.prec, bits))
+        precisions.append((ctx.prec, bits))
         raise Undecidable
 
     before = ctx.prec
     with pytest.raises(Unsettled):
         Told(looking).motion(NOW, DIGITS)
     assert ctx.prec == before
-    assert all(prec == bits for prec, bits in seen)
+    assert all(prec == bits for prec, bits in precisions)
 
 
 def test_no_times_make_no_rows() -> None:
@@ -174,9 +174,9 @@ def cornered(draw: st.DrawFn) -> tuple[Enclosure, dict[str, Any]]:
     ]
     signs = draw(st.lists(st.sampled_from([-1, 1]), min_size=number, max_size=number))
     with ctx.workprec(300):
-        found = [arb(ball(v), ball(r)) for v, r in zip(values, radii, strict=True)]
+        balls = [arb(ball(v), ball(r)) for v, r in zip(values, radii, strict=True)]
     truth = [v + s * r for v, s, r in zip(values, signs, radii, strict=True)]
-    return {"omega": [_shaped(found, shape)]}, {"omega": [_shaped(truth, shape)]}
+    return {"omega": [_shaped(balls, shape)]}, {"omega": [_shaped(truth, shape)]}
 
 
 def _shaped(entries: Sequence[Any], shape: tuple[int, ...]) -> Any:
@@ -188,18 +188,18 @@ def _shaped(entries: Sequence[Any], shape: tuple[int, ...]) -> Any:
 def encloses(motion: Motion, truth: Any) -> bool:
     """Whether every row's error is within its radius, exactly: both are compared as rationals."""
     for name, rows in truth.items():
-        for found, true, radius in zip(motion[name], rows, motion.radius, strict=True):
+        for values, true, radius in zip(motion[name], rows, motion.radius, strict=True):
             exact = [Fraction(t) for t in np.array(true, dtype=object).flat]
-            error = [exact_value(f) - t for f, t in zip(np.array(found).flat, exact, strict=True)]
+            error = [exact_value(f) - t for f, t in zip(np.array(values).flat, exact, strict=True)]
             size = sum(t * t for t in exact) or 1
             if not sum(e * e for e in error) <= exact_value(radius) ** 2 * size:
                 return False
     return True
 
 
-def measured(found: Enclosure) -> Motion:
+def measured(enclosure: Enclosure) -> Motion:
     with ctx.workprec(300):
-        return module._measured(found, 1)[0]
+        return module._measured(enclosure, 1)[0]
 
 
 @given(cornered())
@@ -207,8 +207,8 @@ def test_a_radius_is_never_below_the_true_error(
     case: tuple[Enclosure, dict[str, Any]],
 ) -> None:
     """Wherever in its ball the truth lies, a vector's or a matrix's relative error is in the radius."""
-    found, truth = case
-    motion = measured(found)
+    enclosure, truth = case
+    motion = measured(enclosure)
     assert not mp.isfinite(motion.radius[0]) or encloses(motion, truth)
 
 
@@ -219,9 +219,9 @@ def test_a_radius_too_small_by_half_a_digit_is_noticed(
     """A width divided by sqrt(10) no longer holds a truth that lies in the corner of its ball."""
     number = int(np.prod(shape))
     values, radius = [Fraction(k + 1, 4) for k in range(number)], Fraction(1, 2**40)
-    found = {"omega": [_shaped([arb(ball(v), ball(radius)) for v in values], shape)]}
+    enclosure = {"omega": [_shaped([arb(ball(v), ball(radius)) for v in values], shape)]}
     truth = {"omega": [_shaped([v + radius for v in values], shape)]}
-    assert encloses(measured(found), truth)
+    assert encloses(measured(enclosure), truth)
     honest = module.widths
 
     def short(balls: Sequence[arb], count: int) -> tuple[Any, Any]:
@@ -229,7 +229,7 @@ def test_a_radius_too_small_by_half_a_digit_is_noticed(
         return radii / mp.sqrt(10), doubles
 
     monkeypatch.setattr(module, "widths", short)
-    assert not encloses(measured(found), truth)
+    assert not encloses(measured(enclosure), truth)
 
 
 @given(st.lists(st.fractions(max_denominator=10**6), min_size=3, max_size=3))
@@ -248,8 +248,8 @@ def test_the_widest_quantity_gives_the_radius_of_a_row() -> None:
     """Rows are apart from each other, and the quantities of one row are not."""
     narrow, wide = arb(1, 2.0**-90), arb(1, 2.0**-60)
     with ctx.workprec(200):
-        found: Enclosure = {"omega": [[narrow], [narrow]], "attitude": [[[narrow]], [[wide]]]}
-        motion = module._measured(found, 2)[0]
+        enclosure: Enclosure = {"omega": [[narrow], [narrow]], "attitude": [[[narrow]], [[wide]]]}
+        motion = module._measured(enclosure, 2)[0]
     assert 2**-90 <= motion.radius[0] <= 2**-89
     assert 2**-60 <= motion.radius[1] <= 2**-59
 
@@ -263,8 +263,8 @@ def test_widths_of_rows_are_those_of_each(
         rows = [[b * arb(2) ** exponent for b in np.array(case["omega"]).flat] for case, _ in cases]
         size = min(map(len, rows))
         rows = [row[:size] for row in rows]
-        found, doubles = module.widths([b for row in rows for b in row], len(rows))
-    for row, radius in zip(rows, found, strict=True):
+        radii, doubles = module.widths([b for row in rows for b in row], len(rows))
+    for row, radius in zip(rows, radii, strict=True):
         alone = module.width(row)
         assert radius == alone or abs(radius - alone) <= alone * mpf(2) ** -9
         errors, middles = (
@@ -274,7 +274,7 @@ def test_widths_of_rows_are_those_of_each(
         if mp.isfinite(radius):
             least = sum(m * m for m in middles)
             assert sum(e * e for e in errors) <= exact_value(radius) ** 2 * least
-    for radius, double in zip(found, doubles.tolist(), strict=True):
+    for radius, double in zip(radii, doubles.tolist(), strict=True):
         assert double == radius or double != double
 
 
@@ -291,12 +291,12 @@ def test_midpoints_of_a_motion_are_a_mapping_that_can_be_sent() -> None:
     quantities = Told(lambda elapsed, bits: {"omega": [[ball(t), arb(3)] for t in elapsed]}).motion(
         [Fraction(1, 2), Fraction(5)], DIGITS
     )
-    found = quantities.quantities
-    assert (len(found), list(found)) == (1, ["omega"])
-    assert found["omega"].tolist() == [[mpf(0.5), mpf(3)], [mpf(5), mpf(3)]]
-    assert found["omega"] is found["omega"]
+    midpoints = quantities.quantities
+    assert (len(midpoints), list(midpoints)) == (1, ["omega"])
+    assert midpoints["omega"].tolist() == [[mpf(0.5), mpf(3)], [mpf(5), mpf(3)]]
+    assert midpoints["omega"] is midpoints["omega"]
     sent = pickle.loads(pickle.dumps(quantities))
-    assert sent["omega"].tolist() == found["omega"].tolist()
+    assert sent["omega"].tolist() == midpoints["omega"].tolist()
 
 
 # Between rationals, balls and mpmath.
@@ -306,18 +306,18 @@ def test_midpoints_of_a_motion_are_a_mapping_that_can_be_sent() -> None:
 def test_a_ball_contains_its_rational(value: Fraction, bits: int) -> None:
     """At any precision, and its relative radius is at most 2^(1 - bits)."""
     with ctx.workprec(bits):
-        found = ball(value)
-        assert found.contains(fmpq(value.numerator, value.denominator))
-    assert exact_value(midpoint(found.rad())) <= abs(value) * Fraction(2) ** (1 - bits)
+        enclosure = ball(value)
+        assert enclosure.contains(fmpq(value.numerator, value.denominator))
+    assert exact_value(midpoint(enclosure.rad())) <= abs(value) * Fraction(2) ** (1 - bits)
 
 
 @given(st.integers(), st.integers(-5000, 5000), st.integers(2, 60))
 def test_midpoints_are_converted_exactly(mantissa: int, exponent: int, prec: int) -> None:
     """Whatever the precision of mpmath, and however far from 1 the number is."""
     with ctx.workprec(max(mantissa.bit_length(), 2)):
-        found = arb(mantissa) * arb(2) ** exponent
+        number_ball = arb(mantissa) * arb(2) ** exponent
     with mp.workprec(prec):
-        number = midpoint(found)
+        number = midpoint(number_ball)
     assert exact_value(number) == Fraction(mantissa) * Fraction(2) ** exponent
 
 
@@ -325,8 +325,8 @@ def test_midpoints_are_converted_exactly(mantissa: int, exponent: int, prec: int
 def test_an_upper_end_is_above(value: Fraction, bits: int) -> None:
     """Rounded, if at all, upwards."""
     with ctx.workprec(bits):
-        found = ball(value)
-        end = upper(found)
+        enclosure = ball(value)
+        end = upper(enclosure)
     assert exact_value(end) >= value
 
 

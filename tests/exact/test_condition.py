@@ -60,7 +60,7 @@ def test_axisymmetric_body() -> None:
     body = RigidBody(diagonal(vector(1, 1, 2)))
     spinning = sample_scene(body, start=Spin(vector("0.6", "0.8", "0.5")))
     instants = times(0, "0.7", 3, 40)
-    found = transition(spinning, instants)
+    flow = transition(spinning, instants)
     momentum = TaylorSolution(spinning).motion(instants, 30)["omega"].astype(float) * [1, 1, 2]
     expected = np.zeros((4, 4))
     for k, start in enumerate(momentum):
@@ -68,7 +68,7 @@ def test_axisymmetric_body() -> None:
             expected[i, k] = np.linalg.norm(_shear(start, float(instants[i] - instants[k])), 2)
     # float64 sines of angles of some tens, and differences that hold far more digits.
     for k in range(4):
-        measured = found.norms("momentum", "momentum", since=k)
+        measured = flow.norms("momentum", "momentum", since=k)
         assert np.abs(measured / expected[k:, k] - 1).max() <= 1e-13
 
 
@@ -87,22 +87,22 @@ def _shear(momentum: Array, time: float) -> Array:
 def test_derivatives_obey_the_linearised_equations(loaded: Scene) -> None:
     """D' = J D, the attitude's theta' = R dOmega, the centre's c' = R dU + theta x R U."""
     step = Fraction(1, 2**14)
-    found = derivatives(loaded, [1 - step, Fraction(1), 1 + step], 20, 60)
+    flow = derivatives(loaded, [1 - step, Fraction(1), 1 + step], 20, 60)
     motion = TaylorSolution(loaded).motion([Fraction(1)], 30)
     with mp.workdps(30):
         slopes = {
             name: (rows[2] - rows[0]) / (2 * mp.convert(step))
-            for name, rows in {"momentum": found.momentum, **found.others}.items()
+            for name, rows in {"momentum": flow.momentum, **flow.others}.items()
         }
-        for name, rate in _linearised(loaded, motion, found).items():
+        for name, rate in _linearised(loaded, motion, flow).items():
             # A central difference is off by step^2/6 = 6e-10 times a third derivative of some tens.
             assert largest(slopes[name] - rate) <= mpf("1e-7")
 
 
-def _linearised(scene: Scene, motion: Motion, found: Derivatives) -> dict[str, Array]:
+def _linearised(scene: Scene, motion: Motion, flow: Derivatives) -> dict[str, Array]:
     """The variational equations at the middle row, column by column."""
-    units = matrix((found.units,))[0]
-    deviation = found.momentum[1] * units[:, None]
+    units = matrix((flow.units,))[0]
+    deviation = flow.momentum[1] * units[:, None]
     turn = motion["attitude"][0]
     if isinstance(scene.body, RigidBody):
         inverse_inertia = matrix(scene.body.inverse_inertia)
@@ -125,7 +125,7 @@ def _linearised(scene: Scene, motion: Motion, found: Derivatives) -> dict[str, A
     return {
         "momentum": rate / units[:, None],
         "attitude": turn @ spin,
-        "centre": turn @ glide + _cross(found.others["attitude"][1], turn @ velocity),
+        "centre": turn @ glide + _cross(flow.others["attitude"][1], turn @ velocity),
     }
 
 
@@ -179,21 +179,21 @@ def _state(scene: Scene, time: Fraction) -> Spin | Impulse:
 def test_place_moves_with_the_path() -> None:
     """A turn stays a turn, a shift a shift, and a turn at t_k swings c_i by |c_i - c_k|."""
     instants = times(0, "0.5", 2, 5)
-    found = transition(LOADED_KIRCHHOFF, instants)
+    flow = transition(LOADED_KIRCHHOFF, instants)
     path = TaylorSolution(LOADED_KIRCHHOFF).motion(instants, 30)["centre"].astype(float)
     distances = np.tril(np.linalg.norm(path[:, None] - path[None], axis=2))
-    assert (found.norms("attitude", "attitude") == 1).all()
-    assert (found.norms("centre", "centre") == 1).all()
+    assert (flow.norms("attitude", "attitude") == 1).all()
+    assert (flow.norms("centre", "centre") == 1).all()
     # float64 differences of a path of ten units.
     for k in range(4):
-        assert np.abs(found.norms("centre", "attitude", k) - distances[k:, k]).max() <= 1e-13
+        assert np.abs(flow.norms("centre", "attitude", k) - distances[k:, k]).max() <= 1e-13
     for out, into in (
         ("linear_impulse", "attitude"),
         ("angular_impulse", "centre"),
         ("attitude", "centre"),
     ):
-        assert not found.norms(out, into).any()
-    assert all(found.norms("centre", "linear_impulse", k)[0] == 0 for k in range(4))
+        assert not flow.norms(out, into).any()
+    assert all(flow.norms("centre", "linear_impulse", k)[0] == 0 for k in range(4))
 
 
 @pytest.mark.slow
@@ -214,12 +214,12 @@ def test_the_size_of_the_perturbation_does_not_matter(start: Scene) -> None:
 
 def test_flows_conserve_volume() -> None:
     """det D = 1 with and without loads, and not if a column is wrong by one part in a million."""
-    found = derivatives(LOADED_KIRCHHOFF, times(2, -3), 20, 50)
-    assert found.volume_error() <= mpf("1e-15")
+    flow = derivatives(LOADED_KIRCHHOFF, times(2, -3), 20, 50)
+    assert flow.volume_error() <= mpf("1e-15")
     with mp.workdps(50):
-        wrong = found.momentum.copy()
+        wrong = flow.momentum.copy()
         wrong[:, :, 4] *= 1 + mpf("2e-6")
-        assert replace(found, momentum=wrong).volume_error() >= mpf("1e-6")
+        assert replace(flow, momentum=wrong).volume_error() >= mpf("1e-6")
 
 
 def test_growth_beside_an_unstable_rotation() -> None:
@@ -228,7 +228,7 @@ def test_growth_beside_an_unstable_rotation() -> None:
     steady = sample_scene(body, start=Spin(vector(0, 1, 0)))
     # H2 = 2; H1' = H2 (K3 - K2) H3, H3' = H2 (K2 - K1) H1, so rate^2 = 4 (1/6)(1/2) = 1/3.
     rate = np.sqrt(1 / 3)
-    found = transition(steady, times(0, 10, 80)).norms("momentum", "momentum")
+    norms = transition(steady, times(0, 10, 80)).norms("momentum", "momentum")
     for i, time in ((1, 10.0), (2, 80.0)):
         block = [
             [np.cosh(rate * time), -np.sinh(rate * time) / (3 * rate)],
@@ -237,19 +237,19 @@ def test_growth_beside_an_unstable_rotation() -> None:
         expected = np.linalg.norm(block, 2)
         # The matrix is held to conserve volume to 10^-6; with errors of 10^-25 grown 10^20 times,
         # the orbits compared are 10^-5 apart, and what is neglected is its square.
-        assert abs(found[i] / expected - 1) <= 1e-6
+        assert abs(norms[i] / expected - 1) <= 1e-6
 
 
 def test_a_body_at_rest() -> None:
     """At rest momentum stays as it is, and turns the body by K per unit of momentum and time."""
     resting = sample_scene(RigidBody(TENSOR), "attitude", start=Spin(vector(0, 0, 0), QUATERNION))
-    found = transition(resting, times(0, 2, 6))
+    flow = transition(resting, times(0, 2, 6))
     inverse_inertia = np.array(inverse(TENSOR), dtype=float)
     stiffest = np.linalg.norm(inverse_inertia, 2)
     # Perturbed by 10^-12 of a unit, the body turns by as much, and the norms are off by as much.
-    assert np.abs(found.norms("momentum", "momentum") - 1).max() <= 1e-10
-    assert abs(found.norms("attitude", "momentum", since=1)[1] / (4 * stiffest) - 1) <= 1e-10
-    assert abs(found.norms("omega", "momentum", since=2)[0] / stiffest - 1) <= 1e-10
+    assert np.abs(flow.norms("momentum", "momentum") - 1).max() <= 1e-10
+    assert abs(flow.norms("attitude", "momentum", since=1)[1] / (4 * stiffest) - 1) <= 1e-10
+    assert abs(flow.norms("omega", "momentum", since=2)[0] / stiffest - 1) <= 1e-10
 
 
 def test_norms_follow_the_units() -> None:
@@ -279,9 +279,9 @@ def test_norms_follow_the_units() -> None:
 
 def test_what_is_not_tracked_is_not_known() -> None:
     """Asking for the attitude of a scene that tracks omega alone raises KeyError."""
-    found = transition(sample_scene(RigidBody(TENSOR)), times(0, 1))
+    flow = transition(sample_scene(RigidBody(TENSOR)), times(0, 1))
     with pytest.raises(KeyError, match="attitude"):
-        found.norms("attitude", "momentum")
+        flow.norms("attitude", "momentum")
 
 
 @pytest.mark.slow

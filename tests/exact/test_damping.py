@@ -145,11 +145,11 @@ def test_what_is_conserved(name: str, damping: Fraction) -> None:
     with mp.workdps(DIGITS + 10):
         motion = solution(scene, "taylor").motion(times, DIGITS)
         grown = without_damping(scene, motion, times)
-        found = invariants(scene)
-        assert {one.name for one in found} >= (
+        conserved = invariants(scene)
+        assert {one.name for one in conserved} >= (
             {"H2", "H_space"} if "omega" in grown.quantities else {"F2", "FG", "y_space"}
         )
-        for invariant in found:
+        for invariant in conserved:
             rows = invariant.value(grown)
             plain = invariant.value(motion)
             change = np.max(abs(rows - rows[:1])) / invariant.scale(grown)
@@ -180,9 +180,9 @@ def test_loads_and_wheels_leave_it_to_the_series(name: str) -> None:
     for route in ("arb", "mpmath"):
         with pytest.raises(NoClosedForm, match="damping together with"):
             solution(scene, route)
-    found = solution(scene)
-    assert (found.regime, found.route) == (NO_CLOSED_FORM, "taylor")
-    motion = found.motion([Fraction(1)], DIGITS)
+    exact = solution(scene)
+    assert (exact.regime, exact.route) == (NO_CLOSED_FORM, "taylor")
+    motion = exact.motion([Fraction(1)], DIGITS)
     assert max(motion.radius) <= mp.mpf(10) ** -DIGITS
     assert elements(scene).regime == NO_CLOSED_FORM
 
@@ -224,12 +224,12 @@ def test_a_growth_within_reach_has_its_digits() -> None:
 def test_elements_tell_the_horizon() -> None:
     """The elements are those of the body without damping, with 1/c and the periods until then."""
     scene = load("euler/damped")
-    found, free = elements(scene), elements(replace(scene, body=scene.body.undamped))
-    assert found.regime == free.regime
-    assert found["period"].value == free["period"].value
-    assert found["horizon"].value == 20
-    assert mp.almosteq(found["periods_to_rest"].value, 20 / free["period"].value, 1e-12)
-    assert "e^{ct}" in found["T"].meaning
+    damped, free = elements(scene), elements(replace(scene, body=scene.body.undamped))
+    assert damped.regime == free.regime
+    assert damped["period"].value == free["period"].value
+    assert damped["horizon"].value == 20
+    assert mp.almosteq(damped["periods_to_rest"].value, 20 / free["period"].value, 1e-12)
+    assert "e^{ct}" in damped["T"].meaning
     assert "horizon" not in elements(load("euler/damped-negative"))
 
 
@@ -244,6 +244,6 @@ def test_exponentials_keep_their_digits() -> None:
 
 def test_every_shipped_damped_scene_is_listed() -> None:
     """There are damped scenes of both models, and one of them has a negative damping."""
-    found: Sequence[Scene] = [scene for scene in map(load, names()) if scene.body.damping]
-    assert {scene.model for scene in found} == {"euler", "kirchhoff"}
-    assert min(scene.body.damping for scene in found) < 0
+    scenes: Sequence[Scene] = [scene for scene in map(load, names()) if scene.body.damping]
+    assert {scene.model for scene in scenes} == {"euler", "kirchhoff"}
+    assert min(scene.body.damping for scene in scenes) < 0

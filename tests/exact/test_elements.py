@@ -163,14 +163,14 @@ def _crossing(scene: Scene, a: mpf, b: mpf) -> mpf:
 @pytest.mark.parametrize("off", ["0.1", "0.01", "1e-4", "1e-8", "1e-15"])
 def test_the_laws_of_the_flip_close_in_on_it(off: str) -> None:
     """The leading law is off by m'/4 (1 - 1/L) of itself, and the next by 9/64 m'^2 at most."""
-    found = elements(rigid(vector("1", "2", "3"), vector(off, "1", "0")), 100)
+    orbit = elements(rigid(vector("1", "2", "3"), vector(off, "1", "0")), 100)
     with mp.workdps(100):
-        m_prime, flip = found["m_prime"].value, found["flip_time"].value
+        m_prime, flip = orbit["m_prime"].value, orbit["flip_time"].value
         L = mp.log(16 / m_prime) / 2
-        leading = (flip - found["flip_law"].value) / flip / (m_prime / 4)
+        leading = (flip - orbit["flip_law"].value) / flip / (m_prime / 4)
         # K = L + (L - 1) m'/4 + O(m'^2 L)
         assert abs(leading - (1 - 1 / L)) <= m_prime
-        assert abs(flip - found["flip_law_2"].value) <= flip * m_prime**2 * 9 / 64
+        assert abs(flip - orbit["flip_law_2"].value) <= flip * m_prime**2 * 9 / 64
 
 
 @pytest.mark.parametrize("off", ["1", "0.01", "1e-10", "1e-25"])
@@ -180,22 +180,22 @@ def test_the_distance_to_the_separatrix_is_relatively_accurate(off: str) -> None
     scene = rigid(vector("1", "2", "3"), (small, Fraction(1), small / 3))
     H2, T2 = small**2 + 4 + small**2, small**2 + 2 + small**2 / 3
     A, D = abs(H2 - T2 * (1 if H2 > 2 * T2 else 3)), abs(H2 - 2 * T2)
-    found = elements(scene, DIGITS)
+    orbit = elements(scene, DIGITS)
     with mp.workdps(DIGITS):
         expected = {"separation": D / H2, "m_prime": 2 * D / A}
         for name, exactly in expected.items():
-            assert abs(found[name].value / mp.convert(exactly) - 1) <= mpf("1e-28")
+            assert abs(orbit[name].value / mp.convert(exactly) - 1) <= mpf("1e-28")
 
 
 def test_a_small_parameter_is_relatively_accurate() -> None:
     """Beside the steady spin about the largest moment m = (J2-J3) C/((J1-J2) A) is 1e-40."""
     small = Fraction(1, 10**20)
-    found = elements(rigid(vector("1", "2", "4"), (small, small, Fraction(1))), DIGITS)
+    orbit = elements(rigid(vector("1", "2", "4"), (small, small, Fraction(1))), DIGITS)
     H2, T2 = small**2 + 4 * small**2 + 16, small**2 + 2 * small**2 + 4
     m = (T2 * 4 - H2) / (2 * (H2 - T2))
     with mp.workdps(DIGITS):
-        assert abs(found["m"].value / mp.convert(m) - 1) <= mpf("1e-28")
-        assert abs(found["k"].value ** 2 / mp.convert(m) - 1) <= mpf("1e-28")
+        assert abs(orbit["m"].value / mp.convert(m) - 1) <= mpf("1e-28")
+        assert abs(orbit["k"].value ** 2 / mp.convert(m) - 1) <= mpf("1e-28")
 
 
 @pytest.mark.parametrize("axis", [0, 1, 2])
@@ -219,15 +219,15 @@ def test_a_disturbance_of_a_steady_rotation_has_the_linearised_spectrum(
     K, H = np.array(body.inverse_inertia, dtype=float), tensors.apply(tensor, omega)
     eigenvalues = np.linalg.eigvals(_euler_jacobian(K, np.array(H, dtype=float)))
     largest = max(eigenvalues, key=abs)
-    found = elements(scene, 15)
-    assert found.regime == "steady"
+    orbit = elements(scene, 15)
+    assert orbit.regime == "steady"
     if axis == 1:
         # Eigenvalues of a 3x3 matrix of doubles of size 1.
-        assert abs(float(found["growth_rate"].value) - abs(largest.real)) <= 1e-12
-        assert "unstable" in found.sentences[0]
+        assert abs(float(orbit["growth_rate"].value) - abs(largest.real)) <= 1e-12
+        assert "unstable" in orbit.sentences[0]
     else:
-        assert abs(float(found["wobble_rate"].value) - abs(largest.imag)) <= 1e-12
-        assert ", stable" in found.sentences[0]
+        assert abs(float(orbit["wobble_rate"].value) - abs(largest.imag)) <= 1e-12
+        assert ", stable" in orbit.sentences[0]
 
 
 def _euler_jacobian(K: Any, H: Any) -> Any:
@@ -240,29 +240,29 @@ def test_a_spin_across_the_axis_of_symmetry_is_neutral() -> None:
     """s^2 = 0 exactly: neither growth nor wobble, and the words say that omega drifts."""
     scene = rigid(vector("2", "2", "1/3"), vector("0.6", "0.8", "0"))
     assert disturbance(FreeSpin(scene.body.inertia, scene.initial.omega)) == 0
-    found = elements(scene, 15)
-    assert "drift" in found.sentences[0]
-    assert {"growth_rate", "wobble_rate"}.isdisjoint(found)
+    orbit = elements(scene, 15)
+    assert "drift" in orbit.sentences[0]
+    assert {"growth_rate", "wobble_rate"}.isdisjoint(orbit)
 
 
 def test_the_separatrix_falls_away_at_the_rate_of_its_saddle() -> None:
     """On the separatrix lam is the growth rate of the spin that the orbit comes from."""
-    found = elements(load("euler/separatrix-full-tensor"), DIGITS)
+    orbit = elements(load("euler/separatrix-full-tensor"), DIGITS)
     with mp.workdps(DIGITS):
-        ratio = found["rate"].value / found["saddle_rate"].value
+        ratio = orbit["rate"].value / orbit["saddle_rate"].value
         assert abs(ratio - 1) <= mpf("1e-28")
-    assert found["separation"].value == 0
-    assert "period" not in found
+    assert orbit["separation"].value == 0
+    assert "period" not in orbit
 
 
 def test_an_axis_of_symmetry_precesses_about_H() -> None:
     """In space the axis recurs after precession_period, always at precession_angle from H."""
     scene = replace(load("euler/axisymmetric"), track=frozenset({"attitude"}))
-    found = elements(scene, DIGITS)
+    orbit = elements(scene, DIGITS)
     inertia = [scene.body.inertia[i][i] for i in range(3)]
     axis = next(i for i in range(3) if inertia.count(inertia[i]) == 1)
     with mp.workdps(DIGITS):
-        period = found["precession_period"].value
+        period = orbit["precession_period"].value
         frames = moved(scene, "attitude", mpf(0), period / 2, period)
         axes = [frame[:, axis] for frame in frames]
         assert distance(axes[0], axes[2]) <= CLOSE
@@ -271,7 +271,7 @@ def test_an_axis_of_symmetry_precesses_about_H() -> None:
         H = frames[0] @ np.array(momentum, dtype=object)
         for e in axes:
             cosine = abs(mp.fdot(list(e), list(H))) / mp.norm(list(H))
-            assert abs(mp.cos(found["precession_angle"].value) - cosine) <= CLOSE
+            assert abs(mp.cos(orbit["precession_angle"].value) - cosine) <= CLOSE
 
 
 # Clebsch's body.
@@ -287,16 +287,16 @@ def test_an_axis_of_symmetry_precesses_about_H() -> None:
 def test_x3_stays_between_two_roots_and_reaches_them(name: str) -> None:
     """f vanishes at both ends and is positive between, and the Taylor motion keeps inside."""
     scene = load(f"kirchhoff/{name}")
-    found, of = elements(scene, DIGITS), nutation(scene)
+    orbit, of = elements(scene, DIGITS), nutation(scene)
     with mp.workdps(DIGITS):
-        low, high = found["x3_low"].value, found["x3_high"].value
+        low, high = orbit["x3_low"].value, orbit["x3_high"].value
         for end in (low, high):
             # f'(z) times an error of z: coefficients and F are of size 1.
             assert abs(mp.polyval([mp.convert(c) for c in of.f[::-1]], end, asc=True)) <= CLOSE
         for part in range(1, 8):
             assert value(of.f, exact_value(low + (high - low) * part / 8)) > 0
-        seen = [x[2] for x in moved(scene, "linear_impulse", *(mpf(k) / 2 for k in range(20)))]
-        assert all(low - CLOSE <= z <= high + CLOSE for z in seen)
+        heights = [x[2] for x in moved(scene, "linear_impulse", *(mpf(k) / 2 for k in range(20)))]
+        assert all(low - CLOSE <= z <= high + CLOSE for z in heights)
 
 
 @pytest.mark.parametrize("name", ["four-real-roots", "two-real-roots", "backward", "planar-swing"])
@@ -346,21 +346,21 @@ def test_the_axial_spin_has_the_linearised_spectrum(
     body, F, G = drawn
     zero = Fraction(0)
     scene = immersed(body, (zero, zero, pole * F), (zero, zero, pole * G))
-    found = elements(scene, 15)
+    orbit = elements(scene, 15)
     state = np.array([0, 0, pole * F, 0, 0, pole * G], dtype=float)
     eigenvalues = np.linalg.eigvals(_kirchhoff_jacobian(body.body(), state))
     # A is a square root away from the eigenvalues: half of the digits of a double near A = 0.
     room = 1e-6
-    if found["A"].value > 0:
-        assert abs(float(found["axial_growth"].value) - max(eigenvalues.real)) <= room
-        assert "unstable" in found.sentences[-1]
+    if orbit["A"].value > 0:
+        assert abs(float(orbit["axial_growth"].value) - max(eigenvalues.real)) <= room
+        assert "unstable" in orbit.sentences[-1]
     else:
         assert max(eigenvalues.real) <= room
         upper = sorted(abs(eigenvalues.imag))[2:]  # the two zeros are along F and G
-        apart = 2 * np.pi * float(found["axial_nutations"].value)
+        apart = 2 * np.pi * float(orbit["axial_nutations"].value)
         either = (abs(upper[-1] - upper[0]), upper[-1] + upper[0])
         assert min(abs(apart - candidate) for candidate in either) <= room
-        assert "is stable" in found.sentences[-1]
+        assert "is stable" in orbit.sentences[-1]
 
 
 def _kirchhoff_jacobian(body: ImmersedBody, state: Any) -> Any:
@@ -402,9 +402,9 @@ def test_nutations_of_small_tilt_are_counted_whole() -> None:
 
 def test_the_homoclinic_axis_is_left_at_twice_the_growth_of_its_tilt() -> None:
     """x3 - F goes as the square of the tilt: r sqrt A against r sqrt(A)/2."""
-    found = elements(load("kirchhoff/onto-the-axis"), DIGITS)
+    orbit = elements(load("kirchhoff/onto-the-axis"), DIGITS)
     with mp.workdps(DIGITS):
-        ratio = found["approach_rate"].value / found["axial_growth"].value
+        ratio = orbit["approach_rate"].value / orbit["axial_growth"].value
         assert abs(ratio - 2) <= mpf("1e-27")
 
 
@@ -439,9 +439,9 @@ def test_the_sign_of_A_is_exact(sign: int) -> None:
     near = G * (1 - sign * Fraction(1, 10**60))
     zero = Fraction(0)
     scene = immersed(body, (zero, zero, Fraction(1)), (zero, zero, near))
-    found = elements(scene, 15)
-    assert mp.sign(found["A"].value) == sign
-    assert ("unstable" in found.sentences[-1]) is (sign > 0)
+    orbit = elements(scene, 15)
+    assert mp.sign(orbit["A"].value) == sign
+    assert ("unstable" in orbit.sentences[-1]) is (sign > 0)
 
 
 # Without a closed form.
@@ -449,17 +449,17 @@ def test_the_sign_of_A_is_exact(sign: int) -> None:
 
 def test_a_body_under_an_oblique_moment_has_no_elements() -> None:
     """Nothing is invented: no number, and the words say that there is no closed form."""
-    found = elements(load("euler/constant-moment"), 15)
-    assert found.regime == "no closed form"
-    assert len(found) == 0
-    assert "no closed form" in found.sentences[0]
+    orbit = elements(load("euler/constant-moment"), 15)
+    assert orbit.regime == "no closed form"
+    assert len(orbit) == 0
+    assert "no closed form" in orbit.sentences[0]
 
 
 def test_a_general_body_has_its_three_invariants_alone() -> None:
     """T, F and G, as the Taylor motion keeps them; a loaded one has not even those."""
     scene = load("kirchhoff/general-body")
-    found = elements(scene, DIGITS)
-    assert list(found) == ["T", "F", "G"]
+    orbit = elements(scene, DIGITS)
+    assert list(orbit) == ["T", "F", "G"]
     with mp.workdps(DIGITS):
         (x,), (y,) = (
             moved(scene, quantity, mpf(3)) for quantity in ("linear_impulse", "angular_impulse")
@@ -468,7 +468,7 @@ def test_a_general_body_has_its_three_invariants_alone() -> None:
         state = np.concatenate([x, y])
         F = mp.norm(list(x))
         now = {"T": state @ energy @ state / 2, "F": F, "G": x @ y / F}
-        assert all(abs(now[name] - found[name].value) <= CLOSE for name in now)
+        assert all(abs(now[name] - orbit[name].value) <= CLOSE for name in now)
     assert len(elements(load("kirchhoff/constant-loads"), 15)) == 0
 
 
@@ -478,17 +478,17 @@ def test_a_general_body_has_its_three_invariants_alone() -> None:
 def test_a_steady_unstable_spin_carries_an_error_by_its_matrix_exponential() -> None:
     """The factor at the end is the norm of K exp(J t), relative to |H| and |omega|."""
     scene = load("euler/steady-middle-axis")
-    found = carrying(scene)
-    assert found is not None
+    growth = carrying(scene)
+    assert growth is not None
     omega = np.array(scene.initial.omega, dtype=float)
     K = np.array(scene.body.inverse_inertia, dtype=float)
     H = np.linalg.solve(K, omega)
     rates, modes = np.linalg.eig(_euler_jacobian(K, H))
-    flow = (modes * np.exp(rates * (found.times[-1] - found.times[0]))) @ np.linalg.inv(modes)
+    flow = (modes * np.exp(rates * (growth.times[-1] - growth.times[0]))) @ np.linalg.inv(modes)
     expected = np.linalg.norm(K @ flow.real, 2) * np.linalg.norm(H) / np.linalg.norm(omega)
     # Doubles, and an exponential of some thousands.
-    assert abs(found.factors[-1] / expected - 1) <= 1e-9
-    assert found.pace is None
+    assert abs(growth.factors[-1] / expected - 1) <= 1e-9
+    assert growth.pace is None
 
 
 def test_growth_in_proportion_to_time_is_told_from_other_growth() -> None:
@@ -509,11 +509,11 @@ def test_growth_in_proportion_to_time_is_told_from_other_growth() -> None:
 def test_explain_holds_the_elements_and_the_condition(name: str) -> None:
     """The document has every element as text, its words, and the carried error; null at rest."""
     scene = load(name)
-    document, found = explanation(scene, "f64"), elements(scene, 15)
-    assert list(document["orbit"]) == list(found)
-    assert [e["name"] for e in document["elements"]] == list(found)
+    document, orbit = explanation(scene, "f64"), elements(scene, 15)
+    assert list(document["orbit"]) == list(orbit)
+    assert [e["name"] for e in document["elements"]] == list(orbit)
     assert all(mpf(text) == mpf(text) for text in document["orbit"].values())
-    assert document["sentences"] == list(found.sentences)
+    assert document["sentences"] == list(orbit.sentences)
     if name == "euler/rest":
         assert document["condition"] is None
     else:

@@ -46,17 +46,17 @@ def shape(axes: tuple[Fraction | int, ...], density: int = 1, fluid: int = 1) ->
     return Ellipsoid(tuple(map(Fraction, axes)), Fraction(density), Fraction(fluid))
 
 
-def added(found: Ellipsoid) -> tuple[list[mpf], list[mpf]]:
+def added(ellipsoid: Ellipsoid) -> tuple[list[mpf], list[mpf]]:
     """m_i and j_i of a body without mass, at the ambient precision: 1/p_i and 1/r_i alone."""
-    body = replace(found, density=Fraction(0)).body(mp.prec)
+    body = replace(ellipsoid, density=Fraction(0)).body(mp.prec)
     blocks = body.linear, body.angular
     m, j = ([1 / mp.convert(block[i][i]) for i in range(3)] for block in blocks)
     return m, j
 
 
-def displaced(found: Ellipsoid) -> mpf:
-    a, b, c = found.semi_axes
-    return 4 * mp.pi / 3 * mp.convert(a * b * c * found.fluid_density)
+def displaced(ellipsoid: Ellipsoid) -> mpf:
+    a, b, c = ellipsoid.semi_axes
+    return 4 * mp.pi / 3 * mp.convert(a * b * c * ellipsoid.fluid_density)
 
 
 # Against routes that share no formula.
@@ -169,16 +169,16 @@ def test_spheroids_have_elementary_coefficients(axes: tuple[Fraction, ...]) -> N
         e2 = 1 - min(a, c) ** 2 / max(a, c) ** 2
         along, across = spheroid(mp.sqrt(mp.convert(e2)), is_prolate=c > a)
         rho_V, gap, total = displaced(body), mp.convert(c**2 - a**2), mp.convert(c**2 + a**2)
-        found = inertias(body, BITS)
+        balls = inertias(body, BITS)
         j = rho_V / 5 * gap**2 * (across - along) / (2 * gap + total * (along - across))
         expected = [rho_V * along / (2 - along), rho_V * across / (2 - across), j]
-        held = [found.added_mass[i], found.added_mass[i - 1], found.added_inertia[i - 1]]
-        for value, other in zip(expected, held, strict=True):
+        coefficients = [balls.added_mass[i], balls.added_mass[i - 1], balls.added_inertia[i - 1]]
+        for value, other in zip(expected, coefficients, strict=True):
             # The elementary formulas cancel: a factor e^-3, below 10 for these, and a dozen roundings.
             assert abs(value / mpf(other.mid().str(130, radius=False)) - 1) <= mp.ldexp(
                 1, 12 - BITS
             )
-        assert found.added_inertia[i].is_zero()
+        assert balls.added_inertia[i].is_zero()
 
 
 def test_a_disc_is_approached_in_proportion_to_its_thickness() -> None:
@@ -232,14 +232,14 @@ def test_a_needle_is_a_row_of_slices() -> None:
 # The flow itself.
 
 
-def energy_of_turning(found: Ellipsoid) -> mpf:
+def energy_of_turning(ellipsoid: Ellipsoid) -> mpf:
     """Twice the kinetic energy of the fluid about an ellipsoid that turns about axis 1 at unit rate.
 
     The potential is C y z chi(l), chi(l) = int from l dt / ((b^2 + t)(c^2 + t) D) on the confocal
     surface l. C makes the normal velocity on the body that of the body, at one point; that it does so
     at all of them is checked at another. Green's theorem then gives the energy from the surface.
     """
-    a, b, c = (mp.convert(axis) for axis in found.semi_axes)
+    a, b, c = (mp.convert(axis) for axis in ellipsoid.semi_axes)
 
     def chi(start: mpf) -> mpf:
         def integrand(t: mpf) -> mpf:
@@ -273,18 +273,18 @@ def energy_of_turning(found: Ellipsoid) -> mpf:
     assert abs(constant(mpf("0.4"), mpf(2)) / C - 1) <= mpf("1e-6")
     # -rho (surface integral of phi dphi/dn); of y z (y n_z - z n_y) it is int (y^2 - z^2) dV.
     volume = 4 * mp.pi * a * b * c / 3
-    return -mp.convert(found.fluid_density) * C * chi(mpf(0)) * volume * (b**2 - c**2) / 5
+    return -mp.convert(ellipsoid.fluid_density) * C * chi(mpf(0)) * volume * (b**2 - c**2) / 5
 
 
 # One-sided differences of step 1e-9 leave 1e-8; the boundary condition is held to a hundred times that.
 FLOW_BOUND = mpf("1e-6")
 
 
-def flow_error(found: Ellipsoid) -> mpf:
+def flow_error(ellipsoid: Ellipsoid) -> mpf:
     """How far j_1 is off the energy of the flow that it stands for."""
     with mp.workdps(30):
-        _, j = added(found)
-        return abs(j[0] / energy_of_turning(found) - 1)
+        _, j = added(ellipsoid)
+        return abs(j[0] / energy_of_turning(ellipsoid) - 1)
 
 
 def disc_error() -> mpf:
@@ -293,8 +293,8 @@ def disc_error() -> mpf:
         return abs(j[0] * 45 / 16 - 1)
 
 
-def ball_error(found: Ellipsoid) -> mpf:
-    return deviation(found.body(), BITS + 40)
+def ball_error(ellipsoid: Ellipsoid) -> mpf:
+    return deviation(ellipsoid.body(), BITS + 40)
 
 
 @pytest.mark.parametrize("axes", [(1, 2, 3), (3, 2, 1), (2, Fraction(1, 2), 1)])
@@ -311,13 +311,13 @@ def test_a_wrong_sign_of_J_in_the_added_inertia_is_caught(monkeypatch: pytest.Mo
         alphas, divided = sound(axes)
         return alphas, [-J for J in divided]
 
-    found = shape((1, 2, 3))
-    assert (ball_error(found) <= ROUNDING, disc_error() <= mpf("1e-29")) == (True, True)
+    triaxial = shape((1, 2, 3))
+    assert (ball_error(triaxial) <= ROUNDING, disc_error() <= mpf("1e-29")) == (True, True)
     try:
         monkeypatch.setattr(ellipsoid, "lamb_integrals", turned)
         ellipsoid.inverse_inertias.cache_clear()
-        assert not ball_error(found) <= ROUNDING
-        assert not flow_error(found) <= FLOW_BOUND
+        assert not ball_error(triaxial) <= ROUNDING
+        assert not flow_error(triaxial) <= FLOW_BOUND
         assert not disc_error() <= mpf("1e-29")
     finally:
         monkeypatch.undo()

@@ -67,7 +67,7 @@ def test_in_a_sphere_y_stays_and_x_turns_about_it() -> None:
     """x(t) is x(0) turned about y by the angle -r |y| t, and y does not change."""
     scene = load("kirchhoff/ellipsoid-sphere")
     x, y, t = scene.initial.linear, scene.initial.angular, Fraction(19, 4)
-    found = solution(scene).motion([t], 40)
+    motion = solution(scene).motion([t], 40)
     with mp.workdps(50):
         size = mp.sqrt(mp.convert(dot(y, y)))
         turn = -mp.convert(scene.body.angular[0][0] * t) * size
@@ -77,8 +77,8 @@ def test_in_a_sphere_y_stays_and_x_turns_about_it() -> None:
             rest, aside = mp.convert(x[i]) - along, mp.convert(across[i]) / size
             expected = along + mp.cos(turn) * rest + mp.sin(turn) * aside
             # 40 digits of vectors of size one were asked for, and 2 are given for their sizes.
-            assert abs(found["linear_impulse"][0][i] - expected) <= mpf(10) ** -38
-            assert abs(found["angular_impulse"][0][i] - mp.convert(y[i])) <= mpf(10) ** -38
+            assert abs(motion["linear_impulse"][0][i] - expected) <= mpf(10) ** -38
+            assert abs(motion["angular_impulse"][0][i] - mp.convert(y[i])) <= mpf(10) ** -38
 
 
 def test_all_faults_of_an_ellipsoid_are_told_at_once() -> None:
@@ -113,11 +113,11 @@ def test_the_exact_motion_is_that_of_the_ellipsoid_to_any_digits() -> None:
     """At 150 digits the motion is that of the shape, which the body of 120 digits no longer is."""
     scene = replace(load("kirchhoff/ellipsoid-prolate"), track=frozenset())
     best = taylor_verify.exact(formed_to(scene, 250), [3], 160)["linear_impulse"][0]
-    found = taylor_verify.exact(scene, [3], 150)["linear_impulse"][0]
+    impulse = taylor_verify.exact(scene, [3], 150)["linear_impulse"][0]
     coarse = replace(scene, body=replace(scene.body, ellipsoid=None))
     other = taylor_verify.exact(coarse, [3], 150)["linear_impulse"][0]
     with mp.workdps(170):
-        assert mp.norm(list(found - best)) <= mpf(10) ** -149 * mp.norm(list(best))
+        assert mp.norm(list(impulse - best)) <= mpf(10) ** -149 * mp.norm(list(best))
         assert mp.norm(list(other - best)) > mpf(10) ** -130
 
 

@@ -55,14 +55,14 @@ def test_the_balls_contain_lambs_coefficients(name: str) -> None:
     asked = shaped(name)
     axes = SHAPES[name]
     with ctx.workprec(100):
-        found = Balls.of(posed(asked))
+        balls = Balls.of(posed(asked))
         volume = 4 * arb.pi() * ball(axes[0] * axes[1] * axes[2]) / 3
         for i in range(3):
             alpha = quadrature(axes, (i,))
             true = 1 / (volume + volume * alpha / (2 - alpha))
             assert true.rel_accuracy_bits() > 30
-            assert found.velocity[i, i].overlaps(true)
-            assert found.velocity[i, i].rel_accuracy_bits() > 90
+            assert balls.velocity[i, i].overlaps(true)
+            assert balls.velocity[i, i].rel_accuracy_bits() > 90
 
 
 @pytest.mark.parametrize("bits", [60, 100, 700])
@@ -150,9 +150,9 @@ def test_coefficients_rounded_to_nothing_are_seen(monkeypatch: pytest.MonkeyPatc
 
     def contains_the_motion() -> bool:
         with ctx.workprec(40):
-            found = Balls.of(posed(shaped("triaxial")))
+            balls = Balls.of(posed(shaped("triaxial")))
         exact = Balls.of(posed_exactly(rounded(shaped("triaxial"), 400)))
-        pairs = zip(found.spin.entries(), exact.spin.entries(), strict=True)
+        pairs = zip(balls.spin.entries(), exact.spin.entries(), strict=True)
         return all(got.overlaps(true) for got, true in pairs)
 
     with ctx.workprec(400):

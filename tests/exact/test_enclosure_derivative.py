@@ -60,7 +60,7 @@ BY_STEPS = (
 
 def enclosed(scene: Scene, times: Sequence[Fraction]) -> list[arb_mat]:
     """The derivatives at the times of the state by its start: products of those of the steps."""
-    system, found, pending = posed(scene), [], list(times[::-1])
+    system, derivatives, pending = posed(scene), [], list(times[::-1])
     with ctx.workprec(BITS):
         start = [ball(value) + arb(0, ball(SMALL).upper()) for value in system.start]
         run = Course.of(system, start, None, BITS, 10_000)
@@ -69,11 +69,11 @@ def enclosed(scene: Scene, times: Sequence[Fraction]) -> list[arb_mat]:
             step = run._step(box, length, times[-1] - now)
             assert step.flow is not None
             while pending and abs(pending[-1] - now) <= abs(step.length):
-                found.append(step.flow.at(ball((pending.pop() - now) / step.length)) * total)
+                derivatives.append(step.flow.at(ball((pending.pop() - now) / step.length)) * total)
             total = step.flow.at(arb(1)) * total
             box = carried(box, step.state, step.tube, step.flow, system.spans)
             now, length = now + step.length, 2 * step.length
-        return [in_momenta(scene, matrix) for matrix in found]
+        return [in_momenta(scene, matrix) for matrix in derivatives]
 
 
 def in_momenta(scene: Scene, matrix: arb_mat) -> arb_mat:
@@ -120,12 +120,12 @@ def test_norms_of_variational_steps_are_those_of_the_enclosed_derivative(name: s
     scene = replace(load(name), track=frozenset())
     last = scene.clock.elapsed[-1] / 4
     times = [last / 2, last]
-    found = transition(scene, [Fraction(0), *times])
+    flow = transition(scene, [Fraction(0), *times])
     for i, matrix in enumerate(enclosed(scene, times), start=1):
         floats = np.array([[float(midpoint(e)) for e in row] for row in matrix.tolist()])
         for (out, into), rows in blocks(scene).items():
             expected = np.linalg.norm(floats[rows], 2)
-            assert abs(found.norms(out, into)[i] - expected) <= 1e-3 * expected
+            assert abs(flow.norms(out, into)[i] - expected) <= 1e-3 * expected
 
 
 def blocks(scene: Scene) -> dict[tuple[str, str], tuple[slice, slice]]:

@@ -53,13 +53,13 @@ def exactly(rows: list[list[Fraction]]) -> tensors.Matrix:
 def test_the_series_of_the_frame_obey_its_equations(s: str) -> None:
     """q' = h q Omega/2 and d' = h (U + d x Omega), by a difference of the sums at 300 bits."""
     with ctx.workprec(300):
-        held, h, at, step = Balls.of(posed(GENERAL_SCENE)), arb("0.05"), arb(s), arb(2) ** -60
-        state = state_series(held, balls(posed(GENERAL_SCENE).start), h, 80)
-        frame = frame_series(held, state, h, with_centre=True)
+        body, h, at, step = Balls.of(posed(GENERAL_SCENE)), arb("0.05"), arb(s), arb(2) ** -60
+        state = state_series(body, balls(posed(GENERAL_SCENE).start), h, 80)
+        frame = frame_series(body, state, h, with_centre=True)
         z = placing.column(value(state, at))
         here, ahead, behind = (value(frame, point) for point in (at, at + step, at - step))
         rates = [(b - a) / (2 * step) for a, b in zip(behind, ahead, strict=True)]
-        spin, speed = (form.entries() for form in (held.spin * z, held.velocity * z))
+        spin, speed = (form.entries() for form in (body.spin * z, body.velocity * z))
         turned = [h / 2 * w for w in product(here[:4], [arb(0), *spin])]
         d = here[4:]
         way = [
@@ -75,11 +75,11 @@ def test_a_series_loses_no_bit_of_its_sum() -> None:
     """Coefficients that keep fewer bits the smaller they are leave the sum as sharp as it was."""
     scene = load("kirchhoff/general-body")
     with ctx.workprec(140):
-        held, start = Balls.of(posed(scene)), balls(posed(scene).start)
+        body, start = Balls.of(posed(scene)), balls(posed(scene).start)
         run = Course.of(posed(scene), start, None, 140, 10_000)
         (row,) = (row for _, row in run.rows([Fraction(1, 8)]))
         assert norm([arb(z.rad()) for z in row.state]) <= norm(row.state) * arb(2) ** -130
-        rows = state_series(held, start, arb("0.125"), run.order)
+        rows = state_series(body, start, arb("0.125"), run.order)
     with ctx.workprec(400):
         sharp = state_series(
             Balls.of(posed(scene)), balls(posed(scene).start), arb("0.125"), run.order

@@ -144,9 +144,9 @@ def is_carried(axes: Sequence[Sequence[Fraction | int]], patch: pytest.MonkeyPat
         radius = column([arb(1), arb(1) / 8, arb(3) / 4])
         zero = column([arb(0)] * 3)
         still: Any = SimpleNamespace(at=lambda s: moved)
-        held = Box([arb(1)] * 3, box.identity(3), radius)
+        enclosure = Box([arb(1)] * 3, box.identity(3), radius)
         around = Tube(zero, column([arb(1)] * 3), arb_mat(3, 3))
-        new = carried(held, [[arb(1)] * 3], around, still, [range(3)])
+        new = carried(enclosure, [[arb(1)] * 3], around, still, [range(3)])
     turned = fmpq_mat(3, 3, [rational(entry) for entry in new.axes.entries()])
     for signs in product((-1, 1), repeat=3):
         corner = [s * rational(r) for s, r in zip(signs, radius.entries(), strict=True)]

@@ -75,8 +75,8 @@ def test_attitude_agrees_with_taylor(name: str) -> None:
 @pytest.mark.parametrize("name", MOTIONS)
 def test_attitude_obeys_its_equation(name: str) -> None:
     """R' = R [omega]x, by a central difference of the closed form at sixty digits."""
-    found, t, h = closed_form(scene(name)), Fraction(11, 4), Fraction(1, 10**20)
-    motion = found.motion([t - h, t, t + h], 75)
+    exact, t, h = closed_form(scene(name)), Fraction(11, 4), Fraction(1, 10**20)
+    motion = exact.motion([t - h, t, t + h], 75)
     with mp.workdps(75):
         before, R, after = motion["attitude"]
         slope = (after - before) / (2 * mp.convert(h))

@@ -148,11 +148,15 @@ def test_a_float_reads_the_text_as_the_number() -> None:
 
 def test_the_document_has_the_keys_of_the_contract(exact: Asked) -> None:
     """scene, route, evidence, digits, regime and rows; a row has t, what is tracked, and radius."""
-    found = exact("euler/generic", "--at", "10", "--digits", "12")
+    document = exact("euler/generic", "--at", "10", "--digits", "12")
     assert exact.status == 0
-    assert list(found) == ["scene", "route", "evidence", "digits", "regime", "rows"]
-    assert (found["scene"], found["route"], found["digits"]) == ("euler/generic", "arb", 12)
-    (row,) = found["rows"]
+    assert list(document) == ["scene", "route", "evidence", "digits", "regime", "rows"]
+    assert (document["scene"], document["route"], document["digits"]) == (
+        "euler/generic",
+        "arb",
+        12,
+    )
+    (row,) = document["rows"]
     assert list(row) == ["t", "omega", "radius"]
     assert all(isinstance(text, str) and significant(text) == 12 for text in row["omega"])
 
@@ -223,11 +227,11 @@ def test_the_start_is_the_initial_state_itself(exact: Asked, scene: str) -> None
     asked = load(scene)
     at = ("--at", str(asked.clock.start), "--digits", "40", "--route", "taylor")
     (row,) = exact(scene, *at)["rows"]
-    found, start = vectors(row), asked.initial
-    told = {"omega": start.omega} if isinstance(start, Spin) else {"linear_impulse": start.linear}
-    for name, vector in told.items():
-        assert found[name] == [Fraction(decimal_text(value, 40)) for value in vector]
-    assert found["attitude"] == [entry for row in rotation_matrix(start.attitude) for entry in row]
+    values, start = vectors(row), asked.initial
+    stated = {"omega": start.omega} if isinstance(start, Spin) else {"linear_impulse": start.linear}
+    for name, vector in stated.items():
+        assert values[name] == [Fraction(decimal_text(value, 40)) for value in vector]
+    assert values["attitude"] == [entry for row in rotation_matrix(start.attitude) for entry in row]
 
 
 def test_small_components_have_all_their_digits(exact: Asked, tmp_path: Any) -> None:
@@ -283,36 +287,36 @@ def test_a_time_that_is_no_number_is_a_wrong_call(exact: Asked, at: str) -> None
 @pytest.mark.parametrize("route", ["arb", "mpmath"])
 def test_a_closed_form_that_is_missing_is_said_and_the_exit_is_3(exact: Asked, route: str) -> None:
     """`regime` is "no closed form" and there are no rows; the text names the route that has some."""
-    found = exact("euler/constant-moment", "--at", "1", "--route", route)
+    document = exact("euler/constant-moment", "--at", "1", "--route", route)
     assert exact.status == 3
-    assert found["regime"] == "no closed form"
-    assert found["rows"] == []
+    assert document["regime"] == "no closed form"
+    assert document["rows"] == []
     assert "--route taylor" in exact.error
 
 
 def test_without_a_closed_form_the_answer_is_enclosed_by_taylor_series(exact: Asked) -> None:
     """Nobody has to ask for the route: the exit is 0, and the radius is proven."""
-    found = exact("euler/constant-moment", "--at", "1")
+    document = exact("euler/constant-moment", "--at", "1")
     assert exact.status == 0
-    assert (found["regime"], found["route"]) == ("no closed form", "taylor")
-    assert found["evidence"] == "proven"
-    assert len(found["rows"]) == 1
+    assert (document["regime"], document["route"]) == ("no closed form", "taylor")
+    assert document["evidence"] == "proven"
+    assert len(document["rows"]) == 1
 
 
 def test_only_balls_are_called_proven(exact: Asked) -> None:
     """The second formulas settle a number by agreement, and say so."""
     routes = ("arb", "mpmath", "taylor")
-    said = {r: exact("euler/generic", "--at", "1", "--route", r)["evidence"] for r in routes}
-    assert said == {"arb": "proven", "mpmath": "agreed", "taylor": "proven"}
+    evidence = {r: exact("euler/generic", "--at", "1", "--route", r)["evidence"] for r in routes}
+    assert evidence == {"arb": "proven", "mpmath": "agreed", "taylor": "proven"}
 
 
 def test_a_motion_that_does_not_settle_is_undecided(exact: Asked) -> None:
     """Where the Taylor route gives up, the exit is 3 and the reason is told."""
-    found = exact("euler/constant-moment", "--at", "1e30", "--route", "taylor")
+    document = exact("euler/constant-moment", "--at", "1e30", "--route", "taylor")
     assert exact.status == 3
-    assert found["rows"] == []
+    assert document["rows"] == []
     assert "undecided" in exact.error
-    assert "undecided" in found["because"]
+    assert "undecided" in document["because"]
 
 
 @pytest.mark.parametrize(

@@ -476,9 +476,9 @@ def test_gap_of_a_full_tensor_is_accurate_relatively(moment, gap):
     spin = turned(OBLIQUE, spinning(moments, vector(1, 1, 1)))
     with mp.workdps(30):
         frame = principal_frame(spin)
-        found = frame.upper_gap if moment == 1 else frame.lower_gap
+        frame_gap = frame.upper_gap if moment == 1 else frame.lower_gap
         # A dozen roundings of 30 digits.
-        assert distance([found], [mp.convert(Fraction(gap))]) <= one_ulp(29)
+        assert distance([frame_gap], [mp.convert(Fraction(gap))]) <= one_ulp(29)
 
 
 def test_detest_b5_as_a_body():
@@ -632,10 +632,10 @@ def test_evaluation_is_repeatable():
 def test_motion_recurs_after_the_period(name: str) -> None:
     """omega(t + P) = omega(t) for the period P among the elements, and m + m' = 1."""
     scene = load(f"euler/{name}")
-    found, numbers = closed_form(scene), elements(scene, 50)
+    exact, numbers = closed_form(scene), elements(scene, 50)
     with mp.workdps(60):
         period = Fraction(*numbers["period"].value.as_integer_ratio())
-        now, later = found.motion([Fraction(3), Fraction(3) + period], 45)["omega"]
+        now, later = exact.motion([Fraction(3), Fraction(3) + period], 45)["omega"]
         # The period is known to 50 digits and omega changes by less than ten of itself in unit time.
         assert distance(later, now) <= mpf(10) ** -43
         if "m" in numbers:
@@ -644,6 +644,6 @@ def test_motion_recurs_after_the_period(name: str) -> None:
 
 def test_separatrix_has_no_period() -> None:
     """On the separatrix m is 1 and there is a rate but no period."""
-    found = elements(load("euler/separatrix"), 30)
-    assert "period" not in found
-    assert found["m_prime"].value == 0
+    orbit = elements(load("euler/separatrix"), 30)
+    assert "period" not in orbit
+    assert orbit["m_prime"].value == 0

@@ -172,19 +172,19 @@ def flat(rows: Any) -> list[arb]:
 
 def agrees_with_mpmath(spin: FreeSpin, at: Sequence[Fraction]) -> None:
     """The proven balls meet the other closed form, and are as narrow as was asked."""
-    found = enclosed(scene(spin)).motion(at, DIGITS)
+    motion = enclosed(scene(spin)).motion(at, DIGITS)
     other = closed.closed_form(scene(spin)).motion(at, DIGITS)
-    assert set(found.quantities) == set(other.quantities) == {"omega", "attitude"}
-    assert all(r <= mpf(10) ** -DIGITS for r in found.radius)
-    assert overlap(found, other)
+    assert set(motion.quantities) == set(other.quantities) == {"omega", "attitude"}
+    assert all(r <= mpf(10) ** -DIGITS for r in motion.radius)
+    assert overlap(motion, other)
 
 
 def keeps_its_integrals(spin: FreeSpin, at: Sequence[Fraction], bits: int = 600) -> None:
     """The balls of 2T, H^2, R^T R and R I w contain what they were at the start, exactly."""
     with ctx.workprec(bits):
-        found = free_rotation(spin, IDENTITY).enclose(at, bits)
+        enclosure = free_rotation(spin, IDENTITY).enclose(at, bits)
         inertia = arb_mat([[ball(entry) for entry in row] for row in spin.inertia])
-        for omega, rows in zip(found["omega"], found["attitude"], strict=True):
+        for omega, rows in zip(enclosure["omega"], enclosure["attitude"], strict=True):
             w, R = arb_mat(3, 1, omega), arb_mat(rows)
             H = inertia * w
             assert holds((w.transpose() * H)[0, 0], spin.twice_energy)
@@ -196,10 +196,10 @@ def keeps_its_integrals(spin: FreeSpin, at: Sequence[Fraction], bits: int = 600)
             assert all(entry.rad() <= arb(10) ** -40 for entry in gram.entries())
 
 
-def holds(found: arb, value: Fraction | int) -> bool:
+def holds(enclosure: arb, value: Fraction | int) -> bool:
     """Whether a ball contains a rational, which is itself a ball, but a far narrower one."""
     with ctx.workprec(10_000):
-        return bool(found.contains(ball(value)))
+        return bool(enclosure.contains(ball(value)))
 
 
 def obeys_its_equations(spin: FreeSpin, t: Fraction, bits: int = 1200) -> None:
@@ -212,8 +212,8 @@ def obeys_its_equations(spin: FreeSpin, t: Fraction, bits: int = 1200) -> None:
     h = Fraction(1, 10**60)
     with ctx.workprec(bits):
         before, now, after = range(3)
-        found = free_rotation(spin, TILTED).enclose([t - h, t, t + h], bits)
-        omega, rows = found["omega"], found["attitude"]
+        enclosure = free_rotation(spin, TILTED).enclose([t - h, t, t + h], bits)
+        omega, rows = enclosure["omega"], enclosure["attitude"]
         size = sum((abs(w) for w in omega[now]), arb(0)).upper()
         inverse = tensors.inverse(spin.inertia)
         rho = ball(sum(map(abs, spin.momentum), Fraction(0)))
@@ -270,8 +270,8 @@ def test_any_body_agrees_with_mpmath(spin: FreeSpin, t: Fraction) -> None:
 def test_agrees_with_taylor(name: str) -> None:
     """The Taylor route, which knows no elliptic function, finds the same motion."""
     at = times("7/3", "-5/2", 11)
-    found = enclosed(scene(SPINS[name])).motion(at, 40)
-    assert overlap(found, TaylorSolution(scene(SPINS[name])).motion(at, 40))
+    motion = enclosed(scene(SPINS[name])).motion(at, 40)
+    assert overlap(motion, TaylorSolution(scene(SPINS[name])).motion(at, 40))
 
 
 @pytest.mark.parametrize("name", SPINS)
@@ -302,11 +302,11 @@ class Coarse(Enclosed):
         with pytest.MonkeyPatch.context() as patch:
             for module in (fixed_axis, theta):
                 patch.setattr(module, "ball", lambda number: ball(number) + spread)
-            found = [course.at(t, True) for t in elapsed]
+            places = [course.at(t, turned=True) for t in elapsed]
         if self._name == "omega":
-            return {"omega": [omega for omega, _ in found]}
+            return {"omega": [omega for omega, _ in places]}
         start = unit(TILTED)
-        return {"attitude": [rotation_rows(product(start, turn)) for _, turn in found]}
+        return {"attitude": [rotation_rows(product(start, turn)) for _, turn in places]}
 
 
 def radius_covers_the_error(spin: FreeSpin) -> None:
@@ -314,11 +314,11 @@ def radius_covers_the_error(spin: FreeSpin) -> None:
     rotation, spread = free_rotation(spin, TILTED), Fraction(1, 10**25)
     at = [Fraction(k, 3) for k in range(40)]
     for name in ("omega", "attitude"):
-        found = Coarse(rotation, name, spread).motion(at, 20)
+        motion = Coarse(rotation, name, spread).motion(at, 20)
         for moved in (spread, -spread):
             true = rotation.motion([t + moved for t in at], DIGITS)
             with mp.workdps(2 * DIGITS):
-                rows = zip(found[name], true[name], found.radius, true.radius, strict=True)
+                rows = zip(motion[name], true[name], motion.radius, true.radius, strict=True)
                 assert all(_norm(x - y) <= r * _scale(x) + s * _scale(y) for x, y, r, s in rows)
 
 
@@ -491,8 +491,8 @@ def test_exact_zeros_survive() -> None:
         (vector(3, 2, 1), vector(1, "-0.7", 0)),
         (vector(1, 3, 2), vector("0.9", "0.1", 0)),
     ):
-        found = free_rotation(spinning(moments, omega), IDENTITY).enclose([Fraction(0)], 100)
-        assert [w.is_zero() for w in found["omega"][0]] == [w == 0 for w in omega]
+        enclosure = free_rotation(spinning(moments, omega), IDENTITY).enclose([Fraction(0)], 100)
+        assert [w.is_zero() for w in enclosure["omega"][0]] == [w == 0 for w in omega]
 
 
 @pytest.mark.parametrize("oblique", [False, True])
@@ -501,10 +501,10 @@ def test_complementary_parameter_keeps_its_digits(exponent: int, oblique: bool) 
     """m' is known to the working precision relatively, however small it is, and m + m' = 1."""
     spin = near_separatrix(Fraction(1, 10**exponent))
     with ctx.workprec(200):
-        found = Moduli(turned(OBLIQUE, spin) if oblique else spin)
+        moduli = Moduli(turned(OBLIQUE, spin) if oblique else spin)
         # A few dozen roundings; the rotation of this tensor costs a handful of bits more.
-        assert found.m_prime.rel_accuracy_bits() >= 180
-        assert (found.m + found.m_prime).contains(1)
+        assert moduli.m_prime.rel_accuracy_bits() >= 180
+        assert (moduli.m + moduli.m_prime).contains(1)
 
 
 @pytest.mark.parametrize("gap", [Fraction(1), Fraction(1, 10**6), TINY])
@@ -516,15 +516,15 @@ def test_gaps_of_a_full_tensor_keep_their_digits(gap: Fraction, lower: bool) -> 
     with ctx.workprec(300):
         frame = principal_balls(spin)
         J1, J2, J3 = moments
-        for found, exact in (
+        for difference, exact in (
             *zip(frame.moments, moments, strict=True),
             (frame.upper_gap, J1 - J2),
             (frame.lower_gap, J2 - J3),
             (frame.whole_gap, J1 - J3),
         ):
-            assert holds(found, exact)
+            assert holds(difference, exact)
             # A dozen roundings.
-            assert found.rel_accuracy_bits() >= 290
+            assert difference.rel_accuracy_bits() >= 290
 
 
 @given(spins().filter(lambda s: s.regime in (Regime.MAX_AXIS, Regime.MIN_AXIS, Regime.SEPARATRIX)))
@@ -532,13 +532,13 @@ def test_gaps_of_a_full_tensor_keep_their_digits(gap: Fraction, lower: bool) -> 
 def test_principal_frame_is_right_handed_and_diagonalises(spin: FreeSpin) -> None:
     """(a, b, c) are orthonormal with determinant +1, and I e = J e, all within the balls."""
     with ctx.workprec(800):
-        found = Moduli(spin)
-        axes = arb_mat([list(axis) for axis in found.axes])
+        moduli = Moduli(spin)
+        axes = arb_mat([list(axis) for axis in moduli.axes])
         inertia = arb_mat([[ball(entry) for entry in row] for row in spin.inertia])
         gram, image = axes * axes.transpose(), axes * inertia
         assert all(gram[i, j].contains(int(i == j)) for i in range(3) for j in range(3))
         assert axes.det() > 0
-        for i, J in enumerate(found.moments):
+        for i, J in enumerate(moduli.moments):
             assert all(0 in image[i, j] - J * axes[i, j] for j in range(3))
 
 
@@ -568,9 +568,9 @@ def moves_without_a_jump(spin: FreeSpin) -> None:
     h = 2 / (rate_bound(spin) + Fraction(1, 10))
     at = [k * h for k in range(int(period(spin) / h) + 2)] if is_periodic(spin) else []
     at = at or [k * h for k in range(-100, 100)]
-    found = quaternions(scene(spin), at, 15)
+    turns = quaternions(scene(spin), at, 15)
     with mp.workdps(30):
-        assert all(mp.norm(list(q - p)) < 1 for p, q in pairwise(found))
+        assert all(mp.norm(list(q - p)) < 1 for p, q in pairwise(turns))
 
 
 def quaternions(asked: Scene, at: Sequence[Fraction], digits: int) -> np.ndarray[Any, Any]:
@@ -578,9 +578,9 @@ def quaternions(asked: Scene, at: Sequence[Fraction], digits: int) -> np.ndarray
 
 
 def rotation_of(asked: Scene) -> RotationBalls:
-    found = enclosed(asked)
-    assert isinstance(found, RotationBalls)
-    return found
+    rotation = enclosed(asked)
+    assert isinstance(rotation, RotationBalls)
+    return rotation
 
 
 def matrix_of(q: Sequence[mpf]) -> np.ndarray[Any, Any]:
@@ -612,12 +612,12 @@ def test_quaternion_squares_to_the_attitude(name: str) -> None:
     spin = {**SPINS, **EXTREMES}[name]
     at = times(0, "7/3", "-5/2", 31, LONG, -LONG)
     rotation = rotation_of(scene(spin))
-    found, frames = rotation.quaternion(at, DIGITS), rotation.motion(at, DIGITS)["attitude"]
-    assert all(r <= mpf(10) ** -DIGITS for r in found.radius)
+    motion, frames = rotation.quaternion(at, DIGITS), rotation.motion(at, DIGITS)["attitude"]
+    assert all(r <= mpf(10) ** -DIGITS for r in motion.radius)
     with mp.workdps(2 * DIGITS):
         # R is quadratic in q: at most four radii per entry and its own, on nine entries.
         bound = 15 * mpf(10) ** -DIGITS
-        for q, R in zip(found["quaternion"], frames, strict=True):
+        for q, R in zip(motion["quaternion"], frames, strict=True):
             assert abs(mp.norm(list(q)) - 1) <= bound
             assert _norm(matrix_of(q) - R) <= bound
 
@@ -627,10 +627,13 @@ def test_quaternion_starts_as_the_scene_has_it(name: str) -> None:
     """At the start it is the quaternion given over its norm, in its own sign."""
     for sign in (1, -1):
         given_one: Quaternion = tuple(sign * c for c in TILTED)  # type: ignore[assignment]
-        (found,) = quaternions(scene(SPINS[name], given_one), [Fraction(0)], DIGITS)
+        (quaternion,) = quaternions(scene(SPINS[name], given_one), [Fraction(0)], DIGITS)
         with mp.workdps(2 * DIGITS):
             exact = [mp.convert(c) / mp.sqrt(15) for c in given_one]
-            assert mp.norm([p - q for p, q in zip(found, exact, strict=True)]) <= mpf(10) ** -DIGITS
+            assert (
+                mp.norm([p - q for p, q in zip(quaternion, exact, strict=True)])
+                <= mpf(10) ** -DIGITS
+            )
 
 
 @pytest.mark.parametrize("name", [*SPINS, "m' ~ 1e-60", "beside the unstable axis"])
@@ -667,8 +670,8 @@ def test_quaternion_keeps_its_sign_for_a_million_million_seconds(name: str) -> N
 def test_route_and_regime_are_named() -> None:
     """The route is arb, and the word of the regime is the one the other route prints."""
     for name, spin in SPINS.items():
-        found = enclosed(scene(spin))
-        assert (found.route, found.regime) == ("arb", name.split(",")[0])
+        exact = enclosed(scene(spin))
+        assert (exact.route, exact.regime) == ("arb", name.split(",")[0])
 
 
 def test_only_what_is_tracked_is_answered() -> None:

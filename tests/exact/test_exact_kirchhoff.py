@@ -229,9 +229,9 @@ def test_keeps_the_integrals(seed: int, pattern: str) -> None:
         promised = [energy, *map(mp.convert, (nutation.F2, nutation.FG, nutation.y3))]
         for s in states(closed_form(scene(solid, start)), times, DIGITS + 5):
             x, y = s[:3], s[3:]
-            kept = [_energy(solid, s), mp.fdot(x, x), mp.fdot(x, y), y[2]]
+            integrals = [_energy(solid, s), mp.fdot(x, x), mp.fdot(x, y), y[2]]
             # Each is quadratic in numbers below 10: an error grows at most a hundredfold.
-            assert distance(kept, promised, DIGITS) <= AGREEMENT
+            assert distance(integrals, promised, DIGITS) <= AGREEMENT
 
 
 def _energy(solid: Clebsch, s: Sequence[mpf]) -> mpf:
@@ -318,8 +318,8 @@ def test_one_evaluation_gets_better_with_its_digits() -> None:
     solution = closed_form(scene(solid, start))
     best = states(solution, [Fraction(60)], 90)[0]
     for digits in (20, 40, 60):
-        found = states(solution, [Fraction(60)], digits)[0]
-        assert distance(found, best, 90) <= mpf(10) ** -digits
+        state = states(solution, [Fraction(60)], digits)[0]
+        assert distance(state, best, 90) <= mpf(10) ** -digits
 
 
 def test_rest_stays_at_rest() -> None:
@@ -353,12 +353,14 @@ def test_real_roots_are_enclosed(gap: Fraction) -> None:
     for root in roots:
         polynomial = _times(polynomial, (Fraction(1), -root))
     for factor in ((Fraction(1), Fraction(-9)), (Fraction(1), Fraction(0), gap)):
-        found = RealRoots(_times(polynomial, factor))
-        expected = [*roots, Fraction(9)][: found.number]
+        real_roots = RealRoots(_times(polynomial, factor))
+        expected = [*roots, Fraction(9)][: real_roots.number]
         for width in (gap / 100, gap / 10**30):
-            enclosed = found.enclosed(width)
+            enclosed = real_roots.enclosed(width)
             assert all(abs(a - b) <= width for a, b in zip(enclosed, expected, strict=True))
-        assert [found.number_up_to(root) for root in expected] == list(range(1, found.number + 1))
+        assert [real_roots.number_up_to(root) for root in expected] == list(
+            range(1, real_roots.number + 1)
+        )
 
 
 def _times(a: Vector, b: Vector) -> Vector:
@@ -385,11 +387,11 @@ def test_the_quartic_is_the_square_of_the_speed(seed: int) -> None:
 @pytest.mark.parametrize("name", ["four-real-roots", "two-real-roots", "cubic", "trigonometric"])
 def test_x3_recurs_after_the_period(name: str) -> None:
     """x3(t + P) = x3(t) for the period among the elements, and m + m' = 1 where it is elliptic."""
-    found = closed_form(load(f"kirchhoff/{name}"))
-    elements = found.elements(50)
+    exact = closed_form(load(f"kirchhoff/{name}"))
+    elements = exact.elements(50)
     with mp.workdps(60):
         period = Fraction(*(int(part) for part in elements["period"].as_integer_ratio()))
-        now, later = found.motion([Fraction(3), Fraction(3) + period], 45)["linear_impulse"]
+        now, later = exact.motion([Fraction(3), Fraction(3) + period], 45)["linear_impulse"]
         # The period is known to 50 digits, and x3 changes by some units in unit time.
         assert abs(later[2] - now[2]) <= mpf(10) ** -43
         if "m" in elements:

@@ -131,15 +131,15 @@ def scene(name: str) -> Scene:
 
 def off_taylor(asked: Scene, times: Sequence[Fraction], digits: int = DIGITS) -> mpf:
     """The largest error of an attitude or a centre, by the Taylor route."""
-    found = closed_form(asked).motion(times, digits)
+    motion = closed_form(asked).motion(times, digits)
     series = TaylorSolution(asked).motion(times, digits)
-    return max(off(found[name], series[name]) for name in ("attitude", "centre"))
+    return max(off(motion[name], series[name]) for name in ("attitude", "centre"))
 
 
-def off(found: Any, expected: Any) -> mpf:
+def off(values: Any, expected: Any) -> mpf:
     """The largest difference of two arrays."""
     with mp.workdps(DIGITS + 40):
-        return max(abs(a - b) for a, b in zip(np.ravel(found), np.ravel(expected), strict=True))
+        return max(abs(a - b) for a, b in zip(np.ravel(values), np.ravel(expected), strict=True))
 
 
 def off_space_integrals(asked: Scene, motion: Motion) -> mpf:
@@ -200,13 +200,13 @@ def test_the_pole_is_passed(name: str) -> None:
 def test_starts_where_it_is_told_to(name: str) -> None:
     """At time zero R is the matrix of the quaternion, whose length does not matter; c its start."""
     asked = scene(name)
-    found = closed_form(asked).motion([Fraction(0)], DIGITS)
+    motion = closed_form(asked).motion([Fraction(0)], DIGITS)
     with mp.workdps(DIGITS + 40):
-        assert off(found["attitude"][0], numbers(rotation_matrix(TILTED))) <= AGREEMENT
-        assert off(found["centre"][0], numbers(ASIDE)) <= AGREEMENT
+        assert off(motion["attitude"][0], numbers(rotation_matrix(TILTED))) <= AGREEMENT
+        assert off(motion["centre"][0], numbers(ASIDE)) <= AGREEMENT
     longer = replace(asked.initial, attitude=tuple(-7 * c for c in TILTED))
     again = closed_form(replace(asked, initial=longer)).motion([Fraction(0)], DIGITS)
-    assert off(found["attitude"], again["attitude"]) <= AGREEMENT
+    assert off(motion["attitude"], again["attitude"]) <= AGREEMENT
 
 
 @by_motion
@@ -214,12 +214,12 @@ def test_impulse_and_moment_are_fixed_in_space(name: str) -> None:
     """R x and R y + c x R x stay as they were, for ever, and R stays a rotation."""
     asked = scene(name)
     # The centre is some 1e5 away by then, of which DIGITS are promised; the moment has its errors.
-    found = closed_form(asked).motion(
+    motion = closed_form(asked).motion(
         [Fraction(1, 7), Fraction(10**5), Fraction(-12345)], DIGITS + 7
     )
-    assert off_space_integrals(asked, found) <= AGREEMENT
+    assert off_space_integrals(asked, motion) <= AGREEMENT
     with mp.workdps(DIGITS + 20):
-        for R in found["attitude"]:
+        for R in motion["attitude"]:
             assert off(R @ R.T, np.eye(3, dtype=int)) <= AGREEMENT
             assert mp.det(mp.matrix(R.tolist())) > 0
 
@@ -284,7 +284,7 @@ def test_a_million_nutations_are_a_power_of_one(name: str) -> None:
     with mp.workdps(digits + 10):
         period = Fraction(*map(int, solution.elements(digits + 5)["period"].as_integer_ratio()))
     once = TaylorSolution(asked).motion([period], digits)
-    found = solution.motion([n * period], DIGITS + 8)
+    motion = solution.motion([n * period], DIGITS + 8)
     with mp.workdps(digits + 10):
         x, y = once["linear_impulse"][0], once["angular_impulse"][0]
         x0, y0 = numbers(asked.initial.linear), numbers(asked.initial.angular)
@@ -297,8 +297,8 @@ def test_a_million_nutations_are_a_power_of_one(name: str) -> None:
         step[3, 3] = mpf(1)
         whole = np.linalg.matrix_power(step, n)
         R, c = R0 @ whole[:3, :3] @ about_axis(turn**-n), numbers(ASIDE) + R0 @ whole[:3, 3]
-        assert off(found["attitude"][0], R) <= AGREEMENT
-        assert off(found["centre"][0], c) <= AGREEMENT * mp.norm(list(c))
+        assert off(motion["attitude"][0], R) <= AGREEMENT
+        assert off(motion["centre"][0], c) <= AGREEMENT * mp.norm(list(c))
 
 
 def about_axis(turn: Any) -> Array:
@@ -337,10 +337,10 @@ def test_a_short_way_has_its_digits() -> None:
 def test_answers_what_is_tracked(name: str, track: set[str]) -> None:
     """Attitude (n, 3, 3) and centre (n, 3) are there if tracked, and only then."""
     asked = replace(scene(name), track=frozenset(track))
-    found: Quantities = closed_form(asked).evaluate([Fraction(1), Fraction(2)], 20)
-    assert set(found) == {"linear_impulse", "angular_impulse"} | track
+    quantities: Quantities = closed_form(asked).evaluate([Fraction(1), Fraction(2)], 20)
+    assert set(quantities) == {"linear_impulse", "angular_impulse"} | track
     shapes = {"attitude": (2, 3, 3), "centre": (2, 3)}
-    assert all(found[name].shape == shapes[name] for name in track)
+    assert all(quantities[name].shape == shapes[name] for name in track)
 
 
 @pytest.mark.parametrize("m", ["1e-40", "1/10", "9/10", "1 - 1e-40"])
@@ -354,9 +354,9 @@ def test_the_squared_sine_is_integrated(m: str) -> None:
         u = [K / 3, -K * mpf(9) / 10]
         expected = [v - mp.ellipe(mp.asin(mp.ellipfun("sn", v, m=m_)), m_) for v in u]
     with mp.workdps(50):
-        found = [Landen(+m_, +m_prime).squared_sine(+v) for v in u]
+        integrals = [Landen(+m_, +m_prime).squared_sine(+v) for v in u]
         # 50 digits of u, which is below 100.
-        assert max(abs(a - b) for a, b in zip(found, expected, strict=True)) <= mpf(10) ** -46
+        assert max(abs(a - b) for a, b in zip(integrals, expected, strict=True)) <= mpf(10) ** -46
 
 
 # Broken on purpose: what the tests above see, and what the integrals in space do not.
@@ -399,13 +399,13 @@ def test_a_fixed_chart_at_the_pole_is_seen(monkeypatch: pytest.MonkeyPatch) -> N
     """With Euler's theta kept in [0, pi] the attitude is wrong once the axis has passed the pole."""
     root = orbit.Pole.root
 
-    def kept(pole: orbit.Pole, place: Any, weight: mpf) -> tuple[mpf, mpf]:
+    def fixed_chart(pole: orbit.Pole, place: Any, weight: mpf) -> tuple[mpf, mpf]:
         size, slope = root(pole, place, weight)
         return abs(size), slope
 
     asked = scene("through the pole")
     passed = _passages(asked)
-    monkeypatch.setattr(orbit.Pole, "root", kept)
+    monkeypatch.setattr(orbit.Pole, "root", fixed_chart)
     before, after = passed - Fraction(1, 5), passed + Fraction(1, 5)
     assert off_taylor(asked, [before]) <= AGREEMENT
     assert off_taylor(asked, [after]) > GROSS

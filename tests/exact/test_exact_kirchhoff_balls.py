@@ -161,10 +161,10 @@ def is_narrow(motion: Motion, digits: int) -> bool:
 def agrees_with_taylor(problem: Scene, times: Sequence[Fraction]) -> bool:
     """Impulses, attitude and centre."""
     try:
-        found = enclosed(problem).motion(times, DIGITS)
+        motion = enclosed(problem).motion(times, DIGITS)
     except Unsettled:
         return False
-    return is_narrow(found, DIGITS) and overlap(found, truth(problem, tuple(times)))
+    return is_narrow(motion, DIGITS) and overlap(motion, truth(problem, tuple(times)))
 
 
 @cache
@@ -175,8 +175,8 @@ def truth(problem: Scene, times: tuple[Fraction, ...]) -> Motion:
 def agrees_with_jacobi(problem: Scene, times: Sequence[Fraction]) -> bool:
     """Impulses alone, by Jacobi's functions."""
     problem = replace(problem, track=frozenset())
-    found = enclosed(problem).motion(times, DIGITS)
-    return is_narrow(found, DIGITS) and overlap(found, closed_form(problem).motion(times, DIGITS))
+    motion = enclosed(problem).motion(times, DIGITS)
+    return is_narrow(motion, DIGITS) and overlap(motion, closed_form(problem).motion(times, DIGITS))
 
 
 BOTH_WAYS = vector("3/2", 4, "-7/3", 0, "1/1000000007")
@@ -211,9 +211,9 @@ def test_begins_as_told(solid: Clebsch, start: State, kind: str) -> None:
         motion = enclosed(problem).motion([Fraction(0)], DIGITS)
         assert is_narrow(motion, DIGITS)
         with mp.workdps(DIGITS + 20):
-            told = [mp.convert(c) for c in (*start, *centre)]
-            found = [motion[n][0] for n in ("linear_impulse", "angular_impulse", "centre")]
-            for a, b in zip(chain(*found), told, strict=True):
+            stated = [mp.convert(c) for c in (*start, *centre)]
+            vectors = [motion[n][0] for n in ("linear_impulse", "angular_impulse", "centre")]
+            for a, b in zip(chain(*vectors), stated, strict=True):
                 assert abs(a - b) <= motion.radius[0] * 10
 
 
@@ -233,8 +233,8 @@ def test_a_ball_at_any_precision_holds_the_truth(
         except Undecidable:
             pytest.skip("a branch is open at this precision")
     for name, rows in coarse.items():
-        found = np.array(rows, dtype=object).flat
-        for narrow, wide in zip(fine[name].flat, found, strict=True):
+        coarse_balls = np.array(rows, dtype=object).flat
+        for narrow, wide in zip(fine[name].flat, coarse_balls, strict=True):
             # The finer number is known to 80 digits of its vector, which is below 10000.
             blur = Fraction(1, 10**76)
             exactly = exact_value(narrow)
@@ -262,8 +262,8 @@ def test_obeys_the_equations_of_motion(solid: Clebsch, start: State, kind: str) 
                 {n: motion[n][k + d] for n in motion.quantities} for d in (-1, 0, 1)
             )
             for name, expected in rates(solid, now).items():
-                found = (after[name] - before[name]) / (2 * mp.convert(STEP))
-                assert _distance(found, expected) <= LEFT
+                slope = (after[name] - before[name]) / (2 * mp.convert(STEP))
+                assert _distance(slope, expected) <= LEFT
 
 
 def rates(solid: Clebsch, now: dict[str, Any]) -> dict[str, Any]:
@@ -462,9 +462,9 @@ def period(problem: Scene) -> Fraction:
     if not recurs(problem):
         return Fraction(1)
     with ctx.workprec(300):
-        found = _course(problem).lattice.period
-        assert found is not None
-        mantissa, exponent = found.mid().man_exp()
+        real_period = _course(problem).lattice.period
+        assert real_period is not None
+        mantissa, exponent = real_period.mid().man_exp()
     return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
 
 

@@ -157,9 +157,9 @@ def test_agrees_with_the_taylor_route(solid: Clebsch, start: Sequence[Fraction],
     """The Taylor route from the same start leads to the same states, both ways in time."""
     times = [Fraction(3, 2), Fraction(12), Fraction(-7, 3), Fraction(-10)]
     problem = scene(solid, start)
-    found = rows(closed_form(problem).motion(times, DIGITS))
+    states = rows(closed_form(problem).motion(times, DIGITS))
     expected = rows(TaylorSolution(problem).motion(times, DIGITS))
-    for a, b in zip(found, expected, strict=True):
+    for a, b in zip(states, expected, strict=True):
         assert distance(a, b) <= AGREEMENT
 
 
@@ -196,16 +196,16 @@ def random_start(rng: random.Random, place: str) -> tuple[Fraction, ...]:
 
 def random_double_roots(place: str, number: int) -> list[tuple[Clebsch, tuple[Fraction, ...]]]:
     """Bodies with p, q, r fixed whose quartic from a random start has a random double root."""
-    rng, found = random.Random(place), list[tuple[Clebsch, tuple[Fraction, ...]]]()
-    while len(found) < number:
+    rng, cases = random.Random(place), list[tuple[Clebsch, tuple[Fraction, ...]]]()
+    while len(cases) < number:
         start, d = random_start(rng, place), Fraction(rng.randint(-9, 9), 6)
         solid = doubled(start, d, STOUT) if any(start[:3]) else None
         if solid is None:
             continue
         n = nutation(solid, start)
         if regime(n) not in ("steady", "heteroclinic"):
-            found.append((solid, start))
-    return found
+            cases.append((solid, start))
+    return cases
 
 
 PLACES = ("anywhere", "axis", "turning point", "to a pole")
@@ -219,9 +219,9 @@ def test_a_double_root_anywhere(place: str) -> None:
         problem = scene(solid, start)
         solution = closed_form(problem)
         assert solution.regime in ("hyperbolic", "trigonometric", "algebraic")
-        found = rows(solution.motion(times, DIGITS))
+        states = rows(solution.motion(times, DIGITS))
         expected = rows(TaylorSolution(problem).motion(times, DIGITS))
-        for a, b in zip(found, expected, strict=True):
+        for a, b in zip(states, expected, strict=True):
             assert distance(a, b) <= AGREEMENT
 
 
@@ -255,9 +255,9 @@ def test_is_the_limit_of_elliptic_motions(name: str) -> None:
     times = [Fraction(5, 3), Fraction(-2)]
     neighbour = closed_form(scene(beside, start))
     assert neighbour.regime in ("four-roots", "two-roots")
-    found = rows(closed_form(scene(solid, start)).motion(times, DIGITS))
+    states = rows(closed_form(scene(solid, start)).motion(times, DIGITS))
     # In so short a time a difference grows by far less than 1e20.
-    for a, b in zip(found, rows(neighbour.motion(times, DIGITS)), strict=True):
+    for a, b in zip(states, rows(neighbour.motion(times, DIGITS)), strict=True):
         assert distance(a, b) <= AGREEMENT
 
 

@@ -56,13 +56,13 @@ def scene(axis: int, six: tuple[str, ...], beta: Fraction = BETA) -> Scene:
     return Scene("test", "test", "kirchhoff", whole, body, start, Clock(Fraction(0), tuple(TIMES)))
 
 
-def distance(found: Motion, truth: Motion) -> mpf:
+def distance(motion: Motion, truth: Motion) -> mpf:
     """The largest distance of any vector or matrix, relative to its size."""
     with mp.workdps(2 * DIGITS):
         return max(
             mp.norm(list((a - b).flat)) / mp.norm(list(b.flat))
             for name, rows in truth.quantities.items()
-            for a, b in zip(found[name], rows, strict=True)
+            for a, b in zip(motion[name], rows, strict=True)
         )
 
 
@@ -72,11 +72,11 @@ def distance(found: Motion, truth: Motion) -> mpf:
 def test_the_motion_is_that_of_the_taylor_recursion(kind: str, axis: int, route: str) -> None:
     """x, y, attitude and path agree with what knows the equations of the 21 coefficients alone."""
     asked = scene(axis, BODIES[kind])
-    found, truth = solution(asked, route), TaylorSolution(asked)
-    assert found.regime == kind
+    exact, truth = solution(asked, route), TaylorSolution(asked)
+    assert exact.regime == kind
     # Each of the two is promised to these digits of every vector and matrix.
     promised = 2 * mpf(10) ** -DIGITS
-    assert distance(found.motion(TIMES, DIGITS), truth.motion(TIMES, DIGITS)) <= promised
+    assert distance(exact.motion(TIMES, DIGITS), truth.motion(TIMES, DIGITS)) <= promised
 
 
 @pytest.mark.parametrize("route", ["arb", "mpmath"])
@@ -90,8 +90,8 @@ def test_a_displacement_to_the_wrong_side_is_seen(
         return moved_back(tensors.scaled(Fraction(-1), d), start)
 
     monkeypatch.setattr(displaced, "moved_back", wrongly)
-    found = solution(asked, route).motion(TIMES, DIGITS)
-    assert distance(found, TaylorSolution(asked).motion(TIMES, DIGITS)) > 0.1
+    motion = solution(asked, route).motion(TIMES, DIGITS)
+    assert distance(motion, TaylorSolution(asked).motion(TIMES, DIGITS)) > 0.1
 
 
 def test_the_other_origin_changes_no_integral() -> None:
@@ -125,10 +125,10 @@ def test_a_body_of_revolution_has_an_axis_wherever_its_origin_is() -> None:
 
 def test_a_real_vehicle_has_a_closed_form() -> None:
     """REMUS, of revolution but for its origin, says where it is solved, and about which axis."""
-    found = elements(load("kirchhoff/remus-100"))
-    assert found.regime == "four-roots"
-    assert found["period"].value > 0
-    assert found.sentences[0] == (
+    orbit = elements(load("kirchhoff/remus-100"))
+    assert orbit.regime == "four-roots"
+    assert orbit["period"].value > 0
+    assert orbit.sentences[0] == (
         "Solved about the origin moved by (-0.0292513, 0.0, 0.0), where B is symmetric."
     )
-    assert found.sentences[1].startswith("x1 swings")
+    assert orbit.sentences[1].startswith("x1 swings")

@@ -54,10 +54,10 @@ def is_solved(scene: Scene, kind: str, times: list[Fraction]) -> None:
     """Both routes have this regime and, like Taylor's series, 30 digits of every vector and matrix."""
     truth = TaylorSolution(scene).motion(times, DIGITS)
     for route in ("arb", "mpmath"):
-        found = solution(scene, route)
-        assert (found.regime, found.route) == (kind, route)
+        exact = solution(scene, route)
+        assert (exact.regime, exact.route) == (kind, route)
         with mp.workdps(2 * DIGITS):
-            assert apart(truth, found.motion(times, DIGITS)) <= 2 * mpf(10) ** -DIGITS
+            assert apart(truth, exact.motion(times, DIGITS)) <= 2 * mpf(10) ** -DIGITS
 
 
 @pytest.mark.parametrize("n", DIRECTIONS)
@@ -175,12 +175,12 @@ def test_the_start_is_the_scenes_own(route: str) -> None:
     x, y = vector("1/3", 0, "-1/7"), vector(0, "2/3", 0)
     scene = replace(about(DIRECTIONS[2], SIX["cubic"], x, y))
     scene = replace(scene, initial=replace(scene.initial, centre=vector(0, "1/3", 0)))
-    found = solution(scene, route).motion([Fraction(0)], 30)
+    motion = solution(scene, route).motion([Fraction(0)], 30)
     with mp.workdps(30):
         given_start = {"linear_impulse": x, "angular_impulse": y, "centre": vector(0, "1/3", 0)}
         for name, start in given_start.items():
-            for entry, told in zip(found[name][0], start, strict=True):
-                assert abs(entry - mp.convert(told)) <= mpf(10) ** -30 * abs(mp.convert(told))
+            for entry, stated in zip(motion[name][0], start, strict=True):
+                assert abs(entry - mp.convert(stated)) <= mpf(10) ** -30 * abs(mp.convert(stated))
 
 
 # The axis.
@@ -197,12 +197,12 @@ def test_the_six_coefficients_come_back(n: tuple[int, ...], six: tuple[Fraction,
     """T about any direction is recognised, with its coefficients and an axis along that direction."""
     direction = tuple(map(Fraction, n))
     body = body_about(Clebsch(*six), direction)
-    found = clebsch_about(body)
-    assert found is not None
-    assert body_about(found[0], found[1].n) == body
+    clebsch = clebsch_about(body)
+    assert clebsch is not None
+    assert body_about(clebsch[0], clebsch[1].n) == body
     if six[0::2] != six[1::2]:
-        assert found[0] == Clebsch(*six)
-        assert not any(tensors.cross(found[1].n, direction))
+        assert clebsch[0] == Clebsch(*six)
+        assert not any(tensors.cross(clebsch[1].n, direction))
 
 
 @given(n=st.tuples(entries, entries, entries).filter(any), v=st.tuples(*[fractions] * 3))
@@ -265,14 +265,14 @@ def test_the_elements_are_those_of_the_body_about_axis_3() -> None:
     )
     scene = about(n, SIX["four-roots"], *GENERIC)
     upright = about(vector(0, 0, 1), SIX["four-roots"], *(tensors.apply(turn, v) for v in GENERIC))
-    found, other = elements(scene), elements(upright)
+    orbit, other = elements(scene), elements(upright)
     for name in ("period", "m", "F", "G", "T", "A", "discriminant"):
-        assert abs(found[name].value / other[name].value - 1) <= mpf(10) ** -14
+        assert abs(orbit[name].value / other[name].value - 1) <= mpf(10) ** -14
     for end in ("low", "high"):
-        assert abs(found[f"xe_{end}"].value / other[f"x3_{end}"].value - 1) <= mpf(10) ** -14
-    told = " ".join([*found.sentences, *(element.meaning for element in found.values())])
-    assert "about the direction e along (1, 2, 2)" in told
-    assert not any(word in told for word in ("x3", "y3", "axis 3"))
+        assert abs(orbit[f"xe_{end}"].value / other[f"x3_{end}"].value - 1) <= mpf(10) ** -14
+    text = " ".join([*orbit.sentences, *(element.meaning for element in orbit.values())])
+    assert "about the direction e along (1, 2, 2)" in text
+    assert not any(word in text for word in ("x3", "y3", "axis 3"))
 
 
 def test_the_period_of_an_irrational_axis_is_a_period() -> None:
@@ -294,8 +294,8 @@ def test_y_along_an_oblique_axis_is_conserved() -> None:
     motion = TaylorSolution(scene).motion(TIMES, DIGITS)
     with mp.workdps(40):
         values = fourth.value(motion)
-        told = mp.convert(tensors.dot(DIRECTIONS[2], GENERIC[1]))
-        assert all(abs(value - told) <= 10 * mpf(10) ** -DIGITS for value in values)
+        component = mp.convert(tensors.dot(DIRECTIONS[2], GENERIC[1]))
+        assert all(abs(value - component) <= 10 * mpf(10) ** -DIGITS for value in values)
         assert max(abs(row[0] - row[1]) for row in motion["angular_impulse"]) >= mpf("0.01")
         assert fourth.scale(motion) >= max(abs(value) for value in values)
 
@@ -306,9 +306,9 @@ def test_a_drift_in_the_wrong_unit_is_seen(monkeypatch: pytest.MonkeyPatch) -> N
     truth = TaylorSolution(scene).motion(TIMES[2:], 20)
     right = quartic.Nutation.drift
     monkeypatch.setattr(quartic.Nutation, "drift", lambda self, z: self.axes.nu * right(self, z))
-    found = closed_form(scene).evaluate(TIMES[2:], 20)
+    quantities = closed_form(scene).evaluate(TIMES[2:], 20)
     with mp.workdps(30):
         for name, is_wrong in {"attitude": False, "centre": True}.items():
-            missed = mp.norm(list((found[name] - truth[name]).flat))
+            missed = mp.norm(list((quantities[name] - truth[name]).flat))
             assert (missed > mpf("0.01")) is is_wrong
             assert is_wrong or missed <= mpf(10) ** -18

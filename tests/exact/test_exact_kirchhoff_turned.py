@@ -57,9 +57,9 @@ def test_motion_about_another_axis_is_that_of_the_taylor_recursion(kind: str, ax
     scene = about(axis, BODIES[kind])
     truth = TaylorSolution(scene).motion(TIMES, 30)
     for route in ("arb", "mpmath"):
-        found = solution(scene, route)
-        assert (found.regime, found.route) == (kind, route)
-        motion = found.motion(TIMES, 30)
+        exact = solution(scene, route)
+        assert (exact.regime, exact.route) == (kind, route)
+        motion = exact.motion(TIMES, 30)
         with mp.workdps(40):
             for name, rows in truth.quantities.items():
                 # Each of the two is promised to 30 digits of every vector and matrix.
@@ -72,11 +72,11 @@ def test_motion_about_another_axis_is_that_of_the_taylor_recursion(kind: str, ax
 def test_the_start_is_the_scenes_own(axis: int) -> None:
     """At time 0 every component stands where the scene wrote it."""
     scene = about(axis, BODIES["cubic"])
-    found = solution(scene).motion([Fraction(0)], 30)
+    motion = solution(scene).motion([Fraction(0)], 30)
     with mp.workdps(35):
         for name, start in (("linear_impulse", START.linear), ("angular_impulse", START.angular)):
-            assert np.all(abs(found[name][0] - [mp.convert(c) for c in start]) <= mpf(10) ** -29)
-        assert np.all(abs(found["centre"][0] - [2, -1, mpf("0.5")]) <= mpf(10) ** -28)
+            assert np.all(abs(motion[name][0] - [mp.convert(c) for c in start]) <= mpf(10) ** -29)
+        assert np.all(abs(motion["centre"][0] - [2, -1, mpf("0.5")]) <= mpf(10) ** -28)
 
 
 @pytest.mark.parametrize("axis", [1, 2])
@@ -86,14 +86,14 @@ def test_the_orbit_is_told_of_its_own_axis(axis: int) -> None:
     # A cyclic change of names mirrors nothing.
     linear, angular = (v[axis:] + v[:axis] for v in (START.linear, START.angular))
     named_anew = about(3, BODIES["four-roots"], replace(START, linear=linear, angular=angular))
-    found, other = elements(scene), elements(named_anew)
-    assert found.regime == other.regime == "four-roots"
-    assert found["period"].value == other["period"].value
-    assert found[f"x{axis}_low"].value == other["x3_low"].value
-    told = " ".join([*found.sentences, *found, *(element.meaning for element in found.values())])
-    assert f"x{axis} swings" in told
-    assert "x3" not in told
-    assert "y3" not in told
+    orbit, other = elements(scene), elements(named_anew)
+    assert orbit.regime == other.regime == "four-roots"
+    assert orbit["period"].value == other["period"].value
+    assert orbit[f"x{axis}_low"].value == other["x3_low"].value
+    text = " ".join([*orbit.sentences, *orbit, *(element.meaning for element in orbit.values())])
+    assert f"x{axis} swings" in text
+    assert "x3" not in text
+    assert "y3" not in text
 
 
 @pytest.mark.parametrize("axis", [1, 2, 3])
@@ -115,9 +115,9 @@ def test_a_body_with_a_choice_keeps_the_third_axis() -> None:
         scene = about(axis, six)
         assert isinstance(scene.body, ImmersedBody)
         assert scene.body.axis_of_symmetry == 3
-        found = clebsch_about(scene.body)
-        assert found is not None
-        assert found[1] == UPRIGHT
+        clebsch = clebsch_about(scene.body)
+        assert clebsch is not None
+        assert clebsch[1] == UPRIGHT
 
 
 def test_no_axis_is_found_where_there_is_none() -> None:

@@ -89,14 +89,14 @@ def equation_residual(scene: Scene, route: str, t: Fraction) -> mpf:
             [[mp.convert(entry) for entry in row] for row in scene.body.inertia], dtype=object
         )
         moment = np.array([mp.convert(entry) for entry in scene.body.moment], dtype=object)
-        found = [mp.norm(list(inertia @ rate - np.cross(inertia @ omega, omega) - moment))]
+        residuals = [mp.norm(list(inertia @ rate - np.cross(inertia @ omega, omega) - moment))]
         if "attitude" in motion.quantities:
             back, R, ahead = motion["attitude"]
             x, y, z = omega
             zero = mpf(0)
             spin = np.array([[zero, -z, y], [z, zero, -x], [-y, x, zero]], dtype=object)
-            found.append(mp.norm(list(((ahead - back) / (2 * mp.convert(h)) - R @ spin).flat)))
-        return max(found)
+            residuals.append(mp.norm(list(((ahead - back) / (2 * mp.convert(h)) - R @ spin).flat)))
+        return max(residuals)
 
 
 # Six times the larger of the two, 1e-49/6.
@@ -170,12 +170,12 @@ def scenes(draw: st.DrawFn) -> Scene:
         "across": tensors.cross(axis, free),
     }[draw(st.sampled_from(["free", "along", "across"]))]
     assume(any(moment))
-    found = loaded(revolved(axis, simple, double), moment, draw(vectors), attitude=True)
+    scene = loaded(revolved(axis, simple, double), moment, draw(vectors), attitude=True)
     try:
-        solution(found, "arb")
+        solution(scene, "arb")
     except NoClosedForm:
-        return replace(found, track=frozenset())
-    return found
+        return replace(scene, track=frozenset())
+    return scene
 
 
 @settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -185,12 +185,12 @@ def test_the_routes_overlap_on_bodies_drawn_at_random(scene: Scene, t: Fraction)
 
     A time at which one of them is out of reach under a weak moment is out of reach of the other.
     """
-    found = []
+    motions = []
     for route in ROUTES:
         with suppress(Unsettled):
-            found.append(solution(scene, route).motion([t], DIGITS))
-    if found:
-        assert apart(*found) <= BOTH
+            motions.append(solution(scene, route).motion([t], DIGITS))
+    if motions:
+        assert apart(*motions) <= BOTH
     else:
         assert isinstance(scene.body, RigidBody)
         assert isinstance(scene.initial, Spin)
@@ -343,8 +343,8 @@ def test_where_there_is_no_closed_form_it_says_so(scene: Scene, what: str) -> No
     for route in ROUTES:
         with pytest.raises(NoClosedForm, match=what):
             solution(scene, route)
-    found = solution(scene)
-    assert (found.route, found.regime) == ("taylor", NO_CLOSED_FORM)
+    exact = solution(scene)
+    assert (exact.route, exact.regime) == ("taylor", NO_CLOSED_FORM)
 
 
 # Beyond the reach of Kummer's functions: of an axisymmetric body, of one with three equal moments, of
@@ -412,11 +412,11 @@ def test_the_tail_of_a_power_series_is_in_its_balls(a: Vector, b: Vector, expone
     line, span = Line(a, b), Fraction(2) ** exponent
     while not line.is_short(span, 32):
         span /= 2
-    found = []
+    quaternions = []
     for bits in (30, 300):
         with ctx.workprec(bits):
-            found.append(SeriesTurn(line).quaternion(span))
-    assert all(coarse.contains(fine) for coarse, fine in zip(*found, strict=True))
+            quaternions.append(SeriesTurn(line).quaternion(span))
+    assert all(coarse.contains(fine) for coarse, fine in zip(*quaternions, strict=True))
 
 
 def test_no_moment_is_refused() -> None:
@@ -435,6 +435,6 @@ def test_across_the_axis_omega_recurs_after_the_period() -> None:
     with mp.workdps(2 * DIGITS):
         assert mp.norm(list(end - start)) <= BOTH * mp.norm(list(start))
     for name in ("moment-across-no-spin", "moment-oblique", "spin-up", "moment-spherical"):
-        found = elements(load(f"euler/{name}"), 15)
-        assert found.regime == REGIMES[name]
-        assert len(found) == 0
+        orbit = elements(load(f"euler/{name}"), 15)
+        assert orbit.regime == REGIMES[name]
+        assert len(orbit) == 0

@@ -46,24 +46,24 @@ each_scene = pytest.mark.parametrize(
 
 def rates(scene: Scene, motion: Motion, row: int) -> dict[str, Array]:
     """The right-hand sides of the texts, written with cross products of whole vectors."""
-    found: dict[str, Array] = {}
+    rate_of: dict[str, Array] = {}
     if isinstance(scene.body, RigidBody):
         inertia, moment = matrix(scene.body.inertia), matrix((scene.body.moment,))[0]
         omega = motion["omega"][row]
         torque = np.cross(inertia @ omega, omega) + moment
-        found["omega"] = np.array(list(mp.lu_solve(mp.matrix(inertia.tolist()), list(torque))))
+        rate_of["omega"] = np.array(list(mp.lu_solve(mp.matrix(inertia.tolist()), list(torque))))
     else:
         body = scene.body
         x, y = motion["linear_impulse"][row], motion["angular_impulse"][row]
         velocity = matrix(body.linear) @ x + matrix(body.coupling) @ y
         omega = matrix(body.coupling).T @ x + matrix(body.angular) @ y
-        found["linear_impulse"] = np.cross(x, omega) + matrix((body.force,))[0]
-        found["angular_impulse"] = (
+        rate_of["linear_impulse"] = np.cross(x, omega) + matrix((body.force,))[0]
+        rate_of["angular_impulse"] = (
             np.cross(y, omega) + np.cross(x, velocity) + matrix((body.couple,))[0]
         )
-        found["centre"] = motion["attitude"][row] @ velocity
-    found["attitude"] = motion["attitude"][row] @ np.cross(omega, np.eye(3, dtype=int)).T
-    return found
+        rate_of["centre"] = motion["attitude"][row] @ velocity
+    rate_of["attitude"] = motion["attitude"][row] @ np.cross(omega, np.eye(3, dtype=int)).T
+    return rate_of
 
 
 @each_scene
@@ -86,8 +86,8 @@ def test_motion_agrees_with_odefun() -> None:
     def right(_: mpf, z: Sequence[mpf]) -> list[mpf]:
         row = {"linear_impulse": np.array([z[:3]]), "angular_impulse": np.array([z[3:]])}
         row["attitude"] = np.array([np.eye(3, dtype=int)])
-        found = rates(scene, Motion(row, np.zeros(1)), 0)
-        return [*found["linear_impulse"], *found["angular_impulse"]]
+        derivatives = rates(scene, Motion(row, np.zeros(1)), 0)
+        return [*derivatives["linear_impulse"], *derivatives["angular_impulse"]]
 
     initial = scene.initial
     assert isinstance(initial, Impulse)
@@ -95,9 +95,9 @@ def test_motion_agrees_with_odefun() -> None:
     with mp.workdps(20):
         start = [mp.convert(entry) for entry in initial.linear + initial.angular]
         end = mp.odefun(right, 0, start)(1)
-        found = [*truth["linear_impulse"][0], *truth["angular_impulse"][0]]
+        impulses = [*truth["linear_impulse"][0], *truth["angular_impulse"][0]]
         # odefun asks eight guard digits of itself; two digits are left to it.
-        assert largest(np.array(found) - np.array(end)) <= mpf(10) ** -18
+        assert largest(np.array(impulses) - np.array(end)) <= mpf(10) ** -18
 
 
 @pytest.mark.parametrize("span", [Fraction(7, 2), Fraction(-7, 2)], ids=["later", "earlier"])
@@ -134,10 +134,10 @@ def test_arcs_begin_at_any_size(size: Fraction) -> None:
     """An arc has its digits also where its state is far smaller or larger than the scene's own."""
     scene = euler(RigidBody(TENSOR))
     start = Spin(vector(size, -size, size / 2))
-    (found,) = arcs(scene, [start], [1 / size], 30)["omega"]
+    (arc,) = arcs(scene, [start], [1 / size], 30)["omega"]
     (alone,) = TaylorSolution(replace(scene, initial=start)).motion([1 / size], 30)["omega"]
     with mp.workdps(50):
-        assert largest(found - alone) <= mpf(10) ** -30 * largest(alone)
+        assert largest(arc - alone) <= mpf(10) ** -30 * largest(alone)
 
 
 def test_times_come_in_any_order() -> None:
@@ -156,10 +156,10 @@ def test_spherical_body_under_a_moment() -> None:
     """With equal moments of inertia omega = omega0 + M t / J, and no step is too long for it."""
     body = RigidBody(diagonal(vector(3, 3, 3)), MOMENT)
     time = Fraction(10**6, 7)
-    found = TaylorSolution(euler(body)).motion([time], 40)["omega"][0]
+    omega = TaylorSolution(euler(body)).motion([time], 40)["omega"][0]
     with mp.workdps(60):
         expected = [mp.convert(w + m * time / 3) for w, m in zip(OMEGA, MOMENT, strict=True)]
-        assert largest(found - np.array(expected)) <= mpf(10) ** -40 * max(map(abs, expected))
+        assert largest(omega - np.array(expected)) <= mpf(10) ** -40 * max(map(abs, expected))
 
 
 @each_scene
@@ -219,9 +219,9 @@ def test_a_stiff_body_is_no_obstacle() -> None:
     needle = RigidBody(diagonal(vector("1e-6", 1, 1)))
     resting = euler(needle, omega=vector("1e-9", 1, "0.5"))
     exact = solution(resting, "mpmath").motion([Fraction(3)], 30)["omega"][0]
-    found = TaylorSolution(resting).motion([Fraction(3)], 30)["omega"][0]
+    omega = TaylorSolution(resting).motion([Fraction(3)], 30)["omega"][0]
     with mp.workdps(50):
-        assert largest(exact - found) <= 2 * mpf(10) ** -30 * largest(exact)
+        assert largest(exact - omega) <= 2 * mpf(10) ** -30 * largest(exact)
 
 
 def test_endless_work_is_refused() -> None:
@@ -255,5 +255,5 @@ def test_a_couple_that_vanishes_for_the_body_leaves_y_exactly() -> None:
     sphere = Clebsch(ninth, ninth, Fraction(0), Fraction(0), ninth, ninth).body()
     still = Impulse(vector(0, "25/16", "-4/7"), vector(0, 0, 0), QUATERNION, vector(1, 2, 3))
     moving = replace(kirchhoff(sphere, "attitude", "centre"), initial=still)
-    found = TaylorSolution(moving).motion([Fraction(14000, 1107)], 30)
-    assert not any(found["angular_impulse"].flat)
+    motion = TaylorSolution(moving).motion([Fraction(14000, 1107)], 30)
+    assert not any(motion["angular_impulse"].flat)

@@ -19,8 +19,8 @@ NEAR = 1e-12
 
 @pytest.fixture(scope="module")
 def rows() -> list[dict[str, Any]]:
-    found: list[dict[str, Any]] = explanation(GENERAL, "f32")["screws"]
-    return found
+    screws: list[dict[str, Any]] = explanation(GENERAL, "f32")["screws"]
+    return screws
 
 
 def blocks() -> tuple[Any, Any, Any, Any]:
@@ -29,8 +29,8 @@ def blocks() -> tuple[Any, Any, Any, Any]:
     body, start = scene.body, scene.initial
     assert isinstance(body, ImmersedBody)
     assert isinstance(start, Impulse)
-    found = (body.linear, body.coupling, body.angular, start.linear)
-    A, B, C, x = (np.array(entries, dtype=float) for entries in found)
+    exact_blocks = (body.linear, body.coupling, body.angular, start.linear)
+    A, B, C, x = (np.array(entries, dtype=float) for entries in exact_blocks)
     return A, B, C, x
 
 
@@ -66,12 +66,12 @@ def test_the_spectrum_is_that_of_the_linearised_equations(rows: list[dict[str, A
         z = np.concatenate([F * n, np.linalg.solve(C, float(row["turning"]) * n - B.T @ (F * n))])
         # The rates are quadratic, so that a difference of any width is the derivative.
         J = np.array([(rate(z + e) - rate(z - e)) / 2 for e in np.eye(6)]).T
-        found = [complex(float(re), float(im)) for re, im in row["spectrum"]]
+        spectrum = [complex(float(re), float(im)) for re, im in row["spectrum"]]
         expected = np.linalg.eigvals(J)
         # A double zero comes as the root of a rounding.
-        for s in found:
+        for s in spectrum:
             assert np.min(np.abs(expected - s)) <= 1e-6
-        assert (max(s.real for s in found) > 1e-6) == (row["stability"] == "unstable")
+        assert (max(s.real for s in spectrum) > 1e-6) == (row["stability"] == "unstable")
 
 
 def test_a_body_of_revolution_has_no_rows() -> None:

@@ -212,8 +212,8 @@ def test_the_equations_are_obeyed(name: str) -> None:
     """
     free, t, step, bits = MOTIONS[name], Fraction(37, 11), Fraction(1, 10**40), 900
     with ctx.workprec(bits):
-        found = GyrostatBalls(free, TILTED).enclose([t - step, t, t + step], bits)
-        omega, rows = found["omega"], [arb_mat(R) for R in found["attitude"]]
+        enclosure = GyrostatBalls(free, TILTED).enclose([t - step, t, t + step], bits)
+        omega, rows = enclosure["omega"], [arb_mat(R) for R in enclosure["attitude"]]
         sizes = [sum(map(abs, v), Fraction(0)) for v in (free.momentum, free.g)]
         K_size = sum((free.K[i][i] for i in range(3)), Fraction(0))
         rate = ball(2 * (sizes[0] * K_size + sizes[1]) + 1)
@@ -257,13 +257,13 @@ def is_eulers_top(spin: FreeSpin) -> None:
     """Weierstrass's formula, by balls and by mpmath, finds the motion of both routes of a rigid body."""
     none = FreeGyrostat(spin.inertia, vector(0, 0, 0), spin.omega)
     instants = paced(none, (Fraction(3, 2), Fraction(-40)))
-    found = GyrostatBalls(none, TILTED).motion(instants, 20)
+    motion = GyrostatBalls(none, TILTED).motion(instants, 20)
     routes = (
         jacobi.free_rotation(none, TILTED),
         *(route.free_rotation(spin, TILTED) for route in (theta, top)),
     )
     with mp.workdps(40):
-        assert all(apart(found, r.motion(instants, 20)) <= 3 * mpf(10) ** -20 for r in routes)
+        assert all(apart(motion, r.motion(instants, 20)) <= 3 * mpf(10) ** -20 for r in routes)
 
 
 @given(tops())

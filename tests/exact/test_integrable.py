@@ -46,9 +46,9 @@ def shipped(name: str) -> Scene:
 
 
 def fourth(scene: Scene) -> Fourth:
-    found = fourth_integral(scene)
-    assert found is not None
-    return found
+    integral = fourth_integral(scene)
+    assert integral is not None
+    return integral
 
 
 def body_of(scene: Scene) -> ImmersedBody:
@@ -200,19 +200,19 @@ def energy(body: ImmersedBody) -> fmpq_mpoly:
 def remainder(integral: fmpq_mpoly, T: fmpq_mpoly, only_orthogonal: bool) -> fmpq_mpoly:
     """The integral's rate; for Chaplygin's what FG = 0 leaves of it."""
     state = T.context().gens()
-    found = rate(integral, T, state[:3], state[3:])
-    return divmod(found, dot(state[:3], state[3:]))[1] if only_orthogonal else found
+    change = rate(integral, T, state[:3], state[3:])
+    return divmod(change, dot(state[:3], state[3:]))[1] if only_orthogonal else change
 
 
 @pytest.mark.parametrize("name", SCENES)
 def test_a_wrong_coefficient_is_caught(name: str) -> None:
     """The integral of the scene is one; with any single coefficient 1 + 2^-40 of itself it is not."""
     scene = shipped(name)
-    found, T = fourth(scene), energy(body_of(scene))
-    assert remainder(polynomial(found.terms), T, bool(found.leak)) == 0
-    for powers, c in found.terms.items():
-        wrong = {**found.terms, powers: c * (1 + Fraction(1, 2**40))}
-        assert remainder(polynomial(wrong), T, bool(found.leak)) != 0
+    integral, T = fourth(scene), energy(body_of(scene))
+    assert remainder(polynomial(integral.terms), T, bool(integral.leak)) == 0
+    for powers, c in integral.terms.items():
+        wrong = {**integral.terms, powers: c * (1 + Fraction(1, 2**40))}
+        assert remainder(polynomial(wrong), T, bool(integral.leak)) != 0
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -312,8 +312,8 @@ def test_casimirs_in_the_energy_change_nothing(name: str) -> None:
     A, B = body.linear, body.coupling
     for n in range(3):
         A, B = changed(A, n, n, Fraction(5, 3)), changed(B, n, n, Fraction(1, 7))
-    found = fourth(with_body(scene, linear=A, coupling=B))
-    assert (found.name, found.terms) == (SCENES[name], fourth(scene).terms)
+    integral = fourth(with_body(scene, linear=A, coupling=B))
+    assert (integral.name, integral.terms) == (SCENES[name], fourth(scene).terms)
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -325,9 +325,9 @@ def test_a_scaled_body_keeps_its_integral(name: str) -> None:
         for part in ("linear", "coupling", "angular")
     }
     scaled = with_body(scene, **parts)
-    found = fourth(scaled)
-    assert found.name == SCENES[name]
-    assert remainder(polynomial(found.terms), energy(body_of(scaled)), bool(found.leak)) == 0
+    integral = fourth(scaled)
+    assert integral.name == SCENES[name]
+    assert remainder(polynomial(integral.terms), energy(body_of(scaled)), bool(integral.leak)) == 0
 
 
 def test_chaplygins_needs_orthogonal_impulses_and_no_body_is_loaded() -> None:
@@ -356,50 +356,52 @@ def test_the_words_of_the_orbit_tell_of_it(name: str) -> None:
 
 def still(x: Sequence[Fraction], y: Sequence[Fraction]) -> Motion:
     rows = {"linear_impulse": x, "angular_impulse": y}
-    held = {n: np.array([[mp.convert(e) for e in row]], dtype=object) for n, row in rows.items()}
-    return Motion(held, np.array([mp.zero], dtype=object))
+    quantities = {
+        n: np.array([[mp.convert(e) for e in row]], dtype=object) for n, row in rows.items()
+    }
+    return Motion(quantities, np.array([mp.zero], dtype=object))
 
 
 @pytest.mark.parametrize("name", SCENES)
 def test_the_scale_is_never_less_than_the_integral_and_vanishes_never(name: str) -> None:
     """Drawn states: |I| <= scale > 0; no motion, or an integral without terms left, has scale 1."""
-    found, draw = fourth(shipped(name)), Random(name)
+    integral, draw = fourth(shipped(name)), Random(name)
     with mp.workdps(40):
         for _ in range(50):
             x, y = ([Fraction(draw.randint(-9, 9), 7) for _ in range(3)] for _ in range(2))
             motion = still(x, y)
             slack = 1 + mpf(10) ** -38
-            assert abs(found.value(motion)[0]) <= slack * found.scale(motion)
-            assert found.scale(motion) > 0
-        assert found.scale(still([Fraction(0)] * 3, [Fraction(0)] * 3)) == 1
+            assert abs(integral.value(motion)[0]) <= slack * integral.scale(motion)
+            assert integral.scale(motion) > 0
+        assert integral.scale(still([Fraction(0)] * 3, [Fraction(0)] * 3)) == 1
 
 
 @pytest.mark.parametrize("name", SCENES)
 def test_sensitivity_is_the_norm_of_the_gradient(name: str) -> None:
     """Difference quotients of the value, by x and by y; Chaplygin's leak comes on top of it."""
-    found = fourth(shipped(name))
+    integral = fourth(shipped(name))
     step = Fraction(1, 10**20)
     state = [Fraction(n, 7) for n in (5, -3, 4, 2, 6, -1)]
     with mp.workdps(60):
         here = still(state[:3], state[3:])
-        bare = replace(found, leak={}).sensitivity(here)
+        bare = replace(integral, leak={}).sensitivity(here)
         for block, places in (("linear_impulse", (0, 1, 2)), ("angular_impulse", (3, 4, 5))):
             quotients = []
             for n in places:
                 moved = [e + step * (m == n) for m, e in enumerate(state)]
                 there = still(moved[:3], moved[3:])
-                quotients.append((found.value(there)[0] - found.value(here)[0]) / step)
+                quotients.append((integral.value(there)[0] - integral.value(here)[0]) / step)
             # The quotient differs from the derivative by the step times a second derivative.
             assert abs(mp.norm(quotients) - bare[block][0]) <= mpf(10) ** -17 * bare[block][0]
-            whole = found.sensitivity(here)[block][0]
-            assert whole > bare[block][0] if found.leak else whole == bare[block][0]
+            whole = integral.sensitivity(here)[block][0]
+            assert whole > bare[block][0] if integral.leak else whole == bare[block][0]
 
 
 def test_what_leaks_by_a_disturbed_fg_stays_within_the_sensitivity() -> None:
     """Chaplygin's K after y was moved along x by 10^-12 changes by no more than was stated."""
     scene = shipped("chaplygin")
     assert isinstance(scene.initial, Impulse)
-    found, move = fourth(scene), Fraction(1, 10**12)
+    integral, move = fourth(scene), Fraction(1, 10**12)
     x, y = scene.initial.linear, scene.initial.angular
     nudged = replace(scene.initial, angular=tuple(b + move * a for a, b in zip(x, y, strict=True)))
     elapsed = [Fraction(n, 2) for n in range(11)]
@@ -407,8 +409,8 @@ def test_what_leaks_by_a_disturbed_fg_stays_within_the_sensitivity() -> None:
     there = TaylorSolution(replace(scene, initial=nudged)).motion(elapsed, 30)
     with mp.workdps(40):
         size = mp.convert(move) * mp.norm([mp.convert(e) for e in x])
-        stated = size * max(found.sensitivity(plain)["angular_impulse"])
-        differences = abs(found.value(there) - found.value(plain))
+        stated = size * max(integral.sensitivity(plain)["angular_impulse"])
+        differences = abs(integral.value(there) - integral.value(plain))
         assert max(differences) <= stated
         # And it does leak: K of the disturbed motion is no constant of it.
-        assert max(abs(found.value(there) - found.value(there)[0])) >= mpf(10) ** -14
+        assert max(abs(integral.value(there) - integral.value(there)[0])) >= mpf(10) ** -14

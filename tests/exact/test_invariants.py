@@ -53,11 +53,11 @@ def sampled(scene: Scene, times: Sequence[Fraction], digits: int = 40) -> Motion
 )
 def test_a_free_motion_conserves_them(scene: Scene, names: str) -> None:
     """Each quantity that the tracking allows is there, and constant to the digits of the truth."""
-    found = named(scene)
-    assert list(found) == names.split()
+    invariants_of = named(scene)
+    assert list(invariants_of) == names.split()
     motion = sampled(scene, [Fraction(0), Fraction(3), Fraction(-2), Fraction(11, 2)])
     with mp.workdps(60):
-        for invariant in found.values():
+        for invariant in invariants_of.values():
             value = invariant.value(motion)
             # The rows hold 40 digits; twice that error for products, and a norm or two.
             assert largest(value - value[0]) <= 10 * mpf(10) ** -40 * invariant.scale(motion)
@@ -205,10 +205,10 @@ def test_scales_do_not_vanish() -> None:
     """x.y = 0 leaves FG a scale, y3 = 0 leaves y3 one, and a body at rest has scale 1 for all."""
     crossed = Impulse(vector(1, 0, 0), vector(0, 2, 0))
     motion = sampled(sample_scene(CLEBSCH, start=crossed), [Fraction(0)])
-    found = named(sample_scene(CLEBSCH))
+    invariants_of = named(sample_scene(CLEBSCH))
     for name in ("FG", "y3"):
-        assert found[name].value(motion)[0] == 0
-        assert found[name].scale(motion) == 2
+        assert invariants_of[name].value(motion)[0] == 0
+        assert invariants_of[name].scale(motion) == 2
     nowhere = Impulse(vector(0, 0, 0), vector(0, 0, 0))
     for resting in (
         sample_scene(CLEBSCH, "attitude", "centre", start=nowhere),

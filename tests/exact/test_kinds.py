@@ -63,8 +63,8 @@ def test_what_is_imported_late_is_there(model: str) -> None:
 def test_a_parameter_changes_the_body_alone(model: str) -> None:
     """Each of them makes another body, whose own parameter moved back makes the first one again."""
     body, _ = SAMPLES[model]
-    found = kind_of(body).parameters(body)
-    for j in range(len(found.components)):
-        other = found.changed(j, Fraction(1, 2**20))
+    parameters = kind_of(body).parameters(body)
+    for j in range(len(parameters.components)):
+        other = parameters.changed(j, Fraction(1, 2**20))
         assert other != body
         assert kind_of(other).parameters(other).changed(j, Fraction(-1, 2**20)) == body

@@ -64,8 +64,8 @@ PERIODIC = [*ELLIPTIC, "double root, negative"]
 def at_work(invariants: Invariants) -> Iterator[tuple[Lattice, arb]]:
     """The lattice, and a length of its size."""
     with ctx.workprec(BITS):
-        found = lattice(*invariants)
-        yield found, scale(invariants)
+        cell = lattice(*invariants)
+        yield cell, scale(invariants)
 
 
 def scale(invariants: Invariants) -> arb:
@@ -87,8 +87,8 @@ def close(a: acb | arb, b: acb | arb) -> bool:
     return bool(acb(a).overlaps(acb(b)) and abs(a).rad() + abs(b).rad() <= NARROW * size)
 
 
-def same(found: tuple[acb, acb], expected: tuple[acb, acb]) -> bool:
-    return all(close(a / b, acb(1)) for a, b in zip(found, expected, strict=True))
+def same(point: tuple[acb, acb], expected: tuple[acb, acb]) -> bool:
+    return all(close(a / b, acb(1)) for a, b in zip(point, expected, strict=True))
 
 
 # p
@@ -159,9 +159,9 @@ def test_the_argument_leads_back_to_its_point(invariants: Invariants) -> None:
     with at_work(invariants) as (cell, length):
         for u in points(length):
             there = cell.p(u)
-            found = cell.p(cell.argument(*there))
-            assert same(found, there)
-            assert not found[1].overlaps(-there[1])
+            point = cell.p(cell.argument(*there))
+            assert same(point, there)
+            assert not point[1].overlaps(-there[1])
 
 
 @by_case
@@ -232,8 +232,8 @@ def test_beside_a_half_period_both_signs_are_covered(name: str) -> None:
         u = acb(period / 2 + length * arb(2) ** -300)
         X, Y = cell.p(u)
         blurred = acb(Y.real + arb(0, 2 * abs(Y).upper()), Y.imag)
-        found = cell.argument(X, blurred)
-        shifts = [found - period * k for k in (-1, 0, 1)]
+        argument = cell.argument(X, blurred)
+        shifts = [argument - period * k for k in (-1, 0, 1)]
         assert any(shift.contains(u.mid()) for shift in shifts)
         assert any((-shift).contains(u.mid()) for shift in shifts)
 
@@ -284,8 +284,8 @@ def test_the_second_logarithmic_derivative_of_s_is_minus_p(invariants: Invariant
 
 def off_the_line(cell: Lattice, length: arb) -> list[acb]:
     """Arguments that are not real, nearer to the real line than to the next row of periods."""
-    found = [acb(length, length / 5), acb(-3 * length, -length / 3), acb(0, length / 2)]
-    return [w for w in found if _has_turn(cell, w)]
+    places = [acb(length, length / 5), acb(-3 * length, -length / 3), acb(0, length / 2)]
+    return [w for w in places if _has_turn(cell, w)]
 
 
 def _has_turn(cell: Lattice, w: acb) -> bool:

@@ -52,12 +52,12 @@ def recurring(motion: Motion, row: int, scene: Scene) -> list[Any]:
     if "omega" in motion.quantities:
         return list(motion["omega"][row])
     x, y = motion["linear_impulse"][row], motion["angular_impulse"][row]
-    found, length = case(scene), mp.norm(list(x))
-    if isinstance(found.subject, Nutation) and not found.subject.axes.is_upright:
-        n = found.subject.axes.n
+    exact, length = case(scene), mp.norm(list(x))
+    if isinstance(exact.subject, Nutation) and not exact.subject.axes.is_upright:
+        n = exact.subject.axes.n
         along = sum(mp.convert(a) * b for a, b in zip(n, x, strict=True))
         return [along / mp.norm([mp.convert(a) for a in n]), length, mp.norm(list(y))]
-    if found.reduced.words:
+    if exact.reduced.words:
         return [length]
     axis = (scene.body.axis_of_symmetry or 3) - 1
     return [x[axis], length, mp.norm(list(y))]

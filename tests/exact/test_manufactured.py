@@ -105,10 +105,10 @@ def test_the_recursion_on_the_equations_finds_the_motion(name: str) -> None:
     """exact.taylor, which only knows the equations and the loads, arrives where the cosines say."""
     scene = bare(name)
     end = [scene.clock.elapsed[-1] / 2]
-    known, found = solution(scene).motion(end, 40), TaylorSolution(scene).motion(end, 40)
+    known, recursion = solution(scene).motion(end, 40), TaylorSolution(scene).motion(end, 40)
     assert (solution(scene).route, solution(scene).regime) == ("arb", "manufactured")
     with mp.workdps(60):
-        a, b = vectors(known.quantities)[0], vectors(found.quantities)[0]
+        a, b = vectors(known.quantities)[0], vectors(recursion.quantities)[0]
         assert mp.norm(list(a - b)) <= mpf(10) ** -39 * mp.norm(list(a))
 
 
@@ -117,10 +117,10 @@ def test_the_attitude_about_a_fixed_axis_is_known() -> None:
     scene = load("manufactured/euler-from-rest")
     assert solution(scene).regime == "no closed form"
     elapsed = [Fraction(1, 2), Fraction(4), Fraction(8)]
-    start, *found = TaylorSolution(scene).motion([Fraction(0), *elapsed], 40)["attitude"]
+    start, *attitudes = TaylorSolution(scene).motion([Fraction(0), *elapsed], 40)["attitude"]
     with mp.workdps(50):
         axis = [mp.convert(c) for c in motion_of(scene).waves[0].sine]
-        for t, R in zip(elapsed, found, strict=True):
+        for t, R in zip(elapsed, attitudes, strict=True):
             angle = 1 - mp.cos(mp.convert(t))
             x, y, z = (angle * c for c in axis)
             turned = mp.expm(mp.matrix([[0, -z, y], [z, 0, -x], [-y, x, 0]]))
@@ -145,9 +145,9 @@ def test_the_variational_equations_carry_what_differences_carry(name: str) -> No
     elapsed = [Fraction(0), Fraction(3, 2), Fraction(4)]
     carried = transition(scene, elapsed)
     block = "momentum" if scene.model == "euler" else "linear_impulse"
-    found = derivatives(scene, elapsed, 12, 40).momentum[:, :3, :3].astype(float)
+    flow = derivatives(scene, elapsed, 12, 40).momentum[:, :3, :3].astype(float)
     for k in range(3):
-        norm = np.linalg.norm(found[k], 2)
+        norm = np.linalg.norm(flow[k], 2)
         assert abs(carried.norms(block, block)[k] - norm) <= 1e-3 * norm
 
 
@@ -155,7 +155,7 @@ def test_the_velocity_is_that_of_the_cosines() -> None:
     """exact.rates, from the equations and the clock, gives the derivative of the polynomial."""
     scene = bare(KIRCHHOFF)
     elapsed = [Fraction(1), Fraction(37, 10)]
-    found = rates(scene, solution(scene).motion(elapsed, 20), elapsed)
+    slopes = rates(scene, solution(scene).motion(elapsed, 20), elapsed)
     for k, t in enumerate(elapsed):
         expected = np.zeros(6)
         for wave in motion_of(scene).waves:
@@ -163,7 +163,7 @@ def test_the_velocity_is_that_of_the_cosines() -> None:
             a, b = (np.array(v, dtype=float) for v in (wave.cosine, wave.sine))
             expected += nu * (b * np.cos(angle) - a * np.sin(angle))
         for j, name in enumerate(("linear_impulse", "angular_impulse")):
-            velocity = found.velocity[name][k] * 2.0 ** (found.units[name] - found.time)
+            velocity = slopes.velocity[name][k] * 2.0 ** (slopes.units[name] - slopes.time)
             # A dozen roundings of terms of size one.
             assert np.max(np.abs(velocity - expected[3 * j : 3 * j + 3])) <= 1e-14
 
@@ -215,8 +215,8 @@ def residual(problem: Problem, equations: Equations) -> Fraction:
     clock = {name: Fraction(coin.randint(-99, 99), 100) for name in names}
     known, expected = on_the_motion(problem, clock)
     numbers = {name: value for name, value in known.items() if value}
-    found = equations(Named(numbers | {"H1": known["H1"]} if "H1" in known else numbers))
-    return max(abs(found[name] - rate) for name, rate in expected.items())
+    rate_of = equations(Named(numbers | {"H1": known["H1"]} if "H1" in known else numbers))
+    return max(abs(rate_of[name] - rate) for name, rate in expected.items())
 
 
 @pytest.mark.parametrize("step", ["f32", "mp237"])
@@ -247,8 +247,8 @@ def test_the_moment_is_that_of_the_text() -> None:
             H = [sum(i * w for i, w in zip(row, omega, strict=True)) for row in inertia]
             K = [[mp.convert(c) for c in row] for row in body.inverse_inertia]
             expected = [sum(i * w for i, w in zip(row, rate, strict=True)) for row in inertia]
-            found = momentum_rate(H, K, M)
-            assert max(abs(p - q) for p, q in zip(found, expected, strict=True)) <= mpf(10) ** -60
+            moment = momentum_rate(H, K, M)
+            assert max(abs(p - q) for p, q in zip(moment, expected, strict=True)) <= mpf(10) ** -60
 
 
 # What is broken is found.
@@ -325,8 +325,8 @@ def test_a_late_answer_fails_and_is_said_to_be_late(name: str) -> None:
 
     def answer(problem: Problem) -> Any:
         given = problem.given
-        found = solution(given).motion([t - late for t in given.clock.elapsed], 25)
-        return vectors(found.quantities)
+        motion = solution(given).motion([t - late for t in given.clock.elapsed], 25)
+        return vectors(motion.quantities)
 
     verdict = run(name, Callback(answer), "f64").verdicts[1]
     assert verdict.verdict is Status.FAIL

@@ -44,8 +44,8 @@ def motion_of(scene: Scene) -> Manufactured:
     return scene.body.manufactured
 
 
-def status(found: Judgement) -> dict[str, Status]:
-    return {verdict.quantity: verdict.verdict for verdict in found.verdicts}
+def status(judgement: Judgement) -> dict[str, Status]:
+    return {verdict.quantity: verdict.verdict for verdict in judgement.verdicts}
 
 
 # The arcs.
@@ -63,10 +63,10 @@ def test_an_arc_takes_up_the_loads_where_it_begins(name: str) -> None:
     starts = [
         started(scene, {n: rows[k] for n, rows in known.quantities.items()}) for k in range(4)
     ]
-    found = arcs(scene, starts, spans, 30, begins)
+    arcs_after = arcs(scene, starts, spans, 30, begins)
     with mp.workdps(50):
         for quantity, rows in ends.quantities.items():
-            missed = [mp.norm(list(a - b)) for a, b in zip(rows, found[quantity], strict=True)]
+            missed = [mp.norm(list(a - b)) for a, b in zip(rows, arcs_after[quantity], strict=True)]
             assert max(missed) <= mpf(10) ** -29
 
 
@@ -124,15 +124,15 @@ def test_an_offset_of_the_clock_does_the_work_that_is_allowed_for_it(name: str) 
         expected = float(late) * np.abs(at(work[quantity].done[:, 0], 61))
         # Where it is large it keeps its sign, which a drift does not tell, and no arc turns that.
         large = expected >= expected.max() / 2
-        found = 2 * fine[quantity][::2] - coarse[quantity]
+        extrapolated = 2 * fine[quantity][::2] - coarse[quantity]
         # What is left is of the second order of a tenth, and of the floor's own nodes.
-        assert np.max(np.abs(found - expected)[large]) <= expected.max() / 20
+        assert np.max(np.abs(extrapolated - expected)[large]) <= expected.max() / 20
 
 
 def moved(scene: Scene, solver: Solver) -> dict[str, Any]:
-    found = run(scene, solver, "f64")
-    assert found.record is not None
-    return {gate.quantity: np.array(gate.errors) for gate in found.record.gates}
+    judgement = run(scene, solver, "f64")
+    assert judgement.record is not None
+    return {gate.quantity: np.array(gate.errors) for gate in judgement.record.gates}
 
 
 def at(done: Any, samples: int) -> Any:
@@ -239,8 +239,8 @@ def test_a_number_that_is_none_fails_every_balance() -> None:
         rows[3][1] = mp.nan
         return rows
 
-    found = status(run(over(EULER, Fraction(2), 6), Callback(answer), "f64"))
-    assert all(found[gate] is Status.FAIL for gate in ("omega", "T", "H2"))
+    statuses = status(run(over(EULER, Fraction(2), 6), Callback(answer), "f64"))
+    assert all(statuses[gate] is Status.FAIL for gate in ("omega", "T", "H2"))
 
 
 def test_the_exact_answer_is_balanced_to_its_last_bits() -> None:
@@ -249,10 +249,10 @@ def test_the_exact_answer_is_balanced_to_its_last_bits() -> None:
     def answer(problem: Problem) -> Any:
         return solution(problem.given).evaluate(problem.given.clock.elapsed, 25)["omega"]
 
-    found = run(over(EULER, Fraction(5), 11), Callback(answer), "f64")
+    judgement = run(over(EULER, Fraction(5), 11), Callback(answer), "f64")
     assert all(
         verdict.verdict is Status.PASS and verdict.ratio <= 1e-6
-        for verdict in found.verdicts
+        for verdict in judgement.verdicts
         if verdict.quantity in BALANCES[EULER]
     )
 

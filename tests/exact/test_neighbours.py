@@ -64,10 +64,10 @@ def asked(scene: Scene, states: list[State], digits: int) -> Motion | None:
     exact = tuple(in_mpfr(solution(scene).motion(times, DIGITS)) for times in (TIMES, ENDS))
     here = arcs(scene, states, [Fraction(0)] * 3, DIGITS, TIMES)
     with precision():
-        found = neighbours(scene, [*TIMES, *ENDS], exact, in_mpfr(here), digits)
-    if found is None:
+        motion = neighbours(scene, [*TIMES, *ENDS], exact, in_mpfr(here), digits)
+    if motion is None:
         return None
-    return Motion({name: to_mpf(rows) for name, rows in found.quantities.items()}, found.radius)
+    return Motion({name: to_mpf(rows) for name, rows in motion.quantities.items()}, motion.radius)
 
 
 def distance(one: Motion, other: Motion) -> mpf:
@@ -87,10 +87,10 @@ def test_they_are_the_enclosed_arcs(name: str, size: str, digits: int) -> None:
         scene = load(name)
         states = beside(scene, Fraction(size))
         spans = [end - begin for begin, end in zip(TIMES, ENDS, strict=True)]
-        found = asked(scene, states, digits)
-        assert found is not None
+        motion = asked(scene, states, digits)
+        assert motion is not None
         arrived = arcs(scene, states, spans, digits + 10, TIMES)
-        assert distance(found, arrived) <= mpf(10) ** -(digits + 3)
+        assert distance(motion, arrived) <= mpf(10) ** -(digits + 3)
 
 
 def test_the_exact_motion_leads_to_itself() -> None:
@@ -99,11 +99,11 @@ def test_the_exact_motion_leads_to_itself() -> None:
         scene = load("euler/gyrostat-moment")
         exact = [in_mpfr(solution(scene).motion(times, DIGITS)) for times in (TIMES, ENDS)]
         with precision():
-            found = neighbours(scene, [*TIMES, *ENDS], (exact[0], exact[1]), exact[0], 40)
-        assert found is not None
+            motion = neighbours(scene, [*TIMES, *ENDS], (exact[0], exact[1]), exact[0], 40)
+        assert motion is not None
         there = {name: to_mpf(rows) for name, rows in exact[1].quantities.items()}
-        arrived = {name: to_mpf(rows) for name, rows in found.quantities.items()}
-        left = distance(Motion(arrived, found.radius), Motion(there, found.radius))
+        arrived = {name: to_mpf(rows) for name, rows in motion.quantities.items()}
+        left = distance(Motion(arrived, motion.radius), Motion(there, motion.radius))
         assert left <= mpf(10) ** -(DIGITS - 1)
 
 

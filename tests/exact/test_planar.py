@@ -101,24 +101,24 @@ def test_both_routes_are_the_taylor_motion(name: str, swapped: bool) -> None:
     truth = TaylorSolution(scene).motion(TIMES, DIGITS)
     for exact in (enclosed(scene), closed_form(scene)):
         assert exact.regime == word
-        found = exact.motion(TIMES, DIGITS)
-        assert set(found.quantities) == set(truth.quantities)
+        motion = exact.motion(TIMES, DIGITS)
+        assert set(motion.quantities) == set(truth.quantities)
         i, j = cyclic(k)
-        assert not any(found["linear_impulse"][:, k])
-        assert not any(found["angular_impulse"][:, [i, j]].flat)
+        assert not any(motion["linear_impulse"][:, k])
+        assert not any(motion["angular_impulse"][:, [i, j]].flat)
         with mp.workdps(DIGITS + 20):
-            assert apart(found, truth) <= 2 * mpf(10) ** -DIGITS
+            assert apart(motion, truth) <= 2 * mpf(10) ** -DIGITS
 
 
 @pytest.mark.parametrize("k", [0, 1, 2])
 def test_every_axis_may_stand_across_the_plane(k: int) -> None:
     """The same pendulum with its axes named anew has the same numbers."""
     turned, first = built(k, BROAD, ("3/4", "-1/2", "1/4")), built(2, BROAD, ("3/4", "-1/2", "1/4"))
-    found, expected = (closed_form(s).motion(TIMES, DIGITS) for s in (turned, first))
+    motion, expected = (closed_form(s).motion(TIMES, DIGITS) for s in (turned, first))
     order, usual = (*cyclic(k), k), (0, 1, 2)
     with mp.workdps(DIGITS + 20):
         for name in ("linear_impulse", "angular_impulse"):
-            difference = found[name][:, order] - expected[name][:, usual]
+            difference = motion[name][:, order] - expected[name][:, usual]
             assert max(abs(e) for e in difference.flat) <= mpf(10) ** -DIGITS
 
 
@@ -134,11 +134,11 @@ def test_it_is_what_clebschs_body_does_in_its_plane(name: str) -> None:
         body=replace(symmetric.body, angular=tensors.diagonal((3 * C[0][0], C[1][1], C[2][2]))),
     )
     assert closed_form(broken).regime == name
-    found, expected = (
+    motion, expected = (
         solution(scene, "mpmath").motion(TIMES, DIGITS) for scene in (broken, symmetric)
     )
     with mp.workdps(DIGITS + 20):
-        assert apart(found, expected) <= 2 * mpf(10) ** -DIGITS
+        assert apart(motion, expected) <= 2 * mpf(10) ** -DIGITS
 
 
 def test_the_border_of_swing_and_turn_is_decided_exactly() -> None:
@@ -151,9 +151,9 @@ def test_the_border_of_swing_and_turn_is_decided_exactly() -> None:
         (1 - TINY, "planar-swing"),
     ):
         y = tuple(factor * e for e in scene.initial.angular)
-        found = plane(replace(scene, initial=replace(scene.initial, angular=y)))
-        assert found is not None
-        assert regime(found) == word
+        in_plane = plane(replace(scene, initial=replace(scene.initial, angular=y)))
+        assert in_plane is not None
+        assert regime(in_plane) == word
 
 
 TINY = Fraction(1, 10**40)
@@ -229,9 +229,9 @@ def test_the_motion_recurs_after_its_period_and_not_before(name: str) -> None:
 @pytest.mark.parametrize("step", LADDER)
 def test_the_shipped_front_is_one_on_every_rung(step: str) -> None:
     """Its numbers are dyadic; so is every zero of the pendulum's."""
-    found = plane(pose(load("kirchhoff/pendulum-front"), rung(step)).given)
-    assert found is not None
-    assert regime(found) == "planar-front"
+    in_plane = plane(pose(load("kirchhoff/pendulum-front"), rung(step)).given)
+    assert in_plane is not None
+    assert regime(in_plane) == "planar-front"
     swinging = plane(pose(load("kirchhoff/pendulum"), rung(step)).given)
     assert swinging is not None
     assert regime(swinging) == "planar-swing"

@@ -30,17 +30,17 @@ TIMES = ("1.25", "7")
 def printed(scene: str, route: str, digits: int) -> list[dict[str, Any]]:
     asked = load(scene)
     times = [(text, asked.clock.start + Fraction(text)) for text in TIMES]
-    found: list[dict[str, Any]] = document(asked, solution(asked, route), times, digits)["rows"]
-    return found
+    rows: list[dict[str, Any]] = document(asked, solution(asked, route), times, digits)["rows"]
+    return rows
 
 
 def vectors(row: dict[str, Any]) -> dict[str, list[Fraction]]:
     """Every vector and matrix of a row, flat, as the rationals that its text says."""
-    found = {}
+    values = {}
     for name, value in row.items():
         if name not in ("t", "radius"):
-            found[name] = [Fraction(text) for text in np.ravel(np.array(value))]
-    return found
+            values[name] = [Fraction(text) for text in np.ravel(np.array(value))]
+    return values
 
 
 def errors(row: dict[str, Any], truth: dict[str, Any]) -> dict[str, Fraction]:

@@ -145,10 +145,10 @@ def test_b_is_symmetric_about_one_origin() -> None:
 
 REDUCTIONS: dict[str, Callable[[Reduced], Reduced]] = {
     "centred": centred,
-    "moved": lambda found: about(found, AWAY, "somewhere"),
-    "less b": lambda found: less_coupling(found, Fraction(-1, 3)),
-    "less p": lambda found: less_linear(found, Fraction(3, 10)),
-    "all": lambda found: less_linear(less_coupling(centred(found), Fraction(1, 7)), Fraction(1, 5)),
+    "moved": lambda start: about(start, AWAY, "somewhere"),
+    "less b": lambda start: less_coupling(start, Fraction(-1, 3)),
+    "less p": lambda start: less_linear(start, Fraction(3, 10)),
+    "all": lambda start: less_linear(less_coupling(centred(start), Fraction(1, 7)), Fraction(1, 5)),
 }
 
 
@@ -159,9 +159,9 @@ def test_the_way_back_leads_to_the_motion_of_the_scene(name: str) -> None:
     reduced = REDUCTIONS[name](Reduced(scene))
     inner = TaylorSolution(reduced.scene)
     expected = TaylorSolution(scene).motion(TIMES, DIGITS)
-    found = reduced.carried_back(inner).motion(TIMES, DIGITS)
+    motion = reduced.carried_back(inner).motion(TIMES, DIGITS)
     with mp.workdps(DIGITS + 20):
-        assert apart(found, expected) <= 3 * mpf(10) ** -DIGITS
+        assert apart(motion, expected) <= 3 * mpf(10) ** -DIGITS
 
 
 def test_without_linear_impulse_a_multiple_in_b_is_a_straight_drift() -> None:
@@ -169,9 +169,9 @@ def test_without_linear_impulse_a_multiple_in_b_is_a_straight_drift() -> None:
     scene = whole(GENERAL, x=vector(0, 0, 0))
     reduced = less_coupling(Reduced(scene), Fraction(1, 9))
     expected = TaylorSolution(scene).motion(TIMES, DIGITS)
-    found = reduced.carried_back(TaylorSolution(reduced.scene)).motion(TIMES, DIGITS)
+    motion = reduced.carried_back(TaylorSolution(reduced.scene)).motion(TIMES, DIGITS)
     with mp.workdps(DIGITS + 20):
-        assert apart(found, expected) <= 3 * mpf(10) ** -DIGITS
+        assert apart(motion, expected) <= 3 * mpf(10) ** -DIGITS
 
 
 def wrongly(change: Callable[[dict[str, Any], dict[str, Any]], None], right: Back) -> Back:
@@ -207,9 +207,9 @@ def test_a_space_that_turns_on_the_wrong_side_is_seen(
     right = isotropic._turned
     monkeypatch.setattr(isotropic, "_turned", lambda b, start: wrongly(twin, right(b, start)))
     scene = pendulum()
-    found = solution(scene, route).motion(TIMES, DIGITS)
+    motion = solution(scene, route).motion(TIMES, DIGITS)
     with mp.workdps(DIGITS + 20):
-        assert apart(found, TaylorSolution(scene).motion(TIMES, DIGITS)) > 1e-3
+        assert apart(motion, TaylorSolution(scene).motion(TIMES, DIGITS)) > 1e-3
 
 
 # The cases, by both routes and against Taylor.
@@ -225,10 +225,10 @@ def test_both_routes_are_the_taylor_motion(name: str, away: Vector) -> None:
     for route in ("arb", "mpmath"):
         exact = solution(scene, route)
         assert exact.regime == word
-        found = exact.motion(TIMES, DIGITS)
-        assert set(found.quantities) == set(expected.quantities)
+        motion = exact.motion(TIMES, DIGITS)
+        assert set(motion.quantities) == set(expected.quantities)
         with mp.workdps(DIGITS + 20):
-            assert apart(found, expected) <= 2 * mpf(10) ** -DIGITS
+            assert apart(motion, expected) <= 2 * mpf(10) ** -DIGITS
 
 
 def test_a_screw_held_by_loads_is_the_taylor_motion() -> None:
@@ -238,10 +238,10 @@ def test_a_screw_held_by_loads_is_the_taylor_motion() -> None:
     for route in ("arb", "mpmath"):
         exact = solution(scene, route)
         assert exact.regime == "steady"
-        found = exact.motion(TIMES, DIGITS)
-        assert np.all(found["linear_impulse"] == found["linear_impulse"][0])
+        motion = exact.motion(TIMES, DIGITS)
+        assert np.all(motion["linear_impulse"] == motion["linear_impulse"][0])
         with mp.workdps(DIGITS + 20):
-            assert apart(found, expected) <= 2 * mpf(10) ** -DIGITS
+            assert apart(motion, expected) <= 2 * mpf(10) ** -DIGITS
 
 
 @pytest.mark.parametrize("x", [vector(0, 0, 0), X], ids=["at rest", "drifting"])
@@ -265,8 +265,8 @@ def test_without_linear_impulse_impulse_and_attitude_are_always_closed(track: se
     scene = one_instant(GENERAL, start, *track)
     expected = TaylorSolution(scene).motion(TIMES, DIGITS)
     with mp.workdps(DIGITS + 20):
-        for found in found_by_both(scene):
-            assert apart(found, expected) <= 2 * mpf(10) ** -DIGITS
+        for motion in found_by_both(scene):
+            assert apart(motion, expected) <= 2 * mpf(10) ** -DIGITS
     pathless = one_instant(GENERAL, start, "attitude", "centre")
     assert solution(pathless).regime == NO_CLOSED_FORM
     assert elements(pathless).regime == NO_CLOSED_FORM
@@ -360,8 +360,8 @@ def test_the_other_origins_of_a_pendulum_are_found() -> None:
     assert exact.regime.startswith("planar-")
     expected = TaylorSolution(askew).motion(TIMES, DIGITS)
     with mp.workdps(DIGITS + 20):
-        for found in found_by_both(askew):
-            assert apart(found, expected) <= 2 * mpf(10) ** -DIGITS
+        for motion in found_by_both(askew):
+            assert apart(motion, expected) <= 2 * mpf(10) ** -DIGITS
 
 
 def test_under_loads_nothing_else_is_closed() -> None:
@@ -385,8 +385,8 @@ def test_weber_is_found_beside_its_origin() -> None:
     assert solution(aside).regime == "weber"
     expected = TaylorSolution(aside).motion(TIMES, DIGITS)
     with mp.workdps(DIGITS + 20):
-        for found in found_by_both(aside):
-            assert apart(found, expected) <= 2 * mpf(10) ** -DIGITS
+        for motion in found_by_both(aside):
+            assert apart(motion, expected) <= 2 * mpf(10) ** -DIGITS
 
 
 # Bodies drawn at random: small and large, and nearly degenerate.
@@ -486,15 +486,15 @@ def test_the_elements_are_those_of_the_inner_motion() -> None:
 def test_the_pitch_of_a_screw_is_its_way_in_one_turn() -> None:
     """After one turn the attitude is back, and the centre has gone the pitch along the axis."""
     scene = held_screw()
-    found = elements(scene, 30)
-    period = Fraction(str(mp.nstr(found["turn_period"].value, 30)))
+    orbit = elements(scene, 30)
+    period = Fraction(str(mp.nstr(orbit["turn_period"].value, 30)))
     motion = solution(scene).motion([Fraction(0), period], DIGITS)
     with mp.workdps(40):
         turned = motion["attitude"][1] - motion["attitude"][0]
         assert max(abs(entry) for entry in turned.flat) <= mpf(10) ** -23
         way = mp.norm(list(motion["centre"][1] - motion["centre"][0]))
-        assert abs(way - abs(found["pitch"].value)) <= mpf(10) ** -23
-    assert not any("beside" in line or "screws with" in line for line in found.sentences)
+        assert abs(way - abs(orbit["pitch"].value)) <= mpf(10) ** -23
+    assert not any("beside" in line or "screws with" in line for line in orbit.sentences)
 
 
 # A rigid body under a moment that its own rotation balances.

@@ -72,10 +72,10 @@ def cross(a: Any, b: Any) -> list[arb]:
 def test_x_and_y_of_a_screw_do_not_change(seed: int) -> None:
     """Put into 48 (3), (4) the rates enclose zero in narrow balls; |x| and Omega are as asked."""
     body, turn = drawn(seed)
-    found = screws(body, F2, turn)
-    assert len(found) == 3
+    all_screws = screws(body, F2, turn)
+    assert len(all_screws) == 3
     with ctx.workprec(128):
-        for screw in found:
+        for screw in all_screws:
             both = times(body.energy_matrix, [*screw.x, *screw.y])
             U, Omega = both[:3], both[3:]
             torque = zip(cross(screw.y, Omega), cross(screw.x, U), strict=True)
@@ -158,8 +158,8 @@ def test_the_spectrum_is_that_of_the_linearised_equations(seed: int) -> None:
         else:
             assert max(abs(s.real) for s in rest) <= 1e-6
             slow, fast = (float(rate.mid()) for rate in screw.swings())
-            found = sorted(abs(s.imag) for s in rest)
-            assert np.allclose(found, [slow, slow, fast, fast], atol=1e-6, rtol=0)
+            rates = sorted(abs(s.imag) for s in rest)
+            assert np.allclose(rates, [slow, slow, fast, fast], atol=1e-6, rtol=0)
 
 
 def test_drawn_bodies_have_screws_of_every_kind() -> None:
@@ -240,9 +240,9 @@ def test_what_is_no_screw_is_not_called_one() -> None:
 
 def test_explain_says_which_screws_are_stable() -> None:
     """One sentence for each of the three, with the word that was proven."""
-    told = elements(load("kirchhoff/steady-screw")).sentences
-    assert "The start is itself a steady screw." in told
-    lines = [line for line in told if line.startswith("Screw ")]
+    sentences = elements(load("kirchhoff/steady-screw")).sentences
+    assert "The start is itself a steady screw." in sentences
+    lines = [line for line in sentences if line.startswith("Screw ")]
     words = [s.stability.value for s in screws_beside(load("kirchhoff/steady-screw"))]
     assert len(lines) == 3
     assert all(word in line for word, line in zip(words, lines, strict=True))

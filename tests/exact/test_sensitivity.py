@@ -53,9 +53,9 @@ def column(entries: Vector) -> Array:
     return np.array([mp.convert(entry) for entry in entries], dtype=object)
 
 
-def combined(found: Sensitivity, quantity: str, weights: dict[str, Vector]) -> Array:
+def combined(derivatives: Sensitivity, quantity: str, weights: dict[str, Vector]) -> Array:
     """The derivative along one direction of all inputs, (n, 3)."""
-    parts = [found[quantity, name] @ column(direction) for name, direction in weights.items()]
+    parts = [derivatives[quantity, name] @ column(direction) for name, direction in weights.items()]
     total: Array = sum(parts[1:], parts[0])
     return total
 
@@ -91,10 +91,10 @@ def rates(problem: Scene, state: State, body: Sequence[Any], damping: Any) -> St
 
 
 def symmetric(six: Sequence[Any]) -> Array:
-    found = np.zeros((3, 3), dtype=object)
+    tensor = np.zeros((3, 3), dtype=object)
     for (i, k), entry in zip(ENTRIES, six, strict=True):
-        found[i, k] = found[k, i] = entry
-    return found
+        tensor[i, k] = tensor[k, i] = entry
+    return tensor
 
 
 def matrices(body: Sequence[Any]) -> tuple[Array, Array, Array]:
@@ -135,21 +135,21 @@ def known(name: str) -> Sensitivity:
     return sensitivity(SCENES[name], [MIDDLE - STEP, MIDDLE, MIDDLE + STEP, Fraction(0)], 25)
 
 
-def misfit(name: str, twin: Twin = lambda found: found) -> mpf:
+def misfit(name: str, twin: Twin = lambda derivatives: derivatives) -> mpf:
     """How far each derivative's rate of change is from the linearised equations, at the most.
 
     The rate is a central difference over 2^-33 of a unit of time: right to 1e-21 of a third
     derivative of some tens, and to 1e-25/1e-10 by the digits asked for.
     """
-    problem, found = SCENES[name], twin(known(name))
-    motion = solution(problem).motion(found.elapsed[:3], 40)
+    problem, derivatives = SCENES[name], twin(known(name))
+    motion = solution(problem).motion(derivatives.elapsed[:3], 40)
     with mp.workdps(60):
         states = [{name: rows[k] for name, rows in motion.quantities.items()} for k in range(3)]
         body, damping = numbers(problem), mp.convert(problem.body.damping)
         worst = mpf(0)
-        for into, names in found.components.items():
+        for into, names in derivatives.components.items():
             for j in range(len(names)):
-                moved = [deviation(found, states[k], into, j, k) for k in range(3)]
+                moved = [deviation(derivatives, states[k], into, j, k) for k in range(3)]
                 ahead, behind = (
                     rates(
                         problem,
@@ -169,9 +169,9 @@ def misfit(name: str, twin: Twin = lambda found: found) -> mpf:
         return worst
 
 
-def deviation(found: Sensitivity, state: State, into: str, j: int, k: int) -> State:
+def deviation(derivatives: Sensitivity, state: State, into: str, j: int, k: int) -> State:
     """The derivatives by one component, that of R as a matrix [theta]x R."""
-    parts = {name: found[name, into][k, :, j] for name in state}
+    parts = {name: derivatives[name, into][k, :, j] for name in state}
     return {**parts, "attitude": cross_matrix(parts["attitude"]) @ state["attitude"]}
 
 
@@ -197,16 +197,16 @@ def test_damping_slows_the_clock_and_shrinks_the_momenta(name: str) -> None:
     It is -t z + s (z' + c z), and s times the rates of attitude and centre, where s = e^{ct} dtau/dc is
     -t^2 M(1, 3, ct)/2 in Kummer's M, for c = 0 too.
     """
-    problem, found = SCENES[name], sensitivity(SCENES[name], TIMES, DIGITS)
+    problem, derivatives = SCENES[name], sensitivity(SCENES[name], TIMES, DIGITS)
     motion = solution(problem).motion(TIMES, DIGITS + 5)
     with mp.workdps(40):
         c, t = mp.convert(problem.body.damping), column(TIMES)
         s = np.array([-(time**2) * mp.hyp1f1(1, 3, c * time) / 2 for time in t])[:, None]
-        for name, flow in found.flow.items():
+        for name, flow in derivatives.flow.items():
             expected = s * flow
             if name not in ("attitude", "centre"):
                 expected = expected + (c * s - t[:, None]) * motion[name]
-            difference = found[name, "damping"][:, :, 0] - expected
+            difference = derivatives[name, "damping"][:, :, 0] - expected
             assert largest(difference) <= CLOSE * (1 + largest(expected))
 
 
@@ -216,28 +216,28 @@ def test_wheels_and_loads_have_no_derivative_by_a_damping_that_is_not_there() ->
     assert known("damped, moment").components["damping"] == ("c",)
 
 
-def transposed(found: Sensitivity) -> Sensitivity:
-    turned = found["attitude", "omega"].transpose(0, 2, 1)
-    return replace(found, by={**found.by, ("attitude", "omega"): turned})
+def transposed(derivatives: Sensitivity) -> Sensitivity:
+    turned = derivatives["attitude", "omega"].transpose(0, 2, 1)
+    return replace(derivatives, by={**derivatives.by, ("attitude", "omega"): turned})
 
 
-def turned_the_other_way(found: Sensitivity) -> Sensitivity:
+def turned_the_other_way(derivatives: Sensitivity) -> Sensitivity:
     return replace(
-        found,
-        by={pair: rows if pair[0] == "omega" else -rows for pair, rows in found.by.items()},
+        derivatives,
+        by={pair: rows if pair[0] == "omega" else -rows for pair, rows in derivatives.by.items()},
     )
 
 
-def one_product_alone(found: Sensitivity) -> Sensitivity:
+def one_product_alone(derivatives: Sensitivity) -> Sensitivity:
     """A product of inertia that changes one of its two entries."""
     half = np.array([1, 1, 1, mpf("0.5"), mpf("0.5"), mpf("0.5")], dtype=object)
-    rows = found["omega", "inertia"] * half
-    return replace(found, by={**found.by, ("omega", "inertia"): rows})
+    rows = derivatives["omega", "inertia"] * half
+    return replace(derivatives, by={**derivatives.by, ("omega", "inertia"): rows})
 
 
-def rounded_to_singles(found: Sensitivity) -> Sensitivity:
-    rows = found["omega", "omega"].astype(np.float32).astype(object)
-    return replace(found, by={**found.by, ("omega", "omega"): rows})
+def rounded_to_singles(derivatives: Sensitivity) -> Sensitivity:
+    rows = derivatives["omega", "omega"].astype(np.float32).astype(object)
+    return replace(derivatives, by={**derivatives.by, ("omega", "omega"): rows})
 
 
 @pytest.mark.parametrize(
@@ -254,7 +254,7 @@ def test_a_broken_twin_is_noticed(twin: Twin) -> None:
 def test_axisymmetric_body() -> None:
     """For moments (J, J, S) omega turns about axis 3 at n = (S - J) omega3/J."""
     problem = SCENES["axisymmetric"]
-    found = sensitivity(problem, TIMES, DIGITS)
+    derivatives = sensitivity(problem, TIMES, DIGITS)
     with mp.workdps(40):
         w = column(problem.initial.omega)
         J, S = mpf(1), mpf(2)
@@ -264,8 +264,8 @@ def test_axisymmetric_body() -> None:
             forward = np.array([-w[0] * sin - w[1] * cos, w[0] * cos - w[1] * sin, 0]) * t
             by_omega = np.array([[cos, -sin, 0], [sin, cos, 0], [0, 0, 1]], dtype=object)
             by_omega[:, 2] += forward * (S - J) / J
-            assert largest(found["omega", "omega"][k] - by_omega) <= CLOSE
-            by_inertia = found["omega", "inertia"][k]
+            assert largest(derivatives["omega", "omega"][k] - by_omega) <= CLOSE
+            by_inertia = derivatives["omega", "inertia"][k]
             assert largest(by_inertia[:, 2] - forward * w[2] / J) <= CLOSE
             across = by_inertia[:, 0] + by_inertia[:, 1]
             assert largest(across + forward * w[2] * S / J**2) <= CLOSE
@@ -273,40 +273,40 @@ def test_axisymmetric_body() -> None:
 
 def test_a_spin_multiplied_runs_faster() -> None:
     """omega0 -> (1 + e) omega0 gives omega + t omega', and turns the body by t omega."""
-    found = sensitivity(TUMBLING, TIMES, DIGITS)
+    derivatives = sensitivity(TUMBLING, TIMES, DIGITS)
     omega = solution(TUMBLING).motion(TIMES, DIGITS + 5)["omega"]
     with mp.workdps(40):
         t = column(TIMES)[:, None]
         along = {"omega": TUMBLING.initial.omega}
-        expected = omega + t * found.flow["omega"]
-        assert largest(combined(found, "omega", along) - expected) <= CLOSE
-        turning = combined(found, "attitude", along) - t * found.flow["attitude"]
+        expected = omega + t * derivatives.flow["omega"]
+        assert largest(combined(derivatives, "omega", along) - expected) <= CLOSE
+        turning = combined(derivatives, "attitude", along) - t * derivatives.flow["attitude"]
         assert largest(turning) <= CLOSE
 
 
 def test_a_heavier_body_moves_alike() -> None:
     """The whole tensor multiplied leaves the free motion as it is."""
-    found = sensitivity(TUMBLING, TIMES, DIGITS)
+    derivatives = sensitivity(TUMBLING, TIMES, DIGITS)
     along = {"inertia": tuple(TENSOR[i][k] for i, k in ENTRIES)}
     with mp.workdps(40):
-        assert largest(found["omega", "inertia"]) >= 1
-        assert largest(combined(found, "omega", along)) <= CLOSE
-        assert largest(combined(found, "attitude", along)) <= CLOSE
+        assert largest(derivatives["omega", "inertia"]) >= 1
+        assert largest(combined(derivatives, "omega", along)) <= CLOSE
+        assert largest(combined(derivatives, "attitude", along)) <= CLOSE
 
 
 def test_impulses_or_coefficients_multiplied() -> None:
     """Either runs the same path faster; the impulses alone are also multiplied themselves."""
-    found = sensitivity(CLEBSCH, TIMES, DIGITS)
+    derivatives = sensitivity(CLEBSCH, TIMES, DIGITS)
     motion = solution(CLEBSCH).motion(TIMES, DIGITS + 5)
     impulses = {"linear_impulse": IMPULSE.linear, "angular_impulse": IMPULSE.angular}
     coefficients = {"clebsch": (SIX.p, SIX.p_prime, SIX.q, SIX.q_prime, SIX.r, SIX.r_prime)}
     with mp.workdps(40):
         t = column(TIMES)[:, None]
         for name, rows in motion.quantities.items():
-            faster = t * found.flow[name]
-            assert largest(combined(found, name, coefficients) - faster) <= CLOSE
+            faster = t * derivatives.flow[name]
+            assert largest(combined(derivatives, name, coefficients) - faster) <= CLOSE
             expected = faster + rows if name in impulses else faster
-            assert largest(combined(found, name, impulses) - expected) <= CLOSE
+            assert largest(combined(derivatives, name, impulses) - expected) <= CLOSE
 
 
 @pytest.mark.parametrize(
@@ -317,11 +317,11 @@ def test_the_flow_is_the_derivative_by_time(name: str) -> None:
     flow = known(name).flow
     before, after = (solution(SCENES[name]).motion([MIDDLE + s], 40) for s in (-STEP, STEP))
     with mp.workdps(40):
-        found = difference(before.quantities, after.quantities, 2 * mp.convert(STEP))
-        assert set(found) == set(flow)
+        slopes = difference(before.quantities, after.quantities, 2 * mp.convert(STEP))
+        assert set(slopes) == set(flow)
         for quantity, rates in flow.items():
             # STEP^2/6 of a third derivative of some tens.
-            assert largest(found[quantity][0] - rates[1]) <= mpf("1e-17")
+            assert largest(slopes[quantity][0] - rates[1]) <= mpf("1e-17")
 
 
 def test_units() -> None:
@@ -337,19 +337,19 @@ def test_units() -> None:
 def test_a_turn_or_a_shift_of_the_start_moves_the_path() -> None:
     """As differences of scenes turned by a small rational angle, and shifted, say too."""
     e = Fraction(1, 10**12)
-    found = sensitivity(CLEBSCH, TIMES, DIGITS)
+    derivatives = sensitivity(CLEBSCH, TIMES, DIGITS)
     for axis in range(3):
         motions = [solution(turned(CLEBSCH, axis, s * e)).motion(TIMES, 40) for s in (-1, 1)]
         with mp.workdps(40):
             # A quaternion 1 + e/2 turns by 2 atan(e/2): the angle is 2 e apart, up to e^3.
             moved = difference(motions[0].quantities, motions[1].quantities, 2 * mp.convert(e))
             for name, rows in moved.items():
-                assert largest(rows - found[name, "attitude"][:, :, axis]) <= mpf("1e-18")
+                assert largest(rows - derivatives[name, "attitude"][:, :, axis]) <= mpf("1e-18")
     with mp.workdps(40):
-        shift = found["centre", "centre"]
+        shift = derivatives["centre", "centre"]
         assert all((shift[k] == np.eye(3)).all() for k in range(len(TIMES)))
         for name in ("linear_impulse", "angular_impulse", "attitude"):
-            assert not found[name, "centre"].any()
+            assert not derivatives[name, "centre"].any()
 
 
 def test_the_place_of_the_start_costs_no_digits() -> None:
@@ -376,11 +376,11 @@ def turned(problem: Scene, axis: int, angle: Fraction) -> Scene:
 
 def test_the_condition_of_an_orbit_is_made_of_the_same_derivatives() -> None:
     """One-sided differences by the impulses, at other steps and digits, agree."""
-    found = sensitivity(CLEBSCH, TIMES, DIGITS)
+    by_start = sensitivity(CLEBSCH, TIMES, DIGITS)
     other = derivatives(CLEBSCH, TIMES, 25, 80)
     with mp.workdps(40):
         units = column(other.units)
-        both = [found["centre", name] for name in ("linear_impulse", "angular_impulse")]
+        both = [by_start["centre", name] for name in ("linear_impulse", "angular_impulse")]
         rows = np.concatenate(both, axis=2) * units
         assert largest(rows - other.others["centre"]) <= CLOSE
 
@@ -427,29 +427,29 @@ def test_degenerate_orbits_have_derivatives(name: str) -> None:
     """
     problem = load(name)
     times = list(vector(0, "1.5"))
-    found = sensitivity(problem, times, 12)
+    derivatives = sensitivity(problem, times, 12)
     with mp.workdps(40):
         into = "inertia" if problem.model == "euler" else "clebsch"
         along = numbers(problem)
-        for quantity, flow in found.flow.items():
+        for quantity, flow in derivatives.flow.items():
             expected = column(tuple(times))[:, None] * flow if into == "clebsch" else 0 * flow
-            change = found[quantity, into] @ np.array(along, dtype=object)
+            change = derivatives[quantity, into] @ np.array(along, dtype=object)
             # 12 digits of six columns, of the size of the columns or of the motion itself.
-            size = 1 + largest(found[quantity, into] * along) + largest(flow)
+            size = 1 + largest(derivatives[quantity, into] * along) + largest(flow)
             assert largest(change - expected) <= mpf("1e-10") * size
 
 
 def test_an_unstable_orbit_takes_smaller_steps() -> None:
     """About the middle axis an error grows as cosh: 10^20 times after 80, and known to 15 digits."""
     problem = one_instant(RigidBody(diagonal(vector(1, 2, 3))), Spin(vector(0, 1, 0)))
-    found = sensitivity(problem, [Fraction(80)])["omega", "omega"][0]
+    by_omega = sensitivity(problem, [Fraction(80)])["omega", "omega"][0]
     with mp.workdps(30):
         # omega1' = (2 - 3) omega2 omega3, omega3' = (1 - 2)/3 omega1 omega2.
         rate = mp.sqrt(mpf(1) / 3)
         grown = [[mp.cosh(80 * rate), -mp.sinh(80 * rate) / rate]]
         grown.append([-mp.sinh(80 * rate) * rate, mp.cosh(80 * rate)])
         expected = np.array(grown, dtype=object)
-        assert largest(found[np.ix_([0, 2], [0, 2])] / expected - 1) <= mpf("1e-15")
+        assert largest(by_omega[np.ix_([0, 2], [0, 2])] / expected - 1) <= mpf("1e-15")
 
 
 def test_what_does_not_settle_is_not_answered(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -484,6 +484,6 @@ def test_components_are_named_in_the_order_of_the_columns() -> None:
     assert names[:6] == ("A11", "A22", "A33", "A23", "A13", "A12")
     assert names[6:9] == ("B11", "B12", "B13")
     assert len(names) == 21
-    found = sensitivity(TUMBLING, [Fraction(0)])
-    for (_, into), rows in found.by.items():
-        assert rows.shape == (1, 3, len(found.components[into]))
+    derivatives = sensitivity(TUMBLING, [Fraction(0)])
+    for (_, into), rows in derivatives.by.items():
+        assert rows.shape == (1, 3, len(derivatives.components[into]))

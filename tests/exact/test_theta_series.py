@@ -45,9 +45,9 @@ def tau_of(text: str) -> acb:
 
 
 def series_of(tau: acb) -> ThetaSeries:
-    found = ThetaSeries.where_short(tau)
-    assert found is not None
-    return found
+    series = ThetaSeries.where_short(tau)
+    assert series is not None
+    return series
 
 
 def arguments(count: int = 40) -> list[arb]:
@@ -64,8 +64,8 @@ def overlap(one: Sequence[Any], other: Sequence[Any]) -> bool:
 def agrees(tau: acb, shift: acb, order: int) -> bool:
     """Return True if the series contain theta_1 as FLINT has it."""
     vs, series = arguments(), series_of(tau)
-    found = series.shifted(shift, series.lead, order).at(Places([arb.pi() * v for v in vs]))
-    return overlap(found, [acb.modular_theta(v + shift, tau, order)[0] for v in vs])
+    values = series.shifted(shift, series.lead, order).at(Places([arb.pi() * v for v in vs]))
+    return overlap(values, [acb.modular_theta(v + shift, tau, order)[0] for v in vs])
 
 
 @pytest.mark.parametrize("tau", TAUS)
@@ -89,7 +89,7 @@ def agree(at: acb) -> list[bool]:
     vs, series = arguments(), series_of(at)
     places = Places([arb.pi() * v for v in vs])
     right = list(zip(*(acb.modular_theta(acb(v), at) for v in vs), strict=True))
-    found = [
+    sums = [
         [series.lead * factor * value for factor, value in zip(factors, places.at(p), strict=True)]
         for factors, p in (
             (places.sines, series.one(arb(1))),
@@ -97,8 +97,8 @@ def agree(at: acb) -> list[bool]:
         )
     ]
     if at.real.is_zero():
-        found += [[acb(v) for v in places.at(p)] for p in series.three_and_four(arb(1))]
-    return [overlap(values, right[k]) for k, values in enumerate(found)]
+        sums += [[acb(v) for v in places.at(p)] for p in series.three_and_four(arb(1))]
+    return [overlap(values, right[k]) for k, values in enumerate(sums)]
 
 
 @pytest.mark.parametrize("tau", TAUS)
@@ -203,9 +203,9 @@ def test_near_a_separatrix_there_is_no_series() -> None:
     assert ThetaSeries.where_short(acb(0, arb("0.075"))) is not None
     with ctx.workprec(4000):
         assert ThetaSeries.where_short(acb(0, arb("0.075"))) is None
-        found = ThetaSeries.where_short(acb(0, arb(1)))
-        assert found is not None
-        assert found._count(0.5, 1) <= MOST_TERMS
+        series = ThetaSeries.where_short(acb(0, arb(1)))
+        assert series is not None
+        assert series._count(0.5, 1) <= MOST_TERMS
 
 
 # Lattices

@@ -77,7 +77,7 @@ def test_a_tiny_datum_starts_an_unstable_motion(kind: str, exponent: int) -> Non
     """A start, moment, coefficient or gap of 10^-300 is not lost: the body tumbles when it must."""
     enclosed, known = SEEDED[kind](Fraction(1, 10**exponent))
     late = [Fraction(round(exponent * 2.302585 / GROWTH) + 3)]
-    found, truth = (
+    motion, truth = (
         TaylorSolution(enclosed).motion(late, 12),
         solution(known, "arb").motion(late, 20),
     )
@@ -85,9 +85,9 @@ def test_a_tiny_datum_starts_an_unstable_motion(kind: str, exponent: int) -> Non
         if kind == "coefficient":
             assert isinstance(known.body, RigidBody)
             inertia = np.array([[mp.convert(c) for c in row] for row in known.body.inertia])
-            one, other = found["angular_impulse"][0], inertia @ truth["omega"][0]
+            one, other = motion["angular_impulse"][0], inertia @ truth["omega"][0]
         else:
-            one, other = found["omega"][0], truth["omega"][0]
+            one, other = motion["omega"][0], truth["omega"][0]
         assert mp.norm(list(one - other)) <= mpf(10) ** -12 * mp.norm(list(other))
         if kind != "gap":
             # The spin about the middle axis has visibly ended.
@@ -101,10 +101,10 @@ def test_a_tiny_impulse_starts_an_unstable_motion() -> None:
     start = Impulse(vector("1e-60", 0, 1), vector(0, 0, "0.25"))
     asked = one_instant(solid, start)
     late = [Fraction(150)]
-    found, finer = (TaylorSolution(asked).motion(late, digits) for digits in (10, 40))
+    coarse, finer = (TaylorSolution(asked).motion(late, digits) for digits in (10, 40))
     with mp.workdps(60):
-        for name, values in found.quantities.items():
-            assert mp.norm(list(values[0] - finer[name][0])) <= found.radius[0] * mp.norm(
+        for name, values in coarse.quantities.items():
+            assert mp.norm(list(values[0] - finer[name][0])) <= coarse.radius[0] * mp.norm(
                 list(finer[name][0])
             )
-        assert abs(found["linear_impulse"][0][2]) < mpf("0.5")
+        assert abs(coarse["linear_impulse"][0][2]) < mpf("0.5")

@@ -64,14 +64,14 @@ def disagreement(scene: Scene, times: list[Fraction]) -> str:
 
 
 def closed_forms() -> list[str]:
-    found = []
+    scenes = []
     for name in names():
         try:
             solution(load(name), "arb")
         except NoClosedForm:
             continue
-        found.append(name)
-    return found
+        scenes.append(name)
+    return scenes
 
 
 @pytest.mark.parametrize(

@@ -50,9 +50,9 @@ def test_both_routes_are_the_taylor_motion(semi_axes: Vector, y: Vector, word: s
     for route in ("arb", "mpmath"):
         exact = solution(scene, route)
         assert exact.regime == word
-        found = exact.motion(TIMES, 25)
+        motion = exact.motion(TIMES, 25)
         with mp.workdps(45):
-            assert apart(found, expected) <= 2 * mpf(10) ** -25
+            assert apart(motion, expected) <= 2 * mpf(10) ** -25
 
 
 @pytest.mark.parametrize(("factor", "word"), [(-1, "max-axis"), (0, "separatrix"), (1, "min-axis")])
@@ -77,17 +77,17 @@ def test_the_routes_agree_beyond_the_digits_of_the_coefficients() -> None:
 def test_the_elements_are_in_the_time_of_the_scene() -> None:
     """y recurs after one period, and not after the half of it; T is that of the body."""
     scene = ellipsoid(vector(3, 2, 1), vector("0.5", "0.75", "-0.25"))
-    found = elements(scene, 30)
-    period = Fraction(str(mp.nstr(found["period"].value, 30)))
+    orbit = elements(scene, 30)
+    period = Fraction(str(mp.nstr(orbit["period"].value, 30)))
     motion = solution(scene).motion([Fraction(0), period / 2, period], 25)
     with mp.workdps(40):
         y = motion["angular_impulse"]
         assert max(abs(entry) for entry in y[2] - y[0]) <= mpf(10) ** -23
         assert max(abs(entry) for entry in y[1] - y[0]) > 0.1
-        assert found["rate"].value * found["flip_time"].value > 2
+        assert orbit["rate"].value * orbit["flip_time"].value > 2
     rational = replace(scene, body=replace(solid(scene)[0], ellipsoid=None))
     for name, element in elements(rational, 30).items():
-        assert abs(found[name].value - element.value) <= mpf(10) ** -28 * abs(element.value)
+        assert abs(orbit[name].value - element.value) <= mpf(10) ** -28 * abs(element.value)
 
 
 def test_a_little_fluid_ends_it() -> None:

@@ -196,21 +196,21 @@ def test_what_elements_says_is_conserved_is(name: str) -> None:
     """2T J - |H|^2 of the Taylor motion at every time."""
     scene, _ = SCENES[name]
     assert isinstance(scene.body, RigidBody)
-    kept = elements(scene, 30)["2TJ-H2"].value
+    conserved = elements(scene, 30)["2TJ-H2"].value
     J = mp.convert(board(scene).axial_moment)
     with mp.workdps(2 * DIGITS):
         rows = [[mp.convert(entry) for entry in row] for row in scene.body.inertia]
         H = truth(name)["omega"] @ np.array(rows, dtype=object)
         for omega, momentum in zip(truth(name)["omega"], H, strict=True):
-            assert abs(J * (omega @ momentum) - momentum @ momentum - kept) <= mpf("1e-29")
+            assert abs(J * (omega @ momentum) - momentum @ momentum - conserved) <= mpf("1e-29")
 
 
 @pytest.mark.parametrize("name", SCENES)
 def test_the_ends_are_where_the_spin_is_zero_and_nowhere_between(name: str) -> None:
     """F is proven positive on a cover of the interval from end to end, and encloses 0 at both."""
-    found = board(SCENES[name][0])
+    washboard = board(SCENES[name][0])
     with ctx.workprec(160):
-        F, ends = speed(found), turnings(found)
+        F, ends = speed(washboard), turnings(washboard)
         top = ends.upper if ends.upper is not None else ends.lower + 10 / F.rate
         assert F.squared(ends.lower).contains(0)
         assert ends.upper is None or F.squared(ends.upper).contains(0)
@@ -247,9 +247,9 @@ def test_a_swing_and_a_run_a_part_in_ten_to_the_twelve_apart_are_told() -> None:
     times, digits = [Fraction(30)], 25
     for spin, word in ((low, "washboard-swing"), (high, "washboard-run")):
         expected = TaylorSolution(start(spin)).motion(times, digits)
-        found = solution(start(spin), "arb")
-        assert found.regime == word
-        assert gap(found.motion(times, digits), expected) <= 2 * mpf(10) ** -digits
+        exact = solution(start(spin), "arb")
+        assert exact.regime == word
+        assert gap(exact.motion(times, digits), expected) <= 2 * mpf(10) ** -digits
 
 
 def test_what_falls_exactly_never_climbs_again() -> None:
@@ -258,10 +258,10 @@ def test_what_falls_exactly_never_climbs_again() -> None:
     assert isinstance(FALLING.initial, Spin)
     a, b, c = FALLING.initial.omega
     beside = replace(FALLING, initial=Spin((a, b + Fraction(1, 10**40), c), FRAME))
-    found = solution(beside, "arb")
-    assert found.regime == "washboard-swing"
+    climbing = solution(beside, "arb")
+    assert climbing.regime == "washboard-swing"
     # The difference has grown by e^(Omega sigma), less than e^10 here, from 1e-40 of omega.
-    rows = (exact.motion([Fraction(4)], 36) for exact in (found, solution(FALLING, "arb")))
+    rows = (exact.motion([Fraction(4)], 36) for exact in (climbing, solution(FALLING, "arb")))
     assert gap(*rows) <= mpf("1e-35")
     far = solution(FALLING, "arb").motion([Fraction(10**4)], DIGITS)["omega"][0]
     assert abs(far[0]) <= mpf("1e-1000")
@@ -377,13 +377,13 @@ def test_a_turning_point_on_the_wrong_branch_is_caught(monkeypatch: pytest.Monke
     turning = [float(row[0]) for row in expected["omega"]]
     assert min(turning) < 0 < max(turning)
     monkeypatch.setattr(balls, "Turn", OneBranch)
-    found = solution(scene, "arb").motion(times, DIGITS)
-    assert not gap(found, expected) <= mpf("1e-3")
+    motion = solution(scene, "arb").motion(times, DIGITS)
+    assert not gap(motion, expected) <= mpf("1e-3")
     after = next(t for t, spin in zip(times, turning, strict=True) if spin < 0)
     assert not equation_residual(scene, "arb", after) <= mpf("1e-3")
     with mp.workdps(2 * DIGITS):
-        kept = kept_by(scene, found)
-        assert max(abs(value - kept[0]) for value in kept) <= mpf("1e-40")
+        conserved = kept_by(scene, motion)
+        assert max(abs(value - conserved[0]) for value in conserved) <= mpf("1e-40")
 
 
 class LateTurn(chebyshev.Swing):
@@ -402,10 +402,10 @@ def test_a_start_on_the_wrong_side_of_the_turn_is_caught(monkeypatch: pytest.Mon
     a, b, c = scene.initial.omega
     back = replace(scene, initial=Spin((a, -b, c), FRAME))
     monkeypatch.setattr(chebyshev, "Swing", LateTurn)
-    found = solution(back, "mpmath").motion([Fraction(0)], 20)
+    motion = solution(back, "mpmath").motion([Fraction(0)], 20)
     with mp.workdps(30):
         start = np.array([mp.convert(e) for e in (a, -b, c)], dtype=object)
-        assert not mp.norm(list(found["omega"][0] - start)) <= mpf("1e-3")
+        assert not mp.norm(list(motion["omega"][0] - start)) <= mpf("1e-3")
 
 
 # Panels.
@@ -455,5 +455,5 @@ def test_where_there_is_no_closed_form_it_says_so(scene: Scene, what: str) -> No
     for route in ROUTES:
         with pytest.raises(NoClosedForm, match=what):
             solution(scene, route)
-    found = solution(scene)
-    assert (found.route, found.regime) == ("taylor", NO_CLOSED_FORM)
+    exact = solution(scene)
+    assert (exact.route, exact.regime) == ("taylor", NO_CLOSED_FORM)

@@ -33,9 +33,9 @@ def slope(f: Callable[[arb], arb], sigma: arb) -> arb:
 def test_a_derivative_is_the_limit_of_differences(scene: Scene) -> None:
     """F' is that of F, and the second derivative of its wave is that of the first; F begins at nu^2."""
     with ctx.workprec(BITS):
-        found = board(scene)
-        F = speed(found)
-        assert abs(F.squared(arb(0)) - ball(found.nu**2)) <= CLOSE
+        washboard = board(scene)
+        F = speed(washboard)
+        assert abs(F.squared(arb(0)) - ball(washboard.nu**2)) <= CLOSE
         for sigma in map(ball, PLACES):
             assert abs(F.derivative(sigma) - slope(F.squared, sigma)) <= CLOSE
             second = slope(lambda s: F._wave(s, 1), sigma)
@@ -47,8 +47,8 @@ def test_a_derivative_is_the_limit_of_differences(scene: Scene) -> None:
 def test_a_quotient_is_that_of_the_speed(scene: Scene) -> None:
     """F(end + z)/z, of a narrow z beside the end, and of a wide one far from it."""
     with ctx.workprec(BITS):
-        found = board(scene)
-        F, end = speed(found), turnings(found).lower
+        washboard = board(scene)
+        F, end = speed(washboard), turnings(washboard).lower
         for z in (acb(arb(1) / 1000), acb(arb(3) / 10, arb(-1) / 5)):
             assert abs(F.quotient(end)(z) * z - F.squared(end + z)) <= CLOSE
         wide = acb(arb(3, 2.0**-60), arb(1, 2.0**-60))

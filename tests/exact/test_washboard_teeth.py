@@ -41,9 +41,9 @@ DEEP = SCENES[159]
 
 
 def teeth_to_the_turn(scene: Scene) -> int:
-    found = board(scene)
+    washboard = board(scene)
     with ctx.workprec(192):
-        count = abs(located(found).lower) * speed(found).rate / arb.pi()
+        count = abs(located(washboard).lower) * speed(washboard).rate / arb.pi()
     return int(count.floor().unique_fmpz())
 
 
@@ -77,9 +77,9 @@ def test_the_closed_form_is_the_taylor_motion(teeth: int, route: str) -> None:
     scene, rate = SCENES[teeth], 1 if teeth < 1000 else 100
     digits = DIGITS if route == "arb" else 15
     times = [Fraction(0), Fraction(3, rate), Fraction(-2, rate)]
-    found, expected = solution(scene, route), TaylorSolution(scene).motion(times, digits)
-    assert (found.route, found.regime) == (route, "washboard-run")
-    assert gap(found.motion(times, digits), expected) <= 2 * mpf(10) ** -digits
+    exact, expected = solution(scene, route), TaylorSolution(scene).motion(times, digits)
+    assert (exact.route, exact.regime) == (route, "washboard-run")
+    assert gap(exact.motion(times, digits), expected) <= 2 * mpf(10) ** -digits
 
 
 def test_it_turns_back_as_the_taylor_motion_does() -> None:
@@ -129,9 +129,9 @@ def test_a_wrong_term_of_the_sum_over_teeth_is_caught(
     sound = teeth._coefficients
 
     def broken(a: int, bits: int) -> list[fmpq]:
-        found = sound(a, bits)
-        found[place] *= 1 + fmpq(1, 10**6)
-        return found
+        terms = sound(a, bits)
+        terms[place] *= 1 + fmpq(1, 10**6)
+        return terms
 
     monkeypatch.setattr(teeth, "_coefficients", broken)
     once, each = far_and_near(128)
@@ -147,9 +147,9 @@ def test_teeth_that_all_but_stop_the_body_are_summed_too() -> None:
     """By balls as by the recursion; F is small there by its second order."""
     times = [Fraction(0), Fraction(5)]
     expected = TaylorSolution(NARROW).motion(times, 25)
-    found = solution(NARROW, "arb")
-    assert found.regime == "washboard-run"
-    assert gap(found.motion(times, 25), expected) <= 2 * mpf(10) ** -25
+    exact = solution(NARROW, "arb")
+    assert exact.regime == "washboard-run"
+    assert gap(exact.motion(times, 25), expected) <= 2 * mpf(10) ** -25
 
 
 # What is not waited for.

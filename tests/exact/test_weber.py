@@ -60,15 +60,15 @@ def test_the_balls_hold_the_taylor_motion(body: str, start: str) -> None:
     scene = case(start, body)
     exact_motion = solution(scene)
     assert (exact_motion.regime, exact_motion.route) == ("weber", "arb")
-    found = exact_motion.motion(TIMES, DIGITS)
+    motion = exact_motion.motion(TIMES, DIGITS)
     truth = TaylorSolution(scene).motion(TIMES, DIGITS)
     with mp.workdps(DIGITS + 30):
-        assert apart(truth, found) <= 2 * mpf(10) ** -DIGITS
+        assert apart(truth, motion) <= 2 * mpf(10) ** -DIGITS
         # What is proven of the balls leaves nothing but Taylor's own error beside it.
         for k in range(len(TIMES)):
-            for name in found.quantities:
-                distance = mp.norm(list(found[name][k] - truth[name][k]))
-                room = found.radii[name][k] + truth.radii[name][k]
+            for name in motion.quantities:
+                distance = mp.norm(list(motion[name][k] - truth[name][k]))
+                room = motion.radii[name][k] + truth.radii[name][k]
                 size = mp.norm(list(truth[name][k]))
                 assert distance <= room * (size if size else 1) * (1 + mpf(10) ** -20)
 
@@ -86,9 +86,9 @@ def test_the_sums_in_mpmath_are_the_balls(body: str, start: str) -> None:
     """The other route, with no derivative of theta in y, other integrals and its own theta series."""
     scene = case(start, body)
     times, digits = [Fraction(7, 3), Fraction(-50)], 30
-    found = solution(scene, "mpmath")
-    assert (found.regime, found.route) == ("weber", "mpmath")
-    one, other = found.motion(times, digits), solution(scene, "arb").motion(times, digits)
+    exact = solution(scene, "mpmath")
+    assert (exact.regime, exact.route) == ("weber", "mpmath")
+    one, other = exact.motion(times, digits), solution(scene, "arb").motion(times, digits)
     with mp.workdps(digits + 30):
         assert apart(other, one) <= 2 * mpf(10) ** -digits
 
@@ -199,12 +199,12 @@ def test_beside_a_degenerate_curve_the_balls_still_hold() -> None:
         vector(1, 2, 3),
     )
     times = [Fraction(-7, 2)]
-    found = closed.enclosed(near).motion(times, 30)
+    motion = closed.enclosed(near).motion(times, 30)
     truth = TaylorSolution(near).motion(times, 30)
     with mp.workdps(60):
         e = [surd.form(mp.convert, mp.sqrt) for surd in curve_of(near).branches]
         assert min(b - a for a, b in pairwise(e)) <= mpf(10) ** -11
-        assert apart(truth, found) <= 2 * mpf(10) ** -30
+        assert apart(truth, motion) <= 2 * mpf(10) ** -30
 
 
 def test_a_motion_in_a_plane_stays_the_pendulums() -> None:
@@ -254,9 +254,9 @@ def test_a_wrong_theta_characteristic_is_seen(monkeypatch: pytest.MonkeyPatch, o
 
 def midpoints(scene: Scene) -> Motion:
     """What the balls say at one precision, however wide they are."""
-    found = curve_of(scene)
+    spectral_curve = curve_of(scene)
     with ctx.workprec(200):
-        rows = WeberBalls(found, solid(scene)[0], scene.track).enclose(TIMES[1:], 200)
+        rows = WeberBalls(spectral_curve, solid(scene)[0], scene.track).enclose(TIMES[1:], 200)
     centre = np.frompyfunc(midpoint, 1, 1)
     quantities = {name: centre(np.array(balls, dtype=object)) for name, balls in rows.items()}
     return Motion(quantities, np.zeros(len(TIMES) - 1))

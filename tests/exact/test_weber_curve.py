@@ -50,29 +50,29 @@ def test_the_start_is_on_the_curve_and_on_its_ovals(
     p = tuple(abs(entry) + 3 for entry in v) if alike else second(r, theta, Fraction(20))
     scene = built(x, tensors.cross(x, v), (r[0],) * 3 if alike else r, p)
     try:
-        found = curve(scene)
+        spectral_curve = curve(scene)
     except NoClosedForm:
         return
-    if found is None:
+    if spectral_curve is None:
         return
-    e = found.branches
-    assert sum(found.uhlenbeck) == 1
+    e = spectral_curve.branches
+    assert sum(spectral_curve.uhlenbeck) == 1
     assert all(surds.compare(a, b) < 0 for a, b in pairwise(e))
-    for k, point in enumerate(found.points):
+    for k, point in enumerate(spectral_curve.points):
         assert (point.sheet == 0) == (point.branch is not None)
         if point.branch is not None:
             assert point.branch in (2 * k + 1, 2 * k + 2)
     with ctx.workprec(200):
-        points = branch_points(found)
-        for k, point in enumerate(found.points):
+        points = branch_points(spectral_curve)
+        for k, point in enumerate(spectral_curve.points):
             u = point.u.form(ball, arb.sqrt)
             assert not u < points[2 * k + 1]
             assert not u > points[2 * k + 2]
-            w = ball(found.U_rate[1]) * u + ball(found.U_rate[2])
+            w = ball(spectral_curve.U_rate[1]) * u + ball(spectral_curve.U_rate[2])
             product = arb(-4)
             for entry in points:
                 product *= u - entry
-            assert ((w / ball(found.sigma)) ** 2).overlaps(product)
+            assert ((w / ball(spectral_curve.sigma)) ** 2).overlaps(product)
 
 
 @given(
@@ -132,9 +132,9 @@ def test_six_characteristics_are_odd_and_stand_for_the_six_branch_points() -> No
 @pytest.mark.parametrize("body", BODIES)
 def test_the_periods_of_both_routes_are_one_matrix(body: str) -> None:
     """Riemann's relations hold, tau is the same by both integrations, and so are the rates."""
-    found = curve_of(case("plain", body))
+    spectral_curve = curve_of(case("plain", body))
     with mp.workdps(50), ctx.workprec(240):
-        one, other = jacobian(found), real_jacobian(found)
+        one, other = jacobian(spectral_curve), real_jacobian(spectral_curve)
         balls = [one.tau[0, 0], one.tau[0, 1], one.tau[1, 1]]
         for tau, Y in zip(balls, other.Y, strict=True):
             assert abs(midpoint(tau.imag) - Y) <= mpf(10) ** -45

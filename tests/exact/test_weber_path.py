@@ -56,14 +56,14 @@ def test_the_balls_hold_the_taylor_motion(body: str, start: str) -> None:
     """Frame and path to 30 digits, forward and backward, within what is proven of both."""
     scene = whole(start, body)
     exact_motion = solution(scene)
-    found = exact_motion.motion(TIMES, DIGITS)
+    motion = exact_motion.motion(TIMES, DIGITS)
     assert (exact_motion.regime, exact_motion.route) == ("weber", "arb")
     truth = TaylorSolution(scene).motion(TIMES, DIGITS)
     with mp.workdps(DIGITS + 30):
         for k in range(len(TIMES)):
             for name in truth.quantities:
-                distance = mp.norm(list((found[name][k] - truth[name][k]).flat))
-                room = found.radii[name][k] + truth.radii[name][k]
+                distance = mp.norm(list((motion[name][k] - truth[name][k]).flat))
+                room = motion.radii[name][k] + truth.radii[name][k]
                 size = mp.norm(list(truth[name][k].flat))
                 assert distance <= room * (size if size else 1) * (1 + mpf(10) ** -20)
 
@@ -81,9 +81,9 @@ def test_the_balls_hold_the_taylor_motion(body: str, start: str) -> None:
 def test_the_sums_in_mpmath_are_the_balls(body: str, start: str) -> None:
     """The azimuth of y in place of that of a body axis, Z by way of T, and panels of other widths."""
     scene, times, digits = whole(start, body), [Fraction(0), Fraction(-3, 2), Fraction(1)], 20
-    found = solution(scene, "mpmath")
-    assert (found.regime, found.route) == ("weber", "mpmath")
-    one, other = found.motion(times, digits), enclosed(scene).motion(times, digits)
+    exact = solution(scene, "mpmath")
+    assert (exact.regime, exact.route) == ("weber", "mpmath")
+    one, other = exact.motion(times, digits), enclosed(scene).motion(times, digits)
     with mp.workdps(digits + 30):
         assert apart(other, one) <= 2 * mpf(10) ** -digits
 
@@ -140,8 +140,8 @@ def test_the_frame_turns_at_omega_and_the_centre_moves_at_U() -> None:
 def test_the_start_is_the_scenes_own() -> None:
     """Both routes have at time 0 what the scene wrote."""
     scene = whole("plain", "r alike")
-    for found in (enclosed(scene), closed_form(scene)):
-        motion = found.motion([Fraction(0)], DIGITS)
+    for route in (enclosed(scene), closed_form(scene)):
+        motion = route.motion([Fraction(0)], DIGITS)
         with mp.workdps(DIGITS + 5):
             assert [mp.nstr(c, 10) for c in motion["centre"][0]] == ["0.5", "-1.0", "2.0"]
             exact = rotation_matrix((Fraction(1), Fraction(2), Fraction(-1), Fraction(3)))
@@ -154,13 +154,13 @@ def test_the_start_is_the_scenes_own() -> None:
 def test_panels_are_kept_for_later_times() -> None:
     """What lies between the start and a time is integrated once at each precision."""
     scene = whole("plain", "r alike")
-    found = WeberBalls(curve_of(scene), solid(scene)[0], WHOLE)
-    found.motion([Fraction(3)], 20)
-    panels = list(found._sides[1].until(Fraction(3)))
-    (frames,) = found._frames.values()
+    motion_in_balls = WeberBalls(curve_of(scene), solid(scene)[0], WHOLE)
+    motion_in_balls.motion([Fraction(3)], 20)
+    panels = list(motion_in_balls._sides[1].until(Fraction(3)))
+    (frames,) = motion_in_balls._frames.values()
     integrals = dict(frames._integrals)
-    found.motion([Fraction(2), Fraction(3)], 20)
-    assert found._sides[1].until(Fraction(3)) == panels
+    motion_in_balls.motion([Fraction(2), Fraction(3)], 20)
+    assert motion_in_balls._sides[1].until(Fraction(3)) == panels
     assert set(frames._integrals) - set(integrals) <= {
         (panel.start, Fraction(2)) for panel in panels
     }
@@ -270,9 +270,9 @@ def test_a_fault_in_the_frame_is_seen(monkeypatch: pytest.MonkeyPatch, fault: st
             return replace(right(*arguments), b=arb(0))
 
         monkeypatch.setattr(Integrands, "of", without_b)
-    found = midpoints(scene)
+    quantities = midpoints(scene)
     with mp.workdps(30):
-        missed = {n: mp.norm(list((found[n] - truth[n]).flat)) for n in truth.quantities}
+        missed = {n: mp.norm(list((quantities[n] - truth[n]).flat)) for n in truth.quantities}
     assert missed["linear_impulse"] <= mpf(10) ** -18
     assert (missed["attitude"] > mpf("0.01")) is (fault != "none")
     assert fault != "none" or missed["centre"] <= mpf(10) ** -18

@@ -1,4 +1,4 @@
-"""Words of the package: the beginnings of docstrings, and names that say nothing."""
+"""Words of the package: the beginnings of docstrings, names that say nothing, values without a name."""
 
 from __future__ import annotations
 
@@ -24,7 +24,10 @@ BEGINNING: Final = re.compile(
 NAMELESS: Final = re.compile(r"_*(found|told|kept|held|seen|looks|said|gone|begun|it)_*")
 # The rooms without such names, in the package and among the tests.
 ROOMS: Final = ("judge", "exact", "models", "solvers", "scenes", "records", "claims", "batch")
-TEST_ROOMS: Final[tuple[str, ...]] = ()
+# The tests of records are among those of the rooms that write them.
+TEST_ROOMS: Final = tuple(room for room in ROOMS if room != "records")
+# Functions of libraries, which take a flag without a name.
+UNNAMED_FLAGS: Final = re.compile(r"set_\w+|Parse|Rotation|integrand|c_numba_cysolve_ivp")
 # A key of published JSON.
 KEYS: Final = frozenset({("Convention", "found")})
 
@@ -45,26 +48,24 @@ def bad_beginnings(source: str) -> Iterator[str]:
             yield f"{line}: {text.splitlines()[0]}"
 
 
-def is_key(node: ast.AST, parent: str) -> bool:
-    """Return True for the field of a class that is a key of published JSON."""
-    match node:
-        case ast.AnnAssign(target=ast.Name(id=name)):
-            return (parent, name) in KEYS
-    return False
-
-
-def nodes_below(tree: ast.AST, parent: str = "") -> Iterator[ast.AST]:
-    """Yield all nodes but the fields that are keys; ``parent`` is the class around them."""
-    yield tree
-    for child in ast.iter_child_nodes(tree):
-        if not is_key(child, parent):
-            yield from nodes_below(child, child.name if isinstance(child, ast.ClassDef) else parent)
+def keys_of(node: ast.ClassDef) -> Iterator[ast.AST]:
+    """Yield the names of the fields of a class that are keys of published JSON."""
+    for field in node.body:
+        match field:
+            case ast.AnnAssign(target=ast.Name(id=name) as target) if (node.name, name) in KEYS:
+                yield target
 
 
 def bound_names(tree: ast.AST) -> Iterator[tuple[int, str]]:
     """Yield the line and the name of every variable, argument, function, class and import."""
-    for node in nodes_below(tree):
+    keys: set[ast.AST] = set()
+    # A class comes before its fields.
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ClassDef):
+            keys.update(keys_of(node))
         match node:
+            case ast.Name() if node in keys:
+                pass
             case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name):
                 yield node.lineno, name
             case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name):
@@ -72,6 +73,8 @@ def bound_names(tree: ast.AST) -> Iterator[tuple[int, str]]:
             case ast.ClassDef(name=name):
                 yield node.lineno, name
             case ast.Attribute(attr=name, ctx=ast.Store()):
+                yield node.lineno, name
+            case ast.MatchAs(name=str(name)) | ast.ExceptHandler(name=str(name)):
                 yield node.lineno, name
             case ast.alias(name=name, asname=None) | ast.alias(asname=str(name)):
                 yield node.lineno, name
@@ -84,9 +87,31 @@ def nameless(source: str) -> Iterator[str]:
             yield f"{line}: {name}"
 
 
+def line_fillers(source: str) -> Iterator[str]:
+    """Yield the line of every tuple or list unpacked where it is written, as in ``(*(a, b), c)``."""
+    for node in ast.walk(ast.parse(source)) if re.search(r"\*[(\[]", source) else ():
+        match node:
+            case ast.Starred(value=ast.Tuple() | ast.List()):
+                yield f"{node.lineno}: {ast.unparse(node)}"
+
+
+def unnamed_flags(source: str) -> Iterator[str]:
+    """Yield the line of every call that has a True or a False without the name of its argument."""
+    may_have = re.search(r"[(,]\s*(True|False)\s*[,)]", source)
+    for node in ast.walk(ast.parse(source)) if may_have else ():
+        if isinstance(node, ast.Call):
+            function = ast.unparse(node.func).rpartition(".")[2]
+            flags = [
+                a for a in node.args if isinstance(a, ast.Constant) and isinstance(a.value, bool)
+            ]
+            if flags and not UNNAMED_FLAGS.fullmatch(function):
+                yield f"{node.lineno}: {ast.unparse(node)}"
+
+
 def faults_in(folder: Path, rule: object) -> list[str]:
     """Return the faults by a rule in all files below a folder, with their places."""
     assert callable(rule)
+    assert folder.is_dir(), folder
     return [
         f"{file.relative_to(TESTS.parent)}:{fault}"
         for file in sorted(folder.rglob("*.py"))
@@ -109,6 +134,13 @@ def test_variables_are_named_by_nouns(room: str) -> None:
 def test_variables_of_tests_are_named_by_nouns(room: str) -> None:
     """No variable in the tests of these rooms is called by such a word either."""
     assert faults_in(TESTS / room, nameless) == []
+
+
+@pytest.mark.parametrize("room", ROOMS)
+@pytest.mark.parametrize("rule", [line_fillers, unnamed_flags])
+def test_values_stand_in_their_own_lines_and_flags_have_names(room: str, rule: object) -> None:
+    """No tuple of these rooms is unpacked to fill lines, and no call has a flag without a name."""
+    assert faults_in(PACKAGE / room, rule) == []
 
 
 @pytest.mark.parametrize(
@@ -138,6 +170,8 @@ def test_a_noun_or_a_verb_may_begin(text: str) -> None:
         "self._seen = 1",
         "if (said := 1): ...",
         "from a import b as gone",
+        "match a:\n    case [found, *_]: ...",
+        "try: ...\nexcept OSError as said: ...",
     ],
 )
 def test_a_nameless_variable_is_noticed(source: str) -> None:
@@ -148,3 +182,15 @@ def test_a_nameless_variable_is_noticed(source: str) -> None:
 def test_a_longer_name_is_no_fault() -> None:
     """A word is a fault as a whole name only: foundation and held_row are names."""
     assert list(nameless("foundation = held_row = 1")) == []
+
+
+def test_a_tuple_that_is_unpacked_to_fill_a_line_is_noticed() -> None:
+    """A tuple and a list are faults, in a literal and in a call; a variable or a generator is none."""
+    assert len(list(line_fillers("a = (*(b, c), d)\nf(*[b, c])"))) == 2
+    assert list(line_fillers("a = (*b, *(c for c in d))\nf(*b)")) == []
+
+
+def test_a_flag_without_a_name_is_noticed() -> None:
+    """A flag with a name is no fault, and neither is one of a library that has no name for it."""
+    assert len(list(unnamed_flags("f(a, True)\nb.f(False)"))) == 2
+    assert list(unnamed_flags("f(a, strict=True)\nos.set_blocking(a, False)")) == []

@@ -84,7 +84,7 @@ def test_nothing_cancels_in_a_magnitude(a: float, b: float, c: float) -> None:
 def test_terms_of_a_full_tensor_are_added_up(start: tuple[float, ...]) -> None:
     """S is the sum of |deviation_ij H_j H_k| over the terms of H x K H, written out by hand."""
     asked = replace(RIGID, initial=Spin(tuple(Fraction(w) for w in start)), track=frozenset())
-    found = _rounded(asked, steps=4)
+    rounded = _rounded(asked, steps=4)
     momentum = np.array(TENSOR, dtype=float) @ start
     K = np.array(tensors.inverse(TENSOR), dtype=float)
     terms = np.abs(K - K[2, 2] * np.eye(3)) @ np.abs(momentum)
@@ -92,9 +92,9 @@ def test_terms_of_a_full_tensor_are_added_up(start: tuple[float, ...]) -> None:
     S = np.array([H[j] * terms[k] + H[k] * terms[j] for j, k in ((1, 2), (2, 0), (0, 1))])
     along = [np.linalg.norm(H), np.linalg.norm(S)]
     # One length of a step for all components, and at most the span over the steps.
-    h = (found[0] - H) @ S / (S @ S)
+    h = (rounded[0] - H) @ S / (S @ S)
     assert 0 < h <= 1
-    assert np.abs(found[0] - H - h * S).max() <= 1e-12 * (along[0] + along[1])
+    assert np.abs(rounded[0] - H - h * S).max() <= 1e-12 * (along[0] + along[1])
 
 
 def _rounded(asked: Scene, steps: int) -> Array:
@@ -109,11 +109,11 @@ def test_what_cancels_in_the_data_alone_is_known() -> None:
     body = RigidBody(tensors.diagonal(vector(1, 2, 3)))
     tiny = Fraction(1, 10**9)
     asked = scene(body, Spin((tiny, Fraction(1), Fraction(0))), 10, 3)
-    found = _rounded(asked, steps=40)
+    rounded = _rounded(asked, steps=40)
     # H1' = -H2 H3/6, H3' = -H1 H2/2 with steps of 1/4: never more than both components added up.
     momenta = np.abs(solution(asked).motion(path(asked).elapsed, 20)["omega"].astype(float))
-    assert (found[:, [0, 2]] <= 3 * momenta[:, [0, 2]].sum(axis=1, keepdims=True)).all()
-    assert (found[:, 1] >= 1).all()
+    assert (rounded[:, [0, 2]] <= 3 * momenta[:, [0, 2]].sum(axis=1, keepdims=True)).all()
+    assert (rounded[:, 1] >= 1).all()
 
 
 # How errors add up.
@@ -173,22 +173,22 @@ def _change(
     del here
     one, other = (TaylorSolution(start).evaluate([rest], 60) for start in starts)
     with mp.workdps(60):
-        found = {}
+        changes = {}
         for name in one:
             difference = (other[name] - one[name]) / mp.convert(TINY)
             # A small turn moves a matrix by the root of two times its angle.
             size = mp.norm(list(difference.flat)) / (mp.sqrt(2) if name == "attitude" else 1)
-            found[name] = float(size)
-    return found
+            changes[name] = float(size)
+    return changes
 
 
 @pytest.mark.parametrize("asked", [RIGID, LOADED, REVOLVED], ids=["tensor", "loaded", "clebsch"])
 def test_two_routes_add_up_to_the_same(asked: Scene) -> None:
     """Differences and variational equations give one answer, attitude and centre too."""
     times, flow = path(asked).elapsed, Flow.of(asked)
-    found = integrated(asked, flow, times)
-    assert found is not None
-    routes = sharp(asked, flow, times), Path(asked, flow, times, found)
+    steps = integrated(asked, flow, times)
+    assert steps is not None
+    routes = sharp(asked, flow, times), Path(asked, flow, times, steps)
     draw = np.random.default_rng(1)
     errors = draw.uniform(0, 1, (len(times), 3 * len(routes[0].blocks)))
     one, other = (_in_scene_units(route, errors) for route in routes)
@@ -200,8 +200,8 @@ def test_two_routes_add_up_to_the_same(asked: Scene) -> None:
 
 def _in_scene_units(orbit: Path, errors: Array) -> dict[str, Array]:
     units = [float(orbit.units[block]) for block in orbit.blocks for _ in range(3)]
-    found = orbit.gathered(errors / units)
-    return {name: rows * float(orbit.units[name]) for name, rows in found.items()}
+    carried = orbit.gathered(errors / units)
+    return {name: rows * float(orbit.units[name]) for name, rows in carried.items()}
 
 
 def test_squares_of_independent_errors_are_added() -> None:
@@ -226,9 +226,9 @@ def test_an_error_of_every_component_is_between_one_norm_and_the_root_of_three()
     errors = np.zeros((len(orbit.elapsed), 6))
     errors[0, :3] = 1
     norms = transition(RIGID, orbit.elapsed).norms("momentum", "momentum")
-    found = orbit.gathered(errors)["momentum"]
-    assert (norms * (1 - 1e-3) <= found).all()
-    assert (found <= 3**0.5 * norms * (1 + 1e-3)).all()
+    carried = orbit.gathered(errors)["momentum"]
+    assert (norms * (1 - 1e-3) <= carried).all()
+    assert (carried <= 3**0.5 * norms * (1 + 1e-3)).all()
 
 
 # The floor.
@@ -236,9 +236,9 @@ def test_an_error_of_every_component_is_between_one_norm_and_the_root_of_three()
 
 def _floor(asked: Scene, steps: int) -> Array:
     """The floor of the state at the samples."""
-    found, truth = _floor_of(asked, steps)
+    floor_of_run, truth = _floor_of(asked, steps)
     (errors, *_) = state_errors(asked, truth, truth)
-    return found.of_state(errors)
+    return floor_of_run.of_state(errors)
 
 
 def _floor_of(asked: Scene, steps: int) -> tuple[Floor, Motion]:
@@ -255,26 +255,26 @@ def edge(d: float, samples: int, tumbles: float = 1.0) -> Scene:
 def test_beside_the_unstable_axis_principal_axes_lose_nothing(d: float) -> None:
     """Until the first tumble the floor is that of a walk of some roundings: not u/d, but u."""
     steps = 100
-    found = _floor(edge(d, 31), steps)
-    assert found.max() <= 100 * U * steps**0.5
-    assert found.max() <= 1e-2 * U / d
+    floors = _floor(edge(d, 31), steps)
+    assert floors.max() <= 100 * U * steps**0.5
+    assert floors.max() <= 1e-2 * U / d
 
 
 def test_in_other_axes_a_rounding_of_the_large_components_is_one_of_the_small() -> None:
     """The same body in a full tensor: d is a difference of large numbers, and the floor u/d or so."""
     turned = load("extremes/euler-unstable-axis-turned")
-    found = _floor(turned, 100)
+    floors = _floor(turned, 100)
     # At the first tumble, t = 32: u exp(0.577 t), from every step.
-    assert found[:20].max() >= 0.1 * U / 1e-8
+    assert floors[:20].max() >= 0.1 * U / 1e-8
 
 
 def test_after_a_tumble_the_next_passage_magnifies() -> None:
     """Components of size one are rounded in the tumble; after it that grows at the classical rate."""
     asked = edge(1e-12, 61, tumbles=1.5)
-    found, times = _floor(asked, 100), [float(t) for t in asked.clock.elapsed]
-    assert log(found[60] / found[50]) == pytest.approx(RATE * (times[60] - times[50]), rel=0.05)
+    floors, times = _floor(asked, 100), [float(t) for t in asked.clock.elapsed]
+    assert log(floors[60] / floors[50]) == pytest.approx(RATE * (times[60] - times[50]), rel=0.05)
     # Until the tumble it is a walk, though the same rate rules there.
-    assert found[30] / found[10] <= 4
+    assert floors[30] / floors[10] <= 4
 
 
 @pytest.mark.parametrize(("shift", "model"), [(-400, "euler"), (400, "euler"), (-400, "kirchhoff")])
@@ -300,10 +300,10 @@ def test_floor_does_not_know_the_units(shift: int, model: str) -> None:
 def _all_floors(asked: Scene) -> list[Array]:
     from taylor_verify.exact.invariants import invariants
 
-    found, truth = _floor_of(asked, 40)
-    floors = [found.of_state(errors) for errors in state_errors(asked, truth, truth)]
-    quick = in_mpfr(truth.at(found.nodes))
-    return floors + [found.of_gradients(i, quick, i.scale(truth)) for i in invariants(asked)]
+    floor_of_run, truth = _floor_of(asked, 40)
+    floors = [floor_of_run.of_state(errors) for errors in state_errors(asked, truth, truth)]
+    quick = in_mpfr(truth.at(floor_of_run.nodes))
+    return floors + [floor_of_run.of_gradients(i, quick, i.scale(truth)) for i in invariants(asked)]
 
 
 def returning(samples: int) -> Scene:
@@ -313,12 +313,12 @@ def returning(samples: int) -> Scene:
 
 def test_floor_does_not_depend_on_where_the_samples_lie() -> None:
     """With 3, 11, 41 and 161 samples of one run the floors at the common instants are the same."""
-    found = {samples: _floor(returning(samples), 240) for samples in (3, 11, 41, 161)}
-    for samples, values in found.items():
+    floors = {samples: _floor(returning(samples), 240) for samples in (3, 11, 41, 161)}
+    for samples, values in floors.items():
         middle, end = values[(samples - 1) // 2], values[-1]
         # Roundings are gathered at other times, radian by radian: within a factor of two.
-        assert 0.5 <= middle / found[161][80] <= 2
-        assert 0.5 <= end / found[161][160] <= 2
+        assert 0.5 <= middle / floors[161][80] <= 2
+        assert 0.5 <= end / floors[161][160] <= 2
 
 
 def in_step(samples: int) -> Scene:
@@ -334,14 +334,14 @@ def in_step(samples: int) -> Scene:
 def test_samples_in_step_with_the_orbit_hide_none_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
     """Samples that meet a motion in one phase find the floor that every radian has; alone, a tenth."""
     asked = in_step(41)
-    found = _floor(asked, 14505)
+    floors = _floor(asked, 14505)
     monkeypatch.setattr(condition, "few", lambda elapsed: list(elapsed))
     alone = _floor_again(asked, 14505)
     monkeypatch.setattr(condition, "REGULAR", 0)
     resolved = _floor_again(asked, 14505)
     # A few dozen times stand for a thousand whose parts differ a hundredfold: within the gates' factor.
-    assert (found[1:] >= 0.2 * resolved[1:]).all()
-    assert (found[1:] <= 10 * resolved[1:]).all()
+    assert (floors[1:] >= 0.2 * resolved[1:]).all()
+    assert (floors[1:] <= 10 * resolved[1:]).all()
     assert (alone[1:] <= 0.3 * resolved[1:]).all()
 
 

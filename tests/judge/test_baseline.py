@@ -41,9 +41,9 @@ def test_a_quaternion_that_loses_its_length_is_a_regression() -> None:
 def test_a_quaternion_that_has_its_length_again_is_no_regression() -> None:
     """The row is there only where it fails: that it is gone is told, and fails nothing."""
     lost = row(errors=50.0, verdict=Status.FAIL, quantity="unit quaternion")
-    found = hold([row(), lost], [row()])
-    assert (found.regressions, found.status) == ((), 0)
-    (change,) = found.changes
+    comparison = hold([row(), lost], [row()])
+    assert (comparison.regressions, comparison.status) == ((), 0)
+    (change,) = comparison.changes
     assert "got none: it is mended" in str(change)
 
 
@@ -53,9 +53,14 @@ def test_a_quaternion_that_has_its_length_again_is_no_regression() -> None:
 def test_a_run_is_no_regression_from_itself() -> None:
     """Every row is compared, and nothing at all is to be said of it."""
     rows = [row(), row(rung="f80"), row(quantity="T", verdict=Status.FAIL, max=math.nan)]
-    found = hold(rows, rows)
-    assert found.compared == len(rows)
-    assert (found.regressions, found.undecided, found.changes, found.status) == ((), (), (), 0)
+    comparison = hold(rows, rows)
+    assert comparison.compared == len(rows)
+    assert (
+        comparison.regressions,
+        comparison.undecided,
+        comparison.changes,
+        comparison.status,
+    ) == ((), (), (), 0)
 
 
 SIZES = st.floats(0, 1e6)
@@ -77,16 +82,16 @@ def test_an_error_regresses_where_it_leaves_its_class_upwards(was: float, now: f
 @pytest.mark.parametrize("lost", [None, math.nan, math.inf])
 def test_an_error_that_is_no_number_any_more_is_a_regression(name: str, lost: Any) -> None:
     """NaN, infinite or nothing in place of a number regresses by its name; the reverse does not."""
-    (told,) = regressions([row()], [row(**{name: lost})])
-    assert told.endswith(f"got no finite number @ euler/generic f64 omega {name}")
+    (departures,) = regressions([row()], [row(**{name: lost})])
+    assert departures.endswith(f"got no finite number @ euler/generic f64 omega {name}")
     assert regressions([row(**{name: lost})], [row()]) == []
 
 
 def test_a_baseline_more_than_ten_times_as_good_is_a_regression() -> None:
     """A row that still passes, at 8 attainable, fails against a baseline of an eleventh of it; the
     message has the number, the limit and the reason."""
-    told = regressions([row(8 / 11)], [row(8)])
-    assert told == [
+    departures = regressions([row(8 / 11)], [row(8)])
+    assert departures == [
         "expected at most 7.27e-14 (10 x the larger of the baseline's 7.27e-15 and 0.5 attainable, "
         "5e-15: rounding explains no more), got 8e-14 "
         "@ euler/generic f64 omega max (and mean, final, ratio)"
@@ -110,8 +115,8 @@ def test_more_steps_excuse_no_error() -> None:
         departure.what not in ("max", "mean", "final")
         for departure in compare([row()], [new]).departures
     )
-    (told,) = regressions([row()], [new])
-    assert told.endswith("omega max (and mean, final)")
+    (departures,) = regressions([row()], [new])
+    assert departures.endswith("omega max (and mean, final)")
 
 
 def test_another_time_of_the_maximum_is_allowed_for() -> None:
@@ -132,21 +137,21 @@ def test_a_verdict_regresses_by_the_grades_of_the_exit_status(was: Status, now: 
     order = list(grades)
     before, after = row(verdict=was), row(verdict=now)
     worse = order.index(exit_status([after])) > order.index(exit_status([before]))
-    told = regressions([before], [after])
+    departures = regressions([before], [after])
     expected = f"expected {was}, got {now} @ euler/generic f64 omega verdict"
-    assert told == ([expected] if worse else [])
+    assert departures == ([expected] if worse else [])
 
 
 def test_a_row_that_vanished_is_a_regression() -> None:
     """A quantity that is no longer compared is named; a new one is told and fails nothing."""
     both = [row(), row(quantity="T")]
-    found = hold(both, [row()])
-    assert [str(d) for d in found.regressions] == [
+    comparison = hold(both, [row()])
+    assert [str(d) for d in comparison.regressions] == [
         "expected this row, got none @ euler/generic f64 T"
     ]
-    found = hold([row()], both)
-    assert (found.regressions, found.status) == ((), 0)
-    assert [str(d) for d in found.changes] == [
+    comparison = hold([row()], both)
+    assert (comparison.regressions, comparison.status) == ((), 0)
+    assert [str(d) for d in comparison.changes] == [
         "expected a row of the baseline, got a new one @ euler/generic f64 T"
     ]
 
@@ -155,16 +160,23 @@ def test_a_run_that_did_not_finish_regresses_in_every_row() -> None:
     """Its one row is worse, and the others are gone."""
     broken = row(verdict=Status.FAIL, outcome="crashed", unit="", roundoff=None)
     both = [row(), row(quantity="T"), row(quantity="H2")]
-    told = regressions(both, [broken])
-    assert [line.rpartition("f64 ")[2] for line in told] == ["T", "H2", "omega verdict"]
+    departures = regressions(both, [broken])
+    assert [line.rpartition("f64 ")[2] for line in departures] == ["T", "H2", "omega verdict"]
 
 
 def test_what_shrank_is_told_and_fails_nothing() -> None:
     """A smaller error, a better verdict and another cost are changes."""
     old = row(1000, verdict=Status.FAIL)
-    found = hold([old], [row(0.1, steps=50, evaluations=1000)])
-    assert (found.regressions, found.undecided, found.status) == ((), (), 0)
-    assert {d.what for d in found.changes} == {"verdict", "steps", "max", "mean", "final", "ratio"}
+    comparison = hold([old], [row(0.1, steps=50, evaluations=1000)])
+    assert (comparison.regressions, comparison.undecided, comparison.status) == ((), (), 0)
+    assert {d.what for d in comparison.changes} == {
+        "verdict",
+        "steps",
+        "max",
+        "mean",
+        "final",
+        "ratio",
+    }
 
 
 @pytest.mark.parametrize(
@@ -173,17 +185,17 @@ def test_what_shrank_is_told_and_fails_nothing() -> None:
 )
 def test_another_question_is_undecided(changed: dict[str, Any]) -> None:
     """Another text of the scene, unit or roundoff: no regression is claimed, and it is not green."""
-    found = hold([row()], [row(1000, **changed)])
-    assert (found.regressions, len(found.undecided), found.status) == ((), 1, 3)
+    comparison = hold([row()], [row(1000, **changed)])
+    assert (comparison.regressions, len(comparison.undecided), comparison.status) == ((), 1, 3)
 
 
 def test_a_rung_that_one_machine_lacks_is_told_and_not_compared() -> None:
     """It fails nothing, as it changes no exit status; but if nothing else is left, nothing is shown."""
     rows = [row(rung="f80"), row(rung="f80", quantity="T")]
     absent = row(rung="f80", verdict=Status.UNAVAILABLE, max=None, ratio=None)
-    found = hold([*rows, row()], [absent, row()])
-    assert (found.compared, found.regressions, found.status) == (1, (), 0)
-    assert len(found.changes) == 1
+    comparison = hold([*rows, row()], [absent, row()])
+    assert (comparison.compared, comparison.regressions, comparison.status) == (1, (), 0)
+    assert len(comparison.changes) == 1
     assert hold(rows, [absent]).status == 3
 
 
@@ -205,7 +217,7 @@ def test_both_documents_are_read(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("changed", "said"),
+    ("changed", "message"),
     [
         ({"max": math.nan}, "expected a JSON document, got a fault"),
         ({"max": -1e-15}, "not negative, got -1e-15 @ verdicts[1].max"),
@@ -222,7 +234,7 @@ def test_both_documents_are_read(tmp_path: Path) -> None:
     ],
 )
 def test_a_row_that_is_none_is_refused_by_its_place(
-    tmp_path: Path, changed: dict[str, Any], said: str
+    tmp_path: Path, changed: dict[str, Any], message: str
 ) -> None:
     """A baseline that is half understood would let all pass: it is refused whole."""
     rows = [row().row(), {**row(quantity="T").row(), **changed}]
@@ -230,7 +242,7 @@ def test_a_row_that_is_none_is_refused_by_its_place(
     file.write_text(json.dumps({"verdicts": rows}), encoding="utf-8")
     with pytest.raises(ValueError, match="expected") as refused:
         load(file)
-    assert said in str(refused.value)
+    assert message in str(refused.value)
     assert str(file) in str(refused.value)
 
 
@@ -260,14 +272,14 @@ def spoil(file: Path, index: int, **changed: Any) -> None:
 
 
 @pytest.mark.parametrize(
-    ("changed", "said"),
+    ("changed", "message"),
     [
         ({"max": 6e-14 / 11}, "got 6e-14 @ euler/full-tensor f64 omega max"),
         ({"quantity": "H_space"}, "expected this row, got none @ euler/full-tensor f64 H_space"),
     ],
 )
 def test_run_against_a_broken_twin_exits_1_by_name(
-    baseline: Path, capsys: Captured, changed: dict[str, Any], said: str
+    baseline: Path, capsys: Captured, changed: dict[str, Any], message: str
 ) -> None:
     """Exit 0 against the same rows; 1, and the reason in message and document, against the twin."""
     call = ["run", "euler/generic", "euler/full-tensor", "--baseline", str(baseline), "--json"]
@@ -277,8 +289,8 @@ def test_run_against_a_broken_twin_exits_1_by_name(
     assert main(call) == 1
     out, error = capsys.readouterr()
     assert "regression: expected " in error
-    assert said in error
-    assert any(said in line for line in json.loads(out)["baseline"]["regressions"])
+    assert message in error
+    assert any(message in line for line in json.loads(out)["baseline"]["regressions"])
 
 
 def test_only_what_was_run_again_is_compared(baseline: Path) -> None:
@@ -294,9 +306,9 @@ def test_a_baseline_of_nothing_that_was_run_is_undecided(baseline: Path, capsys:
     for index in range(6):
         spoil(baseline, index, solver="process:./other")
     assert main(["run", "euler/generic", "--baseline", str(baseline)]) == 3
-    told = capsys.readouterr().err
-    assert "nothing of the baseline was run again" in told
-    assert "its solver is `process:./other`, and this run's is `taylor`" in told
+    departures = capsys.readouterr().err
+    assert "nothing of the baseline was run again" in departures
+    assert "its solver is `process:./other`, and this run's is `taylor`" in departures
 
 
 def test_a_baseline_excuses_no_failure(

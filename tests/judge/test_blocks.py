@@ -30,7 +30,7 @@ from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import read
 from taylor_verify.solvers.files.rows import Rows
-from taylor_verify.solvers.values import exact, held
+from taylor_verify.solvers.values import as_mpf, exact
 
 ROWS = 61
 BLOCK = 7
@@ -50,13 +50,13 @@ def sampled(name: str, rows: int) -> Scene:
 def columns_of(name: str) -> dict[str, list[float]]:
     """A right answer in doubles, column by column."""
     scene = sampled(name, ROWS)
-    found = {"t": [float(t) for t in scene.clock.instants]}
+    by_name = {"t": [float(t) for t in scene.clock.instants]}
     for group, rows in solve(scene).quantities.items():
         columns = zip(*rows.tolist(), strict=True)
-        found |= {
+        by_name |= {
             c: [float(v) for v in column] for c, column in zip(COLUMNS[group], columns, strict=True)
         }
-    return found
+    return by_name
 
 
 def written(folder: Path, columns: Mapping[str, Sequence[float]]) -> Path:
@@ -196,10 +196,10 @@ def test_a_few_rows_have_the_scale_of_all(name: str) -> None:
 
 def test_numbers_come_back_from_blocks_over_the_last_scale() -> None:
     """Equal numbers of different blocks stay equal, and numbers of one block are divided once."""
-    found = Series()
-    found.add(np.array([mpf(1), mpf(2)]), mpf(3))
-    found.add(np.array([mpf(2)]), mpf(7))
-    values, scale = found.joined()
+    series = Series()
+    series.add(np.array([mpf(1), mpf(2)]), mpf(3))
+    series.add(np.array([mpf(2)]), mpf(7))
+    values, scale = series.joined()
     assert scale == 7
     assert values[1] == values[2] == pytest.approx(2 / 7, rel=SAME)
     one = Series()
@@ -228,16 +228,16 @@ def test_four_digits_are_those_that_are_written() -> None:
 
 def test_doubles_are_like_a_tuple() -> None:
     """They are equal to a tuple of the same numbers, and so are their parts; nobody can change them."""
-    found = Doubles([1.0, 2.5, 3.0])
-    assert found == (1.0, 2.5, 3.0)
-    assert found[1:] == (2.5, 3.0)
-    assert found[0] == 1.0
-    assert found != (1.0, 2.5)
+    doubles = Doubles([1.0, 2.5, 3.0])
+    assert doubles == (1.0, 2.5, 3.0)
+    assert doubles[1:] == (2.5, 3.0)
+    assert doubles[0] == 1.0
+    assert doubles != (1.0, 2.5)
     assert Doubles() == ()
-    assert hash(found) == hash((1.0, 2.5, 3.0))
-    array = np.array(found)
+    assert hash(doubles) == hash((1.0, 2.5, 3.0))
+    array = np.array(doubles)
     array[0] = 7.0
-    assert found[0] == 1.0
+    assert doubles[0] == 1.0
 
 
 def test_rows_are_formed_as_their_values_are() -> None:
@@ -251,7 +251,7 @@ def test_rows_are_formed_as_their_values_are() -> None:
         rows = Rows([column])
         assert [row[0] for row in rows][:4] == values[:4]
         places = range(len(column))
-        wanted = [held(value, 181) for value in values]
+        wanted = [as_mpf(value, 181) for value in values]
         for mine, theirs in zip(rows.as_mpf(places, 181)[:, 0], wanted, strict=True):
             assert mine == theirs or (mp.isnan(mine) and mp.isnan(theirs))
         doubles = [float(value) for value in values]

@@ -79,24 +79,24 @@ STARTS = {
 @cache
 def scene(regime: str) -> Scene:
     """The shipped scene of a regime with all that its model can track."""
-    found = load(REGIMES[regime])
-    if isinstance(found.initial, Spin):
-        omega = found.initial.omega
+    shipped = load(REGIMES[regime])
+    if isinstance(shipped.initial, Spin):
+        omega = shipped.initial.omega
         if regime == "min-axis, cn < 0":
             omega = (*omega[:2], -omega[2])
-        begun = replace(found.initial, omega=omega)
-        return replace(found, track=frozenset({"attitude"}), initial=begun)
-    start = found.initial
+        initial = replace(shipped.initial, omega=omega)
+        return replace(shipped, track=frozenset({"attitude"}), initial=initial)
+    start = shipped.initial
     if regime in STARTS:
         linear, angular = (tuple(map(Fraction, vector)) for vector in STARTS[regime])
         start = replace(start, linear=linear, angular=angular)
-    return replace(found, track=frozenset({"attitude", "centre"}), initial=start)
+    return replace(shipped, track=frozenset({"attitude", "centre"}), initial=start)
 
 
 def off_taylor(asked: Scene, route: str, times: Sequence[Fraction]) -> mpf:
     """The largest relative distance of a vector or matrix; infinite where the route has no answer."""
     try:
-        found = solution(asked, route).motion(times, DIGITS)
+        motion = solution(asked, route).motion(times, DIGITS)
     except Unsettled:
         return mp.inf
     true = truth(asked, tuple(times))
@@ -104,7 +104,7 @@ def off_taylor(asked: Scene, route: str, times: Sequence[Fraction]) -> mpf:
         return max(
             norm(row - exact) / (norm(exact) or 1)
             for name in true.quantities
-            for row, exact in zip(found[name], true[name], strict=True)
+            for row, exact in zip(motion[name], true[name], strict=True)
         )
 
 
@@ -209,9 +209,9 @@ def _one_branch_of_the_start(patch: Patch) -> None:
         return spin(self, sn, abs(cn), dn)
 
     def swinging(self: wave.CosineWave, risen: mpf, left: mpf, speed: Fraction) -> mpf:
-        found = swing(self, risen, left, speed)
-        acute = min(abs(found), 2 * self.quarter_period - abs(found))
-        return acute if found > 0 else -acute
+        u = swing(self, risen, left, speed)
+        acute = min(abs(u), 2 * self.quarter_period - abs(u))
+        return acute if u > 0 else -acute
 
     patch.setattr(euler_orbit.Orbit, "_phase_of", rotating)
     patch.setattr(wave.CosineWave, "_argument", swinging)

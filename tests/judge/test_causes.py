@@ -239,8 +239,8 @@ def test_a_moment_in_space_axes_is_named() -> None:
 @pytest.mark.parametrize("rate", [euler, damped])
 def test_wrong_kinematics_are_named(turn: Turn, name: str, rate: Rate) -> None:
     """A wrong turn of the attitude has its name, beside whatever is wrong with omega."""
-    found = set(sentences(load(FREE), simulated(load(FREE), rate, turn)))
-    assert found == {name} | ({"damping left on"} if rate is damped else set())
+    causes = set(sentences(load(FREE), simulated(load(FREE), rate, turn)))
+    assert causes == {name} | ({"damping left on"} if rate is damped else set())
 
 
 @pytest.mark.parametrize(
@@ -268,8 +268,8 @@ def test_omega_in_space_axes_is_told_without_the_start() -> None:
         scene, initial=replace(scene.initial, attitude=(Fraction(1), *[Fraction(0)] * 3))
     )
     columns = in_space_axes(simulated(scene, back))
-    found = set(sentences(scene, columns))
-    assert found == {"omega in space axes", "gyroscopic term with the other sign"}
+    causes = set(sentences(scene, columns))
+    assert causes == {"omega in space axes", "gyroscopic term with the other sign"}
 
 
 # Rows.
@@ -392,17 +392,17 @@ def test_a_sound_method_has_no_cause_in_a_fluid(scene: str, method: str, toleran
 @pytest.mark.parametrize("name", ["moser-veselov", "splitting", "implicit-midpoint", "lie-rk4"])
 def test_a_geometric_method_has_no_cause(name: str) -> None:
     """A method that conserves much, and whose error is all along the orbit, is given no other body."""
-    found = taylor_verify.run(FREE, f"geometric:{name}?step=1/20")
-    assert not found.passed
-    assert found.causes == ()
+    judgement = taylor_verify.run(FREE, f"geometric:{name}?step=1/20")
+    assert not judgement.passed
+    assert judgement.causes == ()
 
 
 def test_what_passes_has_no_cause(tmp_path: Path) -> None:
     """The exact motion has no cause."""
     scene = load(FREE)
-    found = judged(tmp_path, FREE, columns_at(scene, scene.clock.instants))
-    assert found.passed
-    assert found.causes == ()
+    judgement = judged(tmp_path, FREE, columns_at(scene, scene.clock.instants))
+    assert judgement.passed
+    assert judgement.causes == ()
 
 
 def test_two_rows_name_nothing() -> None:
@@ -430,11 +430,11 @@ def without_gyroscopic_term(problem: Any) -> Array:
 
 def test_a_callable_is_given_its_cause(capsys: pytest.CaptureFixture[str]) -> None:
     """A solver that fails has a cause as a file has, in its judgement and in the error it raises."""
-    found = taylor_verify.check("euler/generic", without_gyroscopic_term)
-    (cause,) = found.causes
+    judgement = taylor_verify.check("euler/generic", without_gyroscopic_term)
+    (cause,) = judgement.causes
     assert (cause.name, cause.scene, cause.rung) == ("no gyroscopic term", "euler/generic", "f64")
     with pytest.raises(AssertionError, match="likely cause: no gyroscopic term"):
-        found.raise_for_failure()
+        judgement.raise_for_failure()
 
 
 def test_run_prints_the_cause(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:

@@ -76,8 +76,8 @@ def test_a_wrong_damping_is_named(scene: str, change: Callable[[Numbers], None],
 @pytest.mark.parametrize("scene", [RIGID, FLUID])
 def test_damping_of_the_velocity_is_named(scene: str) -> None:
     """A moment -c omega in place of -c I omega, or -c U and -c W in a fluid, has its name, and no other."""
-    found = sentences(load(scene), simulated(load(scene), of_velocity(Numbers(load(scene)))))
-    assert set(found) == {"damping of the velocity"}
+    causes = sentences(load(scene), simulated(load(scene), of_velocity(Numbers(load(scene)))))
+    assert set(causes) == {"damping of the velocity"}
 
 
 # A law in both places, on a rigid body and in a fluid by turns.
@@ -98,12 +98,12 @@ def test_the_factor_of_a_step_is_named(
 ) -> None:
     """A factor once in a step has the name of its law, its place in the step, and the step itself."""
     h, every = (0.1, 10) if scene == RIGID else (0.05, 10)
-    found = sentences(
+    causes = sentences(
         load(scene), runge_kutta(load(scene), h, every, factor=factor, factor_first=first)
     )
-    assert set(found) == {name}
+    assert set(causes) == {name}
     place = "before" if first else "after"
-    assert f"by {words} {place} the motion, with h = {h:g};" in found[name]
+    assert f"by {words} {place} the motion, with h = {h:g};" in causes[name]
 
 
 @pytest.mark.parametrize("scene", [RIGID, FLUID])

@@ -42,7 +42,7 @@ from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.files.file import read
-from taylor_verify.solvers.values import exact, held
+from taylor_verify.solvers.values import as_mpf, exact
 
 F64 = rung("f64")
 SCENE = "euler/with-attitude"
@@ -53,9 +53,9 @@ def checked(path: Path, scene: str, columns: Mapping[str, Sequence[Any]]) -> Fil
     return file_judgement(write_csv(path / "mine.csv", columns), scene)
 
 
-def all_pass(found: FileJudgement) -> bool:
+def all_pass(judgement: FileJudgement) -> bool:
     """Return True if all that was compared passes; whether the file is complete is another row."""
-    return {v.verdict for v in found.verdicts if v.quantity != COMPLETE} == {Status.PASS}
+    return {v.verdict for v in judgement.verdicts if v.quantity != COMPLETE} == {Status.PASS}
 
 
 def without(columns: Mapping[str, Sequence[float]], *names: str) -> Columns:
@@ -82,10 +82,10 @@ def test_exact_motion_rounded_to_float64_passes(
     scene: str, quantities: set[str], tmp_path: Path
 ) -> None:
     """Every quantity that the columns determine has its row, and every row passes."""
-    found = checked(tmp_path, scene, exact_columns(scene))
-    assert all_pass(found)
-    assert set(by_quantity(found)) - {INITIAL} == quantities
-    assert found.conventions == ()
+    judgement = checked(tmp_path, scene, exact_columns(scene))
+    assert all_pass(judgement)
+    assert set(by_quantity(judgement)) - {INITIAL} == quantities
+    assert judgement.conventions == ()
 
 
 def test_matrices_are_judged_as_they_are(tmp_path: Path) -> None:
@@ -114,9 +114,9 @@ def test_times_are_the_files_own(tmp_path: Path) -> None:
     """Rows between the scene's samples, beyond its end and before its start are judged."""
     scene = load(SCENE)
     times = [Fraction(k, 7) * 3 for k in range(-20, 200, 9)]
-    found = checked(tmp_path, SCENE, columns_at(scene, times))
+    judgement = checked(tmp_path, SCENE, columns_at(scene, times))
     assert max(times) > scene.clock.instants[-1]
-    assert all_pass(found)
+    assert all_pass(judgement)
     spoiled = columns_at(scene, times)
     spoiled["w1"][0] += 1e-6
     omega = by_quantity(checked(tmp_path, SCENE, spoiled))["omega"]
@@ -132,28 +132,28 @@ def test_rows_may_run_backwards(tmp_path: Path) -> None:
 def test_one_row_is_judged_and_no_trajectory(tmp_path: Path) -> None:
     """A file with one row, at the start or later, is judged there, and undecided as a whole."""
     for instants in ([Fraction(0)], [Fraction(30)]):
-        found = checked(tmp_path, SCENE, columns_at(load(SCENE), instants))
-        assert all_pass(found)
-        assert by_quantity(found)[COMPLETE].verdict is Status.UNDECIDED
-        assert "one row within it is no trajectory" in by_quantity(found)[COMPLETE].because
+        judgement = checked(tmp_path, SCENE, columns_at(load(SCENE), instants))
+        assert all_pass(judgement)
+        assert by_quantity(judgement)[COMPLETE].verdict is Status.UNDECIDED
+        assert "one row within it is no trajectory" in by_quantity(judgement)[COMPLETE].because
 
 
 @pytest.mark.parametrize(
-    ("kept", "expected"),
+    ("columns", "expected"),
     [
         ({"t", *OMEGA}, {INITIAL, "omega", "T", "H2", COMPLETE}),
         ({"t", "q0", "q1", "q2", "q3"}, {INITIAL, "attitude", COMPLETE}),
     ],
 )
 def test_only_what_is_in_the_file_is_compared(
-    kept: set[str], expected: set[str], tmp_path: Path
+    columns: set[str], expected: set[str], tmp_path: Path
 ) -> None:
     """No row rests on a quantity that the file lacks, and the lack is said."""
     sound = exact_columns(SCENE)
-    found = checked(tmp_path, SCENE, without(sound, *(sound.keys() - kept)))
-    assert set(by_quantity(found)) == expected
-    assert all_pass(found)
-    assert any("is not judged: the file has no" in note for note in found.notes)
+    judgement = checked(tmp_path, SCENE, without(sound, *(sound.keys() - columns)))
+    assert set(by_quantity(judgement)) == expected
+    assert all_pass(judgement)
+    assert any("is not judged: the file has no" in note for note in judgement.notes)
 
 
 def test_only_omega_of_a_solid_in_a_fluid(tmp_path: Path) -> None:
@@ -171,30 +171,30 @@ def test_shift_of_an_angular_velocity_alone(tmp_path: Path) -> None:
     """w1 w2 w3 of a solid in a fluid tell how late they are, and what is left."""
     sound = exact_columns("kirchhoff/screw")
     columns = {"t": [t + 2**-11 for t in sound["t"]], **{n: sound[n] for n in OMEGA}}
-    found = checked(tmp_path, "kirchhoff/screw", columns)
-    omega = by_quantity(found)["omega"]
+    judgement = checked(tmp_path, "kirchhoff/screw", columns)
+    omega = by_quantity(judgement)["omega"]
     assert omega.verdict is Status.FAIL
     assert omega.time_shift == pytest.approx(2**-11, rel=1e-9)
     assert omega.residual < 1e-14
-    assert [finding.subject for finding in found.conventions] == ["time"]
+    assert [finding.subject for finding in judgement.conventions] == ["time"]
 
 
 def test_columns_that_the_scene_does_not_track_are_not_compared(tmp_path: Path) -> None:
     """Quaternions beside a scene of omega alone are left out, and that is said."""
     columns = {**exact_columns("euler/generic")}
     rest = {name: [0.5] * len(columns["t"]) for name in COLUMNS["quaternion"]}
-    found = checked(tmp_path, "euler/generic", {**columns, **rest})
-    assert all_pass(found)
-    assert any("does not track the attitude" in note for note in found.notes)
+    judgement = checked(tmp_path, "euler/generic", {**columns, **rest})
+    assert all_pass(judgement)
+    assert any("does not track the attitude" in note for note in judgement.notes)
 
 
 def test_matrices_of_a_loaded_body(tmp_path: Path) -> None:
     """States are compared under a moment, and the balances that need no matrix."""
     scene = replace(load("euler/constant-moment"), track=frozenset({"attitude"}))
     columns = columns_at(scene, scene.clock.instants[::2], matrix=True)
-    found = taylor_verify.check(scene, write_csv(tmp_path / "mine.csv", columns))
-    assert {v.quantity for v in found.verdicts} == {INITIAL, "omega", "attitude", "T", "H2"}
-    assert {v.verdict for v in found.verdicts} == {Status.PASS}
+    judgement = taylor_verify.check(scene, write_csv(tmp_path / "mine.csv", columns))
+    assert {v.quantity for v in judgement.verdicts} == {INITIAL, "omega", "attitude", "T", "H2"}
+    assert {v.verdict for v in judgement.verdicts} == {Status.PASS}
 
 
 # What is wrong in a file that can be read.
@@ -204,12 +204,12 @@ def test_half_a_millisecond_is_seen(tmp_path: Path) -> None:
     """States fail and say by how much they are late; conserved quantities see nothing."""
     sound = exact_columns(SCENE)
     late = {**sound, "t": [t + 5e-4 for t in sound["t"]]}
-    found = by_quantity(checked(tmp_path, SCENE, late))
+    verdicts = by_quantity(checked(tmp_path, SCENE, late))
     for quantity in ("omega", "attitude"):
-        assert found[quantity].verdict is Status.FAIL
-        assert found[quantity].time_shift == pytest.approx(5e-4, rel=1e-9)
-        assert found[quantity].residual < 1e-12 < found[quantity].max
-    assert all(found[quantity].verdict is Status.PASS for quantity in ("T", "H2", "H_space"))
+        assert verdicts[quantity].verdict is Status.FAIL
+        assert verdicts[quantity].time_shift == pytest.approx(5e-4, rel=1e-9)
+        assert verdicts[quantity].residual < 1e-12 < verdicts[quantity].max
+    assert all(verdicts[quantity].verdict is Status.PASS for quantity in ("T", "H2", "H_space"))
 
 
 def test_initial_state_that_is_not_the_scenes_is_said_first(tmp_path: Path) -> None:
@@ -239,10 +239,10 @@ def test_one_unit_in_the_last_place_of_the_start_passes(tmp_path: Path) -> None:
     truth = solution(adopt(scene, F64, (Fraction(60),)).given).evaluate([Fraction(60)], 40)["omega"]
     error = float(mp.norm(list(motion - truth[0])))
     columns = {"t": [60.0], **{n: [mp.nstr(v, 30)] for n, v in zip(OMEGA, motion, strict=True)}}
-    found = file_judgement(write_csv(tmp_path / "mine.csv", columns, str), SCENE)
+    judgement = file_judgement(write_csv(tmp_path / "mine.csv", columns, str), SCENE)
     assert error > 1e-15
-    assert by_quantity(found)["omega"].verdict is Status.PASS
-    assert "moved by u" in by_quantity(found)["omega"].because
+    assert by_quantity(judgement)["omega"].verdict is Status.PASS
+    assert "moved by u" in by_quantity(judgement)["omega"].because
 
 
 @pytest.mark.parametrize("value", ["nan", "inf", "-Infinity"])
@@ -251,21 +251,21 @@ def test_what_is_not_finite_fails_its_own_rows(value: str, tmp_path: Path) -> No
     sound = exact_columns(SCENE)
     spoiled = {name: [repr(v) for v in values] for name, values in sound.items()}
     spoiled["q2"][3] = spoiled["q2"][9] = value
-    found = by_quantity(file_judgement(write_csv(tmp_path / "mine.csv", spoiled, str), SCENE))
+    verdicts = by_quantity(file_judgement(write_csv(tmp_path / "mine.csv", spoiled, str), SCENE))
     for quantity in ("attitude", "H_space"):
-        assert found[quantity].verdict is Status.FAIL
-    assert found["attitude"].at == sound["t"][3]
-    assert f"q2 is {float(value)} in row 4" in found["attitude"].because
-    assert all(found[q].verdict is Status.PASS for q in ("omega", "T", "H2"))
-    assert json.dumps(found["attitude"].row(), allow_nan=False)
+        assert verdicts[quantity].verdict is Status.FAIL
+    assert verdicts["attitude"].at == sound["t"][3]
+    assert f"q2 is {float(value)} in row 4" in verdicts["attitude"].because
+    assert all(verdicts[q].verdict is Status.PASS for q in ("omega", "T", "H2"))
+    assert json.dumps(verdicts["attitude"].row(), allow_nan=False)
 
 
 def test_numbers_cut_off_in_printing_are_told(tmp_path: Path) -> None:
     """Six digits are no float64, and the note says so."""
     file = write_csv(tmp_path / "mine.csv", exact_columns(SCENE), lambda v: f"{v:.5e}")
-    found = file_judgement(file, SCENE)
-    assert by_quantity(found)["omega"].verdict is Status.FAIL
-    assert any("6 significant digits, where f64 has 17" in note for note in found.notes)
+    judgement = file_judgement(file, SCENE)
+    assert by_quantity(judgement)["omega"].verdict is Status.FAIL
+    assert any("6 significant digits, where f64 has 17" in note for note in judgement.notes)
     sound = file_judgement(write_csv(tmp_path / "mine.csv", exact_columns(SCENE)), SCENE)
     assert not any("digits" in note for note in sound.notes)
 
@@ -275,9 +275,11 @@ def test_storing_as_float32_is_told(tmp_path: Path) -> None:
     columns = exact_columns(SCENE)
     stored = {n: v if n == "t" else [float(np.float32(x)) for x in v] for n, v in columns.items()}
     file = write_csv(tmp_path / "mine.csv", stored)
-    found = file_judgement(file, SCENE)
-    assert by_quantity(found)["omega"].verdict is Status.FAIL
-    assert any("every number is one of float32, where f64 has 53" in note for note in found.notes)
+    judgement = file_judgement(file, SCENE)
+    assert by_quantity(judgement)["omega"].verdict is Status.FAIL
+    assert any(
+        "every number is one of float32, where f64 has 53" in note for note in judgement.notes
+    )
     # One number of float64 is enough: then it is another fault.
     stored["w2"][3] = math.nextafter(stored["w2"][3], 1.0)
     other = checked(tmp_path, SCENE, stored)
@@ -290,10 +292,10 @@ def test_a_file_that_stops_early_is_told(tmp_path: Path) -> None:
     for scene in (SCENE, "euler/backward"):
         whole = exact_columns(scene)
         half = {name: values[: len(values) // 2] for name, values in whole.items()}
-        found = checked(tmp_path, scene, half)
-        assert all_pass(found)
-        said = f"the last row is at t = {half['t'][-1]:g}, and the scene ends at t = "
-        assert any(said in note for note in found.notes)
+        judgement = checked(tmp_path, scene, half)
+        assert all_pass(judgement)
+        expected = f"the last row is at t = {half['t'][-1]:g}, and the scene ends at t = "
+        assert any(expected in note for note in judgement.notes)
         assert not any("last row" in note for note in checked(tmp_path, scene, whole).notes)
 
 
@@ -338,16 +340,16 @@ def test_response_to_the_input_is_that_of_differences() -> None:
     """The response to a number moved by u is the motion's own change, in the unit of its gate."""
     scene = load("euler/generic")
     given = adopt(scene, F64, scene.clock.instants[::10]).given
-    found = input_rounding(given, F64).at_samples
+    response = input_rounding(given, F64).at_samples
     # |omega|^2 scales with u^2: all three components of omega0 moved together turn T by 2 u, apart
     # and squared by less; the moments do as much again.
     u = float(F64.unit_roundoff)
-    assert u < found["T"][0] < 3 * u
-    assert found["omega"][0] == pytest.approx(
+    assert u < response["T"][0] < 3 * u
+    assert response["omega"][0] == pytest.approx(
         u * np.linalg.norm([1, 0.4, 0.3]) / np.linalg.norm([1, 0.4, 0.3]), rel=0.2
     )
     # A rounding of the rate grows in proportion to time.
-    assert 20 * found["omega"][0] < found["omega"][-1] < 200 * found["omega"][0]
+    assert 20 * response["omega"][0] < response["omega"][-1] < 200 * response["omega"][0]
 
 
 # Numbers.
@@ -359,7 +361,7 @@ def test_every_double_survives_its_texts(value: float) -> None:
     assert exact(value.hex()) == Fraction(value)
     assert exact(value) == Fraction(value)
     assert exact(repr(value)) == Fraction(repr(value))
-    mpf = held(Fraction(value), 53)
+    mpf = as_mpf(Fraction(value), 53)
     assert Fraction(*map(int, mpf.as_integer_ratio())) == Fraction(value)
 
 
@@ -385,7 +387,7 @@ def test_text_becomes_exact(text: str, value: Fraction) -> None:
 def test_held_numbers_are_right_to_the_bits_asked_for() -> None:
     """A third is rounded at the precision given, whatever mpmath's own precision is."""
     with mp.workprec(20):
-        third = held(Fraction(1, 3), 200)
+        third = as_mpf(Fraction(1, 3), 200)
     assert abs(Fraction(*map(int, third.as_integer_ratio())) - Fraction(1, 3)) < Fraction(1, 2**200)
 
 
@@ -420,9 +422,9 @@ def test_json_numbers_are_read_as_text(tmp_path: Path) -> None:
     """0.1 in JSON is a tenth, and no double."""
     file = tmp_path / "mine.json"
     file.write_text('{"t": [0.1, 1], "w1": [0.1, 0.2], "w2": [0, 0], "w3": [1e-30, 1]}')
-    found = read(file)
-    assert found.times == (Fraction(1, 10), Fraction(1))
-    assert found.groups["omega"][0] == (Fraction(1, 10), Fraction(0), Fraction(1, 10**30))
+    trajectory = read(file)
+    assert trajectory.times == (Fraction(1, 10), Fraction(1))
+    assert trajectory.groups["omega"][0] == (Fraction(1, 10), Fraction(0), Fraction(1, 10**30))
 
 
 def test_long_doubles_are_taken_exactly(tmp_path: Path) -> None:

@@ -57,8 +57,8 @@ class Boaster(Solver):
     def solve(self, problem: Problem) -> Trajectory:
         # Long enough for the claim that the orbit leaves room for: the time must not decide here.
         sleep(0.05)
-        found = Callback(lambda asked: hasty(asked, self.error)).solve(problem)
-        return replace(found, steps=self.steps)
+        trajectory = Callback(lambda asked: hasty(asked, self.error)).solve(problem)
+        return replace(trajectory, steps=self.steps)
 
 
 def omega(solver: Solver | str) -> Verdict:
@@ -99,16 +99,16 @@ def test_the_row_says_how_many_steps_are_counted() -> None:
 def test_an_rk4_of_small_steps_is_believed() -> None:
     """A step of 1e-4 over t = 100 on an orbit of a radian per unit of time is counted whole."""
     problem = pose(load(SCENE), rung("f64"))
-    found = count_steps(problem, Callback(hasty), 10**6, seconds=1.0)
-    assert (found.counted, found.claim) == (10**6, None)
+    steps = count_steps(problem, Callback(hasty), 10**6, seconds=1.0)
+    assert (steps.counted, steps.claim) == (10**6, None)
 
 
 def test_no_more_steps_are_counted_than_a_processor_does() -> None:
     """In a hundredth of a second there is time for a million steps, and that is said."""
     problem = pose(load(SCENE), rung("f64"))
-    found = count_steps(problem, Callback(hasty), MANY, seconds=0.001)
-    assert found.counted == int(STEPS_PER_SECOND * 0.001)
-    assert "seconds that it took" in found.claim.limit
+    steps = count_steps(problem, Callback(hasty), MANY, seconds=0.001)
+    assert steps.counted == int(STEPS_PER_SECOND * 0.001)
+    assert "seconds that it took" in steps.claim.limit
 
 
 def test_a_solver_of_this_project_counts_its_own() -> None:

@@ -29,13 +29,13 @@ def file_of(path: Path, rows: Sequence[int], names: Sequence[str] = (), scene: s
     """A file with these of the scene's own samples, and these of its columns."""
     instants = load(scene).clock.instants
     columns = columns_at(load(scene), [instants[k] for k in rows])
-    kept = {name: values for name, values in columns.items() if not names or name in names}
-    return str(write_csv(path / "mine.csv", kept))
+    written = {name: values for name, values in columns.items() if not names or name in names}
+    return str(write_csv(path / "mine.csv", written))
 
 
 def complete(file: str, scene: str = SCENE, partial: bool = False) -> Verdict | None:
-    found = taylor_verify.check(scene, file, partial=partial)
-    rows = by_quantity(found)
+    judgement = taylor_verify.check(scene, file, partial=partial)
+    rows = by_quantity(judgement)
     assert {v.verdict for name, v in rows.items() if name != COMPLETE} == {Status.PASS}
     return rows.get(COMPLETE)
 
@@ -111,9 +111,9 @@ def test_a_summed_clock_is_at_the_end(end: float, tmp_path: Path) -> None:
     assert end != 20.0
     scene = load(SCENE)
     columns = columns_at(scene, [*scene.clock.instants[:-1], Fraction(end)])
-    found = taylor_verify.check(SCENE, write_csv(tmp_path / "mine.csv", columns))
-    assert {verdict.verdict for verdict in found.verdicts} == {Status.PASS}
-    assert not any("not judged" in note for note in found.notes)
+    judgement = taylor_verify.check(SCENE, write_csv(tmp_path / "mine.csv", columns))
+    assert {verdict.verdict for verdict in judgement.verdicts} == {Status.PASS}
+    assert not any("not judged" in note for note in judgement.notes)
 
 
 def test_a_step_short_of_the_end_is_not_at_the_end(tmp_path: Path) -> None:
@@ -128,17 +128,17 @@ def test_nothing_of_it_is_green(tmp_path: Path, capsys: Captured) -> None:
     file, report = file_of(tmp_path, range(5), OMEGA), tmp_path / "junit.xml"
     call = ["check", file, "--scene", SCENE, "--junit", str(report), "--github"]
     assert main(call) == 3
-    told = capsys.readouterr()
-    assert re.search(r"complete +undecided", told.out)
-    assert "complete: not judged: " in told.out
-    assert "not judged" in told.out
-    assert "::warning title=euler/with-attitude on f64%3A complete undecided::" in told.err
+    output = capsys.readouterr()
+    assert re.search(r"complete +undecided", output.out)
+    assert "complete: not judged: " in output.out
+    assert "not judged" in output.out
+    assert "::warning title=euler/with-attitude on f64%3A complete undecided::" in output.err
     suites = ElementTree.parse(report).getroot()
     assert (suites.get("errors"), suites.get("failures")) == ("1", "0")
     assert main([*call, "--partial"]) == 0
-    told = capsys.readouterr()
-    assert "not judged" in told.out
-    assert "::notice title=euler/with-attitude on f64%3A complete vacuous::" in told.err
+    output = capsys.readouterr()
+    assert "not judged" in output.out
+    assert "::notice title=euler/with-attitude on f64%3A complete vacuous::" in output.err
     suites = ElementTree.parse(report).getroot()
     assert (suites.get("errors"), suites.get("failures")) == ("0", "0")
 
@@ -189,16 +189,16 @@ def test_question_is_what_a_program_gets(on: str, capsys: Captured) -> None:
 
 
 @pytest.mark.parametrize(
-    ("call", "told"),
+    ("call", "message"),
     [
         (["question", SCENE, "--csv", "--json"], "expected one of --csv and --json, got both"),
         (["question", "nobody"], "got nobody"),
         (["question", SCENE, "--rung", "f65"], "@ --rung"),
     ],
 )
-def test_a_wrong_question_is_refused(call: list[str], told: str, capsys: Captured) -> None:
+def test_a_wrong_question_is_refused(call: list[str], message: str, capsys: Captured) -> None:
     """A wrong question ends with a single message on stderr, and exit status 2."""
     assert main(call) == 2
     shown = capsys.readouterr()
-    assert told in shown.err
+    assert message in shown.err
     assert not shown.out

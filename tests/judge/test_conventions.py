@@ -50,8 +50,8 @@ def judged(path: Path, scene: str, columns: Sound, accept: bool = False) -> File
     return file_judgement(write_csv(path / "mine.csv", columns), scene, accept_conventions=accept)
 
 
-def statuses(found: FileJudgement) -> set[Status]:
-    return {verdict.verdict for verdict in found.verdicts}
+def statuses(judgement: FileJudgement) -> set[Status]:
+    return {verdict.verdict for verdict in judgement.verdicts}
 
 
 # The ways to spoil a file. Each takes sound columns and returns spoiled ones.
@@ -114,13 +114,13 @@ def test_each_convention_is_found_and_mended_only_when_asked(
     """A spoiled file fails with one finding that names the convention; accepted, it passes."""
     scene = "euler/with-attitude"
     spoiled = spoil(exact_columns(scene, matrix=spoil is transposed))
-    found = judged(tmp_path, scene, spoiled)
-    (finding,) = found.conventions
+    judgement = judged(tmp_path, scene, spoiled)
+    (finding,) = judgement.conventions
     assert finding.subject == subject
     assert words in finding.words
     assert finding.is_certain
     assert finding.after <= EXPLAINS * finding.before
-    assert Status.FAIL in statuses(found)
+    assert Status.FAIL in statuses(judgement)
     assert statuses(judged(tmp_path, scene, spoiled, accept=True)) == {Status.PASS}
 
 
@@ -128,8 +128,8 @@ def test_conventions_are_found_together(tmp_path: Path) -> None:
     """A late file with degrees and a scalar at the end has three findings, and all are mended."""
     scene = "euler/with-attitude"
     spoiled = late(in_degrees(scalar_last(exact_columns(scene))))
-    found = judged(tmp_path, scene, spoiled)
-    assert [finding.subject for finding in found.conventions] == ["time", "omega", "quaternion"]
+    judgement = judged(tmp_path, scene, spoiled)
+    assert [finding.subject for finding in judgement.conventions] == ["time", "omega", "quaternion"]
     assert statuses(judged(tmp_path, scene, spoiled, accept=True)) == {Status.PASS}
 
 
@@ -140,8 +140,8 @@ def test_impulses_have_conventions_too(tmp_path: Path) -> None:
     spoiled = permuted(in_degrees(sound))
     for names in (VECTORS["linear_impulse"], VECTORS["angular_impulse"]):
         spoiled = replaced(spoiled, names, rows_of(sound, names)[:, [1, 2, 0]])
-    found = judged(tmp_path, scene, spoiled)
-    assert [finding.subject for finding in found.conventions] == ["axes", "omega"]
+    judgement = judged(tmp_path, scene, spoiled)
+    assert [finding.subject for finding in judgement.conventions] == ["axes", "omega"]
     assert statuses(judged(tmp_path, scene, spoiled, accept=True)) == {Status.PASS}
 
 
@@ -187,11 +187,11 @@ def test_what_the_motion_cannot_tell_is_ambiguous_and_never_guessed(
         "t": list(range(11)),
         **{n: [v] * 11 for n, v in zip(OMEGA, (-0.5, -0.5, 0.5), strict=True)},
     }
-    found = judged(tmp_path, str(scene), spoiled, accept)
-    (finding,) = found.conventions
+    judgement = judged(tmp_path, str(scene), spoiled, accept)
+    (finding,) = judgement.conventions
     assert not finding.is_certain
     assert "ambiguous" in finding.sentence
-    assert Status.FAIL in statuses(found)
+    assert Status.FAIL in statuses(judgement)
 
 
 def test_sound_file_has_no_conventions(tmp_path: Path) -> None:
@@ -206,9 +206,9 @@ def test_an_error_of_ones_own_is_no_convention(tmp_path: Path) -> None:
     sound = exact_columns(scene)
     noise = 1 + 1e-6 * np.random.default_rng(7).standard_normal((len(sound["t"]), 3))
     spoiled = replaced(sound, OMEGA, rows_of(sound, OMEGA) * noise)
-    found = judged(tmp_path, scene, spoiled)
-    assert found.conventions == ()
-    assert Status.FAIL in statuses(found)
+    judgement = judged(tmp_path, scene, spoiled)
+    assert judgement.conventions == ()
+    assert Status.FAIL in statuses(judgement)
 
 
 def test_poor_answers_show_their_conventions(tmp_path: Path) -> None:
@@ -229,9 +229,9 @@ def test_one_reflected_component_is_an_error(tmp_path: Path) -> None:
     """A sign of one component of omega is no change of axes: the attitude in the file is right."""
     sound = exact_columns("euler/with-attitude")
     spoiled = replaced(sound, OMEGA, rows_of(sound, OMEGA) * [1, -1, 1])
-    found = judged(tmp_path, "euler/with-attitude", spoiled, accept=True)
-    assert found.conventions == ()
-    assert Status.FAIL in statuses(found)
+    judgement = judged(tmp_path, "euler/with-attitude", spoiled, accept=True)
+    assert judgement.conventions == ()
+    assert Status.FAIL in statuses(judgement)
     # Nor is it one where omega is all that the file has.
     alone = {name: spoiled[name] for name in ("t", *OMEGA)}
     assert judged(tmp_path, "euler/with-attitude", alone, accept=True).conventions == ()
@@ -270,9 +270,9 @@ def test_a_turned_start_is_no_late_clock(with_attitude: bool, angle: float, tmp_
     columns = columns_at(replace(scene, initial=initial), scene.clock.instants)
     if not with_attitude:
         columns = {n: columns[n] for n in ("t", *OMEGA)}
-    found = judged(tmp_path, str(name), columns, accept=True)
-    assert found.conventions == ()
-    first = found.verdicts[0]
+    judgement = judged(tmp_path, str(name), columns, accept=True)
+    assert judgement.conventions == ()
+    first = judgement.verdicts[0]
     assert (first.quantity, first.verdict) == ("initial state", Status.FAIL)
 
 
@@ -320,18 +320,18 @@ def test_the_first_rows_of_an_engine_decide(
 ) -> None:
     """Five rows of semi-implicit Euler at h = 0.01 suffice, and a long file hides nothing."""
     file = read(write_csv(tmp_path / "mine.csv", spoil(first_order(scene, rows))))
-    found = conventions(file, load(scene), rung("f64")).findings
-    assert [finding.subject for finding in found] == subjects
-    assert all(finding.is_certain for finding in found)
+    findings = conventions(file, load(scene), rung("f64")).findings
+    assert [finding.subject for finding in findings] == subjects
+    assert all(finding.is_certain for finding in findings)
 
 
 def test_an_engine_without_the_gyroscopic_term_shows_its_conventions(tmp_path: Path) -> None:
     """The start and the first step are right to a hundredth even where omega never changes."""
     scene = "euler/with-attitude"
     columns = scalar_last(in_space_axes(engine(scene, none, 0.01, 101)))
-    found = judged(tmp_path, scene, columns)
-    assert [finding.subject for finding in found.conventions] == ["omega", "quaternion"]
-    assert [cause.name for cause in found.causes] == ["no gyroscopic term"]
+    judgement = judged(tmp_path, scene, columns)
+    assert [finding.subject for finding in judgement.conventions] == ["omega", "quaternion"]
+    assert [cause.name for cause in judgement.causes] == ["no gyroscopic term"]
 
 
 @cache
@@ -376,10 +376,10 @@ def test_readings_agree_in_floats_and_in_mpf(group: str) -> None:
     rows = np.random.default_rng(1).standard_normal((2, width))
     R = rotations(np.random.default_rng(2).standard_normal((2, 4)))
     with mp.workdps(30):
-        held, frames = (np.vectorize(mpf, otypes=[object])(a) for a in (rows, R))
+        exact_rows, frames = (np.vectorize(mpf, otypes=[object])(a) for a in (rows, R))
         renamed = Frames(AXES[5], AXES[17])
         for reading in (*readings(group), *readings(group, renamed)):
-            exact = reading.read(held, frames).astype(float)
+            exact = reading.read(exact_rows, frames).astype(float)
             assert np.allclose(reading.read(rows, R), exact, rtol=1e-13, atol=1e-13)
 
 
@@ -418,7 +418,7 @@ def test_shift_is_the_shortest_decimal_that_explains(tmp_path: Path) -> None:
     instants = [t + Fraction(1, 8192) for t in scene.clock.instants[::4]]
     sound = exact_columns(scene.name)
     spoiled = {**sound, "t": [float(t) for t in instants]}
-    found = judged(tmp_path, scene.name, spoiled)
-    shifts = [v.time_shift for v in found.verdicts if v.time_shift is not None]
+    judgement = judged(tmp_path, scene.name, spoiled)
+    shifts = [v.time_shift for v in judgement.verdicts if v.time_shift is not None]
     assert shifts == pytest.approx([1 / 8192] * 2, rel=1e-9)
     assert statuses(judged(tmp_path, scene.name, spoiled, accept=True)) == {Status.PASS}

@@ -32,12 +32,12 @@ def errors_of(order: float, steps: list[float] = HALVED, constant: float = 0.1) 
 @given(st.floats(0.8, 8), st.floats(1e-3, 10))
 def test_a_power_of_the_step_has_that_order(order: float, constant: float) -> None:
     """e = C h^p has order p, with no scatter, over all the steps that rounding leaves clear."""
-    found = convergence(HALVED, errors_of(order, constant=constant), 1e-40)
-    assert found.order == pytest.approx(order, abs=1e-9)
+    fit = convergence(HALVED, errors_of(order, constant=constant), 1e-40)
+    assert fit.order == pytest.approx(order, abs=1e-9)
     # Half an interval of nothing but the roundings of ten logarithms.
-    assert found.spread <= 1e-9
-    assert found.steps == tuple(HALVED)
-    assert found.level is None
+    assert fit.spread <= 1e-9
+    assert fit.steps == tuple(HALVED)
+    assert fit.level is None
 
 
 @given(st.permutations(range(len(HALVED))))
@@ -52,27 +52,27 @@ def test_steps_come_in_any_order(places: list[int]) -> None:
 def test_rounding_hides_no_order(order: int, seed: int) -> None:
     """The order is read from the steps above the floor, with noise of the floor added to every error."""
     noise = np.random.default_rng(seed).uniform(0, FLOOR, len(HALVED))
-    found = convergence(HALVED, list(errors_of(order) + noise), FLOOR, expected=order)
-    assert found.is_expected
+    fit = convergence(HALVED, list(errors_of(order) + noise), FLOOR, expected=order)
+    assert fit.is_expected
     # Ten floors of error have a tenth of noise at most: log2(1.1) over one halving.
-    assert found.order == pytest.approx(order, abs=0.14)
+    assert fit.order == pytest.approx(order, abs=0.14)
 
 
 def test_errors_that_stop_falling_at_the_floor_are_rounding() -> None:
     """The words say where, and that it is rounding; the steps beyond are not used."""
     errors = [max(e, 3e-14) for e in errors_of(4, constant=1e-3)]
-    found = convergence(HALVED, errors, FLOOR)
-    assert found.reason.endswith("errors stop falling at 3e-14: rounding")
-    assert found.level == 3e-14
-    assert found.steps[-1] > max(h for h, e in zip(HALVED, errors, strict=True) if e == 3e-14)
+    fit = convergence(HALVED, errors, FLOOR)
+    assert fit.reason.endswith("errors stop falling at 3e-14: rounding")
+    assert fit.level == 3e-14
+    assert fit.steps[-1] > max(h for h, e in zip(HALVED, errors, strict=True) if e == 3e-14)
 
 
 def test_errors_that_stop_far_above_the_floor_are_no_rounding() -> None:
     """An error that no step removes and no rounding explains is told with its multiple of the floor."""
-    found = convergence(HALVED, [e + 2e-5 for e in errors_of(2)], FLOOR)
-    assert "errors stop falling at 2e-05: 2e+09 times what rounding leaves" in found.reason
-    assert "not by rounding" in found.reason
-    assert not found.reason.endswith(": rounding")
+    fit = convergence(HALVED, [e + 2e-5 for e in errors_of(2)], FLOOR)
+    assert "errors stop falling at 2e-05: 2e+09 times what rounding leaves" in fit.reason
+    assert "not by rounding" in fit.reason
+    assert not fit.reason.endswith(": rounding")
 
 
 def test_rounding_that_grows_with_the_number_of_steps_has_no_order() -> None:
@@ -80,25 +80,25 @@ def test_rounding_that_grows_with_the_number_of_steps_has_no_order() -> None:
     errors = [
         e + 1e-14 / math.sqrt(h) for e, h in zip(errors_of(4, constant=1e-3), HALVED, strict=True)
     ]
-    found = convergence(HALVED, errors, [1e-14 / math.sqrt(h) for h in HALVED], expected=4)
-    assert found.is_expected
-    assert "rounding" in found.reason
+    fit = convergence(HALVED, errors, [1e-14 / math.sqrt(h) for h in HALVED], expected=4)
+    assert fit.is_expected
+    assert "rounding" in fit.reason
 
 
 def test_large_steps_are_not_asymptotic_yet() -> None:
     """A first-order method whose next term is large has order 1, and the large steps are left out."""
     errors = [0.001 * h + 10 * h**4 for h in HALVED]
-    found = convergence(HALVED, errors, FLOOR, expected=1)
-    assert found.is_expected
-    assert "larger ones are not asymptotic yet" in found.reason
-    assert found.steps[0] < 0.1
+    fit = convergence(HALVED, errors, FLOOR, expected=1)
+    assert fit.is_expected
+    assert "larger ones are not asymptotic yet" in fit.reason
+    assert fit.steps[0] < 0.1
 
 
 def test_an_order_that_is_not_the_expected_one_is_said() -> None:
     """`order 1.02, expected 4`: both numbers, first thing."""
-    found = convergence(HALVED, errors_of(1.02), FLOOR, expected=4)
-    assert found.reason.startswith("order 1.02, expected 4;")
-    assert not found.is_expected
+    fit = convergence(HALVED, errors_of(1.02), FLOOR, expected=4)
+    assert fit.reason.startswith("order 1.02, expected 4;")
+    assert not fit.is_expected
 
 
 @given(st.integers(0, 2**32))
@@ -110,9 +110,9 @@ def test_scatter_is_no_order(seed: int) -> None:
 
 def test_two_steps_show_no_order() -> None:
     """Two steps have one ratio, which agrees with itself: it takes a third step to disagree."""
-    found = convergence([0.2, 0.1], [1.6e-3, 1e-4], FLOOR)
-    assert found.order is None
-    assert found.reason.startswith("no order: 2 steps show an error of the method, and it takes 3")
+    fit = convergence([0.2, 0.1], [1.6e-3, 1e-4], FLOOR)
+    assert fit.order is None
+    assert fit.reason.startswith("no order: 2 steps show an error of the method, and it takes 3")
 
 
 @pytest.mark.parametrize("broken", [None, math.nan, math.inf])
@@ -120,12 +120,12 @@ def test_a_step_without_an_answer_is_named_and_not_scored(broken: float | None) 
     """A run that broke is no error of zero and none of any size."""
     errors: list[float | None] = list(errors_of(4))
     errors[0] = broken
-    found = convergence(HALVED, errors, FLOOR, expected=4)
-    assert found.is_expected
-    assert found.reason.endswith("no answer with step 0.5") or "no answer with step 0.5;" in (
-        found.reason
+    fit = convergence(HALVED, errors, FLOOR, expected=4)
+    assert fit.is_expected
+    assert fit.reason.endswith("no answer with step 0.5") or "no answer with step 0.5;" in (
+        fit.reason
     )
-    assert 0.5 not in found.steps
+    assert 0.5 not in fit.steps
 
 
 def test_an_answer_without_error_at_any_step_has_no_order() -> None:
@@ -180,13 +180,13 @@ def test_printed_it_is_read_at_a_glance(averaged: Sweep) -> None:
     """The orders in a line, and below a line for every quantity with its reason."""
     first, *rest = str(averaged).splitlines()
     assert first == averaged.reason
-    told = [(line.split()[0], line.split(maxsplit=1)[1]) for line in rest]
-    assert told == [(name, found.reason) for name, found in averaged.quantities.items()]
+    shown = [(line.split()[0], line.split(maxsplit=1)[1]) for line in rest]
+    assert shown == [(name, quantity.reason) for name, quantity in averaged.quantities.items()]
 
 
 def test_only_the_vector_in_space_sees_it(averaged: Sweep) -> None:
     """Conserved quantities in body axes are of omega's order; H in space is not."""
-    orders = {name: found.order for name, found in averaged.quantities.items()}
+    orders = {name: quantity.order for name, quantity in averaged.quantities.items()}
     assert orders["H_space"] == pytest.approx(2, abs=0.25)
     # Of energy and momentum RK4 loses one order less than of the state.
     assert min(orders["T"], orders["H2"]) >= 3.75
@@ -195,8 +195,8 @@ def test_only_the_vector_in_space_sees_it(averaged: Sweep) -> None:
 def test_explicit_euler_is_first_order() -> None:
     """Said beside the order that was expected of it."""
     steps = [2.0**-k for k in range(5, 11)]
-    found = sweep(short("euler/generic"), fixed_step(explicit_euler), steps, expected=4)
-    omega = found.quantities["omega"]
+    fit = sweep(short("euler/generic"), fixed_step(explicit_euler), steps, expected=4)
+    omega = fit.quantities["omega"]
     assert omega.order == pytest.approx(1, abs=0.1)
     assert omega.reason.startswith(f"order {omega.order:.2f}, expected 4")
 
@@ -242,7 +242,7 @@ def test_a_wrong_equation_converges_to_something_else() -> None:
 
 def test_errors_that_fall_faster_and_faster_have_not_stalled() -> None:
     """Steps that are too large for a method show a low order first: no error is left that none removes."""
-    found = convergence([0.2, 0.1, 0.05, 0.025], [0.233, 0.199, 0.14, 0.0838])
-    assert found.stalls_at is None
+    fit = convergence([0.2, 0.1, 0.05, 0.025], [0.233, 0.199, 0.14, 0.0838])
+    assert fit.stalls_at is None
     noise = convergence([0.2, 0.1, 0.05, 0.025], [1e-12, 1.1e-12, 0.9e-12, 1e-12])
     assert noise.stalls_at == 0.2

@@ -35,12 +35,12 @@ def with_damping(name: str, damping: Fraction, end: int | None = None) -> Scene:
 @pytest.mark.parametrize("name", [RIGID, NEGATIVE, FLUID])
 def test_the_shipped_scenes_pass(name: str, on: str) -> None:
     """Every row of a damped scene passes, the invariants times their factors among them."""
-    found = run(name, "taylor", on)
-    assert {verdict.verdict for verdict in found.verdicts} == {Status.PASS}
+    judgement = run(name, "taylor", on)
+    assert {verdict.verdict for verdict in judgement.verdicts} == {Status.PASS}
     conserved = (
         {"T", "H2", "H_space"} if "euler" in name else {"T", "F2", "FG", "y3", "x_space", "y_space"}
     )
-    assert {verdict.quantity for verdict in found.verdicts} >= conserved
+    assert {verdict.quantity for verdict in judgement.verdicts} >= conserved
 
 
 @pytest.mark.parametrize("damping", [Fraction(1, 10), Fraction(-1, 50)])
@@ -49,16 +49,16 @@ def test_the_shipped_scenes_pass(name: str, on: str) -> None:
 )
 def test_loads_and_wheels_have_balances(name: str, damping: Fraction) -> None:
     """With a load or with wheels the balances of T and of the momenta pass, by Taylor series."""
-    found = run(with_damping(name, damping, 4), "taylor", "f64")
-    assert {verdict.verdict for verdict in found.verdicts} == {Status.PASS}
-    assert found.record is not None
-    assert found.record.route == "taylor"
+    judgement = run(with_damping(name, damping, 4), "taylor", "f64")
+    assert {verdict.verdict for verdict in judgement.verdicts} == {Status.PASS}
+    assert judgement.record is not None
+    assert judgement.record.route == "taylor"
 
 
 def test_what_has_decayed_below_the_least_number_excuses_itself() -> None:
     """On f32 e^{-280} is zero: the invariants are vacuous there, while omega is judged and passes."""
-    found = run(with_damping(RIGID, Fraction(14), 20), "taylor", "f32")
-    verdicts = {verdict.quantity: verdict.verdict for verdict in found.verdicts}
+    judgement = run(with_damping(RIGID, Fraction(14), 20), "taylor", "f32")
+    verdicts = {verdict.quantity: verdict.verdict for verdict in judgement.verdicts}
     assert verdicts["omega"] is Status.PASS
     assert {verdicts[name] for name in ("T", "H2", "H_space")} == {Status.VACUOUS}
     wide = run(with_damping(RIGID, Fraction(14), 20), "taylor", "f64")
@@ -76,9 +76,9 @@ def test_a_decay_beyond_float64_is_undecided() -> None:
 def test_errors_decay_with_the_motion(name: str) -> None:
     """The volume of a small cloud of momenta shrinks by e^{-ct} in each direction."""
     scene = load(name)
-    found = transition(scene, scene.clock.elapsed)
-    d = found.momentum.shape[1]
-    volumes = np.linalg.det(found.carried.since_first[:, :d, :d])
+    orbit = transition(scene, scene.clock.elapsed)
+    d = orbit.momentum.shape[1]
+    volumes = np.linalg.det(orbit.carried.since_first[:, :d, :d])
     times = np.array([float(t) for t in scene.clock.elapsed])
     expected = np.exp(-d * float(scene.body.damping) * times)
     assert np.allclose(volumes / expected, 1, atol=1e-4)
@@ -91,6 +91,6 @@ def test_a_weak_damping_has_the_floor_of_none() -> None:
     for damping in (Fraction(0), Fraction(1, 10**12)):
         scene = with_damping(RIGID, damping)
         given = pose(scene, rung("f64")).given
-        found = floor(given, scene, rung("f64").unit_roundoff, 100)
-        floors.append(np.concatenate([found.carried[name] for name in ("momentum", "attitude")]))
+        weak = floor(given, scene, rung("f64").unit_roundoff, 100)
+        floors.append(np.concatenate([weak.carried[name] for name in ("momentum", "attitude")]))
     assert np.allclose(*floors, rtol=1e-6)

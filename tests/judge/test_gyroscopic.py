@@ -35,9 +35,9 @@ WORDS = {
 
 def causes(path: Path, scene: str, columns: Columns) -> list[str]:
     """The causes of a file: they name the gyroscopic term."""
-    found = taylor_verify.check(scene, write_csv(path / "mine.csv", columns))
-    assert isinstance(found, FileJudgement)
-    return [cause.sentence for cause in found.causes]
+    judgement = taylor_verify.check(scene, write_csv(path / "mine.csv", columns))
+    assert isinstance(judgement, FileJudgement)
+    return [cause.sentence for cause in judgement.causes]
 
 
 @pytest.mark.parametrize("kick", WORDS)

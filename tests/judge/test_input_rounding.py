@@ -45,8 +45,8 @@ def times_alone(*instants: Fraction) -> InputRounding:
 def test_a_time_that_the_rung_cannot_hold_is_moved() -> None:
     """The response to it is the rate of omega by the time times u, in parts of |omega|; T has none."""
     t = Fraction(17, 10)
-    found = times_alone(t)
-    assert found.moved.endswith(", and every time")
+    response = times_alone(t)
+    assert response.moved.endswith(", and every time")
     step = Fraction(1, 10**8)
     before, here, after = (
         np.array(solution(asked_at("euler/generic", t)).motion([s], 30)["omega"][0], dtype=float)
@@ -54,15 +54,15 @@ def test_a_time_that_the_rung_cannot_hold_is_moved() -> None:
     )
     rate = np.linalg.norm(after - before) / float(2 * step)
     expected = rate * float(t * F64.unit_roundoff) / np.linalg.norm(here)
-    assert found.at_samples["omega"] == pytest.approx([expected], rel=1e-6)
-    assert found.at_samples["T"] <= 1e-3 * expected
+    assert response.at_samples["omega"] == pytest.approx([expected], rel=1e-6)
+    assert response.at_samples["T"] <= 1e-3 * expected
 
 
 def test_a_time_that_the_rung_holds_is_not_moved() -> None:
     """Nothing is moved then, and no word is said of times."""
-    found = times_alone(Fraction(3, 2))
-    assert dict(found.at_samples) == {}
-    assert "time" not in found.moved
+    response = times_alone(Fraction(3, 2))
+    assert dict(response.at_samples) == {}
+    assert "time" not in response.moved
 
 
 def test_times_are_one_number_more() -> None:
@@ -80,8 +80,11 @@ def test_times_are_one_number_more() -> None:
 
 def test_the_words_say_what_was_moved() -> None:
     """Of a manufactured motion, its numbers too."""
-    held = {"euler/generic": "body and start", "manufactured/euler-tones": "body, motion and start"}
-    for name, what in held.items():
+    inputs_of = {
+        "euler/generic": "body and start",
+        "manufactured/euler-tones": "body, motion and start",
+    }
+    for name, what in inputs_of.items():
         scene = asked_at(name, Fraction(3, 2))
         count = len(inputs._numbers(scene))
         words = f"each of the {count} numbers of {what} that are not zero"

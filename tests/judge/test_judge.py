@@ -139,7 +139,7 @@ def verdict_of(status: Status, **numbers: float) -> Verdict:
 
 
 @pytest.mark.parametrize(
-    ("found", "status"),
+    ("statuses", "status"),
     [
         ([Status.PASS], 0),
         ([Status.PASS, Status.UNAVAILABLE], 0),
@@ -149,9 +149,9 @@ def verdict_of(status: Status, **numbers: float) -> Verdict:
         ([Status.UNDECIDED, Status.FAIL], 1),
     ],
 )
-def test_exit_status_is_green_for_passes_alone(found: list[Status], status: int) -> None:
+def test_exit_status_is_green_for_passes_alone(statuses: list[Status], status: int) -> None:
     """0 if all that could run passed, 1 if anything failed, 3 if something is open."""
-    assert exit_status([verdict_of(s) for s in found]) == status
+    assert exit_status([verdict_of(s) for s in statuses]) == status
 
 
 def test_summary_counts_every_status() -> None:
@@ -273,10 +273,10 @@ def test_floor_of_a_body_at_constant_spin_is_a_random_walk() -> None:
     body = RigidBody(tensors.diagonal((Fraction(2),) * 3))
     spin = Spin((Fraction(1), Fraction(2), Fraction(2)))
     scene = Scene("ball", "", "euler", frozenset(), body, spin, Clock(Fraction(0), times))
-    found = _floor_of(scene, steps=6400)
+    floors = _floor_of(scene, steps=6400)
     (errors,) = state_errors(scene, _truth(scene), _truth(scene))
     # One injection at the start besides the 6400, hence a per cent.
-    assert found.of_state(errors)[-1] == pytest.approx(2.0**-53 * 80, rel=0.01)
+    assert floors.of_state(errors)[-1] == pytest.approx(2.0**-53 * 80, rel=0.01)
 
 
 def test_floor_grows_with_the_orbit_as_a_perturbation_does() -> None:
@@ -293,9 +293,9 @@ def test_floor_grows_with_the_orbit_as_a_perturbation_does() -> None:
     body = RigidBody(tensors.product(turned, tensors.transpose(turn)))
     scene = Scene("edge", "", "euler", frozenset(), body, spin, Clock(Fraction(0), times))
     (errors,) = state_errors(scene, _truth(scene), _truth(scene))
-    found = _floor_of(scene, steps=60).of_state(errors)
+    floors = _floor_of(scene, steps=60).of_state(errors)
     rate = math.sqrt(1 / 3)
-    assert math.log(found[40] / found[20]) == pytest.approx(10 * rate, rel=0.05)
+    assert math.log(floors[40] / floors[20]) == pytest.approx(10 * rate, rel=0.05)
 
 
 def _truth(scene: Scene) -> Motion:

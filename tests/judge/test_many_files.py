@@ -127,10 +127,12 @@ def test_an_attitude_of_a_lower_order_is_seen(scene: Path, tmp_path: Path) -> No
         write(tmp_path / f"h{step}.csv", rows_of(scene, with_euler_attitude, step))
         for step in STEPS
     ]
-    found = taylor_verify.check(scene, made)
-    assert order_of(found, "omega").order == pytest.approx(4, abs=0.2)
-    assert order_of(found, "attitude").order == pytest.approx(1, abs=0.2)
-    assert any("attitude has a lower order (1.0) than omega (4.0)" in note for note in found.notes)
+    judgement = taylor_verify.check(scene, made)
+    assert order_of(judgement, "omega").order == pytest.approx(4, abs=0.2)
+    assert order_of(judgement, "attitude").order == pytest.approx(1, abs=0.2)
+    assert any(
+        "attitude has a lower order (1.0) than omega (4.0)" in note for note in judgement.notes
+    )
 
 
 def test_in_float32_the_best_step_is_not_the_smallest(scene: Path, tmp_path: Path) -> None:
@@ -184,8 +186,8 @@ def test_a_file_with_a_wrong_step_is_named(scene: Path, files: list[str]) -> Non
 )
 def test_a_name_states_a_step_or_none(name: str, step: float | None) -> None:
     """h, dt or step before a number; an index, a unit, a zero and two steps that differ state none."""
-    found = step_in_name(name)
-    assert (found.value if found else None) == step
+    stated = step_in_name(name)
+    assert (stated.value if stated else None) == step
 
 
 @pytest.mark.parametrize(
@@ -213,11 +215,13 @@ def test_a_step_inside_a_file_comes_before_that_of_its_name(scene: Path, tmp_pat
     rows = rows_of(scene, rk4, 0.25)[:, :3]
     one = write(tmp_path / "h9.csv", rows, head="# h = 0.25")
     other = write(tmp_path / "h0.5.csv", rows_of(scene, rk4, 0.5)[:, :3])
-    found = taylor_verify.check(scene, [one, other], partial=True)
-    assert [step and step.value for step in found.steps] == [0.25, 0.5]
-    assert "the steps are from the files themselves and the names of the files" in found.notes[0]
-    said = taylor_verify.check(scene, [one, other], partial=True, steps=[1, Fraction(1, 2)])
-    assert [step and (step.value, step.source) for step in said.steps] == [
+    judgement = taylor_verify.check(scene, [one, other], partial=True)
+    assert [step and step.value for step in judgement.steps] == [0.25, 0.5]
+    assert (
+        "the steps are from the files themselves and the names of the files" in judgement.notes[0]
+    )
+    stated = taylor_verify.check(scene, [one, other], partial=True, steps=[1, Fraction(1, 2)])
+    assert [step and (step.value, step.source) for step in stated.steps] == [
         (1.0, Source.CALL),
         (0.5, Source.CALL),
     ]
@@ -227,13 +231,15 @@ def test_rows_are_taken_for_steps_only_where_they_differ(scene: Path, tmp_path: 
     """The spacing of the rows is an assumption, said as such; equal spacings are no steps."""
     rows = {step: rows_of(scene, rk4, 0.25)[:: round(step), :3] for step in (1, 2)}
     made = [write(tmp_path / f"{k}.csv", rows[k], spacing=k) for k in (1, 2)]
-    found = taylor_verify.check(scene, made, partial=True)
-    assert [step and step.value for step in found.steps] == [1.0, 2.0]
-    assert found.notes[0].startswith("assumed: the spacing of the rows is the step")
+    judgement = taylor_verify.check(scene, made, partial=True)
+    assert [step and step.value for step in judgement.steps] == [1.0, 2.0]
+    assert judgement.notes[0].startswith("assumed: the spacing of the rows is the step")
     alike = [write(tmp_path / f"{k}.csv", rows[1]) for k in ("a", "b")]
-    found = taylor_verify.check(scene, alike, partial=True)
-    assert found.order == ()
-    assert "the steps of the files are not known; say them with --steps 0.1,0.05" in found.notes[0]
+    judgement = taylor_verify.check(scene, alike, partial=True)
+    assert judgement.order == ()
+    assert (
+        "the steps of the files are not known; say them with --steps 0.1,0.05" in judgement.notes[0]
+    )
     assert step_of_rows([Fraction(0), Fraction(1), Fraction(3)]) is None
 
 
@@ -242,18 +248,18 @@ def test_a_file_of_unknown_step_is_judged_alone(
 ) -> None:
     """The others show their order, and it is said that this one has no part in it."""
     other = write(tmp_path / "other.csv", rows_of(scene, rk4, 0.5)[:, :3])
-    found = taylor_verify.check(scene, [*files, other], partial=True)
-    assert len(found.files) == 5
-    assert len(order_of(found, "omega").points) == 4
-    assert f"the step of {other} is not known: it has no part in the order" in found.notes
+    judgement = taylor_verify.check(scene, [*files, other], partial=True)
+    assert len(judgement.files) == 5
+    assert len(order_of(judgement, "omega").points) == 4
+    assert f"the step of {other} is not known: it has no part in the order" in judgement.notes
 
 
 def test_two_files_of_one_step_have_no_order(scene: Path, files: list[str], tmp_path: Path) -> None:
     """Their names are in the sentence; steps that the caller repeats are refused."""
     again = write(tmp_path / "again_h0.25.csv", rows_of(scene, midpoint, 0.25)[:, :3])
-    found = taylor_verify.check(scene, [*files, again], partial=True)
-    assert found.order == ()
-    assert any(f"{files[0]} and {again} have the same step, h = 0.25" in n for n in found.notes)
+    judgement = taylor_verify.check(scene, [*files, again], partial=True)
+    assert judgement.order == ()
+    assert any(f"{files[0]} and {again} have the same step, h = 0.25" in n for n in judgement.notes)
     with pytest.raises(ValueError, match=r"no two of which are the same, got 0.1 again @ steps"):
         taylor_verify.check(scene, files[:2], steps=[0.1, 0.1])
 
@@ -263,9 +269,9 @@ def test_a_file_that_ends_early_has_no_part_in_the_order(
 ) -> None:
     """Its error is that of a shorter time."""
     cut = write(tmp_path / "cut_h0.5.csv", rows_of(scene, rk4, 0.5)[:3, :3])
-    found = taylor_verify.check(scene, [cut, *files], partial=True)
-    assert f"{cut} ends before the others do, and has no part in the order" in found.notes
-    assert order_of(found, "omega").order == pytest.approx(4, abs=0.2)
+    judgement = taylor_verify.check(scene, [cut, *files], partial=True)
+    assert f"{cut} ends before the others do, and has no part in the order" in judgement.notes
+    assert order_of(judgement, "omega").order == pytest.approx(4, abs=0.2)
 
 
 # The Python call.
@@ -296,9 +302,9 @@ def test_a_file_in_a_list_is_judged_as_it_is_alone(
 
 def test_one_file_in_a_list_shows_no_order(scene: Path, files: list[str]) -> None:
     """It is judged, and a sentence says why there is no order."""
-    found = taylor_verify.check(scene, files[:1], partial=True)
-    assert found.order == ()
-    assert found.notes == ("no order of convergence: one file alone shows none",)
+    judgement = taylor_verify.check(scene, files[:1], partial=True)
+    assert judgement.order == ()
+    assert judgement.notes == ("no order of convergence: one file alone shows none",)
 
 
 @pytest.mark.parametrize(
@@ -362,8 +368,8 @@ def called(capsys: Captured, *words: Any) -> tuple[int, str, str]:
 
 def exact_file(file: Path, scene: Path, rows: int = 5) -> str:
     times = list(range(rows))
-    found = taylor_verify.exact(scene, times, 20)
-    return write(file, np.array(found["omega"], dtype=float))
+    motion = taylor_verify.exact(scene, times, 20)
+    return write(file, np.array(motion["omega"], dtype=float))
 
 
 def test_the_command_says_the_order_first(scene: Path, files: list[str], capsys: Captured) -> None:
@@ -424,24 +430,24 @@ def test_a_ci_tells_the_files_apart(
     _, out, _ = called(capsys, *call, "--json")
     base, results = tmp_path / "base.json", tmp_path / "r.xml"
     base.write_text(out, encoding="utf-8")
-    _, _, said = called(capsys, *call, "--baseline", base)
-    assert "0 regressions" in said
+    _, _, errors = called(capsys, *call, "--baseline", base)
+    assert "0 regressions" in errors
     document = json.loads(out)
     row = next(v for v in document["files"][1]["verdicts"] if v["quantity"] == "omega")
     row["max"] /= 1e3
     base.write_text(json.dumps(document), encoding="utf-8")
-    status, _, said = called(capsys, *call, "--baseline", base, "--junit", results, "--github")
+    status, _, errors = called(capsys, *call, "--baseline", base, "--junit", results, "--github")
     assert status == 1
     (regression,) = [
-        line for line in said.splitlines() if "regression: " in line and "::" not in line
+        line for line in errors.splitlines() if "regression: " in line and "::" not in line
     ]
     assert regression.endswith(f"omega max ({files[1]})")
     suites = ElementTree.parse(results).getroot()
     assert [suite.get("name", "").rpartition(" ")[2] for suite in suites] == files[:2]
     cases = [(case.get("classname"), case.get("name")) for case in suites.iter("testcase")]
     assert len(cases) == len(set(cases))
-    told = [text for text in suites[1].itertext() if "regression: " in text]
-    assert len(told) == 1
+    regressions = [text for text in suites[1].itertext() if "regression: " in text]
+    assert len(regressions) == 1
     assert not any("regression: " in text for text in suites[0].itertext())
 
 
@@ -464,9 +470,9 @@ def test_a_wrong_command_is_refused(
     words: Sequence[str], sentence: str, scene: Path, files: list[str], capsys: Captured
 ) -> None:
     """Exit status 2 and a sentence; nothing on stdout, and nothing is judged."""
-    status, out, said = called(capsys, *files[:2], "--scene", scene, *words)
+    status, out, errors = called(capsys, *files[:2], "--scene", scene, *words)
     assert (status, out) == (2, "")
-    assert sentence in said
+    assert sentence in errors
 
 
 def test_a_file_given_twice_is_refused(
@@ -475,21 +481,21 @@ def test_a_file_given_twice_is_refused(
     """A file given twice, by one path or by two, is refused; the fault of another file is told with it."""
     link = tmp_path / "link.csv"
     link.symlink_to(files[0])
-    status, _, said = called(capsys, files[0], link, files[0], "none.csv", "--scene", scene)
+    status, _, errors = called(capsys, files[0], link, files[0], "none.csv", "--scene", scene)
     assert status == 2
-    assert f"expected every file once, got {link} again" in said
-    assert f"expected every file once, got {files[0]} again" in said
-    assert "@ none.csv" in said
+    assert f"expected every file once, got {link} again" in errors
+    assert f"expected every file once, got {files[0]} again" in errors
+    assert "@ none.csv" in errors
 
 
 def test_steps_and_pictures_are_of_several_files(
     scene: Path, files: list[str], capsys: Captured
 ) -> None:
     """Both are refused with one file, and a picture with files of unknown steps too."""
-    status, _, said = called(capsys, files[0], "--scene", scene, "--steps", "0.1")
-    assert (status, "expected several files with --steps" in said) == (2, True)
-    status, _, said = called(capsys, files[0], "--scene", scene, "--picture", "a.svg")
-    assert (status, "expected several files whose steps are known" in said) == (2, True)
+    status, _, errors = called(capsys, files[0], "--scene", scene, "--steps", "0.1")
+    assert (status, "expected several files with --steps" in errors) == (2, True)
+    status, _, errors = called(capsys, files[0], "--scene", scene, "--picture", "a.svg")
+    assert (status, "expected several files whose steps are known" in errors) == (2, True)
 
 
 # The picture.
@@ -501,8 +507,8 @@ def test_a_picture_is_written(
 ) -> None:
     """The picture is written in each format, beside the answer; no half-written file stays behind."""
     file = tmp_path / "new" / f"order.{ending}"
-    status, _, said = called(capsys, *files, "--scene", scene, "--partial", "--picture", file)
-    assert (status, f"wrote {file}" in said) == (1, True)
+    status, _, errors = called(capsys, *files, "--scene", scene, "--partial", "--picture", file)
+    assert (status, f"wrote {file}" in errors) == (1, True)
     marks = {"svg": b"<?xml", "pdf": b"%PDF", "png": b"\x89PNG"}
     assert file.read_bytes().startswith(marks[ending])
     assert [*file.parent.iterdir()] == [file]
@@ -527,9 +533,9 @@ def test_without_matplotlib_the_mend_is_said(
     """Before anything is judged."""
     monkeypatch.setattr("taylor_verify.cli.inputs.find_spec", lambda name: None)
     file = tmp_path / "order.svg"
-    status, out, said = called(capsys, *files, "--scene", scene, "--picture", file)
+    status, out, errors = called(capsys, *files, "--scene", scene, "--picture", file)
     assert (status, out) == (2, "")
-    assert "pip install 'taylor-verify[plots]'" in said
+    assert "pip install 'taylor-verify[plots]'" in errors
     assert not file.exists()
 
 
@@ -537,9 +543,9 @@ def test_files_of_another_start_are_named(scene: Path, files: list[str], tmp_pat
     """A file that does not begin as the scene does is named: it may be of another scene."""
     rows = rows_of(scene, rk4, 0.5)[:, :3] * math.sqrt(2)
     other = write(tmp_path / "other_h0.5.csv", rows)
-    found = taylor_verify.check(scene, [*files, other], partial=True)
+    judgement = taylor_verify.check(scene, [*files, other], partial=True)
     assert (
-        found.notes[-1]
+        judgement.notes[-1]
         == f"{other} does not start as the scene does: is it a file of another scene?"
     )
-    assert any(v.verdict is Status.FAIL for v in found.files[-1].verdicts)
+    assert any(v.verdict is Status.FAIL for v in judgement.files[-1].verdicts)

@@ -156,8 +156,10 @@ def share(error: Any, allowed: float) -> Any:
 def mapped(motion: Motion, **maps: Callable[[Array], Array]) -> Motion:
     """The motion with some quantities sent through maps of their rows, at BITS bits."""
     with mp.workprec(BITS):
-        found = {k: maps[k](rows) if k in maps else rows for k, rows in motion.quantities.items()}
-    return Motion(found, motion.radius)
+        quantities = {
+            k: maps[k](rows) if k in maps else rows for k, rows in motion.quantities.items()
+        }
+    return Motion(quantities, motion.radius)
 
 
 def same_bits(one: Motion, other: Motion) -> bool:
@@ -385,11 +387,11 @@ class Scales:
             "centre": self.length,
         }
         with mp.workprec(BITS):
-            found = {
+            quantities = {
                 name: rows * mp.convert(1 / units[name]) if name in units else rows
                 for name, rows in motion.quantities.items()
             }
-        return Motion(found, motion.radius)
+        return Motion(quantities, motion.radius)
 
 
 def times(factor: Fraction, rows: Matrix) -> Matrix:
@@ -478,8 +480,8 @@ def reversed_motion(motion: Motion) -> Motion:
 
 def end_of(run: Run) -> Spin | Impulse:
     """The state of the last sample, as the exact start of another run."""
-    found = run.trajectory.quantities
-    rows = {name: tuple(exact(v) for v in found[name][-1]) for name in found}
+    quantities = run.trajectory.quantities
+    rows = {name: tuple(exact(v) for v in quantities[name][-1]) for name in quantities}
     e0, e1, e2, e3 = rows.get("quaternion", IDENTITY)
     attitude: Quaternion = (e0, e1, e2, e3)
     if "omega" in rows:
@@ -569,8 +571,8 @@ def test_drag_and_lateness_do_not_return() -> None:
 def followed_by(first: Motion, second: Motion) -> Motion:
     """Both halves as one motion, without the first one's last sample."""
     names = second.quantities
-    found = {name: np.concatenate([first[name][:-1], second[name]]) for name in names}
-    return Motion(found, np.concatenate([first.radius[:-1], second.radius]))
+    quantities = {name: np.concatenate([first[name][:-1], second[name]]) for name in names}
+    return Motion(quantities, np.concatenate([first.radius[:-1], second.radius]))
 
 
 Handover = Callable[[Spin | Impulse], Spin | Impulse]
@@ -637,8 +639,8 @@ def as_rigid(motion: Motion) -> Motion:
     with mp.workprec(BITS):
         C = np.array([[mp.convert(e) for e in row] for row in K], dtype=object)
         omega = motion["angular_impulse"] @ C
-    found = {k: rows for k, rows in motion.quantities.items() if k == "attitude"}
-    return Motion({"omega": omega} | found, motion.radius)
+    quantities = {k: rows for k, rows in motion.quantities.items() if k == "attitude"}
+    return Motion({"omega": omega} | quantities, motion.radius)
 
 
 @EACH_RUNG

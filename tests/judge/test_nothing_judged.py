@@ -66,11 +66,11 @@ def test_a_missing_package_is_exit_2_with_the_command(
     """The row is unavailable, the last line says that nothing was judged, and stderr how to install it."""
     missing(monkeypatch)
     assert main(["run", SCENE, "--solver", name]) == 2
-    told = capsys.readouterr()
-    assert "1 unavailable" in told.out
-    assert last_line(told.out).startswith("nothing was judged: ")
-    assert command in last_line(told.out)
-    assert command in told.err
+    output = capsys.readouterr()
+    assert "1 unavailable" in output.out
+    assert last_line(output.out).startswith("nothing was judged: ")
+    assert command in last_line(output.out)
+    assert command in output.err
 
 
 def test_a_missing_package_is_a_cause_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -92,9 +92,9 @@ def test_on_a_terminal_the_reason_is_said_once(
     monkeypatch.setattr(sys.stdout, "isatty", lambda: is_terminal)
     monkeypatch.setenv("COLUMNS", "50")
     assert main(["run", SCENE, "--solver", "scipy:DOP853"]) == 2
-    told = capsys.readouterr()
-    assert told.out.count("nothing was judged") == 1
-    assert told.err.count("nothing was judged") == times
+    output = capsys.readouterr()
+    assert output.out.count("nothing was judged") == 1
+    assert output.err.count("nothing was judged") == times
 
 
 def test_an_environment_that_cannot_be_made_is_a_missing_package(
@@ -110,8 +110,8 @@ def test_an_environment_that_cannot_be_made_is_a_missing_package(
     monkeypatch.setattr(engine, "_commands", {})
     for _ in range(2):
         assert main(["run", SCENE, "--solver", "outside:cvode-bdf"]) == 2
-        told = last_line(capsys.readouterr().out)
-        assert "the environment of cvode could not be made: uv: no network" in told
+        line = last_line(capsys.readouterr().out)
+        assert "the environment of cvode could not be made: uv: no network" in line
 
 
 def test_a_missing_number_format_is_exit_0_and_said(

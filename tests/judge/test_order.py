@@ -64,36 +64,36 @@ def power(order: float, constant: float = 0.1) -> list[float]:
 @given(st.sampled_from([1, 2, 3, 4, 6]), st.floats(0.01, 10))
 def test_a_power_of_the_step_has_its_order(order: int, constant: float) -> None:
     """Errors C h^p have order p, from the largest step to the last that is clear of roundoff."""
-    found = read(power(order, constant), floor=1e-30)
-    assert found.order == pytest.approx(order, abs=1e-6)
-    assert found.low <= found.order <= found.high
-    assert (found.largest, found.smallest) == (HALVED[0], HALVED[-1])
-    assert found.sentence.startswith(f"omega: order {order}.0 from h = 0.1 to ")
-    assert found.sentence.endswith("the smallest: the error still falls")
+    measured = read(power(order, constant), floor=1e-30)
+    assert measured.order == pytest.approx(order, abs=1e-6)
+    assert measured.low <= measured.order <= measured.high
+    assert (measured.largest, measured.smallest) == (HALVED[0], HALVED[-1])
+    assert measured.sentence.startswith(f"omega: order {order}.0 from h = 0.1 to ")
+    assert measured.sentence.endswith("the smallest: the error still falls")
 
 
 def test_roundoff_takes_over_below_the_best_step() -> None:
     """Errors that rise again as the step falls: the best step is not the smallest, and it is said."""
     steps = [0.1 * 2.0**-k for k in range(11)]
-    found = read([h**4 + 1e-14 / h**0.5 for h in steps], steps, floor=1e-14)
-    assert found.order == pytest.approx(4, abs=0.1)
-    assert found.best_step is not None
-    assert steps[-1] < found.best_step < steps[0]
-    assert found.stall is Stall.ROUNDOFF
-    assert found.stalls_at >= found.best_step
-    assert "roundoff takes over" in found.sentence
-    assert "digits" in found.sentence
+    measured = read([h**4 + 1e-14 / h**0.5 for h in steps], steps, floor=1e-14)
+    assert measured.order == pytest.approx(4, abs=0.1)
+    assert measured.best_step is not None
+    assert steps[-1] < measured.best_step < steps[0]
+    assert measured.stall is Stall.ROUNDOFF
+    assert measured.stalls_at >= measured.best_step
+    assert "roundoff takes over" in measured.sentence
+    assert "digits" in measured.sentence
 
 
 def test_a_wrong_step_is_named_and_no_order_is_stated() -> None:
     """One file whose step is not what its name says: no one order fits, and its error tells which."""
     errors = power(4, 1.0)
     errors[3] = (1.3 * HALVED[3]) ** 4
-    found = read(errors, floor=1e-30)
-    assert found.order is None
-    assert found.suspect == f"{HALVED[3]:.4g}.csv"
-    assert found.suspect_step == pytest.approx(1.3 * HALVED[3], rel=0.01)
-    assert found.sentence.startswith(
+    measured = read(errors, floor=1e-30)
+    assert measured.order is None
+    assert measured.suspect == f"{HALVED[3]:.4g}.csv"
+    assert measured.suspect_step == pytest.approx(1.3 * HALVED[3], rel=0.01)
+    assert measured.sentence.startswith(
         "omega: no one order fits: from step to step it is 4.0, 4.0, 2.5"
     )
 
@@ -108,51 +108,51 @@ def test_a_wrong_step_at_any_inner_place_is_found(place: int) -> None:
 
 def test_steps_that_are_not_asymptotic_are_no_wrong_steps() -> None:
     """Large steps that depart to one side are left out and listed; the order is that of the others."""
-    found = read([h**2 * (1 + 30 * h) for h in HALVED], floor=1e-30)
-    assert found.suspect is None
-    assert found.order == pytest.approx(2, abs=0.2)
-    assert found.largest < HALVED[0]
-    assert " at larger steps)" in found.sentence
+    measured = read([h**2 * (1 + 30 * h) for h in HALVED], floor=1e-30)
+    assert measured.suspect is None
+    assert measured.order == pytest.approx(2, abs=0.2)
+    assert measured.largest < HALVED[0]
+    assert " at larger steps)" in measured.sentence
 
 
 def test_a_lower_order_that_shows_at_small_steps_is_the_order() -> None:
     """h^4 with a little of h: the larger steps look like 4, and the order is 1."""
     steps = [0.8 * 2.0**-k for k in range(14)]
-    found = read([h**4 + 1e-6 * h for h in steps], steps, floor=1e-30)
-    assert found.order == pytest.approx(1, abs=0.1)
-    assert "(4.0, 4.0" in found.sentence
-    assert found.smallest == steps[-1]
+    measured = read([h**4 + 1e-6 * h for h in steps], steps, floor=1e-30)
+    assert measured.order == pytest.approx(1, abs=0.1)
+    assert "(4.0, 4.0" in measured.sentence
+    assert measured.smallest == steps[-1]
 
 
 def test_disagreement_without_one_culprit_has_no_order() -> None:
     """Errors that zigzag from file to file: all local orders are listed, and none is the order."""
     errors = [e * (5 if k % 2 else 1) for k, e in enumerate(power(4))]
-    found = read(errors, floor=1e-30)
-    assert (found.order, found.suspect) == (None, None)
-    assert "no one order fits" in found.sentence
+    measured = read(errors, floor=1e-30)
+    assert (measured.order, measured.suspect) == (None, None)
+    assert "no one order fits" in measured.sentence
 
 
 def test_two_steps_confirm_no_order() -> None:
     """One ratio of errors agrees with itself: it is said, and no order is stated."""
-    found = read(power(4)[:2])
-    assert found.order is None
-    assert found.points[1].local == pytest.approx(4)
-    assert "order 4.0 between h = 0.1 and 0.05, which no third step confirms" in found.sentence
+    measured = read(power(4)[:2])
+    assert measured.order is None
+    assert measured.points[1].local == pytest.approx(4)
+    assert "order 4.0 between h = 0.1 and 0.05, which no third step confirms" in measured.sentence
 
 
 def test_errors_that_stall_at_the_printed_digits_are_of_the_file() -> None:
     """Of files with seven digits the error stalls near 1e-7, which is neither roundoff nor the method."""
-    found = read([max(e, 6e-8) for e in power(4)], digits=7)
-    assert found.stall is Stall.DIGITS
-    assert "the error is that of the printed digits" in found.sentence
+    measured = read([max(e, 6e-8) for e in power(4)], digits=7)
+    assert measured.stall is Stall.DIGITS
+    assert "the error is that of the printed digits" in measured.sentence
 
 
 def test_errors_that_stall_far_above_roundoff_have_another_reason() -> None:
     """What no step removes is told with its multiple of the floor, and is not called roundoff."""
-    found = read([e + 1e-7 for e in power(4)])
-    assert found.stall is Stall.OTHER
-    assert "roundoff takes over" not in found.sentence
-    assert "1e+08 times what roundoff leaves" in found.sentence
+    measured = read([e + 1e-7 for e in power(4)])
+    assert measured.stall is Stall.OTHER
+    assert "roundoff takes over" not in measured.sentence
+    assert "1e+08 times what roundoff leaves" in measured.sentence
 
 
 @pytest.mark.parametrize("error", [None, float("nan"), float("inf")])
@@ -160,17 +160,17 @@ def test_a_file_without_an_error_spoils_no_order(error: float | None) -> None:
     """A file whose error is no number has no part in the slope."""
     errors: list[float | None] = [*power(2)]
     errors[0] = error
-    found = read(errors, floor=1e-30)
-    assert found.order == pytest.approx(2)
-    assert found.largest == HALVED[1]
+    measured = read(errors, floor=1e-30)
+    assert measured.order == pytest.approx(2)
+    assert measured.largest == HALVED[1]
 
 
 def test_an_answer_without_any_error_has_no_order() -> None:
     """Errors of zero, and errors of roundoff at every step, show none: it is said, and no best step."""
     for errors in ([0.0] * 4, [7e-16] * 4):
-        found = read(errors)
-        assert found.order is None
-        assert found.sentence.endswith("because the error is near roundoff at every step")
+        measured = read(errors)
+        assert measured.order is None
+        assert measured.sentence.endswith("because the error is near roundoff at every step")
 
 
 def test_an_attitude_is_told_in_radians() -> None:

@@ -31,7 +31,7 @@ def row(**changed: Any) -> Verdict:
     return verdicts.row(**{"max": 5e-15, "mean": 2e-15, "final": 1e-15, "ratio": 0.6, **changed})
 
 
-def told(old: list[Verdict], new: list[Verdict]) -> list[str]:
+def departures_between(old: list[Verdict], new: list[Verdict]) -> list[str]:
     return [str(departure) for departure in compare(old, new).departures]
 
 
@@ -61,8 +61,8 @@ def unstable(rng: np.random.Generator) -> tuple[Floats, Floats]:
 
 def ratios(model: Any, seed: int) -> Floats:
     errors, attainable = model(np.random.default_rng(seed))
-    found: Floats = np.max(errors / attainable, axis=1)
-    return found
+    largest: Floats = np.max(errors / attainable, axis=1)
+    return largest
 
 
 def share_out(old: Floats, new: Floats, factor: float, level: float) -> float:
@@ -117,9 +117,9 @@ def test_the_same_verdicts_depart_by_nothing() -> None:
     published = [
         row(rung=rung, quantity=name) for rung in ("f32", "f64") for name in ("omega", "T")
     ]
-    found = compare(published, published)
-    assert found.departures == ()
-    assert found.compared == len(published) > 0
+    comparison = compare(published, published)
+    assert comparison.departures == ()
+    assert comparison.compared == len(published) > 0
 
 
 @pytest.mark.parametrize("name", ["max", "mean", "final", "ratio"])
@@ -127,30 +127,30 @@ def test_an_error_thirty_times_as_large_or_as_small_is_named(name: str) -> None:
     """A single number above what is attainable by chance is a departure with its place."""
     old = row(max=2e-14, mean=2e-14, final=2e-14, ratio=2.0)
     large = replace(old, **{name: 30 * getattr(old, name)})
-    (there,) = told([old], [large])
+    (there,) = departures_between([old], [large])
     assert f"@ euler/generic f64 omega {name}" in there
-    (back,) = told([large], [old])
+    (back,) = departures_between([large], [old])
     assert f"@ euler/generic f64 omega {name}" in back
 
 
 def test_errors_below_the_level_are_alike() -> None:
     """An exact zero may become five attainable, and no more; a tiny error may become zero."""
     zero = {"max": 0.0, "mean": 0.0, "final": 0.0, "ratio": 0.0}
-    assert told([row(**zero)], [row(max=4.9e-14, ratio=4.9)]) == []
-    assert told([row()], [row(**zero)]) == []
-    assert len(told([row(**zero)], [row(max=5.1e-14, ratio=5.1)])) == 2
+    assert departures_between([row(**zero)], [row(max=4.9e-14, ratio=4.9)]) == []
+    assert departures_between([row()], [row(**zero)]) == []
+    assert len(departures_between([row(**zero)], [row(max=5.1e-14, ratio=5.1)])) == 2
 
 
 @pytest.mark.parametrize("lost", [None, math.nan, math.inf])
 def test_what_is_no_number_is_in_no_class_of_numbers(lost: float | None) -> None:
     """An error that became NaN, infinite or nothing departs; one that stayed so does not."""
     new = row(max=lost, mean=lost, final=lost, ratio=lost)
-    assert len(told([row()], [new])) == 4
-    assert told([row(max=None, mean=None, final=None, ratio=None)], [new]) == []
+    assert len(departures_between([row()], [new])) == 4
+    assert departures_between([row(max=None, mean=None, final=None, ratio=None)], [new]) == []
 
 
 @pytest.mark.parametrize(
-    ("changed", "said"),
+    ("changed", "words"),
     [
         ({"verdict": Status.FAIL}, "expected pass, got fail @ euler/generic f64 omega verdict"),
         ({"outcome": "stopped"}, "got stopped @ euler/generic f64 omega outcome"),
@@ -165,10 +165,10 @@ def test_what_is_no_number_is_in_no_class_of_numbers(lost: float | None) -> None
         ({"provenance": {"scene": "another"}}, "make reports"),
     ],
 )
-def test_every_other_number_has_its_class(changed: dict[str, Any], said: str) -> None:
+def test_every_other_number_has_its_class(changed: dict[str, Any], words: str) -> None:
     """A change of any one of them is told, with what was expected, what came and where."""
-    (only,) = told([row()], [row(**changed)])
-    assert said in only
+    (only,) = departures_between([row()], [row(**changed)])
+    assert words in only
 
 
 @pytest.mark.parametrize(
@@ -185,24 +185,31 @@ def test_every_other_number_has_its_class(changed: dict[str, Any], said: str) ->
 )
 def test_what_is_drawn_anew_departs_by_nothing(changed: dict[str, Any]) -> None:
     """A few steps more, another time of the maximum and the floor there, are within the class."""
-    assert told([row()], [row(**changed)]) == []
+    assert departures_between([row()], [row(**changed)]) == []
 
 
 def test_a_short_run_may_take_two_steps_more() -> None:
     """A tenth of a few steps is less than a step."""
-    assert told([row(steps=5, evaluations=100)], [row(steps=7, evaluations=140)]) == []
-    assert len(told([row(steps=5, evaluations=100)], [row(steps=8, evaluations=160)])) == 1
+    assert (
+        departures_between([row(steps=5, evaluations=100)], [row(steps=7, evaluations=140)]) == []
+    )
+    assert (
+        len(departures_between([row(steps=5, evaluations=100)], [row(steps=8, evaluations=160)]))
+        == 1
+    )
 
 
 def test_missing_and_new_rows_are_named() -> None:
     """A row of one side alone is a departure, and is not counted as compared."""
     other = row(quantity="T")
-    found = compare([row(), other], [row()])
-    assert [str(d) for d in found.departures] == [
+    comparison = compare([row(), other], [row()])
+    assert [str(d) for d in comparison.departures] == [
         "expected this row, got none @ euler/generic f64 T"
     ]
-    assert found.compared == 1
-    assert told([row()], [row(), other]) == ["expected no such row, got one @ euler/generic f64 T"]
+    assert comparison.compared == 1
+    assert departures_between([row()], [row(), other]) == [
+        "expected no such row, got one @ euler/generic f64 T"
+    ]
 
 
 def test_a_rung_that_a_machine_does_not_have_is_not_compared() -> None:
@@ -210,8 +217,8 @@ def test_a_rung_that_a_machine_does_not_have_is_not_compared() -> None:
     rows = [row(rung="f80"), row(rung="f80", quantity="T")]
     absent = [row(rung="f80", verdict=Status.UNAVAILABLE, max=None, ratio=None)]
     for old, new in ((rows, absent), (absent, rows)):
-        found = compare([*old, row()], [*new, row()])
-        assert (found.compared, found.departures) == (1, ())
+        comparison = compare([*old, row()], [*new, row()])
+        assert (comparison.compared, comparison.departures) == (1, ())
 
 
 # The command.
@@ -237,7 +244,7 @@ def spoil(folder: Path, index: int, **changed: Any) -> None:
 
 
 @pytest.mark.parametrize(
-    ("changed", "said"),
+    ("changed", "words"),
     [
         ({"max": 30 * 2e-14}, "omega max"),
         ({}, "expected no such row, got one @ euler/full-tensor f64 omega"),
@@ -246,7 +253,7 @@ def spoil(folder: Path, index: int, **changed: Any) -> None:
     ],
 )
 def test_run_against_a_broken_twin_fails_by_name(
-    published: Path, capsys: pytest.CaptureFixture[str], changed: dict[str, Any], said: str
+    published: Path, capsys: pytest.CaptureFixture[str], changed: dict[str, Any], words: str
 ) -> None:
     """Exit 0 against the same rows; 1 and a message that names the row once one is spoiled."""
     call = ["run", "euler/generic", "euler/full-tensor", "--against", str(published), "--json"]
@@ -255,8 +262,8 @@ def test_run_against_a_broken_twin_fails_by_name(
     spoil(published, 0, **changed)
     assert main(call) == 1
     out, error = capsys.readouterr()
-    assert said in error
-    assert any(said in line for line in json.loads(out)["against"]["departures"])
+    assert words in error
+    assert any(words in line for line in json.loads(out)["against"]["departures"])
 
 
 def test_only_what_was_run_is_compared(published: Path) -> None:

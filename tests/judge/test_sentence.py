@@ -134,12 +134,12 @@ FILES: dict[str, tuple[Callable[[], Columns], Callable[[float], str], ErrorKind,
 def judged(tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str, Verdict]]:
     """The verdicts on every file, by quantity."""
     folder = tmp_path_factory.mktemp("files")
-    found = {}
+    by_file = {}
     for name, (columns, form, *_) in FILES.items():
         file = write_csv(folder / f"{name}.csv", columns(), form)
         verdicts = taylor_verify.check(SCENE, file).verdicts
-        found[name] = {verdict.quantity: verdict for verdict in verdicts}
-    return found
+        by_file[name] = {verdict.quantity: verdict for verdict in verdicts}
+    return by_file
 
 
 @pytest.mark.parametrize("name", FILES)
@@ -151,8 +151,8 @@ def test_each_file_says_its_kind_and_no_other(
     omega = judged[name]["omega"]
     assert omega.error_kind is kind
     assert words in omega.sentence
-    others = {said for _, _, other, said in FILES.values() if other is not kind}
-    assert not any(said in omega.sentence for said in others)
+    others = {phrase for _, _, other, phrase in FILES.values() if other is not kind}
+    assert not any(phrase in omega.sentence for phrase in others)
 
 
 def test_a_loss_of_energy_is_told_from_a_gain(
@@ -199,31 +199,31 @@ def test_since_is_the_first_sample_above_its_bound() -> None:
     """Only a failed row has a first sample above its bound; a tolerance replaces what arithmetic leaves."""
     times, attainable = np.arange(5.0) + 7, np.full(5, 1e-3)
     errors = np.array([0.0, 2e-2, 0.0, 3e-2, 1e-2])
-    found = diagnosed(row(Status.FAIL), times, 7.0, errors, attainable)
-    assert (found.since, found.until) == (8.0, 11.0)
+    verdict = diagnosed(row(Status.FAIL), times, 7.0, errors, attainable)
+    assert (verdict.since, verdict.until) == (8.0, 11.0)
     assert diagnosed(row(Status.PASS), times, 7.0, errors / 9, attainable).since is None
     tolerant = Tolerant(**{**vars(row(Status.FAIL)), "tolerance": 2.5e-2})
-    found = diagnosed(tolerant, times, 7.0, errors, attainable)
-    assert found.since == 10.0
-    assert "above the tolerance of 0.025 (roundoff of f64 alone would need " in found.sentence
-    passed = replace(found, verdict=Status.PASS, since=None)
+    verdict = diagnosed(tolerant, times, 7.0, errors, attainable)
+    assert verdict.since == 10.0
+    assert "above the tolerance of 0.025 (roundoff of f64 alone would need " in verdict.sentence
+    passed = replace(verdict, verdict=Status.PASS, since=None)
     assert "within the tolerance of 0.025" in passed.sentence
 
 
 def test_a_lost_number_is_above_every_bound() -> None:
     """NaN begins the time since when an answer is wrong."""
     errors = np.array([0.0, np.nan, 0.0])
-    found = diagnosed(row(Status.FAIL, max=None), np.arange(3.0), 0.0, errors, np.ones(3))
-    assert (found.since, found.error_kind) == (1.0, ErrorKind.NOT_FINITE)
+    verdict = diagnosed(row(Status.FAIL, max=None), np.arange(3.0), 0.0, errors, np.ones(3))
+    assert (verdict.since, verdict.error_kind) == (1.0, ErrorKind.NOT_FINITE)
 
 
 def test_a_truth_that_is_too_wide_has_no_digits() -> None:
     """An undecided row says why, and nothing of digits or of the kind of an error."""
     errors, wide = np.array([0.0, 1e-3, 2e-3]), stated(Cause.WIDE_TRUTH, "the truth is wide")
     undecided = row(Status.UNDECIDED, reason=wide)
-    found = diagnosed(undecided, np.arange(3.0), 0.0, errors, np.ones(3))
-    assert (found.digits, found.error_kind, found.exponent) == (None, None, None)
-    assert found.sentence == "omega: undecided, the truth is wide"
+    verdict = diagnosed(undecided, np.arange(3.0), 0.0, errors, np.ones(3))
+    assert (verdict.digits, verdict.error_kind, verdict.exponent) == (None, None, None)
+    assert verdict.sentence == "omega: undecided, the truth is wide"
 
 
 # The course of an error in time.
@@ -264,14 +264,14 @@ def test_every_quantity_of_every_status_has_a_sentence(quantity: str, status: St
     rows += [replace(v, reason=stated(Cause.STATED, "")) for v in rows]
     rows += [row(status, quantity=quantity, max=None, at=None, reason=stated(Cause.STATED, "why"))]
     for verdict in rows:
-        said = verdict.sentence
-        assert said.startswith(f"{quantity}: ")
-        assert said.removeprefix(f"{quantity}: ").strip()
-        assert not re.search(r"None|\bnan\b|; ;|;$|  ", said)
+        text = verdict.sentence
+        assert text.startswith(f"{quantity}: ")
+        assert text.removeprefix(f"{quantity}: ").strip()
+        assert not re.search(r"None|\bnan\b|; ;|;$|  ", text)
 
 
 @pytest.mark.parametrize(
-    ("size", "digits", "said"),
+    ("size", "digits", "words"),
     [
         (3.3e-12, 11, "11 digits are right (largest error 3.3e-12)"),
         (0.03, 1, "1 digit is right (largest error 0.03)"),
@@ -283,11 +283,11 @@ def test_every_quantity_of_every_status_has_a_sentence(quantity: str, status: St
         (float("inf"), None, "not a finite number"),
     ],
 )
-def test_digits_are_counted_down_to_none(size: float, digits: int | None, said: str) -> None:
+def test_digits_are_counted_down_to_none(size: float, digits: int | None, words: str) -> None:
     """Never more than the rung has, never less than none; what is not finite has no count."""
     verdict = row(Status.FAIL, max=size, reason=stated(Cause.STATED, ""))
     assert verdict.digits == digits
-    assert verdict.sentence.startswith(f"omega: {said};")
+    assert verdict.sentence.startswith(f"omega: {words};")
 
 
 def test_the_row_of_a_verdict_has_its_sentence() -> None:

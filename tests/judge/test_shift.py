@@ -57,8 +57,8 @@ def asked(name: str, samples: int = 11) -> tuple[Scene, Solution]:
     """A shipped scene at a few of its instants."""
     scene = load(name)
     instants = scene.clock.instants
-    kept = instants[:: max(1, len(instants) // (samples - 1))]
-    scene = replace(scene, clock=Clock(scene.clock.start, kept))
+    chosen = instants[:: max(1, len(instants) // (samples - 1))]
+    scene = replace(scene, clock=Clock(scene.clock.start, chosen))
     return scene, solution(scene)
 
 
@@ -76,8 +76,8 @@ def judged(scene: Scene, exact: Solution, answer: Motion) -> dict[str, Shift | N
     truth = exact.motion(scene.clock.elapsed, DIGITS)
     with mp.workdps(2 * DIGITS):
         errors = state_errors(scene, truth, answer)
-        found = time_shifts(scene, exact, truth, answer, DIGITS, errors)
-    return {e.quantity: shift for e, shift in zip(errors, found, strict=True)}
+        shifts = time_shifts(scene, exact, truth, answer, DIGITS, errors)
+    return {e.quantity: shift for e, shift in zip(errors, shifts, strict=True)}
 
 
 # The rates that a shift is read from.
@@ -90,17 +90,17 @@ def test_rates_are_the_slopes_of_the_exact_motion(name: str) -> None:
     step = Fraction(1, 10**10)
     elapsed = scene.clock.elapsed
     before, here, after = (exact.motion([t + k * step for t in elapsed], 45) for k in (-1, 0, 1))
-    found = rates(scene, here)
+    derivatives = rates(scene, here)
     with mp.workdps(45):
         h = mp.convert(step)
         for quantity in here.quantities:
             slope = (after[quantity] - before[quantity]) / (2 * h)
             bend = (after[quantity] - 2 * here[quantity] + before[quantity]) / h**2
             for rows, derivative, power in (
-                (found.velocity, slope, 1),
-                (found.acceleration, bend, 2),
+                (derivatives.velocity, slope, 1),
+                (derivatives.acceleration, bend, 2),
             ):
-                unit = mp.ldexp(1, found.units[quantity] - power * found.time)
+                unit = mp.ldexp(1, derivatives.units[quantity] - power * derivatives.time)
                 counted = (derivative / unit).astype(float)
                 # Some ten roundings of numbers of size one; the differences are good to 1e-20.
                 assert np.max(np.abs(rows[quantity] - counted)) <= 1e-13
@@ -147,9 +147,9 @@ def test_a_clock_that_runs_wrong_drifts(pace: str) -> None:
         assert shift.trend == pytest.approx(float(pace), rel=1e-9)
         # A course is held in float64: of the largest shift 2^-52, at a speed near one.
         assert shift.remains <= 60 * abs(float(pace)) * 1e-15
-        told = "slow" if float(pace) > 0 else "fast"
+        word = "slow" if float(pace) > 0 else "fast"
         assert (
-            f"drifting: its clock runs {told} by {abs(float(pace)):.3g} of"
+            f"drifting: its clock runs {word} by {abs(float(pace)):.3g} of"
             in shift.terms().sentence()
         )
 
@@ -169,8 +169,10 @@ def test_a_first_row_that_is_not_late_is_named_and_spoils_no_fit(name: str) -> N
         assert shift.strays == shift.times[:1]
         assert shift.terms().sentence().startswith("early by 0.0001, constant; ")
         rows = len(shift.times)
-        said = f" in {rows - 1} of {rows} rows; the row at t = {shift.times[0]:g} does not share it"
-        assert shift.terms().sentence().endswith(said)
+        words = (
+            f" in {rows - 1} of {rows} rows; the row at t = {shift.times[0]:g} does not share it"
+        )
+        assert shift.terms().sentence().endswith(words)
 
 
 def test_a_drift_is_fitted_without_the_rows_that_do_not_share_it() -> None:
@@ -337,8 +339,8 @@ def late_answer(problem: Problem) -> Any:
 
 def test_an_answer_that_conserves_everything_and_is_late_is_told_so() -> None:
     """No conserved quantity sees half a millisecond; the state's gate says what to mend."""
-    found = check("euler/generic", late_answer)
-    initial, omega, *conserved = found.verdicts
+    result = check("euler/generic", late_answer)
+    initial, omega, *conserved = result.verdicts
     assert {v.verdict for v in conserved} == {Status.PASS}
     assert initial.verdict is omega.verdict is Status.FAIL
     assert omega.shift == "constant"
@@ -346,15 +348,15 @@ def test_an_answer_that_conserves_everything_and_is_late_is_told_so() -> None:
     # What remains is the rounding to doubles, 2^-53 a component.
     assert omega.residual <= 2.0**-52
     assert "as a shift of time: late by 0.0005, constant; " in omega.because
-    assert found.record is not None
-    gate = found.record.gates[0]
+    assert result.record is not None
+    gate = result.record.gates[0]
     assert gate.shifts == pytest.approx([0.0005] * len(gate.errors), rel=1e-3)
 
 
 def test_a_sound_answer_has_the_numbers_and_no_words() -> None:
     """The bound's reason stands alone if the gate passes; conserved quantities never have a shift."""
-    found = run("euler/with-attitude", "taylor", "f64")
-    for verdict in found.verdicts:
+    result = run("euler/with-attitude", "taylor", "f64")
+    for verdict in result.verdicts:
         is_state = verdict.quantity in ("omega", "attitude")
         numbers = (verdict.time_shift, verdict.residual, verdict.shift)
         assert all((value is not None) == is_state for value in numbers)
@@ -362,8 +364,8 @@ def test_a_sound_answer_has_the_numbers_and_no_words() -> None:
         if is_state:
             assert verdict.residual <= 2 * verdict.max
             assert verdict.shift in list(Kind)
-    assert found.record is not None
-    assert all(gate.shifts == () for gate in found.record.gates)
+    assert result.record is not None
+    assert all(gate.shifts == () for gate in result.record.gates)
 
 
 def test_a_vacuous_gate_says_what_is_gated_in_its_place() -> None:
@@ -422,8 +424,8 @@ def test_an_exactly_known_impulse_is_not_undecided_beside_an_inexact_attitude() 
     truth = solution(problem.given).motion(problem.given.clock.elapsed, 19)
     assert max(truth.radius_of("linear_impulse")) == 0 < max(truth.radius_of("attitude"))
     assert max(truth.radius) == max(truth.radius_of("attitude"))
-    found = judgement(problem, Taylor(), Taylor().solve(problem)).verdicts
-    assert {v.quantity: v.verdict for v in found}["impulse"] is Status.PASS
+    verdicts = judgement(problem, Taylor(), Taylor().solve(problem)).verdicts
+    assert {v.quantity: v.verdict for v in verdicts}["impulse"] is Status.PASS
 
 
 @pytest.mark.parametrize("route", ["arb", "mpmath", "taylor"])

@@ -64,8 +64,8 @@ def coarse(tmp_path: Path) -> str:
 
 def at_the_border(scene: str, solve_or_file: Any) -> None:
     """Every gate passes at its own error, and fails against the next smaller double."""
-    found = by_quantity(taylor_verify.check(scene, solve_or_file, tolerance=0.5))
-    errors = {name: found[name].max for name in GATES[scene]}
+    verdicts = by_quantity(taylor_verify.check(scene, solve_or_file, tolerance=0.5))
+    errors = {name: verdicts[name].max for name in GATES[scene]}
     below = {name: math.nextafter(error or 0, 0) for name, error in errors.items()}
     for asked, status in ((errors, Status.PASS), (below, Status.FAIL)):
         judged = by_quantity(taylor_verify.check(scene, solve_or_file, tolerance=asked))
@@ -95,10 +95,10 @@ def test_the_start_may_be_off_by_the_tolerance_of_its_state(tmp_path: Path) -> N
     columns["w1"][0] *= 1 + 3e-9
     file = write_csv(tmp_path / "mine.csv", columns)
     for tolerance, status in ((1e-9, Status.FAIL), (1e-8, Status.PASS)):
-        found = by_quantity(taylor_verify.check("euler/generic", file, tolerance=tolerance))
-        start = found["initial state"]
+        verdicts = by_quantity(taylor_verify.check("euler/generic", file, tolerance=tolerance))
+        start = verdicts["initial state"]
         assert (start.verdict, start.bound) == (status, tolerance)
-        assert found["omega"].verdict is status
+        assert verdicts["omega"].verdict is status
     assert (
         "is the scene's initial state to within the tolerance: its omega is off by" in start.because
     )
@@ -128,10 +128,10 @@ def test_the_direction_of_time_with_the_larger_error_decides(tmp_path: Path) -> 
     for t, omega, spoil in zip((-1, 0, 1, 50, 100), motion, (2e-9, 0, 0, 0, 9e-9), strict=True):
         text += ",".join(map(repr, (t, *(float(w) * (1 + spoil) for w in omega)))) + "\n"
     (tmp_path / "mine.csv").write_text(text)
-    found = by_quantity(
+    verdicts = by_quantity(
         taylor_verify.check(scene, tmp_path / "mine.csv", partial=True, tolerance=5e-9)
     )
-    assert (found["omega"].verdict, found["omega"].at) == (Status.FAIL, 100.0)
+    assert (verdicts["omega"].verdict, verdicts["omega"].at) == (Status.FAIL, 100.0)
 
 
 # Rules of the gate.
@@ -217,13 +217,13 @@ def test_what_is_no_tolerance_is_refused_in_one_sentence(
     for call in (["check", coarse, "--scene", SCENE], ["run", SCENE, "--solver", COARSE]):
         for text in (number, f"omega={number}"):
             assert main([*call, f"--tolerance={text}"]) == 2
-            (told,) = capsys.readouterr().err.splitlines()
-            assert "expected a positive number below 1 (the error of the answer zero), got " in told
-            assert "@ --tolerance" in told
+            (line,) = capsys.readouterr().err.splitlines()
+            assert "expected a positive number below 1 (the error of the answer zero), got " in line
+            assert "@ --tolerance" in line
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "words"),
     [
         ("omga=1e-8", "expected some of omega, attitude, T, H2, H_space, got omga @ --tolerance"),
         ("omga=1e-8,T=7", "got omga @ --tolerance\nexpected a positive number below 1 "),
@@ -232,11 +232,11 @@ def test_what_is_no_tolerance_is_refused_in_one_sentence(
     ],
 )
 def test_a_name_that_is_no_quantity_is_refused_with_those_there_are(
-    text: str, said: str, coarse: str, capsys: Captured
+    text: str, words: str, coarse: str, capsys: Captured
 ) -> None:
     """All faults at once."""
     assert main(["check", coarse, "--scene", SCENE, "--tolerance", text]) == 2
-    assert said in capsys.readouterr().err
+    assert words in capsys.readouterr().err
 
 
 def test_of_several_scenes_a_name_is_that_of_any() -> None:
@@ -270,13 +270,15 @@ def test_four_ways_agree(factor: float, coarse: str, tmp_path: Path, capsys: Cap
     script = tmp_path / "mine.py"
     script.write_text(PROGRAM.format(file=coarse))
     program = f"process:{sys.executable} {script}"
-    found = [
+    results = [
         taylor_verify.check(SCENE, coarse, tolerance=number).verdicts,
         taylor_verify.check(SCENE, lambda problem: states, tolerance=number).verdicts,
         taylor_verify.run(SCENE, program, tolerance=number).verdicts,
         taylor_verify.run_many([SCENE], program, tolerance=number).verdicts,
     ]
-    words = {tuple((v.quantity, v.verdict.value, v.bound) for v in verdicts) for verdicts in found}
+    words = {
+        tuple((v.quantity, v.verdict.value, v.bound) for v in verdicts) for verdicts in results
+    }
     for call in (["check", coarse, "--scene", SCENE], ["run", SCENE, "--solver", program]):
         status = main([*call, "--tolerance", repr(number), "--json"])
         document = json.loads(capsys.readouterr().out)["verdicts"]
@@ -313,9 +315,9 @@ def test_the_expected_verdicts_are_those_of_the_ordinary_bounds() -> None:
     failed = replace(vacuous, verdict=Status.FAIL, tolerance=1e-8)
     expected = compare_with_expectations([vacuous])
     assert expected.exit_status([vacuous]) == 0
-    found = compare_with_expectations([failed])
-    assert found.mismatches == ()
-    assert found.exit_status([failed]) == 1
+    agreement = compare_with_expectations([failed])
+    assert agreement.mismatches == ()
+    assert agreement.exit_status([failed]) == 1
 
 
 def test_a_page_says_that_a_tolerance_has_judged() -> None:
@@ -350,7 +352,7 @@ def test_states_that_are_compared_apart_take_a_tolerance(
             columns[name] = [*values[:-1], values[-1] + 1e-6]
     file = write_csv(tmp_path / "mine.csv", columns)
     for tolerance, status in ((1e-3, Status.PASS), (1e-9, Status.FAIL)):
-        found = by_quantity(taylor_verify.check(scene, file, tolerance=tolerance))
-        assert states <= set(found)
-        assert {found[name].verdict for name in states} == {status}
-        assert {row.bound for row in found.values()} == {tolerance}
+        verdicts = by_quantity(taylor_verify.check(scene, file, tolerance=tolerance))
+        assert states <= set(verdicts)
+        assert {verdicts[name].verdict for name in states} == {status}
+        assert {row.bound for row in verdicts.values()} == {tolerance}

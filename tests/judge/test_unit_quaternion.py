@@ -34,8 +34,8 @@ def stretched(factors: Sequence[float]) -> dict[str, list[float]]:
     }
 
 
-def row(found: Judgement) -> Verdict | None:
-    return next((v for v in found.verdicts if v.quantity == UNIT_QUATERNION), None)
+def row(judgement: Judgement) -> Verdict | None:
+    return next((v for v in judgement.verdicts if v.quantity == UNIT_QUATERNION), None)
 
 
 def checked(path: Path, columns: Mapping[str, Sequence[Any]], **options: Any) -> Judgement:
@@ -43,7 +43,7 @@ def checked(path: Path, columns: Mapping[str, Sequence[Any]], **options: Any) ->
 
 
 @pytest.mark.parametrize(
-    ("factors", "size", "said"),
+    ("factors", "size", "words"),
     [
         ([0.5] * ROWS, 0.5, "the length of q0 q1 q2 q3 is 0.5"),
         (np.linspace(1, 100, ROWS).tolist(), 99.0, "the length of q0 q1 q2 q3 is 1 to 100"),
@@ -51,14 +51,14 @@ def checked(path: Path, columns: Mapping[str, Sequence[Any]], **options: Any) ->
     ],
 )
 def test_another_length_fails_with_its_size(
-    factors: list[float], size: float, said: str, tmp_path: Path
+    factors: list[float], size: float, words: str, tmp_path: Path
 ) -> None:
     """The attitude is read from any length and passes; the row of the length alone fails."""
-    found = checked(tmp_path, stretched(factors))
-    (failed,) = [v for v in found.verdicts if v.verdict is Status.FAIL]
+    judgement = checked(tmp_path, stretched(factors))
+    (failed,) = [v for v in judgement.verdicts if v.verdict is Status.FAIL]
     assert failed.quantity == UNIT_QUATERNION
     assert failed.max == pytest.approx(size, rel=1e-3)
-    assert said in failed.because
+    assert words in failed.because
     assert "attainable = u N" in failed.because
 
 

@@ -88,16 +88,16 @@ struct Engine {
 
 def template(language: str) -> str:
     """Return the template of a language as the page has it."""
-    (found,) = re.findall(rf"```{language}\n(.*?)```", PAGE, re.DOTALL)
-    return str(found)
+    (text,) = re.findall(rf"```{language}\n(.*?)```", PAGE, re.DOTALL)
+    return str(text)
 
 
 def program(*names: str) -> str:
     """Return the first of these programs that is there; skip the test where none is."""
-    found = next(filter(None, map(shutil.which, names)), None)
-    if found is None:
+    path = next(filter(None, map(shutil.which, names)), None)
+    if path is None:
         pytest.skip(f"needs {names[0]}")
-    return found
+    return path
 
 
 def in_python(folder: Path) -> str:

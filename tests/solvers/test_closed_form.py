@@ -51,8 +51,10 @@ def beside_the_middle_axis(digits: int) -> Scene:
 
 def error(scene: Scene) -> float:
     problem = pose(scene, F64)
-    found = solver_named(NAME).solve(problem)
-    return Truth(problem).accuracy(found).worst if found.outcome is Outcome.FINISHED else inf
+    trajectory = solver_named(NAME).solve(problem)
+    return (
+        Truth(problem).accuracy(trajectory).worst if trajectory.outcome is Outcome.FINISHED else inf
+    )
 
 
 # Where it is right.
@@ -60,10 +62,10 @@ def error(scene: Scene) -> float:
 
 def independent_error(problem: Problem) -> float:
     """Against the Taylor route, which knows no elliptic function."""
-    found = solver_named(NAME).solve(problem)
-    assert found.outcome is Outcome.FINISHED, found.detail
+    trajectory = solver_named(NAME).solve(problem)
+    assert trajectory.outcome is Outcome.FINISHED, trajectory.detail
     truth = TaylorSolution(problem.given).motion(problem.given.clock.elapsed, 20)
-    (errors,) = state_errors(problem.given, truth, found.motion(150))
+    (errors,) = state_errors(problem.given, truth, trajectory.motion(150))
     return float(largest(errors.values))
 
 
@@ -107,9 +109,9 @@ def test_the_error_grows_in_proportion_to_time() -> None:
     """No step is taken, and the phase is still lost: u is known to some 2^-53 of itself."""
     errors = {end: error(until(load("euler/generic"), Fraction(end))) for end in (10**8, 10**12)}
     u = float(F64.unit_roundoff)
-    for end, found in errors.items():
+    for end, error_then in errors.items():
         # From a hundredth of one rounding of the phase to a dozen of them.
-        assert u * end / 100 <= found <= 12 * u * end
+        assert u * end / 100 <= error_then <= 12 * u * end
     assert errors[10**12] >= 100 * errors[10**8]
 
 
@@ -125,9 +127,9 @@ def test_beside_the_separatrix_it_claims_success_with_nonsense() -> None:
 def test_about_the_middle_axis_it_has_no_number() -> None:
     """The phase is infinite, and that is said; the integrator has no difficulty."""
     problem = pose(load("euler/steady-middle-axis"), F64)
-    found = solver_named(NAME).solve(problem)
-    assert found.outcome is Outcome.NON_FINITE
-    assert not found.quantities
+    trajectory = solver_named(NAME).solve(problem)
+    assert trajectory.outcome is Outcome.NON_FINITE
+    assert not trajectory.quantities
     assert {v.verdict for v in run("euler/steady-middle-axis").verdicts} == {Status.PASS}
 
 
@@ -159,8 +161,8 @@ def test_the_table_of_failures_has_them_all() -> None:
 )
 def test_it_says_beforehand_what_it_is_not_made_for(scene: str, reason: str) -> None:
     """The run is not begun, is counted as unavailable, and fails no gate."""
-    found = run(replace(load(scene), track=load(scene).track), NAME).verdicts
-    (verdict,) = found
+    verdicts = run(replace(load(scene), track=load(scene).track), NAME).verdicts
+    (verdict,) = verdicts
     assert verdict.verdict is Status.UNAVAILABLE
     assert reason in verdict.because
     solved = solver_named(NAME).solve(pose(load(scene), F64))

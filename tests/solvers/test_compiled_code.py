@@ -169,10 +169,10 @@ def test_processes_that_meet_one_damage_warn_once(folder: Path, tmp_path: Path) 
         subprocess.Popen([*command, *order], stderr=subprocess.PIPE, text=True)
         for order in (scenes, scenes[::-1])
     ]
-    said = "".join(process.communicate(timeout=120)[1] for process in both)
+    stderr = "".join(process.communicate(timeout=120)[1] for process in both)
     assert [process.returncode for process in both] == [0, 0]
-    assert said.count("\n") == 1
-    assert "damaged compiled code is set aside" in said
+    assert stderr.count("\n") == 1
+    assert "damaged compiled code is set aside" in stderr
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid"), reason="files have no owner here")

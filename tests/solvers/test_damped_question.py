@@ -44,18 +44,18 @@ RIGID, FLUID = "euler/damped", "kirchhoff/damped"
 )
 def test_a_solver_follows_it(scene: str, solver: str) -> None:
     """Solvers that can follow a decay come as near to the exact motion as their method allows."""
-    found = run(short(scene), solver_named(solver), rung("f64"), tolerance=1e-8)
-    assert {verdict.verdict for verdict in found.verdicts} == {Status.PASS}
+    judgement = run(short(scene), solver_named(solver), rung("f64"), tolerance=1e-8)
+    assert {verdict.verdict for verdict in judgement.verdicts} == {Status.PASS}
 
 
 def test_lie_rk4_keeps_the_order_four() -> None:
     """Half the step leaves a sixteenth of the error of omega, and |H| e^{ct} to roundoff."""
     errors = []
     for step in ("0.1", "0.05"):
-        found = run(
+        convergence = run(
             short(RIGID), solver_named(f"geometric:lie-rk4?step={step}"), rung("f64"), tolerance=0.5
         )
-        by_name = {verdict.quantity: verdict for verdict in found.verdicts}
+        by_name = {verdict.quantity: verdict for verdict in convergence.verdicts}
         assert by_name["H2"].max is not None
         assert by_name["H2"].max <= 1e-13
         errors.append(by_name["omega"].max or 0.0)
@@ -69,9 +69,9 @@ def test_lie_rk4_keeps_the_order_four() -> None:
 def test_a_geometric_method_refuses_it_by_name(method: str) -> None:
     """A method that conserves what damping takes says that it is made for a body without damping."""
     solver = solver_named(f"geometric:{method}?step=0.1")
-    found = solver.solve(posed(short(RIGID)))
-    assert found.outcome is Outcome.NOT_STARTED
-    assert found.detail == f"{solver.name} is made for a body without damping"
+    trajectory = solver.solve(posed(short(RIGID)))
+    assert trajectory.outcome is Outcome.NOT_STARTED
+    assert trajectory.detail == f"{solver.name} is made for a body without damping"
 
 
 def test_the_closed_form_of_scipy_refuses_it() -> None:

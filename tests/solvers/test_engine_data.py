@@ -151,18 +151,18 @@ def scene() -> Scene:
     return load("euler/with-attitude")
 
 
-def errors(found: Judgement) -> dict[str, float]:
-    return {v.quantity: v.max for v in found.verdicts if v.max is not None}
+def errors(judgement: Judgement) -> dict[str, float]:
+    return {v.quantity: v.max for v in judgement.verdicts if v.max is not None}
 
 
 def test_an_engine_that_takes_the_tensor_is_judged_on_the_tensor(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """What float32 makes of I and omega is in the truth, and no error of the engine remains of it."""
-    found = errors(judged(tmp_path, 'data = "tensor"', monkeypatch))
+    sizes = errors(judged(tmp_path, 'data = "tensor"', monkeypatch))
     # Doubles throughout, and twenty units of time: far below one rounding of float32.
-    assert found["omega"] <= FLOAT32 / 10
-    assert found["attitude"] <= FLOAT32
+    assert sizes["omega"] <= FLOAT32 / 10
+    assert sizes["attitude"] <= FLOAT32
 
 
 def test_the_same_engine_on_the_other_data_has_their_rounding_for_an_error(
@@ -191,9 +191,9 @@ def test_an_engine_for_free_bodies_is_not_asked_for_others(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """With a moment, wheels or damping an engine of `loads = false` is unavailable: it has not failed."""
-    found = run(name, twin(tmp_path, 'data = "tensor"', monkeypatch), "f32")
-    assert {str(v.verdict) for v in found.verdicts} == {"unavailable"}
-    assert "free bodies without wheels" in str(found.verdicts[0].reason)
+    judgement = run(name, twin(tmp_path, 'data = "tensor"', monkeypatch), "f32")
+    assert {str(v.verdict) for v in judgement.verdicts} == {"unavailable"}
+    assert "free bodies without wheels" in str(judgement.verdicts[0].reason)
 
 
 @pytest.mark.parametrize(
@@ -208,9 +208,9 @@ def test_an_engine_that_ends_on_moments_of_no_solid_has_not_failed(
 ) -> None:
     """It cannot represent the body; the same end on moments that a solid has is a failure."""
     engine = twin(tmp_path, "", monkeypatch, STRICT)
-    found = run(read(NO_SOLID.format(largest=largest, first=1), "no solid"), engine, "f64")
-    assert {str(v.verdict) for v in found.verdicts} == {verdict}
-    assert words in str(found.verdicts[0].reason)
+    judgement = run(read(NO_SOLID.format(largest=largest, first=1), "no solid"), engine, "f64")
+    assert {str(v.verdict) for v in judgement.verdicts} == {verdict}
+    assert words in str(judgement.verdicts[0].reason)
 
 
 def test_an_engine_leaves_nothing_in_the_folder_of_the_user(
@@ -238,17 +238,17 @@ def test_one_process_answers_many_questions(
         solver = replace(engine, settings=(("step", step),))
         scene = read(NO_SOLID.format(largest=3, first=first), "a solid")
         asked.append((solver, solver.problem(scene, rung("f64"))))
-    found = solve_together(asked)
-    assert [answer.outcome for answer in found] == [
+    trajectories = solve_together(asked)
+    assert [answer.outcome for answer in trajectories] == [
         *(Outcome.FINISHED, Outcome.UNSUITED, Outcome.FINISHED),
         *(Outcome.CRASHED, Outcome.FINISHED, Outcome.FINISHED),
     ]
     alone = [solver.solve(problem) for solver, problem in asked]
-    for one, other in zip(found, alone, strict=True):
+    for one, other in zip(trajectories, alone, strict=True):
         assert one.outcome is other.outcome
         assert one.quantities.keys() == other.quantities.keys()
         assert all(np.all(one.quantities[k] == other.quantities[k]) for k in one.quantities)
     # The first process has come to the third question; all from the fourth on are asked alone.
     details = ["question 1", "question 3", "question 1", "question 1"]
-    assert [a.detail for a in found if a.outcome is Outcome.FINISHED] == details
-    assert found[3].detail.startswith("exit status 3")
+    assert [a.detail for a in trajectories if a.outcome is Outcome.FINISHED] == details
+    assert trajectories[3].detail.startswith("exit status 3")

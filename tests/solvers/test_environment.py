@@ -98,9 +98,9 @@ def interpreter(name: str = NAME) -> Path:
 def test_an_engine_runs_in_an_environment_of_its_own(script: Script, cache: Path) -> None:
     """Asked to solve, it has its environment made, and gets its method and its settings."""
     script()
-    found = solver_named(NAME).solve(problem())
-    assert (found.outcome, found.detail) == (Outcome.FINISHED, "")
-    assert (found.steps, found.seconds) == (7, 0.0)
+    trajectory = solver_named(NAME).solve(problem())
+    assert (trajectory.outcome, trajectory.detail) == (Outcome.FINISHED, "")
+    assert (trajectory.steps, trajectory.seconds) == (7, 0.0)
     assert cache in interpreter().parents
 
 
@@ -151,14 +151,14 @@ def test_a_model_that_is_not_taken_is_unsuited(script: Script) -> None:
 def test_an_environment_is_made_once(script: Script) -> None:
     """An environment that is there is not made again, by whichever of its names it is asked for."""
     script()
-    said: list[str] = []
-    prepare("tiny-still", said.append)
+    messages: list[str] = []
+    prepare("tiny-still", messages.append)
     mark = interpreter().parent / "mine"
     mark.touch()
-    prepare("tiny-quiet", said.append)
-    prepare(NAME, said.append)
+    prepare("tiny-quiet", messages.append)
+    prepare(NAME, messages.append)
     assert mark.exists()
-    assert said == []
+    assert messages == []
 
 
 def test_one_whose_python_is_gone_is_made_anew(script: Script) -> None:
@@ -173,9 +173,9 @@ def test_one_whose_python_is_gone_is_made_anew(script: Script) -> None:
 def test_two_at_once_make_it_together(script: Script) -> None:
     """Two that ask for an environment at once have the same one, and it is whole."""
     script()
-    found = both(interpreter, 120)
-    assert len(found) == 2
-    assert found[0] == found[1]
+    results = both(interpreter, 120)
+    assert len(results) == 2
+    assert results[0] == results[1]
     assert solver_named(NAME).solve(problem()).outcome is Outcome.FINISHED
 
 
@@ -195,8 +195,8 @@ def test_without_uv_it_is_unavailable(script: Script, monkeypatch: pytest.Monkey
     solver = solver_named(NAME)
     reason = solver.unavailable(rung("f64"))
     assert reason == "uv is not installed: pip install 'taylor-verify[engines]'"
-    found = solver.solve(problem())
-    assert (found.outcome, found.detail) == (Outcome.NO_PACKAGE, reason)
+    trajectory = solver.solve(problem())
+    assert (trajectory.outcome, trajectory.detail) == (Outcome.NO_PACKAGE, reason)
     with pytest.raises(NotMade, match="uv is not installed"):
         prepare("tiny-still")
 
@@ -222,14 +222,14 @@ def test_a_version_is_that_of_the_package(
     monkeypatch.setenv("UV_FIND_LINKS", str(tmp_path))
     script('"tinylib==2.0"', body="import tinylib\nsys.exit(tinylib.VERSION)")
     for query, version in (("", "2.0"), ("&version=1.0", "1.0"), ("&version=2.0", "2.0")):
-        found = solver_named(f"{NAME}{query}").solve(problem())
-        assert (found.outcome, found.detail) == (
+        trajectory = solver_named(f"{NAME}{query}").solve(problem())
+        assert (trajectory.outcome, trajectory.detail) == (
             Outcome.CRASHED,
             f"exit status 1; stderr: {version}",
         )
-    found = solver_named(f"{NAME}&version=3.0").solve(problem())
-    assert found.outcome is Outcome.NO_PACKAGE
-    assert "tinylib==3.0" in found.detail
+    trajectory = solver_named(f"{NAME}&version=3.0").solve(problem())
+    assert trajectory.outcome is Outcome.NO_PACKAGE
+    assert "tinylib==3.0" in trajectory.detail
 
 
 def test_an_environment_that_was_made_needs_no_network(
@@ -242,9 +242,9 @@ def test_an_environment_that_was_made_needs_no_network(
     prepare("tiny-still")
     monkeypatch.setenv("UV_INDEX_URL", "http://127.0.0.1:9/simple")
     monkeypatch.delenv("UV_OFFLINE")
-    said: list[str] = []
-    prepare("tiny-still", said.append)
-    assert said == []
+    messages: list[str] = []
+    prepare("tiny-still", messages.append)
+    assert messages == []
 
 
 def test_what_cannot_be_installed_is_told_in_one_line(
@@ -254,19 +254,19 @@ def test_what_cannot_be_installed_is_told_in_one_line(
     script(NOWHERE)
     solver = solver_named(NAME)
     assert solver.unavailable(rung("f64")) == ""
-    found = [solver.solve(problem()) for _ in range(2)]
-    assert {one.outcome for one in found} == {Outcome.NO_PACKAGE}
-    assert found[0].detail == found[1].detail == solver.unavailable(rung("f64"))
-    assert "nothing" in found[0].detail
-    assert "\n" not in found[0].detail
+    trajectories = [solver.solve(problem()) for _ in range(2)]
+    assert {one.outcome for one in trajectories} == {Outcome.NO_PACKAGE}
+    assert trajectories[0].detail == trajectories[1].detail == solver.unavailable(rung("f64"))
+    assert "nothing" in trajectories[0].detail
+    assert "\n" not in trajectories[0].detail
     assert [record.getMessage().partition(",")[0] for record in caplog.records] == [
         "making the environment of tiny"
     ]
     # An explicit request does not rest on the failure remembered.
-    said: list[str] = []
+    messages: list[str] = []
     with pytest.raises(NotMade, match="nothing"):
-        prepare("tiny-still", said.append)
-    assert len(said) == 1
+        prepare("tiny-still", messages.append)
+    assert len(messages) == 1
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
@@ -274,26 +274,26 @@ def test_a_cache_that_cannot_be_written_is_told(script: Script, cache: Path) -> 
     """A folder without permission is a reason like any other."""
     script()
     cache.mkdir(mode=0o500)
-    found = solver_named(NAME).solve(problem())
-    assert found.outcome is Outcome.NO_PACKAGE
-    assert "Permission denied" in found.detail
+    trajectory = solver_named(NAME).solve(problem())
+    assert trajectory.outcome is Outcome.NO_PACKAGE
+    assert "Permission denied" in trajectory.detail
 
 
 def test_a_cache_that_is_a_file_is_told(script: Script, cache: Path) -> None:
     """So is a file where the folder should be."""
     script()
     cache.write_text("")
-    found = solver_named(NAME).solve(problem())
-    assert found.outcome is Outcome.NO_PACKAGE
-    assert str(cache) in found.detail
+    trajectory = solver_named(NAME).solve(problem())
+    assert trajectory.outcome is Outcome.NO_PACKAGE
+    assert str(cache) in trajectory.detail
 
 
 def test_a_python_that_does_not_fit_is_told(script: Script) -> None:
     """A script for a Python that is not there cannot have its environment, and the reason names it."""
     script(text=TINY.replace(">=3.11", ">=3.99"))
-    found = solver_named(NAME).solve(problem())
-    assert found.outcome is Outcome.NO_PACKAGE
-    assert ">=3.99" in found.detail
+    trajectory = solver_named(NAME).solve(problem())
+    assert trajectory.outcome is Outcome.NO_PACKAGE
+    assert ">=3.99" in trajectory.detail
     with pytest.raises(NotMade, match=r">=3\.99"):
         prepare("tiny-still")
 

@@ -93,8 +93,8 @@ def test_steps_are_counted_between_samples(built: Build) -> None:
     """Whole steps of equal length go from sample to sample, no longer than the one that is asked for."""
     clock = taylor_verify.load(SCENE).clock
     distance = float(clock.instants[1] - clock.instants[0])
-    found = judged(built("sound"), "step=0.3")["omega"]
-    assert found.steps == math.ceil(distance / 0.3) * (len(clock.instants) - 1)
+    omega = judged(built("sound"), "step=0.3")["omega"]
+    assert omega.steps == math.ceil(distance / 0.3) * (len(clock.instants) - 1)
 
 
 def test_a_missing_gyroscopic_term_is_caught(built: Build) -> None:
@@ -153,9 +153,9 @@ def test_what_the_fmu_cannot_be_told_is_said(
 
 def test_what_is_built_in_is_not_set(built: Build) -> None:
     """The FMU's own numbers are taken under ?fixed=, and are those of another body."""
-    found = judged(built("sound"), "step=0.1&fixed=inertia")
-    assert found["initial state"].verdict is Status.PASS
-    assert found["omega"].max > 0.1
+    omega = judged(built("sound"), "step=0.1&fixed=inertia")
+    assert omega["initial state"].verdict is Status.PASS
+    assert omega["omega"].max > 0.1
 
 
 def test_a_broken_file_is_said(tmp_path: Path) -> None:
@@ -215,12 +215,12 @@ def test_every_number_of_a_question_has_a_name() -> None:
     hexes = {"text": "", "hex": ["0x1p+0", "0x0p+0", "0x0p+0", "0x0p+0"]}
     matrix = {"text": "", "hex": [["0x1p+1", "0x0p+0"], ["0x0p+0", "0x1p+2"]]}
     question = {"body": {"inertia": matrix, "rotor": hexes}, "initial": {"attitude": hexes}}
-    found = fmu_runner.values_to_set(question)
-    assert found["inertia"] == {"I11": 2.0, "I12": 0.0, "I21": 0.0, "I22": 4.0}
-    assert list(found["rotor"]) == ["rotor1", "rotor2", "rotor3", "rotor4"]
-    assert list(found["attitude_start"]) == [f"q{i}_start" for i in range(4)]
-    assert fmu_runner.neutral("attitude_start", found["attitude_start"])
-    assert not fmu_runner.neutral("inertia", found["inertia"])
+    values = fmu_runner.values_to_set(question)
+    assert values["inertia"] == {"I11": 2.0, "I12": 0.0, "I21": 0.0, "I22": 4.0}
+    assert list(values["rotor"]) == ["rotor1", "rotor2", "rotor3", "rotor4"]
+    assert list(values["attitude_start"]) == [f"q{i}_start" for i in range(4)]
+    assert fmu_runner.neutral("attitude_start", values["attitude_start"])
+    assert not fmu_runner.neutral("inertia", values["inertia"])
 
 
 def test_communication_points_meet_every_sample() -> None:

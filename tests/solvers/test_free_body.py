@@ -91,8 +91,8 @@ def errors(problem: Problem, shared: Any, engine: Any, step: float) -> tuple[flo
     first, *_ = np.array(answer.states, dtype=float)
     start = problem.given.initial
     expected = [float(w) for w in start.omega] + shared.unit([float(q) for q in start.attitude])
-    found = Callback(lambda _: answer.states).solve(problem)
-    return float(np.max(np.abs(first - expected))), truth.accuracy(found).worst
+    trajectory = Callback(lambda _: answer.states).solve(problem)
+    return float(np.max(np.abs(first - expected))), truth.accuracy(trajectory).worst
 
 
 @pytest.mark.parametrize("engine", [in_body_axes, in_space_axes])

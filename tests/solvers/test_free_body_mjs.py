@@ -86,11 +86,11 @@ def test_an_engine_with_the_right_equations_converges_to_the_exact_motion(
     remark = "" if inertia == DIAGONAL else "solved in principal axes, and turned back"
     errors = []
     for step in (0.1, 0.05):
-        found = solved(engine, problem, step)
-        assert (found.outcome, found.detail) == (Outcome.FINISHED, remark)
-        assert found.steps == round(4 / step)
-        assert found.seconds > 0
-        errors.append(truth.accuracy(found).worst)
+        trajectory = solved(engine, problem, step)
+        assert (trajectory.outcome, trajectory.detail) == (Outcome.FINISHED, remark)
+        assert trajectory.steps == round(4 / step)
+        assert trajectory.seconds > 0
+        errors.append(truth.accuracy(trajectory).worst)
     assert errors[1] <= errors[0] / 8
 
 
@@ -98,11 +98,11 @@ def test_an_engine_with_the_right_equations_converges_to_the_exact_motion(
 def test_the_first_row_is_the_start(inertia: str, engine: list[str]) -> None:
     """Before any step the row has omega and the attitude of the scene, in the axes of the scene."""
     problem = posed(inertia)
-    found = solved(engine, problem, 0.5)
+    trajectory = solved(engine, problem, 0.5)
     start = problem.given.initial
     attitude = np.array([float(q) for q in start.attitude])
     expected = [*(float(w) for w in start.omega), *(attitude / np.linalg.norm(attitude))]
-    first = [float(v) for name in ("omega", "quaternion") for v in found.quantities[name][0]]
+    first = [float(v) for name in ("omega", "quaternion") for v in trajectory.quantities[name][0]]
     # Two dozen products of numbers below three, each rounded.
     assert np.max(np.abs(np.subtract(first, expected))) <= 80 * 2**-53
 
@@ -116,27 +116,27 @@ def test_instants_of_float32_are_multiples_of_a_decimal_step(engine: list[str]) 
 def test_a_step_that_divides_no_instant_is_refused(engine: list[str]) -> None:
     """The first instant that is no multiple of the step is named, also where the step is longer."""
     for step in (0.3, 7):
-        found = solved(engine, posed(), step)
-        assert found.outcome is Outcome.UNSUITED
-        assert f"expected a step that divides t = 1, got {step} @ step" in found.detail
+        trajectory = solved(engine, posed(), step)
+        assert trajectory.outcome is Outcome.UNSUITED
+        assert f"expected a step that divides t = 1, got {step} @ step" in trajectory.detail
 
 
 @pytest.mark.parametrize("scene", ["euler/constant-moment", "euler/gyrostat", "kirchhoff/screw"])
 def test_a_body_that_is_not_free_is_refused(scene: str, engine: list[str]) -> None:
     """A moment, wheels and a fluid are none for a physics engine, which has not failed."""
-    found = solved(engine, pose(load(scene), rung("f64")), 0.1)
-    assert found.outcome is Outcome.UNSUITED
-    assert "expected a free rigid body" in found.detail
+    trajectory = solved(engine, pose(load(scene), rung("f64")), 0.1)
+    assert trajectory.outcome is Outcome.UNSUITED
+    assert "expected a free rigid body" in trajectory.detail
 
 
 def test_one_process_answers_many_questions(engine: list[str]) -> None:
     """As each of them alone, also behind one that is none for it; what follows an error is left open."""
     asked = [("step=0.1", posed()), ("step=0.3", posed()), ("step=0.05", posed(EQUAL))]
-    found = process.together(engine, [([words], problem) for words, problem in asked], 60)
-    assert found[1] is None
+    trajectories = process.together(engine, [([words], problem) for words, problem in asked], 60)
+    assert trajectories[1] is None
     for k in (0, 2):
         words, problem = asked[k]
-        alone, together = process.program([*engine, words], 60).solve(problem), found[k]
+        alone, together = process.program([*engine, words], 60).solve(problem), trajectories[k]
         assert together is not None
         for name, rows in alone.quantities.items():
             assert np.all(rows == together.quantities[name])

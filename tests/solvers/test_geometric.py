@@ -77,9 +77,9 @@ def solving(make: Callable[[Fraction], FixedStep]) -> Callable[[Problem, float],
     """Return the method as a callable that `sweep` takes."""
 
     def solve(problem: Problem, step: float) -> Any:
-        found = make(Fraction(str(step))).solve(problem)
-        assert found.outcome is Outcome.FINISHED, found.detail
-        return np.hstack(list(found.quantities.values()))
+        trajectory = make(Fraction(str(step))).solve(problem)
+        assert trajectory.outcome is Outcome.FINISHED, trajectory.detail
+        return np.hstack(list(trajectory.quantities.values()))
 
     return solve
 
@@ -89,8 +89,8 @@ def method(name: str) -> Callable[[Fraction], FixedStep]:
 
 
 def verdicts(scene: Scene | str, name: str, step: str) -> dict[str, Verdict]:
-    found = run(scene, f"geometric:{name}?step={step}")
-    return by_quantity(found)
+    judgement = run(scene, f"geometric:{name}?step={step}")
+    return by_quantity(judgement)
 
 
 # Order: the motion is that of the truth, and how fast it becomes so.
@@ -100,35 +100,35 @@ def verdicts(scene: Scene | str, name: str, step: str) -> dict[str, Verdict]:
 @pytest.mark.parametrize("name", METHODS)
 def test_a_method_is_of_its_order(name: str, scene: Scene) -> None:
     """Omega and attitude approach the exact motion with the method's order, in any axes."""
-    found = sweep(scene, solving(method(name)), STEPS, expected=ORDERS[name])
+    convergence = sweep(scene, solving(method(name)), STEPS, expected=ORDERS[name])
     ordinal = {2: "2nd", 4: "4th"}[ORDERS[name]]
-    assert found.reason.startswith(f"omega is {ordinal} order, attitude {ordinal}, ")
+    assert convergence.reason.startswith(f"omega is {ordinal} order, attitude {ordinal}, ")
     for quantity in ("omega", "attitude"):
-        assert found.quantities[quantity].is_expected, found.quantities[quantity].reason
-        assert found.quantities[quantity].level is None
+        assert convergence.quantities[quantity].is_expected, convergence.quantities[quantity].reason
+        assert convergence.quantities[quantity].level is None
 
 
 @pytest.mark.parametrize(("scene", "unit"), [(WHEELS, 1), (OBLIQUE_WHEELS, 10)])
 @pytest.mark.parametrize("name", TURN_WHEELS)
 def test_wheels_are_turned_at_the_order(name: str, scene: Scene, unit: int) -> None:
     """The motion of a gyrostat is approached with the method's order, in any axes."""
-    found = sweep(scene, solving(method(name)), [unit * step for step in STEPS], expected=2)
-    assert found.reason.startswith("omega is 2nd order, attitude 2nd, ")
+    convergence = sweep(scene, solving(method(name)), [unit * step for step in STEPS], expected=2)
+    assert convergence.reason.startswith("omega is 2nd order, attitude 2nd, ")
 
 
 def test_the_midpoint_takes_a_moment() -> None:
     """The implicit midpoint rule is of second order under a constant moment."""
     scene = at("euler/constant-moment", 0, 2, 4, track="attitude")
-    found = sweep(scene, solving(ImplicitMidpoint), STEPS, expected=2)
-    assert found.reason.startswith("omega is 2nd order, attitude 2nd, ")
+    convergence = sweep(scene, solving(ImplicitMidpoint), STEPS, expected=2)
+    assert convergence.reason.startswith("omega is 2nd order, attitude 2nd, ")
 
 
 def test_a_motion_runs_backward() -> None:
     """Before the start, and from a start that is no sample, the order is the same."""
     scene = at("euler/with-attitude", -3, -5, -6, track="attitude")
-    found = sweep(scene, solving(method("lie-rk4")), STEPS, expected=4)
-    assert found.quantities["attitude"].is_expected
-    assert found.quantities["omega"].is_expected
+    convergence = sweep(scene, solving(method("lie-rk4")), STEPS, expected=4)
+    assert convergence.quantities["attitude"].is_expected
+    assert convergence.quantities["omega"].is_expected
 
 
 # Conservation, as the judge's own gates see it: drift against rounding.
@@ -138,9 +138,11 @@ def test_a_motion_runs_backward() -> None:
 @pytest.mark.parametrize("name", METHODS)
 def test_what_is_promised_is_conserved_at_any_step(name: str, scene: Scene) -> None:
     """|H|^2 and the momentum in space stay within rounding at a coarse step, T where promised."""
-    found = verdicts(scene, name, "0.2")
-    kept = {quantity for quantity, verdict in found.items() if verdict.verdict is Status.PASS}
-    assert kept == {INITIAL, "H2", "H_space"} | ({"T"} if name in KEEP_T else set())
+    by_quantity = verdicts(scene, name, "0.2")
+    conserved = {
+        quantity for quantity, verdict in by_quantity.items() if verdict.verdict is Status.PASS
+    }
+    assert conserved == {INITIAL, "H2", "H_space"} | ({"T"} if name in KEEP_T else set())
 
 
 @pytest.mark.parametrize("scene", ["euler/axisymmetric", "euler/generic"])
@@ -155,8 +157,8 @@ def test_turns_of_nearly_one_angle_leave_no_bias(scene: str) -> None:
 
 def test_T_swings_and_does_not_drift_in_the_splitting() -> None:
     """T of the splitting is off by order h^2, no more at the end of a long run than at its start."""
-    found = sweep(PRINCIPAL, solving(method("splitting")), STEPS, expected=2)
-    assert found.quantities["T"].is_expected
+    convergence = sweep(PRINCIPAL, solving(method("splitting")), STEPS, expected=2)
+    assert convergence.quantities["T"].is_expected
     coarse = verdicts(at("euler/generic", *range(0, 10)), "splitting", "0.1")["T"].max
     longer = verdicts(at("euler/generic", *range(0, 400)), "splitting", "0.1")["T"].max
     # Ten samples miss some of the swing; a drift would be forty times as large.
@@ -168,12 +170,12 @@ def test_T_swings_and_does_not_drift_in_the_splitting() -> None:
 @pytest.mark.parametrize("name", METHODS)
 def test_the_attitude_stays_a_rotation(name: str) -> None:
     """The quaternion keeps its length but for the roundings of a product of quaternions a step."""
-    found = geometric(f"geometric:{name}?step=0.01").solve(pose(PRINCIPAL, F64))
-    lengths = [sum(float(e) ** 2 for e in row) for row in found.quantities["quaternion"]]
+    trajectory = geometric(f"geometric:{name}?step=0.01").solve(pose(PRINCIPAL, F64))
+    lengths = [sum(float(e) ** 2 for e in row) for row in trajectory.quantities["quaternion"]]
     # Five turns are composed in a step at most; a turn and a product each round eight times or so.
-    assert all(abs(length - 1) <= 80 * U * found.steps for length in lengths)
+    assert all(abs(length - 1) <= 80 * U * trajectory.steps for length in lengths)
     with mp.workprec(200):
-        R = found.motion(200)["attitude"][-1]
+        R = trajectory.motion(200)["attitude"][-1]
         assert mp.norm(mp.matrix(R.tolist()) * mp.matrix(R.T.tolist()) - mp.eye(3)) <= 1e-50
 
 
@@ -285,8 +287,8 @@ def faulty(name: str, **signs: float) -> dict[str, float | None]:
     step = Fraction(1, 20)
     solver = Faulty(step, "faulty", sound=method(name)(step), **signs)
     problem = pose(PRINCIPAL, F64)
-    found = judgement(problem, solver, solver.solve(problem))
-    return {verdict.quantity: verdict.max for verdict in found.verdicts}
+    judged = judgement(problem, solver, solver.solve(problem))
+    return {verdict.quantity: verdict.max for verdict in judged.verdicts}
 
 
 @pytest.mark.parametrize("name", METHODS)
@@ -313,16 +315,16 @@ def test_the_frame_has_a_term_of_its_own(monkeypatch: pytest.MonkeyPatch) -> Non
 
     monkeypatch.setattr(moser_veselov, "_modified", scaled_alone)
     make = method("preprocessed-moser-veselov")
-    found = sweep(PRINCIPAL, solving(make), STEPS)
-    assert found.reason.startswith("omega is 4th order, attitude 2nd, ")
+    convergence = sweep(PRINCIPAL, solving(make), STEPS)
+    assert convergence.reason.startswith("omega is 4th order, attitude 2nd, ")
 
 
 def test_an_equation_not_solved_shows_in_T(monkeypatch: pytest.MonkeyPatch) -> None:
     """The midpoint rule left at its first guess is an explicit method, and drifts."""
     monkeypatch.setattr(midpoint, "root", lambda system, guess: (guess, 1))
-    found = verdicts("euler/generic", "implicit-midpoint", "0.02")
-    assert found["T"].verdict is Status.FAIL
-    assert found["H2"].verdict is Status.FAIL
+    by_quantity = verdicts("euler/generic", "implicit-midpoint", "0.02")
+    assert by_quantity["T"].verdict is Status.FAIL
+    assert by_quantity["H2"].verdict is Status.FAIL
 
 
 # Steps and samples.
@@ -346,8 +348,8 @@ def test_equal_steps_lead_to_each_sample(scene: str) -> None:
 def test_evaluations_are_counted() -> None:
     """Four for the Runge-Kutta method, two for the splitting, of an implicit step what Newton took."""
     for name, least, most in [("lie-rk4", 4, 4), ("splitting", 2, 2), ("moser-veselov", 4, 6)]:
-        found = solved(PRINCIPAL, name, "0.1")
-        assert least * found.steps <= found.evaluations <= most * found.steps
+        trajectory = solved(PRINCIPAL, name, "0.1")
+        assert least * trajectory.steps <= trajectory.evaluations <= most * trajectory.steps
 
 
 def test_an_untracked_attitude_is_not_followed() -> None:
@@ -360,9 +362,11 @@ def test_an_untracked_attitude_is_not_followed() -> None:
 @pytest.mark.parametrize("name", TURN_WHEELS)
 def test_the_whole_momentum_is_conserved_with_wheels(name: str) -> None:
     """|I omega + h|^2 and R (I omega + h) stay within rounding at a coarse step, T where promised."""
-    found = verdicts(WHEELS, name, "0.2")
-    kept = {quantity for quantity, verdict in found.items() if verdict.verdict is Status.PASS}
-    assert kept == {INITIAL, "H2", "H_space"} | ({"T"} if name in KEEP_T else set())
+    by_quantity = verdicts(WHEELS, name, "0.2")
+    conserved = {
+        quantity for quantity, verdict in by_quantity.items() if verdict.verdict is Status.PASS
+    }
+    assert conserved == {INITIAL, "H2", "H_space"} | ({"T"} if name in KEEP_T else set())
 
 
 # How a run ends that is none.
@@ -371,56 +375,56 @@ def test_the_whole_momentum_is_conserved_with_wheels(name: str) -> None:
 @pytest.mark.parametrize("name", sorted(set(METHODS) - set(TURN_WHEELS)))
 def test_wheels_are_refused(name: str) -> None:
     """A method that is made for a body alone says so, and answers nothing."""
-    found = solved(WHEELS, name, "0.1")
-    assert found.outcome is Outcome.NOT_STARTED
-    assert "made for a body without wheels" in found.detail
-    assert not found.quantities
+    trajectory = solved(WHEELS, name, "0.1")
+    assert trajectory.outcome is Outcome.NOT_STARTED
+    assert "made for a body without wheels" in trajectory.detail
+    assert not trajectory.quantities
 
 
 @pytest.mark.parametrize("name", sorted(set(METHODS) - {"implicit-midpoint"}))
 def test_a_moment_is_refused(name: str) -> None:
     """A method for free bodies says so, and answers nothing."""
-    found = solved("euler/constant-moment", name, "0.1")
-    assert found.outcome is Outcome.NOT_STARTED
-    assert "made for a body without a moment" in found.detail
-    assert not found.quantities
+    trajectory = solved("euler/constant-moment", name, "0.1")
+    assert trajectory.outcome is Outcome.NOT_STARTED
+    assert "made for a body without a moment" in trajectory.detail
+    assert not trajectory.quantities
 
 
 @pytest.mark.parametrize("name", METHODS)
 def test_kirchhoffs_equations_are_refused(name: str) -> None:
     """A body in a fluid is another set of equations."""
-    found = solved("kirchhoff/screw", name, "0.1")
-    assert found.outcome is Outcome.NOT_STARTED
-    assert "made for Euler's equations, got kirchhoff" in found.detail
+    trajectory = solved("kirchhoff/screw", name, "0.1")
+    assert trajectory.outcome is Outcome.NOT_STARTED
+    assert "made for Euler's equations, got kirchhoff" in trajectory.detail
 
 
 def test_a_step_without_a_solution_ends_the_run() -> None:
     """h |H| too large for [m]x = F D - D F^T: the run stops and says what to do."""
-    found = solved("euler/generic", "moser-veselov", "1")
-    assert found.outcome is Outcome.INTERRUPTED
-    assert found.detail.endswith("take shorter steps")
-    assert not found.quantities
+    trajectory = solved("euler/generic", "moser-veselov", "1")
+    assert trajectory.outcome is Outcome.INTERRUPTED
+    assert trajectory.detail.endswith("take shorter steps")
+    assert not trajectory.quantities
 
 
 def test_a_run_without_end_is_not_begun() -> None:
     """Days of steps are refused before the first."""
-    found = solved("euler/generic", "splitting", "1e-9")
-    assert found.outcome is Outcome.STEP_LIMIT
-    assert found.detail == "1e+11 steps, more than 1e+08"
+    trajectory = solved("euler/generic", "splitting", "1e-9")
+    assert trajectory.outcome is Outcome.STEP_LIMIT
+    assert trajectory.detail == "1e+11 steps, more than 1e+08"
 
 
 def test_what_overflows_is_an_outcome() -> None:
     """A step of 10^200 leaves the range of float64."""
-    found = solved(at("euler/generic", 10**200), "lie-rk4", "1e300")
-    assert found.outcome is Outcome.NON_FINITE
-    assert not found.quantities
+    trajectory = solved(at("euler/generic", 10**200), "lie-rk4", "1e300")
+    assert trajectory.outcome is Outcome.NON_FINITE
+    assert not trajectory.quantities
 
 
 def test_a_body_at_rest_stays_there() -> None:
     """No method divides by a scale of zero."""
     for name in METHODS:
-        found = verdicts("euler/rest", name, "5")
-        assert all(verdict.verdict is Status.PASS for verdict in found.values())
+        by_quantity = verdicts("euler/rest", name, "5")
+        assert all(verdict.verdict is Status.PASS for verdict in by_quantity.values())
 
 
 # Names.

@@ -53,9 +53,9 @@ def asked(problem: Problem) -> dict[str, Any]:
     return protocol.question(problem)
 
 
-def told(entry: Any) -> Any:
+def as_fractions(entry: Any) -> Any:
     """The exact numbers of a text, nested as they are."""
-    return [told(e) for e in entry] if isinstance(entry, list) else Fraction(entry)
+    return [as_fractions(e) for e in entry] if isinstance(entry, list) else Fraction(entry)
 
 
 @pytest.mark.parametrize("on", ["f32", "mp237"])
@@ -64,24 +64,26 @@ def test_the_waves_that_are_told_are_the_motion(name: str, on: str) -> None:
     """H*, or x* and y*, is start + cosines (cos nu t - 1) + sines sin nu t of the exact texts."""
     problem = pose(load(name), rung(on))
     document, given = asked(problem), replace(problem.given, track=frozenset())
-    waves = {key: told(value["text"]) for key, value in document["manufactured"].items()}
+    waves = {key: as_fractions(value["text"]) for key, value in document["manufactured"].items()}
     initial, time = document["initial"], Fraction(13, 10)
     if document["model"] == "euler":
-        begin = told(initial["angular_momentum"]["text"])
-        inertia = told(document["body"]["inertia"]["text"])
+        begin = as_fractions(initial["angular_momentum"]["text"])
+        inertia = as_fractions(document["body"]["inertia"]["text"])
     else:
-        begin = told(initial["linear_impulse"]["text"]) + told(initial["angular_impulse"]["text"])
+        begin = as_fractions(initial["linear_impulse"]["text"]) + as_fractions(
+            initial["angular_impulse"]["text"]
+        )
     motion = solution(given).motion([time], 60)
     with mp.workdps(70):
         known = [v for n in motion.quantities for v in motion[n][0]]
         if document["model"] == "euler":
             known = [sum(mp.convert(i) * w for i, w in zip(r, known, strict=True)) for r in inertia]
-        found = [mp.convert(v) for v in begin]
+        values = [mp.convert(v) for v in begin]
         for nu, a, b in zip(waves["frequencies"], waves["cosines"], waves["sines"], strict=True):
             c, s = mp.cos_sin(mp.convert(nu * time))
-            terms = zip(found, a, b, strict=True)
-            found = [z + mp.convert(p) * (c - 1) + mp.convert(q) * s for z, p, q in terms]
-        assert max(abs(p - q) for p, q in zip(known, found, strict=True)) <= mpf(10) ** -58
+            terms = zip(values, a, b, strict=True)
+            values = [z + mp.convert(p) * (c - 1) + mp.convert(q) * s for z, p, q in terms]
+        assert max(abs(p - q) for p, q in zip(known, values, strict=True)) <= mpf(10) ** -58
     cosines = zip(waves["constant_part"], *waves["cosines"], strict=True)
     assert [sum(column) for column in cosines] == begin
 
@@ -158,9 +160,9 @@ def test_the_example_in_c_says_that_it_has_no_such_loads(tmp_path: Path) -> None
         pytest.skip("no C compiler")
     built = tmp_path / "rk4"
     subprocess.run([compiler, "-std=c99", "-o", built, OUTSIDE / "rk4.c", "-lm"], check=True)
-    found = named(f"process:{shlex.quote(str(built))}").solve(pose(load(EULER), F64))
-    assert found.outcome is Outcome.UNSUITED
-    assert "expected constant loads, got a manufactured motion" in found.detail
+    trajectory = named(f"process:{shlex.quote(str(built))}").solve(pose(load(EULER), F64))
+    assert trajectory.outcome is Outcome.UNSUITED
+    assert "expected constant loads, got a manufactured motion" in trajectory.detail
 
 
 # Files.
@@ -174,10 +176,10 @@ def written(scene: Scene, folder: Path, **columns: Any) -> str:
 def test_a_sound_file_passes(name: str, tmp_path: Path) -> None:
     """The exact motion of numbers rounded where the scene writes them passes, balances and all."""
     scene = load(name)
-    found = taylor_verify.check(scene, written(scene, tmp_path))
-    assert {verdict.verdict for verdict in found.verdicts} == {Status.PASS}
-    assert {"T"} < {verdict.quantity for verdict in found.verdicts}
-    assert found.conventions == ()
+    judgement = taylor_verify.check(scene, written(scene, tmp_path))
+    assert {verdict.verdict for verdict in judgement.verdicts} == {Status.PASS}
+    assert {"T"} < {verdict.quantity for verdict in judgement.verdicts}
+    assert judgement.conventions == ()
 
 
 def test_a_file_that_drifts_in_one_row_fails_by_its_balances(tmp_path: Path) -> None:
@@ -185,8 +187,8 @@ def test_a_file_that_drifts_in_one_row_fails_by_its_balances(tmp_path: Path) -> 
     scene = load(EULER)
     columns = columns_at(scene, scene.clock.instants)
     columns["w2"][len(columns["w2"]) // 2] += 1e-12
-    found = taylor_verify.check(scene, write_csv(tmp_path / "file.csv", columns))
-    failed = {v.quantity for v in found.verdicts if v.verdict is Status.FAIL}
+    judgement = taylor_verify.check(scene, write_csv(tmp_path / "file.csv", columns))
+    failed = {v.quantity for v in judgement.verdicts if v.verdict is Status.FAIL}
     assert failed == {"omega", "T", "H2"}
 
 

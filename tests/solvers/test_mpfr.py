@@ -51,8 +51,8 @@ def test_every_operation_rounds_as_mpmath_does(a: mpf, b: mpf, bits: int) -> Non
             if operation is operator.truediv and b == 0:
                 continue
             with precision():
-                found = operation(p, q)
-            assert to_mpf(found)[0]._mpf_ == operation(a, b)._mpf_
+                result = operation(p, q)
+            assert to_mpf(result)[0]._mpf_ == operation(a, b)._mpf_
         with precision():
             root = sqrt(abs(p))
         assert to_mpf(root)[0]._mpf_ == mp.sqrt(abs(a))._mpf_
@@ -100,8 +100,8 @@ def test_the_conserved_quantities_are_the_same_in_both(name: str) -> None:
             slow = [invariant.value(motion), column(invariant.scale(motion))]
             slow += invariant.sensitivity(motion).values()
             with precision():
-                held = in_mpfr(motion)
-                quick = [invariant.value(held), column(invariant.scale(held))]
-                quick += invariant.sensitivity(held).values()
+                converted = in_mpfr(motion)
+                quick = [invariant.value(converted), column(invariant.scale(converted))]
+                quick += invariant.sensitivity(converted).values()
         for one, other in zip(slow, quick, strict=True):
             assert (one == to_mpf(other)).all()

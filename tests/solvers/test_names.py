@@ -8,7 +8,7 @@ from taylor_verify.solvers.registry import solver_named
 
 
 @pytest.mark.parametrize(
-    ("name", "told"),
+    ("name", "words"),
     [
         ("taylor?tol=0", r"expected a positive number, got '0' @ tol"),
         ("taylor?tol=many", r"got 'many' @ tol"),
@@ -42,7 +42,7 @@ from taylor_verify.solvers.registry import solver_named
         ("closed-form:ellipj?tol=1e-9", r"expected a setting .*, got 'tol'"),
     ],
 )
-def test_a_name_that_is_wrong_is_refused(name: str, told: str) -> None:
+def test_a_name_that_is_wrong_is_refused(name: str, words: str) -> None:
     """The refusal says what was expected, what came, and where; a closed form has no settings."""
-    with pytest.raises(ValueError, match=told):
+    with pytest.raises(ValueError, match=words):
         solver_named(name)

@@ -129,8 +129,8 @@ def script(
 def test_a_script_runs_in_an_environment_of_its_own(script: Script, calls: Calls) -> None:
     """Asked to solve, it has its environment made without running a script of a package, and answers."""
     script()
-    found = solver_named(NAME).solve(problem())
-    assert (found.outcome, found.detail, found.steps) == (Outcome.FINISHED, "", 2)
+    trajectory = solver_named(NAME).solve(problem())
+    assert (trajectory.outcome, trajectory.detail, trajectory.steps) == (Outcome.FINISHED, "", 2)
     assert calls()
     assert all("--ignore-scripts" in call.split() for call in calls())
 
@@ -150,14 +150,14 @@ def test_to_name_and_to_list_makes_no_environment(
 def test_a_cache_is_asked_before_the_network(script: Script, calls: Calls) -> None:
     """npm is first called without a network; a download is told, and is not needed a second time."""
     script()
-    said: list[str] = []
-    prepare("tiny", said.append)
-    assert said == ["making the environment of tiny, once: a download"]
+    messages: list[str] = []
+    prepare("tiny", messages.append)
+    assert messages == ["making the environment of tiny, once: a download"]
     assert ["--offline" in call for call in calls()] == [True, False]
     script(TINY.replace("Tiny", "Another title"))
     shutil.rmtree(environment())
-    prepare("tiny", said.append)
-    assert len(said) == 1
+    prepare("tiny", messages.append)
+    assert len(messages) == 1
     assert ["--offline" in call for call in calls()] == [True, False, True]
 
 
@@ -187,10 +187,10 @@ def test_an_environment_is_made_once(script: Script, calls: Calls) -> None:
 def test_two_at_once_make_it_together(script: Script) -> None:
     """Two that ask for an environment at once have the same one, and nothing is left beside it."""
     script()
-    found = both(environment, 60)
-    assert len(found) == 2
-    assert found[0] == found[1]
-    assert list(found[0].parent.iterdir()) == [found[0]]
+    results = both(environment, 60)
+    assert len(results) == 2
+    assert results[0] == results[1]
+    assert list(results[0].parent.iterdir()) == [results[0]]
 
 
 def test_a_lock_holds_for_its_own_versions_alone(script: Script, calls: Calls) -> None:
@@ -216,10 +216,10 @@ def lock_of(file: Path) -> Path:
 def test_what_cannot_be_installed_is_told_in_one_line(script: Script, cache: Path) -> None:
     """A failed installation is an outcome with its reason, and leaves nothing behind."""
     script()
-    found = solver_named(f"{NAME}&version=9.9.9").solve(problem())
-    assert found.outcome is Outcome.NO_PACKAGE
+    trajectory = solver_named(f"{NAME}&version=9.9.9").solve(problem())
+    assert trajectory.outcome is Outcome.NO_PACKAGE
     reason = "npm: code ETARGET notarget No version 9.9.9"
-    assert found.detail == f"the environment of tiny could not be made: {reason}"
+    assert trajectory.detail == f"the environment of tiny could not be made: {reason}"
     assert list(cache.iterdir()) == []
     with pytest.raises(NotMade, match="No version"):
         prepare(f"{NAME}&version=9.9.9")
@@ -235,8 +235,8 @@ def test_without_node_or_npm_it_is_unavailable(
     solver = solver_named(NAME)
     reason = solver.unavailable(rung("f64"))
     assert reason == f"{missing} is not installed: conda install -c conda-forge nodejs"
-    found = solver.solve(problem())
-    assert (found.outcome, found.detail) == (Outcome.NO_PACKAGE, reason)
+    trajectory = solver.solve(problem())
+    assert (trajectory.outcome, trajectory.detail) == (Outcome.NO_PACKAGE, reason)
     with pytest.raises(NotMade, match="is not installed"):
         prepare("tiny")
 
@@ -246,9 +246,9 @@ def test_a_cache_that_cannot_be_written_is_told(script: Script, cache: Path) -> 
     """A folder without permission is a reason like any other."""
     script()
     cache.mkdir(parents=True, mode=0o500)
-    found = solver_named(NAME).solve(problem())
-    assert found.outcome is Outcome.NO_PACKAGE
-    assert "Permission denied" in found.detail
+    trajectory = solver_named(NAME).solve(problem())
+    assert trajectory.outcome is Outcome.NO_PACKAGE
+    assert "Permission denied" in trajectory.detail
 
 
 def test_a_cache_that_is_a_file_is_told(script: Script, cache: Path) -> None:
@@ -256,9 +256,9 @@ def test_a_cache_that_is_a_file_is_told(script: Script, cache: Path) -> None:
     script()
     cache.parent.mkdir(parents=True)
     cache.write_text("")
-    found = solver_named(NAME).solve(problem())
-    assert found.outcome is Outcome.NO_PACKAGE
-    assert str(cache) in found.detail
+    trajectory = solver_named(NAME).solve(problem())
+    assert trajectory.outcome is Outcome.NO_PACKAGE
+    assert str(cache) in trajectory.detail
 
 
 @pytest.mark.parametrize(

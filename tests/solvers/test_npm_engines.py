@@ -45,9 +45,9 @@ def solved(monkeypatch: pytest.MonkeyPatch) -> Rows:
             pytest.skip(str(reason))
         problem = pose_as_stored(oblique(inertia, omega=OMEGA, attitude=ATTITUDE), posed_on(name))
         joint = "&" if "?" in name else "?"
-        found = solver_named(f"outside:{name}{joint}step={step}").solve(problem)
-        assert found.outcome is Outcome.FINISHED, found.detail
-        return problem, found
+        trajectory = solver_named(f"outside:{name}{joint}step={step}").solve(problem)
+        assert trajectory.outcome is Outcome.FINISHED, trajectory.detail
+        return problem, trajectory
 
     return solve
 
@@ -66,15 +66,15 @@ def test_an_engine_begins_with_the_start_of_the_scene(
     name: str, inertia: str, solved: Rows
 ) -> None:
     """Its first row is the start to a few roundings of the engine, in the axes of the scene."""
-    problem, found = solved(name, inertia, 0.01)
+    problem, trajectory = solved(name, inertia, 0.01)
     start = problem.given.initial
     attitude = doubles(start.attitude)
     # Attitude and omega in space axes are each rounded once by the engine, and omega is turned back.
     few = 8 * 2.0 ** -posed_on(name).bits
-    assert np.max(np.abs(doubles(found.quantities["omega"][0]) - doubles(start.omega))) <= few
+    assert np.max(np.abs(doubles(trajectory.quantities["omega"][0]) - doubles(start.omega))) <= few
     attitude /= np.linalg.norm(attitude)
     # The sign is free.
-    first = doubles(found.quantities["quaternion"][0])
+    first = doubles(trajectory.quantities["quaternion"][0])
     assert np.max(np.abs(first * np.sign(first @ attitude) - attitude)) <= few
 
 
@@ -83,17 +83,19 @@ def test_an_engine_with_the_gyroscopic_term_is_of_first_order(name: str, solved:
     """Half the step leaves about half the error, where rounding is small beside it."""
     errors = []
     for step in (0.04, 0.02):
-        problem, found = solved(name, DIAGONAL, step)
-        errors.append(Truth(problem).accuracy(found).max["omega"])
+        problem, trajectory = solved(name, DIAGONAL, step)
+        errors.append(Truth(problem).accuracy(trajectory).max["omega"])
     assert 1.5 <= errors[0] / errors[1] <= 3
 
 
 @pytest.mark.parametrize("name", WITHOUT_IT)
 def test_an_engine_without_it_keeps_omega_in_space(name: str, solved: Rows) -> None:
     """Omega in space axes stays where it was, whatever the moments."""
-    _, found = solved(name, DIAGONAL, 0.01)
+    _, trajectory = solved(name, DIAGONAL, 0.01)
     rows = zip(
-        doubles(found.quantities["quaternion"]), doubles(found.quantities["omega"]), strict=True
+        doubles(trajectory.quantities["quaternion"]),
+        doubles(trajectory.quantities["omega"]),
+        strict=True,
     )
     in_space = np.array([turned(q, w) for q, w in rows])
     assert np.max(np.abs(in_space - in_space[0])) <= 400 * 2.0 ** -posed_on(name).bits

@@ -82,15 +82,15 @@ def test_other_formats_are_unavailable(on: str) -> None:
 def test_a_run_without_end_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
     """There is a bound on the evaluations."""
     monkeypatch.setattr(odefun, "_MOST_EVALUATIONS", 30)
-    found = solver_named(NAME).solve(pose(short("euler/generic"), rung("f64")))
-    assert found.outcome is Outcome.STEP_LIMIT
-    assert not found.quantities
+    trajectory = solver_named(NAME).solve(pose(short("euler/generic"), rung("f64")))
+    assert trajectory.outcome is Outcome.STEP_LIMIT
+    assert not trajectory.quantities
 
 
 def test_rates_that_are_no_numbers_are_an_outcome() -> None:
     """NaN in the rates is never an answer."""
     nowhere = {f"H{i}": mp.nan for i in (1, 2, 3)}
     problem = pose(short("euler/generic"), rung("f64")).with_equations(lambda named: nowhere)
-    found = solver_named(NAME).solve(problem)
-    assert found.outcome in (Outcome.NON_FINITE, Outcome.RAISED)
-    assert not found.quantities
+    trajectory = solver_named(NAME).solve(problem)
+    assert trajectory.outcome in (Outcome.NON_FINITE, Outcome.RAISED)
+    assert not trajectory.quantities

@@ -76,19 +76,19 @@ def test_a_name_that_is_none_is_refused(name: str, words: str) -> None:
 
 def test_the_absolute_tolerance_follows_the_relative_one() -> None:
     """The absolute tolerance is rtol if it is not set."""
-    found = named("outside:cvode-bdf?rtol=1e-7")
-    assert found.settings == (("rtol", "1e-07"), ("atol", "1e-07"))
-    found = named("outside:cvode-bdf?rtol=1e-7&atol=1e-3")
-    assert found.settings == (("rtol", "1e-07"), ("atol", "0.001"))
+    solver = named("outside:cvode-bdf?rtol=1e-7")
+    assert solver.settings == (("rtol", "1e-07"), ("atol", "1e-07"))
+    solver = named("outside:cvode-bdf?rtol=1e-7&atol=1e-3")
+    assert solver.settings == (("rtol", "1e-07"), ("atol", "0.001"))
 
 
 def test_a_version_replaces_the_pin_of_its_package() -> None:
     """The metadata differ in the version of the library alone, and without one not at all."""
     as_pinned = named("outside:diffrax-tsit5")
-    found = named("outside:diffrax-tsit5?version=0.7.0")
+    solver = named("outside:diffrax-tsit5?version=0.7.0")
     assert as_pinned.block == as_pinned.engine.script.block
-    assert found.block == as_pinned.block.replace('"diffrax==0.7.2"', '"diffrax==0.7.0"')
-    assert found.block != as_pinned.block
+    assert solver.block == as_pinned.block.replace('"diffrax==0.7.2"', '"diffrax==0.7.0"')
+    assert solver.block != as_pinned.block
 
 
 def test_packages_that_go_together_take_one_version() -> None:
@@ -186,10 +186,12 @@ def test_a_list_says_what_each_is(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(python, "_uv_says", None)
     monkeypatch.setattr(python, "_uv", lambda: "uv")
     monkeypatch.setattr(shutil, "which", lambda program: program)
-    told = remarks()
+    remark_of = remarks()
     for name in engines():
         (remark,) = [
-            text for usage, text in told.items() if usage.partition("?")[0].endswith(f":{name}")
+            text
+            for usage, text in remark_of.items()
+            if usage.partition("?")[0].endswith(f":{name}")
         ]
         assert remark
         assert ("unavailable" in remark) is name.startswith("numbalsoda")
@@ -220,7 +222,7 @@ def test_the_equations_of_the_scripts_lead_to_the_exact_motion(
     question = shared.read(json.loads(json.dumps(protocol.question(asked))))
     rates = equations.rates(question.columns)
     tolerance = 1e-11
-    found = integrate.solve_ivp(
+    integration = integrate.solve_ivp(
         lambda t, s: [question.sign * rate for rate in rates(s, question.parameters)],
         (0, question.end),
         question.state,
@@ -229,9 +231,9 @@ def test_the_equations_of_the_scripts_lead_to_the_exact_motion(
         rtol=tolerance,
         atol=tolerance,
     )
-    states = found.y.T.tolist()
-    steps = found.nfev // 12
-    answer = shared._written(question, shared.Solved(states, steps, found.nfev, 0, 0))
+    states = integration.y.T.tolist()
+    steps = integration.nfev // 12
+    answer = shared._written(question, shared.Solved(states, steps, integration.nfev, 0, 0))
     # A wrong sign, index or column is an error of the size of the motion; what is left here is the
     # tolerance of every step, carried on thirtyfold by these orbits.
     read_back = protocol.read(json.dumps(answer).encode(), asked)
@@ -274,8 +276,8 @@ def test_the_first_propagation_is_what_compiles(sibling: Callable[[str], Any]) -
         threading.Event().wait(0.2 if len(calls) == 1 else 0.05)
         return len(calls)
 
-    found, seconds, compiling = sibling("question").twice(propagate)
-    assert found == len(calls) == 2
+    result, seconds, compiling = sibling("question").twice(propagate)
+    assert result == len(calls) == 2
     # A sleep is never shorter than it was asked to be.
     assert seconds >= 0.05
     assert compiling >= 0
@@ -308,13 +310,13 @@ def test_a_library_keeps_near_its_tolerance(
     errors = {}
     for tolerance in (1e-6, 1e-9):
         name = f"outside:{one.name}?rtol={tolerance}&atol={tolerance}"
-        found: Trajectory = solver_named(name).solve(asked)
-        assert (found.outcome, found.detail) == (Outcome.FINISHED, "")
-        assert found.steps > 0
-        assert 0 < found.seconds
-        errors[tolerance] = truth.accuracy(found).worst
+        trajectory: Trajectory = solver_named(name).solve(asked)
+        assert (trajectory.outcome, trajectory.detail) == (Outcome.FINISHED, "")
+        assert trajectory.steps > 0
+        assert 0 < trajectory.seconds
+        errors[tolerance] = truth.accuracy(trajectory).worst
         # These orbits carry an error on thirtyfold at most.
-        assert errors[tolerance] <= tolerance * found.steps * 30
+        assert errors[tolerance] <= tolerance * trajectory.steps * 30
     # A thousandth of the tolerance is at least a tenth of the error, for the lowest of orders.
     assert errors[1e-9] <= errors[1e-6] / 10
 

@@ -91,11 +91,11 @@ def posed(scene: str) -> Problem:
 def test_a_peer_is_asked_the_problem_that_heyoka_is_asked(scene: str, fake: Made) -> None:
     """Its states, at the samples and in the problem's own form, are the exact motion."""
     problem = posed(scene)
-    found = fake(steps=200).solve(problem)
-    assert (found.outcome, found.detail) == (Outcome.FINISHED, "")
-    assert found.evaluations == 4 * found.steps > 0
+    trajectory = fake(steps=200).solve(problem)
+    assert (trajectory.outcome, trajectory.detail) == (Outcome.FINISHED, "")
+    assert trajectory.evaluations == 4 * trajectory.steps > 0
     # The method is of fourth order, and no step is longer than a fortieth of a radian or so.
-    assert Truth(problem).accuracy(found).worst <= 1e-5
+    assert Truth(problem).accuracy(trajectory).worst <= 1e-5
 
 
 def test_the_code_of_a_peer_is_the_code_of_this_process() -> None:
@@ -106,14 +106,14 @@ def test_the_code_of_a_peer_is_the_code_of_this_process() -> None:
     try:
         service, question = import_module("service"), import_module("question")
         read = service._read(asked)
-        found = question.equations_of(read)(read.state, read.parameters)
+        rates = question.equations_of(read)(read.state, read.parameters)
     finally:
         sys.path.remove(str(SCRIPTS))
         for name in ("service", "question", "equations"):
             sys.modules.pop(name, None)
     parameters = [float(value) for value in problem.parameters]
     expected = straight_line(problem.form, parameters)(0.0, read.state)
-    assert list(found) == expected
+    assert list(rates) == expected
     assert read.parameters == parameters
     assert read.instants == [float(t) for t in problem.times]
 
@@ -157,9 +157,9 @@ def test_a_peer_that_fails_is_an_outcome(
 ) -> None:
     """An error, a crash and a time limit are outcomes, and the next question is answered all the same."""
     problem = posed("euler/generic")
-    found = fake(begins, limit="1").solve(problem)
-    assert found.outcome is outcome
-    assert words in found.detail
+    trajectory = fake(begins, limit="1").solve(problem)
+    assert trajectory.outcome is outcome
+    assert words in trajectory.detail
     assert fake(begins, limit="1").seconds(problem, 1) is None
     end_sessions()
     assert fake(steps=1).solve(problem).outcome is Outcome.FINISHED
@@ -177,9 +177,9 @@ def test_a_peer_without_its_environment_is_unavailable(monkeypatch: pytest.Monke
     one = Peer(named("outside:dop853"))
     assert "f64 alone" in one.unavailable(rung("f80"))
     monkeypatch.setattr("taylor_verify.solvers.engines.python._uv", lambda: None)
-    found = one.solve(posed("euler/generic"))
-    assert found.outcome is Outcome.NO_PACKAGE
-    assert "uv is not installed" in found.detail
+    trajectory = one.solve(posed("euler/generic"))
+    assert trajectory.outcome is Outcome.NO_PACKAGE
+    assert "uv is not installed" in trajectory.detail
 
 
 @pytest.mark.slow
@@ -196,19 +196,19 @@ def test_a_real_peer_keeps_near_its_tolerance(name: str, monkeypatch: pytest.Mon
         for scene in ("euler/backward", "kirchhoff/whole-motion"):
             problem = posed(scene)
             one = Peer(named(f"outside:{name}?rtol=1e-8"))
-            found = one.solve(problem)
-            assert (found.outcome, found.detail) == (Outcome.FINISHED, "")
+            trajectory = one.solve(problem)
+            assert (trajectory.outcome, trajectory.detail) == (Outcome.FINISHED, "")
             # These orbits carry an error of each step on thirtyfold at most.
-            assert Truth(problem).accuracy(found).worst <= 1e-8 * found.steps * 30
+            assert Truth(problem).accuracy(trajectory).worst <= 1e-8 * trajectory.steps * 30
             # Nothing compiles but before the first solve.
             seconds = one.seconds(problem, 5)
             assert seconds is not None
-            assert 0 < seconds < found.compile_seconds
+            assert 0 < seconds < trajectory.compile_seconds
     finally:
         end_sessions()
 
 
 def test_every_peer_is_there() -> None:
     """The columns that are published are engines whose scripts stay."""
-    found: list[Any] = [named(f"outside:{name}") for name in PEERS]
-    assert all(one.engine.script.about.serves for one in found)
+    peers: list[Any] = [named(f"outside:{name}") for name in PEERS]
+    assert all(one.engine.script.about.serves for one in peers)

@@ -64,10 +64,10 @@ def problem(on: str = "f64", samples: int = 3) -> Problem:
 
 def test_the_scenes_here_are_of_every_kind() -> None:
     """The scenes of these tests are of both models, with and without attitude, one with a centre."""
-    found = [load(scene) for scene in SCENES]
-    assert {scene.model for scene in found} == {"euler", "kirchhoff"}
-    assert {"attitude" in scene.track for scene in found} == {True, False}
-    assert any("centre" in scene.track for scene in found)
+    scenes = [load(scene) for scene in SCENES]
+    assert {scene.model for scene in scenes} == {"euler", "kirchhoff"}
+    assert {"attitude" in scene.track for scene in scenes} == {True, False}
+    assert any("centre" in scene.track for scene in scenes)
 
 
 # The question.
@@ -97,10 +97,10 @@ def test_text_is_exact_and_hex_is_the_nearest_of_the_rung(scene: str, on: str) -
     for key, texts, hexes in numbers(document):
         met.add(key)
         for text, hexadecimal in zip(texts, hexes, strict=True):
-            exact, held = Fraction(text), from_hex(hexadecimal)
-            assert abs(held - exact) <= rung(on).unit_roundoff * abs(exact)
-            assert held.numerator.bit_length() <= rung(on).bits or held.denominator == 1
-            assert key not in ROUNDED_ONCE or held == exact
+            exact, nearest = Fraction(text), from_hex(hexadecimal)
+            assert abs(nearest - exact) <= rung(on).unit_roundoff * abs(exact)
+            assert nearest.numerator.bit_length() <= rung(on).bits or nearest.denominator == 1
+            assert key not in ROUNDED_ONCE or nearest == exact
     assert met <= ROUNDED_ONCE | ALSO_ROUNDED
 
 
@@ -193,8 +193,8 @@ def test_a_number_is_taken_as_its_form_says(on: str, written: str, exact: Fracti
 def test_hexadecimal_and_shortest_decimal_of_a_double_are_the_double(value: float) -> None:
     """The double that a program held is judged, whether it prints %a or a decimal that is enough."""
     asked = problem()
-    found = protocol.read(answer(asked, w1=[value.hex()] * 3, w3=[value] * 3), asked)
-    assert found.states[0][0] == found.states[0][2] == value
+    response = protocol.read(answer(asked, w1=[value.hex()] * 3, w3=[value] * 3), asked)
+    assert response.states[0][0] == response.states[0][2] == value
 
 
 MISANSWERS = [
@@ -289,11 +289,11 @@ def solve(folder: Path, text: str, limit: float = 60, samples: int = 3) -> Traje
 
 def test_a_sound_program_is_heard(tmp_path: Path) -> None:
     """A program that answers is judged by its numbers, whatever it says on stderr."""
-    told = f"{SOUND}print('working', file=sys.stderr)\nfound['steps'] = 7\n{TELL}"
-    found = solve(tmp_path, told)
-    assert found.outcome is Outcome.FINISHED
-    assert (found.steps, found.detail) == (7, "")
-    assert [float(v) for v in found.quantities["omega"][2]] == [
+    program = f"{SOUND}print('working', file=sys.stderr)\nfound['steps'] = 7\n{TELL}"
+    trajectory = solve(tmp_path, program)
+    assert trajectory.outcome is Outcome.FINISHED
+    assert (trajectory.steps, trajectory.detail) == (7, "")
+    assert [float(v) for v in trajectory.quantities["omega"][2]] == [
         float(v)
         for v in problem().given.initial.omega  # type: ignore[union-attr]
     ]
@@ -301,23 +301,23 @@ def test_a_sound_program_is_heard(tmp_path: Path) -> None:
 
 def test_a_program_may_time_itself(tmp_path: Path) -> None:
     """The times of a trajectory are the seconds and compile_seconds that the program states."""
-    told = f"{SOUND}found.update(seconds=2e-3, compile_seconds=1e-3)\n{TELL}"
-    found = solve(tmp_path, f"import time; time.sleep(3e-3)\n{told}")
-    assert found.outcome is Outcome.FINISHED
-    assert (found.seconds, found.compile_seconds) == (2e-3, 1e-3)
+    program = f"{SOUND}found.update(seconds=2e-3, compile_seconds=1e-3)\n{TELL}"
+    trajectory = solve(tmp_path, f"import time; time.sleep(3e-3)\n{program}")
+    assert trajectory.outcome is Outcome.FINISHED
+    assert (trajectory.seconds, trajectory.compile_seconds) == (2e-3, 1e-3)
 
 
 def test_a_remark_of_a_program_is_the_detail_of_its_trajectory(tmp_path: Path) -> None:
     """A sentence on how an answer was had stays with it, without what is not for a terminal."""
-    found = solve(tmp_path, f"{SOUND}found.update(remark='in principal\\x1b axes'); {TELL}")
-    assert (found.outcome, found.detail) == (Outcome.FINISHED, "in principal  axes")
+    trajectory = solve(tmp_path, f"{SOUND}found.update(remark='in principal\\x1b axes'); {TELL}")
+    assert (trajectory.outcome, trajectory.detail) == (Outcome.FINISHED, "in principal  axes")
 
 
 def test_a_program_that_does_not_time_itself_is_timed_as_a_whole(tmp_path: Path) -> None:
     """Without seconds in the answer, they are those of the run, the start of the program included."""
-    found = solve(tmp_path, f"import time; time.sleep(0.2)\n{SOUND}{TELL}")
-    assert found.seconds >= 0.2
-    assert found.compile_seconds == 0
+    trajectory = solve(tmp_path, f"import time; time.sleep(0.2)\n{SOUND}{TELL}")
+    assert trajectory.seconds >= 0.2
+    assert trajectory.compile_seconds == 0
 
 
 FAULTS = [
@@ -350,17 +350,17 @@ def test_a_program_that_fails_has_its_outcome(
     tmp_path: Path, text: str, outcome: Outcome, words: str
 ) -> None:
     """A crash, a claim of success without its rows, a torrent: each is told, and has no states."""
-    found = solve(tmp_path, text)
-    assert found.outcome is outcome
-    assert words in found.detail
-    assert not found.quantities
+    trajectory = solve(tmp_path, text)
+    assert trajectory.outcome is outcome
+    assert words in trajectory.detail
+    assert not trajectory.quantities
 
 
 def test_a_program_that_is_not_there_is_told() -> None:
     """A command that cannot be started is an outcome of its own."""
-    found = Process("process:./no-such-simulator --fast").solve(problem())
-    assert found.outcome is Outcome.NOT_STARTED
-    assert found.detail == "./no-such-simulator: No such file or directory"
+    trajectory = Process("process:./no-such-simulator --fast").solve(problem())
+    assert trajectory.outcome is Outcome.NOT_STARTED
+    assert trajectory.detail == "./no-such-simulator: No such file or directory"
 
 
 def test_an_outcome_is_a_failed_verdict_without_an_error() -> None:
@@ -386,11 +386,11 @@ def test_an_outcome_is_a_failed_verdict_without_an_error() -> None:
 def test_a_program_that_does_not_end_is_ended(tmp_path: Path, text: str) -> None:
     """After its time limit a program is stopped, and the run says which limit that was."""
     began = time.monotonic()
-    found = solve(tmp_path, text, limit=1)
+    trajectory = solve(tmp_path, text, limit=1)
     # Ten seconds for a busy machine; the program would take sixty times as long.
     assert time.monotonic() - began < 1 + 10
-    assert found.outcome is Outcome.TIMED_OUT
-    assert found.detail == f"1 seconds, settable by {LIMIT_VARIABLE}"
+    assert trajectory.outcome is Outcome.TIMED_OUT
+    assert trajectory.detail == f"1 seconds, settable by {LIMIT_VARIABLE}"
 
 
 CHILD = """
@@ -408,9 +408,9 @@ open(sys.argv[0] + ".pids", "w").write(f"{os.getpid()} {child.pid}")
 def test_nothing_is_left_running(tmp_path: Path, ending: str, outcome: Outcome) -> None:
     """A child that holds the output open delays no answer, and ends with the program."""
     began = time.monotonic()
-    found = solve(tmp_path, SOUND + CHILD + ending, limit=3 if "sleep" in ending else 60)
+    trajectory = solve(tmp_path, SOUND + CHILD + ending, limit=3 if "sleep" in ending else 60)
     assert time.monotonic() - began < 30
-    assert found.outcome is outcome
+    assert trajectory.outcome is outcome
     pids = (tmp_path / "a program.py.pids").read_text().split()
     assert len(pids) == 2
     program_itself, child = pids
@@ -460,9 +460,9 @@ def test_the_handler_of_a_signal_is_left_as_it_was(tmp_path: Path) -> None:
 def test_neither_side_waits_for_the_other(tmp_path: Path) -> None:
     """A program may fill its output before it reads a question that fills the pipe as well."""
     talkative = "import sys\nsys.stderr.write('x' * 10**6)\nsys.stdout.write(' ' * 10**6)\n"
-    found = solve(tmp_path, f"{talkative}{SOUND}{TELL}", samples=3_000)
-    assert found.outcome is Outcome.FINISHED
-    assert len(found.quantities["omega"]) == 3_000
+    trajectory = solve(tmp_path, f"{talkative}{SOUND}{TELL}", samples=3_000)
+    assert trajectory.outcome is Outcome.FINISHED
+    assert len(trajectory.quantities["omega"]) == 3_000
 
 
 def test_a_question_need_not_be_read(tmp_path: Path) -> None:
@@ -470,8 +470,8 @@ def test_a_question_need_not_be_read(tmp_path: Path) -> None:
     text = f"import sys; sys.stdin.close(); print({answer(problem(samples=3)).decode()!r})"
     assert solve(tmp_path, text).outcome is Outcome.FINISHED
     # Here the question is larger than the pipe.
-    found = solve(tmp_path, text, samples=3_000)
-    assert found.outcome is Outcome.MISANSWERED
+    trajectory = solve(tmp_path, text, samples=3_000)
+    assert trajectory.outcome is Outcome.MISANSWERED
 
 
 def test_the_last_words_are_shown_without_their_colours(tmp_path: Path) -> None:
@@ -496,9 +496,9 @@ def test_a_name_that_starts_nothing_is_refused(name: str) -> None:
 
 def test_a_command_is_split_as_a_shell_would() -> None:
     """Quotes hold a word together, and nothing is expanded."""
-    found = named("process:./my_simulator 'a b' $HOME")
-    assert found.command == ["./my_simulator", "a b", "$HOME"]
-    assert found.name == "process:./my_simulator 'a b' $HOME"
+    solver = named("process:./my_simulator 'a b' $HOME")
+    assert solver.command == ["./my_simulator", "a b", "$HOME"]
+    assert solver.name == "process:./my_simulator 'a b' $HOME"
 
 
 def test_the_time_limit_is_an_environment_variable(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -570,9 +570,9 @@ def test_the_example_in_c_passes_every_gate(rk4_in_c: str) -> None:
 
 def test_the_example_in_c_refuses_what_it_cannot_do(rk4_in_c: str) -> None:
     """A step that is not positive ends it with a word on stderr, which the outcome repeats."""
-    found = named(f"{rk4_in_c} 0").solve(problem())
-    assert found.outcome is Outcome.CRASHED
-    assert found.detail == "exit status 1; stderr: rk4: expected a positive step"
+    trajectory = named(f"{rk4_in_c} 0").solve(problem())
+    assert trajectory.outcome is Outcome.CRASHED
+    assert trajectory.detail == "exit status 1; stderr: rk4: expected a positive step"
 
 
 def test_the_example_needs_the_standard_library_alone() -> None:

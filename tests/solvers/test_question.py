@@ -36,10 +36,10 @@ def kind(scene: Scene) -> Kind:
 
 @cache
 def one_of_each_kind() -> dict[Kind, str]:
-    found: dict[Kind, str] = {}
+    scene_of: dict[Kind, str] = {}
     for name in names():
-        found.setdefault(kind(load(name)), name)
-    return found
+        scene_of.setdefault(kind(load(name)), name)
+    return scene_of
 
 
 def keys(document: Any) -> Iterator[str]:
@@ -112,8 +112,8 @@ def test_the_template_filled_in_passes(
 ) -> None:
     """`question --csv` with the exact motion in its cells is a file that `check` takes as it is."""
     assert main(["question", name, "--csv"]) == 0
-    out, said = capsys.readouterr()
-    assert f"taylor-verify check FILE --scene {name}" in said
+    out, stderr = capsys.readouterr()
+    assert f"taylor-verify check FILE --scene {name}" in stderr
     header, *rows = list(csv.reader(io.StringIO(out)))
     scene = load(name)
     instants = pose(scene, rung("f64")).given.clock.instants

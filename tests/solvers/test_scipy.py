@@ -42,13 +42,13 @@ def test_the_answer_approaches_the_exact_motion(method: str, name: str) -> None:
     coarse = run(scene, f"scipy:{method}?rtol=1e-4&atol=1e-4").verdicts
     fine = run(scene, f"scipy:{method}?rtol=1e-8&atol=1e-8").verdicts
     quantities = {"euler": {"omega", "attitude"}, "kirchhoff": {"impulse", "attitude", "centre"}}
-    found = 0
+    compared = 0
     for before, after in zip(coarse, fine, strict=True):
         if after.quantity in quantities[scene.model]:
-            found += 1
+            compared += 1
             # The local error is what a tolerance bounds; a step can do well by chance, hence 100.
             assert after.max <= before.max / 100
-    assert found == len(quantities[scene.model])
+    assert compared == len(quantities[scene.model])
 
 
 @pytest.mark.usefixtures("scipy")
@@ -63,13 +63,13 @@ def test_a_moment_and_time_running_backward() -> None:
 @pytest.mark.usefixtures("scipy")
 def test_steps_and_evaluations_are_counted() -> None:
     """DOP853 takes at least 11 evaluations a step, and more steps for a finer tolerance."""
-    found = solver_named("scipy:DOP853?rtol=1e-6").solve(pose(short("euler/generic"), F64))
-    assert found.outcome is Outcome.FINISHED
-    assert 11 * found.steps <= found.evaluations
+    trajectory = solver_named("scipy:DOP853?rtol=1e-6").solve(pose(short("euler/generic"), F64))
+    assert trajectory.outcome is Outcome.FINISHED
+    assert 11 * trajectory.steps <= trajectory.evaluations
     finer = solver_named("scipy:DOP853?rtol=1e-10&atol=1e-10").solve(
         pose(short("euler/generic"), F64)
     )
-    assert finer.steps > found.steps > 0
+    assert finer.steps > trajectory.steps > 0
 
 
 @pytest.mark.usefixtures("scipy")
@@ -103,9 +103,9 @@ def test_a_fault_in_the_equations_is_seen(monkeypatch: pytest.MonkeyPatch) -> No
 def test_a_run_without_end_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
     """There is a bound on the evaluations."""
     monkeypatch.setattr(solver, "_MOST_EVALUATIONS", 100)
-    found = solver_named("scipy:RK45?rtol=1e-9").solve(pose(short("euler/generic"), F64))
-    assert found.outcome is Outcome.STEP_LIMIT
-    assert not found.quantities
+    trajectory = solver_named("scipy:RK45?rtol=1e-9").solve(pose(short("euler/generic"), F64))
+    assert trajectory.outcome is Outcome.STEP_LIMIT
+    assert not trajectory.quantities
 
 
 @pytest.mark.usefixtures("scipy")
@@ -117,9 +117,9 @@ def test_rates_that_are_no_numbers_are_an_outcome(
     monkeypatch.setattr(solver, "_MOST_EVALUATIONS", 1000)
     nowhere = {f"H{i}": float("nan") for i in (1, 2, 3)}
     problem = pose(short("euler/generic"), F64).with_equations(lambda named: nowhere)
-    found = solver_named(f"scipy:{method}").solve(problem)
-    assert found.outcome is Outcome.NON_FINITE
-    assert not found.quantities
+    trajectory = solver_named(f"scipy:{method}").solve(problem)
+    assert trajectory.outcome is Outcome.NON_FINITE
+    assert not trajectory.quantities
 
 
 def test_without_scipy_it_says_how_to_install_it(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -33,8 +33,8 @@ def test_the_rates_are_the_same_to_the_last_bit(scene: str, numbers: list[float]
     """In floats nothing may be summed or multiplied in another order."""
     problem = problem_of(scene)
     state = numbers[: len(problem.form.states)]
-    found = straight_line(problem.form, plain(problem))(0.0, state)
-    assert found == problem.form.rates(state, plain(problem))
+    rates = straight_line(problem.form, plain(problem))(0.0, state)
+    assert rates == problem.form.rates(state, plain(problem))
 
 
 @pytest.mark.parametrize("scene", SCENES)
@@ -42,11 +42,11 @@ def test_any_arithmetic_passes_through(scene: str) -> None:
     """With rationals in, the rates are rationals, and the exact ones."""
     problem = problem_of(scene)
     state = [Fraction(k + 1, 7) for k in range(len(problem.form.states))]
-    found = straight_line(problem.form, problem.parameters)(0, state)
+    rates = straight_line(problem.form, problem.parameters)(0, state)
     exact = problem.form.rates(state, list(problem.parameters))
     # A rate that is absent is the integer 0, which is a rational too.
-    assert found == exact
-    assert all(isinstance(value, Fraction | int) for value in found)
+    assert rates == exact
+    assert all(isinstance(value, Fraction | int) for value in rates)
 
 
 @pytest.mark.parametrize("scene", SCENES)

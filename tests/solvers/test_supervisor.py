@@ -103,9 +103,9 @@ def test_processes_that_left_the_session_end_with_the_run(
     program: Path, hidden: Path, ending: str, outcome: Outcome
 ) -> None:
     """When the answer is there, nothing of the program is running any more."""
-    found = solve(program, HIDES + ending, limit=5 if ending == HANG else 60)
-    assert found.outcome is outcome
-    assert "could not be ended" not in found.detail
+    trajectory = solve(program, HIDES + ending, limit=5 if ending == HANG else 60)
+    assert trajectory.outcome is outcome
+    assert "could not be ended" not in trajectory.detail
     assert len(numbers(hidden)) == 2
     assert not any(map(is_alive, numbers(hidden)))
 
@@ -164,9 +164,9 @@ def test_other_children_of_the_caller_are_left_alone(program: Path, hidden: Path
 def test_a_program_that_kills_its_supervisor_is_ended_and_told(program: Path) -> None:
     """It is no answer, and the outcome says what is then unknown."""
     kills = f"import os\nopen({str(program) + '.pids'!r}, 'w').write(str(os.getpid()))\n"
-    found = solve(program, f"{kills}import time; os.kill(os.getppid(), 9)\n{HANG}")
-    assert found.outcome is Outcome.CRASHED
-    assert conversation._UNKNOWN in found.detail
+    trajectory = solve(program, f"{kills}import time; os.kill(os.getppid(), 9)\n{HANG}")
+    assert trajectory.outcome is Outcome.CRASHED
+    assert conversation._UNKNOWN in trajectory.detail
     (pid,) = numbers(Path(f"{program}.pids"))
     deadline = time.monotonic() + 30
     while is_alive(pid) and time.monotonic() < deadline:
@@ -194,9 +194,9 @@ def test_a_system_that_cannot_says_so(
 ) -> None:
     """The session ends where nobody adopts orphans, and the detail says what may be left."""
     supervised_by(program.parent, "sys.platform = 'other'", monkeypatch)
-    found = solve(program, HIDES + ending, limit=5 if ending == HANG else 60)
-    assert found.outcome is outcome
-    assert conversation._UNKNOWN in found.detail
+    trajectory = solve(program, HIDES + ending, limit=5 if ending == HANG else 60)
+    assert trajectory.outcome is outcome
+    assert conversation._UNKNOWN in trajectory.detail
     assert all(map(is_alive, numbers(hidden)))
 
 
@@ -209,12 +209,12 @@ def test_a_process_that_cannot_be_ended_is_named(
     """The run does not wait for ever for a process of another user; a warning has its number."""
     changes = "_kill = lambda pid: None\n_PATIENCE = 0.5"
     supervised_by(program.parent, changes, monkeypatch)
-    found = solve(program, HIDES + TELL)
-    assert found.outcome is Outcome.FINISHED
+    trajectory = solve(program, HIDES + TELL)
+    assert trajectory.outcome is Outcome.FINISHED
     left = ",".join(map(str, sorted(numbers(hidden))))
-    assert found.detail == f"processes that could not be ended: {left}"
+    assert trajectory.detail == f"processes that could not be ended: {left}"
     (warning,) = caplog.messages
-    assert found.detail in warning
+    assert trajectory.detail in warning
 
 
 def test_the_program_has_the_signals_and_variables_of_a_shell(
@@ -231,5 +231,5 @@ assert os.environ["PYTHONPATH"] == "of the user's own"
 assert sorted(os.listdir("/proc/self/fd"))[:4] == ["0", "1", "2", "3"]  # the last is the list itself
 assert not os.path.exists("/proc/self/fd/4")
 """
-    found = solve(program, QUESTION + sees + TELL)
-    assert found.outcome is Outcome.FINISHED, found.detail
+    trajectory = solve(program, QUESTION + sees + TELL)
+    assert trajectory.outcome is Outcome.FINISHED, trajectory.detail

@@ -263,9 +263,9 @@ def test_callback_numbers_are_taken_exactly(value: object) -> None:
     """Whatever number type a callable answers in, the judge sees that number and no other."""
     problem = pose(load("euler/generic"), rung("f64"))
     states = np.full((101, 3), value, dtype=object)
-    held = Callback(lambda _: states).solve(problem).quantities["omega"][50, 1]
+    number = Callback(lambda _: states).solve(problem).quantities["omega"][50, 1]
     exact = int(value) if isinstance(value, np.integer) else value
-    assert Fraction(*held.as_integer_ratio()) == Fraction(*exact.as_integer_ratio())
+    assert Fraction(*number.as_integer_ratio()) == Fraction(*exact.as_integer_ratio())
 
 
 @pytest.mark.parametrize("value", ["1.5", None, 1j, True])
@@ -285,9 +285,9 @@ def test_zero_quaternion_fails() -> None:
         return np.hstack([sound["omega"], 0 * sound["quaternion"]])
 
     verdicts = run("euler/with-attitude", Callback(without_attitude), "f64").verdicts
-    found = {v.quantity: v.verdict for v in verdicts}
-    assert found["attitude"] is Status.FAIL
-    assert found["omega"] is Status.PASS
+    statuses = {v.quantity: v.verdict for v in verdicts}
+    assert statuses["attitude"] is Status.FAIL
+    assert statuses["omega"] is Status.PASS
 
 
 def test_what_would_take_days_is_not_begun() -> None:
@@ -327,13 +327,13 @@ def test_samples_cost_no_steps(name: str) -> None:
 def test_unoptimised_code_takes_the_same_steps(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """How loops are compiled changes what they cost, and not a bit of what they compute."""
     problem = pose(load("euler/with-attitude"), rung(name))
-    found = []
+    runs = []
     for long_way in (0, 10**6):
         monkeypatch.setattr(driver, "_LONG_WAY", long_way)
-        found.append(Taylor().solve(problem))
-    assert found[0].steps == found[1].steps
-    for quantity, rows in found[0].quantities.items():
-        assert np.array_equal(rows, found[1].quantities[quantity])
+        runs.append(Taylor().solve(problem))
+    assert runs[0].steps == runs[1].steps
+    for quantity, rows in runs[0].quantities.items():
+        assert np.array_equal(rows, runs[1].quantities[quantity])
 
 
 def test_optimised_code_passes_the_same_gates() -> None:
@@ -369,12 +369,12 @@ def test_exact_numbers_are_made_when_they_are_asked_for(monkeypatch: pytest.Monk
         trajectory, "from_scaled", lambda *given: calls.append(given) or formed(*given)
     )
     problem = pose(sampled(load("euler/with-attitude"), 1000), rung("f64"))
-    found = Taylor().solve(problem)
-    assert (len(found.quantities), set(found.quantities)) == (2, {"omega", "quaternion"})
+    answer = Taylor().solve(problem)
+    assert (len(answer.quantities), set(answer.quantities)) == (2, {"omega", "quaternion"})
     assert not calls
     assert "numbers" not in vars(problem.times)
-    assert len(found.quantities["omega"]) == 1000
-    assert len(found.motion(80)["attitude"]) == 1000
+    assert len(answer.quantities["omega"]) == 1000
+    assert len(answer.motion(80)["attitude"]) == 1000
     assert len(calls) == 1
 
 
@@ -397,10 +397,10 @@ def test_equally_spaced_times_are_rounded_once_each(
         with pytest.raises(OverflowError, match="outside the range"):
             rounded_times(clock, unit, onto)
         return
-    found = rounded_times(clock, unit, onto)
-    assert tuple(found) == expected
+    rounded = rounded_times(clock, unit, onto)
+    assert tuple(rounded) == expected
     typed = arithmetic(onto)
-    assert [typed.exact(value) for value in typed.times(found)] == list(expected)
+    assert [typed.exact(value) for value in typed.times(rounded)] == list(expected)
 
 
 def test_equally_spaced_instants_are_a_sequence_of_rationals() -> None:

@@ -42,11 +42,11 @@ def quaternions(columns: Columns) -> tuple[tuple[Fraction, ...], ...]:
 def test_xml_holds_every_digit(columns: Columns, tmp_path: Path) -> None:
     """Quaternions and epochs are read as the decimals that they are, and times from START_TIME."""
     recordings.write_aem(tmp_path / "run.xml", recordings.aem(columns))
-    found = read(tmp_path / "run.xml")
-    assert found.times == tuple(map(Fraction, columns["t"]))
-    assert found.groups["quaternion"] == quaternions(columns)
-    assert found.digits == 17
-    assert found.notes == (
+    table = read(tmp_path / "run.xml")
+    assert table.times == tuple(map(Fraction, columns["t"]))
+    assert table.groups["quaternion"] == quaternions(columns)
+    assert table.digits == 17
+    assert table.notes == (
         "t counts from START_TIME = 2024-03-01T00:00:00.0",
         "EME2000 is taken for the space axes of the scene",
     )
@@ -74,10 +74,10 @@ def test_angular_velocities_are_turned_into_the_body(
     frame: str, columns: Columns, tmp_path: Path
 ) -> None:
     """ANGVEL is in degrees a second and in either frame; w1 w2 w3 are what the motion has."""
-    told = columns
+    stated = columns
     if frame in ("EME2000", "REF_FRAME_A"):
-        told = {**columns, **dict(zip(OMEGA, in_space(columns).T.tolist(), strict=True))}
-    message = recordings.with_rates(recordings.aem(columns), told, frame)
+        stated = {**columns, **dict(zip(OMEGA, in_space(columns).T.tolist(), strict=True))}
+    message = recordings.with_rates(recordings.aem(columns), stated, frame)
     recordings.write_aem(tmp_path / "run.xml", message)
     omega = np.array(read(tmp_path / "run.xml").groups["omega"], dtype=float)
     expected = np.array([columns[name] for name in OMEGA]).T
@@ -128,9 +128,9 @@ def written(folder: Path, content: str, name: str = "run.aem") -> Path:
 @pytest.mark.parametrize("name", ["run.aem", "run.kvn", "run.txt", "RUN.AEM"])
 def test_text_of_version_2_has_the_scalar_last(name: str, tmp_path: Path) -> None:
     """A message in text is known by its first line, and its numbers are Q1 Q2 Q3 QC."""
-    found = read(written(tmp_path, text(), name))
-    assert found.times == (Fraction(1, 4),)
-    assert found.groups["quaternion"] == (
+    table = read(written(tmp_path, text(), name))
+    assert table.times == (Fraction(1, 4),)
+    assert table.groups["quaternion"] == (
         (Fraction(2, 5), Fraction(1, 10), Fraction(1, 5), Fraction(-3, 10)),
     )
 
@@ -138,8 +138,8 @@ def test_text_of_version_2_has_the_scalar_last(name: str, tmp_path: Path) -> Non
 def test_derivatives_are_angular_velocities(tmp_path: Path) -> None:
     """A message with q' = q (0, w) / 2 tells w = 2 conj(q) q' / |q|^2, exactly."""
     state = "2024-061T00:00:00 0 0 0 2 0.5 -0.25 1 0"
-    found = read(written(tmp_path, text(state, ATTITUDE_TYPE="QUATERNION/DERIVATIVE")))
-    assert found.groups["omega"] == ((Fraction(1, 2), Fraction(-1, 4), Fraction(1)),)
+    table = read(written(tmp_path, text(state, ATTITUDE_TYPE="QUATERNION/DERIVATIVE")))
+    assert table.groups["omega"] == ((Fraction(1, 2), Fraction(-1, 4), Fraction(1)),)
 
 
 @pytest.mark.parametrize("order", ["FIRST", "LAST"])
@@ -148,13 +148,13 @@ def test_version_1_says_order_and_direction(
     order: str, direction: str, columns: Columns, tmp_path: Path
 ) -> None:
     """Keywords of version 1, written by the library, say where the scalar is and what is turned."""
-    told = columns if direction == "A2B" else conjugate(columns)
-    message = version_1(told, order, direction)
+    stated = columns if direction == "A2B" else conjugate(columns)
+    message = version_1(stated, order, direction)
     ndm_io.NdmIo().to_file(message, mapping.NDMFileFormats.KVN, tmp_path / "run.aem")
     assert f"QUATERNION_TYPE          = {order}" in (tmp_path / "run.aem").read_text()
-    found = read(tmp_path / "run.aem")
-    assert found.groups["quaternion"] == quaternions(columns)
-    assert found.times == tuple(map(Fraction, columns["t"]))
+    table = read(tmp_path / "run.aem")
+    assert table.groups["quaternion"] == quaternions(columns)
+    assert table.times == tuple(map(Fraction, columns["t"]))
 
 
 def version_1(columns: Columns, order: str, direction: str) -> Any:
@@ -195,9 +195,9 @@ def test_rates_of_euler_angles_are_not_taken_for_angular_velocities(tmp_path: Pa
     """X_RATE ... of version 1 are rates of Euler angles: they are left out, and that is said."""
     state = f"{STATE} 1 2 3"
     content = text(state, version="1.0", ATTITUDE_TYPE="QUATERNION/RATE", QUATERNION_TYPE="LAST")
-    found = read(written(tmp_path, content))
-    assert set(found.groups) == {"quaternion"}
-    assert found.notes[-1] == "X_RATE Y_RATE Z_RATE are rates of Euler angles, and are not read"
+    table = read(written(tmp_path, content))
+    assert set(table.groups) == {"quaternion"}
+    assert table.notes[-1] == "X_RATE Y_RATE Z_RATE are rates of Euler angles, and are not read"
 
 
 def test_a_segment_is_named_by_its_number(tmp_path: Path) -> None:

@@ -64,8 +64,8 @@ def test_what_is_no_column_is_named_in_a_note(tmp_path: Path) -> None:
         for name in ("t", *OMEGA):
             content[name] = np.arange(4.0)
         content["inertia"], content["title"], content["step"] = np.eye(3), "a run", 0.1
-    found = read(tmp_path / "run.h5")
-    assert found.notes == (
+    table = read(tmp_path / "run.h5")
+    assert table.notes == (
         "not read, because they have no 4 rows: inertia, step",
         "not read, because they hold no real numbers: title",
     )
@@ -117,5 +117,5 @@ def test_structs_in_parquet_are_dotted_names(tmp_path: Path) -> None:
     rows = [{"a": {"x": 1.0, "b": {"y": 2}}, "t": 0.0}, {"a": {"x": 3.0, "b": {"y": 4}}, "t": 1.0}]
     parquet.write_table(pa.Table.from_pylist(rows), tmp_path / "run.parquet")
     table = read_table(tmp_path / "run.parquet")
-    found = {column.name: list(column.values) for column in table.columns}
-    assert found == {"a.x": [1.0, 3.0], "a.b.y": [2, 4], "t": [0.0, 1.0]}
+    columns = {column.name: list(column.values) for column in table.columns}
+    assert columns == {"a.x": [1.0, 3.0], "a.b.y": [2, 4], "t": [0.0, 1.0]}

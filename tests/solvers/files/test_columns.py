@@ -86,10 +86,10 @@ def test_every_spelling_of_the_table_is_taken_in_any_order(spelling: Spelling) -
 @pytest.mark.parametrize("spelling", [s for s in SPELLINGS if s.doubt], ids=lambda s: s.keys[0])
 def test_a_spelling_in_doubt_is_refused_with_what_to_write(spelling: Spelling) -> None:
     """Four numbered components of a quaternion do not say where the scalar is."""
-    said = refusal(["t", *spelling.keys])
-    assert "the scalar is the first of them or the last" in said
+    message = refusal(["t", *spelling.keys])
+    assert "the scalar is the first of them or the last" in message
     first = ",".join(f"{a}={b}" for a, b in zip(COLUMNS["quaternion"], spelling.keys, strict=True))
-    assert f"say which: --columns {first} for the first, q0={spelling.keys[3]}," in said
+    assert f"say which: --columns {first} for the first, q0={spelling.keys[3]}," in message
     wanted = dict(zip(COLUMNS["quaternion"], spelling.keys, strict=True))
     assert set(made(["t", *spelling.keys], wanted).groups) == {"quaternion"}
 
@@ -173,8 +173,8 @@ def test_any_usual_names_in_any_order_are_the_same_file(data: st.DataObject) -> 
             plain.setdefault(ours, [str(len(plain)), str(2 * len(plain))])
     order = data.draw(st.permutations(list(plain)))
     expected = from_columns([Column(name, values) for name, values in plain.items()], "mine")
-    found = from_columns([Column(names[name], plain[name]) for name in order], "mine")
-    assert (found.times, found.groups) == (expected.times, expected.groups)
+    table = from_columns([Column(names[name], plain[name]) for name in order], "mine")
+    assert (table.times, table.groups) == (expected.times, expected.groups)
 
 
 def test_verdicts_are_those_of_the_plain_file(tmp_path: Path) -> None:
@@ -194,11 +194,11 @@ def test_verdicts_are_those_of_the_plain_file(tmp_path: Path) -> None:
     }
     assert {v.verdict for v in other.verdicts} == {Status.PASS}
     assert other.conventions == ()
-    said = "\n".join(other.notes)
-    assert "`p [deg/s]` `q [deg/s]` `r [deg/s]` taken as w1 w2 w3, body axes" in said
-    assert "in degrees per unit of time" in said
-    assert "`Time (ms)` taken as t, in thousandths of the scene's unit of time" in said
-    assert "ignored: `note`" in said
+    notes = "\n".join(other.notes)
+    assert "`p [deg/s]` `q [deg/s]` `r [deg/s]` taken as w1 w2 w3, body axes" in notes
+    assert "in degrees per unit of time" in notes
+    assert "`Time (ms)` taken as t, in thousandths of the scene's unit of time" in notes
+    assert "ignored: `note`" in notes
 
 
 def degrees(values: Sequence[float]) -> list[str]:
@@ -219,8 +219,8 @@ def test_a_wrong_name_or_unit_is_caught(
 ) -> None:
     """Sound numbers under a unit or a name that is not theirs fail: what was said is believed."""
     sound = {name: list(values) for name, values in exact_columns(SCENE).items()}
-    found = judged(tmp_path, renamed(sound, names))
-    assert {v.quantity: v.verdict for v in found.verdicts}[quantity] is Status.FAIL
+    judgement = judged(tmp_path, renamed(sound, names))
+    assert {v.quantity: v.verdict for v in judgement.verdicts}[quantity] is Status.FAIL
 
 
 # Units.
@@ -283,15 +283,15 @@ def test_a_unit_nobody_uses_is_refused_with_those_that_are_known(
     names: list[str], unit: str
 ) -> None:
     """The message names the known units, the column, and how to take its numbers as they stand."""
-    said = refusal(names)
-    assert f"got `{unit}`" in said
-    assert "expected a unit of " in said
-    assert "in the scene's unit" in said
+    message = refusal(names)
+    assert f"got `{unit}`" in message
+    assert "expected a unit of " in message
+    assert "in the scene's unit" in message
     name = next(name for name in names if unit in name)
     ours = "t" if name[0] == "t" else "w1"
     wanted = dict(zip(("w1", "w2", "w3"), names[1:], strict=True)) | {"t": names[0]}
     assert "omega" in made(names, wanted).groups
-    assert f"--columns {ours}='{name}'" in said
+    assert f"--columns {ours}='{name}'" in message
 
 
 def test_a_unit_of_another_kind_ends_no_name() -> None:
@@ -319,8 +319,8 @@ def test_a_group_is_asked_for_by_its_first_word() -> None:
     """omega=gyro names gyro_x gyro_y gyro_z, or gyro[0] ... gyro[2]."""
     for names in ("t g_x g_y g_z", "t g[0] g[1] g[2]", "t G1 G2 G3"):
         assert made(names, {"omega": "g"}).groups["omega"][0] == (10, 20, 30)
-    said = refusal("t g_x g_y w1 w2 w3", {"omega": "g"})
-    assert "name each of w1 w2 w3" in said
+    message = refusal("t g_x g_y w1 w2 w3", {"omega": "g"})
+    assert "name each of w1 w2 w3" in message
 
 
 def test_a_part_of_a_group_may_be_asked_for() -> None:
@@ -330,12 +330,12 @@ def test_a_part_of_a_group_may_be_asked_for() -> None:
 
 def test_faults_of_what_is_asked_for_come_all_at_once() -> None:
     """A name that is none of ours, a column that is none, and one column twice."""
-    said = refusal("t a b c", {"w1": "a", "w2": "a", "omega_3": "c", "w3": "bb"})
-    assert "got `omega_3` @ columns omega_3=c" in said
-    assert "expected every column once, got `a`, which is w1" in said
-    assert "got `bb` @ columns w3=bb (near it: `b`" in said
+    message = refusal("t a b c", {"w1": "a", "w2": "a", "omega_3": "c", "w3": "bb"})
+    assert "got `omega_3` @ columns omega_3=c" in message
+    assert "expected every column once, got `a`, which is w1" in message
+    assert "got `bb` @ columns w3=bb (near it: `b`" in message
     # What follows from them is none of its own.
-    assert "expected all of" not in said
+    assert "expected all of" not in message
     with pytest.raises(Refused, match="expected every name once, got w1 again"):
         from_columns([Column(n, ["1"]) for n in "tab"], "mine", (("w1", "a"), ("w1", "b")))
 

@@ -31,8 +31,8 @@ WHOLE = "kirchhoff/whole-motion"
 OMEGA = VECTORS["omega"]
 
 
-def made(found: Any, scene: str = SCENE, **columns: str) -> TrajectoryFile:
-    return trajectory(found, load(scene), pairs(columns))
+def made(answer: Any, scene: str = SCENE, **columns: str) -> TrajectoryFile:
+    return trajectory(answer, load(scene), pairs(columns))
 
 
 def arrays(scene: str = SCENE) -> dict[str, Any]:
@@ -76,27 +76,27 @@ def levels() -> pd.DataFrame:
 
 
 def data_set(letters: bool = True) -> xr.Dataset:
-    found = of_vectors()
-    coords: dict[str, Any] = {"time": found["t"]}
+    motion = of_vectors()
+    coords: dict[str, Any] = {"time": motion["t"]}
     if letters:
         coords |= {"axis": list("xyz"), "part": list("wxyz")}
     values = {
-        "angular_velocity": (("axis", "time"), found["omega"].T, {"units": "rad/s"}),
-        ("orientation" if letters else "quaternion"): (("time", "part"), found["attitude"]),
+        "angular_velocity": (("axis", "time"), motion["omega"].T, {"units": "rad/s"}),
+        ("orientation" if letters else "quaternion"): (("time", "part"), motion["attitude"]),
         "mass": ((), 3.0),
     }
     return xr.Dataset(values, coords)
 
 
 def ode_result() -> OptimizeResult:
-    found = of_vectors()
-    states = np.concatenate([found["omega"], found["attitude"]], axis=1)
-    return OptimizeResult(t=found["t"], y=states.T, success=True)
+    motion = of_vectors()
+    states = np.concatenate([motion["omega"], motion["attitude"]], axis=1)
+    return OptimizeResult(t=motion["t"], y=states.T, success=True)
 
 
 def with_rotation() -> dict[str, Any]:
-    found = of_vectors()
-    return {**found, "attitude": Rotation.from_quat(np.roll(found["attitude"], -1, axis=1))}
+    motion = of_vectors()
+    return {**motion, "attitude": Rotation.from_quat(np.roll(motion["attitude"], -1, axis=1))}
 
 
 def arrow() -> Any:
@@ -143,8 +143,8 @@ def test_a_rotation_is_asked_for_its_scalar() -> None:
     )
     assert np.abs(np.abs(np.sum(own * right, axis=1)) - 1).max() < 1e-15
     assert "`attitude`, a Rotation, taken as q0 q1 q2 q3, scalar first" in file.notes
-    found = taylor_verify.check(SCENE, with_rotation())
-    assert {v.verdict for v in found.verdicts} == {Status.PASS}
+    judgement = taylor_verify.check(SCENE, with_rotation())
+    assert {v.verdict for v in judgement.verdicts} == {Status.PASS}
 
 
 @pytest.mark.parametrize("shape", [(-1, 9), (-1, 3, 3)])
@@ -163,8 +163,8 @@ def test_matrices_are_attitudes(shape: tuple[int, ...]) -> None:
 
 def test_a_quaternion_of_another_name_is_asked_for() -> None:
     """quat (n, 4) does not say where its scalar is; quaternion=quat says that it is as ours."""
-    found = of_vectors()
-    given = {"t": found["t"], "quat": found["attitude"]}
+    motion = of_vectors()
+    given = {"t": motion["t"], "quat": motion["attitude"]}
     with pytest.raises(Refused, match="the scalar is the first of them or the last"):
         made(given)
     assert made(given, quaternion="quat").groups["quaternion"] == plain().groups["quaternion"]
@@ -188,9 +188,9 @@ def test_all_groups_of_a_solid_in_a_fluid() -> None:
 
 def test_states_of_another_number_are_refused_or_named() -> None:
     """Six states are no state of a rigid body, unless the caller says which are which."""
-    found = of_vectors()
-    states = np.concatenate([found["omega"], found["omega"]], axis=1).T
-    result = OptimizeResult(t=found["t"], y=states)
+    motion = of_vectors()
+    states = np.concatenate([motion["omega"], motion["omega"]], axis=1).T
+    result = OptimizeResult(t=motion["t"], y=states)
     with pytest.raises(Refused, match=r"expected 3, 7 states .*, got 6 @ the OptimizeResult, y"):
         made(result)
     file = made(result, w1="y[3]", w2="y[4]", w3="y[5]")
@@ -201,11 +201,11 @@ def test_judgement_is_that_of_the_file() -> None:
     """`check` judges a DataFrame of usual names with a mapping, and a spoiled one fails."""
     table = frame().rename(columns={"w1": "rate about 1", "w2": "w.2", "w3": "w.3", "t": "time"})
     mapping = {"w1": "rate about 1", "w2": "w.2", "w3": "w.3"}
-    found = taylor_verify.check(SCENE, table, columns=mapping)
-    assert isinstance(found, FileJudgement)
-    assert {v.verdict for v in found.verdicts} == {Status.PASS}
-    assert found.file.name == "the DataFrame"
-    assert "`time` taken as t" in found.notes
+    judgement = taylor_verify.check(SCENE, table, columns=mapping)
+    assert isinstance(judgement, FileJudgement)
+    assert {v.verdict for v in judgement.verdicts} == {Status.PASS}
+    assert judgement.file.name == "the DataFrame"
+    assert "`time` taken as t" in judgement.notes
     table["w.2"] *= 1 + 1e-9
     assert not taylor_verify.check(SCENE, table, columns=mapping).passed
 
@@ -257,7 +257,7 @@ def test_units_of_a_data_set_are_used() -> None:
 
 
 @pytest.mark.parametrize(
-    ("found", "fault"),
+    ("answer", "fault"),
     [
         ({"t": [0.0], "w1": ["x"], "w2": [0], "w3": [0]}, "got 'x' @ the dict, row 1, column w1"),
         (
@@ -285,17 +285,17 @@ def test_units_of_a_data_set_are_used() -> None:
         (pd.DataFrame([[0, 1, 2]], columns=["t", "w1", "w1"]), "every column once, got `w1` again"),
     ],
 )
-def test_faults_name_the_object(found: Any, fault: str) -> None:
+def test_faults_name_the_object(answer: Any, fault: str) -> None:
     """The place of a fault is the object and its column."""
     with pytest.raises(Refused, match=fault):
-        made(found)
+        made(answer)
 
 
-@pytest.mark.parametrize("found", [7, None, np.zeros((3, 4)), [1, 2], Rotation.identity(3)])
-def test_what_is_no_trajectory_is_refused(found: Any) -> None:
+@pytest.mark.parametrize("answer", [7, None, np.zeros((3, 4)), [1, 2], Rotation.identity(3)])
+def test_what_is_no_trajectory_is_refused(answer: Any) -> None:
     """A matrix without names, a list and a Rotation alone have no times."""
     with pytest.raises(ValueError, match=r"expected a callable solve\(problem\), a trajectory"):
-        taylor_verify.check(SCENE, found)
+        taylor_verify.check(SCENE, answer)
 
 
 def test_a_mapping_that_is_none_is_refused() -> None:

@@ -93,11 +93,11 @@ def test_every_double_survives_its_format(
     folder = tmp_path / f"{len(list(tmp_path.iterdir()))}"
     folder.mkdir()
     WRITERS[name](folder / name, written)
-    found = read(folder / name)
+    table = read(folder / name)
     exact = [[Fraction(repr(v) if name in DECIMAL else v) for v in row] for row in rows]
-    assert found.times == tuple(map(Fraction, times))
-    assert found.groups["omega"] == tuple(tuple(row[:3]) for row in exact)
-    assert found.groups["quaternion"] == tuple(tuple(row[3:]) for row in exact)
+    assert table.times == tuple(map(Fraction, times))
+    assert table.groups["omega"] == tuple(tuple(row[:3]) for row in exact)
+    assert table.groups["quaternion"] == tuple(tuple(row[3:]) for row in exact)
 
 
 def test_every_suffix_has_a_reader_and_is_named(tmp_path: Path) -> None:
@@ -146,8 +146,8 @@ def test_folders_of_ros_2_hold_either_storage(columns: Columns, tmp_path: Path) 
     whole = read(tmp_path / "bag")
     (database,) = (tmp_path / "bag").glob("*.db3")
     for other in (tmp_path / "mcap", database):
-        found = read(other)
-        assert (found.times, found.groups) == (whole.times, whole.groups)
+        table = read(other)
+        assert (table.times, table.groups) == (whole.times, whole.groups)
 
 
 @pytest.mark.parametrize("packed", [rosbag2.CompressionMode.FILE, rosbag2.CompressionMode.MESSAGE])
@@ -168,8 +168,8 @@ def test_a_topic_is_named_behind_the_file(columns: Columns, tmp_path: Path) -> N
     with pytest.raises(Refused, match=r"expected one topic, got /imu .*/left/imu .*FILE#/imu"):
         read(file)
     for name in ("/left/imu", "left/imu"):
-        found = read(f"{file}#{name}")
-        assert "read from topic /left/imu (sensor_msgs/Imu, 7 messages)" in found.notes[0]
+        table = read(f"{file}#{name}")
+        assert "read from topic /left/imu (sensor_msgs/Imu, 7 messages)" in table.notes[0]
     with pytest.raises(Refused, match=r"expected a topic of the recording .*got `#/right`"):
         read(f"{file}#/right")
 
@@ -189,9 +189,9 @@ def test_stamps_of_a_clock_count_from_the_first(
 ) -> None:
     """Stamps after 2001 count from the first message, others are the time of a simulation; it is said."""
     recordings.write_mcap(tmp_path / "run.mcap", columns, start=start)
-    found = read(tmp_path / "run.mcap")
-    assert found.times[0] == first
-    assert ("from the first stamp" in found.notes[-1]) is (start == CLOCK)
+    table = read(tmp_path / "run.mcap")
+    assert table.times[0] == first
+    assert ("from the first stamp" in table.notes[-1]) is (start == CLOCK)
 
 
 def test_nanoseconds_lose_nothing(tmp_path: Path) -> None:

@@ -55,8 +55,8 @@ def velocity_columns(scene: Scene, instants: Sequence[Fraction]) -> Columns:
     with mp.workdps(40):
         motion = solution(given).evaluate(given.clock.elapsed, 40)
         U = velocities(given.body, motion)["linear_velocity"]
-    kept = {name: values for name, values in columns.items() if name[0] not in "xy"}
-    return {**kept, **named(VELOCITY, U)}
+    others = {name: values for name, values in columns.items() if name[0] not in "xy"}
+    return {**others, **named(VELOCITY, U)}
 
 
 @cache
@@ -79,12 +79,12 @@ def only(columns: Mapping[str, Sequence[float]], *names: str) -> Columns:
 @pytest.mark.parametrize("scene", [SCENE, "kirchhoff/remus-100", "kirchhoff/swimmer-vehicle"])
 def test_velocities_stand_for_the_impulses(scene: str, tmp_path: Path) -> None:
     """Everything that impulses determine has its row, nothing is missing, and all of it passes."""
-    found = judged(tmp_path, sound(scene), scene)
+    judgement = judged(tmp_path, sound(scene), scene)
     by_impulses = judged(tmp_path, exact_columns(scene), scene)
-    assert set(by_quantity(found)) == set(by_quantity(by_impulses)) | {"velocity"}
-    assert {v.verdict for v in found.verdicts} == {Status.PASS}
-    assert found.conventions == ()
-    assert "its place, because the file has velocities" in by_quantity(found)["impulse"].because
+    assert set(by_quantity(judgement)) == set(by_quantity(by_impulses)) | {"velocity"}
+    assert {v.verdict for v in judgement.verdicts} == {Status.PASS}
+    assert judgement.conventions == ()
+    assert "its place, because the file has velocities" in by_quantity(judgement)["impulse"].because
 
 
 def test_impulses_are_made_exactly() -> None:
@@ -113,19 +113,19 @@ def test_names_of_vehicles(tmp_path: Path) -> None:
     for letter, name in zip("pqr", OMEGA, strict=True):
         with mp.workdps(30):
             spoken[f"{letter} [deg/s]"] = [mp.nstr(mp.degrees(v), 25) for v in columns[name]]
-    found = judged(tmp_path, spoken)
-    assert {v.verdict for v in found.verdicts} == {Status.PASS}
-    said = "\n".join(found.notes)
-    assert "`u` `v` `w` taken as u1 u2 u3, of the body's origin, in body axes" in said
-    assert "`p [deg/s]` `q [deg/s]` `r [deg/s]` taken as w1 w2 w3" in said
+    judgement = judged(tmp_path, spoken)
+    assert {v.verdict for v in judgement.verdicts} == {Status.PASS}
+    notes = "\n".join(judgement.notes)
+    assert "`u` `v` `w` taken as u1 u2 u3, of the body's origin, in body axes" in notes
+    assert "`p [deg/s]` `q [deg/s]` `r [deg/s]` taken as w1 w2 w3" in notes
 
 
 def test_either_velocity_alone_is_judged_as_itself(tmp_path: Path) -> None:
     """u1 u2 u3 alone have the row velocity, and the impulses are not judged."""
-    found = judged(tmp_path, only(sound(), *VELOCITY))
-    assert set(by_quantity(found)) == {INITIAL, "velocity", COMPLETE}
-    assert by_quantity(found)["velocity"].verdict is Status.PASS
-    assert "linear impulse" in by_quantity(found)[COMPLETE].because
+    judgement = judged(tmp_path, only(sound(), *VELOCITY))
+    assert set(by_quantity(judgement)) == {INITIAL, "velocity", COMPLETE}
+    assert by_quantity(judgement)["velocity"].verdict is Status.PASS
+    assert "linear impulse" in by_quantity(judgement)[COMPLETE].because
     spoiled = only(sound(), *VELOCITY)
     spoiled["u2"][3] *= 1 + 1e-10
     velocity = by_quantity(judged(tmp_path, spoiled))["velocity"]
@@ -139,13 +139,13 @@ def test_either_velocity_alone_is_judged_as_itself(tmp_path: Path) -> None:
 def test_impulses_of_the_file_come_before_its_velocities(tmp_path: Path) -> None:
     """Wrong velocities beside sound impulses fail their own row alone."""
     columns = {**exact_columns(SCENE), **{n: [2 * v for v in sound()[n]] for n in VELOCITY}}
-    found = {
+    judgements = {
         quantity: verdict.verdict
         for quantity, verdict in by_quantity(judged(tmp_path, columns)).items()
     }
-    assert found.pop("velocity") is Status.FAIL
-    assert found.pop(INITIAL) is Status.FAIL
-    assert set(found.values()) == {Status.PASS}
+    assert judgements.pop("velocity") is Status.FAIL
+    assert judgements.pop(INITIAL) is Status.FAIL
+    assert set(judgements.values()) == {Status.PASS}
 
 
 def swapped(columns: Mapping[str, Sequence[float]]) -> dict[str, Any]:
@@ -163,10 +163,10 @@ def in_millimetres(columns: Mapping[str, Sequence[float]]) -> dict[str, Any]:
 @pytest.mark.parametrize("spoil", [swapped, of_the_sign, in_millimetres])
 def test_wrong_velocities_are_caught(spoil: Any, tmp_path: Path) -> None:
     """Two components exchanged, a sign, a unit that is not theirs: impulse and velocity fail."""
-    found = by_quantity(judged(tmp_path, spoil(sound())))
+    verdicts = by_quantity(judged(tmp_path, spoil(sound())))
     for quantity in ("impulse", "velocity"):
-        assert found[quantity].verdict is Status.FAIL
-    assert found["omega"].verdict is Status.PASS
+        assert verdicts[quantity].verdict is Status.FAIL
+    assert verdicts["omega"].verdict is Status.PASS
 
 
 def test_velocities_in_space_axes_are_a_convention(tmp_path: Path) -> None:
@@ -174,9 +174,9 @@ def test_velocities_in_space_axes_are_a_convention(tmp_path: Path) -> None:
     R = rotations(rows_of(sound(), ("q0", "q1", "q2", "q3")))
     turned = (R @ rows_of(sound(), VELOCITY)[:, :, None])[:, :, 0]
     columns = {**sound(), **named(VELOCITY, turned)}
-    found = judged(tmp_path, columns)
-    assert ["u1 u2 u3 are in space axes"] == [finding.words for finding in found.conventions]
-    assert by_quantity(found)["impulse"].verdict is Status.FAIL
+    judgement = judged(tmp_path, columns)
+    assert ["u1 u2 u3 are in space axes"] == [finding.words for finding in judgement.conventions]
+    assert by_quantity(judgement)["impulse"].verdict is Status.FAIL
     mended = judged(tmp_path, columns, accept_conventions=True)
     assert by_quantity(mended)["velocity"].max < 1e-14  # type: ignore[operator]
     assert by_quantity(mended)["impulse"].max < 1e-14  # type: ignore[operator]
@@ -186,21 +186,21 @@ def test_a_value_that_is_no_number_is_named_where_it_stands(tmp_path: Path) -> N
     """NaN in u2 fails all that rests on it, and the row says where it is."""
     columns = {name: list(values) for name, values in sound().items()}
     columns["u2"][2] = float("nan")
-    found = by_quantity(judged(tmp_path, columns))
+    verdicts = by_quantity(judged(tmp_path, columns))
     for quantity in ("impulse", "velocity", "T"):
-        assert found[quantity].verdict is Status.FAIL
-        assert "u2 is nan in row 3" in found[quantity].because
-    assert found["omega"].verdict is Status.PASS
+        assert verdicts[quantity].verdict is Status.FAIL
+        assert "u2 is nan in row 3" in verdicts[quantity].because
+    assert verdicts["omega"].verdict is Status.PASS
 
 
 def test_a_rigid_body_has_no_velocity_of_its_origin(tmp_path: Path) -> None:
     """u1 u2 u3 beside w1 w2 w3 of Euler's equations are left out and named; alone they are refused."""
     columns = exact_columns("euler/generic")
     rest = {name: [1.0] * len(columns["t"]) for name in VELOCITY}
-    found = judged(tmp_path, {**columns, **rest}, "euler/generic")
-    assert {v.verdict for v in found.verdicts} == {Status.PASS}
-    said = "u1 u2 u3 not compared: euler/generic is of model euler, whose motion has no linear velocity"
-    assert said in found.notes
+    judgement = judged(tmp_path, {**columns, **rest}, "euler/generic")
+    assert {v.verdict for v in judgement.verdicts} == {Status.PASS}
+    note = "u1 u2 u3 not compared: euler/generic is of model euler, whose motion has no linear velocity"
+    assert note in judgement.notes
     file = write_csv(tmp_path / "mine.csv", {"t": columns["t"], **rest})
     assert main(["check", file, "--scene", "euler/generic"]) == 2
 
@@ -275,5 +275,5 @@ def test_a_diagonal_matrix_widens_nothing(tmp_path: Path) -> None:
         for columns in (sound(scene), exact_columns(scene))
     )
     for quantity in ("impulse", "T", "F2", "FG"):
-        bounds = [found[quantity].attainable for found in (by_velocities, by_impulses)]
+        bounds = [verdicts[quantity].attainable for verdicts in (by_velocities, by_impulses)]
         assert bounds[0] == pytest.approx(bounds[1], rel=0.3)

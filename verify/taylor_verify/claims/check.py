@@ -87,4 +87,4 @@ def measured(check: Check) -> Residual:
     try:
         return check()
     except ArithmeticError as error:
-        return Residual(float("nan"), 0.0, f"no number: {error}")
+        return Residual(float("nan"), bound=0.0, because=f"no number: {error}")

@@ -97,8 +97,16 @@ class Finding:
 
 # The fields that an entry of the ledger copies from the claim.
 _WORDS: Final = (
-    *("id", "statement", "domain", "method", "correction"),
-    *("condition", "lost", "void", "counterexample", "remark"),
+    "id",
+    "statement",
+    "domain",
+    "method",
+    "correction",
+    "condition",
+    "lost",
+    "void",
+    "counterexample",
+    "remark",
 )
 
 

@@ -103,11 +103,11 @@ class Exact(Setting):
     def residual(self, equations: Iterable[str]) -> Residual:
         elements = [self.field.element(d) for d in differences(equations, self.symbols)]
         if not elements:
-            return Residual(float("nan"), 0.0, "nothing was compared")
+            return Residual(float("nan"), bound=0.0, because="nothing was compared")
         nonzero = [self.field.size(d) for d in elements if not d.is_zero]
         # A polynomial that is no zero but vanishes at the point says nothing of its size.
         size = (max(nonzero) or float("nan")) if nonzero else 0.0
-        return Residual(size, 0.0, _BECAUSE)
+        return Residual(size, bound=0.0, because=_BECAUSE)
 
 
 @final

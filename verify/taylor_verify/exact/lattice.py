@@ -225,7 +225,7 @@ class Elementary(Lattice):
         return [sinh / self._rho, cosh, self._rho * sinh][: order + 1]
 
     def p(self, u: acb) -> tuple[acb, acb]:
-        s, slope = self.jet(u, 1)
+        s, slope = self.jet(u, order=1)
         rise = 1 / s**2
         return self._e + rise, -2 * rise * slope / s
 
@@ -239,7 +239,7 @@ class Elementary(Lattice):
     def turn(self, u: arb, w: acb, quotient: acb) -> arb:
         if self.period is None:
             # Im sinh(a + i b) = cosh a sin b, and Im (a + i b), have one sign along the line.
-            start = self.jet(-w, 0)[0]
+            start = self.jet(-w, order=0)[0]
             across = -sign(start.imag) * _I * start
             return (across * quotient).arg() - across.arg()
         # sin v is a constant times e^{-i v}(1 - e^{2 i v}) for Im v > 0; below, the conjugate.

@@ -168,9 +168,9 @@ class ThetaSeries:
         )
 
     def _alone(self, scale: arb, basis: str, sign: int) -> arb_poly:
-        count = self._count(0.0, 0)
+        count = self._count(0.0, order=0)
         coefficients = [scale * power * sign**n for n, power in enumerate(self._powers(count))]
-        return _polynomial(coefficients, basis, abs(scale) * self._tail(count, arb(0), 0))
+        return _polynomial(coefficients, basis, abs(scale) * self._tail(count, arb(0), order=0))
 
     def _count(self, b: float, order: int) -> int:
         """The number of terms before one that is below the ambient precision of the first one."""

@@ -68,7 +68,12 @@ class Run:
         """Return the verdict on a quantity, with the costs of the answer."""
         problem, trajectory = self.problem, self.trajectory
         return verdict_on(
-            *(problem.scene, self.solver, problem.rung, quantity, status, trajectory.outcome),
+            problem.scene,
+            self.solver,
+            problem.rung,
+            quantity,
+            status,
+            trajectory.outcome,
             roundoff=float(problem.rung.unit_roundoff),
             steps=trajectory.steps,
             evaluations=trajectory.evaluations,

@@ -96,7 +96,7 @@ def convergence(
 
 def local_orders(steps: Sequence[float], errors: Sequence[float]) -> tuple[float, ...]:
     """Return the order between neighbouring steps, of positive errors; the steps fall."""
-    points = [_Point(step, error, 0.0) for step, error in zip(steps, errors, strict=True)]
+    points = [_Point(step, error, floor=0.0) for step, error in zip(steps, errors, strict=True)]
     return tuple(_locals(points))
 
 

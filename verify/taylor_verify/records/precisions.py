@@ -36,10 +36,50 @@ class Format:
 FORMATS: Final[Mapping[str, Format]] = {
     each.name: each
     for each in (
-        Format("f32", 24, -126, 127, "float32", "#3F9BD1", "o", 0.9, 3.0),
-        Format("f64", 53, -1022, 1023, "float64", "#0072B2", "s", 1.5, 4.2),
-        Format("f80", 64, -16382, 16383, "longdouble", "#5A2A9A", "^", 2.1, 5.4),
-        Format("f128", 113, -16382, 16383, "", "#1A1040", "D", 2.7, 5.6),
+        Format(
+            name="f32",
+            bits=24,
+            emin=-126,
+            emax=127,
+            numpy="float32",
+            colour="#3F9BD1",
+            marker="o",
+            width=0.9,
+            size=3.0,
+        ),
+        Format(
+            name="f64",
+            bits=53,
+            emin=-1022,
+            emax=1023,
+            numpy="float64",
+            colour="#0072B2",
+            marker="s",
+            width=1.5,
+            size=4.2,
+        ),
+        Format(
+            name="f80",
+            bits=64,
+            emin=-16382,
+            emax=16383,
+            numpy="longdouble",
+            colour="#5A2A9A",
+            marker="^",
+            width=2.1,
+            size=5.4,
+        ),
+        Format(
+            name="f128",
+            bits=113,
+            emin=-16382,
+            emax=16383,
+            numpy="",
+            colour="#1A1040",
+            marker="D",
+            width=2.7,
+            size=5.6,
+        ),
     )
 }
 # The precisions that the standard set runs on.

@@ -79,18 +79,65 @@ class Conserved:
 
 # r12 is row 1, column 2; q0 is the scalar.
 GROUPS: Final[Mapping[str, Group]] = {
-    name: Group(name, tuple(columns.split()), *rest)
-    for name, columns, *rest in (
-        ("omega", "w1 w2 w3", "omega", "angular velocity", "rate", "body", "omega"),
-        ("linear_velocity", "u1 u2 u3", "velocity", "linear velocity", "velocity"),
-        ("linear_impulse", "x1 x2 x3", "impulse", "linear impulse", "impulse", "body", "linear"),
-        (
-            *("angular_impulse", "y1 y2 y3", "impulse", "angular impulse", "moment of impulse"),
-            *("body", "angular"),
+    group.name: group
+    for group in (
+        Group(
+            name="omega",
+            columns=("w1", "w2", "w3"),
+            quantity="omega",
+            noun="angular velocity",
+            dimension="rate",
+            start="omega",
         ),
-        ("quaternion", "q0 q1 q2 q3", "attitude", "attitude", "number", "frame", "attitude"),
-        ("attitude", "r11 r12 r13 r21 r22 r23 r31 r32 r33", *("attitude",) * 2, "number", "frame"),
-        ("centre", "c1 c2 c3", "centre", "centre", "length", "space", "centre"),
+        Group(
+            name="linear_velocity",
+            columns=("u1", "u2", "u3"),
+            quantity="velocity",
+            noun="linear velocity",
+            dimension="velocity",
+        ),
+        Group(
+            name="linear_impulse",
+            columns=("x1", "x2", "x3"),
+            quantity="impulse",
+            noun="linear impulse",
+            dimension="impulse",
+            start="linear",
+        ),
+        Group(
+            name="angular_impulse",
+            columns=("y1", "y2", "y3"),
+            quantity="impulse",
+            noun="angular impulse",
+            dimension="moment of impulse",
+            start="angular",
+        ),
+        Group(
+            name="quaternion",
+            columns=("q0", "q1", "q2", "q3"),
+            quantity="attitude",
+            noun="attitude",
+            dimension="number",
+            moves_with="frame",
+            start="attitude",
+        ),
+        Group(
+            name="attitude",
+            columns=("r11", "r12", "r13", "r21", "r22", "r23", "r31", "r32", "r33"),
+            quantity="attitude",
+            noun="attitude",
+            dimension="number",
+            moves_with="frame",
+        ),
+        Group(
+            name="centre",
+            columns=("c1", "c2", "c3"),
+            quantity="centre",
+            noun="centre",
+            dimension="length",
+            moves_with="space",
+            start="centre",
+        ),
     )
 }
 # In reading order.
@@ -99,12 +146,24 @@ QUANTITIES: Final[Mapping[str, Quantity]] = {
     for each in (
         Quantity("omega", "max|omega|", ("omega",), main_of="euler"),
         Quantity(
-            *("impulse", "max|x|, max|y|", ("linear_impulse", "angular_impulse")),
+            "impulse",
+            "max|x|, max|y|",
+            ("linear_impulse", "angular_impulse"),
             main_of="kirchhoff",
         ),
-        Quantity("attitude", "rad", ("quaternion",), "", ("euler", "kirchhoff"), Measure.ANGLE),
         Quantity(
-            *("centre", "arc length", ("centre",), "", ("kirchhoff",), Measure.PATH),
+            "attitude",
+            "rad",
+            ("quaternion",),
+            tracked_by=("euler", "kirchhoff"),
+            measure=Measure.ANGLE,
+        ),
+        Quantity(
+            "centre",
+            "arc length",
+            ("centre",),
+            tracked_by=("kirchhoff",),
+            measure=Measure.PATH,
             needs=("attitude",),
         ),
         Quantity("velocity", "max|U|", ("linear_velocity",)),

@@ -21,9 +21,25 @@ _DESCRIPTION: Final = (
 )
 # A row is written with these, whatever it compares.
 REQUIRED: Final = (
-    *("scene", "solver", "rung", "setting", "quantity", "max", "mean", "final", "at", "unit"),
-    *("bound", "because", "attainable", "exponent", "verdict", "outcome", "steps"),
-    *("evaluations", "provenance"),
+    "scene",
+    "solver",
+    "rung",
+    "setting",
+    "quantity",
+    "max",
+    "mean",
+    "final",
+    "at",
+    "unit",
+    "bound",
+    "because",
+    "attainable",
+    "exponent",
+    "verdict",
+    "outcome",
+    "steps",
+    "evaluations",
+    "provenance",
 )
 # What is made of the other keys of a row.
 _DERIVED: Final = {

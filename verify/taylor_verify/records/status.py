@@ -20,8 +20,12 @@ class Status(StrEnum):
 
 # From worst to best: the status of several verdicts is the worst of them.
 GRAVITY: Final = (
-    *(Status.FAIL, Status.UNDECIDED, Status.REFUSED),
-    *(Status.VACUOUS, Status.UNAVAILABLE, Status.PASS),
+    Status.FAIL,
+    Status.UNDECIDED,
+    Status.REFUSED,
+    Status.VACUOUS,
+    Status.UNAVAILABLE,
+    Status.PASS,
 )
 
 

@@ -29,7 +29,10 @@ _HEADINGS: Final = ("median:", "90 %:", "99 %:", "99.9 %:", "largest:")
 # What stands in a name of a scene and in no name of a file.
 _ODD: Final = re.compile(r"[^A-Za-z0-9._-]+")
 _SHEET: Final = (
-    *("quantity", "unit", "judged", *(status.value for status in Status)),
+    "quantity",
+    "unit",
+    "judged",
+    *(status.value for status in Status),
     *(f"ratio_{name}" for name in _NAMES),
     *(f"max_{name}" for name in _NAMES),
 )

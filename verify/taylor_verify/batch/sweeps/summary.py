@@ -25,7 +25,15 @@ Array = np.ndarray[Any, Any]
 
 WORST: Final = 10
 _ROWS: Final = (
-    *("point", "scene", "quantity", "verdict", "outcome", "max", "ratio", "unit", "because"),
+    "point",
+    "scene",
+    "quantity",
+    "verdict",
+    "outcome",
+    "max",
+    "ratio",
+    "unit",
+    "because",
 )
 # Statuses whose reasons are reported, and the number of reasons for each.
 _REASONED: Final = (Status.UNAVAILABLE, Status.REFUSED)

@@ -46,7 +46,9 @@ def one_real() -> Residual:
     """
     signs = [poles.field.value(square) > 0 for square in poles["c2"]]
     wrong = sum(a != b for a, b in zip(signs, (False, True, False), strict=True))
-    return Residual(float(wrong), 0.0, "c_i that are not real and imaginary as expected")
+    return Residual(
+        float(wrong), bound=0.0, because="c_i that are not real and imaginary as expected"
+    )
 
 
 # J1 = J2, and a moment across the axis of revolution.

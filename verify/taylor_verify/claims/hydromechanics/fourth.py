@@ -89,14 +89,18 @@ _OF_THREE: Final = {1: 0, 2: 3, 3: 0, 4: 6}
 def no_further(body: ImmersedBody) -> Residual:
     """The number of polynomial integrals of degree up to 4 besides T, F^2, FG and their products."""
     extra = sum(abs(integrals(body, d) - known) for d, known in _OF_THREE.items())
-    return Residual(float(extra), 0.0, f"integrals beyond those of T, F^2 and FG; {_COUNTED}")
+    return Residual(
+        float(extra), bound=0.0, because=f"integrals beyond those of T, F^2 and FG; {_COUNTED}"
+    )
 
 
 def known_families() -> Residual:
     """The bodies named have exactly one more: of degree 1, 2 and 2."""
     numbers = (integrals(SYMMETRIC, 1), integrals(SECOND_CASE, 2), integrals(STEKLOV, 2))
     missed = sum(abs(a - b) for a, b in zip(numbers, (1, 4, 4), strict=True))
-    return Residual(float(missed), 0.0, f"integrals of the known families; {_COUNTED}")
+    return Residual(
+        float(missed), bound=0.0, because=f"integrals of the known families; {_COUNTED}"
+    )
 
 
 # div v = 0 for every T: Jacobi's last multiplier is constant.
@@ -113,7 +117,9 @@ def independent(fourth: str) -> Residual:
         values = [clebsch.field.value(slope) for slope in slopes]
         rows.append([fmpq(v.numerator, v.denominator) for v in values])
     missing = 4 - _rank(rows)
-    return Residual(float(missing), 0.0, "4 less the rank of four gradients at a rational point")
+    return Residual(
+        float(missing), bound=0.0, because="4 less the rank of four gradients at a rational point"
+    )
 
 
 def coefficients_left(expected: int = 7) -> Residual:
@@ -121,7 +127,9 @@ def coefficients_left(expected: int = 7) -> Residual:
     names = [name for name in unloaded.field.names if name[0] in "ABC"]
     left = _relations([unloaded.field.partial(unloaded["dy"][2], name) for name in names])
     return Residual(
-        float(abs(left - expected)), 0.0, f"free coefficients of T beyond seven; {_COUNTED}"
+        float(abs(left - expected)),
+        bound=0.0,
+        because=f"free coefficients of T beyond seven; {_COUNTED}",
     )
 
 

@@ -121,7 +121,7 @@ def flow_defect(
         everything = everything + magnitude[j]
         left = left + rates_of_change(bounds, column(tails[order - j])) * magnitude[j]
     left = (left + rates_of_change(bounds, tube.width) * everything) * abs(h).upper()
-    return accumulated(tube.growth, magnitudes(left), 1)
+    return accumulated(tube.growth, magnitudes(left), order=1)
 
 
 def carried(box: Box, state: Series, tube: Tube, flow: Flow | None, spans: list[range]) -> Box:

@@ -62,8 +62,8 @@ def tube(bounds: Balls, sizes: Series, h: arb, apart: arb_mat) -> Tube:
     around = column([arb(0)] * len(sizes[0]))
     for _ in range(_TRIES):
         growth = rates_of_change(bounds, reached(reach, around)) * h
-        error = accumulated(growth, defect, 1)
-        width = magnitudes(error + accumulated(growth, apart, 0))
+        error = accumulated(growth, defect, order=1)
+        width = magnitudes(error + accumulated(growth, apart, order=0))
         if is_within(width, around):
             return Tube(error, width, growth)
         # Twice as wide: a component that is zero so far may be reached through the others' width.

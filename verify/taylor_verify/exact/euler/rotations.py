@@ -56,8 +56,8 @@ class BallCourse(ABC):
     def rows(self, times: Sequence[Time], start: motion.Quaternion | None) -> Moving:
         """omega at every time, and R from an attitude at the start: one by one, unless stated."""
         if start is None:
-            return [self.at(t, False)[0] for t in times], []
-        quaternion, both = rotation.unit(start), [self.at(t, True) for t in times]
+            return [self.at(t, turned=False)[0] for t in times], []
+        quaternion, both = rotation.unit(start), [self.at(t, turned=True) for t in times]
         frames = [rotation.rotation_rows(rotation.product(quaternion, q)) for _, q in both]
         return [omega for omega, _ in both], frames
 
@@ -79,7 +79,8 @@ class RotationBalls(Enclosed):
         with ctx.workprec(-(-bits // _STEP_BITS) * _STEP_BITS):
             course = self.course()
             if self.by_quaternion and self.attitude is not None:
-                start, rows = rotation.unit(self.attitude), [course.at(t, True) for t in elapsed]
+                start = rotation.unit(self.attitude)
+                rows = [course.at(t, turned=True) for t in elapsed]
                 return {
                     "omega": [omega for omega, _ in rows],
                     "quaternion": [rotation.product(start, turn) for _, turn in rows],
@@ -128,7 +129,7 @@ class Rotation(Settled):
         with mp.workdps(working):
             if working not in self._courses:
                 self._courses[working] = self.set_up()
-            rows = [self._courses[working].at(t, attitude is not None) for t in elapsed]
+            rows = [self._courses[working].at(t, turned=attitude is not None) for t in elapsed]
             quantities: Mapping[str, np.ndarray[Any, Any]] = {
                 "omega": _array([w for w, _ in rows], 3)
             }

@@ -169,7 +169,7 @@ class Azimuth:
         self._rate = rate_at_start(free, frame.c, self._N, ball)
         for pole in poles(free, place.converted(ball), frame, _BALLS):
             argument = curve.argument(pole.p, pole.slope)
-            value, slope = curve.jet(-argument, 1)
+            value, slope = curve.jet(-argument, order=1)
             self._factors.append(_Factor(argument, value, pole.sigma))
             self._rate -= pole.sigma * (slope / value).imag
 
@@ -184,7 +184,7 @@ class Azimuth:
         """e^{i phi} at each of the times, which are those of the line."""
         quotients = [acb(1)] * len(times)
         for argument, scale, sigma in self._factors:
-            values = (value for value, *_ in line.jets(argument, scale, 0))
+            values = (value for value, *_ in line.jets(argument, scale, order=0))
             # A factor for sigma = -1 is inverted; once its modulus is left out that is the conjugate.
             quotients = [
                 quotient * (value if sigma > 0 else value.conjugate())

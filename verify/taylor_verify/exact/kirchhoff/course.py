@@ -160,7 +160,7 @@ class QuarticCourse(Course):
             upper[1] = upper[0].conjugate()  # z is real
             self.are_conjugate = True
         self.poles = tuple(upper)
-        jets = [self.lattice.jet(-w, 2) for w in self.poles]
+        jets = [self.lattice.jet(-w, order=2) for w in self.poles]
         slopes = [s1 / s0 for s0, s1, _ in jets]
         bends = [s2 / s0 - (s1 / s0) ** 2 for s0, s1, s2 in jets]
         self._start_slopes = sum(slopes, acb(0)).real
@@ -207,7 +207,7 @@ class CubicCourse(Course):
         self._a1 = ball(nutation.f[0] / 4)
         _, b1, b2, _, _ = self._b
         self.poles = (self.lattice.argument(acb(b2 / 2), acb(-self.speed * b1)),)
-        s0, s1, s2 = self.lattice.jet(-self.poles[0], 2)
+        s0, s1, s2 = self.lattice.jet(-self.poles[0], order=2)
         self._start_slope = (s1 / s0).real
         self._pace = self.z + (s2 / s0 - (s1 / s0) ** 2).real / self._a1
 

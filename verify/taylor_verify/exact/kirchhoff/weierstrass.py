@@ -88,7 +88,7 @@ class Factor:
         """N'/N at the start, or its constant term, zero, for a factor that vanishes there."""
         if self._argument is None or self._argument.is_zero():
             return acb(0)
-        value, slope = self.jet(arb(0), 1)
+        value, slope = self.jet(arb(0), order=1)
         return slope / value
 
 
@@ -132,7 +132,7 @@ class Orbit:
         """Return all tracked quantities, and possibly others, at each time since the start."""
         line, count = self._course.lattice.along(times), len(times)
         places = self._course.places(times, line)
-        above = (factor.jets(line, count, 0) for factor in (self._alpha, self._beta))
+        above = (factor.jets(line, count, order=0) for factor in (self._alpha, self._beta))
         jets = [pole.jets(line, count, self._pole_order) for pole in self._own_poles]
         poles = zip(*jets, strict=True) if jets else [()] * count
         parts = zip(times, places, *above, poles, strict=True)
@@ -301,9 +301,11 @@ class Orbit:
     def _eta_near_pole(self, u: arb, z: arb, xi: acb, turn: acb, above: tuple[acb, acb]) -> acb:
         """Solve xi' = i r z eta - i (r' y3 + (q' - q) z) xi for eta, without a division by xi."""
         alpha, beta = above[0].conjugate(), above[1]
-        alpha_slope, beta_slope = (factor.jet(u, 1)[1] for factor in (self._alpha, self._beta))
+        alpha_slope, beta_slope = (
+            factor.jet(u, order=1)[1] for factor in (self._alpha, self._beta)
+        )
         growth = alpha_slope.conjugate() * beta + alpha * beta_slope
-        jets = [factor.jet(u, 1) for factor in self._own_poles]
+        jets = [factor.jet(u, order=1) for factor in self._own_poles]
         rates = [slope / value for value, slope in jets]
         if self._course.are_conjugate:
             rates += [rate.conjugate() for rate in rates]

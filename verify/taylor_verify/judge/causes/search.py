@@ -32,8 +32,15 @@ _NOTHING: Final = 1e-3
 
 # Hypotheses about the equations of the states; those without fitted numbers come first.
 DYNAMICS: Final[tuple[Hypothesis, ...]] = (
-    *(other_tensors, loads, space_loads, wrong_terms, wrong_damping),
-    *(gyroscopic_step, damping, damping_step, another_body),
+    other_tensors,
+    loads,
+    space_loads,
+    wrong_terms,
+    wrong_damping,
+    gyroscopic_step,
+    damping,
+    damping_step,
+    another_body,
 )
 # Hypotheses about rows, attitudes and number formats.
 OTHERS: Final[tuple[Hypothesis, ...]] = (other_rows, kinematics, single_precision)

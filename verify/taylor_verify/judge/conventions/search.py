@@ -195,7 +195,7 @@ class _Search:
     ) -> BestReading:
         known = readings(group, frames)
         if not near:
-            return BestReading(known[0], 1.0, 1.0, 0.0, ())
+            return BestReading(known[0], error=1.0, plain=1.0, motion=0.0, others=())
         columns = self.values[group][list(near)]
         right = truth["attitude" if GROUPS[group].is_frame else group]
         # A row out of reach of this world cannot be confirmed.

@@ -139,7 +139,7 @@ def _comparison(run: Run, exact: Solution, quantities: Quantities) -> Comparison
 def _floor(run: Run) -> Floor:
     problem, by_velocities = run.problem, run.solver.carries_velocities
     roundoff = problem.rung.unit_roundoff
-    return floor(problem.given, problem.scene, roundoff, 0, by_velocities)
+    return floor(problem.given, problem.scene, roundoff, steps=0, velocities=by_velocities)
 
 
 def _states_apart(run: Run, exact: Solution, filled: Quantities) -> list[Gated]:

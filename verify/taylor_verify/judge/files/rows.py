@@ -75,7 +75,10 @@ class FileRows(ByRows):
         if self.readings:
             # The exact attitude converts vectors that are in space axes.
             given = adopt(self.scene, self.rung, tuple(self.times[k] for k in asked)).given
-            tracked, digits = replace(given, track=frozenset({"attitude"})), truth_digits(bits, 0)
+            tracked, digits = (
+                replace(given, track=frozenset({"attitude"})),
+                truth_digits(bits, more=0),
+            )
             R = solution(tracked).motion(given.clock.elapsed, digits)["attitude"]
             with mp.workprec(bits):
                 for name, reading in self.readings.items():

@@ -64,7 +64,7 @@ def storing(file: TrajectoryFile, rung: Rung) -> Storing | None:
             "storing cut off counts as error; if float32 arithmetic made the file, judge it on f32"
         )
         return Storing(ErrorKind.SINGLE, 2.0**-bits, note)
-    digits, needed = file.digits, truth_digits(rung.bits, 1)
+    digits, needed = file.digits, truth_digits(rung.bits, more=1)
     if digits is None or digits >= needed - _SPARE_DIGITS:
         return None
     note = (

@@ -51,7 +51,7 @@ class MuntheKaas(FixedStep):
             fourth = rate(scaled(h, third), whole)
             ends, middle = ahead(first, 1.0, fourth), ahead(second, 1.0, third)
             theta = scaled(h / 6, ahead(ends, 2.0, middle))
-            return Stepped(scaled(whole, turned_back(theta, H)), theta, 4)
+            return Stepped(scaled(whole, turned_back(theta, H)), theta, evaluations=4)
 
         return step
 

@@ -211,7 +211,14 @@ def stepped(body: Body, step: float, start: Callable[[], Engine], remark: str = 
     first, _ = seconds_and_rows()
     second, rows = seconds_and_rows()
     compiling = max(0.0, first - second)
-    return Solved(rows, counts[-1], 0, second, compiling, remark or body.remark)
+    return Solved(
+        rows,
+        counts[-1],
+        evaluations=0,
+        seconds=second,
+        compile_seconds=compiling,
+        remark=remark or body.remark,
+    )
 
 
 # Axes.

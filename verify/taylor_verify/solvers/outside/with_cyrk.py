@@ -86,14 +86,31 @@ def _propagated(address: int, question: Question, settings: Settings) -> tuple[A
     start, instants = numpy.array(question.state), numpy.array(question.instants)
     rtol, atol, count = (numpy.array([value]) for value in (settings.rtol, settings.atol, 0.0))
     solution = c.c_numba_cysolve_ivp(
-        *(address, 0.0, question.end, start.ctypes.data, start.size),
-        *(find_ode_method_int(METHODS[settings.method]), 0, 0),  # no size expected, nothing extra
-        *(count.ctypes.data, count.nbytes),
-        *(0, MOST_MEMORY, False),  # any number of steps; no interpolant is kept
-        *(instants.ctypes.data, instants.size),
-        *(0, 0, 0),  # nothing before an evaluation, no events
-        *(rtol.ctypes.data, rtol.size, atol.ctypes.data, atol.size),
-        *(MAX_SIZE, 0.0, True),  # the longest step, the first step, and the counts are kept
+        address,
+        0.0,
+        question.end,
+        start.ctypes.data,
+        start.size,
+        find_ode_method_int(METHODS[settings.method]),
+        0,  # no size is expected
+        0,  # nothing extra
+        count.ctypes.data,
+        count.nbytes,
+        0,  # any number of steps
+        MOST_MEMORY,
+        False,  # the interpolant is not kept
+        instants.ctypes.data,
+        instants.size,
+        0,  # nothing is called before an evaluation
+        0,  # no events
+        0,  # no events
+        rtol.ctypes.data,
+        rtol.size,
+        atol.ctypes.data,
+        atol.size,
+        MAX_SIZE,  # the longest step
+        0.0,  # the first step
+        True,  # the counts are kept
     )
     try:
         size = c.c_get_size(solution)

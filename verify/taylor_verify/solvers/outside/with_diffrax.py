@@ -62,7 +62,14 @@ def solve(question: Question, settings: Settings) -> Solved:
     if solution.result != diffrax.RESULTS.successful:
         raise SystemExit(f"diffrax: {solution.result}")
     steps = int(solution.stats["num_steps"])
-    return Solved(solution.ys.tolist(), steps, 0, seconds, compiling, again=propagate)
+    return Solved(
+        solution.ys.tolist(),
+        steps,
+        evaluations=0,
+        seconds=seconds,
+        compile_seconds=compiling,
+        again=propagate,
+    )
 
 
 @once_for_equations

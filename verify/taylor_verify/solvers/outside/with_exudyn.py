@@ -64,7 +64,7 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
         if not abs(time - instant) <= 1e-6 * settings.step:
             raise SystemExit(f"Exudyn: expected a record at t = {instant!r}, got {time!r}")
         rows.append(body.row(omega, quaternion(matrices[count // every][1:])))
-    return Solved(rows, counts[-1], 0, seconds, more)
+    return Solved(rows, counts[-1], evaluations=0, seconds=seconds, compile_seconds=more)
 
 
 def system_of(container: Any, body: FreeBody, node: str) -> tuple[Any, tuple[Any, Any]]:

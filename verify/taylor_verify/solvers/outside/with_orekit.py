@@ -34,7 +34,7 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
         rows, seconds, more = twice(lambda: motion(body))
     except jpype.JException as fault:
         raise SystemExit(f"Orekit: {fault}") from None
-    return Solved(rows, 0, 0, seconds, more)
+    return Solved(rows, steps=0, evaluations=0, seconds=seconds, compile_seconds=more)
 
 
 def begin() -> None:

@@ -83,7 +83,7 @@ class Way:
         answer. Steps and seconds are those of the run whose rows these are.
         """
         if not isfinite(self._rate):
-            return Ran(Outcome.NON_FINITE, self._start[None], 0.0, 0, 0.0)
+            return Ran(Outcome.NON_FINITE, self._start[None], longest=0.0, steps=0, seconds=0.0)
         grid, samples = self._grid
         ran = self._went(_stretches(grid, self._calls), self._rate)
         if self._was_too_fast(ran):

@@ -73,8 +73,12 @@ _WORDS: Final = {
     "centre": ("px py pz", "xpos ypos zpos"),
     "omega": ("rollrate pitchrate yawrate", "rollspeed pitchspeed yawspeed"),
     "quaternion": (
-        *("qc q1 q2 q3", "qs q1 q2 q3", "qw q1 q2 q3", "qr qi qj qk"),
-        *("eta eps1 eps2 eps3", "eta epsilon1 epsilon2 epsilon3"),
+        "qc q1 q2 q3",
+        "qs q1 q2 q3",
+        "qw q1 q2 q3",
+        "qr qi qj qk",
+        "eta eps1 eps2 eps3",
+        "eta epsilon1 epsilon2 epsilon3",
     ),
 }
 _TIMES: Final = (

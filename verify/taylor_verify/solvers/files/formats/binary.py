@@ -38,8 +38,17 @@ _ENTRY: Final = re.compile(rb"PK\x01\x02")
 _LONGEST_HEADER: Final = 10_012
 # What a member that is no array, or no archive, makes of the libraries.
 _BROKEN: Final = (
-    *(ValueError, TypeError, KeyError, EOFError, SyntaxError, TokenError, OverflowError),
-    *(zipfile.BadZipFile, zlib.error, LZMAError, RuntimeError),
+    ValueError,
+    TypeError,
+    KeyError,
+    EOFError,
+    SyntaxError,
+    TokenError,
+    OverflowError,
+    zipfile.BadZipFile,
+    zlib.error,
+    LZMAError,
+    RuntimeError,
 )
 
 

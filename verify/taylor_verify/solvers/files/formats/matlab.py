@@ -156,7 +156,9 @@ class _Reader:
         kind = flags & 0xFF
         if kind == _OPAQUE:
             own, _, class_name = (_text(_next(parts)) for _ in range(3))
-            yield Array(f"{group}{name or own}", (1,), class_name or "object", 8, _nothing)
+            yield Array(
+                f"{group}{name or own}", (1,), class_name or "object", itemsize=8, load=_nothing
+            )
             return
         sizes, own = _next(parts).data, _text(_next(parts))
         shape = struct.unpack(f"{self.order}{len(sizes) // 4}i", sizes)
@@ -168,7 +170,7 @@ class _Reader:
         elif kind in _CLASSES and not flags & (_COMPLEX | _LOGICAL):
             yield self._numbers(full, shape, kind, next(parts, None))
         else:
-            yield Array(full, shape, "O", 8, _nothing)
+            yield Array(full, shape, "O", itemsize=8, load=_nothing)
 
     def _struct(
         self, name: str, shape: tuple[int, ...], parts: Iterator[_Element], depth: int

@@ -52,13 +52,13 @@ class Speed(ABC):
 
     @final
     def squared(self, sigma: Number) -> Number:
-        """F."""
-        return self._start + self.slope * sigma - self._wave(sigma, 0)
+        """Return F."""
+        return self._start + self.slope * sigma - self._wave(sigma, order=0)
 
     @final
     def derivative(self, sigma: Number) -> Number:
-        """F'."""
-        return self.slope - self._wave(sigma, 1)
+        """Return F'."""
+        return self.slope - self._wave(sigma, order=1)
 
     @abstractmethod
     def _wave(self, sigma: Number, order: int) -> Number:
@@ -84,7 +84,7 @@ class Speed(ABC):
         middle = sigma.mid()
         d = sigma - middle
         tangent = self.squared(middle) + self.derivative(middle) * d
-        return tangent - self._wave(sigma, 2) * d * d / 2
+        return tangent - self._wave(sigma, order=2) * d * d / 2
 
     def _is_wide(self, z: acb) -> bool:
         """Return True if a ball of sigma is wider than a node of a quadrature."""
@@ -123,7 +123,7 @@ class Swinging(Speed):
 
     def _quotient(self, end: arb) -> Quotient:
         rate, slope = self.rate, self.slope
-        first, second = -self._wave(end, 1), -self._wave(end, 2) / 2
+        first, second = -self._wave(end, order=1), -self._wave(end, order=2) / 2
 
         def of(z: acb) -> acb:
             x = rate * z
