@@ -12,7 +12,7 @@ from taylor_verify.models.problem import Problem, pose
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.taylor.driver import Taylor, compiled
+from taylor_verify.solvers.taylor.driver import Taylor, compiled, pays
 from taylor_verify.solvers.taylor.numbers import arithmetic
 from taylor_verify.studies.tradeoff.measurement import SCENES, UNTIL, scene_named
 
@@ -38,7 +38,7 @@ _FIRST: Final = Target(
 def plain(problem: Problem) -> Callable[[], object]:
     """Return heyoka's own call for a problem of which time 0 is a sample: no cap, no look, no outcome."""
     numbers = arithmetic(problem.rung)
-    integrator = compiled(problem.form, problem.rung, None, is_long=True)
+    integrator = compiled(problem.form, problem.rung, None, pays(problem.form, problem.rung))
     start, parameters = map(numbers.array, (problem.initial_momenta, problem.parameters))
     grid = numbers.times(problem.times)
     assert grid[0] == 0

@@ -42,7 +42,7 @@ class Table:
 
     @property
     def csv(self) -> str:
-        """The same cells for a program."""
+        """A sheet of these cells for a program."""
         names = [heading.removesuffix(":") for heading in self.headings]
         rows = (dict(zip(names, map(plain, row), strict=True)) for row in self.rows)
         return sheet(names, rows)
