@@ -31,9 +31,9 @@ from taylor_verify.solvers.taylor.driver import compiled, equations, pays
 from taylor_verify.solvers.taylor.numbers import arithmetic, unavailable
 from taylor_verify.solvers.taylor.way import (
     LEAST_STEPS,
-    LONGEST_STEP,
     MOST_RADIANS,
     STEPS_PER_RADIAN,
+    longest_step,
     outcome_of,
 )
 from taylor_verify.solvers.trajectory import Outcome
@@ -139,7 +139,7 @@ class Ensemble:
         integrator.pars[:] = numbers.array(self.problems[i].parameters)
         status, _, _, steps, *_ = integrator.propagate_until(
             end,
-            max_delta_t=numbers.double(LONGEST_STEP / lane.fastest),
+            max_delta_t=numbers.double(longest_step(int(integrator.order)) / lane.fastest),
             max_steps=most_steps(lane, target),
         )
         return self._reached(lane, target, outcome_of(status), int(steps), integrator.state)
@@ -156,7 +156,8 @@ class Ensemble:
         parameters = _padded(np.array(given, dtype=numbers.fp_type).T, width)
         rates = [lane.fastest if lane.goes_on else 1.0 for lane in lanes]
         rates += rates[:1] * (width - len(lanes))
-        longest = np.array([numbers.double(LONGEST_STEP / rate) for rate in rates])
+        cap = longest_step(int(integrator.order))
+        longest = np.array([numbers.double(cap / rate) for rate in rates])
         steps = np.zeros(width, dtype=int)
         while going := [k for k, lane in enumerate(lanes) if lane.goes_on]:
             # A place without a lane that goes on holds another's numbers, and is where it should be.

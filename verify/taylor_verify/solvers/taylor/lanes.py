@@ -17,9 +17,9 @@ from taylor_verify.scenes.precision import rung
 from taylor_verify.solvers.taylor.ensemble import batch_width, stepper
 from taylor_verify.solvers.taylor.way import (
     LEAST_STEPS,
-    LONGEST_STEP,
     MOST_RADIANS,
     STEPS_PER_RADIAN,
+    longest_step,
     outcome_of,
 )
 from taylor_verify.solvers.trajectory import Outcome
@@ -114,7 +114,7 @@ class _Propagation:
         stepper.pars[:] = self._bodies.parameters[:, places]
         _, rows = stepper.propagate_grid(
             np.ascontiguousarray(self._grid[places].T),
-            max_delta_t=LONGEST_STEP / self._rates[places],
+            max_delta_t=longest_step(int(stepper.order)) / self._rates[places],
             max_steps=int(limits.max()),
         )
         self._rows[:, lanes] = np.transpose(rows, (1, 2, 0))[:, :count]

@@ -31,16 +31,18 @@ class Arithmetic:
     """The numbers of one rung in heyoka: its fp_type, and conversions that round nothing.
 
     ``scaled`` makes one of a significand and an exponent of two; ``double`` rounds a double to nearest
-    where the rung is the narrower. ``exact`` leads back. Code for it that is stored on disk is found
-    again by another process if ``is_found_again``. Straight-line code for it ``is_quick_plain``: without
-    any optimising it runs as fast as optimised loops, and compiles in a quarter of their time.
+    where the rung is the narrower. ``exact`` leads back. Where ``is_software``, a library computes, some
+    hundred times slower than a processor; without compact mode its code compiles for seconds to minutes,
+    and runs no faster. Code that is stored on disk is found again by another process if
+    ``is_found_again``. Straight-line code ``is_quick_plain``: without any optimising it runs as fast as
+    optimised loops, and compiles in a quarter of their time.
     """
 
     fp_type: Any
     scaled: Callable[[int, int], Any]
     double: Callable[[float], Any]
     exact: Callable[[Any], Fraction] = exact_value
-    compact: bool = False
+    is_software: bool = False
     is_found_again: bool = True
     is_quick_plain: bool = False
 
@@ -74,14 +76,13 @@ def arithmetic(rung: Rung) -> Arithmetic:
         return _OF_NUMPY[rung.name]
     import heyoka as hy
 
-    # Without compact mode these compile for seconds to minutes and then run no faster.
     if rung.name == "f128":
         return Arithmetic(
             hy.real128,
             lambda m, e: hy.real128(_real(m, e, 113)),
             hy.real128,
             _from_real128,
-            compact=True,
+            is_software=True,
         )
     bits = rung.bits
     return Arithmetic(
@@ -89,7 +90,7 @@ def arithmetic(rung: Rung) -> Arithmetic:
         lambda m, e: _real(m, e, bits),
         lambda v: hy.real(v, bits),
         _from_real,
-        compact=True,
+        is_software=True,
         is_found_again=False,
     )
 

@@ -12,7 +12,7 @@ from taylor_verify.models.problem import Problem
 from taylor_verify.models.rates import Linearised
 from taylor_verify.solvers.taylor.driver import compiled, pays
 from taylor_verify.solvers.taylor.numbers import arithmetic
-from taylor_verify.solvers.taylor.way import LONGEST_STEP
+from taylor_verify.solvers.taylor.way import longest_step
 
 
 class Pace:
@@ -37,7 +37,7 @@ class Pace:
         self._start = numbers.array(problem.initial_momenta)
         self._parameters = numbers.array(() if literals else problem.parameters)
         rate = Linearised(problem).fastest([float(value) for value in problem.initial_momenta])
-        self._longest = numbers.double(LONGEST_STEP / rate)
+        self._longest = numbers.double(longest_step(self.order) / rate)
 
     @property
     def order(self) -> int:

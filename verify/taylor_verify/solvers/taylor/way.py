@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 from functools import lru_cache
 from itertools import pairwise
-from math import ceil, isfinite
+from math import ceil, inf, isfinite
 from time import perf_counter
 from typing import Any, Final, NamedTuple, final
 
@@ -18,10 +18,12 @@ from taylor_verify.scenes.precision import Rung
 from taylor_verify.solvers.taylor.numbers import arithmetic
 from taylor_verify.solvers.trajectory import Outcome
 
-# In units of the fastest linear rate at hand. heyoka's own step on a regular orbit is of this size;
+# In units of the fastest linear rate at hand. heyoka's own step on a regular orbit is of the first size;
 # a start close to an unstable axis, where the step would grow with the logarithm of the distance,
-# is what the cap is for.
-LONGEST_STEP: Final = 0.5
+# is what the cap is for. From a step h a component that grows or turns at that rate, however small it is
+# beside the others, loses about (e h/p)^p of itself in order p. At h = p/40 that is 2^-p times heyoka's
+# own tolerance, e^(2 - 2p): so a higher order takes longer steps. Doubles have order 20.
+_LONGEST_STEP, _STEP_PER_ORDER = 0.5, 1 / 40
 # heyoka is called once, since each call cuts a step short. If the rate, looked at afterwards, says that a
 # step was longer than this factor allows, the way is gone again with looks so many radians apart, no more
 # and no less often than this: a call leads from each to the next, and the fastest rate so far counts.
@@ -66,6 +68,7 @@ class Way:
         numbers = arithmetic(problem.rung)
         self._integrator, self._problem, self._numbers = integrator, problem, numbers
         self._order = int(integrator.order)
+        self._longest = longest_step(self._order)
         self._parameters = numbers.array(problem.parameters)
         self._start = numbers.array(problem.initial_momenta)
         self._times = numbers.times(problem.times)
@@ -76,8 +79,8 @@ class Way:
         self._calls = _calls(self._radians, problem.rung)
         self._grid = self._instants(self._calls)
 
-    def run(self) -> Ran:
-        """Go the whole way.
+    def run(self, foreseen: float = 0.0) -> Ran:
+        """Go the whole way, in steps that suit its rate at the start and the one foreseen.
 
         The outcome is FINISHED only if a row is there for every sample, and finite; else the rows are no
         answer. Steps and seconds are those of the run whose rows these are.
@@ -85,16 +88,22 @@ class Way:
         if not isfinite(self._rate):
             return Ran(Outcome.NON_FINITE, self._start[None], longest=0.0, steps=0, seconds=0.0)
         grid, samples = self._grid
-        ran = self._went(_stretches(grid, self._calls), self._rate)
-        if self._was_too_fast(ran):
+        rate = max(self._rate, foreseen if isfinite(foreseen) else 0.0)
+        ran = self._went(_stretches(grid, self._calls), rate)
+        if self._was_too_fast(ran, rate):
             look_count = max(self._calls, _look_count(self._radians))
             grid, samples = self._instants(look_count)
-            ran = self._went(_stretches(grid, look_count), self._rate, is_watched=True)
+            ran = self._went(_stretches(grid, look_count), rate, is_watched=True)
         if ran.outcome is not Outcome.FINISHED:
             return ran
         if len(ran.rows) != len(grid):
             return ran._replace(outcome=Outcome.INTERRUPTED)
         return ran if len(grid) == len(self._times) else ran._replace(rows=ran.rows[samples])
+
+    def fastest(self) -> float:
+        """Return the fastest rate at the instants; infinite where the way does not reach its end."""
+        ran = self.run()
+        return self._linearised.fastest(ran.rows) if ran.outcome is Outcome.FINISHED else inf
 
     @property
     def order(self) -> int:
@@ -119,7 +128,7 @@ class Way:
             if not radians <= MOST_RADIANS:
                 outcome = Outcome.STEP_LIMIT if isfinite(rate) else Outcome.NON_FINITE
                 break
-            cap = LONGEST_STEP / rate
+            cap = self._longest / rate
             began = perf_counter()
             status, _, uncut, taken, _, reached = integrator.propagate_grid(
                 instants,
@@ -143,12 +152,12 @@ class Way:
         whole = rows[0] if len(rows) == 1 else np.concatenate(rows or [self._start[None]])
         return Ran(outcome, whole, longest, steps, seconds)
 
-    def _was_too_fast(self, ran: Ran) -> bool:
+    def _was_too_fast(self, ran: Ran, rate: float) -> bool:
         """Return True where the rate has grown, and steps were too long for it or ran out for it."""
         some = ran.rows[:: -ceil(len(ran.rows) / _ROWS_LOOKED_AT)]
         if ran.outcome is Outcome.FINISHED:
-            return not self._linearised.is_within(some, _SLACK * LONGEST_STEP / ran.longest)
-        return self._linearised.fastest(some) > self._rate
+            return not self._linearised.is_within(some, _SLACK * self._longest / ran.longest)
+        return self._linearised.fastest(some) > rate
 
     @property
     def _callback(self) -> Any:
@@ -173,6 +182,11 @@ class Way:
             samples.append(len(instants))
             instants.append(before)
         return self._numbers.array(instants), samples[len(grid) - len(times) :]
+
+
+def longest_step(order: int) -> float:
+    """Return the longest step that is taken in an order, in units of the fastest linear rate."""
+    return max(_LONGEST_STEP, _STEP_PER_ORDER * order)
 
 
 def outcome_of(status: Any) -> Outcome:
