@@ -8,6 +8,7 @@ import sys
 import time
 from dataclasses import replace
 from fractions import Fraction
+from typing import Any
 
 import heyoka as hy
 import numpy as np
@@ -33,6 +34,7 @@ from taylor_verify.solvers.solver import Callback
 from taylor_verify.solvers.taylor import driver, way
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.taylor.numbers import arithmetic
+from taylor_verify.solvers.taylor.way import longest_step
 from taylor_verify.solvers.trajectory import Outcome
 
 RUNGS = (*LADDER, "mp24", "mp100", "mp1000")
@@ -110,9 +112,10 @@ def spinning(omega: tuple[Fraction, ...], end: Fraction, inertia: int = 3) -> Sc
 
 def largest_error(problem: Problem) -> float:
     """The largest relative error of omega against the exact solution."""
-    answer = Taylor().solve(problem).motion(300)
-    truth = solution(problem.given).motion(problem.given.clock.elapsed, 40)
-    with mp.workdps(40):
+    digits = 20 + problem.rung.bits // 3
+    answer = Taylor().solve(problem).motion(1000)
+    truth = solution(problem.given).motion(problem.given.clock.elapsed, digits)
+    with mp.workdps(digits):
         scale = max(mp.norm(list(row)) for row in truth["omega"])
         errors = [
             mp.norm(list(a - b)) / scale
@@ -134,8 +137,9 @@ def test_scale_of_the_scene_does_not_matter(exponent: int) -> None:
     assert largest_error(problem) <= 1000 * 2.0**-53
 
 
+@pytest.mark.parametrize("name", ["f64", "f80", "f128", "mp237"])
 @pytest.mark.parametrize("digits", [4, 8, 16, 20, 40])
-def test_start_near_the_unstable_axis_keeps_its_first_flip(digits: int) -> None:
+def test_start_near_the_unstable_axis_keeps_its_first_flip(digits: int, name: str) -> None:
     """omega = (10^-d, 1, 0) is right at its first flip (trap T3: heyoka alone is wrong by 4e-8 to 1).
 
     In principal axes the rounding of each component is relative to itself, so nothing is lost but the
@@ -144,7 +148,39 @@ def test_start_near_the_unstable_axis_keeps_its_first_flip(digits: int) -> None:
     growth = math.sqrt(1 / 3)
     flip = Fraction(digits * math.log(10) / growth).limit_denominator(1000)
     scene = spinning((Fraction(1, 10**digits), Fraction(1), Fraction(0)), flip)
-    assert largest_error(pose(scene, rung("f64"))) <= 30 * 2.0**-53
+    problem = pose(scene, rung(name))
+    assert largest_error(problem) <= 30 * float(problem.rung.unit_roundoff)
+
+
+@pytest.mark.parametrize("bits", [24, 53, 64, 107, 113, 237, 1000])
+def test_the_longest_step_of_an_order_loses_nothing_small(bits: int) -> None:
+    """Of a component that grows or turns at the fastest rate a step leaves out a thousandth of a rounding.
+
+    The rest of the series of exp(i h) and of exp(h), beside the whole, is below h^(p+1)/(p+1)! times
+    1/(1 - h/(p+2)); p is the order that heyoka takes for so many bits.
+    """
+    order = math.ceil(bits * math.log(2) / 2 + 1)
+    h = longest_step(order)
+    with mp.workdps(30):
+        rest = mp.mpf(h) ** (order + 1) / mp.factorial(order + 1) / (1 - mp.mpf(h) / (order + 2))
+        assert rest <= mp.mpf(2) ** -bits / 1000
+
+
+@pytest.mark.parametrize(("name", "ways"), [("f64", 2), ("mp80", 1)])
+def test_slow_numbers_go_their_way_once(
+    name: str, ways: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The rate of a racket that flips grows on its way; doubles go it twice, and tell the others."""
+    rungs = []
+    once = way.Way._went
+
+    def counted(self: way.Way, *given: Any, **named: Any) -> way.Ran:
+        rungs.append(self._problem.rung.name)
+        return once(self, *given, **named)
+
+    monkeypatch.setattr(way.Way, "_went", counted)
+    Taylor().solve(pose(load("euler/tennis-racket"), rung(name)))
+    assert rungs.count(name) == ways
 
 
 def test_heyoka_alone_is_silently_wrong_there() -> None:
@@ -209,7 +245,7 @@ def test_unfinished_run_fails_without_a_number(
 ) -> None:
     """Whatever stopped a solver, the verdict is fail with the outcome's sentence, and no error is 0."""
     ran = way.Ran(outcome, np.empty((0, 3)), 1.0, 7, 0.0)
-    monkeypatch.setattr(way.Way, "run", lambda _: ran)
+    monkeypatch.setattr(way.Way, "run", lambda *_: ran)
     (verdict,) = run("euler/generic", "taylor", "f64").verdicts
     assert verdict.verdict is Status.FAIL
     assert verdict.outcome == outcome.value

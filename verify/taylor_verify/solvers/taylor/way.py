@@ -19,11 +19,11 @@ from taylor_verify.solvers.taylor.numbers import arithmetic
 from taylor_verify.solvers.trajectory import Outcome
 
 # In units of the fastest linear rate at hand. heyoka's own step on a regular orbit is of the first size;
-# a start close to an unstable axis, where the step would grow with the logarithm of the distance,
-# is what the cap is for. From a step h a component that grows or turns at that rate, however small it is
-# beside the others, loses about (e h/p)^p of itself in order p. At h = p/40 that is 2^-p times heyoka's
-# own tolerance, e^(2 - 2p): so a higher order takes longer steps. Doubles have order 20.
-_LONGEST_STEP, _STEP_PER_ORDER = 0.5, 1 / 40
+# a start close to an unstable axis, where the step would grow with the logarithm of the distance, is what
+# the cap is for. A step h leaves out about (e h/p)^p of a component that grows or turns at that rate,
+# however small it is beside the others: at h = 1 and order 40, less than 2^-150. With h = 2 it would be
+# little enough too, but so long a step goes into a flip, whose pole is near, and loses hundreds of units.
+_LONGEST_STEP, _LONGEST_OF_HIGH_ORDER, _HIGH_ORDER = 0.5, 1.0, 40
 # heyoka is called once, since each call cuts a step short. If the rate, looked at afterwards, says that a
 # step was longer than this factor allows, the way is gone again with looks so many radians apart, no more
 # and no less often than this: a call leads from each to the next, and the fastest rate so far counts.
@@ -186,7 +186,7 @@ class Way:
 
 def longest_step(order: int) -> float:
     """Return the longest step that is taken in an order, in units of the fastest linear rate."""
-    return max(_LONGEST_STEP, _STEP_PER_ORDER * order)
+    return _LONGEST_STEP if order < _HIGH_ORDER else _LONGEST_OF_HIGH_ORDER
 
 
 def outcome_of(status: Any) -> Outcome:
