@@ -62,27 +62,33 @@ def test_a_rung_has_a_column_and_a_line() -> None:
             passed("euler/a", "mp237", "T", ratio=9.0),
         ]
     )
-    found = rows(text)
-    assert found["f64"] == [
-        *("f64", "1.11e-16", "2", "1.75", "1 of 2", "3.00", "`omega` of `euler/b` at t = 7")
+    cells = rows(text)
+    assert cells["f64"] == [
+        "f64",
+        "1.11e-16",
+        "2",
+        "1.75",
+        "1 of 2",
+        "3.00",
+        "`omega` of `euler/b` at t = 7",
     ]
     # The drift of a conserved quantity is no error of the state.
-    assert found["mp237"][2:6] == ["1", "1.00", "1 of 1", "1.00"]
-    assert found["euler/b"][2:] == ["3.33e-16, 6.66e-16, 3.00 @ 7", "–"]  # noqa: RUF001
+    assert cells["mp237"][2:6] == ["1", "1.00", "1 of 1", "1.00"]
+    assert cells["euler/b"][2:] == ["3.33e-16, 6.66e-16, 3.00 @ 7", "–"]  # noqa: RUF001
 
 
 def test_an_error_that_is_no_number_is_the_worst_of_its_rung() -> None:
     """A NaN stands above every number: the median may be infinite, and is not left out."""
     lost = passed("euler/lost", "f64", "omega", verdict=Status.FAIL, **LOST)
-    found = rows(attainable([lost, passed("euler/a", "f64", "omega", ratio=0.5)]))
-    assert found["f64"][3:] == ["**∞**", "1 of 2", "**fail**", "`omega` of `euler/lost` at t = 7"]
+    cells = rows(attainable([lost, passed("euler/a", "f64", "omega", ratio=0.5)]))
+    assert cells["f64"][3:] == ["**∞**", "1 of 2", "**fail**", "`omega` of `euler/lost` at t = 7"]
 
 
 def test_the_sheet_has_every_digit() -> None:
     """A row for every state quantity of every run, in which attainable times ratio bounds the error."""
     text = sheets.attainable(MIXED)
-    found = list(csv.DictReader(text.splitlines()))
-    assert len(found) == sum(v.quantity in ("omega", "impulse") for v in MIXED)
-    generic = next(r for r in found if (r["scene"], r["rung"]) == ("euler/generic", "f64"))
+    lines = list(csv.DictReader(text.splitlines()))
+    assert len(lines) == sum(v.quantity in ("omega", "impulse") for v in MIXED)
+    generic = next(r for r in lines if (r["scene"], r["rung"]) == ("euler/generic", "f64"))
     assert (float(generic["max"]), float(generic["attainable"])) == (3 * u, 6 * u)
     assert (generic["max_u"], generic["attainable_u"]) == ("3.0", "6.0")

@@ -40,8 +40,8 @@ def missing(place: Path) -> bulk.Missing:
 
 def lacking(place: Path, what: str) -> Sequence[Any]:
     """Return what is missing of one kind of files."""
-    found = {kind.what: lacking for kind, lacking in missing(place).lacking}
-    return found.get(what, ())
+    lacks = {kind.what: lacking for kind, lacking in missing(place).lacking}
+    return lacks.get(what, ())
 
 
 def without_bulk(place: Path) -> dict[str, bytes]:
@@ -63,10 +63,10 @@ def test_what_a_clone_lacks_is_made_as_it_was(report: Path, capsys: Captured) ->
     )
     committed = {file: file.read_bytes() for file in report.rglob("*") if file.is_file()}
     assert main(["publish", "--missing", "--from", str(report), "--json"]) == 0
-    out, said = capsys.readouterr()
+    out, messages = capsys.readouterr()
     assert (
         "2 tables of gates, 4 records of runs, 2 portraits of scenes, 2 exact trajectories as JSON"
-        in said
+        in messages
     )
     assert {Path(name) for name in json.loads(out)["written"]} == {report / n for n in removed}
     assert {name: (report / name).read_bytes() for name in removed} == removed
@@ -88,9 +88,9 @@ def test_records_of_other_verdicts_are_made_again(report: Path) -> None:
     stored["verdicts"][0]["max"] = 0.5
     file.write_text(store.laid_out(stored), encoding="utf-8")
     assert len(lacking(report, "records of runs")) == 4
-    mine, gone = (report / "data" / store.RECORDS / f"{n}.json" for n in ("mine", "gone"))
+    mine, obsolete = (report / "data" / store.RECORDS / f"{n}.json" for n in ("mine", "gone"))
     mine.write_text("{}\n", encoding="utf-8")
-    shutil.copy(next(file.parent.glob("records/euler-rest*")), gone)
+    shutil.copy(next(file.parent.glob("records/euler-rest*")), obsolete)
     store.add_records(report, [])
     assert [f.name for f in mine.parent.glob("*.json")] == ["mine.json"]
     assert len(lacking(report, "records of runs")) == 4
@@ -99,8 +99,8 @@ def test_records_of_other_verdicts_are_made_again(report: Path) -> None:
 def test_documents_of_another_text_of_a_scene_are_made_again(report: Path) -> None:
     """Portrait and exact trajectory have the digest of their scene; with another one they are missing."""
     digests = {name: load(name).digest for name in SCENES} | {"euler/rest": "another"}
-    found = [scenes for _, scenes in bulk.missing(report, digests).lacking]
-    assert found == [("euler/rest",), ("euler/rest",)]
+    scenes_lacking = [scenes for _, scenes in bulk.missing(report, digests).lacking]
+    assert scenes_lacking == [("euler/rest",), ("euler/rest",)]
 
 
 def test_a_run_that_was_never_judged_has_no_record(report: Path) -> None:

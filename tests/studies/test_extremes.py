@@ -112,8 +112,8 @@ def test_the_distance_from_the_unstable_axis_is_as_named(name: str) -> None:
 @pytest.mark.parametrize("on", LADDER)
 def test_a_separatrix_is_exact_on_every_rung(name: str, on: str) -> None:
     """The rounded data, too, lie exactly between the two families: the regime says so in rationals."""
-    found = solution(pose(load(name), rung(on)).given).regime
-    assert found == ("separatrix" if "euler" in name else "hyperbolic")
+    regime = solution(pose(load(name), rung(on)).given).regime
+    assert regime == ("separatrix" if "euler" in name else "hyperbolic")
 
 
 @pytest.mark.parametrize("name", [n for n in NAMES if "modulus" in n])
@@ -121,8 +121,8 @@ def test_the_modulus_is_as_named(name: str) -> None:
     """1 - k^2 is what the name says, for Kirchhoff 0.476 of it, to a hundredth of itself."""
     scene, named = load(name), mpf(name.rpartition("modulus-")[2])
     share = mpf("0.476") if scene.model == "kirchhoff" else mpf(1)
-    found = elements(scene, 10)["m_prime"].value
-    assert abs(found / (share * named) - 1) <= mpf("0.01")
+    m_prime = elements(scene, 10)["m_prime"].value
+    assert abs(m_prime / (share * named) - 1) <= mpf("0.01")
 
 
 @pytest.mark.parametrize(
@@ -272,7 +272,9 @@ class Flushed(Solver):
 @pytest.mark.parametrize(
     "name",
     [
-        *("euler-unstable-axis-1e-4", "euler-unstable-axis-1e-16", "kirchhoff-unstable-spin-1e-4"),
+        "euler-unstable-axis-1e-4",
+        "euler-unstable-axis-1e-16",
+        "kirchhoff-unstable-spin-1e-4",
         pytest.param("euler-unstable-axis-1e-8", marks=pytest.mark.slow),
         pytest.param("euler-unstable-axis-1e-40", marks=pytest.mark.slow),
     ],

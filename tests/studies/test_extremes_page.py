@@ -38,15 +38,15 @@ def page(tmp_path: Path) -> str:
 def test_what_is_stored_reads_back(tmp_path: Path) -> None:
     """Verdicts without their seconds, expectations, titles and what made them are the same again."""
     publish_document(tmp_path, STUDY, extremes.EXTREMES, study())
-    found = extremes.EXTREMES.load(tmp_path)
+    loaded = extremes.EXTREMES.load(tmp_path)
     stored = [
         replace(v, seconds=None, provenance={"scene": f"digest of {v.scene}"})
         for v in study().verdicts
     ]
-    assert found == replace(study(), verdicts=tuple(stored))
-    assert [verdict.expected for verdict in found.verdicts] == list(FORESEEN.values())
-    assert [verdict.is_met for verdict in found.verdicts] == [True, True, True, False]
-    assert found.titles["extremes/long"] == "Title of extremes/long"
+    assert loaded == replace(study(), verdicts=tuple(stored))
+    assert [verdict.expected for verdict in loaded.verdicts] == list(FORESEEN.values())
+    assert [verdict.is_met for verdict in loaded.verdicts] == [True, True, True, False]
+    assert loaded.titles["extremes/long"] == "Title of extremes/long"
 
 
 def test_a_row_that_was_compared_with_nothing_is_no_mismatch(tmp_path: Path) -> None:
@@ -55,9 +55,9 @@ def test_a_row_that_was_compared_with_nothing_is_no_mismatch(tmp_path: Path) -> 
     publish_document(tmp_path, STUDY, extremes.EXTREMES, study((absent,), ()))
     (row,) = store.read_document(tmp_path / extremes.EXTREMES.name)["verdicts"]
     assert row["expected"] is None
-    (found,) = extremes.EXTREMES.load(tmp_path).verdicts
-    assert found.expected is None
-    assert found.is_met
+    (verdict,) = extremes.EXTREMES.load(tmp_path).verdicts
+    assert verdict.expected is None
+    assert verdict.is_met
 
 
 def test_a_row_of_an_earlier_version_has_its_reason(tmp_path: Path) -> None:
@@ -125,12 +125,16 @@ def test_the_sheet_has_every_quantity(tmp_path: Path) -> None:
     """A row for each verdict with every digit, what was expected and whether it came."""
     publish_document(tmp_path, STUDY, extremes.EXTREMES, study())
     text = (tmp_path / "tables/extremes.csv").read_text(encoding="utf-8")
-    found = {(r["scene"], r["quantity"]): r for r in csv.DictReader(text.splitlines())}
-    assert set(found) == {(v.scene, v.quantity) for v in ALL}
-    assert float(found["extremes/near", "T"]["max"]) == DRIFT.max
-    told = found["extremes/vast", "impulse"]
-    assert (told["max"], told["expected"], told["as_expected"]) == ("fail", "refused", "no")
-    assert found["extremes/long", "omega"]["why_expected"] == WHY
+    cells = {(r["scene"], r["quantity"]): r for r in csv.DictReader(text.splitlines())}
+    assert set(cells) == {(v.scene, v.quantity) for v in ALL}
+    assert float(cells["extremes/near", "T"]["max"]) == DRIFT.max
+    impulse = cells["extremes/vast", "impulse"]
+    assert (impulse["max"], impulse["expected"], impulse["as_expected"]) == (
+        "fail",
+        "refused",
+        "no",
+    )
+    assert cells["extremes/long", "omega"]["why_expected"] == WHY
 
 
 def test_publish_remakes_it_from_the_data_alone(tmp_path: Path) -> None:
@@ -176,8 +180,8 @@ def test_the_command_fails_at_a_mismatch(
 
     def answered(jobs: list[Any], *_: Any) -> list[Any]:
         asked.extend(job.name for job in jobs)
-        found = passed(scene, "f64", "omega", verdict=verdict)
-        return [SimpleNamespace(verdicts=(found,))]
+        row = passed(scene, "f64", "omega", verdict=verdict)
+        return [SimpleNamespace(verdicts=(row,))]
 
     monkeypatch.setattr("taylor_verify.studies.extremes.measure.judge_all", answered)
     call = ["publish", "extremes", "--from", str(tmp_path), "--json"]

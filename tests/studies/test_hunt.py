@@ -84,33 +84,33 @@ def _peaks(family: Family, several: Sequence[Sequence[float]]) -> list[Catch | N
 def test_hunt_climbs(monkeypatch: pytest.MonkeyPatch) -> None:
     """The hunt comes from its first places to the top of a hill, in five dimensions too."""
     monkeypatch.setattr(hunt, "caught", _peaks)
-    (found,) = hunt.hunt([quarry("euler-hill", 5)], 2000, 1, lambda name: None)
+    (result,) = hunt.hunt([quarry("euler-hill", 5)], 2000, 1, lambda name: None)
     # A cloud of as many places comes no nearer than some 0.1.
-    assert found.worst.ratio >= 5 - 0.05
+    assert result.worst.ratio >= 5 - 0.05
 
 
 @pytest.mark.parametrize("runs", [10, 77, 400])
 def test_a_budget_is_a_number_of_runs(monkeypatch: pytest.MonkeyPatch, runs: int) -> None:
     """No more runs are made than were asked for, and less than a generation is left over."""
     monkeypatch.setattr(hunt, "caught", _peaks)
-    (found,) = hunt.hunt([quarry("euler-hill", 3)], runs, 1, lambda name: None)
-    assert runs * 0.6 < found.judged <= runs
+    (result,) = hunt.hunt([quarry("euler-hill", 3)], runs, 1, lambda name: None)
+    assert runs * 0.6 < result.judged <= runs
 
 
 def test_a_hunt_can_be_repeated(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every place follows from seed and family; another seed has others."""
-    seen: list[list[float]] = []
+    points: list[list[float]] = []
 
     def noted(family: Family, several: Sequence[Sequence[float]]) -> list[Catch | None]:
-        seen.extend(map(list, several))
+        points.extend(map(list, several))
         return _peaks(family, several)
 
     monkeypatch.setattr(hunt, "caught", noted)
     rounds = []
     for seed in (1, 1, 2):
-        seen.clear()
+        points.clear()
         hunt.hunt([quarry("euler-hill", 2)], 60, seed, str)
-        rounds.append([*seen])
+        rounds.append([*points])
     assert rounds[0] == rounds[1]
     assert rounds[0][0] != rounds[2][0]
 

@@ -24,12 +24,12 @@ TEXT = (Path(pack.__file__).parent / "text.md").read_text(encoding="utf-8")
 
 @pytest.fixture(scope="module")
 def sources() -> Sources:
-    found = read(reports.for_paper())
-    numbers = found.trades.numbers
+    published = read(reports.for_paper())
+    numbers = published.trades.numbers
     # So that a rival leaves the digits that the paper asks for.
     points = tuple(replace(p, error=1e-3 * p.error if p.error else None) for p in numbers.points)
-    trades = replace(found.trades, numbers=replace(numbers, points=points))
-    return replace(found, trades=trades)
+    trades = replace(published.trades, numbers=replace(numbers, points=points))
+    return replace(published, trades=trades)
 
 
 @pytest.fixture(scope="module")
@@ -174,8 +174,8 @@ def test_a_report_without_a_study_has_no_paper(
     reports.write_runs(tmp_path, [("euler/rest", "f64")])
     before = sorted(tmp_path.rglob("*"))
     assert main(["publish", "--paper", "--from", str(tmp_path)]) == 2
-    said = capsys.readouterr().err
-    assert "expected what `publish controls engines reach tradeoff` writes" in said
+    errors = capsys.readouterr().err
+    assert "expected what `publish controls engines reach tradeoff` writes" in errors
     assert [file for file in sorted(tmp_path.rglob("*")) if file not in before] == []
     assert bulk.missing(tmp_path, {}).renderings == ()
 

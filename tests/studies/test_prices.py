@@ -30,8 +30,8 @@ NAMES = [variant.name for variant in variants()]
 def rates_at(problem: Problem, state: Mapping[str, Fraction]) -> dict[str, Any]:
     form = problem.form
     parameters = [state.get(n, problem.parameter.get(n)) for n in form.parameters]
-    found = form.rates([state[n] for n in form.states], parameters)
-    return dict(zip(form.states, found, strict=True))
+    rates = form.rates([state[n] for n in form.states], parameters)
+    return dict(zip(form.states, rates, strict=True))
 
 
 def test_each_variant_is_held_against_one_that_comes_before_it() -> None:
@@ -49,8 +49,8 @@ def test_a_variant_is_another_form_of_the_same_body(name: str) -> None:
     general = in_general_form(problem)
     for _ in range(3):
         state = {n: Fraction(random.randint(-99, 99), 8) for n in general.form.states}
-        held = {n: problem.parameter.get(n, Fraction(0)) for n in state}
-        state |= {n: held[n] for n in state if n not in problem.form.states}
+        constants = {n: problem.parameter.get(n, Fraction(0)) for n in state}
+        state |= {n: constants[n] for n in state if n not in problem.form.states}
         chosen = rates_at(problem, state)
         assert rates_at(general, state) == {n: chosen.get(n, 0) for n in state}
 

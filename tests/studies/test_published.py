@@ -182,8 +182,8 @@ def test_the_ledger_is_made_of_the_published_rows() -> None:
     assert text_of("tables/claims.csv") == claims_page.sheet(stored)
     assert stored.cited == dict(CITED)
     assert text_of("claims.md").startswith(MADE_BY)
-    told = {row.id: row.statement for row in stored.claims}
-    assert told == {claim.id: claim.statement for claim in claims()}
+    statements = {row.id: row.statement for row in stored.claims}
+    assert statements == {claim.id: claim.statement for claim in claims()}
 
 
 @pytest.mark.slow
@@ -205,9 +205,19 @@ def test_data_are_laid_out_as_the_code_writes_them() -> None:
 @pytest.mark.parametrize(
     "stored",
     [
-        *(growth.GROWTH, growth.LONG, REACH, PRICES, WORST, ENCLOSURE, CONTROLS),
-        *(extremes.EXTREMES, claims_page.CLAIMS, trades.NUMBERS, trades.TIMINGS),
-        *(board.ENGINES, board.TIMINGS),
+        growth.GROWTH,
+        growth.LONG,
+        REACH,
+        PRICES,
+        WORST,
+        ENCLOSURE,
+        CONTROLS,
+        extremes.EXTREMES,
+        claims_page.CLAIMS,
+        trades.NUMBERS,
+        trades.TIMINGS,
+        board.ENGINES,
+        board.TIMINGS,
     ],
     ids=lambda stored: stored.name,
 )
@@ -365,13 +375,13 @@ def test_published_rows_are_of_the_schema() -> None:
 
 def test_errors_agree_with_their_ratios() -> None:
     """The ratio of a published error at its own time is at most the largest of all samples."""
-    found = [v for v in verdicts() if v.attainable and v.max is not None]
-    assert found
+    scored = [v for v in verdicts() if v.attainable and v.max is not None]
+    assert scored
     # The three are rounded to doubles on their own.
-    assert [v for v in found if not v.max / v.attainable <= v.ratio * (1 + 1e-12)] == []
-    lines = [line for line in attainable(found).splitlines() if line.startswith("|")]
+    assert [v for v in scored if not v.max / v.attainable <= v.ratio * (1 + 1e-12)] == []
+    lines = [line for line in attainable(scored).splitlines() if line.startswith("|")]
     moving = [
-        v for v in found if v.quantity in ("omega", "impulse", "attitude", "centre") and v.max
+        v for v in scored if v.quantity in ("omega", "impulse", "attitude", "centre") and v.max
     ]
     assert sum(line.count(" @ ") for line in lines) == len(moving)
 
@@ -396,9 +406,14 @@ def test_published_rows_are_no_departures_from_themselves() -> None:
     assert compared.departures == ()
     assert compared.compared == len(verdicts()) > 0
     read = baseline.load(REPORTS / "data" / "verdicts.json")
-    held = baseline.hold(read, read)
-    assert held.compared == len(read) > 0
-    assert (held.regressions, held.undecided, held.changes, held.status) == ((), (), (), 0)
+    comparison = baseline.hold(read, read)
+    assert comparison.compared == len(read) > 0
+    assert (
+        comparison.regressions,
+        comparison.undecided,
+        comparison.changes,
+        comparison.status,
+    ) == ((), (), (), 0)
     keys = [(v.scene, v.rung, v.quantity, v.max, v.ratio) for v in verdicts()]
     assert [(v.scene, v.rung, v.quantity, v.max, v.ratio) for v in read] == keys
 

@@ -147,8 +147,10 @@ def test_a_study_is_measured_drawn_and_told(folder: Path, capsys: Captured) -> N
     names = [Path(name).relative_to(folder).as_posix() for name in json.loads(out)["written"]]
     assert names == [
         "data/smallest.json",
-        *("figures/smallest-4.svg", "figures/smallest-4.pdf"),
-        *("tables/smallest.md", "tables/smallest.csv"),
+        "figures/smallest-4.svg",
+        "figures/smallest-4.pdf",
+        "tables/smallest.md",
+        "tables/smallest.csv",
     ]
     assert "4/4 term 3" in err
     stored = json.loads((folder / SUM.name).read_text(encoding="utf-8"))
@@ -222,15 +224,15 @@ def test_without_matplotlib_the_page_is_made_all_the_same(
     SUM.write(folder, Sum(2, 1.0))
     made = SMALLEST.publish(folder)
     assert [path.name for path in made.written] == ["smallest.md", "smallest.csv"]
-    (said,) = made.messages
-    assert "pictures of smallest are not drawn: expected matplotlib" in said
+    (message,) = made.messages
+    assert "pictures of smallest are not drawn: expected matplotlib" in message
 
 
 # Calls that are wrong.
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (["smalest"], "expected a study, got 'smalest'; did you mean smallest?"),
         (["--growth"], "expected `publish growth`, got --growth"),
@@ -254,13 +256,13 @@ def test_without_matplotlib_the_page_is_made_all_the_same(
     ids=str,
 )
 def test_a_wrong_call_is_told_in_a_sentence(
-    folder: Path, capsys: Captured, words: list[str], said: str
+    folder: Path, capsys: Captured, words: list[str], message: str
 ) -> None:
     """Exit status 2, and no file."""
     assert call(folder, *words) == 2
     captured = capsys.readouterr()
     assert captured.out == ""
-    assert said in captured.err
+    assert message in captured.err
     assert not folder.exists()
 
 

@@ -107,14 +107,16 @@ class Page(HTMLParser):
         self.feed(text)
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        found = dict(attrs)
-        if found.get("id"):
-            self.anchors.append(str(found["id"]))
-        if tag == "a" and found.get("href"):
-            self.links.append(str(found["href"]))
-        if tag in ("script", "img", "link") and (link := found.get("src") or found.get("href")):
+        attributes = dict(attrs)
+        if attributes.get("id"):
+            self.anchors.append(str(attributes["id"]))
+        if tag == "a" and attributes.get("href"):
+            self.links.append(str(attributes["href"]))
+        if tag in ("script", "img", "link") and (
+            link := attributes.get("src") or attributes.get("href")
+        ):
             self.loads.append(link)
-        self._is_stored = tag == "script" and found.get("type") == "application/json"
+        self._is_stored = tag == "script" and attributes.get("type") == "application/json"
 
     def handle_data(self, data: str) -> None:
         if self._is_stored:
@@ -332,10 +334,10 @@ def test_a_loaded_body_has_no_ellipsoid(report: Path) -> None:
 @given(st.lists(st.tuples(*[st.floats(-1, 1)] * 3), min_size=3, max_size=60), st.floats(1e-3, 0.2))
 def test_a_thinned_curve_is_the_same_curve(rows: list[tuple[float, ...]], part: float) -> None:
     """Every point that was left out is within the tolerance of the chord between its neighbours."""
-    kept = motion.thinned(rows, part)
+    places = motion.thinned(rows, part)
     extent = max(max(row[i] for row in rows) - min(row[i] for row in rows) for i in range(3))
-    assert (kept[0], kept[-1]) == (0, len(rows) - 1)
-    for first, last in pairwise(kept):
+    assert (places[0], places[-1]) == (0, len(rows) - 1)
+    for first, last in pairwise(places):
         for k in range(first + 1, last):
             # A thousand points of the chord come within its length / 2000 of the nearest one.
             chord = [on_chord(rows[first], rows[last], n / 1000) for n in range(1001)]
@@ -468,9 +470,9 @@ def test_a_site_of_committed_files_alone_is_whole(
     place = tmp_path / "clone"
     shutil.copytree(report, place, ignore=shutil.ignore_patterns(*BULK))
     assert main(["publish", "--from", str(place), "--site", str(tmp_path / "site")]) == 0
-    said = capsys.readouterr().err
-    assert "without 2 tables of gates, 10 records of runs, 5 portraits of scenes" in said
-    assert "`taylor-verify publish --missing` makes" in said
+    errors = capsys.readouterr().err
+    assert "without 2 tables of gates, 10 records of runs, 5 portraits of scenes" in errors
+    assert "`taylor-verify publish --missing` makes" in errors
     target = tmp_path / "site"
     files = {file.relative_to(target).as_posix(): file for file in target.rglob("*.*")}
     read = {name: file.read_text("utf-8") for name, file in files.items() if name.endswith(".html")}

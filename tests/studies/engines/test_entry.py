@@ -17,7 +17,10 @@ SCENES = (
     BoardScene("engines/ten-minutes", least=0.01),
 )
 ROW = Entry(
-    *("it", "It", "outside:it", ("0.02", "0.005")),
+    "it",
+    "It",
+    "outside:it",
+    ("0.02", "0.005"),
     versions=("1.0", "2.0"),
     settings={"integrator": ("euler", "rk4"), "flags": ("2",)},
     shipped={"defaults": "shipped"},

@@ -67,8 +67,10 @@ def test_the_cheapest_of_the_sufficient_is_advised() -> None:
     """The time decides among those whose error is small enough."""
     rows = [*with_errors(SPINNER, 1e-2, 1e-4, 1e-6), *with_errors(WOBBLER, 1e-4, 1e-5, 1e-9)]
     seconds = dict(zip((row.key for row in rows), (1e-3, 0.5, 2.0, 0.2, 0.6, 5.0), strict=True))
-    said = advised(*rows, **seconds)
-    assert "**Wobbler** with splitting and a step of 0.1 is the cheapest: 1.00e4 micro" in said[1]
+    sentences = advised(*rows, **seconds)
+    assert (
+        "**Wobbler** with splitting and a step of 0.1 is the cheapest: 1.00e4 micro" in sentences[1]
+    )
 
 
 def test_a_method_that_loses_the_motion_is_warned_of() -> None:
@@ -76,15 +78,17 @@ def test_a_method_that_loses_the_motion_is_warned_of() -> None:
     other = replace(WOBBLER, name="spinner", title="Spinner")
     entries = replace(ENTRIES, entry=(SPINNER, other))
     rows = [*with_errors(SPINNER, 1e-2, 1e-4, 1e-6), *with_errors(other, 0.9, 0.8, 0.7)]
-    said = advised(*rows, entries=entries)
-    assert ("Never **Spinner** with splitting (least error 0.700; lie-rk4 has 1.00e-6).") in said
+    sentences = advised(*rows, entries=entries)
+    assert (
+        "Never **Spinner** with splitting (least error 0.700; lie-rk4 has 1.00e-6)."
+    ) in sentences
 
 
 def test_an_engine_that_follows_no_motion_is_warned_of() -> None:
     """Where none of its settings does."""
-    said = advised(*with_errors(SPINNER, 0.9, 0.8, 0.7))
-    assert said[-1].startswith("Not for free rotation, with the least error at any step")
-    assert said[-1].endswith(": **Spinner** (0.700, drift of the energy 1.00e-7).")
+    sentences = advised(*with_errors(SPINNER, 0.9, 0.8, 0.7))
+    assert sentences[-1].startswith("Not for free rotation, with the least error at any step")
+    assert sentences[-1].endswith(": **Spinner** (0.700, drift of the energy 1.00e-7).")
 
 
 def test_what_is_shipped_is_warned_of() -> None:
@@ -93,17 +97,18 @@ def test_what_is_shipped_is_warned_of() -> None:
     entries = replace(ENTRIES, entry=(row,))
     usual = with_errors(SPINNER, 1e-3, 1e-4, 1e-5)
     bare = [replace(one, shipped=True, variant=f"{one.variant}, shipped") for one in usual]
-    assert not any("without" in said for said in advised(*usual, *bare, entries=entries))
+    assert not any("without" in sentences for sentences in advised(*usual, *bare, entries=entries))
     bare[1] = replace(bare[1], errors={"omega": 0.2, "attitude": 0.05})
-    said = advised(*usual, *bare, entries=entries)
-    assert ("Never **Spinner** without its damping switched off (0.200, not 1.00e-4).") in said
+    sentences = advised(*usual, *bare, entries=entries)
+    assert ("Never **Spinner** without its damping switched off (0.200, not 1.00e-4).") in sentences
 
 
 def test_steps_that_make_it_worse_are_warned_of() -> None:
     """Below the best step errors grow again."""
-    said = advised(*with_errors(SPINNER, 1e-3, 1e-5, 1e-4))
+    sentences = advised(*with_errors(SPINNER, 1e-3, 1e-5, 1e-4))
     assert (
-        "No smaller step than 0.05 in **Spinner** (1.00e-5 becomes 1.00e-4 with 0.025)." in said[-1]
+        "No smaller step than 0.05 in **Spinner** (1.00e-5 becomes 1.00e-4 with 0.025)."
+        in sentences[-1]
     )
 
 

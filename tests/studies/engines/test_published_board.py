@@ -21,9 +21,9 @@ DIGITS = 2e-3
 
 @cache
 def board() -> Board:
-    found = stored.find(REPORTS)
-    assert found is not None
-    return found
+    published = stored.find(REPORTS)
+    assert published is not None
+    return published
 
 
 def rows() -> list[EngineRow]:
@@ -34,11 +34,11 @@ def is_still_so(row: EngineRow) -> bool:
     """True if the stored trajectory of a row has its errors, its cause and its start."""
     states = trajectories.states_of(trajectories.load(REPORTS), row)
     assert states is not None
-    found = errors_of(judged(row.scene, row.rung, row.solver, states, row.steps))
-    assert found.errors == pytest.approx(row.errors, rel=DIGITS)
-    assert found.floors == pytest.approx(row.floors, rel=0.1)
-    assert found.start == pytest.approx(row.start, rel=DIGITS)
-    return found.cause == row.cause
+    errors = errors_of(judged(row.scene, row.rung, row.solver, states, row.steps))
+    assert errors.errors == pytest.approx(row.errors, rel=DIGITS)
+    assert errors.floors == pytest.approx(row.floors, rel=0.1)
+    assert errors.start == pytest.approx(row.start, rel=DIGITS)
+    return errors.cause == row.cause
 
 
 def test_rows_of_some_engines_are_judged_again() -> None:

@@ -55,13 +55,13 @@ def missing(folder: Path, digests: Mapping[str, str] | None = None) -> Missing:
     """
     known = {name: load(name).digest for name in names()} if digests is None else digests
     report = Published(folder, store.load(folder), known)
-    found = [(bulk, bulk.lacking(report)) for study in STUDIES for bulk in study.bulk]
+    bulks = [(bulk, bulk.lacking(report)) for study in STUDIES for bulk in study.bulk]
     drawings = sorted((folder / figures.FOLDER).glob("*.svg"))
     drawn = (f"{figures.FOLDER}/{drawing.stem}.pdf" for drawing in drawings)
     # A report without the studies that the paper tells of can have none.
     renderings = () if unmeasured(folder) else (f"{FOLDER}/{PDF}", *drawn)
     return Missing(
         folder,
-        tuple((bulk, lacking) for bulk, lacking in found if lacking),
+        tuple((bulk, lacking) for bulk, lacking in bulks if lacking),
         tuple(name for name in renderings if not (folder / name).exists()),
     )

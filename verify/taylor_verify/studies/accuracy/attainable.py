@@ -38,8 +38,8 @@ _MODEL: Final = (
 
 def attainable(verdicts: Sequence[Verdict]) -> str:
     """Return the page: a line a rung, then one for every state quantity with a cell for each rung."""
-    found = runs(verdicts)
-    shown = [verdict for run in found for verdict in run.state]
+    judged_runs = runs(verdicts)
+    shown = [verdict for run in judged_runs for verdict in run.state]
     legend = [
         "A cell is *reached, attainable, ratio @ t*: the largest error of all samples; what was "
         "attainable at its time; and the largest ratio of the two at one sample, with the time of that "
@@ -58,7 +58,7 @@ def attainable(verdicts: Sequence[Verdict]) -> str:
         _by_rung(shown),
         "## How to read a cell",
         bullets(legend),
-        sections(found, _section),
+        sections(judged_runs, _section),
     )
 
 

@@ -53,22 +53,22 @@ _CONTENTS = (
 
 def front(verdicts: Sequence[Verdict], others: Iterable[Page]) -> str:
     """Return the front page of a report, with links to what else there is."""
-    found = runs(verdicts)
+    judged_runs = runs(verdicts)
     contents = [*_CONTENTS, *((page.link(), page.what) for page in others)]
     return whole(
         "How accurate it is",
         _WHAT,
         "## In short",
-        _in_short(found, verdicts),
+        _in_short(judged_runs, verdicts),
         counts(verdicts),
-        table(BY_RUNG, by_rung(found)),
+        table(BY_RUNG, by_rung(judged_runs)),
         "## How to read it",
         bullets(_READING),
         "## The error of every scene",
         "The largest error of the main quantity, relative to its size: the angular velocity "
         "(`euler`) or the impulse (`kirchhoff`). A word stands where a run has another verdict than "
         "pass in any of its quantities.",
-        _by_scene(found),
+        _by_scene(judged_runs),
         "## What else is here",
         table(["file", "what it has"], contents),
         "## To remake this",
@@ -86,33 +86,41 @@ def front(verdicts: Sequence[Verdict], others: Iterable[Page]) -> str:
     )
 
 
-def _in_short(found: Sequence[Run], verdicts: Sequence[Verdict]) -> str:
+def _in_short(judged_runs: Sequence[Run], verdicts: Sequence[Verdict]) -> str:
     counted = {
-        "scenes": len({run.scene for run in found}),
-        "runs": len(found),
+        "scenes": len({run.scene for run in judged_runs}),
+        "runs": len(judged_runs),
         "verdicts": len(verdicts),
     }
     text = ", ".join(f"{bold(str(number))} {what}" for what, number in counted.items())
     finite = [v.ratio for v in verdicts if v.is_compared and v.ratio is not None]
     if not finite:
         return f"{text}."
-    kept = sum(verdict.max == 0 for run in found for verdict in run.conserved.values())
+    exact_drifts = sum(
+        verdict.max == 0 for run in judged_runs for verdict in run.conserved.values()
+    )
     return (
         f"{text}. Half of the errors are below {bold(figure(median(finite)))} of what is attainable; "
-        f"{kept} conserved quantities are kept exactly."
+        f"{exact_drifts} conserved quantities are kept exactly."
     )
 
 
 BY_RUNG: Final = (
-    *("rung", "u:", "runs:", "all pass:"),
-    *("median error, u:", "largest error, u:", "over attainable:", "where"),
+    "rung",
+    "u:",
+    "runs:",
+    "all pass:",
+    "median error, u:",
+    "largest error, u:",
+    "over attainable:",
+    "where",
 )
 
 
-def by_rung(found: Sequence[Run]) -> list[list[str]]:
+def by_rung(judged_runs: Sequence[Run]) -> list[list[str]]:
     """Return a row a rung: roundoff, median and worst error of state, the worst over attainable."""
-    rungs = sorted({run.rung for run in found}, key=place_of_rung)
-    return [_rung_row([r for r in found if r.rung == rung]) for rung in rungs]
+    rungs = sorted({run.rung for run in judged_runs}, key=place_of_rung)
+    return [_rung_row([r for r in judged_runs if r.rung == rung]) for rung in rungs]
 
 
 def _rung_row(of_rung: Sequence[Run]) -> list[str]:
@@ -134,12 +142,12 @@ def _rung_row(of_rung: Sequence[Run]) -> list[str]:
     ]
 
 
-def _by_scene(found: Sequence[Run]) -> str:
+def _by_scene(judged_runs: Sequence[Run]) -> str:
     """Return a line a scene and solver, with the main quantity's largest error on each rung."""
-    rungs = sorted({run.rung for run in found}, key=place_of_rung)
-    solvers = {(run.solver, run.setting) for run in found}
+    rungs = sorted({run.rung for run in judged_runs}, key=place_of_rung)
+    solvers = {(run.solver, run.setting) for run in judged_runs}
     lines: dict[tuple[str, str, str], dict[str, Run]] = {}
-    for run in found:
+    for run in judged_runs:
         lines.setdefault((run.scene, run.solver, run.setting), {})[run.rung] = run
     columns = ["scene", *(["solver"] if len(solvers) > 1 else [])]
     rows = [

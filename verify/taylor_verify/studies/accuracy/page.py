@@ -56,19 +56,37 @@ _PAPER: Final = (
     "not for reading."
 )
 _ACCURACY: Final = (
-    *("scene", "rung", "quantity", "max:", "mean:", "at t:", "max, u:", "mean, u:"),
-    *("over attainable:", "bound:", "steps:", "verdict"),
+    "scene",
+    "rung",
+    "quantity",
+    "max:",
+    "mean:",
+    "at t:",
+    "max, u:",
+    "mean, u:",
+    "over attainable:",
+    "bound:",
+    "steps:",
+    "verdict",
 )
 _GATES: Final = (
-    *("scene", "rung", "quantity", "max:", "at t:", "bound:", "attainable:", "over attainable:"),
-    *("verdict", "because"),
+    "scene",
+    "rung",
+    "quantity",
+    "max:",
+    "at t:",
+    "bound:",
+    "attainable:",
+    "over attainable:",
+    "verdict",
+    "because",
 )
 
 
 def accuracy(verdicts: Sequence[Verdict]) -> str:
     """Return the page of the error of every state quantity of every run."""
-    found = runs(verdicts)
-    shown = [verdict for run in found for verdict in run.state]
+    judged_runs = runs(verdicts)
+    shown = [verdict for run in judged_runs for verdict in run.state]
     units = {verdict.quantity: verdict.unit for verdict in shown if verdict.unit}
     legend = [
         "*max* and *mean* are over all samples, *at t* is the time of the maximum.",
@@ -84,7 +102,7 @@ def accuracy(verdicts: Sequence[Verdict]) -> str:
         "solution of the same rounded data: what is left is the error of the solver.",
         counts(shown),
         bullets(legend),
-        sections(found, _accuracy_section),
+        sections(judged_runs, _accuracy_section),
     )
 
 
@@ -95,8 +113,8 @@ def _accuracy_section(group: Sequence[Run]) -> str:
 
 def conserved(verdicts: Sequence[Verdict]) -> str:
     """Return the page of the drift of every conserved quantity, a run a line."""
-    found = runs(verdicts)
-    shown = [verdict for run in found for verdict in run.drifts]
+    judged_runs = runs(verdicts)
+    shown = [verdict for run in judged_runs for verdict in run.drifts]
     legend = [
         "A cell is *max, mean @ t of the max*, in u, each quantity relative to a scale of its own "
         f"that does not vanish. A single 0 is a quantity kept exactly; {NOTHING} is one that the "
@@ -113,7 +131,7 @@ def conserved(verdicts: Sequence[Verdict]) -> str:
         "How far each run departed from what the exact motion conserves.",
         counts(shown),
         bullets(legend),
-        sections(found, _conserved_section),
+        sections(judged_runs, _conserved_section),
     )
 
 

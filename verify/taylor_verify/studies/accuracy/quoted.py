@@ -24,11 +24,16 @@ _FOLDER: Final = "reports"
 _PAGES: Final = ("README.md", "docs/results.md")
 # One of each kind of body and of each quantity that a state has.
 _SHOWN: Final = (
-    *(("euler/generic", "omega"), ("euler/full-tensor", "omega")),
-    *(("euler/tennis-racket", "omega"), ("euler/nesc-brick", "omega")),
-    *(("euler/nesc-brick", "attitude"), ("kirchhoff/screw", "impulse")),
-    *(("kirchhoff/general-body", "impulse"), ("kirchhoff/remus-100", "impulse")),
-    *(("kirchhoff/whole-motion", "impulse"), ("kirchhoff/whole-motion", "attitude")),
+    ("euler/generic", "omega"),
+    ("euler/full-tensor", "omega"),
+    ("euler/tennis-racket", "omega"),
+    ("euler/nesc-brick", "omega"),
+    ("euler/nesc-brick", "attitude"),
+    ("kirchhoff/screw", "impulse"),
+    ("kirchhoff/general-body", "impulse"),
+    ("kirchhoff/remus-100", "impulse"),
+    ("kirchhoff/whole-motion", "impulse"),
+    ("kirchhoff/whole-motion", "attitude"),
     ("kirchhoff/whole-motion", "centre"),
 )
 
@@ -60,11 +65,11 @@ def accuracy(verdicts: Iterable[Verdict]) -> str:
 
 def chosen(verdicts: Iterable[Verdict]) -> tuple[list[str], list[list[str]]]:
     """Return headings and rows of the chosen scenes."""
-    found = {(v.scene, v.quantity, v.rung): v for v in verdicts if v.solver == "taylor"}
-    rungs = sorted({rung for _, _, rung in found}, key=place_of_rung)
+    published = {(v.scene, v.quantity, v.rung): v for v in verdicts if v.solver == "taylor"}
+    rungs = sorted({rung for _, _, rung in published}, key=place_of_rung)
     columns = ["scene", "what is compared", *(f"{r}:" for r in rungs)]
     return columns, [
-        [code(scene), quantity, *(_cell(found.get((scene, quantity, rung))) for rung in rungs)]
+        [code(scene), quantity, *(_cell(published.get((scene, quantity, rung))) for rung in rungs)]
         for scene, quantity in _SHOWN
     ]
 

@@ -156,9 +156,23 @@ def _short(size: float | None) -> str:
 
 
 _SHEET: Final = (
-    *("id", "verdict", "statement", "correction", "condition", "counterexample"),
-    *("residual", "residual_transcribed", "bound", "because", "domain", "method", "mutations"),
-    *("lost", "open", "void", "remark"),
+    "id",
+    "verdict",
+    "statement",
+    "correction",
+    "condition",
+    "counterexample",
+    "residual",
+    "residual_transcribed",
+    "bound",
+    "because",
+    "domain",
+    "method",
+    "mutations",
+    "lost",
+    "open",
+    "void",
+    "remark",
 )
 
 

@@ -112,11 +112,11 @@ class ControlsStudy:
 
     def _sights(self) -> Iterator[Sight]:
         for defect in self.defects:
-            found = self._verdicts_on(defect.scene, defect.name, defect.setting)
+            verdicts = self._verdicts_on(defect.scene, defect.name, defect.setting)
             sound = self._verdicts_on(defect.scene, defect.twin, defect.twin_setting)
-            if not found or not sound:
+            if not verdicts or not sound:
                 raise ValueError(f"expected verdicts on {defect.name} and its twin, got none")
-            yield Sight(defect, found, sound, self.factor)
+            yield Sight(defect, verdicts, sound, self.factor)
 
     def _verdicts_on(self, *run: str) -> dict[str, Verdict]:
         return {v.quantity: v for v in self.verdicts if (v.scene, v.solver, v.setting) == run}

@@ -32,21 +32,21 @@ def sights(
     that have run before, by scene, solver and setting, and is added to.
     """
     twins = {} if twins is None else twins
-    seen = []
+    rows = []
     for defect in defects:
         key = (defect.scene, defect.twin.name, defect.twin.setting)
         if key not in twins:
             twins[key] = _verdicts(defect.scene, defect.twin)
         verdicts = _verdicts(defect.scene, defect)
-        seen.append(Sight(_row(defect), verdicts, twins[key], GATE_FACTOR))
+        rows.append(Sight(_row(defect), verdicts, twins[key], GATE_FACTOR))
         if finished is not None:
             finished(defect.name)
-    return seen
+    return rows
 
 
-def study(seen: Iterable[Sight]) -> ControlsStudy:
+def study(measured: Iterable[Sight]) -> ControlsStudy:
     """Return the rows that the published table is made from: each defect, each verdict once."""
-    rows = list(seen)
+    rows = list(measured)
     verdicts = {
         (v.scene, v.solver, v.setting, v.quantity): v
         for sight in rows

@@ -97,19 +97,20 @@ def page(study: ControlsStudy) -> str:
 
 
 def _section(sights: Sequence[Sight], quantity: str, heading: str) -> str:
-    found = [sight for sight in sights if quantity in sight.quantities]
-    if not found:
+    group = [sight for sight in sights if quantity in sight.quantities]
+    if not group:
         return ""
-    there = {name for sight in found for name in sight.quantities}
+    there = {name for sight in group for name in sight.quantities}
     shown = [(words, names) for words, names in _COLUMNS if there.intersection(names)]
     columns = ["defect", *(f"{words}:" for words, _ in shown), "time shift:", "outcome"]
     rows = []
-    for sight in _blindest_first(found):
+    for sight in _blindest_first(group):
         shift = constant_shift(sight)
         cells = [_cell(sight, names) for _, names in shown]
         rows.append(
             [
-                *(title(sight), *cells),
+                title(sight),
+                *cells,
                 _NOT_SEEN if shift is None else bold(figure(shift)),
                 _NOT_SEEN if sight.is_finished else bold("stopped"),
             ]
@@ -213,10 +214,10 @@ def short_rows(study: ControlsStudy) -> list[list[str]]:
 def _summed(sight: Sight, wanted: Callable[[str], bool]) -> str:
     """Return the largest error over its bound among these quantities."""
     names = [name for name in sight.quantities if wanted(name)]
-    seen = [name for name in names if sight.is_seen_by(name)]
-    if not seen:
+    failing = [name for name in names if sight.is_seen_by(name)]
+    if not failing:
         return "not seen" if all(sight.is_missed_by(name) for name in names) else "undecided"
-    worst = max(seen, key=lambda name: or_infinite(sight.over_bound(name)))
+    worst = max(failing, key=lambda name: or_infinite(sight.over_bound(name)))
     return bold(times_bound(sight, worst))
 
 
@@ -224,8 +225,22 @@ def _summed(sight: Sight, wanted: Callable[[str], bool]) -> str:
 
 
 _FIELDS: Final = (
-    *("defect", "scene", "quantity", "seen", "error_over_bound", "max", "bound", "unit", "verdict"),
-    *("outcome", "time_shift", "residual", "shift", "twin", "twin_verdict", "twin_ratio"),
+    "defect",
+    "scene",
+    "quantity",
+    "seen",
+    "error_over_bound",
+    "max",
+    "bound",
+    "unit",
+    "verdict",
+    "outcome",
+    "time_shift",
+    "residual",
+    "shift",
+    "twin",
+    "twin_verdict",
+    "twin_ratio",
 )
 
 

@@ -44,10 +44,10 @@ def _energy_alone(sights: Sequence[Sight]) -> str:
     if not blind:
         return ""
     worse = [sight for sight in blind if not _keeps_energy_like_its_twin(sight)]
-    kept = f"All but {_names(worse)}" if worse else "All of them"
+    exact = f"All but {_names(worse)}" if worse else "All of them"
     return (
         f"{bold(f'{len(blind)} of {len(sights)} defects pass the gate of the energy')}: "
-        f"{_names(blind)}. {kept} conserve it to the last digit, as well as the sound solver beside "
+        f"{_names(blind)}. {exact} conserve it to the last digit, as well as the sound solver beside "
         "them."
     )
 

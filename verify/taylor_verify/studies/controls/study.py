@@ -14,8 +14,8 @@ def _measure(folder: Path, progress: Progress) -> Measured:
     from taylor_verify.controls.defects import DEFECTS
     from taylor_verify.studies.controls.measure import sights, study
 
-    seen = sights(DEFECTS, progress.counting(len(DEFECTS)))
-    return Measured(CONTROLS.write(folder, study(seen)))
+    measured = sights(DEFECTS, progress.counting(len(DEFECTS)))
+    return Measured(CONTROLS.write(folder, study(measured)))
 
 
 STUDY: Final = Study(

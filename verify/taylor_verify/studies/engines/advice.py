@@ -128,7 +128,7 @@ def _as_shipped(
     entries: EntryList,
 ) -> Iterator[str]:
     """Yield the engines that are far worse as shipped than with what the board sets."""
-    found = []
+    warnings = []
     for engine, group in groupby(shipped, key=lambda one: one.engine):
         pairs = [(row, like(row, engines, entries)) for one in group for row in one.rows]
         ratios = [(a.worst / b.worst, a, b) for a, b in pairs if a.is_judged and b and b.worst > 0]
@@ -137,11 +137,11 @@ def _as_shipped(
             continue
         warning = next((e.warning for e in entries.entry if e.name == engine and e.warning), "")
         without = f" without {warning}" if warning else " as it is shipped"
-        found.append(
+        warnings.append(
             f"{bold(prose(names[engine]))}{without} ({error(row.worst)}, not {figure(usual.worst)})"
         )
-    if found:
-        yield f"Never {'; '.join(found)}."
+    if warnings:
+        yield f"Never {'; '.join(warnings)}."
 
 
 def like(row: EngineRow, engines: Sequence[EngineSetting], entries: EntryList) -> EngineRow | None:
@@ -171,7 +171,7 @@ def _too_fine(
     engines: Sequence[EngineSetting], scenes: Sequence[str], names: dict[str, str]
 ) -> Iterator[str]:
     """Yield the engines whose best step is not their smallest one."""
-    said = []
+    steps = []
     for engine, group in groupby(engines, key=lambda one: one.engine):
         best = best_of(score for one in group for score in one.scores(scenes))
         if best is None or not best.value or best.error >= LOST or best.setting.knob != "step":
@@ -179,9 +179,9 @@ def _too_fine(
         finest = best.setting.scores(scenes)[-1]
         if finest.error > WORSE_BELOW * best.error:
             growth = f"{figure(best.error)} becomes {error(finest.error)} with {finest.value}"
-            said.append(f"{best.value} in {bold(prose(names[engine]))} ({growth})")
-    if said:
-        yield f"No smaller step than {', '.join(said)}."
+            steps.append(f"{best.value} in {bold(prose(names[engine]))} ({growth})")
+    if steps:
+        yield f"No smaller step than {', '.join(steps)}."
 
 
 def _step(score: Score) -> str:

@@ -85,15 +85,19 @@ def _trajectories(asked: Sequence[Asked]) -> list[Trajectory]:
     solvers = [solver_named(run.solver) for run in asked]
     posing = zip(asked, solvers, strict=True)
     problems = [posed(load(run.scene), solver, rung(run.rung)) for run, solver in posing]
-    found = {k: problem for k, problem in enumerate(problems) if isinstance(problem, Trajectory)}
+    trajectories = {
+        k: problem for k, problem in enumerate(problems) if isinstance(problem, Trajectory)
+    }
     pairs = {
         k: (solver, problem)
         for k, (solver, problem) in enumerate(zip(solvers, problems, strict=True))
         if isinstance(solver, Outside) and isinstance(problem, Problem)
     }
     if pairs:
-        found |= zip(pairs, solve_together([*pairs.values()]), strict=True)
-    return [found.get(k) or solve(run.scene, run.solver, run.rung) for k, run in enumerate(asked)]
+        trajectories |= zip(pairs, solve_together([*pairs.values()]), strict=True)
+    return [
+        trajectories.get(k) or solve(run.scene, run.solver, run.rung) for k, run in enumerate(asked)
+    ]
 
 
 def _judged(asked: Asked, trajectory: Trajectory) -> Answer:
@@ -102,9 +106,9 @@ def _judged(asked: Asked, trajectory: Trajectory) -> Answer:
     if standing is not Standing.JUDGED:
         return Answer(row_of(asked, standing, detail=_reason(trajectory)))
     states, steps = states_of(load(asked.scene), trajectory), trajectory.steps
-    found = errors_of(judged(asked.scene, asked.rung, asked.solver, states, steps))
+    errors = errors_of(judged(asked.scene, asked.rung, asked.solver, states, steps))
     bits = 8 * states.dtype.itemsize
-    row = row_of(asked, standing, steps=steps, bits=bits, detail=trajectory.detail, **vars(found))
+    row = row_of(asked, standing, steps=steps, bits=bits, detail=trajectory.detail, **vars(errors))
     return Answer(row, trajectory.seconds, states)
 
 

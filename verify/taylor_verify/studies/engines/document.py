@@ -71,9 +71,9 @@ class EngineRow:
     @property
     def worst(self) -> float:
         """The largest error of the states; infinite where one is missing or no finite number."""
-        found = [self.errors[name] for name in STATES if name in self.errors]
+        errors = [self.errors[name] for name in STATES if name in self.errors]
         lost = [name for name in self.floors if name not in self.errors]
-        return float("inf") if lost or not found else max(found)
+        return float("inf") if lost or not errors else max(errors)
 
 
 @dataclass(frozen=True)

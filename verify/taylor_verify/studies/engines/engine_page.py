@@ -80,11 +80,11 @@ def _cells(
 
 def _order(setting: EngineSetting, scene: str, states: Sequence[str]) -> str:
     """Return the orders of one setting in a line; empty where a setting has no steps."""
-    found = {name: setting.order(scene, name) for name in states}
-    said = [f"{name}: {prose(order.reason)}" for name, order in found.items() if order]
+    orders = {name: setting.order(scene, name) for name in states}
+    reasons = [f"{name}: {prose(order.reason)}" for name, order in orders.items() if order]
     words = [setting.version, setting.words, "as shipped" * setting.shipped]
     named = prose(" ".join(filter(None, words)))
-    return f"{named}. {'. '.join(said)}." if said else ""
+    return f"{named}. {'. '.join(reasons)}." if reasons else ""
 
 
 def _not_judged(own: Iterable[EngineSetting]) -> Iterator[str]:

@@ -77,7 +77,7 @@ class Entry:
             for words, rung, scene in product(self._words(), self.rungs, scenes):
                 if self._is_asked(scene) and scene.shipped:
                     bare = {**words, **self.shipped}
-                    every = self._at_values(newest, bare, rung, scene, True)
+                    every = self._at_values(newest, bare, rung, scene, shipped=True)
                     # One step says what is lacking.
                     yield from (run for run in every if run.value in self.values[1:2])
 

@@ -55,8 +55,8 @@ def _report(text: str, suffix: str) -> str:
 
 def findings(folder: Path) -> Iterator[str]:
     """Yield the section of the findings of a report folder; nothing where there are none."""
-    found = [read(file) for file in scripts(folder)]
-    if found:
+    results = [read(file) for file in scripts(folder)]
+    if results:
         yield "## Findings"
         yield (
             "Each has a script that runs with the engine and at most NumPy, and evidence beside our "
@@ -65,5 +65,5 @@ def findings(folder: Path) -> Iterator[str]:
         yield bullets(
             f"[{prose(one.title)}](../{FOLDER}/{one.script}): {prose(one.parts['Came'])} "
             f"({prose(one.parts['Versions'])})"
-            for one in found
+            for one in results
         )

@@ -71,15 +71,15 @@ def measure(
     waiting = [run for run in waiting if not lacking.get(_environment(run), "")]
     done = 0
 
-    def ended(runs: Sequence[Asked], found: Sequence[Answer]) -> None:
+    def ended(runs: Sequence[Asked], set_answers: Sequence[Answer]) -> None:
         nonlocal done
-        for run, answer in zip(runs, found, strict=True):
+        for run, answer in zip(runs, set_answers, strict=True):
             done += 1
             store.keep(answer)
             say(f"{done}/{len(waiting)} {run}: {answer.row.standing}")
 
     made = run_all(answered, _sets(waiting), workers=workers or available_cores(), ended=ended)
-    answers |= {answer.row.key: answer for found in made for answer in found}
+    answers |= {answer.row.key: answer for set_answers in made for answer in set_answers}
     return [answers[run.key] for run in every if run.key in answers]
 
 
@@ -147,8 +147,8 @@ def _judged_again(answer: Answer) -> Answer:
     row, states = answer.row, answer.states
     if states is None:
         return answer
-    found = errors_of(judged(row.scene, row.rung, row.solver, states, row.steps))
-    return replace(answer, row=replace(row, **vars(found)))
+    errors = errors_of(judged(row.scene, row.rung, row.solver, states, row.steps))
+    return replace(answer, row=replace(row, **vars(errors)))
 
 
 def board_of(answers: Sequence[Answer], workers: int | None) -> tuple[Board, bytes]:

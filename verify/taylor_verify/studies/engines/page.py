@@ -129,21 +129,28 @@ def _best(board: Board, entries: EntryList, every: Sequence[EngineSetting]) -> s
 
 
 COLUMNS: Final = (
-    *("engine", "setting", "best step:", "omega:", "attitude:", "order:", "energy:", "time:"),
+    "engine",
+    "setting",
+    "best step:",
+    "omega:",
+    "attitude:",
+    "order:",
+    "energy:",
+    "time:",
 )
 
 
 def cells(board: Board, setting: EngineSetting, row: EngineRow) -> list[str]:
     """Return the cells of a row behind the name of its engine."""
     orders = [setting.order(row.scene, name) for name in ("omega", "attitude")]
-    said = [f"{o.order:.1f}" if o and o.order is not None else NOTHING for o in orders]
+    order_cells = [f"{o.order:.1f}" if o and o.order is not None else NOTHING for o in orders]
     pace = board.pace(row)
     return [
         prose(setting.words) or NOTHING,
         _knob(row),
         figure(row.errors.get("omega")),
         figure(row.errors.get("attitude")),
-        ", ".join(said),
+        ", ".join(order_cells),
         figure(row.errors.get("T")),
         figure(None if pace is None else 1e6 * pace),
     ]
@@ -161,8 +168,8 @@ def _scenes(board: Board, entries: EntryList, every: Sequence[EngineSetting]) ->
     for scene in dict.fromkeys(row.scene for row in board.study.rows):
         rows = []
         for engine, group in groupby(newest(every), key=lambda one: one.engine):
-            found = [row for one in group if (row := one.best(scene)) is not None]
-            best = min(found, key=lambda row: row.worst, default=None)
+            best_rows = [row for one in group if (row := one.best(scene)) is not None]
+            best = min(best_rows, key=lambda row: row.worst, default=None)
             if best is not None:
                 rows.append(_scene_row(best, titles.get(engine, engine)))
         if rows:
@@ -257,8 +264,23 @@ def sheet(board: Board) -> str:
     """Return a row for every run, with every quantity."""
     quantities = dict.fromkeys(name for row in board.study.rows for name in row.errors)
     names = [
-        *("engine", "version", "variant", "knob", "value", "scene", "rung", "shipped", "standing"),
-        *("steps", "start", *quantities, "microseconds", "cause", "array", "place", "solver"),
+        "engine",
+        "version",
+        "variant",
+        "knob",
+        "value",
+        "scene",
+        "rung",
+        "shipped",
+        "standing",
+        "steps",
+        "start",
+        *quantities,
+        "microseconds",
+        "cause",
+        "array",
+        "place",
+        "solver",
     ]
     return csv_sheet(names, (_sheet_row(board, row) for row in board.study.rows))
 

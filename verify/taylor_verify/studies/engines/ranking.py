@@ -99,11 +99,11 @@ def newest(every: Iterable[EngineSetting], shipped: bool = False) -> list[Engine
     sleep and damping left on, in place of those that the board sets.
     """
     first: dict[str, str] = {}
-    found = []
+    chosen = []
     for setting in every:
         if setting.version == first.setdefault(setting.engine, setting.version):
-            found += [setting] if setting.shipped == shipped else []
-    return found
+            chosen += [setting] if setting.shipped == shipped else []
+    return chosen
 
 
 def best_of(scores: Iterable[Score]) -> Score | None:
@@ -114,11 +114,11 @@ def best_of(scores: Iterable[Score]) -> Score | None:
 
 def best_of_each(every: Iterable[EngineSetting], scene: str) -> list[Score]:
     """Return the best score of each engine in its newest version on a scene, in the order of the list."""
-    found = []
+    best = []
     for _, group in groupby(newest(every), key=lambda one: one.engine):
         scores = [score for one in group for score in one.scores([scene])]
-        found += sorted(scores, key=lambda score: score.error)[:1]
-    return found
+        best += sorted(scores, key=lambda score: score.error)[:1]
+    return best
 
 
 def digits(error: float) -> float:

@@ -84,13 +84,13 @@ def judged(scene: str, rung: str, solver: str, states: States, steps: int) -> Ju
     problem = solver_named(solver).problem(load(scene), rung_named(rung))
     stored = Stored(solver, states, steps)
     trajectory = stored.solve(problem)
-    found = with_initial(judgement(problem, stored, trajectory), float(problem.given.clock.start))
-    return with_causes(found, problem, trajectory)
+    result = with_initial(judgement(problem, stored, trajectory), float(problem.given.clock.start))
+    return with_causes(result, problem, trajectory)
 
 
-def errors_of(found: Judgement) -> Errors:
+def errors_of(result: Judgement) -> Errors:
     """Return what the board stores of a judgement."""
-    verdicts = {verdict.quantity: verdict for verdict in found.verdicts}
+    verdicts = {verdict.quantity: verdict for verdict in result.verdicts}
     first = verdicts.pop(INITIAL, None)
     return Errors(
         start=None if first is None else _short(first.max),
@@ -100,15 +100,15 @@ def errors_of(found: Judgement) -> Errors:
             for name, v in verdicts.items()
             if name in STATES and (a := _short(v.attainable)) is not None
         },
-        cause=_cause(found.causes, verdicts.values()),
+        cause=_cause(result.causes, verdicts.values()),
     )
 
 
 def _cause(causes: Iterable[LikelyCause], verdicts: Iterable[Verdict]) -> str:
     """Return the name of the cause that leaves the least of an error, the main quantity's first."""
     order = [verdict.quantity for verdict in verdicts]
-    found = sorted(causes, key=lambda one: (order.index(one.quantity), one.leaves))
-    return found[0].name if found else ""
+    ordered = sorted(causes, key=lambda one: (order.index(one.quantity), one.leaves))
+    return ordered[0].name if ordered else ""
 
 
 def _short(value: float | None) -> float | None:

@@ -62,9 +62,9 @@ def states_of(arrays: Mapping[str, States], row: EngineRow) -> States | None:
     """
     if not row.is_judged:
         return None
-    found: Sequence[States] = arrays.get(row.array, np.empty(0))  # type: ignore[assignment]
-    if not 0 <= row.place < len(found):
+    array: Sequence[States] = arrays.get(row.array, np.empty(0))  # type: ignore[assignment]
+    if not 0 <= row.place < len(array):
         raise ValueError(
             f"expected a trajectory {row.array}[{row.place}], got none @ {TRAJECTORIES}"
         )
-    return found[row.place]
+    return array[row.place]

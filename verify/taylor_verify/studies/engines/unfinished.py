@@ -24,11 +24,11 @@ class Unfinished:
 
     def answers(self) -> list[Answer]:
         """Return the answers that are stored; a file that is damaged is no answer."""
-        found = []
+        answers = []
         for file in sorted(self.folder.glob("*.json")):
             with suppress(ValueError):
-                found.append(Answer.from_bytes(file.read_bytes()))
-        return found
+                answers.append(Answer.from_bytes(file.read_bytes()))
+        return answers
 
     def forget(self) -> None:
         """Remove everything."""

@@ -58,56 +58,56 @@ EXTREMES: Final = Stored(ExtremesStudy, "extremes", _fields, read_study)
 # The page.
 
 
-def page(found: ExtremesStudy) -> str:
+def page(study: ExtremesStudy) -> str:
     """Return the counts, a line a scene, and every answer that is no pass with its reason."""
     by_model: dict[str, list[Run]] = {}
-    for run in runs(found.verdicts):
+    for run in runs(study.verdicts):
         by_model.setdefault(run.model, []).append(run)
     return whole(
         "The extremes",
         _WHAT,
-        counts(found.verdicts),
-        _held(found),
-        bullets([*_LEGEND, roundoffs(found.verdicts)]),
-        *(_section(found, own, model) for model, own in by_model.items()),
+        counts(study.verdicts),
+        _summary(study),
+        bullets([*_LEGEND, roundoffs(study.verdicts)]),
+        *(_section(study, own, model) for model, own in by_model.items()),
         "## No pass, and why",
-        _not_passed(found),
-        _left_out(found),
+        _not_passed(study),
+        _left_out(study),
         "## To remake this",
         f"`taylor-verify publish extremes` runs all of them on float64 and writes "
         f"[extremes.json](../{EXTREMES.name}), this page and its [CSV](extremes.csv), which has every "
         "quantity. `taylor-verify run extremes` prints the same and fails at a mismatch; with `--rung` it "
         "runs them on others. The expectations are in `cases/extremes/EXPECTED.toml`.",
-        traced({"versions": found.versions, **plain(found.machine)}),
+        traced({"versions": study.versions, **plain(study.machine)}),
     )
 
 
-def _held(found: ExtremesStudy) -> str:
+def _summary(study: ExtremesStudy) -> str:
     """Return how many answers were foreseen, and whatever was not, in full."""
-    others = [verdict for verdict in found.verdicts if verdict.verdict is not Status.PASS]
+    others = [verdict for verdict in study.verdicts if verdict.verdict is not Status.PASS]
     met = sum(verdict.is_met for verdict in others)
     counted = f"{met} of {len(others)} answers other than pass came as expected."
-    if not found.mismatches:
+    if not study.mismatches:
         return counted
-    faults = bullets(map(prose, found.mismatches))
-    return f"{counted} {bold(f'{len(found.mismatches)} mismatches')}:\n\n{faults}"
+    faults = bullets(map(prose, study.mismatches))
+    return f"{counted} {bold(f'{len(study.mismatches)} mismatches')}:\n\n{faults}"
 
 
-def _section(found: ExtremesStudy, own: Sequence[Run], model: str) -> str:
+def _section(study: ExtremesStudy, own: Sequence[Run], model: str) -> str:
     numbers = ("state:", "over attainable:")
     columns = ["scene", "rung", "what it is", *numbers, "verdict", "as expected:"]
-    rows = [_cells(found, run) for run in own]
+    rows = [_cells(study, run) for run in own]
     return f"## {model or 'Without a state'}\n\n{table(columns, rows)}"
 
 
-def _cells(found: ExtremesStudy, run: Run) -> list[str]:
+def _cells(study: ExtremesStudy, run: Run) -> list[str]:
     main = run.state[0] if run.state else run.verdicts[0]
     met = sum(isinstance(row, ExtremeVerdict) and row.is_met for row in run.verdicts)
     counted = f"{met} of {len(run.verdicts)}"
     return [
         code(run.scene.removeprefix(_FOLDER)),
         run.rung,
-        prose(found.titles.get(run.scene, "")),
+        prose(study.titles.get(run.scene, "")),
         _state(main),
         worst_ratio(v for v in run.verdicts if v.verdict in (Status.PASS, Status.FAIL)),
         judged(gravest(run.verdicts)),
@@ -123,12 +123,12 @@ def _state(verdict: Verdict) -> str:
     return text if verdict.verdict is Status.PASS else f"{text} {judged(verdict.verdict)}"
 
 
-def _not_passed(found: ExtremesStudy) -> str:
+def _not_passed(study: ExtremesStudy) -> str:
     """Return a line for every answer that is no pass, beside what was foreseen."""
     columns = ["scene", "quantity", "verdict", "expected", "bound:", "why"]
     rows = [
         _row(verdict)
-        for verdict in found.verdicts
+        for verdict in study.verdicts
         if verdict.verdict is not Status.PASS or not verdict.is_met
     ]
     return table(columns, rows) if rows else "Every answer is a pass."
@@ -147,23 +147,23 @@ def _row(verdict: ExtremeVerdict) -> list[str]:
     ]
 
 
-def _left_out(found: ExtremesStudy) -> str:
-    lines = [f"{code(run.scene)}, {run.rung}: {prose(run.why)}" for run in found.left_out]
+def _left_out(study: ExtremesStudy) -> str:
+    lines = [f"{code(run.scene)}, {run.rung}: {prose(run.why)}" for run in study.left_out]
     return f"Not run:\n\n{bullets(lines)}" if lines else ""
 
 
-def sheet(found: ExtremesStudy) -> str:
+def sheet(study: ExtremesStudy) -> str:
     """Return a row for every quantity of every scene."""
 
     def expected(verdict: Verdict) -> dict[str, Any]:
         assert isinstance(verdict, ExtremeVerdict)
         wanted = verdict.expected
         return {
-            "title": found.titles.get(verdict.scene),
+            "title": study.titles.get(verdict.scene),
             "expected": wanted.verdict.value if wanted else None,
             "why_expected": wanted.why if wanted else None,
             "as_expected": "yes" if verdict.is_met else "no",
         }
 
     # A reason is for reading, and stands in the data.
-    return sheets.gates(found.verdicts, expected, without=("because", "scene_sha256"))
+    return sheets.gates(study.verdicts, expected, without=("because", "scene_sha256"))

@@ -14,8 +14,8 @@ def _measure(folder: Path, progress: Progress) -> Measured:
     """Run all of them; an unexpected answer is published too, where it stands out."""
     from taylor_verify.studies.extremes.measure import extremes, extremes_study
 
-    with progress.jobs() as told:
-        results = extremes(told)
+    with progress.jobs() as job_progress:
+        results = extremes(job_progress)
     study = extremes_study(results)
     return Measured(EXTREMES.write(folder, study), study.mismatches, results.exit_status)
 

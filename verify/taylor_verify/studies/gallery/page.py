@@ -124,10 +124,10 @@ def shown(stored: Stored) -> Iterator[Shown]:
     yield Shown("Errors split in lateness and the rest", *_shifts(stored))
 
 
-def page(found: Sequence[Shown]) -> str:
+def page(pictures: Sequence[Shown]) -> str:
     """Return the page of all of them below their headings."""
     blocks = []
-    for heading, group in groupby(found, key=lambda one: one.heading):
+    for heading, group in groupby(pictures, key=lambda one: one.heading):
         blocks += [f"## {heading}", *(one.block() for one in group)]
     title = "Pictures of motions and of their errors"
     return whole(title, _WHAT, *blocks, "## Elsewhere", _ELSEWHERE)
@@ -152,20 +152,20 @@ def _polhode(stored: Stored, portrait: Document) -> Made:
 
 
 def _axis(stored: Stored, portrait: Document) -> Made:
-    found = axis_path.series(portrait)
-    still = "" if found.fixed is None else f"; the cross is the direction of its {found.fixed_name}"
+    path = axis_path.series(portrait)
+    still = "" if path.fixed is None else f"; the cross is the direction of its {path.fixed_name}"
     caption = (
-        f"{code(portrait['scene'])}: where body axis {found.axis} points in space, from light to dark with "
+        f"{code(portrait['scene'])}: where body axis {path.axis} points in space, from light to dark with "
         f"time, on the unit sphere{still}."
     )
     return axis_path.picture(portrait), caption, (PORTRAITS.name(portrait["scene"]),)
 
 
 def _path(stored: Stored, portrait: Document) -> Made:
-    found = centre_path.series(portrait)
+    path = centre_path.series(portrait)
     caption = (
         f"{code(portrait['scene'])}: the path of the body's origin through the fluid, with its projections "
-        f"on three walls; the short lines are body axis {found.axis} at equal intervals of time."
+        f"on three walls; the short lines are body axis {path.axis} at equal intervals of time."
     )
     return centre_path.picture(portrait), caption, (PORTRAITS.name(portrait["scene"]),)
 
@@ -220,8 +220,12 @@ _SCENES: Final[tuple[tuple[str, tuple[Callable[[Stored, Document], Made], ...]],
     ("manufactured/euler-resonance", (_errors,)),
 )
 QUARTICS: Final = (
-    *("kirchhoff/whole-motion", "kirchhoff/two-real-roots", "kirchhoff/falling-away"),
-    *("kirchhoff/half-turn", "kirchhoff/algebraic", "kirchhoff/ellipsoid-disc"),
+    "kirchhoff/whole-motion",
+    "kirchhoff/two-real-roots",
+    "kirchhoff/falling-away",
+    "kirchhoff/half-turn",
+    "kirchhoff/algebraic",
+    "kirchhoff/ellipsoid-disc",
 )
 
 

@@ -46,12 +46,12 @@ def _find(folder: Path) -> list[Shown] | None:
         return None
 
 
-def _page(found: list[Shown], folder: Path) -> str:
+def _page(pictures: list[Shown], folder: Path) -> str:
     """Return the page of those that are drawn already; nothing without any."""
     from taylor_verify.studies.gallery.page import page
 
     drawn = {file.stem for file in (folder / FOLDER).glob("*.svg")}
-    shown = [one for one in found if one.picture.stem in drawn]
+    shown = [one for one in pictures if one.picture.stem in drawn]
     return page(shown) if shown else ""
 
 
@@ -63,6 +63,6 @@ STUDY: Final = Study(
     find=_find,
     page=_page,
     place=f"{FOLDER}/README.md",
-    draw=lambda found: [one.picture for one in found],
+    draw=lambda pictures: [one.picture for one in pictures],
     needs_heyoka=False,
 )

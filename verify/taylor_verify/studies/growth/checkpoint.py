@@ -96,11 +96,11 @@ def _check_origin(
 ) -> None:
     """Raise for the first thing in which the checkpoint is another one."""
     asked = {"format": _FORMAT, **question, **versions}
-    found = {"format": content["format"], **content["question"], **content["versions"]}
-    for name in dict.fromkeys([*asked, *found]):
-        if asked.get(name) != found.get(name):
+    stored = {"format": content["format"], **content["question"], **content["versions"]}
+    for name in dict.fromkeys([*asked, *stored]):
+        if asked.get(name) != stored.get(name):
             raise OfAnotherError(
-                f"expected a checkpoint with {name} {asked.get(name)}, got {found.get(name)}; remove "
+                f"expected a checkpoint with {name} {asked.get(name)}, got {stored.get(name)}; remove "
                 f"the file to begin anew @ {file}"
             )
 

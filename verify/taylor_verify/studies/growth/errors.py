@@ -74,19 +74,19 @@ def lane_errors(
     # Products of two numbers of the rung are exact in this, and sums of them nearly so.
     with mp.workprec(2 * problem.rung.bits + _MORE_BITS):
         motion = trajectory.motion(mp.prec)
-        found = _drifts(problem.given, motion)
+        measured = _drifts(problem.given, motion)
         exact = solution(problem.given)
         if exact.regime != NO_CLOSED_FORM and reached:
             quantities = {name: values[1:] for name, values in motion.quantities.items()}
             answer = Motion(quantities, motion.radius[1:])
-            found += _state_and_phase(problem, exact, answer, period)
+            measured += _state_and_phase(problem, exact, answer, period)
     missing = [nan] * (len(states) - len(reached))
-    return [replace(one, values=np.append(one.values, missing)) for one in found]
+    return [replace(one, values=np.append(one.values, missing)) for one in measured]
 
 
 def _drifts(scene: Scene, motion: Motion) -> list[Measured]:
     """Return the drifts since the first row; of a vector in space every component by itself."""
-    found: list[Measured] = []
+    drifts: list[Measured] = []
     for invariant in invariants(scene):
         values, scale = invariant.value(motion), invariant.scale(motion)
         drift = (values[1:] - values[0]) / scale
@@ -94,8 +94,8 @@ def _drifts(scene: Scene, motion: Motion) -> list[Measured]:
         if drift.ndim > 1:
             names = [f"{invariant.name}.{i}" for i in range(1, drift.shape[1] + 1)]
         columns = drift.reshape(len(drift), len(names)).T.astype(float)
-        found += [Measured(n, Law.WALK, one) for n, one in zip(names, columns, strict=True)]
-    return found
+        drifts += [Measured(n, Law.WALK, one) for n, one in zip(names, columns, strict=True)]
+    return drifts
 
 
 def _state_and_phase(
@@ -107,12 +107,12 @@ def _state_and_phase(
     reached = Clock(clock.start, clock.instants[: len(elapsed)])
     given = replace(problem.given, clock=reached, track=frozenset())
     (state,) = state_errors(given, exact.motion(elapsed, digits), answer)
-    found = [Measured(state.quantity, Law.INTEGRATED, state.values.astype(float), signed=False)]
+    measured = [Measured(state.quantity, Law.INTEGRATED, state.values.astype(float), signed=False)]
     shifts = _shifts(problem.given, exact, answer, elapsed, digits)
     if shifts is not None:
         phases = 2 * pi * sure_shifts(elapsed, shifts, period) / period
-        found.append(Measured(PHASE, Law.INTEGRATED, phases))
-    return found
+        measured.append(Measured(PHASE, Law.INTEGRATED, phases))
+    return measured
 
 
 def _shifts(
@@ -135,12 +135,12 @@ def _shifts(
         steps = -np.sum(e * v, axis=1) / speeds**2
         unit = power_of_two(flow.time)
         shifts = [c + Fraction(s) * unit for c, s in zip(shifts, steps.tolist(), strict=True)]
-        found = np.array([float(c) for c in shifts])
+        numbers = np.array([float(c) for c in shifts])
         # Written so that a NaN has not settled.
-        settled = np.abs(steps) * float(unit) <= _SETTLED * np.abs(found)
+        settled = np.abs(steps) * float(unit) <= _SETTLED * np.abs(numbers)
         if np.all(settled):
             break
-    return np.where(settled, found, nan)
+    return np.where(settled, numbers, nan)
 
 
 def _scaled(rows: np.ndarray[Any, Any], exponent: int) -> Floats:

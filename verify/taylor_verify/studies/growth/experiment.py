@@ -45,7 +45,7 @@ class Experiment:
     question: Question
     lost: int
     steps: tuple[float, ...]
-    found: tuple[QuantityGrowth, ...]
+    quantities: tuple[QuantityGrowth, ...]
 
     def ensemble(self, why: str = "") -> Ensemble:
         """Return the ensemble as it is stored; ``why`` says what it is measured for."""
@@ -62,7 +62,7 @@ class Experiment:
             lost=self.lost,
             counts=question.counts,
             steps=self.steps,
-            quantities=tuple(map(self._quantity, self.found)),
+            quantities=tuple(map(self._quantity, self.quantities)),
             why=why,
         )
 
@@ -123,13 +123,13 @@ def experiment(
         for problem, *samples in zip(question.problems, *end.samples, strict=True)
     ]
     u, times = float(question.rung.unit_roundoff), np.array(question.counts)
-    found = []
+    grown = []
     for name, kind in {one.quantity: one for lane in by_lane for one in lane}.items():
         # A lane that does not have the quantity has no number for it.
         rows = [{one.quantity: one.values for one in lane} for lane in by_lane]
         errors = np.array([row.get(name, np.full(len(times), np.nan)) for row in rows])
-        found.append(QuantityGrowth(name, errors, growth(times, errors, kind.law, u, kind.signed)))
+        grown.append(QuantityGrowth(name, errors, growth(times, errors, kind.law, u, kind.signed)))
     counts = [[sample[1] for sample in row if sample is not None] for row in end.samples]
     steps = tuple(float(np.mean(row)) if row else 0.0 for row in counts)
     lost = sum(not lane.goes_on for lane in end.lanes)
-    return Experiment(question, lost, steps, tuple(found))
+    return Experiment(question, lost, steps, tuple(grown))

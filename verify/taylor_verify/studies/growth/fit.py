@@ -173,8 +173,8 @@ def exponent(times: Floats, errors: Floats, law: Law, roundoff: float) -> Expone
     slopes = np.log(np.where(whole == 0, roundoff, np.abs(whole))) @ x / (x @ x)
     mean = float(np.mean(slopes))
     reach = student(count - 1, LEVEL) * float(np.std(slopes, ddof=1)) / sqrt(count)
-    found = word(mean, max(reach, _RESOLUTION), law)
-    return Exponent(mean, mean - reach, mean + reach, found, count)
+    judgement = word(mean, max(reach, _RESOLUTION), law)
+    return Exponent(mean, mean - reach, mean + reach, judgement, count)
 
 
 def word(value: float, reach: float, law: Law) -> str:
@@ -248,8 +248,8 @@ def covariance_of(law: Law, times: Floats) -> Floats:
     """
     scaled = times / times[-1]
     s, t = np.minimum.outer(scaled, scaled), np.maximum.outer(scaled, scaled)
-    found: Floats = s if law is Law.WALK else s * s * (3 * t - s) / 6
-    return found
+    values: Floats = s if law is Law.WALK else s * s * (3 * t - s) / 6
+    return values
 
 
 # Two distributions. They are not SciPy's, which is no dependency of what judges.

@@ -133,7 +133,9 @@ def _section(run: Ensemble) -> list[str]:
     rows = [
         [
             code(row.quantity),
-            *(figure(row.rms[0]), figure(row.rms[-1]), figure(row.in_walks)),
+            figure(row.rms[0]),
+            figure(row.rms[-1]),
+            figure(row.in_walks),
             _interval(row.word, row.exponent, row.low, row.high),
             prose(row.word),
             _interval(row.late_word, *row.late),
@@ -179,10 +181,33 @@ def _name(run: Ensemble) -> str:
 
 
 _SHEET: Final = (
-    *("scene", "solver", "rung", "quantity", "starts", "lost", "period"),
-    *("periods_first", "periods_last", "steps_last", "rms_first", "rms_last", "in_walks"),
-    *("exponent", "low", "high", "word", "late", "late_low", "late_high", "late_word"),
-    *("level", "gate", "law", "chance", "false_alarm", "scene_sha256"),
+    "scene",
+    "solver",
+    "rung",
+    "quantity",
+    "starts",
+    "lost",
+    "period",
+    "periods_first",
+    "periods_last",
+    "steps_last",
+    "rms_first",
+    "rms_last",
+    "in_walks",
+    "exponent",
+    "low",
+    "high",
+    "word",
+    "late",
+    "late_low",
+    "late_high",
+    "late_word",
+    "level",
+    "gate",
+    "law",
+    "chance",
+    "false_alarm",
+    "scene_sha256",
 )
 
 

@@ -51,17 +51,17 @@ def picture(runs: Sequence[Ensemble]) -> Picture:
     }
     if not any(points for by_run in lines.values() for points in by_run.values()):
         raise ValueError("expected a run with errors above zero, got none @ runs")
-    said = []
+    sentences = []
     for label in by_label:
         ends = []
         for quantity, by_run in lines.items():
             if points := by_run[label]:
                 (n0, e0), (n1, e1) = points[0], points[-1]
                 ends.append(f"{quantity} {plain(e0)} at {n0:g} and {plain(e1)} at {n1:g} periods")
-        said.append(f"{label}: {', '.join(ends) or 'nothing above zero'}")
+        sentences.append(f"{label}: {', '.join(ends) or 'nothing above zero'}")
     alt = (
         f"Errors against periods on {_TITLE}, both logarithmic, energy on the left and "
-        f"phase on the right. {'; '.join(said)}."
+        f"phase on the right. {'; '.join(sentences)}."
     )
     title = f"Growth of errors: {_TITLE}"
     return Picture(stem_of({"scene": _TITLE}, "growth"), title, alt, partial(_figure, lines))
@@ -75,8 +75,8 @@ def _points(run: Ensemble, quantity: str) -> Points:
 
 def _figure(lines: Mapping[str, Mapping[str, Points]]) -> Figure:
     labels = list(next(iter(lines.values())))
-    looks = {label: look_of_line(i) for i, label in enumerate(labels)}
-    entries = [(looks[label].line, label) for label in labels]
+    styles = {label: look_of_line(i) for i, label in enumerate(labels)}
+    entries = [(styles[label].line, label) for label in labels]
     figure, places = sheet(len(PANELS), entries, _NOTE)
     for axes, (quantity, heading, powers) in zip(places, PANELS, strict=True):
         drawn = {label: points for label, points in lines[quantity].items() if points}
@@ -92,17 +92,17 @@ def _figure(lines: Mapping[str, Mapping[str, Points]]) -> Figure:
             for power, look in zip(powers, _LOOKS, strict=True):
                 _draw_power(axes, points, power, look)
         for label, points in drawn.items():
-            axes.plot(*zip(*points, strict=True), gid=label, zorder=3, **looks[label].line)
+            axes.plot(*zip(*points, strict=True), gid=label, zorder=3, **styles[label].line)
     return figure
 
 
 def _apart(lines: Sequence[Points]) -> list[Points]:
     """Return lines that begin far from each other: of several that begin in one place the first."""
-    found: list[Points] = []
+    separate: list[Points] = []
     for points in lines:
-        if all(abs(log10(points[0][1] / other[0][1])) > _APART for other in found):
-            found.append(points)
-    return found
+        if all(abs(log10(points[0][1] / other[0][1])) > _APART for other in separate):
+            separate.append(points)
+    return separate
 
 
 def _draw_power(axes: Axes, points: Points, power: float, look: Mapping[str, Any]) -> None:
@@ -120,11 +120,11 @@ def labels_of(runs: Sequence[Ensemble]) -> list[str]:
     the longer one says how far it goes.
     """
     tails = {run.scene: run.scene.rpartition("/")[2] for run in runs}
-    found: list[str] = []
+    names: list[str] = []
     for run in runs:
         is_alone = list(tails.values()).count(tails[run.scene]) == 1
         scene = tails[run.scene] if is_alone else run.scene
         setting = run.solver.removeprefix("taylor").lstrip("?")
         label = " ".join([scene, run.rung, setting]).strip()
-        found.append(f"{label}, to {run.periods:.0e}" if label in found else label)
-    return found
+        names.append(f"{label}, to {run.periods:.0e}" if label in names else label)
+    return names

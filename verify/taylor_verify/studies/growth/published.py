@@ -47,20 +47,33 @@ class Entry:
 
 
 PUBLISHED: Final = (
-    Entry("euler/about-max-axis", "f64", 1e6, 16, "Brouwer's law over four decades"),
+    Entry(
+        "euler/about-max-axis", "f64", periods=1e6, lanes=16, why="Brouwer's law over four decades"
+    ),
     # x87 has no batch: a lane takes a minute or two, and six are enough for an interval.
-    Entry("euler/about-max-axis", "f80", 1e6, 6, "the same with eleven bits more"),
     Entry(
-        *("euler/generic", "f64", 1e6, 16),
-        "moments 1, 2, 3, whose coefficients are rounded small fractions",
+        "euler/about-max-axis", "f80", periods=1e6, lanes=6, why="the same with eleven bits more"
     ),
     Entry(
-        *("euler/about-max-axis", "f64", 1e5, 16),
-        *("a bias that is known: truncation at a coarse tolerance", f"{TAYLOR}?tol=1e-12"),
+        "euler/generic",
+        "f64",
+        periods=1e6,
+        lanes=16,
+        why="moments 1, 2, 3, whose coefficients are rounded small fractions",
     ),
-    Entry("kirchhoff/two-real-roots", "f64", 1e5, 16, "a solid in a fluid"),
+    Entry(
+        "euler/about-max-axis",
+        "f64",
+        periods=1e5,
+        lanes=16,
+        why="a bias that is known: truncation at a coarse tolerance",
+        solver=f"{TAYLOR}?tol=1e-12",
+    ),
+    Entry("kirchhoff/two-real-roots", "f64", periods=1e5, lanes=16, why="a solid in a fluid"),
 )
-LONG: Final = (Entry("euler/about-max-axis", "f64", 1e8, 8, "a hundred million periods"),)
+LONG: Final = (
+    Entry("euler/about-max-axis", "f64", periods=1e8, lanes=8, why="a hundred million periods"),
+)
 
 # Called after each piece with the label of the ensemble, the pieces done, and their number.
 Finished = Callable[[str, int, int], None]
@@ -84,6 +97,6 @@ def followed(
             left_out.append(f"{entry.label}: {missing}")
             continue
         file = checkpoints / entry.file if checkpoints else None
-        found = experiment(entry.question(most), file, partial(finished, entry.label))
-        runs.append(found.ensemble(entry.why))
+        result = experiment(entry.question(most), file, partial(finished, entry.label))
+        runs.append(result.ensemble(entry.why))
     return GrowthStudy(tuple(runs), tuple(left_out), Provenance(versions(), processor(), command()))

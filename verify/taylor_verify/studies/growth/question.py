@@ -82,9 +82,9 @@ class Question:
     @cached_property
     def period(self) -> float:
         """The period of the scene's orbit; where that has none, of its fastest linear rate at the start."""
-        found = elements(self.scene).get("period")
-        if found is not None:
-            return float(found.value)
+        period = elements(self.scene).get("period")
+        if period is not None:
+            return float(period.value)
         problem = pose(self.scene, self.rung)
         rate = Linearised(problem).fastest([float(value) for value in problem.initial_momenta])
         return 2 * pi / rate * float(problem.units.time)
@@ -134,10 +134,10 @@ class Question:
         }
 
     def _fingerprint(self) -> str:
-        found = hashlib.sha256()
+        digest = hashlib.sha256()
         for problem in self.problems:
             numbers = (*problem.parameters, *problem.initial_momenta, *problem.times)
-            found.update(" ".join([*problem.form.text(), *map(hexadecimal, numbers)]).encode())
+            digest.update(" ".join([*problem.form.text(), *map(hexadecimal, numbers)]).encode())
         for stops, _ in self.pieces:
-            found.update(" ".join(map(hexadecimal, stops)).encode())
-        return found.hexdigest()
+            digest.update(" ".join(map(hexadecimal, stops)).encode())
+        return digest.hexdigest()

@@ -49,16 +49,16 @@ class Pieces:
     """A line for every ensemble, and now and then how far it is."""
 
     def __init__(self, say: Callable[[str], None]) -> None:
-        self._say, self._label, self._said = say, "", 0.0
+        self._say, self._label, self._reported = say, "", 0.0
 
     def __call__(self, label: str, done: int, of: int) -> None:
         if done == of:
             self._say(f"{label}: done")
-        elif label != self._label or monotonic() - self._said >= _PATIENCE:
+        elif label != self._label or monotonic() - self._reported >= _PATIENCE:
             self._say(f"{label}: piece {done} of {of}")
         else:
             return
-        self._label, self._said = label, monotonic()
+        self._label, self._reported = label, monotonic()
 
 
 STUDY: Final = Study(

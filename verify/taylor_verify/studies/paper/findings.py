@@ -33,11 +33,11 @@ def controls(sources: Sources) -> str:
     """Return how many defects each kind of gate sees."""
     sights = [sight for sight in sources.controls.sights if sight.is_finished]
     energy = sum(sight.is_missed_by("T") for sight in sights)
-    seen = sum(any(map(sight.is_seen_by, sight.state)) for sight in sights)
+    failing = sum(any(map(sight.is_seen_by, sight.state)) for sight in sights)
     return (
         f"Of {len(sights)} solvers that were broken on purpose, {energy} pass the gate on the energy and "
         f"{len(conserving(sights))} pass the gate of every conserved quantity of their scene; the "
-        f"comparison with the exact motion sees {seen}."
+        f"comparison with the exact motion sees {failing}."
     )
 
 
@@ -132,13 +132,13 @@ def trade(sources: Sources) -> str:
 
 def _multiples(trades: Iterable[Trade], is_wanted: Callable[[str], bool]) -> list[float]:
     """Return for each scene the time of the fastest of some families over that of taylor."""
-    found = []
+    multiples = []
     for one in trades:
         taylor = _fastest(one, lambda family: family == TAYLOR)
         other = _fastest(one, is_wanted)
         if taylor is not None and other is not None:
-            found.append(other.timing.ratio / taylor.timing.ratio)
-    return found
+            multiples.append(other.timing.ratio / taylor.timing.ratio)
+    return multiples
 
 
 def _fastest(one: Trade, is_wanted: Callable[[str], bool]) -> TimedPoint | None:

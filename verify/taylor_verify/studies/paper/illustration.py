@@ -62,7 +62,7 @@ def _trade(sources: Sources) -> Illustration:
     return Illustration("tradeoff", picture, Caption(words, TRADEOFF, machine), width=90)
 
 
-def _first(found: Sequence[Picture], study: str) -> Picture:
-    if not found:
+def _first(pictures: Sequence[Picture], study: str) -> Picture:
+    if not pictures:
         raise ValueError(f"expected a picture of what `publish {study}` has stored, got none")
-    return found[0]
+    return pictures[0]

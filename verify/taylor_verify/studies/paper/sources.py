@@ -49,8 +49,10 @@ class Sources:
     @property
     def processors(self) -> str:
         """The machines of the runs."""
-        found = {v.provenance["processor"] for v in self.verdicts if "processor" in v.provenance}
-        return ", ".join(sorted(found))
+        processors = {
+            v.provenance["processor"] for v in self.verdicts if "processor" in v.provenance
+        }
+        return ", ".join(sorted(processors))
 
     @cached_property
     def entries(self) -> EntryList:

@@ -112,10 +112,10 @@ def _potential(scene: Scene, orbit: Elements) -> Document | None:
     body = scene.body
     if not isinstance(body, ImmersedBody) or not body.is_free:
         return None
-    found = revolution(Reduced(scene))
-    if found is None or not isinstance(found.subject, Nutation):
+    motion = revolution(Reduced(scene))
+    if motion is None or not isinstance(motion.subject, Nutation):
         return None
-    nutation = found.subject
+    nutation = motion.subject
     X3 = [coefficient / nutation.body.r**2 for coefficient in nutation.f]  # noqa: N806 (as in 49)
     if nutation.F2 == 0 or len(X3) < 2 or nutation.axes.number is None:
         return None
@@ -142,8 +142,8 @@ def roots(polynomial: Sequence[Fraction]) -> list[list[float]]:
     with ctx.workprec(_ROOT_BITS):
         # With multiplicities, which flint's type stubs leave out.
         isolated: list[Any] = list(fmpz_poly(integers).complex_roots())
-        found = [_parts(acb(root)) for root, times in isolated for _ in range(times)]
-    return sorted(found, key=lambda root: (root[1] != 0, root))
+        parts = [_parts(acb(root)) for root, times in isolated for _ in range(times)]
+    return sorted(parts, key=lambda root: (root[1] != 0, root))
 
 
 def _parts(root: acb) -> list[float]:

@@ -85,8 +85,8 @@ class _Bench:
 
     def error(self) -> float:
         """Return the largest relative error over the scene's samples, of omega or the impulses alone."""
-        found = Truth(self.problem).accuracy(self.solver.solve(self.problem))
-        return max(found.max[name] for name in ("omega", "impulse") if name in found.max)
+        accuracy = Truth(self.problem).accuracy(self.solver.solve(self.problem))
+        return max(accuracy.max[name] for name in ("omega", "impulse") if name in accuracy.max)
 
 
 def study(finished: Callable[[str], None] = lambda rung: None) -> PricesStudy:

@@ -53,7 +53,7 @@ _LEGEND: Final = (
 
 def pictures(study: PricesStudy) -> list[Picture]:
     """Return the price of each thing that a scene may ask for on f64, a picture for each model."""
-    found = []
+    drawn = []
     for root, words in _MODELS.items():
         rows = [
             Ratio(row.variant, row.rung, *row.step_ratio)
@@ -61,8 +61,8 @@ def pictures(study: PricesStudy) -> list[Picture]:
             if row.against == root and row.rung == "f64" and row.variant != root
         ]
         if rows:
-            found.append(picture(words, f"{root} alone", rows))
-    return found
+            drawn.append(picture(words, f"{root} alone", rows))
+    return drawn
 
 
 def page(study: PricesStudy, folder: Path) -> str:
@@ -90,8 +90,8 @@ def _three_questions(rows: Iterable[PriceRow]) -> str:
     rungs = list(dict.fromkeys(rung for _, rung in cost))
     lines = []
     for name, words in _ASKED:
-        found = [(cost.get((name, rung)), cost.get(("omega", rung))) for rung in rungs]
-        cells = [f"{figure(a)} ({figure(a / b)})" if a and b else NOTHING for a, b in found]
+        pairs = [(cost.get((name, rung)), cost.get(("omega", rung))) for rung in rungs]
+        cells = [f"{figure(a)} ({figure(a / b)})" if a and b else NOTHING for a, b in pairs]
         lines.append([words, *cells])
     return table(["what is followed", *(f"{rung}:" for rung in rungs)], lines)
 
@@ -100,9 +100,9 @@ def _sections(rows: Sequence[PriceRow], equal: Mapping[str, float | None]) -> li
     blocks = []
     for root, model in _MODELS.items():
         blocks.append(f"## {model[0].upper()}{model[1:]}")
-        found = [row for row in rows if row.against == root]
-        for rung in dict.fromkeys(row.rung for row in found):
-            of_rung = [row for row in found if row.rung == rung]
+        own = [row for row in rows if row.against == root]
+        for rung in dict.fromkeys(row.rung for row in own):
+            of_rung = [row for row in own if row.rung == rung]
             blocks += [f"On {rung}, order {of_rung[0].order}:", _prices(of_rung, equal)]
     return blocks
 
@@ -149,9 +149,26 @@ def _method(study: PricesStudy) -> list[str]:
 
 
 _SHEET: Final = (
-    *("rung", "variant", "against", "states", "parameters", "sums", "products", "quotients"),
-    *("order", "steps_per_time", "microseconds", "step_ratio", "step_low", "step_high"),
-    *("time_ratio", "time_low", "time_high", "error", "ratio_at_equal_error", "what"),
+    "rung",
+    "variant",
+    "against",
+    "states",
+    "parameters",
+    "sums",
+    "products",
+    "quotients",
+    "order",
+    "steps_per_time",
+    "microseconds",
+    "step_ratio",
+    "step_low",
+    "step_high",
+    "time_ratio",
+    "time_low",
+    "time_high",
+    "error",
+    "ratio_at_equal_error",
+    "what",
 )
 
 

@@ -37,13 +37,23 @@ def variants() -> tuple[Variant, ...]:
     whole = _of(_CLEBSCH, "attitude", "centre")
     return (
         Variant(omega, omega, "three moments, free, omega alone", _of(_PRINCIPAL)),
-        Variant("literals", omega, "the coefficients written into the code", _of(_PRINCIPAL), True),
         Variant(
-            *("differences", omega, "differences of K's diagonal formed by the integrator"),
+            "literals",
+            omega,
+            "the coefficients written into the code",
+            _of(_PRINCIPAL),
+            literals=True,
+        ),
+        Variant(
+            "differences",
+            omega,
+            "differences of K's diagonal formed by the integrator",
             lambda rung: pose(load(_PRINCIPAL), rung).with_equations(euler_equations),
         ),
         Variant(
-            *("zeros", omega, "products of inertia and moment carried along, all of them zero"),
+            "zeros",
+            omega,
+            "products of inertia and moment carried along, all of them zero",
             lambda rung: in_general_form(pose(load(_PRINCIPAL), rung), zeros=True),
         ),
         Variant("moment", omega, "a constant moment about all axes", _of(_PRINCIPAL, loaded=True)),
@@ -51,21 +61,28 @@ def variants() -> tuple[Variant, ...]:
         Variant("tensor", omega, "a tensor with products of inertia", _of(_TENSOR)),
         Variant("tensor, attitude", omega, "and the attitude", _of(_TENSOR, "attitude")),
         Variant(impulse, impulse, "Clebsch's body, free, x and y alone", _of(_CLEBSCH)),
-        Variant("impulse, literals", impulse, "as above, in the code", _of(_CLEBSCH), True),
+        Variant(
+            "impulse, literals", impulse, "as above, in the code", _of(_CLEBSCH), literals=True
+        ),
         Variant("y3 a state", impulse, "the constant y3 integrated", _with_y3),
         Variant(
-            *("21 coefficients", impulse, "the same body by the general equations, zeros left out"),
+            "21 coefficients",
+            impulse,
+            "the same body by the general equations, zeros left out",
             lambda rung: in_general_form(_of(_CLEBSCH)(rung)),
         ),
         Variant(
-            *("21, zeros carried", impulse, "and with 15 coefficients and 6 loads that are zero"),
+            "21, zeros carried",
+            impulse,
+            "and with 15 coefficients and 6 loads that are zero",
             lambda rung: in_general_form(_of(_CLEBSCH)(rung), zeros=True),
         ),
         Variant("loads", impulse, "a constant force and couple", _of(_CLEBSCH, loaded=True)),
         Variant("impulse, attitude", impulse, "and the attitude", _of(_CLEBSCH, "attitude")),
         Variant("whole", impulse, "attitude and centre", whole),
         Variant(
-            *("whole, 21", impulse),
+            "whole, 21",
+            impulse,
             "attitude and centre by the general equations, zeros left out",
             lambda rung: in_general_form(whole(rung)),
         ),

@@ -79,11 +79,11 @@ def members() -> list[Member]:
 def reaches(one: Family, value: str, rungs: Iterable[Rung]) -> list[ReachRow]:
     """Return what is left of one member on each of the rungs, with all digits."""
     scene = one.scene(value)
-    found = []
+    rows = []
     for rung in rungs:
         nothing = ReachRow(one.name, value, rung.name, one.periods(rung.name), (), (), 0, "")
-        found.append(_followed(nothing, scene, rung))
-    return _with_floors(found, scene)
+        rows.append(_followed(nothing, scene, rung))
+    return _with_floors(rows, scene)
 
 
 def stored(row: ReachRow) -> ReachRow:
@@ -128,10 +128,10 @@ def _solved(nothing: ReachRow, periods: Sequence[int], scene: Scene, rung: Rung)
 
 
 def _check_orbit(scene: Scene, problem: Problem) -> None:
-    asked, found = period_of(scene), elements(problem.given)
-    if "period" not in found:
-        raise _Another(f"rounded to {problem.rung.name}, the orbit is a {found.regime} one")
-    period = found["period"].value
+    asked, rounded = period_of(scene), elements(problem.given)
+    if "period" not in rounded:
+        raise _Another(f"rounded to {problem.rung.name}, the orbit is a {rounded.regime} one")
+    period = rounded["period"].value
     if not abs(period - mp.convert(asked)) <= mp.convert(_SAME_PERIOD * asked):
         ratio = float(period / mp.convert(asked))
         raise _Another(f"rounded to {problem.rung.name}, its period is {ratio:.3g} times as long")
@@ -151,18 +151,18 @@ def _errors(problem: Problem, trajectory: Trajectory) -> Floats:
     return worst
 
 
-def _with_floors(found: Sequence[ReachRow], scene: Scene) -> list[ReachRow]:
+def _with_floors(rows: Sequence[ReachRow], scene: Scene) -> list[ReachRow]:
     """Return the rows with their floors, and to the end of their periods.
 
     One orbit serves them all: on each rung it is that of the number asked for, or nothing was run.
     Raises Unsettled where its condition cannot be had.
     """
-    followed = max((one.periods[: len(one.errors)] for one in found), key=len)
+    followed = max((one.periods[: len(one.errors)] for one in rows), key=len)
     if not followed:
-        return list(found)
+        return list(rows)
     asked = at_quarters(scene, followed)
     truth = solution(asked).motion(asked.clock.elapsed, _DIGITS_OF_SCALES)
-    return [_with_floor(one, asked, truth) if one.errors else one for one in found]
+    return [_with_floor(one, asked, truth) if one.errors else one for one in rows]
 
 
 def _with_floor(one: ReachRow, asked: Scene, truth: Motion) -> ReachRow:

@@ -95,14 +95,14 @@ def last_value(
 
     ``rows`` are those of one rung, the easiest value first.
     """
-    kept = list(takewhile(lambda row: _keeps(row, after, digits, key), rows))
-    return kept[-1].value if kept else None
+    precise = list(takewhile(lambda row: _keeps(row, after, digits, key), rows))
+    return precise[-1].value if precise else None
 
 
 def most_periods(row: ReachRow, digits: int, key: str = ACHIEVED) -> int | None:
     """Return the most periods after which so many digits are left; None where the first leaves fewer."""
-    kept = list(takewhile(lambda count: _keeps(row, count, digits, key), row.periods))
-    return kept[-1] if kept else None
+    precise = list(takewhile(lambda count: _keeps(row, count, digits, key), row.periods))
+    return precise[-1] if precise else None
 
 
 def _keeps(row: ReachRow, after: int, digits: int, key: str) -> bool:
@@ -165,17 +165,17 @@ def _nothing(row: ReachRow) -> str:
 
 def _over_attainable(rows: Sequence[ReachRow]) -> str:
     """Return the errors over the floors, where these leave a digit."""
-    found = sorted(
+    ratios = sorted(
         error / least
         for row in rows
         for error, least in zip(row.errors, row.floors, strict=False)
         if error is not None and least and least <= 0.1
     )
-    if not found:
+    if not ratios:
         return "No error was compared with a floor."
     return (
-        f"Error over attainable, where that leaves a digit: {figure(found[-1])} at most, "
-        f"{figure(found[len(found) // 2])} in the middle of {len(found)}."
+        f"Error over attainable, where that leaves a digit: {figure(ratios[-1])} at most, "
+        f"{figure(ratios[len(ratios) // 2])} in the middle of {len(ratios)}."
     )
 
 
@@ -202,13 +202,21 @@ def _method(study: ReachStudy) -> list[str]:
 
 
 _SHEET: Final = (
-    *("family", "value", "rung", "periods", "error", "attainable", "lost", "steps", "why"),
+    "family",
+    "value",
+    "rung",
+    "periods",
+    "error",
+    "attainable",
+    "lost",
+    "steps",
+    "why",
 )
 
 
 def sheet(study: ReachStudy) -> str:
     """Return a row for every number of periods; one row, with the reason, where nothing was run."""
-    return csv_sheet(_SHEET, (found for row in study.rows for found in _reached(row)))
+    return csv_sheet(_SHEET, (line for row in study.rows for line in _reached(row)))
 
 
 def _reached(row: ReachRow) -> Iterator[dict[str, Any]]:

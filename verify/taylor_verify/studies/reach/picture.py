@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from itertools import pairwise, product
+from itertools import pairwise, product, takewhile
 from math import floor, log10
 from typing import TYPE_CHECKING, Final
 
@@ -97,12 +97,12 @@ class _Map:
     @property
     def sentence(self) -> str:
         """The values up to which six digits are left, in words."""
-        said = []
+        limits = []
         for n in sorted({self.periods[0], self.periods[-1]}):
-            left = [self.cells.get((value, n, ACHIEVED), 0) >= 6 for value in self.values]
-            last = ("none of these", *self.values)[[*left, False].index(False)]
-            said.append(f"after {n} {'period' if n == 1 else 'periods'} up to {last}")
-        return f"On {self.rung} six digits are left {' and '.join(said)}."
+            precise = [self.cells.get((value, n, ACHIEVED), 0) >= 6 for value in self.values]
+            last = ("none of these", *self.values)[sum(takewhile(bool, precise))]
+            limits.append(f"after {n} {'period' if n == 1 else 'periods'} up to {last}")
+        return f"On {self.rung} six digits are left {' and '.join(limits)}."
 
 
 def digits_of(error: float | None) -> int:
@@ -160,7 +160,9 @@ def _draw_cells(axes: Axes, one: _Map, key: str) -> None:
         colour = next(colour for least, colour in reversed(CLASSES) if digits >= least)
         cell.set(facecolor=colour, linewidth=0.4, gid="cell")
         axes.text(
-            *(x, y, str(digits)),
+            x,
+            y,
+            str(digits),
             size=_NUMBER,
             ha="center",
             va="center_baseline",

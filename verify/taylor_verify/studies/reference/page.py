@@ -75,7 +75,7 @@ def _sheet(columns: Mapping[str, Sequence[str]]) -> str:
 def _readme(documents: Iterable[Document], examples: Mapping[str, str]) -> str:
     columns = ["scene", "regime", "route", "columns", "rows:", "file"]
     text = (_TEMPLATES / "reference.md").read_text(encoding="utf-8")
-    filled = text.replace("{{scenes}}", table(columns, [_row(found) for found in documents]))
+    filled = text.replace("{{scenes}}", table(columns, [_row(document) for document in documents]))
     for name, program in examples.items():
         # A program is the same as in its file, and written once.
         filled = filled.replace(f"{{{{{name}}}}}", program.rstrip())

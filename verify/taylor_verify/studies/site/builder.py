@@ -22,8 +22,14 @@ FRONT: Final = "index.html"
 _SCRIPT: Final = "plotly.min.js"
 # Modules to import; pip knows them by these names with hyphens.
 _NEEDED: Final = (
-    *("sphinx", "myst_nb", "ipykernel", "furo", "sphinx_copybutton"),
-    *("latex2mathml", "matplotlib", "plotly"),
+    "sphinx",
+    "myst_nb",
+    "ipykernel",
+    "furo",
+    "sphinx_copybutton",
+    "latex2mathml",
+    "matplotlib",
+    "plotly",
 )
 # Other Markdown comes along as files.
 _PAGES: Final = ["index.md", "docs/**", "reports/**"]
@@ -94,8 +100,8 @@ def _run_sphinx(source: Path, target: Path, settings: Path) -> None:
             parallel=available_cores(),
         )
         app.build()
-    if found := messages.getvalue().replace(f"{source.resolve()}{os.sep}", ""):
-        lines = re.sub(r"\x1b\[[\d;]*m", "", found).strip().replace("\n", "; ")
+    if faults := messages.getvalue().replace(f"{source.resolve()}{os.sep}", ""):
+        lines = re.sub(r"\x1b\[[\d;]*m", "", faults).strip().replace("\n", "; ")
         raise ValueError(f"expected pages without a fault, got {lines}")
 
 

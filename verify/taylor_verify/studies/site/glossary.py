@@ -53,8 +53,16 @@ _PAGE: Final = "glossary"
 # A word is looked for in sentences: not in headings, code, links, formulas and tables.
 _SENTENCES: Final = (nodes.paragraph,)
 _APART: Final = (
-    *(nodes.reference, nodes.literal, nodes.literal_block, nodes.math, nodes.title, nodes.table),
-    *(addnodes.pending_xref, addnodes.desc_signature, addnodes.download_reference, nodes.raw),
+    nodes.reference,
+    nodes.literal,
+    nodes.literal_block,
+    nodes.math,
+    nodes.title,
+    nodes.table,
+    addnodes.pending_xref,
+    addnodes.desc_signature,
+    addnodes.download_reference,
+    nodes.raw,
 )
 
 

@@ -143,13 +143,13 @@ class _Curve:
         cls, portrait: Portrait, rows: ArrayLike, record: Record | None, quantity: str
     ) -> _Curve | None:
         """Return the curve of these rows; None without rows, and for a point."""
-        found = np.asarray(rows, dtype=float)
-        if not found.size or not _extent(found) > _A_POINT * np.abs(found).max():
+        points = np.asarray(rows, dtype=float)
+        if not points.size or not _extent(points) > _A_POINT * np.abs(points).max():
             return None
         errors = _errors(record, quantity)
         rung = record["rung"] if record else ""
         words = f" The colour is the logarithm of the error of {quantity} there, on {rung}."
-        return cls(np.array(portrait["course"]["t"]), found, errors, words if errors else "")
+        return cls(np.array(portrait["course"]["t"]), points, errors, words if errors else "")
 
     def traces(self) -> list[Trace]:
         """Return what Plotly draws: the curve, and a mark at its start."""
@@ -164,7 +164,9 @@ class _Curve:
         return [
             {
                 **_scattered("lines", "motion", self.rows[places]),
-                **{"line": line, "showlegend": False, "text": column(times, 7)},
+                "line": line,
+                "showlegend": False,
+                "text": column(times, 7),
                 "hovertemplate": "t = %{text}<br>%{x:.4g}, %{y:.4g}, %{z:.4g}<extra></extra>",
             },
             {**_scattered("markers", "start", self.rows[:1]), **start, "showlegend": False},
@@ -196,15 +198,15 @@ def thinned(rows: ArrayLike, tolerance: float) -> list[int]:
     """
     points = np.asarray(rows, dtype=float)
     farthest = tolerance * _extent(points)
-    kept, open_ = {0, len(points) - 1}, [(0, len(points) - 1)]
+    places, open_ = {0, len(points) - 1}, [(0, len(points) - 1)]
     while open_:
         first, last = open_.pop()
         away = _from_chord(points[first : last + 1])
         if away.max() > farthest:
             at = first + int(away.argmax())
-            kept.add(at)
+            places.add(at)
             open_ += [(first, at), (at, last)]
-    return sorted(kept)
+    return sorted(places)
 
 
 def _from_chord(points: Numbers) -> Numbers:
@@ -245,8 +247,12 @@ def _ball(
 ) -> Trace:
     """Return an ellipsoid whose semi-axes lie along the rows of ``axes``; the script lays its net."""
     return {
-        **{"type": "surface", "ball": {"semi": column(semi), "axes": [column(a) for a in axes]}},
-        **{"opacity": 0.35, "showscale": False, "hoverinfo": "skip", "name": "surface"},
+        "type": "surface",
+        "ball": {"semi": column(semi), "axes": [column(a) for a in axes]},
+        "opacity": 0.35,
+        "showscale": False,
+        "hoverinfo": "skip",
+        "name": "surface",
         "colorscale": [[0, "$surface"], [1, "$surface"]],
         "lighting": {"ambient": 0.8, "diffuse": 0.4, "specular": 0.05, "roughness": 0.9},
         "contours": {name: {"highlight": False} for name in "xyz"},

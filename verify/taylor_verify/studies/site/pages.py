@@ -36,7 +36,14 @@ _WHAT: Final = (
     "on the page of its scene."
 )
 _COLUMNS: Final = (
-    *("scene", "rung", "quantity", "max:", "at t:", "bound:", "over attainable:", "verdict"),
+    "scene",
+    "rung",
+    "quantity",
+    "max:",
+    "at t:",
+    "bound:",
+    "over attainable:",
+    "verdict",
 )
 
 
@@ -51,7 +58,7 @@ def staged(folder: Path) -> Stage:
         for scene in report.scenes
     }
     drawings = _drawn(
-        [one for found in pictures.values() for one in found if not report.has(drawing_of(one))]
+        [one for drawn in pictures.values() for one in drawn if not report.has(drawing_of(one))]
     )
     stage.files |= {f"{SCENES}/{name}": svg for name, svg in drawings.items()}
     stage.add_pages(
@@ -59,8 +66,8 @@ def staged(folder: Path) -> Stage:
             f"{SCENES}.md": _scenes(report),
             _GATES: _gates(report),
             **{
-                f"{SCENES}/{of_scene(scene)}.md": scene_page(scene, report, found)
-                for scene, found in pictures.items()
+                f"{SCENES}/{of_scene(scene)}.md": scene_page(scene, report, drawn)
+                for scene, drawn in pictures.items()
             },
             FRONT: _front(report, stage, pictures.get(_EXAMPLE, ())),
         }

@@ -28,8 +28,17 @@ _SHOWN: Final = "f64"
 # The table of scenes leads here: hundreds of lines would be no navigation.
 _ORPHAN: Final = "---\norphan: true\n---"
 _ACCURACY: Final = (
-    *("rung", "quantity", "max:", "mean:", "max, u:", "at t:", "attainable:", "bound:"),
-    *("over attainable:", "steps:", "verdict"),
+    "rung",
+    "quantity",
+    "max:",
+    "mean:",
+    "max, u:",
+    "at t:",
+    "attainable:",
+    "bound:",
+    "over attainable:",
+    "steps:",
+    "verdict",
 )
 _ALLOWED: Final = (
     f"A gate allows {GATE_FACTOR} times what perfect rounding of every step would leave on this orbit; the "
@@ -178,8 +187,12 @@ def _solvers(trade: Trade | None) -> list[str]:
         best.setdefault((row.point.family, row.point.rung), row)
     lines = [
         [
-            *(code(row.point.solver), row.point.rung, figure(row.error), f"{digits:.1f}"),
-            *(str(row.point.steps), figure(row.timing.ratio)),
+            code(row.point.solver),
+            row.point.rung,
+            figure(row.error),
+            f"{digits:.1f}",
+            str(row.point.steps),
+            figure(row.timing.ratio),
         ]
         for row in best.values()
         if (digits := row.point.achieved_digits) is not None

@@ -71,19 +71,19 @@ class Report:
 
     def records(self, scene: str) -> dict[str, Document]:
         """Return the records of a scene by rung, as far as there are some."""
-        found = {r: self._stored(store.record_name(scene, _SOLVER, r)) for r in self.rungs}
-        return {rung: record for rung, record in found.items() if record is not None}
+        stored = {r: self._stored(store.record_name(scene, _SOLVER, r)) for r in self.rungs}
+        return {rung: record for rung, record in stored.items() if record is not None}
 
     @cached_property
     def sights(self) -> tuple[Sight, ...]:
         """The solvers that were broken on purpose with their verdicts; none where none are stored."""
-        found = CONTROLS.find(self.folder)
-        return found.sights if found else ()
+        study = CONTROLS.find(self.folder)
+        return study.sights if study else ()
 
     @cached_property
     def _trades(self) -> dict[str, Trade]:
-        found = trades.load(self.folder)
-        return {trade.scene: trade for trade in found.trades} if found else {}
+        study = trades.load(self.folder)
+        return {trade.scene: trade for trade in study.trades} if study else {}
 
     def trade(self, scene: str) -> Trade | None:
         """Return speed against accuracy on one scene."""

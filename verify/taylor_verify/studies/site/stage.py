@@ -85,7 +85,7 @@ class Stage:
         if self.docs is None:
             return ""
         text = (self.docs / "index.md").read_text(encoding="utf-8")
-        lists = (_ENTRY.sub(rf"{DOCS}/\1", found[0]) for found in _TOCTREE.finditer(text))
+        lists = (_ENTRY.sub(rf"{DOCS}/\1", match[0]) for match in _TOCTREE.finditer(text))
         return "\n\n".join(lists).replace(":maxdepth: 1", ":hidden:")
 
     def add_pages(self, made: Mapping[str, str]) -> None:

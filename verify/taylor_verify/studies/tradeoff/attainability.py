@@ -54,13 +54,13 @@ def left_out(scene: Scene, rungs: Iterable[Rung], error: float) -> dict[Rung, st
     The floor is a model of random roundings: as the judge's gates leave GATE_FACTOR above it, so it takes
     GATE_FACTOR here before a rung is given up unmeasured.
     """
-    found = {}
+    reasons = {}
     for rung in dict.fromkeys(rungs):
         least = least_error(scene, rung)
         if least is not None and least > GATE_FACTOR * error:
             beyond = "" if least < 1 else ", more than the motion's own size"
-            found[rung] = f"on {rung.name} rounding alone leaves {least:.2g}{beyond}"
-    return found
+            reasons[rung] = f"on {rung.name} rounding alone leaves {least:.2g}{beyond}"
+    return reasons
 
 
 def narrowest(scene: Scene, error: float) -> tuple[Rung, float] | None:

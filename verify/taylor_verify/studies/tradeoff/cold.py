@@ -38,7 +38,7 @@ def cold(
     """
     from taylor_verify.studies.tradeoff.timing import cold_caches
 
-    found = {}
+    times = {}
     # What a lambda or a function of a function raises in pickling differs between versions.
     unsent = (pickle.PicklingError, AttributeError, TypeError, BrokenProcessPool)
     for setting in asked:
@@ -48,9 +48,9 @@ def cold(
             parts = in_a_new_process(first_solve, data)
             whole = perf_counter() - began
             process = max(0.0, whole - sum(parts.values()))
-            found[setting] = {"process": process, **parts, "whole": whole}
+            times[setting] = {"process": process, **parts, "whole": whole}
         finished(setting.label)
-    return found
+    return times
 
 
 def in_a_new_process(function: Callable[..., Answer], *arguments: object) -> Answer:

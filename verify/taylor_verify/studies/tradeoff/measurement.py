@@ -62,9 +62,12 @@ from taylor_verify.studies.tradeoff.trade_off import (
 
 # Beyond its end the last of them is chaotic: no method has six digits there after a hundred periods.
 SCENES: Final = (
-    *("euler/generic", "euler/with-attitude"),
-    *("kirchhoff/whole-motion", "kirchhoff/general-body"),
-    *(f"euler/generic{UNTIL}800", f"euler/with-attitude{UNTIL}800"),
+    "euler/generic",
+    "euler/with-attitude",
+    "kirchhoff/whole-motion",
+    "kirchhoff/general-body",
+    f"euler/generic{UNTIL}800",
+    f"euler/with-attitude{UNTIL}800",
     f"kirchhoff/whole-motion{UNTIL}1600",
 )
 _SAMPLES: Final = 101
@@ -142,10 +145,10 @@ def measurement(
 
 def _versions() -> dict[str, str]:
     """Return the versions of all that takes part: SciPy too, which is no part of a verdict."""
-    found = packages()
+    used = packages()
     with suppress(PackageNotFoundError):
-        found["scipy"] = version("scipy")
-    return found
+        used["scipy"] = version("scipy")
+    return used
 
 
 def scene_named(name: str) -> Scene:
@@ -197,9 +200,9 @@ def one_process(asked: Sequence[Asked], seed: int, rounds: int) -> dict[str, dic
     scenes = list(asked)
     random.Random(seed).shuffle(scenes)
     with cold_caches():
-        found = {scene.name: measured(scene, names, seed, rounds) for scene, names in scenes}
+        answers = {scene.name: measured(scene, names, seed, rounds) for scene, names in scenes}
     end_sessions()
-    return found
+    return answers
 
 
 def _timings(
@@ -217,7 +220,8 @@ def _timing(scene: str, name: Name, every: Sequence[Measured]) -> TradeTiming:
     inner = [one.inner for one in every if one.inner is not None]
     ratio = estimate(one.ratio for one in every)
     return TradeTiming(
-        *(scene, *name),
+        scene,
+        *name,
         seconds=estimate(one.seconds for one in every).median,
         inner_seconds=estimate(inner).median if len(inner) == len(every) else None,
         ratio=ratio.median,

@@ -18,7 +18,7 @@ from taylor_verify.records.standing import Standing
 from taylor_verify.studies import figures
 from taylor_verify.studies.tradeoff.document import PlainDouble, TradePoint
 from taylor_verify.studies.tradeoff.pareto import pareto
-from taylor_verify.studies.tradeoff.peers import DIGITS, TAYLOR, peers_told
+from taylor_verify.studies.tradeoff.peers import DIGITS, TAYLOR, peer_sections
 from taylor_verify.studies.tradeoff.pictures import time_by_rung
 from taylor_verify.studies.tradeoff.pictures import trade as of_one_scene
 from taylor_verify.studies.tradeoff.stored import TimedPoint, Trade, Trades, cheapest
@@ -61,7 +61,7 @@ _WHY_DOUBLES_FAIL: Final = (
 )
 
 
-def page(found: Trades, folder: Path) -> str:
+def page(trades: Trades, folder: Path) -> str:
     """Return the whole page, with the pictures that are in ``folder``/figures."""
     return whole(
         "Speed against accuracy",
@@ -72,60 +72,60 @@ def page(found: Trades, folder: Path) -> str:
         "said where no measured setting leaves so many. Below 1 is faster than the yardstick, which "
         "leaves the digits that the first line of each scene says. Where the intervals of neighbouring "
         "tolerances overlap, which of them is the cheapest is chance.",
-        _by_digits(found),
+        _by_digits(trades),
         "## Beside compiled integrators of other libraries",
-        *peers_told(found),
+        *peer_sections(trades),
         "## What a wider number costs",
         "Taylor at each rung's own tolerance: time over that in float64, and the digits that are left. "
         "*attainable* are those that rounding the state once a sample, and nothing else, would leave.",
-        _by_rung(found),
-        figures.shown(folder, _of_rungs(found.short)),
+        _by_rung(trades),
+        figures.shown(folder, _of_rungs(trades.short)),
         "## Asked for and achieved",
         "A tolerance bounds the error of one step, or what the solver takes for it, and promises "
         "nothing of the answer. The digits that were left at each:",
-        _by_request(found),
+        _by_request(trades),
         "## In pictures",
-        *(figures.shown(folder, _of_trade(one)) for one in found.short),
+        *(figures.shown(folder, _of_trade(one)) for one in trades.short),
         "## The front",
         "The settings in float64 that no other beats in both time and error, the fastest first.",
-        *(_front(trade) for trade in found.short),
+        *(_front(trade) for trade in trades.short),
         "## Geometric integrators",
         "Fixed steps, in the scene's unit of time. They keep what they promise, to the last bits: all of "
         "them the momentum in space, the midpoint and Moser and Veselov's the energy too, which "
         "splitting lets swing and lie-rk4 drift. That is no accuracy. *drift* is the largest of all "
         "conserved quantities, with its name.",
-        _geometric(found),
+        _geometric(trades),
         "## What failed, and what was not run",
         "None of these is on a front, and none has a number above.",
-        _failures(found),
+        _failures(trades),
         "## The closed form in plain doubles",
         _PLAIN_DOUBLES,
-        _doubles(found.numbers.plain_doubles),
+        _doubles(trades.numbers.plain_doubles),
         bullets(_WHY_DOUBLES_FAIL),
         "## What is timed",
         what_is_timed(),
         "## How it was timed, and where",
-        bullets(how_it_was_timed(found)),
+        bullets(how_it_was_timed(trades)),
         "## To remake this",
-        remake(found),
+        remake(trades),
     )
 
 
-def pictures(found: Trades) -> list[Picture]:
+def pictures(trades: Trades) -> list[Picture]:
     """Return the pictures of every scene, and that of all rungs."""
-    return [*(one for trade in found.short for one in _of_trade(trade)), *_of_rungs(found.short)]
+    return [*(one for trade in trades.short for one in _of_trade(trade)), *_of_rungs(trades.short)]
 
 
-def _of_trade(found: Trade) -> list[Picture]:
+def _of_trade(trade: Trade) -> list[Picture]:
     """Return the pictures of one scene; none where no setting is sound."""
-    return of_one_scene.pictures(found.document()) if found.sound else []
+    return of_one_scene.pictures(trade.document()) if trade.sound else []
 
 
-def _of_rungs(found: Sequence[Trade]) -> list[Picture]:
+def _of_rungs(trades: Sequence[Trade]) -> list[Picture]:
     """Return the picture of taylor's time at each rung's own tolerance, a line for each scene."""
     rows = [
         Ratio(one.scene, row.point.rung, row.timing.ratio, row.timing.low, row.timing.high)
-        for one in found
+        for one in trades
         for row in one.sound
         if row.point.solver == "taylor"
     ]
@@ -135,11 +135,11 @@ def _of_rungs(found: Sequence[Trade]) -> list[Picture]:
 # What so many digits cost.
 
 
-def _by_digits(found: Trades) -> str:
+def _by_digits(trades: Trades) -> str:
     columns = ["scene", "solver", *(f"{digits} digits:" for digits in DIGITS)]
     rows = []
-    for trade in found.short:
-        yardstick = _yardstick(trade, found.numbers.yardstick)
+    for trade in trades.short:
+        yardstick = _yardstick(trade, trades.numbers.yardstick)
         rows.append([code(trade.scene), yardstick, *[""] * len(DIGITS)])
         ran = {p.family for p in trade.points if p.standing is not Standing.NOT_RUN}
         for family in (TAYLOR, *_RIVALS, _CLOSED_FORM):
@@ -182,15 +182,15 @@ def _ratio(row: TimedPoint) -> str:
 # Rungs and requests.
 
 
-def _by_rung(found: Trades) -> str:
+def _by_rung(trades: Trades) -> str:
     own = {
         trade.scene: {row.point.rung: row for row in trade.sound if _is_own_tolerance(row.point)}
-        for trade in found.short
+        for trade in trades.short
     }
-    rungs = {p.rung for p in found.numbers.points if _is_own_tolerance(p)}
+    rungs = {p.rung for p in trades.numbers.points if _is_own_tolerance(p)}
     ladder = sorted(rungs, key=place_of_rung)
     rows = []
-    for trade in found.short:
+    for trade in trades.short:
         on = own[trade.scene]
         cells = [f"{_ratio(on[r])}, {_digits(on[r].point)}" if r in on else NOTHING for r in ladder]
         rows.append([code(trade.scene), *cells])
@@ -205,10 +205,10 @@ def _is_own_tolerance(point: TradePoint) -> bool:
     return point.solver == "taylor" and not point.setting
 
 
-def _by_request(found: Trades) -> str:
+def _by_request(trades: Trades) -> str:
     columns = ["scene", "solver", *(f"{-log10(asked):.0f} asked for:" for asked in _ASKED)]
     rows = []
-    for trade in found.short:
+    for trade in trades.short:
         for family in dict.fromkeys(p.family for p in trade.points if p.asked == "tolerance"):
             own = [p for p in trade.points if p.family == family]
             cells = [_achieved(own, asked) for asked in _ASKED]
@@ -249,7 +249,7 @@ def _front_line(row: TimedPoint) -> str:
     return f"{_digits(row.point, 'every digit')}: {name}, {_ratio(row)} times the yardstick"
 
 
-def _geometric(found: Trades) -> str:
+def _geometric(trades: Trades) -> str:
     numbers = ("step:", "time:", "largest error:", "drift:")
     columns = ["scene", "integrator", *numbers, "of"]
     rows = [
@@ -262,17 +262,17 @@ def _geometric(found: Trades) -> str:
             figure(row.point.drift),
             code(row.point.drifting),
         ]
-        for trade in found.trades
+        for trade in trades.trades
         for row in trade.sound
         if row.point.family.startswith(_GEOMETRIC)
     ]
     return table(columns, rows)
 
 
-def _failures(found: Trades) -> str:
+def _failures(trades: Trades) -> str:
     """Return the points that are not sound, or were not timed in every process."""
     rows = []
-    for trade in found.trades:
+    for trade in trades.trades:
         compared = [row.point for row in trade.sound]
         for p in trade.points:
             if p not in compared:
@@ -299,7 +299,9 @@ def _doubles(rows: Iterable[PlainDouble]) -> str:
         stands_out = row.error is not None and row.standing is not Standing.SOUND
         lines.append(
             [
-                *(prose(row.what), figure(row.end), figure(row.m_prime)),
+                prose(row.what),
+                figure(row.end),
+                figure(row.m_prime),
                 bold(error) if stands_out else error,
                 figure(row.error_beside),
                 claims.get(row.standing, prose(row.outcome)),
@@ -313,12 +315,31 @@ def _doubles(rows: Iterable[PlainDouble]) -> str:
 
 
 _FIELDS: Final = (
-    *("scene", "solver", "setting", "rung", "family", "asked", "requested", "achieved_digits"),
-    *("error", "drift", "drifting", "steps", "evaluations", "seconds", "inner_seconds"),
-    *("ratio", "low", "high", "processes", "standing", "outcome", "because"),
+    "scene",
+    "solver",
+    "setting",
+    "rung",
+    "family",
+    "asked",
+    "requested",
+    "achieved_digits",
+    "error",
+    "drift",
+    "drifting",
+    "steps",
+    "evaluations",
+    "seconds",
+    "inner_seconds",
+    "ratio",
+    "low",
+    "high",
+    "processes",
+    "standing",
+    "outcome",
+    "because",
 )
 
 
-def sheet(found: Trades) -> str:
+def sheet(trades: Trades) -> str:
     """Return a row for every scene and setting, with every digit."""
-    return csv_sheet(_FIELDS, (row for trade in found.trades for row in trade.rows))
+    return csv_sheet(_FIELDS, (row for trade in trades.trades for row in trade.rows))

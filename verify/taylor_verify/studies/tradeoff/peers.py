@@ -54,11 +54,11 @@ _SET_UP: Final = (
 )
 
 
-def peers_told(found: Trades) -> list[str]:
+def peer_sections(trades: Trades) -> list[str]:
     """Return the paragraphs and tables of the section; a sentence where no peer was measured."""
-    if not any(_peers(trade) for trade in found.trades):
+    if not any(_peers(trade) for trade in trades.trades):
         return [_NONE]
-    return [_WHAT, _times(found), bullets(_HOW), _SET_UP, _set_up(found)]
+    return [_WHAT, _times(trades), bullets(_HOW), _SET_UP, _set_up(trades)]
 
 
 def _peers(trade: Trade) -> list[str]:
@@ -70,9 +70,9 @@ def _is_ours(row: TimedPoint) -> bool:
     return row.point.family in (TAYLOR, OPTIMISED)
 
 
-def _families(found: Trades) -> list[str]:
+def _families(trades: Trades) -> list[str]:
     """Return the families of the columns: taylor, those with a title in that order, and any other."""
-    points = [point for trade in found.trades for point in trade.points]
+    points = [point for trade in trades.trades for point in trade.points]
     asked = dict.fromkeys(p.family for p in points if p.family.startswith((OUTSIDE, OPTIMISED)))
     known = [family for family in TITLES if family in asked]
     return [TAYLOR, *known, *(family for family in asked if family not in known)]
@@ -89,10 +89,10 @@ def _of_family(trade: Trade, family: str) -> list[TimedPoint]:
 # The times.
 
 
-def _times(found: Trades) -> str:
-    families = _families(found)
+def _times(trades: Trades) -> str:
+    families = _families(trades)
     rows = []
-    for trade in found.trades:
+    for trade in trades.trades:
         for digits in DIGITS:
             best = {f: cheapest(_of_family(trade, f), digits) for f in families}
             ours, *others = (_cell(best[f], bool(_of_family(trade, f))) for f in families)
@@ -143,18 +143,18 @@ def _overlap(first: TimedPoint, other: TimedPoint) -> bool:
 # The set-up.
 
 
-def _set_up(found: Trades) -> str:
-    families = _families(found)
-    scenes = dict.fromkeys(trade.scene.partition(UNTIL)[0] for trade in found.trades)
-    rows = [[code(scene), *(_longest(found, scene, f) for f in families)] for scene in scenes]
+def _set_up(trades: Trades) -> str:
+    families = _families(trades)
+    scenes = dict.fromkeys(trade.scene.partition(UNTIL)[0] for trade in trades.trades)
+    rows = [[code(scene), *(_longest(trades, scene, f) for f in families)] for scene in scenes]
     return table(["scene", *(f"{_title(f)}:" for f in families)], rows)
 
 
-def _longest(found: Trades, scene: str, family: str) -> str:
+def _longest(trades: Trades, scene: str, family: str) -> str:
     """Return the longest set-up of a family on a scene: the short or the long one compiles for both."""
     seconds = [
         row.timing.setup_seconds
-        for trade in found.trades
+        for trade in trades.trades
         if trade.scene.partition(UNTIL)[0] == scene
         for row in _of_family(trade, family)
         if row.timing.setup_seconds is not None

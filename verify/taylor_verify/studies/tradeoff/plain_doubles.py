@@ -67,17 +67,17 @@ def plain_doubles() -> Iterator[PlainDouble]:
     for case in cases():
         solvers = (ELLIPJ, _BESIDE) if case.is_short else (ELLIPJ,)
         trade = trade_off(case.scene, [setting(name, f64) for name in solvers], 0, patience=inf)
-        found, *beside = (p.on(case.scene.name) for p in trade.points)
+        point, *beside = (p.on(case.scene.name) for p in trade.points)
         m_prime = elements(pose(case.scene, f64).given).get("m_prime")
         yield PlainDouble(
             what=case.what,
             scene=case.scene.name,
             end=float(case.scene.clock.instants[-1]),
             m_prime=None if m_prime is None else float(m_prime.value),
-            error=found.error,
-            outcome=found.outcome,
-            standing=found.standing,
-            because=found.because,
+            error=point.error,
+            outcome=point.outcome,
+            standing=point.standing,
+            because=point.because,
             beside=_BESIDE,
             error_beside=beside[0].error if beside else None,
         )

@@ -99,11 +99,11 @@ def recommend(
     asked = settings(scene) if asked is None else asked
     bound = [one for one in asked if not one.solver.name.startswith(_OF_ANOTHER_PRECISION)]
     without = left_out(scene, (one.rung for one in bound), error)
-    kept = [one for one in asked if one.rung not in without or one not in bound]
+    measurable = [one for one in asked if one.rung not in without or one not in bound]
     reasons = tuple(without.values())
-    if not kept and reasons:
+    if not measurable and reasons:
         raise OutOfReach(_out_of_reach(scene, error, f": {'; '.join(reasons)}"))
-    return replace(recommended(trade_off(scene, kept, seed=seed), error), left_out=reasons)
+    return replace(recommended(trade_off(scene, measurable, seed=seed), error), left_out=reasons)
 
 
 def check_target(error: float) -> None:
@@ -124,8 +124,15 @@ def recommended(trade: TradeOff, error: float) -> Recommendation:
         if worst is not None:
             setting = p.timed.setting
             return Recommendation(
-                *(trade.scene.name, setting.solver, setting.rung, error, worst, MARGIN),
-                *(1 + len(scenes), trade.seed, p.seconds),
+                trade.scene.name,
+                setting.solver,
+                setting.rung,
+                target=error,
+                error=worst,
+                margin=MARGIN,
+                starts=1 + len(scenes),
+                seed=trade.seed,
+                seconds=p.seconds,
             )
     if not sound:
         raise OutOfReach(_out_of_reach(trade.scene, error, "; none gave a sound answer"))
@@ -142,19 +149,19 @@ def _largest(p: Point, scenes: Sequence[Scene], truths: Truths, target: float) -
             problem = setting.solver.problem(scene, setting.rung)
         except NotRepresentable:
             return None
-        found = truths.accuracy(problem, setting.solver.solve(problem))
-        if found is None or not MARGIN * found.worst <= target:
+        accuracy = truths.accuracy(problem, setting.solver.solve(problem))
+        if accuracy is None or not MARGIN * accuracy.worst <= target:
             return None
-        worst = max(worst, found.worst)
+        worst = max(worst, accuracy.worst)
     return worst
 
 
 def _out_of_reach(scene: Scene, error: float, reason: str) -> str:
     """Return the reason why nothing reaches an error, with the narrowest rung that would do."""
-    found = narrowest(scene, error / MARGIN)
+    narrowest_rung = narrowest(scene, error / MARGIN)
     wider = "no precision is known on which rounding alone leaves so little"
-    if found is not None:
-        rung, least = found
+    if narrowest_rung is not None:
+        rung, least = narrowest_rung
         wider = (
             "the narrowest precision on which rounding alone leaves so little is "
             f"{rung.name} ({least:.2g})"

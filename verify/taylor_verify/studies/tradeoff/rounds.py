@@ -109,7 +109,7 @@ def in_rounds(turns: Sequence[Callable[[], Answer]], rounds: int, seed: int) -> 
 
     Python's collector of garbage runs before and not in between, where it would hit one by chance.
     """
-    found: list[list[Answer]] = [[] for _ in turns]
+    answers: list[list[Answer]] = [[] for _ in turns]
     order, draw = list(range(len(turns))), random.Random(seed)
     enabled = gc.isenabled()
     gc.collect()
@@ -118,11 +118,11 @@ def in_rounds(turns: Sequence[Callable[[], Answer]], rounds: int, seed: int) -> 
         for _ in range(rounds):
             draw.shuffle(order)
             for i in order:
-                found[i].append(turns[i]())
+                answers[i].append(turns[i]())
     finally:
         if enabled:
             gc.enable()
-    return found
+    return answers
 
 
 def _summed(

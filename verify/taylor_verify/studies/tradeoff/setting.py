@@ -27,7 +27,11 @@ _SCIPY: Final = tuple(f"scipy:{name}" for name in ("RK45", "DOP853", "Radau", "B
 # What a solver of any other library is asked for, the coarsest first.
 LIBRARY_TOLERANCES: Final = ("1e-3", "1e-6", "1e-9", "1e-12")
 _GEOMETRIC: Final = (
-    *("implicit-midpoint", "splitting", "moser-veselov", "preprocessed-moser-veselov", "lie-rk4"),
+    "implicit-midpoint",
+    "splitting",
+    "moser-veselov",
+    "preprocessed-moser-veselov",
+    "lie-rk4",
 )
 # Of the scene's natural unit of time, in which its rates are of size one.
 _STEPS: Final = (Fraction(1, 4), Fraction(1, 16), Fraction(1, 64))
@@ -83,15 +87,15 @@ def settings(scene: Scene, rungs: Iterable[str] = RUNGS) -> tuple[Setting, ...]:
     Raises ValueError for a name that is no rung.
     """
     is_rigid = isinstance(scene.body, RigidBody)
-    found: list[Setting] = []
+    all_settings: list[Setting] = []
     for rung in map(rung_named, dict.fromkeys(rungs)):
-        found += taylor(rung)
+        all_settings += taylor(rung)
         if rung.name == "f64":
-            found += library(_SCIPY, LIBRARY_TOLERANCES, rung)
-            found += geometric(scene, rung) if is_rigid else ()
-            found += odefun(scene, rung)
-            found += [setting(ELLIPJ, rung)] if is_rigid else []
-    return tuple(found)
+            all_settings += library(_SCIPY, LIBRARY_TOLERANCES, rung)
+            all_settings += geometric(scene, rung) if is_rigid else ()
+            all_settings += odefun(scene, rung)
+            all_settings += [setting(ELLIPJ, rung)] if is_rigid else []
+    return tuple(all_settings)
 
 
 def chosen(names: Iterable[str], rungs: Iterable[str] = RUNGS) -> tuple[Setting, ...]:
@@ -101,12 +105,12 @@ def chosen(names: Iterable[str], rungs: Iterable[str] = RUNGS) -> tuple[Setting,
     name that is no solver or no rung.
     """
     ladder = [rung_named(name) for name in dict.fromkeys(rungs)]
-    found = [one for rung in ladder for one in taylor(rung)]
+    all_settings = [one for rung in ladder for one in taylor(rung)]
     for name in names:
         solver = solver_named(name)
         known = [rung for rung in ladder if not solver.unavailable(rung)]
-        found += [setting(name, rung) for rung in known or ladder[:1]]
-    return tuple(dict.fromkeys(found))
+        all_settings += [setting(name, rung) for rung in known or ladder[:1]]
+    return tuple(dict.fromkeys(all_settings))
 
 
 def outside(

@@ -101,21 +101,21 @@ def _with_times(one: Timed, again: Sequence[tuple[float, float | None]]) -> Time
 def _first_solves(
     problems: Mapping[Setting, Problem | str], clock: Clock, patience: float
 ) -> list[Timed]:
-    found: list[Timed] = []
+    solves: list[Timed] = []
     dear: set[str] = set()
     for setting, problem in problems.items():
         if isinstance(problem, str) or setting.family in dear:
             coarser = f"a coarser setting took more than {patience:g} s"
             because = problem if isinstance(problem, str) else coarser
             nothing = Trajectory(Outcome.NOT_STARTED, detail=because)
-            found.append(Timed(setting, nothing, 0.0))
+            solves.append(Timed(setting, nothing, 0.0))
             continue
         began = clock()
         trajectory = setting.solver.solve(problem)
-        found.append(Timed(setting, trajectory, clock() - began))
+        solves.append(Timed(setting, trajectory, clock() - began))
         if not trajectory.seconds <= patience:
             dear.add(setting.family)
-    return found
+    return solves
 
 
 @contextmanager

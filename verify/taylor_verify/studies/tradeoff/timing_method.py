@@ -47,9 +47,9 @@ def what_is_timed() -> str:
     return table(columns, [[code(name), inside, apart] for name, inside, apart in _WHAT_IS_TIMED])
 
 
-def how_it_was_timed(found: Trades) -> list[str]:
+def how_it_was_timed(trades: Trades) -> list[str]:
     """Return the method as it was, number by number."""
-    m, machine = found.times.method, found.times.machine
+    m, machine = trades.times.method, trades.times.machine
     return [
         f"{m.processes} fresh processes, one after the other. Hash seeds, places in memory and the "
         "processor's frequency vary between processes, not within one, so the processes are what is "
@@ -61,16 +61,16 @@ def how_it_was_timed(found: Trades) -> list[str]:
         "off. What takes more than a fifth of a second is solved once a process.",
         "Times are the processor's, so that what else runs on the machine is no part of them. A library "
         "of `outside` has a process of its own that stays, and takes its turn there.",
-        f"Each time is divided by that of `{found.numbers.yardstick}` in the same round. A process "
+        f"Each time is divided by that of `{trades.numbers.yardstick}` in the same round. A process "
         "gives the median of its rounds; the table shows the median of the processes.",
-        _brackets(found),
+        _brackets(trades),
         f"Machine: {prose(machine.processor)}, Python {prose(machine.python)}. Ratios of "
         "compiled code to Python, above all, are other ones elsewhere.",
     ]
 
 
-def _brackets(found: Trades) -> str:
-    m = found.times.method
+def _brackets(trades: Trades) -> str:
+    m = trades.times.method
     n, coverage = m.processes, f"{m.coverage:.1%}"
     formula = (
         f"the k-th smallest and the k-th largest of n do so with probability {prose(m.formula)}, "
@@ -84,8 +84,8 @@ def _brackets(found: Trades) -> str:
     )
 
 
-def remake(found: Trades) -> str:
-    packages = ", ".join(f"{name} {version}" for name, version in found.numbers.versions.items())
+def remake(trades: Trades) -> str:
+    packages = ", ".join(f"{name} {version}" for name, version in trades.numbers.versions.items())
     return (
         f"`make tradeoff`, which is `taylor-verify publish tradeoff`, measures anew and writes "
         f"[tradeoff.json](../{NUMBERS.name}) (errors, the same on any machine but for the rounding) and "
@@ -93,5 +93,5 @@ def remake(found: Trades) -> str:
         "is ever compared with); this page and its [CSV](tradeoff.csv) are made from those alone. "
         "`make reports` and `make check-reports` leave the times as they are. `--outside` adds "
         "the integrators of other libraries that are compiled as heyoka is. "
-        f"Made by {code(found.times.machine.command)} with {packages or 'unknown versions'}."
+        f"Made by {code(trades.times.machine.command)} with {packages or 'unknown versions'}."
     )

@@ -125,35 +125,35 @@ def front_sentences(points: Sequence[Point]) -> list[str]:
     best, sound = front(points), sound_points(points)
     if not best:
         return ["No setting gave an answer that is sound."]
-    said, fastest = [], best[0].seconds
+    sentences, fastest = [], best[0].seconds
     for p in best:
         left = digits(p.error)
         named = "All digits" if left is None else f"{left:.1f} digits"
         pace = f", {p.seconds / fastest:.2f} times the fastest" if p.seconds > fastest > 0 else ""
-        said.append(f"{named} (error {p.error:.2g}): {p.label} in {p.seconds:.3g} s{pace}.")
+        sentences.append(f"{named} (error {p.error:.2g}): {p.label} in {p.seconds:.3g} s{pace}.")
     beaten = len(sound) - len(best)
-    said.append(
+    sentences.append(
         f"{beaten} of {len(sound)} sound settings are beaten in both time and error by one of these."
     )
     if (widest := max(p.timed.spread or 1.0 for p in best)) > 1:
-        said.append(
+        sentences.append(
             f"A setting's slowest solve took up to {widest:.2g} times its fastest: times nearer to "
             "each other than that are not told apart."
         )
-    return said
+    return sentences
 
 
 def request_sentences(points: Iterable[Point]) -> list[str]:
     """Return, for each tolerance, the digits asked for and got. It bounds a step's error and no more."""
-    said = []
+    sentences = []
     for p in sound_points(points):
         asked, got, requested = p.asked_digits, digits(p.error), p.timed.setting.requested
         if asked is None or got is None or requested is None:
             continue
         ratio = p.error / requested
         compared = f"{ratio:.2g} times" if ratio >= 1 else f"1/{1 / ratio:.2g} of"
-        said.append(
+        sentences.append(
             f"{p.label}: {asked:.1f} digits asked for, {got:.1f} got; the error is {compared} the "
             "tolerance."
         )
-    return said
+    return sentences

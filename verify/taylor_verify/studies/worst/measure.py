@@ -93,11 +93,11 @@ def hunt(
     ``finished`` is called with the name of each as it ends. Raises NotMeasured without SciPy, and where no
     scene of a family could be judged.
     """
-    found = []
+    results = []
     for quarry in quarries:
-        found.append(_hunt(quarry, runs, seed))
+        results.append(_hunt(quarry, runs, seed))
         finished(quarry.name)
-    return found
+    return results
 
 
 def _hunt(quarry: Quarry, runs: int, seed: int) -> FamilyResult:
@@ -113,9 +113,9 @@ def _hunt(quarry: Quarry, runs: int, seed: int) -> FamilyResult:
 
     def least(population: Array) -> Array:
         """Return what is minimised, for places that are the columns of an array."""
-        found = caught(quarry.family, population.T.tolist())
-        catches.extend(catch for catch in found if catch is not None)
-        return np.array([inf if catch is None else -catch.ratio for catch in found])
+        catches_of_one = caught(quarry.family, population.T.tolist())
+        catches.extend(catch for catch in catches_of_one if catch is not None)
+        return np.array([inf if catch is None else -catch.ratio for catch in catches_of_one])
 
     population = max(_LEAST_POPULATION, min(_PER_NUMBER * free, runs // _GENERATIONS))
     differential_evolution(
@@ -124,7 +124,11 @@ def _hunt(quarry: Quarry, runs: int, seed: int) -> FamilyResult:
         init=places(Spread.SOBOL, free, own, 0, population),
         maxiter=max(runs // population - 1, 0),
         # It ends with its budget and not with its patience.
-        **{"tol": 0.0, "atol": -1.0, "polish": False, "vectorized": True, "updating": "deferred"},
+        tol=0.0,
+        atol=-1.0,
+        polish=False,
+        vectorized=True,
+        updating="deferred",
         seed=np.random.default_rng(own),
     )
     if not catches:
@@ -160,7 +164,7 @@ def _counts(verdict: Verdict) -> bool:
     return is_asked and verdict.quantity != INITIAL
 
 
-def study(found: Iterable[FamilyResult], runs: int, seed: int) -> WorstStudy:
+def study(results: Iterable[FamilyResult], runs: int, seed: int) -> WorstStudy:
     """Return the rows that the published table is made from."""
     return WorstStudy(
         factor=GATE_FACTOR,
@@ -179,7 +183,7 @@ def study(found: Iterable[FamilyResult], runs: int, seed: int) -> WorstStudy:
                 max=one.worst.verdict.max,
                 scene=f"extremes/worst/{one.quarry.name}",
             )
-            for one in found
+            for one in results
         ),
     )
 

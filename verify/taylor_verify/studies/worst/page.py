@@ -92,7 +92,15 @@ def _table(families: Sequence[WorstOfFamily]) -> str:
 
 
 _SHEET: Final = (
-    *("family", "what", "rung", "judged", "ratio", "quantity", "max", "verdict", "scene"),
+    "family",
+    "what",
+    "rung",
+    "judged",
+    "ratio",
+    "quantity",
+    "max",
+    "verdict",
+    "scene",
     "factor",
 )
 

@@ -24,10 +24,10 @@ def _measure(
     from taylor_verify.studies.worst.measure import hunt, quarries, study
 
     hunted = quarries()
-    found = hunt(hunted, runs, seed, progress.counting(len(hunted)))
-    scenes = {one.quarry.name: one.scene_text for one in found}
+    results = hunt(hunted, runs, seed, progress.counting(len(hunted)))
+    scenes = {one.quarry.name: one.scene_text for one in results}
     shipped = page.store_scenes(cases_directory() / SCENES, scenes)
-    return Measured([*WORST.write(folder, study(found, runs, seed)), *shipped])
+    return Measured([*WORST.write(folder, study(results, runs, seed)), *shipped])
 
 
 def _runs(text: str) -> int:

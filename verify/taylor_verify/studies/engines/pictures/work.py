@@ -52,13 +52,13 @@ def pictures(board: Board, entries: EntryList) -> list[Picture]:
     scene = entries.advised[0]
     time = panels(board, entries, scene, board.pace, 1e6)
     step = panels(board, entries, scene, _step, 1.0)
-    found = []
+    drawn = []
     if time:
         axis = "time for a second of the motion (µs)"
-        found.append(_picture(scene, "time", axis, time))
+        drawn.append(_picture(scene, "time", axis, time))
     if step:
-        found.append(_picture(scene, "step", "step (s)", step))
-    return found
+        drawn.append(_picture(scene, "step", "step (s)", step))
+    return drawn
 
 
 def panels(
@@ -80,8 +80,8 @@ def panels(
             continue
         dashes = DASHED if engine in plain_ones else ()
         look = look_of_line(number)
-        found = [(work(row), row.worst) for row in best.on(scene)]
-        points = tuple((unit * x, y) for x, y in found if x and 0 < y < inf)
+        costs = [(work(row), row.worst) for row in best.on(scene)]
+        points = tuple((unit * x, y) for x, y in costs if x and 0 < y < inf)
         line = Line(titles.get(engine, engine), Look(look.colour, look.marker, dashes), points)
         if points and engine in plain_ones:
             lines[_DOUBLE].append(line)
@@ -96,8 +96,8 @@ def panels(
 
 def _best(group: Sequence[EngineSetting], scene: str) -> EngineSetting | None:
     """Return the setting of an engine with the smallest error of the scene."""
-    found = [(row.worst, one) for one in group if (row := one.best(scene)) is not None]
-    return min(found, key=lambda pair: pair[0])[1] if found else None
+    errors = [(row.worst, one) for one in group if (row := one.best(scene)) is not None]
+    return min(errors, key=lambda pair: pair[0])[1] if errors else None
 
 
 def _step(row: EngineRow) -> float | None:

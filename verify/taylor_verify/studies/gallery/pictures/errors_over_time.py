@@ -60,15 +60,15 @@ def series(records: Sequence[Record], start: float | None = None) -> dict[str, d
 
     ``start`` is the time of the initial state, the first sample where it is not given.
     """
-    found: dict[str, dict[str, Points]] = {}
+    curves: dict[str, dict[str, Points]] = {}
     for record in sorted(records, key=lambda one: place_of_rung(one["rung"])):
         first, u = record["times"][0] if start is None else start, record["unit_roundoff"]
         for gate in record["gates"]:
             pairs = zip(record["times"], gate["errors"], strict=True)
             points = [(abs(t - first), e / u) for t, e in pairs if _is_drawable(t - first, e)]
             if points:
-                found.setdefault(gate["quantity"], {})[record["rung"]] = points
-    return found
+                curves.setdefault(gate["quantity"], {})[record["rung"]] = points
+    return curves
 
 
 def _is_drawable(elapsed: float, error: float | None) -> bool:
@@ -93,12 +93,12 @@ def picture(scene: str, records: Sequence[Record], start: float | None = None) -
     return Picture(stem_of({"scene": scene}, "errors"), title, alt, partial(_figure, panels))
 
 
-def panels_of(found: Mapping[str, Mapping[str, Points]]) -> list[Panel]:
+def panels_of(curves: Mapping[str, Mapping[str, Points]]) -> list[Panel]:
     """Return a panel for a conserved quantity, where loads leave one, and for each part of the state."""
     panels = []
     for heading, names, power, words in PANELS:
-        if name := next((name for name in names if name in found), ""):
-            panels.append(Panel(heading, name, found[name], power, words))
+        if name := next((name for name in names if name in curves), ""):
+            panels.append(Panel(heading, name, curves[name], power, words))
     return panels
 
 
@@ -134,11 +134,11 @@ def _marked(points: Points) -> list[int]:
     """Return places about as far from each other on a logarithmic axis."""
     (first, _), (last, _) = points[0], points[-1]
     apart = log(last / first) / _MARKS
-    found = [0]
+    marks = [0]
     for i, (t, _) in enumerate(points):
-        if log(t / points[found[-1]][0]) >= apart > 0:
-            found.append(i)
-    return found
+        if log(t / points[marks[-1]][0]) >= apart > 0:
+            marks.append(i)
+    return marks
 
 
 def so_far(points: Points) -> Points:

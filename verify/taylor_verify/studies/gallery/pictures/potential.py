@@ -38,7 +38,10 @@ _BELOW: Final = 0.75
 _HEIGHT: Final = 1.75
 # How a root is drawn by how often it is one; more than three times as three.
 _ROOT: Final = {
-    **{"linestyle": "none", "markersize": 5.5, "markeredgecolor": INK, "markeredgewidth": 0.9},
+    "linestyle": "none",
+    "markersize": 5.5,
+    "markeredgecolor": INK,
+    "markeredgewidth": 0.9,
     "gid": "root",
 }
 _ROOTS: Final[Mapping[int, Entry]] = {
@@ -65,18 +68,18 @@ class Series:
 
 def series(portrait: Document) -> Series:
     """Return what is drawn of a scene. Raises ValueError for one without such a quartic."""
-    found = portrait["potential"]
-    if found is None:
+    potential = portrait["potential"]
+    if potential is None:
         raise ValueError(f"expected a quartic of the axial impulse, got none @ {portrait['scene']}")
-    real = [float(re) for re, im in found["roots"] if im == 0]
-    pair = next(((float(re), float(im)) for re, im in found["roots"] if im > 0), None)
+    real = [float(re) for re, im in potential["roots"] if im == 0]
+    pair = next(((float(re), float(im)) for re, im in potential["roots"] if im > 0), None)
     roots = tuple((root, real.count(root)) for root in dict.fromkeys(real))
-    low, high = map(float, found["interval"])
+    low, high = map(float, potential["interval"])
     left, right = _shown(low, high, [root for root, _ in roots])
     # Half of the corners inside the interval: the hump is what is looked at.
     z = np.union1d(np.linspace(left, right, _POINTS), np.linspace(low, high, _POINTS))
-    curve = np.stack([z, np.polyval(found["coefficients"], z)], axis=1)
-    variable, regime = found["variable"], portrait["regime"]
+    curve = np.stack([z, np.polyval(potential["coefficients"], z)], axis=1)
+    variable, regime = potential["variable"], portrait["regime"]
     return Series(portrait["scene"], variable, regime, curve, (low, high), roots, pair)
 
 
@@ -90,43 +93,43 @@ def _shown(low: float, high: float, roots: Sequence[float]) -> tuple[float, floa
 
 def picture(portraits: Sequence[Document], name: str) -> Picture:
     """Return a panel for each scene. Raises ValueError for one that has no quartic."""
-    found = [series(portrait) for portrait in portraits]
-    sentences = " ".join(map(_sentence, found))
+    drawn = [series(portrait) for portrait in portraits]
+    sentences = " ".join(map(_sentence, drawn))
     title = "The quartic of the axial impulse"
     alt = (
         f"The polynomial X3 against the axial impulse, with the interval of the motion. {sentences}"
     )
-    return Picture(stem_of({"scene": name}, "potential"), title, alt, partial(_figure, found))
+    return Picture(stem_of({"scene": name}, "potential"), title, alt, partial(_figure, drawn))
 
 
-def _sentence(found: Series) -> str:
-    low, high = found.interval
-    roots = ", ".join(f"{root:.3g}{_MULTIPLE.get(count, '')}" for root, count in found.roots)
-    complex_pair = " and a complex pair" if found.pair else ""
+def _sentence(drawn: Series) -> str:
+    low, high = drawn.interval
+    roots = ", ".join(f"{root:.3g}{_MULTIPLE.get(count, '')}" for root, count in drawn.roots)
+    complex_pair = " and a complex pair" if drawn.pair else ""
     return (
-        f"{found.scene}: real roots {roots}{complex_pair}; {found.variable} moves from {low:.3g} to "
+        f"{drawn.scene}: real roots {roots}{complex_pair}; {drawn.variable} moves from {low:.3g} to "
         f"{high:.3g}."
     )
 
 
-def _figure(found: Sequence[Series]) -> Figure:
-    counts = {min(count, 3) for one in found for _, count in one.roots}
+def _figure(drawn: Sequence[Series]) -> Figure:
+    counts = {min(count, 3) for one in drawn for _, count in one.roots}
     entries: list[Entry] = [
         ({"color": _CURVE, "linewidth": 1.3}, "X\N{SUBSCRIPT THREE}"),
         ({"color": _ORBIT, "linewidth": 3}, "the orbit's interval"),
         *(entry for count, entry in _ROOTS.items() if count in counts),
     ]
-    figure, places = sheet(len(found), entries, height=_HEIGHT)
-    for axes, one in zip(places, found, strict=True):
+    figure, places = sheet(len(drawn), entries, height=_HEIGHT)
+    for axes, one in zip(places, drawn, strict=True):
         _draw(axes, one)
     return figure
 
 
-def _draw(axes: Axes, found: Series) -> None:
+def _draw(axes: Axes, drawn: Series) -> None:
     from matplotlib.ticker import MaxNLocator
 
-    z, X = found.curve.T  # noqa: N806 (as in 49)
-    low, high = found.interval
+    z, X = drawn.curve.T  # noqa: N806 (as in 49)
+    low, high = drawn.interval
     inside = (z >= low) & (z <= high)
     top = float(X[inside].max())
     # A steady motion has no hump: the scale is what the curve does beside it.
@@ -139,13 +142,13 @@ def _draw(axes: Axes, found: Series) -> None:
     if high > low:
         axes.fill_between(z[inside], 0, X[inside], color=_CURVE, alpha=0.14, linewidth=0, zorder=2)
     axes.plot([low, high], [0, 0], color=_ORBIT, linewidth=3, zorder=4, gid="interval")
-    for root, count in found.roots:
+    for root, count in drawn.roots:
         if z[0] <= root <= z[-1]:
             axes.plot([root], [0], zorder=5, **_ROOTS[min(count, 3)][0])
-    subscript = found.variable.translate(_SUBSCRIPTS)
+    subscript = drawn.variable.translate(_SUBSCRIPTS)
     square = f"({subscript}\N{PRIME}/r)\N{SUPERSCRIPT TWO}"
     axes.set_xlabel(f"{subscript} (impulse)", labelpad=2)
     axes.set_ylabel(f"X\N{SUBSCRIPT THREE} = {square}", labelpad=2)
-    name = found.scene.partition("/")[2]
-    heading = name if name == found.regime else f"{name} ({found.regime})"
+    name = drawn.scene.partition("/")[2]
+    heading = name if name == drawn.regime else f"{name} ({drawn.regime})"
     axes.set_title(heading, pad=4, fontsize=SMALL + 0.5)

@@ -97,7 +97,7 @@ def digits_achieved(panels: Sequence[Panel]) -> Figure:
         axes.set(xlim=(0, most_x * 1.22), ylim=(-0.03 * most_y, max(most_y * 1.12, 4)))
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
         axes.set(xlabel="digits asked for, \N{MINUS SIGN}log₁₀ tolerance", ylabel="digits achieved")
-        axes.grid(True)
+        axes.grid(visible=True)
         axes.set_title(panel.heading, pad=4)
         most = min(axes.get_xlim()[1], axes.get_ylim()[1])
         diagonal = [(0.0, 0.0), (most, most)]
@@ -209,7 +209,8 @@ def _legend(panels: Sequence[Panel], bars: bool, floors: bool) -> list[Entry]:
         (bars, {"color": QUIET, "linewidth": 0.5, "marker": "|"}, "best to slowest repeat"),
         (floors, {"color": INK, "linewidth": 0.6, "linestyle": dotted}, "attainable"),
         (
-            *(Standing.FALSE in standings, {**mark, "marker": "o", "markerfacecolor": PAPER}),
+            Standing.FALSE in standings,
+            {**mark, "marker": "o", "markerfacecolor": PAPER},
             "false success",
         ),
         (Standing.FAILED in standings, {**mark, "marker": "x"}, "failed"),

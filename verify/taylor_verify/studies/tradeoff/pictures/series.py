@@ -159,8 +159,8 @@ def panels_of(series: Sequence[Series]) -> list[Panel]:
     # One rung of taylor alone is no ladder: it stands among the others.
     is_alone = len(ladder) == 1 and bool(others)
     f64 = next((one for one in ladder if one.rung == "f64"), ladder[0] if is_alone else None)
-    found = [] if is_alone or not ladder else [Panel(heading_of(TAYLOR), ladder)]
-    return found + [Panel(heading, group, f64) for heading, group in _groups(others)]
+    panels = [] if is_alone or not ladder else [Panel(heading_of(TAYLOR), ladder)]
+    return panels + [Panel(heading, group, f64) for heading, group in _groups(others)]
 
 
 def _groups(others: Sequence[Series]) -> list[tuple[str, tuple[Series, ...]]]:
@@ -169,7 +169,7 @@ def _groups(others: Sequence[Series]) -> list[tuple[str, tuple[Series, ...]]]:
         kinds = list(dict.fromkeys(heading_of(one.kind) for one in others))
         return [(kinds[0] if len(kinds) == 1 else "other solvers", tuple(others))]
     kinds_apart = [tuple(group) for _, group in groupby(others, key=lambda one: one.kind)]
-    return [found for group in kinds_apart for found in _parts(group)]
+    return [part for group in kinds_apart for part in _parts(group)]
 
 
 def _parts(group: tuple[Series, ...]) -> Iterator[tuple[str, tuple[Series, ...]]]:

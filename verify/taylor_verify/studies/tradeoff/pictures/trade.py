@@ -42,8 +42,8 @@ def pictures(document: Mapping[str, Any]) -> list[Picture]:
     """Return every picture with its alt text; one that would be empty is left out."""
     if not any(row["standing"] == "sound" for row in document["points"]):
         raise ValueError(f"expected a sound point, got none @ {document['scene']}.points")
-    found = (*(_work_precision(document, key) for key in WORKS), _digits_achieved(document))
-    return [one for one in found if one is not None]
+    drawn = (*(_work_precision(document, key) for key in WORKS), _digits_achieved(document))
+    return [one for one in drawn if one is not None]
 
 
 def _work_precision(document: Mapping[str, Any], key: str) -> Picture | None:
@@ -127,9 +127,9 @@ def _fallen(series: Sequence[Series]) -> str:
     """Return the number of settings at the border, after a space; empty where all are sound."""
     standings = Counter(spot.row["standing"] for one in series for spot in one.spots)
     plural = {Standing.FALSE: "false successes"}
-    said = [
+    names = [
         f"{standings[name]} {plural.get(name, name) if standings[name] > 1 else name}"
         for name in AT_THE_BORDER
         if standings[name]
     ]
-    return f" Marked at the border: {', '.join(said)}." if said else ""
+    return f" Marked at the border: {', '.join(names)}." if names else ""
