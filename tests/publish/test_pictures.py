@@ -82,7 +82,7 @@ def fallen(name: str, rung: str, digits: int, standing: str) -> dict:
     return row(name, rung, 10.0**-digits, error, standing=standing, seconds=seconds)
 
 
-OTHERS = [entry[0] for kind in KINDS for entry in kind.looks]
+OTHERS = [entry[0] for kind in KINDS for entry in kind.entries]
 
 
 def document(rows: list[dict], **other: Any) -> dict[str, Any]:
@@ -130,9 +130,9 @@ def crowded() -> dict[str, Figure]:
 
 def test_every_family_has_its_own_colour_and_marker() -> None:
     """No two of all known families and rungs share a colour and a marker."""
-    looks = [look_of_rung(rung) for rung in RUNGS] + [look_of(name, "f64") for name in OTHERS]
-    pairs = {(look.colour, look.marker) for look in looks}
-    assert len(pairs) == len(looks) >= 24
+    styles = [look_of_rung(rung) for rung in RUNGS] + [look_of(name, "f64") for name in OTHERS]
+    pairs = {(look.colour, look.marker) for look in styles}
+    assert len(pairs) == len(styles) >= 24
 
 
 def test_neighbours_differ_in_grey() -> None:
@@ -141,7 +141,7 @@ def test_neighbours_differ_in_grey() -> None:
     Ten of CIE lightness is one step of value in Munsell's scale, on which neighbours are told apart.
     """
     ladder = [look_of_rung(rung).colour for rung in RUNGS[:4]]
-    kinds = [[entry[1] for entry in kind.looks] for kind in KINDS]
+    kinds = [[entry[1] for entry in kind.entries] for kind in KINDS]
     lines = [look_of_line(i).colour for i in range(12)]
     for colours in (ladder, *kinds, lines):
         for one, other in pairwise(colours):
@@ -150,8 +150,8 @@ def test_neighbours_differ_in_grey() -> None:
 
 def test_a_longer_rung_is_darker() -> None:
     """Lightness falls along the ladder of precision."""
-    found = [lightness(look_of_rung(rung).colour) for rung in RUNGS]
-    assert found == sorted(found, reverse=True)
+    shades = [lightness(look_of_rung(rung).colour) for rung in RUNGS]
+    assert shades == sorted(shades, reverse=True)
 
 
 def test_lines_and_text_stand_out_from_paper() -> None:
@@ -212,7 +212,7 @@ def test_an_unknown_look_is_the_same_in_every_process() -> None:
         "from taylor_verify.publish.pictures.style import look_of;"
         "print([look_of(f'solver {i}', 'f64') for i in range(9)])"
     )
-    seen = {
+    printed = {
         subprocess.run(
             [sys.executable, "-c", code],
             env={"PYTHONHASHSEED": seed},
@@ -222,8 +222,8 @@ def test_an_unknown_look_is_the_same_in_every_process() -> None:
         ).stdout
         for seed in ("0", "1")
     }
-    assert len(seen) == 1
-    assert "Look(" in seen.pop()
+    assert len(printed) == 1
+    assert "Look(" in printed.pop()
 
 
 def test_rungs_are_in_order_of_their_bits() -> None:
@@ -318,8 +318,8 @@ def test_the_front_agrees_with_the_judgement() -> None:
     scene = load("euler/generic")
     asked = [one for one in all_settings(scene, ["f32", "f64"]) if one.family.startswith("taylor")]
     made = trade_off(scene, asked, repeats=1).document()
-    found = front_of(series_of(made, "seconds"))
-    assert [one.label for one in found] == made["front"]
+    points = front_of(series_of(made, "seconds"))
+    assert [one.label for one in points] == made["front"]
     assert next(p.stem for p in trade.pictures(made)) == "euler-generic-time"
 
 
@@ -372,12 +372,12 @@ def boxes(figure: Figure) -> list[tuple[Any, Any]]:
 
 
 def assert_names_are_apart(figure: Figure) -> None:
-    found = boxes(figure)
-    for axes, box in found:
+    placed = boxes(figure)
+    for axes, box in placed:
         frame = axes.get_window_extent()
         assert frame.x0 <= box.x0 <= box.x1 <= frame.x1
         assert frame.y0 <= box.y0 <= box.y1 <= frame.y1
-    for (axes, one), (other_axes, other) in combinations(found, 2):
+    for (axes, one), (other_axes, other) in combinations(placed, 2):
         assert axes is not other_axes or not one.overlaps(other)
 
 
@@ -454,13 +454,13 @@ def test_two_drawings_are_the_same_bytes(tmp_path: Path) -> None:
 
 def test_a_trade_off_has_four_pictures_in_two_formats(tmp_path: Path) -> None:
     """Each is an SVG for pages and a PDF for print, named for its scene."""
-    found = trade.draw(document(family("taylor f64", "f64", 0.01, 9.0)), tmp_path)
-    assert [path.name for path in found] == [
+    files = trade.draw(document(family("taylor f64", "f64", 0.01, 9.0)), tmp_path)
+    assert [path.name for path in files] == [
         f"euler-generic-{what}.{ending}"
         for what in ("time", "evaluations", "steps", "digits")
         for ending in ("svg", "pdf")
     ]
-    assert sorted(found) == sorted(tmp_path.iterdir())
+    assert sorted(files) == sorted(tmp_path.iterdir())
 
 
 def test_a_file_is_text_without_a_date(tmp_path: Path) -> None:
@@ -583,9 +583,9 @@ def test_a_bar_ends_at_its_ratio() -> None:
     with plotting():
         (axes,) = priced().figure().axes
     ends = [{bar.get_x(), bar.get_x() + bar.get_width()} for bar in axes.patches]
-    for found, one in zip(ends, PRICES, strict=True):
-        assert min(found) == pytest.approx(min(1, one.ratio), rel=1e-15)
-        assert max(found) == pytest.approx(max(1, one.ratio), rel=1e-15)
+    for own_ends, one in zip(ends, PRICES, strict=True):
+        assert min(own_ends) == pytest.approx(min(1, one.ratio), rel=1e-15)
+        assert max(own_ends) == pytest.approx(max(1, one.ratio), rel=1e-15)
     numbers = [text.get_text() for text in axes.texts if text.get_gid() == "number"]
     assert [float(text.split()[0]) for text in numbers] == [1.0, 2.1, 0.8, 214.0]
 
@@ -615,7 +615,7 @@ def test_time_is_drawn_by_bits() -> None:
 
 
 @pytest.mark.parametrize(
-    ("ratios", "said"),
+    ("ratios", "message"),
     [
         ([], r"expected ratios, got none @ ratios"),
         ([Ratio("", "f64", 1)], r"expected a text, got '' @ ratios\[0\]\.label"),
@@ -626,9 +626,9 @@ def test_time_is_drawn_by_bits() -> None:
         ([Ratio("a", "f64", 3, high=2)], r"between 3 and 2, got 3"),
     ],
 )
-def test_a_ratio_that_is_none_is_refused(ratios: list[Ratio], said: str) -> None:
+def test_a_ratio_that_is_none_is_refused(ratios: list[Ratio], message: str) -> None:
     """What has no text, no positive number or is outside its range is named with its place."""
-    with pytest.raises(ValueError, match=said):
+    with pytest.raises(ValueError, match=message):
         priced(ratios)
 
 

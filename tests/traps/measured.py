@@ -74,20 +74,20 @@ def _gate(verdict: Verdict) -> TrapGate:
 
 
 def driver_on(scene: Scene, rung: str = "f64") -> tuple[str, float | None]:
-    """What the driver and the judge say of a scene, and its largest error."""
+    """Return the words of the driver and the judge on a scene, and its largest error."""
     verdict = next(v for v in run(scene, "taylor", rung).verdicts if v.quantity != INITIAL)
-    said = f"{verdict.outcome}; state: {verdict.verdict.value}"
-    return said, verdict.max
+    ending = f"{verdict.outcome}; state: {verdict.verdict.value}"
+    return ending, verdict.max
 
 
 def error_at(state: Iterable[Any], elapsed: Fraction) -> float:
     """Of the generic body's omega so long after its start, relative to the true one."""
-    held = [float(value) for value in state]
-    if not all(isfinite(value) for value in held):
+    numbers = [float(value) for value in state]
+    if not all(isfinite(value) for value in numbers):
         return inf
     truth = solution(free("", GENERIC, 1.0)).motion([elapsed], _DIGITS)["omega"][0]
     with mp.workdps(_DIGITS):
-        off = [held_exactly(exact_value(v)) - t for v, t in zip(held, truth, strict=True)]
+        off = [held_exactly(exact_value(v)) - t for v, t in zip(numbers, truth, strict=True)]
         return float(mp.norm(off) / mp.norm(list(truth)))
 
 

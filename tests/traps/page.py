@@ -29,9 +29,19 @@ _MAKER: Final = "<!-- made by make traps; do not edit -->"
 # The quantities that a free body has gates for.
 _GATES: Final = {"omega": "state", "T": "T", "H2": "H²"}
 _SHEET: Final = (
-    *("trap", "title", "case", "reports", "silent", "error", "driver", "driver_error", "steps"),
+    "trap",
+    "title",
+    "case",
+    "reports",
+    "silent",
+    "error",
+    "driver",
+    "driver_error",
+    "steps",
     *(f"{name}_{field}" for name in _GATES for field in ("verdict", "over_bound")),
-    *("cause", "documented", "script"),
+    "cause",
+    "documented",
+    "script",
 )
 _STATE: Final = "omega"
 # Below the roundoff of every format that is shown.
@@ -105,7 +115,7 @@ def page(stored: TrapsStudy) -> str:
         "## In short",
         _in_short(traps),
         "## What the gates see of the plain answers",
-        _seen(traps),
+        _gate_table(traps),
         "## One by one",
         *_entries(traps),
         "## To remake this",
@@ -159,7 +169,7 @@ def _behind(case: TrapCase) -> float:
     return case.error / max(case.driver_error or 0.0, _NO_ERROR)
 
 
-def _seen(traps: Iterable[TrapRow]) -> str:
+def _gate_table(traps: Iterable[TrapRow]) -> str:
     columns = [
         "trap",
         "case",
@@ -256,8 +266,8 @@ def _cases(trap: TrapRow) -> str:
 
 def proven(traps: Sequence[TrapRow]) -> list[str]:
     """Sentences, each true of these rows; one that is true of none is not said."""
-    told = [_silently(traps), _conserving(traps), _unseen(traps), _seen_by_state(traps)]
-    return [sentence for sentence in told if sentence]
+    sentences = [_silently(traps), _conserving(traps), _unseen(traps), _seen_by_state(traps)]
+    return [sentence for sentence in sentences if sentence]
 
 
 def _silently(traps: Sequence[TrapRow]) -> str:
@@ -291,7 +301,7 @@ def _conserving(traps: Iterable[TrapRow]) -> str:
     ]
     if not wrong:
         return ""
-    trap, worst = max(wrong, key=lambda found: found[1].error or 0.0)
+    trap, worst = max(wrong, key=lambda pair: pair[1].error or 0.0)
     return (
         f"{bold('A plain answer can pass every gate on conserved quantities and be wrong')}: "
         f"{len(wrong)} do, and are more than a hundred times as far off as the driver on the same "
@@ -324,7 +334,7 @@ def _unseen(traps: Iterable[TrapRow]) -> str:
 
 
 def _seen_by_state(traps: Iterable[TrapRow]) -> str:
-    seen = sorted(
+    names = sorted(
         {
             t.key
             for t in traps
@@ -332,7 +342,7 @@ def _seen_by_state(traps: Iterable[TrapRow]) -> str:
             if c.error is not None and c.gates and c.gates[_STATE].verdict == "fail"
         }
     )
-    return f"The gate of the state sees {', '.join(seen)}, from some size on." if seen else ""
+    return f"The gate of the state sees {', '.join(names)}, from some size on." if names else ""
 
 
 # The sheet.

@@ -61,8 +61,8 @@ def _stored_code() -> list[TrapCase]:
 
 
 def _never_found() -> list[TrapCase]:
-    found = f"{stored_by(processes=3)} pieces of code on disk"
-    return [TrapCase("one system in MPFR, compiled by three processes", found, None, "none")]
+    count = f"{stored_by(processes=3)} pieces of code on disk"
+    return [TrapCase("one system in MPFR, compiled by three processes", count, None, "none")]
 
 
 STORED_CODE: Final = (

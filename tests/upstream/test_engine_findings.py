@@ -26,10 +26,10 @@ MODULES = {
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
 def test_a_script_is_a_report(script: Path) -> None:
     """It has its title, versions, expectation, finding and evidence, and at most 40 lines of code."""
-    found = read(script)
-    assert found.title
-    assert set(found.parts) - {"To run"} == set(PARTS)
-    assert re.search(r"\d+\.\d+", found.parts["Versions"])
+    report = read(script)
+    assert report.title
+    assert set(report.parts) - {"To run"} == set(PARTS)
+    assert re.search(r"\d+\.\d+", report.parts["Versions"])
     lines = script.read_text(encoding="utf-8").splitlines()
     after = lines.index("import sys") if script.suffix == ".py" else lines.index("")
     assert 5 <= len([line for line in lines[after:] if line.strip()]) <= 40
@@ -84,9 +84,9 @@ def test_a_script_in_javascript_is_a_report_too(tmp_path: Path) -> None:
     words = ["A title", "", *(f"{part}: of {part}\n" for part in PARTS)]
     comment = "\n".join(words).replace("\n", "\n// ")
     file.write_text(f"// {comment}\nimport it from 'it';\n// Came: not this.\n", encoding="utf-8")
-    found = read(file)
-    assert found.title == "A title"
-    assert found.parts == {part: f"of {part}" for part in PARTS}
+    report = read(file)
+    assert report.title == "A title"
+    assert report.parts == {part: f"of {part}" for part in PARTS}
 
 
 def test_a_script_without_a_part_is_named(tmp_path: Path) -> None:

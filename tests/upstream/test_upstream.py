@@ -18,9 +18,9 @@ def test_every_script_belongs_to_a_trap_and_to_a_paragraph() -> None:
     """The scripts that the page names, those that are there and those of the README are the same."""
     named = {trap.script for trap in TRAPS if trap.script}
     text = (FOLDER / "README.md").read_text(encoding="utf-8")
-    told = dict(re.findall(r"^## \[(\w+)\.py\]\(\w+\.py\) \((\w+)\)$", text, re.MULTILINE))
-    assert named == {script.stem for script in SCRIPTS} == set(told)
-    assert told == {trap.script: trap.key for trap in TRAPS if trap.script}
+    keys = dict(re.findall(r"^## \[(\w+)\.py\]\(\w+\.py\) \((\w+)\)$", text, re.MULTILINE))
+    assert named == {script.stem for script in SCRIPTS} == set(keys)
+    assert keys == {trap.script: trap.key for trap in TRAPS if trap.script}
 
 
 @pytest.mark.parametrize("script", [pytest.param(path, id=path.stem) for path in SCRIPTS])

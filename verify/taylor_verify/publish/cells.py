@@ -124,8 +124,12 @@ def worst(verdicts: Iterable[Verdict]) -> Verdict | None:
 
 def worst_ratio(verdicts: Iterable[Verdict]) -> str:
     """Return the largest error over attainable with the name of its quantity."""
-    found = worst(verdicts)
-    return f"{ratio(found)} ({code(found.quantity)})" if found else NOTHING
+    gravest_verdict = worst(verdicts)
+    return (
+        f"{ratio(gravest_verdict)} ({code(gravest_verdict.quantity)})"
+        if gravest_verdict
+        else NOTHING
+    )
 
 
 def main_error(run: Run | None) -> str:

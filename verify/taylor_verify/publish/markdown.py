@@ -56,4 +56,4 @@ def bullets(items: Iterable[str]) -> str:
 
 def plain(text: str) -> str:
     """Return the words of a line without its marks: bold, code and the backslashes of `prose`."""
-    return _MARK.sub(lambda found: found[1] or "", text)
+    return _MARK.sub(lambda match: match[1] or "", text)

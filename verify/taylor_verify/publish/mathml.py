@@ -27,23 +27,23 @@ def mathml(tex: str, display: bool = False) -> Markup:
     from latex2mathml.converter import convert
 
     try:
-        found = convert(tex, display="block" if display else "inline")
+        markup = convert(tex, display="block" if display else "inline")
     except Exception as fault:
         # The converter has classes of its own for each fault, and some it meets by accident.
         raise ValueError(f"expected LaTeX, got {tex!r} ({type(fault).__name__})") from fault
-    named = found.replace("<math ", f'<math alttext="{escape(tex)}" ', 1)
+    named = markup.replace("<math ", f'<math alttext="{escape(tex)}" ', 1)
     return Markup(_FUNCTION.sub(_SPACED, _VARIANT.sub(_letter, named)))
 
 
-def _letter(found: re.Match[str]) -> str:
+def _letter(match: re.Match[str]) -> str:
     """Return a letter of another alphabet as the character that Unicode has for it, or as it was."""
-    alphabet = found[1].upper().replace("BOLD-", "BOLD ")
+    alphabet = match[1].upper().replace("BOLD-", "BOLD ")
     # Such as LATIN SMALL LETTER X.
-    _, case, _, letter = (*unicodedata.name(unescape(found[2]), "").split(), "", "", "", "")[:4]
+    _, case, _, letter = (*unicodedata.name(unescape(match[2]), "").split(), "", "", "", "")[:4]
     try:
         return f"<mi>{unicodedata.lookup(f'MATHEMATICAL {alphabet} {case} {letter}')}</mi>"
     except KeyError:
-        return found[0]
+        return match[0]
 
 
 def inline(tex: str) -> Markup:
@@ -59,5 +59,5 @@ def inline(tex: str) -> Markup:
 
 def _formula(tex: str) -> Markup:
     """Return a formula in a box of its own, which a narrow page can scroll; nothing for nothing."""
-    found = mathml(tex.strip()) if tex.strip() else None
-    return Markup('<span class="formula">{}</span>').format(found) if found else Markup()
+    markup = mathml(tex.strip()) if tex.strip() else None
+    return Markup('<span class="formula">{}</span>').format(markup) if markup else Markup()

@@ -41,14 +41,14 @@ def page(title: str, verdicts: Sequence[Verdict], *parts: str) -> str:
 
 def counts(verdicts: Iterable[Verdict]) -> str:
     """Return the number of verdicts of each kind, the largest error over attainable, and tolerances."""
-    found = list(verdicts)
-    by_status = summary(found)
+    rows = list(verdicts)
+    by_status = summary(rows)
     row = [
         bold(str(count)) if count and status == Status.FAIL else str(count)
         for status, count in by_status.items()
     ]
     counted = table([f"{status}:" for status in by_status], [row])
-    return "\n\n".join(filter(None, [counted, _worst(found), _tolerated(found)]))
+    return "\n\n".join(filter(None, [counted, _worst(rows), _tolerated(rows)]))
 
 
 def _tolerated(verdicts: Sequence[Verdict]) -> str:
@@ -64,12 +64,12 @@ def _tolerated(verdicts: Sequence[Verdict]) -> str:
 
 def _worst(verdicts: Sequence[Verdict]) -> str:
     lost = sum(verdict.is_compared and verdict.ratio is None for verdict in verdicts)
-    found = worst(verdict for verdict in verdicts if verdict.ratio is not None)
+    gravest = worst(verdict for verdict in verdicts if verdict.ratio is not None)
     parts = [
         bold(f"{lost} of {len(verdicts)} without a finite error over attainable.") if lost else "",
-        f"Largest error over attainable: {bold(figure(found.ratio))}, {code(found.quantity)} "
-        f"of {code(found.scene)} on {found.rung} at t = {instant(found.ratio_at)}."
-        if found
+        f"Largest error over attainable: {bold(figure(gravest.ratio))}, {code(gravest.quantity)} "
+        f"of {code(gravest.scene)} on {gravest.rung} at t = {instant(gravest.ratio_at)}."
+        if gravest
         else "",
     ]
     return " ".join(filter(None, parts)) or "Nothing was compared."
@@ -77,8 +77,8 @@ def _worst(verdicts: Sequence[Verdict]) -> str:
 
 def roundoffs(verdicts: Iterable[Verdict]) -> str:
     """Return the legend of u, for the rungs that occur."""
-    found = {verdict.rung: verdict.roundoff for verdict in verdicts if verdict.roundoff}
-    each = (f"{rung} {figure(found[rung])}" for rung in sorted(found, key=place_of_rung))
+    units = {verdict.rung: verdict.roundoff for verdict in verdicts if verdict.roundoff}
+    each = (f"{rung} {figure(units[rung])}" for rung in sorted(units, key=place_of_rung))
     return f"u is the unit roundoff of the rung: {', '.join(each) or 'none was run'}."
 
 

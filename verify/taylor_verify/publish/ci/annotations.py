@@ -35,15 +35,15 @@ def annotation_lines(
     for case in cases(verdicts, remarks, by_remarks):
         if case.counted is not Status.PASS:
             levels[_HARMLESS if case.is_harmless else _LEVELS[case.counted]].append(case)
-    return [line for level, found in levels.items() for line in _of_level(level, found)]
+    return [line for level, level_cases in levels.items() for line in _of_level(level, level_cases)]
 
 
-def _of_level(level: str, found: list[Case]) -> Iterator[str]:
-    shown = found if len(found) <= _MOST else found[: _MOST - 1]
+def _of_level(level: str, level_cases: list[Case]) -> Iterator[str]:
+    shown = level_cases if len(level_cases) <= _MOST else level_cases[: _MOST - 1]
     for case in shown:
         place = {"file": case.scene, "line": "1"} if case.scene.endswith(".toml") else {}
         yield _line(level, {**place, "title": case.title}, case.text)
-    if rest := len(found) - len(shown):
+    if rest := len(level_cases) - len(shown):
         text = "GitHub shows ten of a kind; the step summary and the JUnit file have all"
         yield _line(level, {"title": f"and {rest} more"}, text)
 

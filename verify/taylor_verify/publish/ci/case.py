@@ -78,15 +78,15 @@ def cases(
     ``by_remarks`` tells that the remarks alone decide, as with `--gate baseline`.
     """
     rows = {_key(verdict): verdict for verdict in verdicts}
-    said: dict[Key, list[Remark]] = {key: [] for key in rows}
+    remarks_of: dict[Key, list[Remark]] = {key: [] for key in rows}
     for remark in remarks:
-        said.setdefault(_key(remark), []).append(remark)
-    runs = {(scene, rung, solver, setting) for scene, solver, setting, rung, _ in said}
+        remarks_of.setdefault(_key(remark), []).append(remark)
+    runs = {(scene, rung, solver, setting) for scene, solver, setting, rung, _ in remarks_of}
     alike = Counter((scene, rung) for scene, rung, *_ in runs)
-    found = (_case(key, rows.get(key), told, by_remarks) for key, told in said.items())
+    every = (_case(key, rows.get(key), own, by_remarks) for key, own in remarks_of.items())
     return tuple(
         replace(case, mark=case.setting) if alike[case.scene, case.rung] > 1 else case
-        for case in found
+        for case in every
     )
 
 
@@ -95,14 +95,16 @@ def _key(row: Verdict | Remark) -> Key:
 
 
 def _case(key: Key, verdict: Verdict | None, remarks: list[Remark], by_remarks: bool) -> Case:
-    said = [remark.status for remark in remarks]
+    statuses = [remark.status for remark in remarks]
     own = [] if verdict is None else [verdict.verdict]
     counted = own
     if by_remarks and verdict is not None and exit_status([verdict]):
         counted = [Status.PASS]
     faults = [] if verdict is None or verdict.verdict is Status.PASS else [sentence(verdict)]
     sentences = (*faults, *(remark.text for remark in remarks))
-    return Case(*key, gravest((*own, *said)), gravest((*counted, *said)), sentences, verdict)
+    return Case(
+        *key, gravest((*own, *statuses)), gravest((*counted, *statuses)), sentences, verdict
+    )
 
 
 def sentence(verdict: Verdict) -> str:

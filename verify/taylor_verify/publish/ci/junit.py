@@ -62,9 +62,9 @@ def _suite(group: Sequence[Case]) -> Element:
     some = group[0]
     name = " ".join(filter(None, (some.scene, some.rung, some.mark)))
     suite = Element("testsuite", name=_xml(name), tests=str(len(group)))
-    found = [_element(case) for case in group]
+    elements = [_element(case) for case in group]
     for attribute, element in _COUNTED.items():
-        suite.set(attribute, str(found.count(element)))
+        suite.set(attribute, str(elements.count(element)))
     seconds = max((case.verdict.seconds or 0.0 for case in group if case.verdict), default=0.0)
     suite.set("time", _time(seconds))
     properties = SubElement(suite, "properties")
@@ -78,13 +78,13 @@ def _suite(group: Sequence[Case]) -> Element:
 
 def _testcase(case: Case, seconds: float) -> Element:
     named = {"name": _xml(case.quantity), "classname": _xml(_classname(case))}
-    found = Element("testcase", {**named, "time": _time(seconds)})
+    element = Element("testcase", {**named, "time": _time(seconds)})
     if name := _element(case):
-        inside = SubElement(found, name, message=_xml(case.text))
+        inside = SubElement(element, name, message=_xml(case.text))
         if name != "skipped":  # Surefire's has no type
             inside.set("type", case.counted.value)
         inside.text = _xml(f"{case.title}\n{case.text}")
-    return found
+    return element
 
 
 def _element(case: Case) -> str:
@@ -104,4 +104,4 @@ def _time(seconds: float) -> str:
 
 def _xml(text: str) -> str:
     """Return the text with an escape in place of what XML cannot hold."""
-    return _NOT_XML.sub(lambda found: f"\\x{ord(found[0]):02x}", text)
+    return _NOT_XML.sub(lambda match: f"\\x{ord(match[0]):02x}", text)

@@ -30,7 +30,7 @@ def picture(summary: SweepSummary) -> Picture:
     drawn = [each for each in summary.quantities if each.quantity != INITIAL and _points(each)]
     if not drawn:
         raise ValueError("expected an error above zero, got none @ sweep")
-    said = "; ".join(
+    largest = "; ".join(
         f"{each.quantity} {plain(each.ratio.largest)}"
         for each in drawn
         if each.ratio is not None and each.ratio.largest is not None
@@ -40,7 +40,7 @@ def picture(summary: SweepSummary) -> Picture:
         f"Error over attainable of {summary.total} bodies: {summary.name}",
         f"Share of {summary.total} bodies of {summary.name} whose largest error, by {summary.solver} on "
         f"{summary.rung}, is above a multiple of what is attainable; both axes are logarithmic, and a gate "
-        f"stands at {summary.factor}. The largest: {said}.",
+        f"stands at {summary.factor}. The largest: {largest}.",
         partial(_figure, summary, drawn),
     )
 

@@ -93,9 +93,9 @@ def write_names(
     assert figure is not None
     renderer = FigureCanvasAgg(figure).get_renderer()  # type: ignore[no-untyped-call]
     in_points = Affine2D().scale(1 / POINTS) + figure.dpi_scale_trans
-    seen = [_in_points(axes, line) for line in lines if any(line.pieces)]
+    visible = [_in_points(axes, line) for line in lines if any(line.pieces)]
     texts = []
-    for line in seen:
+    for line in visible:
         text = axes.text(0, 0, line.name, color=for_text(line.colour), size=SMALL)
         text.set(va="bottom", ha="left", transform=in_points, zorder=2.5, gid="name")
         # Below the lines, so that it hides no number; what is thin it covers, and stays legible.
@@ -105,10 +105,10 @@ def write_names(
     frame = np.array(axes.get_window_extent(renderer).extents)
     obstacles = _sampled(axes, beside)
     places = [
-        _priced(_candidates(line, extent.width, extent.height), line, seen, frame, obstacles)
-        for line, extent in zip(seen, extents, strict=True)
+        _priced(_candidates(line, extent.width, extent.height), line, visible, frame, obstacles)
+        for line, extent in zip(visible, extents, strict=True)
     ]
-    for text, line, its, i in zip(texts, seen, places, _chosen(places), strict=True):
+    for text, line, its, i in zip(texts, visible, places, _chosen(places), strict=True):
         box, anchor = its.boxes[i], its.anchors[i]
         text.set_position((float(box[0]), float(box[1])))
         if its.away[i] > _FAR:
@@ -165,14 +165,14 @@ def _priced(
     areas = (boxes[:, 2] - boxes[:, 0]) * (boxes[:, 3] - boxes[:, 1])
     # Rounding leaves a trace of an area that is wholly inside.
     outside = np.maximum(areas - _overlap(boxes, frame) - 1e-6, 0)
-    cost = places.cost + _FORBIDDEN * outside + _ON_ANOTHER * _held(boxes, obstacles)
+    cost = places.cost + _FORBIDDEN * outside + _ON_ANOTHER * _covered_counts(boxes, obstacles)
     here = _around(places.anchors)
     own_distance = _distance(boxes, own.samples)
     for line in lines:
-        cost += _ON_A_MARK * _held(_grown(boxes, _MARK), line.marks)
-        cost += _ON_A_LINE * _held(boxes, line.samples)
+        cost += _ON_A_MARK * _covered_counts(_grown(boxes, _MARK), line.marks)
+        cost += _ON_A_LINE * _covered_counts(boxes, line.samples)
         if line is not own:
-            cost += _SHARED * (_held(here, line.samples) > 0)
+            cost += _SHARED * (_covered_counts(here, line.samples) > 0)
             cost += _ON_ANOTHER * _crossed(places, line.samples)
             cost += _NEARER_TO_ANOTHER * (_distance(boxes, line.samples) < own_distance)
     return replace(places, cost=cost)
@@ -185,12 +185,12 @@ def _crossed(places: _Places, spots: Numbers) -> Numbers:
     touched = np.zeros(len(far))
     for i in range(1, _DOTS):
         dots = places.anchors + (ends - places.anchors) * i / _DOTS
-        touched[far] += _held(_around(dots)[far], spots)
+        touched[far] += _covered_counts(_around(dots)[far], spots)
     return touched
 
 
-def _held(boxes: Numbers, spots: Numbers) -> Numbers:
-    """Return how many of the spots each box holds."""
+def _covered_counts(boxes: Numbers, spots: Numbers) -> Numbers:
+    """Return the number of spots that each box covers."""
     (x, y), (left, low, right, top) = spots.T, boxes.T[:, :, None]
     inside = (left <= x) & (x <= right) & (low <= y) & (y <= top)
     return np.asarray(np.count_nonzero(inside, axis=1), dtype=np.float64)

@@ -25,7 +25,7 @@ def number_axes(axes: Axes) -> None:
     """Give numbers and a grid to axes whose limits are set."""
     from matplotlib.ticker import LogLocator, NullFormatter
 
-    axes.grid(True, which="major")
+    axes.grid(visible=True, which="major")
     axes.tick_params(which="minor", length=1.5)
     for axis, limits in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
         is_long = powers_within(*limits) >= 2

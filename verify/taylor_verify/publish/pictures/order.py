@@ -40,11 +40,11 @@ def picture(title: str, orders: Sequence[Order]) -> Picture:
     drawn = [order for order in orders if has_points(order)]
     if not drawn:
         raise ValueError("expected an error above zero, got none @ order")
-    said = ". ".join(order.sentence for order in drawn)
+    sentences = ". ".join(order.sentence for order in drawn)
     return Picture(
         stem_of({"scene": title.partition(" ")[0]}, "order"),
         f"Error against step: {title}",
-        f"Largest error against the step h on {title}, both logarithmic. {said}.",
+        f"Largest error against the step h on {title}, both logarithmic. {sentences}.",
         partial(_figure, drawn),
     )
 

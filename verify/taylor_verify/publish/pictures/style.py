@@ -64,7 +64,7 @@ class Kind:
     name: str
     heading: str
     dashes: Dashes
-    looks: tuple[tuple[str, str, str], ...]
+    entries: tuple[tuple[str, str, str], ...]
 
 
 TAYLOR: Final = "taylor"
@@ -182,8 +182,8 @@ def place(family: str, rung: str) -> tuple[int, int, int, str]:
     kind, named = kind_of(family), _named(_words(family))
     if kind == TAYLOR:
         return (0, *place_of_rung(rung)[:2], family)
-    looks = [look for one in KINDS for look in one.looks]
-    number = looks.index(named[1]) if named else len(looks)
+    known_looks = [look for one in KINDS for look in one.entries]
+    number = known_looks.index(named[1]) if named else len(known_looks)
     return (1 + [one.name for one in KINDS].index(kind), number, 0, family)
 
 
@@ -227,9 +227,9 @@ def _named(words: list[str]) -> tuple[Kind, tuple[str, str, str]] | None:
         # What follows is somebody's command, and means none of ours.
         return None
     fitting = [
-        (kind, entry) for kind in KINDS for entry in kind.looks if {*_words(entry[0])} <= {*words}
+        (kind, entry) for kind in KINDS for entry in kind.entries if {*_words(entry[0])} <= {*words}
     ]
-    return max(fitting, key=lambda found: len(_words(found[1][0])), default=None)
+    return max(fitting, key=lambda pair: len(_words(pair[1][0])), default=None)
 
 
 def _words(name: str) -> list[str]:
