@@ -234,7 +234,7 @@ def test_a_number_that_is_not_finite_is_stored_as_none() -> None:
     result = followed("euler/about-max-axis", lanes=2)
     errors = np.full((2, len(result.steps)), np.nan)
     nothing = growth(np.array(result.question.counts), errors, Law.WALK, 1e-16)
-    lost = replace(result, found=(QuantityGrowth("T", errors, nothing),))
+    lost = replace(result, quantities=(QuantityGrowth("T", errors, nothing),))
     for one in (result.ensemble("a test"), lost.ensemble()):
         assert converted(complete(one), Ensemble) == one
     (row,) = lost.ensemble().quantities

@@ -37,7 +37,7 @@ _MODEL: Final = (
 
 
 def attainable(verdicts: Sequence[Verdict]) -> str:
-    """Return the page: a line a rung, then one for every state quantity with a cell for each rung."""
+    """Return the page: a line for each rung, then a line for each state quantity, rung by rung."""
     judged_runs = runs(verdicts)
     shown = [verdict for run in judged_runs for verdict in run.state]
     legend = [

@@ -1,4 +1,4 @@
-"""The front page of a report: what it is, its headline numbers, how to read them, what else is there."""
+"""Front page of a report: its purpose, its headline numbers, how to read them, and further pages."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ _CONTENTS = (
 
 
 def front(verdicts: Sequence[Verdict], others: Iterable[Page]) -> str:
-    """Return the front page of a report, with links to what else there is."""
+    """Return the front page of a report, with links to all other pages."""
     judged_runs = runs(verdicts)
     contents = [*_CONTENTS, *((page.link(), page.what) for page in others)]
     return whole(
@@ -118,7 +118,7 @@ BY_RUNG: Final = (
 
 
 def by_rung(judged_runs: Sequence[Run]) -> list[list[str]]:
-    """Return a row a rung: roundoff, median and worst error of state, the worst over attainable."""
+    """Return a row for each rung: roundoff, median and worst error of state, worst over attainable."""
     rungs = sorted({run.rung for run in judged_runs}, key=place_of_rung)
     return [_rung_row([r for r in judged_runs if r.rung == rung]) for rung in rungs]
 
@@ -143,7 +143,7 @@ def _rung_row(of_rung: Sequence[Run]) -> list[str]:
 
 
 def _by_scene(judged_runs: Sequence[Run]) -> str:
-    """Return a line a scene and solver, with the main quantity's largest error on each rung."""
+    """Return a line for each scene and solver: the main quantity's largest error on each rung."""
     rungs = sorted({run.rung for run in judged_runs}, key=place_of_rung)
     solvers = {(run.solver, run.setting) for run in judged_runs}
     lines: dict[tuple[str, str, str], dict[str, Run]] = {}

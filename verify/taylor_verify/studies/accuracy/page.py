@@ -112,7 +112,7 @@ def _accuracy_section(group: Sequence[Run]) -> str:
 
 
 def conserved(verdicts: Sequence[Verdict]) -> str:
-    """Return the page of the drift of every conserved quantity, a run a line."""
+    """Return the page of the drift of every conserved quantity, a line for each run."""
     judged_runs = runs(verdicts)
     shown = [verdict for run in judged_runs for verdict in run.drifts]
     legend = [
@@ -181,7 +181,7 @@ def gates(verdicts: Sequence[Verdict]) -> str:
 
 
 def readme(verdicts: Sequence[Verdict], others: Iterable[Page] = ()) -> str:
-    """Return the index of the tables, and how a cell is read; ``others`` are what else is there."""
+    """Return the index of the tables, and how to read a cell; ``others`` are further pages."""
     how = [
         "A number has three significant digits; the CSV has them all. A time has its own digits.",
         "Where there is no number stands a word: the verdict, or how a failed run ended. "

@@ -1,7 +1,7 @@
-"""Published numbers that the project's own pages quote, between marks, made again with the report.
+"""Published numbers that the project's own pages quote; every report makes them again.
 
-A page beside the folder `reports` quotes a block by having its marks; a page without marks is nobody's
-but its author's, and other folders are nobody's source.
+A page beside the folder `reports` quotes a block if it has the marks of that block. Pages without
+marks and reports in other folders are left alone.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ END: Final = "<!-- end of accuracy -->"
 
 _FOLDER: Final = "reports"
 _PAGES: Final = ("README.md", "docs/results.md")
-# One of each kind of body and of each quantity that a state has.
+# At least one scene for each kind of body and each quantity of a state.
 _SHOWN: Final = (
     ("euler/generic", "omega"),
     ("euler/full-tensor", "omega"),
@@ -39,7 +39,7 @@ _SHOWN: Final = (
 
 
 def requoted(folder: Path, verdicts: Sequence[Verdict]) -> dict[str, str]:
-    """Return the pages beside ``folder`` that quote it, by their paths from there, with today's blocks.
+    """Return the pages beside ``folder`` that quote it, with new blocks, by their relative paths.
 
     Raises ValueError for a page with the first mark of a block and not the second.
     """

@@ -1,4 +1,4 @@
-"""The published tables as CSV: one heading line, then every digit of what the Markdown shows."""
+"""The published tables as CSV: one heading line, then the numbers of the Markdown in all digits."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def gates(
     more: Callable[[Verdict], dict[str, Any]] | None = None,
     without: Container[str] = (),
 ) -> str:
-    """Return a row for every verdict; ``more`` has further columns of each, the same ones for all.
+    """Return a row for every verdict; ``more`` returns further columns, the same for all verdicts.
 
     The columns ``without`` are left out.
     """
@@ -97,9 +97,9 @@ def _conserved_row(run: Run, of_scene: Iterable[str]) -> dict[str, Any]:
 
 
 def _fields(verdict: Verdict) -> dict[str, Any]:
-    """Return a verdict's own fields, and errors in u; a word in place of a maximum that is none.
+    """Return the fields of a verdict, with errors in u; a word replaces a maximum that is no number.
 
-    What is a quotient of two other columns has six digits.
+    A quotient of two other columns has six digits.
     """
     row = verdict.row() | {
         "mean_u": _short(in_roundoffs(verdict, verdict.mean)),

@@ -1,7 +1,7 @@
-"""Page of the ledger: first what a reader of the two texts must correct, then every entry.
+"""Page of the ledger: first the corrections to the two texts, then every entry.
 
-It is made from the rows of `claims --json` alone, and holds nothing that another machine would change: what
-made the rows stands beside them, in data/claims.json.
+It is made from the rows of `claims --json` alone, and is the same on every machine. The versions that
+made the rows are in data/claims.json.
 """
 
 from __future__ import annotations
@@ -74,14 +74,14 @@ def _counts(rows: Sequence[ClaimRow]) -> str:
 def _entries(
     rows: Iterable[ClaimRow], lines: Callable[[ClaimRow], Sequence[str]], *verdicts: Verdict
 ) -> Iterator[str]:
-    """Yield the entries with one of the verdicts, each with its lines that are not empty."""
+    """Yield the entries that have one of the verdicts, each with its lines."""
     for row in rows:
         if row.verdict in verdicts:
             yield f"{bold(code(row.id))}\n\n{bullets(filter(None, lines(row)))}"
 
 
 def _erratum(row: ClaimRow) -> list[str]:
-    """Return a false entry as transcribed, correct, and where the first form fails."""
+    """Return a false entry: as transcribed, corrected, and a counterexample."""
     return [
         f"as transcribed: {_math(row.statement)}",
         f"correct: {_math(row.correction)}",
@@ -120,7 +120,7 @@ def _statement(row: ClaimRow) -> list[str]:
 
 
 def _restored(rows: Sequence[ClaimRow]) -> str:
-    """Return what the scan lost, where the equation is true once that is put back."""
+    """Return the table of the signs that the scan lost, and that make their equations true."""
     lost = [[code(r.id), prose(r.lost or "")] for r in rows if r.verdict is Verdict.RESTORED]
     return table(["equation", "what the scan lost"], lost)
 
@@ -147,7 +147,7 @@ def _math(latex: str | None) -> str:
 
 
 def _residual(row: ClaimRow) -> str:
-    """Return zero where the check is exact; else its bound, which no machine's rounding moves."""
+    """Return zero for an exact check, else its bound, which is the same on every machine."""
     return "0, exactly" if row.bound == 0 else f"within {_short(row.bound)}"
 
 

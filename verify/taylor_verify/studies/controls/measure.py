@@ -1,4 +1,4 @@
-"""Runs of every defect and of its sound twin, as the study that the published table is made of."""
+"""Runs of every defect and of its sound twin, as the document of the published table."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ def sights(
     finished: Callable[[str], None] | None = None,
     twins: Twins | None = None,
 ) -> list[Sight]:
-    """Run every defect and, once for all that share it, every sound twin.
+    """Run every defect, and every sound twin once, even if several defects share it.
 
-    ``finished`` is called with the name of each defect as it ends. ``twins`` has the verdicts of those
-    that have run before, by scene, solver and setting, and is added to.
+    ``finished`` is called with the name of each defect as it ends. ``twins`` has the verdicts of twins that
+    ran before, by scene, solver and setting; new ones are added to it.
     """
     twins = {} if twins is None else twins
     rows = []
@@ -45,7 +45,7 @@ def sights(
 
 
 def study(measured: Iterable[Sight]) -> ControlsStudy:
-    """Return the rows that the published table is made from: each defect, each verdict once."""
+    """Return the document of the published table: each defect, and each verdict once."""
     rows = list(measured)
     verdicts = {
         (v.scene, v.solver, v.setting, v.quantity): v

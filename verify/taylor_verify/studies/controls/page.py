@@ -1,4 +1,4 @@
-"""Table of what each gate sees, and the sentences that it proves, from stored rows alone."""
+"""Table of the defects that each gate sees, and the sentences that it proves, from stored rows."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ from taylor_verify.studies.controls.proof import (
     title,
 )
 
-# Where the short table stands in a page that is otherwise written by hand.
+# Marks around the short table in a page that is otherwise written by hand.
 BEGIN: Final = "<!-- controls: made by taylor-verify publish; do not edit -->"
 END: Final = "<!-- end of controls -->"
 
 _NOT_SEEN: Final = NOTHING
-# A heading and the quantities under it: of a body, one of them at most.
+# A heading and its quantities, of which a body has one at most.
 _COLUMNS: Final = (
     ("start", (INITIAL,)),
     ("state", MAIN),
@@ -67,7 +67,7 @@ _HOW: Final = (
 
 
 def page(study: ControlsStudy) -> str:
-    """Return the whole page: what it proves, a table for each kind of body, every defect in words."""
+    """Return the whole page: its findings, a table for each kind of body, every defect in words."""
     sights = study.sights
     return whole(
         "What each gate sees",
@@ -119,7 +119,7 @@ def _section(sights: Sequence[Sight], quantity: str, heading: str) -> str:
 
 
 def _cell(sight: Sight, names: Iterable[str]) -> str:
-    """Return the cell of the quantity that the scene has; empty where it has none, or nothing ran."""
+    """Return the cell of the quantity that the scene has; empty if it has none, or nothing ran."""
     here = [name for name in names if name in sight.quantities]
     if not here or not sight.is_finished:
         return ""
@@ -130,7 +130,7 @@ def _cell(sight: Sight, names: Iterable[str]) -> str:
 
 
 def _blindest_first(sights: Iterable[Sight]) -> list[Sight]:
-    """Return first those that fewer conserved quantities see; last what was not compared."""
+    """Return the defects, first those that few conserved quantities see, last the uncompared."""
 
     def key(sight: Sight) -> tuple[bool, int, int]:
         conserved = sum(name in sight.seen_by for name in sight.conserved)
@@ -140,7 +140,7 @@ def _blindest_first(sights: Iterable[Sight]) -> list[Sight]:
 
 
 def _by_gate(sights: Sequence[Sight]) -> str:
-    """Return how many defects each gate sees of those that it was asked about, and which it misses."""
+    """Return, for each gate, how many of its defects it sees, and which it misses."""
     finished = [sight for sight in sights if sight.is_finished]
     rows = []
     for heading, name in ((heading, name) for heading, names in _COLUMNS for name in names):
@@ -189,7 +189,7 @@ SHORT: Final = (
 
 
 def short(study: ControlsStudy) -> str:
-    """Return some fifteen rows and four columns, between the marks BEGIN and END."""
+    """Return the short table of some fifteen rows, between the marks BEGIN and END."""
     legend = (
         "A number is the largest error over its bound: that check sees the defect. *not seen* is a "
         "check that passes it."
@@ -251,7 +251,7 @@ def sheet(study: ControlsStudy) -> str:
 
 def _rows_of(sight: Sight) -> Iterator[dict[str, Any]]:
     for name, verdict in sight.verdicts.items():
-        # A sound quaternion is a unit one, and has no row that says so.
+        # A sound quaternion has norm 1, and no row of its own.
         twin = sight.sound.get(name)
         yield verdict.row() | {
             "defect": sight.defect.name,

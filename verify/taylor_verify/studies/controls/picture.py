@@ -1,7 +1,7 @@
-"""Errors beside what a shift of time leaves of them: a line for each, from the one to the other.
+"""Picture of errors before and after the best shift of time, a line for each error.
 
-An answer that is right but late errs in no conserved quantity. Where the line is long, lateness explains
-the error; where it is short, the motion itself is another one.
+A right answer that comes late has no error in conserved quantities. A long line means that lateness
+explains the error, a short line that the motion itself is wrong.
 """
 
 from __future__ import annotations

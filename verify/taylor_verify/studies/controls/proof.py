@@ -13,7 +13,7 @@ from taylor_verify.studies.controls.document import Sight
 
 MAIN: Final = ("omega", "impulse")
 
-# A shift of time that leaves no more of the error than this is all of it, in words.
+# A shift of time explains an error entirely if it leaves less than this part of it.
 _WHOLLY: Final = 0.01
 # Two draws of the same roundings differ by less than this factor.
 _ALIKE: Final = 2
@@ -21,7 +21,7 @@ _SPELT: Final = {"nan": "NaN", "munk": "Munk"}
 
 
 def proven(sights: Sequence[Sight]) -> list[str]:
-    """Return sentences, each true of these rows; one that is true of none is left out."""
+    """Return the sentences that are true of these rows."""
     finished = [sight for sight in sights if sight.is_finished]
     sentences = [
         _energy_alone(finished),
@@ -74,7 +74,7 @@ def _conservation_together(sights: Sequence[Sight]) -> str:
 
 
 def conserving(sights: Iterable[Sight]) -> list[Sight]:
-    """Return the defects that every gate on a conserved quantity passes, and one of the state sees."""
+    """Return the defects that pass all gates on conserved quantities, but fail one of the state."""
     return [
         sight
         for sight in sights
@@ -146,7 +146,7 @@ def title(sight: Sight) -> str:
 
 
 def times_bound(sight: Sight, quantity: str) -> str:
-    """Return the error over the bound in two digits; NaN, and infinity where the bound is zero."""
+    """Return the error over the bound in two digits, as NaN or as infinity if the bound is zero."""
     over = sight.over_bound(quantity)
     if over is None:
         return "NaN" if sight.verdicts[quantity].max is None else INFINITE
@@ -162,7 +162,7 @@ def _short(value: float) -> str:
 
 
 def constant_shift(sight: Sight) -> float | None:
-    """Return the shift of time that explains the error of the state; None where none does."""
+    """Return the shift of time that explains the error of the state; None if there is none."""
     for name in MAIN:
         verdict = sight.verdicts.get(name)
         if verdict is not None and sight.is_seen_by(name) and verdict.shift == "constant":

@@ -1,4 +1,4 @@
-"""The study of the controls: what each gate sees of solvers that are broken on purpose."""
+"""The study of the controls: deliberately broken solvers, and the gates that see their faults."""
 
 from __future__ import annotations
 

@@ -56,7 +56,7 @@ def picture(study: EnclosureStudy) -> Picture:
 
 def _figure(motions: Motions) -> Figure:
     figure, places = sheet(len(motions), list(_LINES.values()))
-    # One scale for all: a motion that is regular is told from one that is not.
+    # One scale for all panels shows the difference between regular and irregular motions.
     points = [point for lines in motions.values() for drawn in lines.values() for point in drawn]
     limits = widened([e for _, e in points], 0.04, 0.04)
     for axes, (scene, lines) in zip(places, motions.items(), strict=True):

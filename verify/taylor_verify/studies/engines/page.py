@@ -1,4 +1,4 @@
-"""The page of the engine board: first what a user should do, then the tables and pictures it rests on."""
+"""The page of the engine board: first advice to users, then the tables and pictures behind it."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ def pictures(board: Board) -> list[Picture]:
 
 
 def _entries(board: Board) -> EntryList:
-    """Return the entry list; ValueError for rows of an engine that is not on it."""
+    """Return the entry list. Raises ValueError for rows of an engine that is not in the list."""
     entries = entry_list()
     stored = dict.fromkeys(row.engine for row in board.study.rows)
     if unknown := [name for name in stored if name not in entries.engines]:
@@ -114,7 +114,7 @@ def _entries(board: Board) -> EntryList:
 
 
 def _best(board: Board, entries: EntryList, every: Sequence[EngineSetting]) -> str:
-    """Return a line for each engine: its best setting on the scenes that all of them take."""
+    """Return a line for each engine: its best setting on the scenes that all engines take."""
     scene = entries.advised[0]
     titles, rows = {row.name: row.title for row in entries.entry}, []
     for best in best_of_each(every, scene):
@@ -141,7 +141,7 @@ COLUMNS: Final = (
 
 
 def cells(board: Board, setting: EngineSetting, row: EngineRow) -> list[str]:
-    """Return the cells of a row behind the name of its engine."""
+    """Return the cells of a row after the name of its engine."""
     orders = [setting.order(row.scene, name) for name in ("omega", "attitude")]
     order_cells = [f"{o.order:.1f}" if o and o.order is not None else NOTHING for o in orders]
     pace = board.pace(row)
@@ -205,7 +205,7 @@ def _states(board: Board, scene: str) -> set[str]:
 
 
 def _as_shipped(board: Board, entries: EntryList, every: Sequence[EngineSetting]) -> Iterator[str]:
-    """Yield the table of the engines as people get them, beside what the board sets."""
+    """Yield the table of the engines as shipped beside the settings of the board."""
     titles, rows, usual = {row.name: row.title for row in entries.entry}, [], newest(every)
     for one in newest(every, shipped=True):
         for row in one.rows:

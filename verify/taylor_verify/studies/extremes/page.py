@@ -1,10 +1,10 @@
-"""Fate of the extremes: the stored verdicts of one run of them, and the page made of those.
+"""Page of the extremes, made from the stored verdicts of one run.
 
-    extremes.json   every verdict, beside it what was expected; the scenes with their titles; the runs that
-                    were left out; what made the rows
+        extremes.json   every verdict with the expected one; the titles of the scenes; the runs that were
+                        left out; the versions that made the rows
 
-Every extreme is there to be hard. An answer of theirs that is no `pass` is foreseen, with the reason, or it
-is a mismatch: the page tells the two apart and shows both.
+The extremes are hard scenes. A verdict other than `pass` is either expected, with a reason, or a mismatch.
+The page shows both, apart from each other.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ _LEGEND: Final = (
 
 
 def _fields(study: ExtremesStudy) -> dict[str, Any]:
-    """Return keys and values as they are stored: the seconds of a run are nobody else's."""
+    """Return the stored keys and values, without the seconds of runs, which differ on every machine."""
     rows = [store.row(verdict) for verdict in study.verdicts]
     return {**complete(study), "machine": plain(study.machine), "verdicts": rows}
 
@@ -59,7 +59,7 @@ EXTREMES: Final = Stored(ExtremesStudy, "extremes", _fields, read_study)
 
 
 def page(study: ExtremesStudy) -> str:
-    """Return the counts, a line a scene, and every answer that is no pass with its reason."""
+    """Return the counts, a line for each scene, and every verdict other than pass with its reason."""
     by_model: dict[str, list[Run]] = {}
     for run in runs(study.verdicts):
         by_model.setdefault(run.model, []).append(run)
@@ -83,7 +83,7 @@ def page(study: ExtremesStudy) -> str:
 
 
 def _summary(study: ExtremesStudy) -> str:
-    """Return how many answers were foreseen, and whatever was not, in full."""
+    """Return the number of expected verdicts, and all mismatches in full."""
     others = [verdict for verdict in study.verdicts if verdict.verdict is not Status.PASS]
     met = sum(verdict.is_met for verdict in others)
     counted = f"{met} of {len(others)} answers other than pass came as expected."
@@ -116,7 +116,7 @@ def _cells(study: ExtremesStudy, run: Run) -> list[str]:
 
 
 def _state(verdict: Verdict) -> str:
-    """Return the error, and the word of the verdict where it is no pass."""
+    """Return the error, and the verdict if it is no pass."""
     if verdict.max is None:
         return bold(prose(word(verdict)))
     text = prose(peak(verdict))
@@ -124,7 +124,7 @@ def _state(verdict: Verdict) -> str:
 
 
 def _not_passed(study: ExtremesStudy) -> str:
-    """Return a line for every answer that is no pass, beside what was foreseen."""
+    """Return a line for every verdict other than pass, beside the expected one."""
     columns = ["scene", "quantity", "verdict", "expected", "bound:", "why"]
     rows = [
         _row(verdict)
@@ -165,5 +165,5 @@ def sheet(study: ExtremesStudy) -> str:
             "as_expected": "yes" if verdict.is_met else "no",
         }
 
-    # A reason is for reading, and stands in the data.
+    # The reasons are long texts, and stand in the data.
     return sheets.gates(study.verdicts, expected, without=("because", "scene_sha256"))

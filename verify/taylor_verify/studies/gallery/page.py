@@ -1,7 +1,7 @@
-"""The gallery: pictures of some motions and of their errors, made of stored data alone.
+"""Gallery: pictures of some motions and of their errors, made from stored data alone.
 
-What is drawn comes from data/portraits (the motion), data/records (the errors of a run), reference/NAME.csv
-(the exact motion at its samples) and data/controls.json (broken solvers); figures/README.md shows it.
+Its data are data/portraits (the motion), data/records (the errors of a run), reference/NAME.csv (the
+exact motion at its samples) and data/controls.json (broken solvers). The page is figures/README.md.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ Document = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class Shown:
-    """A picture under its heading, what it shows in words, and the files it was made of."""
+    """A picture with its heading, its caption, and the files that it is made from."""
 
     heading: str
     picture: Picture
@@ -64,16 +64,16 @@ class Shown:
 
 
 def _named(source: str) -> str:
-    """Return a link to a file of data, or its name where the repository does not hold it."""
+    """Return a link to a file of data, or its name if the repository does not hold it."""
     is_made = source.startswith((PORTRAITS.folder, f"{store.FOLDER}/{store.RECORDS}"))
     return code(source) if is_made else f"[{Path(source).name}](../{source})"
 
 
 @dataclass(frozen=True)
 class Stored:
-    """The data of a report folder as the pictures ask for them.
+    """The data of a report folder that the pictures need.
 
-    Raises FileNotFoundError for what is not there, and ValueError for files that hold something else.
+    Raises FileNotFoundError for missing files, and ValueError for files that hold something else.
     """
 
     folder: Path
@@ -125,7 +125,7 @@ def shown(stored: Stored) -> Iterator[Shown]:
 
 
 def page(pictures: Sequence[Shown]) -> str:
-    """Return the page of all of them below their headings."""
+    """Return the page of all pictures below their headings."""
     blocks = []
     for heading, group in groupby(pictures, key=lambda one: one.heading):
         blocks += [f"## {heading}", *(one.block() for one in group)]
@@ -133,7 +133,7 @@ def page(pictures: Sequence[Shown]) -> str:
     return whole(title, _WHAT, *blocks, "## Elsewhere", _ELSEWHERE)
 
 
-# The kinds of pictures, each with its caption and the files that it is made of.
+# The kinds of pictures, each with its caption and its files of data.
 
 Made = tuple[Picture, str, tuple[str, ...]]
 
@@ -230,5 +230,5 @@ QUARTICS: Final = (
 
 
 def scenes() -> tuple[str, ...]:
-    """Return the scenes that the gallery shows by themselves."""
+    """Return the scenes of the gallery."""
     return tuple(scene for scene, _ in _SCENES)

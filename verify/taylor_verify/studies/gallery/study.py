@@ -1,4 +1,4 @@
-"""The gallery as a study: pictures of some motions and of their errors, from other studies' data."""
+"""The study of the gallery: pictures of motions and errors, made from other studies' data."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from taylor_verify.studies.study import Measured, NotMeasured, Progress, Study
 if TYPE_CHECKING:
     from taylor_verify.studies.gallery.page import Shown
 
-# The pictures are built with NumPy, which nothing else that makes pages asks for: it is imported late.
+# The pictures need NumPy, and other pages do not: it is imported late.
 
 
 def _measure(folder: Path, progress: Progress) -> Measured:
-    """Make sure that all data are there; nothing is measured."""
+    """Check that all data are stored; nothing is measured."""
     from taylor_verify.studies.gallery.page import gallery
 
     del progress
@@ -35,7 +35,7 @@ def _measure(folder: Path, progress: Progress) -> Measured:
 
 
 def _find(folder: Path) -> list[Shown] | None:
-    """Return every picture of the gallery; None for a folder without some of its data."""
+    """Return every picture of the gallery; None if some of its data are missing."""
     if not (folder / PORTRAITS.folder).exists():
         return None
     from taylor_verify.studies.gallery.page import gallery
@@ -47,7 +47,7 @@ def _find(folder: Path) -> list[Shown] | None:
 
 
 def _page(pictures: list[Shown], folder: Path) -> str:
-    """Return the page of those that are drawn already; nothing without any."""
+    """Return the page of the pictures that are drawn already; empty without any."""
     from taylor_verify.studies.gallery.page import page
 
     drawn = {file.stem for file in (folder / FOLDER).glob("*.svg")}

@@ -1,7 +1,7 @@
-"""The page of errors that grow over decades of time, made of the stored ensembles.
+"""Page of errors that grow over decades of time, made from the stored ensembles.
 
 growth.json        the published ensembles: of every quantity its root mean squares and the gate
-growth-long.json   the same of the long run, where somebody has made it
+growth-long.json   the same for the long run, if somebody has made it
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ _REMAKE: Final = (
 
 
 def find(folder: Path) -> GrowthStudy | None:
-    """Return both documents as one: the published runs, then the long ones; None without any."""
+    """Return both documents as one: the published runs, then the long ones; None without runs."""
     stored = [study for study in (GROWTH.find(folder), LONG.find(folder)) if study and study.runs]
     if not stored:
         return None
@@ -107,7 +107,7 @@ def page(study: GrowthStudy, folder: Path) -> str:
 
 
 def pictures(study: GrowthStudy) -> list[Picture]:
-    """Return all ensembles in one picture; none where there is nothing above zero to draw."""
+    """Return all ensembles in one picture; none if no error is above zero."""
     try:
         return [picture(study.runs)]
     except ValueError:
@@ -115,7 +115,7 @@ def pictures(study: GrowthStudy) -> list[Picture]:
 
 
 def _gates(runs: Iterable[Ensemble]) -> str:
-    """Return how many gates passed, and the names of those that did not."""
+    """Return the number of gates that passed, and the names of the others."""
     gates = [(run, row, row.gate) for run in runs for row in run.quantities if row.gate]
     failed = [
         f"{code(row.quantity)} of {_name(run)}"

@@ -1,4 +1,4 @@
-"""The tables of the paper: columns and rows cut to what a page shows, each with a caption."""
+"""Tables of the paper: as many columns and rows as fit a page, each with a caption."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Table:
 
     @property
     def csv(self) -> str:
-        """A sheet of these cells for a program."""
+        """The cells as CSV."""
         names = [heading.removesuffix(":") for heading in self.headings]
         rows = (dict(zip(names, map(plain, row), strict=True)) for row in self.rows)
         return sheet(names, rows)

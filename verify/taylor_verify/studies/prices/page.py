@@ -1,4 +1,4 @@
-"""The page of the price of each thing that a scene may ask for, made of the stored measurement."""
+"""Page of the price of each option of a scene, made from the stored measurement."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from taylor_verify.studies.stored import Stored
 
 PRICES: Final = Stored(PricesStudy, "prices")
 
-# The models by their barest forms.
+# The models by the names of their barest forms.
 _MODELS: Final = {"omega": "a rigid body", "impulse": "a solid in an ideal fluid"}
 # The three questions: the barest form, its attitude, and all of a solid in a fluid.
 _ASKED: Final = (
@@ -52,7 +52,7 @@ _LEGEND: Final = (
 
 
 def pictures(study: PricesStudy) -> list[Picture]:
-    """Return the price of each thing that a scene may ask for on f64, a picture for each model."""
+    """Return a picture for each model: the price on f64 of each option of a scene."""
     drawn = []
     for root, words in _MODELS.items():
         rows = [

@@ -1,4 +1,4 @@
-"""The cost of what a scene requires: a bar for each thing, as a multiple of the one at the foot."""
+"""Picture of the cost of each option of a scene: a bar for each, as a multiple of the yardstick."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ _ABOVE: Final = 0.12
 _BELOW: Final = 0.52
 _FOOT: Final = 0.24
 _RIGHT: Final = 0.15
-# Of a character of a label, about, and the most that labels may take of the page.
+# The width of a character of a label, about, and the largest width of all labels.
 _LETTER: Final = 0.068
 _WIDEST: Final = 3.0
 _RANGE: Final[Mapping[str, Any]] = {"color": INK, "linewidth": 0.8, "marker": "|"}
 
 
 def picture(scene: str, yardstick: str, ratios: Sequence[Ratio]) -> Picture:
-    """Return the picture of ratios to the yardstick. Raises ValueError for ratios that are none."""
+    """Return the picture of ratios to the yardstick. Raises ValueError for invalid ratios."""
     check(ratios)
     dearest = max(ratios, key=lambda one: one.ratio)
     words = "; ".join(f"{one.label} on {one.rung} {times(one.ratio)}" for one in ratios)
@@ -57,14 +57,14 @@ def _figure(ratios: Sequence[Ratio], yardstick: str) -> Figure:
 
 
 def _draw_bars(axes: Axes, ratios: Sequence[Ratio]) -> None:
-    """Draw bars from 1, the yardstick, to the right what is dearer; the number is behind its range."""
+    """Draw bars from 1, the yardstick, to each ratio, with the number after the range."""
     axes.set(xscale="log", ylim=(len(ratios) - 0.4, -0.6))
     for i, one in enumerate(ratios):
         colour = look_of_rung(one.rung).colour
         axes.barh(i, one.ratio - 1, left=1, height=0.62, color=colour, gid=one.label, zorder=2)
         axes.plot([one.ratio], [i], marker="|", color=colour, markersize=9, zorder=2)
         if one.least < one.greatest:
-            # White beneath, to be seen on a dark bar.
+            # White beneath makes the line visible on a dark bar.
             below = {"color": PAPER, "linewidth": 2.0, "marker": "|", "markeredgewidth": 2.4}
             for look in (below, _RANGE):
                 axes.plot([one.least, one.greatest], [i, i], zorder=3, **look)

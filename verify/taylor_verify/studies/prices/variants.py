@@ -1,4 +1,4 @@
-"""The variants that are priced: one motion in several forms, one body with more and more asked of it."""
+"""Variants that are priced: one motion in several forms, one body with more and more options."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _LOAD: Final = (Fraction(1, 64), Fraction(-1, 128), Fraction(1, 256))
 
 @dataclass(frozen=True)
 class Variant:
-    """A form of a scene. ``against`` names the variant that its price is a multiple of."""
+    """A form of a scene. ``against`` names the variant that is the unit of its price."""
 
     name: str
     against: str
@@ -32,7 +32,7 @@ class Variant:
 
 
 def variants() -> tuple[Variant, ...]:
-    """Return the variants in reading order; each comes after the one that it is held against."""
+    """Return the variants in reading order; each comes after the one that is its unit."""
     omega, impulse = "omega", "impulse"
     whole = _of(_CLEBSCH, "attitude", "centre")
     return (
@@ -93,7 +93,7 @@ def _of(name: str, *track: str, loaded: bool = False) -> Callable[[Rung], Proble
     def posed(rung: Rung) -> Problem:
         scene = replace(load(name), track=frozenset(track))
         if loaded:
-            # They change the motion little in the time of the scene.
+            # Loads so small that they change the motion little in the time of the scene.
             opposed = tensors.scaled(Fraction(-1), _LOAD)
             loads = dict(zip(scene.body.load_names(), (_LOAD, opposed), strict=False))
             scene = replace(scene, body=scene.body.with_parts(loads))

@@ -6,9 +6,8 @@
     R   a ratio of moments of inertia or of masses
     S   a scale
 
-Every scene is made of exact rationals. It is asked at the quarters of some of its periods: wherever on
-its orbit the start lies, beside an unstable spin the motion is slow at two of the quarters and quick at
-the other two, where an error of the phase shows.
+Every scene is made of exact rationals. Its samples are at the quarters of some periods. Beside an unstable
+spin the motion is slow at two of the quarters and quick at the other two, where errors of the phase show.
 """
 
 from __future__ import annotations
@@ -33,17 +32,17 @@ from taylor_verify.studies.reach.document import ReachFamily
 Numbers = tuple[Fraction | int, ...] | str
 
 QUARTERS: Final = 4
-# Half-decades, then decades, where a period is cheap.
+# Half-decades, then decades for cheap periods.
 PERIODS: Final = (1, 3, 10, 30, 100, 300, 1000, 10_000, 100_000)
-# The period enters the instants alone, which are exact again as soon as they are written down.
+# The period is only used to choose instants, which are exact decimals.
 _PERIOD_DIGITS: Final = 12
 _START: Final = Fraction(0)
 
-# How many periods are worth their seconds: on f128 a period takes hundreds of times as long as on f64.
+# The most periods in a reasonable time: on f128 a period takes hundreds of times as long as on f64.
 _FAR: Final = {"f32": 1000, "f64": 1000, "f80": 100, "f128": 10}
-# Beside an unstable motion of six impulses the floor is what takes long.
+# Beside an unstable motion of six impulses the floor takes long.
 _NEARER: Final = {"f32": 30, "f64": 30, "f80": 30, "f128": 10}
-# A period of 1/e turns, in steps that the driver allows to be no longer than some hundred turns.
+# A period has 1/e turns, and the driver allows steps of some hundred turns at most.
 _SLOW: Final = {"f32": 10, "f64": 10, "f80": 3, "f128": 1}
 _FARTHER: Final = {"f32": 1000, "f64": 1000, "f80": 1000, "f128": 100, "mp237": 3}
 _FARTHEST: Final = {"f32": 100_000, "f64": 100_000, "f80": 10_000, "f128": 100, "mp237": 10}
@@ -51,10 +50,10 @@ _FARTHEST: Final = {"f32": 100_000, "f64": 100_000, "f80": 10_000, "f128": 100, 
 
 @dataclass(frozen=True)
 class Family:
-    """Scenes by one number, called ``symbol``; ``values`` are its texts, the easiest first.
+    """Scenes that depend on one number, called ``symbol``; ``values`` are its texts, the easiest first.
 
-    ``extreme`` says where it leads. Values are decimals with an exponent; a family of one value is
-    there for its periods alone. ``far`` has the rungs it is run on, each with the most periods.
+    ``extreme`` names the limit of the family. Values are decimals with an exponent; a family of one value
+    shows its periods alone. ``far`` has the rungs of its runs, each with the most periods.
     """
 
     name: str
@@ -73,7 +72,7 @@ class Family:
         return f"{self.name} {self.symbol} = {value}" if self.symbol else self.name
 
     def described(self) -> ReachFamily:
-        """Return the family as it is stored."""
+        """Return the family in its stored form."""
         about = (self.name, self.title, self.symbol, self.extreme, self.values)
         return ReachFamily(*about, dict(self.far))
 
@@ -82,7 +81,7 @@ class Family:
 
 
 def at_quarters(scene: Scene, periods: Sequence[int]) -> Scene:
-    """Return the scene asked at the quarters of the n-th period, for every n."""
+    """Return the scene with samples at the quarters of the n-th period, for every n."""
     period = period_of(scene)
     instants = [
         (n - 1 + Fraction(quarter, QUARTERS)) * period
@@ -94,7 +93,7 @@ def at_quarters(scene: Scene, periods: Sequence[int]) -> Scene:
 
 @lru_cache(maxsize=64)
 def period_of(scene: Scene) -> Fraction:
-    """Return the period of omega or the impulses, to a dozen digits; ValueError without one."""
+    """Return the period of omega or the impulses, to a dozen digits. Raises ValueError without one."""
     values = elements(scene)
     if "period" not in values:
         raise ValueError(f"expected a periodic orbit, got a {values.regime} one @ {scene.name}")
@@ -102,7 +101,7 @@ def period_of(scene: Scene) -> Fraction:
 
 
 def family(name: str) -> Family:
-    """Return the family of that name; ValueError for a name that is none."""
+    """Return the family of this name. Raises ValueError for an unknown name."""
     for one in FAMILIES:
         if one.name == name:
             return one
@@ -140,7 +139,7 @@ _SIX: Final = "1 2 0 1/10 1 1/2"
 # Its unstable spin grows: A = 29/16 in Hydromechanics 49 (25).
 _FALLING: Final = "1 5/4 0 1/4 1 1/2"
 
-# In reading order: how long, then how near a separatrix, how equal, how unequal, how large.
+# In reading order: many periods, then near a separatrix, nearly equal, unlike and large numbers.
 FAMILIES: Final = (
     Family(
         "euler-periods",
@@ -179,7 +178,7 @@ FAMILIES: Final = (
         far=_FARTHER,
     ),
     Family(
-        # Half-way from one turn of the unstable spin to the next, where omega2 is zero.
+        # The start is half-way between two flips of the unstable spin, where omega2 is zero.
         "separatrix",
         "a triaxial body, 1 - k^2 = d, from the middle of a flip",
         symbol="d",

@@ -1,4 +1,4 @@
-"""The page of the reach of each precision, made of the stored measurement."""
+"""Page of the reach of each precision, made from the stored measurement."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ from taylor_verify.studies.stored import Stored
 REACH: Final = Stored(ReachStudy, "reach")
 DIGITS: Final = (3, 6, 12)
 
-# Of the numbers of periods, those that have a line of their own.
+# The numbers of periods that have a line.
 _AFTER: Final = (1, 10, 100, 1000)
-# Behind the last that was tried, where it may go on.
+# Mark after the last value that was tried, beyond which the reach may extend.
 _LAST: Final = " \N{RIGHTWARDS ARROW}"
 _NOT_HELD, _NOT_RUN = "not held", "not run"
 _ROUNDED: Final = "rounded"
@@ -91,7 +91,7 @@ def _rows_of(study: ReachStudy, family: ReachFamily) -> list[ReachRow]:
 def last_value(
     rows: Sequence[ReachRow], after: int, digits: int, key: str = ACHIEVED
 ) -> str | None:
-    """Return the last value up to which so many digits are left after so many periods; None at none.
+    """Return the last value up to which ``digits`` are left after ``after`` periods, or None.
 
     ``rows`` are those of one rung, the easiest value first.
     """
@@ -100,13 +100,13 @@ def last_value(
 
 
 def most_periods(row: ReachRow, digits: int, key: str = ACHIEVED) -> int | None:
-    """Return the most periods after which so many digits are left; None where the first leaves fewer."""
+    """Return the most periods after which ``digits`` are left; None if the first leave fewer."""
     precise = list(takewhile(lambda count: _keeps(row, count, digits, key), row.periods))
     return precise[-1] if precise else None
 
 
 def _keeps(row: ReachRow, after: int, digits: int, key: str) -> bool:
-    """Return True if the largest error until then is small enough; None, or no number, is not."""
+    """Return True if the largest error after so many periods is small enough, and a number."""
     error = dict(zip(row.periods, numbers_of(row, key), strict=False)).get(after)
     return error is not None and error <= 10.0**-digits
 
@@ -129,14 +129,14 @@ def _by_value(one: ReachFamily, rows: Sequence[ReachRow]) -> str:
 
 
 def cell(value: str | int | None, last: str | int) -> str:
-    """Return the value; behind the last that was tried stands that it may go on."""
+    """Return the value, with a mark if it is the last that was tried."""
     if value is None:
         return NOTHING
     return f"{value}{_LAST}" if value == last else str(value)
 
 
 def _by_periods(one: ReachFamily, rows: Sequence[ReachRow]) -> str:
-    """Return a line for each value with three numbers for every rung; a single value is turned round."""
+    """Return a line for each value with three numbers for every rung, or a transposed single value."""
     by_place = {(row.value, row.rung): row for row in rows}
     lines = []
     if len(one.values) == 1:
@@ -164,7 +164,7 @@ def _nothing(row: ReachRow) -> str:
 
 
 def _over_attainable(rows: Sequence[ReachRow]) -> str:
-    """Return the errors over the floors, where these leave a digit."""
+    """Return the errors over the floors that leave a digit, in words."""
     ratios = sorted(
         error / least
         for row in rows
@@ -183,7 +183,7 @@ def _method(study: ReachStudy) -> list[str]:
     rows = study.rows
     lost = sum(bool(row.errors) and row.errors[-1] is None for row in rows)
     blurred = sum(row.why.startswith(_ROUNDED) for row in rows)
-    # No number tells a run that ended on its own from one that was lost.
+    # A run that ended early has no number, like one that was lost.
     stopped = [row for row in rows if row.errors and row.why]
     return [
         f"{len(rows)} runs: a family's value on a rung each. An error of {study.lost:g} is the size "
@@ -215,12 +215,12 @@ _SHEET: Final = (
 
 
 def sheet(study: ReachStudy) -> str:
-    """Return a row for every number of periods; one row, with the reason, where nothing was run."""
+    """Return a row for every number of periods, or one row with the reason if nothing was run."""
     return csv_sheet(_SHEET, (line for row in study.rows for line in _reached(row)))
 
 
 def _reached(row: ReachRow) -> Iterator[dict[str, Any]]:
-    """Yield the rows of a run. An error that is missing stands for a motion that was lost."""
+    """Yield the rows of a run. A missing error means that the motion was lost."""
     own = {name: getattr(row, name) for name in ("family", "value", "rung", "steps", "why")}
     if not row.errors:
         yield own

@@ -1,4 +1,4 @@
-"""The page of speed against accuracy, from the stored measurement alone."""
+"""Page of speed against accuracy, made from the stored measurement alone."""
 
 from __future__ import annotations
 
@@ -112,12 +112,12 @@ def page(trades: Trades, folder: Path) -> str:
 
 
 def pictures(trades: Trades) -> list[Picture]:
-    """Return the pictures of every scene, and that of all rungs."""
+    """Return the pictures of every scene, and the picture of all rungs."""
     return [*(one for trade in trades.short for one in _of_trade(trade)), *_of_rungs(trades.short)]
 
 
 def _of_trade(trade: Trade) -> list[Picture]:
-    """Return the pictures of one scene; none where no setting is sound."""
+    """Return the pictures of one scene; none if no setting is sound."""
     return of_one_scene.pictures(trade.document()) if trade.sound else []
 
 
@@ -132,7 +132,7 @@ def _of_rungs(trades: Sequence[Trade]) -> list[Picture]:
     return [time_by_rung.picture("published", rows)] if rows else []
 
 
-# What so many digits cost.
+# The cost of digits.
 
 
 def _by_digits(trades: Trades) -> str:
@@ -150,7 +150,7 @@ def _by_digits(trades: Trades) -> str:
 
 
 def _yardstick(trade: Trade, name: str) -> str:
-    """Return what the yardstick leaves on this scene, and its own part in heyoka's compiled code."""
+    """Return the error of the yardstick on this scene, and its share in heyoka's compiled code."""
     row = next((row for row in trade.sound if row.point.label == name), None)
     if row is None:
         return f"*{prose(name)}*: no sound answer"
@@ -160,12 +160,12 @@ def _yardstick(trade: Trade, name: str) -> str:
 
 
 def _digits(point: TradePoint, exact: str = "exact") -> str:
-    """Return the digits that were left; the word ``exact`` where all were."""
+    """Return the digits that were left, or the word ``exact`` for all."""
     return exact if point.achieved_digits is None else f"{point.achieved_digits:.1f} digits"
 
 
 def _cheapest(rows: Iterable[TimedPoint], digits: int) -> str:
-    """Return ratio, interval and tolerance of the fastest that leaves so many digits."""
+    """Return ratio, interval and tolerance of the fastest setting that leaves these digits."""
     best = cheapest(rows, digits)
     if best is None:
         return _NOT_REACHED
@@ -218,7 +218,7 @@ def _by_request(trades: Trades) -> str:
 
 
 def _achieved(points: Iterable[TradePoint], asked: float) -> str:
-    """Return the digits that were left; a word where the answer is not sound."""
+    """Return the digits that were left, or a word for an answer that is not sound."""
     for p in points:
         if p.requested is not None and isclose(p.requested, asked):
             if p.standing is not Standing.SOUND:
@@ -231,7 +231,7 @@ def _achieved(points: Iterable[TradePoint], asked: float) -> str:
 
 
 def front(rows: Iterable[TimedPoint]) -> list[TimedPoint]:
-    """Return what no other beats in both ratio and error, the fastest first."""
+    """Return the settings that no other beats in both ratio and error, the fastest first."""
     return pareto(rows, lambda row: (row.timing.ratio, row.error))
 
 
@@ -291,7 +291,7 @@ def _family(family: str) -> str:
 
 
 def _doubles(rows: Iterable[PlainDouble]) -> str:
-    """Return a line for each case. A false success stands out; an honest outcome has its own words."""
+    """Return a line for each case; a false success is bold, an honest outcome in its own words."""
     lines = []
     for row in rows:
         error = figure(row.error)

@@ -1,4 +1,4 @@
-"""The section of the page that sets taylor beside compiled integrators of other libraries."""
+"""Section of the page that compares taylor with compiled integrators of other libraries."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _WHAT: Final = (
     "is the fastest, with its lead: over the next peer where that is taylor, else over taylor. It is "
     "*level* where the intervals of the two overlap."
 )
-# Families of the columns in words; any other goes by its own name.
+# Titles of families of the columns; other families have their own names.
 TITLES: Final = {
     OPTIMISED: "taylor, optimised code",
     "outside dop853": "DOP853 in numba",
@@ -55,14 +55,14 @@ _SET_UP: Final = (
 
 
 def peer_sections(trades: Trades) -> list[str]:
-    """Return the paragraphs and tables of the section; a sentence where no peer was measured."""
+    """Return the paragraphs and tables of the section; a sentence if no peer was measured."""
     if not any(_peers(trade) for trade in trades.trades):
         return [_NONE]
     return [_WHAT, _times(trades), bullets(_HOW), _SET_UP, _set_up(trades)]
 
 
 def _peers(trade: Trade) -> list[str]:
-    """Return the families of other libraries that were asked, those that could not be had included."""
+    """Return the families of other libraries that were asked, including unavailable ones."""
     return list(dict.fromkeys(p.family for p in trade.points if p.family.startswith(OUTSIDE)))
 
 
@@ -71,7 +71,7 @@ def _is_ours(row: TimedPoint) -> bool:
 
 
 def _families(trades: Trades) -> list[str]:
-    """Return the families of the columns: taylor, those with a title in that order, and any other."""
+    """Return the families of the columns: taylor, those with a title in their order, and others."""
     points = [point for trade in trades.trades for point in trade.points]
     asked = dict.fromkeys(p.family for p in points if p.family.startswith((OUTSIDE, OPTIMISED)))
     known = [family for family in TITLES if family in asked]
@@ -111,14 +111,14 @@ def _cell(row: TimedPoint | None, is_there: bool) -> str:
 
 
 def _inner(row: TimedPoint | None) -> str:
-    """Return the part of a time that heyoka's own compiled code took, in the same unit."""
+    """Return the part of a time spent in heyoka's own compiled code, in the same unit."""
     if row is None or not row.timing.inner_seconds:
         return NOTHING
     return figure(row.timing.ratio * row.timing.inner_seconds / row.timing.seconds)
 
 
 def _ahead(reached: Sequence[TimedPoint]) -> str:
-    """Return the fastest in words, with its lead over the next peer, or over taylor."""
+    """Return the fastest family in words, with its lead over the next peer, or over taylor."""
     if not reached:
         return "nobody"
     first, *others = sorted(reached, key=lambda row: row.timing.ratio)
@@ -135,7 +135,7 @@ def _ahead(reached: Sequence[TimedPoint]) -> str:
 
 
 def _overlap(first: TimedPoint, other: TimedPoint) -> bool:
-    """Return True if the intervals of two times meet; without intervals the times are taken as they are."""
+    """Return True if the intervals of two times overlap; a time without interval counts as a point."""
     high, low = first.timing.high, other.timing.low
     return high is not None and low is not None and low <= high
 
@@ -151,7 +151,7 @@ def _set_up(trades: Trades) -> str:
 
 
 def _longest(trades: Trades, scene: str, family: str) -> str:
-    """Return the longest set-up of a family on a scene: the short or the long one compiles for both."""
+    """Return the longest set-up of a family on a scene, which may be part of its short or long run."""
     seconds = [
         row.timing.setup_seconds
         for trade in trades.trades

@@ -1,4 +1,4 @@
-"""The cheapest setting that reaches an error, with a margin, over an ensemble of starts."""
+"""Recommendation of the cheapest setting that reaches an error with a margin over several starts."""
 
 from __future__ import annotations
 
@@ -24,24 +24,24 @@ from taylor_verify.studies.tradeoff.starts import nearby
 from taylor_verify.studies.tradeoff.timing import SEED
 from taylor_verify.studies.tradeoff.trade_off import TradeOff, sound_points, trade_off
 
-# A start outside the ensemble may fare worse than the worst of a handful within it: a binary digit.
+# A margin of one binary digit for starts outside the ensemble.
 MARGIN: Final = 2.0
-# These may compute on a wider precision than they answer on, and so below its floor.
+# These may compute in a wider precision than that of their answer, and so below its floor.
 _OF_ANOTHER_PRECISION: Final = (PROCESS, "mpmath:")
 
 
 class OutOfReach(Exception):  # noqa: N818 (it names what the target is)
-    """No setting reaches the target; the text says what comes nearest."""
+    """No setting reaches the target; the text names the nearest one."""
 
 
 @dataclass(frozen=True)
 class Recommendation:
-    """A setting ready to run: by ``taylor_verify.run``, by ``command``, or by ``solver`` itself.
+    """A setting that is ready to run: by ``taylor_verify.run``, by ``command``, or by ``solver`` itself.
 
     ``solver.solve(solver.problem(scene, rung))`` returns a trajectory that nothing has judged.
     ``error`` is the largest over the scene's own start and ``starts`` - 1 others; ``margin`` times
-    it is not above ``target``. ``seconds`` is the best time of a solve, nothing compiled. ``left_out``
-    names the rungs that were not measured, because no arithmetic of theirs can reach the target.
+    it is not above ``target``. ``seconds`` is the best time of a solve without compiling. ``left_out``
+    names the rungs that were not measured because their arithmetic cannot reach the target.
     """
 
     scene: str
@@ -56,7 +56,7 @@ class Recommendation:
     left_out: tuple[str, ...] = ()
 
     def document(self) -> dict[str, Any]:
-        """Return what ``tradeoff --target --json`` prints."""
+        """Return the document that ``tradeoff --target --json`` prints."""
         names = ("target", "error", "margin", "starts", "seed", "seconds")
         return {
             "solver": self.solver.name,
@@ -70,13 +70,13 @@ class Recommendation:
 
     @property
     def command(self) -> str:
-        """The command line that runs and judges it."""
+        """The command line that runs and judges the setting."""
         words = ["taylor-verify", "run", self.scene, "--solver", self.solver.name]
         return shlex.join([*words, "--rung", self.rung.name])
 
     @property
     def sentence(self) -> str:
-        """The recommendation in words, with what was not measured and why."""
+        """The recommendation in words, with the rungs that were not measured and the reasons."""
         setting = label(self.solver.name, self.solver.setting, self.rung.name)
         unmeasured = f" Not measured: {'; '.join(self.left_out)}." if self.left_out else ""
         return (
@@ -112,9 +112,9 @@ def check_target(error: float) -> None:
 
 
 def recommended(trade: TradeOff, error: float) -> Recommendation:
-    """Return the fastest setting of a trade that is measured already.
+    """Return the fastest setting of a measured trade that reaches the target.
 
-    ``error`` is as in `recommend`. Raises OutOfReach where nothing reaches it.
+    ``error`` is as in `recommend`. Raises OutOfReach if no setting reaches it.
     """
     scenes, truths = nearby(trade.scene, trade.seed), Truths()
     sound = sound_points(trade.points)
@@ -142,7 +142,7 @@ def recommended(trade: TradeOff, error: float) -> Recommendation:
 
 
 def _largest(p: Point, scenes: Sequence[Scene], truths: Truths, target: float) -> float | None:
-    """Return the largest error over all starts; None if one misses the target, or has no truth."""
+    """Return the largest error over all starts; None if a start misses the target or has no truth."""
     setting, worst = p.timed.setting, p.error
     for scene in scenes:
         try:
@@ -157,7 +157,7 @@ def _largest(p: Point, scenes: Sequence[Scene], truths: Truths, target: float) -
 
 
 def _out_of_reach(scene: Scene, error: float, reason: str) -> str:
-    """Return the reason why nothing reaches an error, with the narrowest rung that would do."""
+    """Return the reason why no setting reaches an error, with the narrowest rung that could."""
     narrowest_rung = narrowest(scene, error / MARGIN)
     wider = "no precision is known on which rounding alone leaves so little"
     if narrowest_rung is not None:

@@ -1,4 +1,4 @@
-"""The way the published times were taken, in words: what is timed, the method, the machine, the command."""
+"""Method of the published times in words: their scope, the rounds, the machine, the command."""
 
 from __future__ import annotations
 
@@ -42,13 +42,13 @@ _WHAT_IS_TIMED: Final = (
 
 
 def what_is_timed() -> str:
-    """Return what a time has in it and what not, solver by solver."""
+    """Return the parts that a time includes and excludes, solver by solver."""
     columns = ["solver", "in the time", "not in it"]
     return table(columns, [[code(name), inside, apart] for name, inside, apart in _WHAT_IS_TIMED])
 
 
 def how_it_was_timed(trades: Trades) -> list[str]:
-    """Return the method as it was, number by number."""
+    """Return the method of the measurement with its numbers."""
     m, machine = trades.times.method, trades.times.machine
     return [
         f"{m.processes} fresh processes, one after the other. Hash seeds, places in memory and the "

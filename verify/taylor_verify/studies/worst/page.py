@@ -1,4 +1,4 @@
-"""The page of the hunt for the worst, made of the stored rows; and the scenes that are kept."""
+"""Page of the hunt for the worst, made from the stored rows; and the files of its scenes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from taylor_verify.records.replacement import replace_files
 from taylor_verify.studies.stored import Stored
 from taylor_verify.studies.worst.document import WorstOfFamily, WorstStudy
 
-# A budget that was not asked for is left out.
+# The default budget is left out.
 WORST: Final = Stored(WorstStudy, "worst", fields=plain)
 
 _WHAT: Final = (
@@ -32,7 +32,7 @@ _KEPT: Final = (
 
 
 def store_scenes(folder: Path, scenes: Mapping[str, str]) -> list[Path]:
-    """Write scene files, by their names, in place of those that are there. Raises OSError."""
+    """Write scene files by their names in place of existing ones. Raises OSError."""
     texts = {f"{name}.toml": text for name, text in scenes.items()}
     return list(replace_files(folder, texts, stale=folder.glob("*.toml")))
 

@@ -1,4 +1,4 @@
-"""Error of the energy beside that of the motion, each engine at its best: energy proves no motion."""
+"""Picture of each engine's errors of energy and of motion, which shows that energy proves no motion."""
 
 from __future__ import annotations
 
@@ -64,9 +64,9 @@ def lines(board: Board, entries: EntryList, scene: str) -> list[Line]:
 
 
 def pictures(board: Board, entries: EntryList) -> list[Picture]:
-    """Return the picture of the first scene that all engines take; none without an engine on it.
+    """Return the picture of the first scene that all engines take; none if no engine ran there.
 
-    A motion that multiplies roundings would show the precision of an engine, and no method.
+    A motion that multiplies roundings would show the precision of an engine instead of its method.
     """
     scene = entries.advised[0]
     drawn = lines(board, entries, scene)
@@ -81,7 +81,7 @@ def pictures(board: Board, entries: EntryList) -> list[Picture]:
 
 
 def _alt(drawn: Sequence[Line], span: str) -> str:
-    """Return the finding in words: the engine that is most wrong for all the energy that it keeps."""
+    """Return the finding in words: the engine with the worst motion in spite of a good energy."""
     worst, best = max(drawn, key=lambda line: line.motion / line.energy), drawn[0]
     return (
         f"{_headline(drawn, span)}. {worst.name} keeps the energy to {_percent(worst.energy)}, and its "

@@ -1,4 +1,4 @@
-"""Error against version: what changed when, a line for each setting of an engine with many versions."""
+"""Picture of the error against the version, a line for each setting of an engine."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _HEIGHT: Final = 3.0
-# Fewer versions are a pair and no course.
+# The least number of versions that makes a course.
 _FEWEST: Final = 3
 
 
@@ -30,7 +30,7 @@ _FEWEST: Final = 3
 class Sweep:
     """The versions of an engine, oldest first, and the error of each setting at each of them.
 
-    ``step`` is the one that is shown, ``lines`` has None where a version was not judged.
+    ``step`` is the step of all lines; ``lines`` has None for a version that was not judged.
     """
 
     title: str
@@ -77,7 +77,7 @@ def _sweep(
 
 
 def pictures(board: Board, entries: EntryList) -> list[Picture]:
-    """Return the picture of all sweeps; none where no engine has several versions."""
+    """Return the picture of all sweeps; none if no engine has several versions."""
     drawn = [sweep for sweep in sweeps(board, entries) if sweep.lines]
     if not drawn:
         return []

@@ -1,4 +1,4 @@
-"""Error against time and against step: each engine's best setting, the plain solvers on the same axes."""
+"""Pictures of error against time and step: each engine's best setting beside the plain solvers."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _DOUBLE, _SINGLE = "float64", "float32"
 
 @dataclass(frozen=True)
 class Line:
-    """An engine in a picture: its points from coarse to fine, where both numbers are above zero."""
+    """An engine in a picture: its points with numbers above zero, from coarse to fine."""
 
     name: str
     look: Look
@@ -38,16 +38,16 @@ class Line:
 
 @dataclass(frozen=True)
 class Panel:
-    """The engines of one precision; the plain solvers stand in both panels."""
+    """The engines of one precision; both panels have the plain solvers."""
 
     heading: str
     lines: tuple[Line, ...]
 
 
 def pictures(board: Board, entries: EntryList) -> list[Picture]:
-    """Return error against time and error against step, of each engine of the ``board``.
+    """Return the pictures of error against time and against step for the engines of the ``board``.
 
-    ``entries`` is the list of the engines. No picture is made without a judged run above zero.
+    ``entries`` is the list of engines. A picture needs at least one judged run with an error above zero.
     """
     scene = entries.advised[0]
     time = panels(board, entries, scene, board.pace, 1e6)
@@ -68,7 +68,7 @@ def panels(
     work: Callable[[EngineRow], float | None],
     unit: float,
 ) -> list[Panel]:
-    """Return a panel for each precision that has an engine, with a line for each engine in it."""
+    """Return a panel for each precision of an engine, with a line for each engine of that precision."""
     titles = {row.name: row.title for row in entries.entry}
     plain_ones = {row.name for row in entries.entry if row.plain}
     lines: dict[str, list[Line]] = {_DOUBLE: [], _SINGLE: []}

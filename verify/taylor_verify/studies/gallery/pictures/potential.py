@@ -29,14 +29,14 @@ Document = Mapping[str, Any]
 _CURVE: Final = "#0072B2"
 _ORBIT: Final = "#A83C00"
 _POINTS: Final = 101
-# Beyond the roots that are shown, in parts of the interval's length.
+# Margin beyond the shown roots, relative to the interval's length.
 _BESIDE: Final = 0.45
 _LEAST: Final = 0.25
-# Above the hump of the orbit and below the axis, in parts of that hump.
+# Margins above the hump of the orbit and below the axis, relative to that hump.
 _ABOVE: Final = 1.35
 _BELOW: Final = 0.75
 _HEIGHT: Final = 1.75
-# How a root is drawn by how often it is one; more than three times as three.
+# Marks of roots by multiplicity; higher ones have that of three.
 _ROOT: Final = {
     "linestyle": "none",
     "markersize": 5.5,
@@ -55,7 +55,7 @@ _SUBSCRIPTS: Final = str.maketrans("123", "\N{SUBSCRIPT ONE}\N{SUBSCRIPT TWO}\N{
 
 @dataclass(frozen=True)
 class Series:
-    """The curve (n, 2), the interval of the motion, and the real roots with how often each is one."""
+    """The curve (n, 2), the interval of the motion, and the real roots with their multiplicities."""
 
     scene: str
     variable: str
@@ -67,7 +67,7 @@ class Series:
 
 
 def series(portrait: Document) -> Series:
-    """Return what is drawn of a scene. Raises ValueError for one without such a quartic."""
+    """Return the curve and the roots of a scene. Raises ValueError for a scene without a quartic."""
     potential = portrait["potential"]
     if potential is None:
         raise ValueError(f"expected a quartic of the axial impulse, got none @ {portrait['scene']}")
@@ -76,7 +76,7 @@ def series(portrait: Document) -> Series:
     roots = tuple((root, real.count(root)) for root in dict.fromkeys(real))
     low, high = map(float, potential["interval"])
     left, right = _shown(low, high, [root for root, _ in roots])
-    # Half of the corners inside the interval: the hump is what is looked at.
+    # Half of the points are inside the interval, because the hump is the subject.
     z = np.union1d(np.linspace(left, right, _POINTS), np.linspace(low, high, _POINTS))
     curve = np.stack([z, np.polyval(potential["coefficients"], z)], axis=1)
     variable, regime = potential["variable"], portrait["regime"]
@@ -84,7 +84,7 @@ def series(portrait: Document) -> Series:
 
 
 def _shown(low: float, high: float, roots: Sequence[float]) -> tuple[float, float]:
-    """Return the interval with what is near it: roots within its own length on either side too."""
+    """Return the interval, extended to the roots within its own length on either side."""
     length = max(high - low, _LEAST * max(abs(low), abs(high), *map(abs, roots)))
     near = [root for root in roots if low - length <= root <= high + length]
     ends = [low, high, *near]
@@ -92,7 +92,7 @@ def _shown(low: float, high: float, roots: Sequence[float]) -> tuple[float, floa
 
 
 def picture(portraits: Sequence[Document], name: str) -> Picture:
-    """Return a panel for each scene. Raises ValueError for one that has no quartic."""
+    """Return the picture with a panel for each scene. Raises ValueError for a scene without a quartic."""
     drawn = [series(portrait) for portrait in portraits]
     sentences = " ".join(map(_sentence, drawn))
     title = "The quartic of the axial impulse"
@@ -132,10 +132,10 @@ def _draw(axes: Axes, drawn: Series) -> None:
     low, high = drawn.interval
     inside = (z >= low) & (z <= high)
     top = float(X[inside].max())
-    # A steady motion has no hump: the scale is what the curve does beside it.
+    # A steady motion has no hump: the curve beside it gives the scale.
     scale = top if high > low and top > 0 else float(np.abs(X).max()) / 3 or 1.0
     axes.set(xlim=(z[0], z[-1]), ylim=(-_BELOW * scale, _ABOVE * scale))
-    # Few numbers, of few digits: beside them there is room for no more.
+    # There is room for a few short numbers only.
     axes.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
     axes.axhline(0, color=QUIET, linewidth=0.6, zorder=1)
     axes.plot(z, X, color=_CURVE, linewidth=1.3, zorder=3, gid="curve")

@@ -1,6 +1,6 @@
-"""The time that a wider number takes: a line for each scene or solver, f64 being 1.
+"""Picture of the time on each rung, relative to f64: a line for each scene or solver.
 
-Ratios of one label are one line.
+Ratios with the same label make one line.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ if TYPE_CHECKING:
 # In inches.
 _FRAME: Final = Frame(left=0.66, low=0.74, width=PAGE_WIDTH - 0.74, height=2.6)
 _HEIGHT: Final = 3.5
-# Rungs nearer than this, in parts of the axis, cannot both be named below it.
+# The least distance of two names of rungs below the axis, as part of the axis.
 _NEAR: Final = 0.045
 
 
 def picture(scene: str, ratios: Sequence[Ratio]) -> Picture:
-    """Return the picture of ratios to the time on f64; ``scene`` is what all of them have in common.
+    """Return the picture of ratios to the time on f64; ``scene`` is the common part of their names.
 
-    Raises ValueError for ratios that are none, and for a rung without a number of bits.
+    Raises ValueError for invalid ratios, and for a rung without a number of bits.
     """
     check(ratios)
     for i, one in enumerate(ratios):
@@ -95,7 +95,7 @@ def _figure(lines: Mapping[str, Sequence[Ratio]]) -> Figure:
 
 
 def _name_rungs(axes: Axes, rungs: Sequence[str]) -> None:
-    """Set a tick for every rung; of two that are too near, the names stand below each other."""
+    """Set a tick for every rung; names that are too near are written below each other."""
     from matplotlib.ticker import NullLocator
 
     bits = [bits_of(rung) for rung in rungs]
