@@ -1,4 +1,4 @@
-"""Verdicts as the summary of a GitHub step: Markdown, what is no pass first, all rows folded away."""
+"""Verdicts as the summary of a GitHub step: Markdown with failures first, and all rows folded."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from taylor_verify.publish.markdown import bold, code, prose, table
 from taylor_verify.publish.page import counts
 from taylor_verify.records.verdict import Verdict
 
-# GitHub takes 1 MiB from a step, and drops a larger summary altogether.
+# GitHub takes 1 MiB from a step, and drops a larger summary.
 _MOST_BYTES: Final = 1_000_000
 _LEGEND: Final = (
     "*Over attainable* is the largest error over what perfect rounding would leave on this orbit. "
@@ -23,7 +23,7 @@ _NUMBERS: Final = ("max:", "at t:", "bound:", "over attainable:")
 def step_summary(
     verdicts: Iterable[Verdict], remarks: Iterable[Remark] = (), decision: str = ""
 ) -> str:
-    """Return the page, never longer than GitHub takes; ``decision`` names what decided if not verdicts."""
+    """Return the page within GitHub's limit; ``decision`` is a sentence if the verdicts do not decide."""
     rows = list(verdicts)
     every = cases(rows, remarks)
     notable = [case for case in every if case.sentences]
@@ -41,7 +41,7 @@ def _page(
     most: int,
     decision: str,
 ) -> str:
-    # A row of the second table is short; it is the reasons that are long.
+    # A row of the second table is short, because it has no reasons.
     folded = every if most == len(every) else ()
     beyond = sum(case.verdict is None or case.status != case.verdict.verdict for case in every)
     blocks = [

@@ -1,4 +1,4 @@
-"""The share of bodies whose error over attainable is above a size: a line for each quantity of a sweep."""
+"""Picture of the share of bodies with an error over attainable above a size, by quantity of a sweep."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _HEIGHT: Final = 3.2
 
 
 def picture(summary: SweepSummary) -> Picture:
-    """Return the picture of a sweep. Raises ValueError where no error over attainable is above zero."""
+    """Return the picture of a sweep. Raises ValueError if no error over attainable is above zero."""
     drawn = [each for each in summary.quantities if each.quantity != INITIAL and _points(each)]
     if not drawn:
         raise ValueError("expected an error above zero, got none @ sweep")
@@ -46,7 +46,7 @@ def picture(summary: SweepSummary) -> Picture:
 
 
 def _points(spread: Spread) -> Points:
-    """Return the points of a line: the largest of all lies at half a body."""
+    """Return the points of a line; the largest error lies at half a body."""
     least = 0.5 / spread.judged if spread.judged else 1.0
     return [(size, max(share, least)) for size, share in spread.above]
 
@@ -87,7 +87,7 @@ def _figure(summary: SweepSummary, drawn: list[Spread]) -> Figure:
             gid=each.quantity,
             zorder=3,
         )
-        # Marks enough for a name to stand anywhere beside its line.
+        # Enough points for a name to stand anywhere beside its line.
         named.append(
             Named(each.quantity, look.colour, [points[:: -max(len(points) // 20, 1)][::-1]])
         )

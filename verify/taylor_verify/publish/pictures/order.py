@@ -1,4 +1,4 @@
-"""Errors of several files against their steps: a line for each quantity, and its roundoff floor."""
+"""Picture of the errors of several files against their steps: lines of quantities, and their floors."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ def has_points(order: Order) -> bool:
 
 
 def picture(title: str, orders: Sequence[Order]) -> Picture:
-    """Return the picture of all quantities, the state on the left and what is conserved on the right.
+    """Return the picture of all quantities: state on the left, conserved quantities on the right.
 
-    Raises ValueError where no error is above zero.
+    Raises ValueError if no error is above zero.
     """
     drawn = [order for order in orders if has_points(order)]
     if not drawn:

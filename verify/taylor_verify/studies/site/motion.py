@@ -27,7 +27,7 @@ _COLOUR_BAR: Final = {
     "len": 0.7,
     "outlinewidth": 0,
 }
-# The largest ratio of semi-axes of an ellipsoid that is drawn.
+# The smallest ratio of semi-axes of an ellipsoid that is drawn.
 _FLATTEST: Final = 1e-3
 # Tolerance as part of a curve's extent: a third of a pixel on the screen.
 _UNSEEN: Final = 0.0008

@@ -51,8 +51,8 @@ def least_error(scene: Scene, rung: Rung) -> float | None:
 def left_out(scene: Scene, rungs: Iterable[Rung], error: float) -> dict[Rung, str]:
     """Return the rungs on which rounding alone leaves far more than an error, each with the reason.
 
-    The floor is a model of random roundings. As the judge's gates allow GATE_FACTOR above it, a rung is left
-    out only if its floor is GATE_FACTOR times the error.
+    The floor is a model of random roundings. As the judge's gates allow GATE_FACTOR above it, a rung is
+    left out only if its floor is GATE_FACTOR times the error.
     """
     reasons = {}
     for rung in dict.fromkeys(rungs):

@@ -111,9 +111,10 @@ class TradeNumbers:
 class TradeTiming:
     """The time of one setting on one scene, a median over processes.
 
-    ``ratio`` is the ratio to the yardstick, between ``low`` and ``high``, which are None if the processes are
-    too few for an interval. ``inner_seconds`` is the part in compiled code, if known. ``setup_seconds`` is the
-    time before the first solve of a process, such as compiling, the longest of all processes.
+    ``ratio`` is the ratio to the yardstick, between ``low`` and ``high``, which are None if the
+    processes are too few for an interval. ``inner_seconds`` is the part in compiled code, if known.
+    ``setup_seconds`` is the time before the first solve of a process, such as compiling, the longest of
+    all processes.
     """
 
     scene: str

@@ -135,7 +135,7 @@ def _ahead(reached: Sequence[TimedPoint]) -> str:
 
 
 def _overlap(first: TimedPoint, other: TimedPoint) -> bool:
-    """Return True if the intervals of two times overlap; a time without interval counts as a point."""
+    """Return True if the intervals of two times overlap; False without intervals."""
     high, low = first.timing.high, other.timing.low
     return high is not None and low is not None and low <= high
 

@@ -108,7 +108,8 @@ def measured(
 def in_rounds(turns: Sequence[Callable[[], Answer]], rounds: int, seed: int) -> list[list[Answer]]:
     """Return the answers of every turn by round; each round has every turn once, in a random order.
 
-    Python's garbage collector runs before each round, so that it does not disturb a turn by chance.
+    Python's garbage collector runs once before all rounds and is off during them, so that it disturbs
+    no turn.
     """
     answers: list[list[Answer]] = [[] for _ in turns]
     order, draw = list(range(len(turns))), random.Random(seed)

@@ -21,7 +21,7 @@ from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.studies.tradeoff.document import label
 
 RUNGS: Final = tuple(FORMATS)
-# Every third power of ten above twice the rung's roundoff, which is its own tolerance.
+# Every third power of ten. A rung takes those above its own tolerance, which is twice its roundoff.
 _TOLERANCES: Final = tuple(f"1e-{digits}" for digits in range(3, 75, 3))
 _SCIPY: Final = tuple(f"scipy:{name}" for name in ("RK45", "DOP853", "Radau", "BDF", "LSODA"))
 # Tolerances of solvers of other libraries, the coarsest first.
@@ -120,8 +120,8 @@ def outside(
 ) -> tuple[Setting, ...]:
     """Return the integrators of other libraries, or ``only`` those named, at each of the ``tolerances``.
 
-    They are on f64, which all have; there are none if the ``rungs`` lack it. A library that is not available
-    reports it when it is run.
+    They are on f64, which all have; there are none if the ``rungs`` lack it. A library that is not
+    available reports it when it is run.
     """
     if "f64" not in rungs:
         return ()
@@ -164,7 +164,7 @@ def setting(name: str, rung: Rung) -> Setting:
 def taylor(rung: Rung, tolerances: Iterable[str] = _TOLERANCES) -> Iterator[Setting]:
     """Yield taylor at each tolerance above the rung's own, and at that one, heyoka's machine epsilon."""
     for text in tolerances:
-        # A step of a factor two above epsilon would be another name for it.
+        # A tolerance within a factor of ten of epsilon would be nearly the same setting.
         if float(text) > 10 * float(2 * rung.unit_roundoff):
             yield setting(f"{TAYLOR}?tol={text}", rung)
     yield setting(TAYLOR, rung)

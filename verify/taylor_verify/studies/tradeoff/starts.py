@@ -18,7 +18,8 @@ _GRAIN: Final = 100
 def nearby(scene: Scene, seed: int, count: int = STARTS) -> list[Scene]:
     """Return scenes whose angular velocity or impulses differ by up to one per cent in each component.
 
-    Components that are zero stay zero. Attitude and centre do not change, because they only set the observer.
+    Components that are zero stay zero. Attitude and centre do not change, because they only set the
+    observer.
     """
     draw, start = random.Random(seed), scene.initial
 

@@ -70,9 +70,9 @@ def timed(
 ) -> list[Timed]:
     """Solve every setting once, and the finished ones ``repeats`` times more; return all in their order.
 
-    A text in place of a problem is the reason why a setting cannot run. Without repeats there is the first
-    time alone, which is enough to measure errors. A setting is skipped, and reported as such, if a coarser one
-    of its family took more than ``patience`` seconds.
+    A text in place of a problem is the reason why a setting cannot run. Without repeats there is the
+    first time alone, which is enough to measure errors. A setting is skipped, and reported as such, if
+    a coarser one of its family took more than ``patience`` seconds.
     """
     firsts = _first_solves(problems, clock, patience)
     finished = [one for one in firsts if one.trajectory.outcome is Outcome.FINISHED]

@@ -42,7 +42,7 @@ class TradeOff:
         return front(self.points)
 
     def document(self) -> dict[str, Any]:
-        """Return the document: ``sentences`` describe the front, ``integrators`` the front of integrators."""
+        """Return the document; ``sentences`` describe the front, ``integrators`` that of integrators."""
         integrators = [p for p in self.points if p.timed.setting.is_integrator]
         # Solvers without steps lead the front, so that integrators get a front of their own.
         is_led = not all(p.timed.setting.is_integrator for p in self.front)
@@ -82,9 +82,9 @@ def trade_off(
 ) -> TradeOff:
     """Measure the errors and the best times of the settings ``asked``, or of all.
 
-    There are ``repeats`` rounds, shuffled by ``seed``; ``clock`` returns seconds, and a setting that has
-    taken ``patience`` seconds is timed no further (see `timing.timed`). A setting that cannot run is a point
-    with the reason, and no error.
+    There are ``repeats`` rounds, shuffled by ``seed``; ``clock`` returns seconds, and a setting that
+    has taken ``patience`` seconds is timed no further (see `timing.timed`). A setting that cannot run
+    is a point with the reason, and no error.
     """
     asked = settings(scene) if asked is None else asked
     posed = {setting: _posed(scene, setting) for setting in asked}
