@@ -99,7 +99,7 @@ def test_a_mismatch_stands_out(page: str) -> None:
     assert "**fail**" in row
     assert "**0 of 1**" in row
     assert "**refused**" in reason
-    assert "1 of 2 answers other than pass came as expected. **1 mismatches**:" in page
+    assert "1 of 2 verdicts other than pass were expected. **1 mismatches**:" in page
     assert MISMATCH in page
 
 

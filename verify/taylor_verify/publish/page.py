@@ -57,7 +57,7 @@ def _tolerated(verdicts: Sequence[Verdict]) -> str:
     if not count:
         return ""
     return (
-        f"{bold(str(count))} of them were judged by a tolerance that was asked for, and not by "
+        f"{bold(str(count))} of them were judged by a tolerance given by the user, and not by "
         f"{GATE_FACTOR} times what is attainable."
     )
 

@@ -22,19 +22,20 @@ _WHAT = (
     "How accurately can a computer follow a tumbling rigid body, or a solid moving through an ideal "
     "fluid? Each *scene* is one such motion, given in exact numbers. The Taylor integrator of "
     "[heyoka](https://bluescarni.github.io/heyoka.py/) computes it in several number formats, the "
-    "*rungs*, from float32 upwards, and every computed state is compared with the exact motion, "
-    "known to more digits than the rung has. What is left is the error of the computation and of "
-    "nothing else: the exact motion starts from the very numbers that the integrator was given."
+    "*rungs*, from float32 upwards, and every computed state is compared with the exact motion, known "
+    "to more digits than the rung has. The difference is the error of the computation alone, because "
+    "the exact motion starts from the same numbers as the integrator."
 )
 _READING = (
-    "*u* is the unit roundoff of the rung, what a single rounding may leave of a number near one. "
-    "An error of 100 u costs the last two decimal digits.",
+    "*u* is the unit roundoff of the rung, the largest error of a single rounding of a number near "
+    "one. An error of 100 u costs the last two decimal digits.",
     "*Attainable* is the error that would remain if each step were rounded perfectly: such roundings "
     "add up like a random walk, and the motion itself magnifies them. *Error over attainable* near "
     "1 says that the solver does all that its arithmetic allows.",
     f"A quantity *passes* if no sample's error exceeds {GATE_FACTOR} times what is attainable there. Only "
     "**pass** is good: the [other verdicts](tables/README.md#how-to-read-a-cell) each have a meaning.",
-    "A conserved energy or momentum certifies no motion: a wrong solution may conserve both.",
+    "A conserved energy or momentum does not prove that a motion is right: a wrong solution may "
+    "conserve both.",
 )
 _CONTENTS = (
     ("[tables](tables/README.md)", "every number, and how a cell is read"),
@@ -46,8 +47,8 @@ _CONTENTS = (
     ("[tables/conserved.md](tables/conserved.md)", "the drift of energy, momenta and the like"),
     ("`tables/gates.md`", "every verdict, its bound and the reason of the bound (not committed)"),
     ("[data/verdicts.json](data/verdicts.json)", "the same for programs, to the last bit"),
-    ("[data/timings.json](data/timings.json)", "seconds and machine, which may differ each time"),
-    ("`data/records`", "of each run the equations and every sample's error (not committed)"),
+    ("[data/timings.json](data/timings.json)", "seconds and machine, which differ from run to run"),
+    ("`data/records`", "the equations and every sample's error of each run (not committed)"),
 )
 
 
@@ -65,9 +66,9 @@ def front(verdicts: Sequence[Verdict], others: Iterable[Page]) -> str:
         "## How to read it",
         bullets(_READING),
         "## The error of every scene",
-        "The largest error of the main quantity, relative to its size: the angular velocity "
-        "(`euler`) or the impulse (`kirchhoff`). A word stands where a run has another verdict than "
-        "pass in any of its quantities.",
+        "The largest error of the main quantity, relative to its size: the angular velocity (`euler`) "
+        "or the impulse (`kirchhoff`). A word is a verdict other than pass of any quantity of the "
+        "run.",
         _by_scene(judged_runs),
         "## What else is here",
         table(["file", "what it has"], contents),
@@ -78,10 +79,10 @@ def front(verdicts: Sequence[Verdict], others: Iterable[Page]) -> str:
         "and order operations in their own ways, so the roundings differ, and with them the "
         "digits of an error, but neither its verdict nor its size. "
         "`verify/taylor_verify/judge/rounding_class.py` says what that means in numbers, and why.",
-        "What is *not committed* is large and made from the rest: records, portraits of the "
-        "scenes, `gates`, pictures as PDF, the paper, and the JSON of `reference`. `taylor-verify "
-        "publish --missing` makes the data of these in minutes, `make paper` the paper and the "
-        "pictures, and `make release-data` packs all into one archive.",
+        "Files that are *not committed* are large, and made from the other files: records, portraits "
+        "of the scenes, `gates`, pictures as PDF, the paper, and the JSON of `reference`. "
+        "`taylor-verify publish --missing` makes the data of these in minutes, `make paper` the paper "
+        "and the pictures, and `make release-data` packs all into one archive.",
         made_with(versions(verdicts)),
     )
 

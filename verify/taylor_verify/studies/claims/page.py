@@ -21,16 +21,16 @@ from taylor_verify.studies.stored import Stored
 CLAIMS: Final = Stored(ClaimsStudy, "claims", lambda study: study.document())
 
 _INTRODUCTION: Final = (
-    "Every numbered equation of two classic texts, and every sentence of theirs that claims something, "
-    "each with a check that can fail: a page of Heinbockel's *Introduction to Tensor Calculus* (Euler's "
-    "equations, page 210) and sections 48 and 49 of the *Encyclopædia Britannica*'s Hydromechanics "
-    "(Kirchhoff's equations). Both were read as transcribed; the printed pages were not seen, so that a "
-    "fault may be the print's or the transcription's."
+    "Every numbered equation of two classic texts, and every sentence of theirs that claims "
+    "something, each with a check that can fail: a page of Heinbockel's *Introduction to Tensor "
+    "Calculus* (Euler's equations, page 210) and sections 48 and 49 of the *Encyclopædia "
+    "Britannica*'s Hydromechanics (Kirchhoff's equations). Both were read as transcriptions without "
+    "the printed pages, so that a fault may be in the print or in the transcription."
 )
 _HOW: Final = (
-    "An identity is expanded in exact rationals, with the equations of motion put in: it leaves zero or "
-    "it does not. What is claimed of orbits is held to trajectories of 30 to 60 digits, enclosed "
-    "by Taylor series that share no closed form with the texts. Every entry also has mutations, the "
+    "An identity is expanded in exact rationals, with the equations of motion put in: it leaves zero "
+    "or it does not. Claims on orbits are compared with trajectories of 30 to 60 digits, enclosed by "
+    "Taylor series that share no closed form with the texts. Every entry also has mutations, the "
     "statement with a sign, a factor or an index changed, that its check rejects."
 )
 _REMAKE: Final = (

@@ -46,22 +46,19 @@ _COLUMNS: Final = (
 _MODELS: Final = {"omega": "A rigid body", "impulse": "A solid in an ideal fluid"}
 
 _WHAT: Final = (
-    "A suite that has never failed anything has shown nothing. So these solvers were broken on "
-    "purpose, one thing in each, and judged like any other. Which of the usual checks would have "
-    "noticed?"
+    "A suite must be able to fail. These solvers were therefore broken on purpose, each in one thing, "
+    "and judged like any other. Which of the usual checks see the defects?"
 )
 _HOW: Final = (
-    f"A {bold('bold')} number is a gate that *sees* the defect: the largest error over the bound of "
-    f"that gate. {_NOT_SEEN} is a gate that does not: the defect passes. A gate sees no defect where "
-    "its sound twin fails too.",
-    "*start* is the first sample alone, which every solver was given. "
-    "*state* is omega, or the impulse, in body axes, and with *attitude* and *centre* it is what a "
-    "comparison with the exact motion asks. All columns after these are conserved quantities: T the "
-    "energy; H² and F² the squares of momentum and impulse, F·G and y3 the other two in body axes; "
-    "then the vectors in space.",
-    "*time shift* is filled where a constant shift of time explains most of the error of the state: "
-    "the shift, in the scene's unit, positive for an answer that is late. *outcome* is what the "
-    "solver says of itself.",
+    f"A {bold('bold')} number is the largest error over the bound of a gate that *sees* the defect. "
+    f"{_NOT_SEEN} is a gate that the defect passes. A gate that the sound twin fails too does not see "
+    "the defect.",
+    "*start* is the first sample, which every solver was given. *state* is omega, or the impulse, in "
+    "body axes. A comparison with the exact motion checks it together with *attitude* and *centre*. "
+    "All columns after these are conserved quantities: T the energy; H² and F² the squares of "
+    "momentum and impulse, F·G and y3 the other two in body axes; then the vectors in space.",
+    "*time shift* is given if a constant shift of time explains most of the error of the state: the "
+    "shift in the scene's unit, positive for a late answer. *outcome* is the solver's own report.",
     "Defects that fewer conserved quantities see come first.",
 )
 
@@ -82,8 +79,8 @@ def page(study: ControlsStudy) -> str:
         "## The defects, and why",
         _in_words(sights),
         "## The sound twins",
-        "Each defect stands beside a sound solver that differs from it by the defect alone, the "
-        "step included: what fails here is not a step that is too long.",
+        "Each defect is compared with a sound solver of the same step that differs from it by the "
+        "defect alone, so that no failure comes from a step that is too long.",
         _twins(sights),
         "## To remake this",
         f"`taylor-verify publish controls` runs every defect and its twin, and writes "

@@ -31,7 +31,7 @@ def proven(sights: Sequence[Sight]) -> list[str]:
         f"{_seeing(finished, lambda sight: sight.state)} of {len(finished)}; all conserved quantities "
         f"together see {_seeing(finished, lambda sight: sight.conserved)}.",
         _shifted(finished),
-        f"{len(finished)} of {len(sights)} report success: a solver's own word is no gate."
+        f"{len(finished)} of {len(sights)} report success: a solver's own report is no evidence."
         if finished
         else "",
         _all_caught(sights),
@@ -67,8 +67,8 @@ def _conservation_together(sights: Sequence[Sight]) -> str:
         listed.append(f"{title(sight)} ({_short(max(map(or_infinite, over)))})")
     return (
         f"{bold(f'{len(blind)} pass every gate on a conserved quantity')} that their scene has, "
-        "vectors in space included where there are any, and are wrong all the same, by so many "
-        f"times what a gate of the state allows: {_listed(listed)}. "
+        "vectors in space included where there are any, although their state is wrong, by these "
+        f"multiples of the bound of its gate: {_listed(listed)}. "
         f"{bold('No gate on conserved quantities certifies a state, nor do all of them together.')}"
     )
 
@@ -114,7 +114,7 @@ def _shifted(sights: Sequence[Sight]) -> str:
     if not listed:
         return ""
     return (
-        "What no conserved quantity can see, a comparison in time names: the error of "
+        "A comparison in time names an error that no conserved quantity can see: the error of "
         f"{_listed(listed)} is {'a' if len(listed) == 1 else 'in each case a'} constant shift of time."
     )
 

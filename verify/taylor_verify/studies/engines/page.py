@@ -30,40 +30,41 @@ from taylor_verify.studies.engines.ranking import (
 from taylor_verify.studies.engines.stored import ENGINES, TIMINGS, TRAJECTORIES
 
 _WHAT: Final = (
-    "Each engine turns a free body, and its answer is compared with the exact motion of the same numbers. "
-    "Energy and angular momentum are compared too: they say nothing of where the body is. We sell no "
-    "engine. Every trajectory behind these tables is stored, and anybody can judge it again."
+    "Each engine turns a free body, and its answer is compared with the exact motion of the same "
+    "numbers. Energy and angular momentum are compared too, although they do not show whether the "
+    "body is in the right place. The authors of this page sell no engine. Every trajectory behind "
+    "these tables is stored, and anybody can judge it again."
 )
 _LEGEND: Final = (
     "*omega* is the largest error of all samples relative to the largest omega, *attitude* the largest "
     "angle in radians, *energy* and *H in space* the largest relative drift.",
-    "*order* is the observed order of the error over the steps, of omega and of the attitude; a dash where "
-    "the steps show none.",
-    "*time* is that of a second of the motion, in microseconds, by the engine's own calls alone: without "
-    "starting it, and without compiling. It is of one run, beside another on the same machine: believe its "
-    "order of magnitude.",
+    "*order* is the observed order of the error over the steps, of omega and of the attitude; a dash "
+    "means that the steps show no order.",
+    "*time* is the time of the engine's own calls for a second of the motion, in microseconds, "
+    "without starting and compiling. It comes from a single run beside another one on the same "
+    "machine: only its order of magnitude is reliable.",
     "*best step* is the coarsest of the steps with the least error. Steps are decimal, and every sample is "
     "at a whole number of steps.",
-    "Adapters switch sleeping, damping and caps on the velocity off wherever an engine has them. The table "
-    "*as shipped* shows what an engine does where nobody does that.",
+    "Adapters switch off sleeping, damping and caps on the velocity if an engine has them. The table "
+    "*as shipped* shows the engines without these changes.",
 )
 _FAIRNESS: Final = (
-    "The first row of every trajectory is the start of the scene, from an oblique attitude: axes, order of "
-    "the quaternion and units are right before anything else is believed. The column *start* of the "
+    "The first row of every trajectory is the start of the scene, from an oblique attitude. It proves "
+    "that axes, order of the quaternion and units are right. The column *start* of the "
     "[sheet](engines.csv) has its error.",
     "Every engine gets the same numbers, each rounded once to the precision of its arithmetic, and is "
-    "compared with the exact motion of the rounded ones.",
+    "compared with the exact motion of the rounded numbers.",
     "An engine that takes principal moments alone is given the principal axes of `engines/full-tensor`, "
     "and its answer is turned back; the remark on its page says so. In space that is the motion of "
     "`engines/oblique`.",
-    "A surprising finding is published where a second demonstration stands beside it that does not use our "
-    "adapter: the engine's own data, its source or its changelog, and a script of few lines that runs with "
-    "the engine alone. A finding that rests on our adapter alone is not published.",
+    "A surprising finding is published only with a second demonstration that does not use our "
+    "adapter: the engine's own data, its source or its changelog, and a short script that runs with "
+    "the engine alone.",
 )
 _OBJECT: Final = (
-    "A row that is unfair to an engine is a fault of this project. Name the row, and say which call of the "
-    'engine would do better: `taylor-verify run SCENE --solver "outside:NAME?..."` of the engine\'s page '
-    "shows it as we see it.",
+    "A row that is unfair to an engine is a fault of this project. Please report the row, and the call of "
+    'the engine that would do better: `taylor-verify run SCENE --solver "outside:NAME?..."` of the engine\'s '
+    "page shows it as we see it.",
     "A better adapter is one file, `cases/README.md` says how (To add an engine); a new setting or "
     "version is a word in the engine's row of `verify/taylor_verify/studies/engines/entries.toml`.",
     "An engine of your own needs no adapter here to be judged: `docs/bring-your-engine.md`.",

@@ -27,19 +27,19 @@ from taylor_verify.studies.stored import Stored
 _FOLDER: Final = "extremes/"
 
 _WHAT: Final = (
-    "Scenes at the edge of what can be asked: beside a separatrix and on it, moments nearly equal or "
-    "far apart, sizes near the ends of the number range, many periods, and the worst that a search has "
-    "found. The right answer is not always *pass*: where rounding alone may carry a motion as far as it "
-    "is large, the only honest word is *vacuous*. What is right for each is written down beforehand, "
-    "with the reason, and a mismatch either way is a fail."
+    "These scenes are extreme: beside a separatrix and on it, with moments nearly equal or far apart, "
+    "sizes near the ends of the number range, many periods, and the worst scenes that a search has "
+    "found. The right verdict is not always *pass*. If rounding alone may change a motion by its own "
+    "size, the right verdict is *vacuous*. The right verdict of each scene is written down "
+    "beforehand, with its reason, and a mismatch in either direction is a fail."
 )
 _LEGEND: Final = (
-    "*state* is the main quantity, the angular velocity or the impulse: *max, mean @ t of the max*, in u, "
-    "or the word for why there is no number.",
-    "*over attainable* is the largest of all quantities of the scene, which is named; a gate stands at "
-    "ten.",
-    "*verdict* is the gravest of all quantities. *as expected* counts the quantities whose verdict is "
-    "the one foreseen; a mismatch stands out.",
+    "*state* is the main quantity, the angular velocity or the impulse: *max, mean @ t of the max*, "
+    "in u, or a word for a missing number.",
+    "*over attainable* is the largest of all quantities of the scene, with the name of the quantity; "
+    "a gate allows ten.",
+    "*verdict* is the gravest of all quantities. *as expected* counts the quantities with the "
+    "expected verdict; a mismatch is bold.",
 )
 
 
@@ -86,7 +86,7 @@ def _summary(study: ExtremesStudy) -> str:
     """Return the number of expected verdicts, and all mismatches in full."""
     others = [verdict for verdict in study.verdicts if verdict.verdict is not Status.PASS]
     met = sum(verdict.is_met for verdict in others)
-    counted = f"{met} of {len(others)} answers other than pass came as expected."
+    counted = f"{met} of {len(others)} verdicts other than pass were expected."
     if not study.mismatches:
         return counted
     faults = bullets(map(prose, study.mismatches))

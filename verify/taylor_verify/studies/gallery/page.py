@@ -41,8 +41,8 @@ _WHAT: Final = (
 _ELSEWHERE: Final = (
     "Other pictures of this folder stand beside their numbers: speed against accuracy in "
     "[tradeoff](../tables/tradeoff.md), the digits that each precision leaves in "
-    "[reach](../tables/reach.md), drift over decades of time in [growth](../tables/growth.md), what each "
-    "thing costs in [prices](../tables/prices.md)."
+    "[reach](../tables/reach.md), drift over decades of time in [growth](../tables/growth.md), the "
+    "cost of each option in [prices](../tables/prices.md)."
 )
 
 Document = Mapping[str, Any]
@@ -141,9 +141,9 @@ Made = tuple[Picture, str, tuple[str, ...]]
 def _polhode(stored: Stored, portrait: Document) -> Made:
     scene = portrait["scene"]
     caption = (
-        f"{code(scene)}: the angular velocity on its ellipsoid of inertia. The line is the exact course, "
-        f"the marks are the samples of {_SOLVER} on {_RUNG}, coloured by their error in units of u; dashed "
-        "the separatrices. Repeated turns lie on each other: later marks are above earlier ones."
+        f"{code(scene)}: the angular velocity on its ellipsoid of inertia. The line is the exact "
+        f"course, the marks are the samples of {_SOLVER} on {_RUNG}, coloured by their error in units "
+        "of u; dashed the separatrices. Repeated turns overlap, with later marks above earlier ones."
     )
     samples, record = stored.samples(scene, COLUMNS["omega"]), stored.record(scene, _RUNG)
     sources = PORTRAITS.name(scene), record_name(scene, _RUNG)
@@ -188,9 +188,10 @@ def _errors(stored: Stored, portrait: Document) -> Made:
 
 def _quartics(stored: Stored) -> Made:
     caption = (
-        "The quartic X3 of Clebsch's body, whose root the axial impulse follows: x3'^2 = r^2 X3(x3). The "
-        "body swings between two simple roots; a double root it only approaches, like an exponential, and "
-        "a triple one like 1/t^2. With two real roots the other two are a complex pair."
+        "The quartic X3 of Clebsch's body, whose root the axial impulse follows: x3'^2 = r^2 X3(x3). "
+        "The body swings between two simple roots; it only approaches a double root, like an "
+        "exponential, and a triple one like 1/t^2. With two real roots the other two are a complex "
+        "pair."
     )
     picture = potential.picture([stored.portrait(scene) for scene in QUARTICS], "kirchhoff")
     return picture, caption, tuple(PORTRAITS.name(scene) for scene in QUARTICS)
@@ -198,11 +199,11 @@ def _quartics(stored: Stored) -> Made:
 
 def _shifts(stored: Stored) -> Made:
     caption = (
-        "Solvers that were broken on purpose: the largest error of each, and what the best shift of time "
-        "leaves of it. Of a sound run the shift is as random as its roundings, and is not stored. A body "
-        "read half a millisecond early has a large error and almost none left: every conserved quantity "
-        "is right. Where the second mark lies on the first, the motion is another one, or only some of its "
-        "samples are late."
+        "Solvers that were broken on purpose: the largest error of each, and the rest after the best "
+        "shift of time. The shift of a sound run is as random as its roundings, and is not stored. A "
+        "body read half a millisecond early has a large error and almost no rest: every conserved "
+        "quantity is right. If the second mark lies on the first, the motion is wrong, or only some "
+        "of its samples are late."
     )
     verdicts = CONTROLS.load(stored.folder).verdicts
     return shifts.picture(verdicts, "controls"), caption, (CONTROLS.name,)

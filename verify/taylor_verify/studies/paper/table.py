@@ -104,9 +104,9 @@ def _engines(sources: Sources) -> Table:
 
 def _reach(sources: Sources) -> Table:
     words = (
-        f"The last value of each family at which the Taylor integrator leaves {REACHED} digits: the number "
-        "of periods, or the parameter that leads to the extreme, after one period. An arrow stands behind "
-        f"the last value that was tried, {NOTHING} where there is none."
+        f"The last value of each family at which the Taylor integrator leaves {REACHED} digits: the "
+        "number of periods, or the parameter that leads to the extreme, after one period. An arrow "
+        f"stands behind the last value that was tried, {NOTHING} where there is no value."
     )
     study = sources.reach
     rungs = list(dict.fromkeys(rung for family in study.families for rung in family.rungs))

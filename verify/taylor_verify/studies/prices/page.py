@@ -31,21 +31,21 @@ _ASKED: Final = (
 )
 
 _WHAT: Final = (
-    "The suite integrates what a scene requires and nothing else. These are the prices of the things "
-    "that a scene may require, and of the forms that the same equations may be given. A price is a "
-    "multiple of that of the barest form of its model, *omega* or *impulse*, measured in the same "
-    "round on the same machine."
+    "The suite integrates only the quantities that a scene requires. This page has the prices of the "
+    "options of a scene, and of different forms of the same equations. A price is a multiple of that "
+    "of the barest form of its model, *omega* or *impulse*, measured in the same round on the same "
+    "machine."
 )
 
 _LEGEND: Final = (
     "*operations* are the distinct sums, products and quotients of one evaluation of the equations; "
     "the integrator forms each of them once for every order of a step.",
     "*a step* and *a unit of time* are medians of the ratios to the barest form, in the brackets the "
-    "interval that holds the median of their distribution with at least 95 %. A unit of time is "
-    "one of the scene's: it has more steps in it where the motion is faster.",
+    "interval that holds the median of their distribution with at least 95 %. A unit of time is that "
+    "of the scene: faster motions have more steps in it.",
     "*error* is that of omega or of the impulses at the rung's own tolerance, the largest of all "
-    "samples, relative; *at equal error* is the price of a unit of time where tolerances are "
-    "set so that both forms achieve 1e-11, on f64.",
+    "samples, relative; *at equal error* is the price of a unit of time at tolerances for which both "
+    "forms achieve 1e-11, on f64.",
     "Up to five states are compiled as straight-line code, more as loops over tables, which "
     "compile in a fraction of the time and run slower: part of the price of a sixth state.",
 )
@@ -80,8 +80,8 @@ def page(study: PricesStudy, folder: Path) -> str:
         "## How it was measured",
         bullets(_method(study)),
         "## To remake this",
-        f"`taylor-verify publish prices` measures anew, writes [prices.json](../{PRICES.name}) and this "
-        "page; nothing is ever compared with these times.",
+        "`taylor-verify publish prices` repeats the measurement, and writes "
+        f"[prices.json](../{PRICES.name}) and this page. No test compares these times.",
     )
 
 

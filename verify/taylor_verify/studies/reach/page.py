@@ -29,21 +29,23 @@ _NOT_HELD, _NOT_RUN = "not held", "not run"
 _ROUNDED: Final = "rounded"
 
 _WHAT: Final = (
-    "How long a motion, how near a separatrix, how unlike the moments: where each precision still has "
-    "3, 6 or 12 digits. The Taylor integrator runs at the rung's own tolerance; the digits left after "
-    "N periods are those of the largest error up to then, against the exact motion of the very data "
-    "that it was given. Beside them stands what perfect rounding would leave on the same orbit."
+    "This page shows how far each precision keeps 3, 6 or 12 digits: for long motions, near a "
+    "separatrix, and for unlike moments of inertia. The Taylor integrator runs at the rung's own "
+    "tolerance; the digits left after N periods are those of the largest error up to then, compared "
+    "with the exact motion of the same rounded data. Beside them are the digits that perfect rounding "
+    "would leave on the same orbit."
 )
 _LEGEND: Final = (
-    f"*3, 6, 12 digits* tell the last value at which so many are left, and at all easier ones too; "
-    f"{_LAST.strip()} stands behind the last that was tried: the reach goes on. {NOTHING} is none.",
-    "*attainable* tells the same of the judge's floor: one rounding of every component in every step, "
-    "carried on by the orbit. It is a model of random roundings, and no bound.",
-    f"*{_NOT_HELD}*: rounded to the rung, the numbers are those of another orbit, its period off by "
-    "more than a tenth or none at all. However exactly that one is followed, it is not the one asked for. "
-    f"*{_NOT_RUN}*: there is no such rung on the machine, or its numbers do not hold the scene at all.",
-    "Periods are those of omega or of the impulses, instants their quarters. Only omega or the "
-    "impulses are compared, but where the attitude is named.",
+    "*3, 6, 12 digits* are the last values at which this number of digits is left, as at all easier "
+    f"values; {_LAST.strip()} marks the last value that was tried: the reach may be longer. {NOTHING} "
+    "means that there is no value.",
+    "*attainable* has the same values for the judge's floor: the effect on the orbit of one rounding "
+    "of every component in every step. It is a model of random roundings, and no bound.",
+    f"*{_NOT_HELD}*: the numbers rounded to the rung belong to another orbit, whose period differs by "
+    "more than a tenth or does not exist. The requested orbit is then out of reach of the rung. "
+    f"*{_NOT_RUN}*: the machine does not have the rung, or its numbers cannot represent the scene.",
+    "Periods are those of omega or of the impulses, and the instants are their quarters. Only omega "
+    "or the impulses are compared, except in the family that names the attitude.",
 )
 
 
@@ -66,7 +68,7 @@ def page(study: ReachStudy, folder: Path) -> str:
         "## How it was measured",
         bullets(_method(study)),
         "## To remake this",
-        f"`taylor-verify publish reach` measures anew, in some minutes, and writes "
+        "`taylor-verify publish reach` repeats the measurement in some minutes, and writes "
         f"[reach.json](../{REACH.name}), this page and its pictures.",
     )
 
@@ -174,8 +176,8 @@ def _over_attainable(rows: Sequence[ReachRow]) -> str:
     if not ratios:
         return "No error was compared with a floor."
     return (
-        f"Error over attainable, where that leaves a digit: {figure(ratios[-1])} at most, "
-        f"{figure(ratios[len(ratios) // 2])} in the middle of {len(ratios)}."
+        f"Error over attainable, if the attainable error leaves a digit: {figure(ratios[-1])} at most, "
+        f"with a median of {figure(ratios[len(ratios) // 2])} over {len(ratios)} errors."
     )
 
 
@@ -186,12 +188,12 @@ def _method(study: ReachStudy) -> list[str]:
     # A run that ended early has no number, like one that was lost.
     stopped = [row for row in rows if row.errors and row.why]
     return [
-        f"{len(rows)} runs: a family's value on a rung each. An error of {study.lost:g} is the size "
-        "of the motion: a run that reaches it within its first period is followed no further, and its "
-        f"floor is that of as many steps in proportion. There were {lost}; in {blurred} the "
-        "rung could not hold the value.",
-        "The wider a rung, the fewer periods are run: a period takes hundreds of times as long on f128 "
-        "as on f64.",
+        f"{len(rows)} runs: one for each value of a family and each rung. An error of {study.lost:g} "
+        "is the size of the motion. A run that reaches this error within its first period is not "
+        f"continued, and the steps for its floor are extrapolated in proportion. {lost} runs were "
+        f"lost; in {blurred} runs the rung could not represent the value.",
+        "Wider rungs are run for fewer periods, because a period takes hundreds of times as long on "
+        "f128 as on f64.",
         _over_attainable(rows),
         *(f"{r.family} {r.value}, {r.rung}: {prose(r.why)}. It counts as lost." for r in stopped),
         made_on(study.provenance),

@@ -32,8 +32,8 @@ _SCENES: Final = (
     "arithmetic allows. [Gates](tables/gates.md) has every quantity with its bound."
 )
 _WHAT: Final = (
-    "Every quantity that was compared, and the bound it was held against. The reason of each bound stands "
-    "on the page of its scene."
+    "Every quantity that was compared, and its bound. The reason of each bound is on the page of its "
+    "scene."
 )
 _COLUMNS: Final = (
     "scene",

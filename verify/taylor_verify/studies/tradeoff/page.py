@@ -31,10 +31,10 @@ _CLOSED_FORM: Final = "closed-form ellipj"
 _ASKED: Final = (1e-3, 1e-6, 1e-9, 1e-12)
 
 _WHAT: Final = (
-    "Every solver on the same four scenes, each at many settings, each answer compared with the exact "
-    "motion. A time is given as a multiple of that of the *yardstick*, the Taylor integrator of "
-    "heyoka in float64 at its own tolerance, in the same minute on the same machine; the error is "
-    "the largest of everything that the scene tracks, at all its samples."
+    "This page compares all solvers on the same four scenes, at many settings, and each answer with "
+    "the exact motion. A time is given as a multiple of that of the *yardstick*, the Taylor "
+    "integrator of heyoka in float64 at its own tolerance, in the same minute on the same machine; "
+    "the error is the largest of everything that the scene tracks, at all its samples."
 )
 _PLAIN_DOUBLES: Final = (
     "Omega of a free body is Jacobi's sn, cn and dn of time, and SciPy has them: `closed-form:ellipj` is "
@@ -42,19 +42,20 @@ _PLAIN_DOUBLES: Final = (
     "relative to the largest |omega|. Beside it the integrator, where the motion is short enough for it."
 )
 _WHY_DOUBLES_FAIL: Final = (
-    "**Long times.** The argument u = lam t + u0 is rounded to 2^-53 of itself, and so is lam: a phase "
-    "error of some 1e-16 lam |t|. No step was taken, and still the error grows in proportion to time; "
-    "at t = 1e15 u is known to a tenth, and the answer is a point somewhere on the right orbit.",
-    "**Near the separatrix.** m is a double near 1, so that 1 - m is known to 1e-16: its relative error "
-    "is 1e-16/(1 - m), the period depends on its logarithm, and where an orbit waits at the middle "
-    "axis that shows. Below 1 - m = 1e-10 SciPy's `ellipj` takes series about m = 1 that hold within "
-    "the first quarter of a period only. Beyond it they grow like an exponential, and what comes back "
-    "is larger than the motion by any factor, without a warning.",
-    "**On it** the answer hangs on the last bit of m. It is right where that happens to be 1, and where "
-    "the principal axes are themselves found in doubles it need not be.",
-    "**About the middle axis** the phase is infinite and the answer no number, where the motion is the "
-    "simplest of all.",
-    "Equal moments, a moment of force, a body at rest, an attitude, a fluid: it says beforehand that "
+    "**Long times.** The argument u = lam t + u0 is rounded to 2^-53 of itself, and so is lam: a "
+    "phase error of some 1e-16 lam |t|. The error grows in proportion to time, although no step was "
+    "taken; at t = 1e15 u is known to a tenth, and the answer is an arbitrary point of the right "
+    "orbit.",
+    "**Near the separatrix.** m is a double near 1, so that 1 - m is known to 1e-16: its relative "
+    "error is 1e-16/(1 - m), and the period depends on its logarithm. The error shows where an orbit "
+    "waits at the middle axis. Below 1 - m = 1e-10 SciPy's `ellipj` takes series about m = 1 that "
+    "hold within the first quarter of a period only. Beyond it they grow like an exponential, and the "
+    "answer may be larger than the motion by any factor, without a warning.",
+    "**On it** the answer depends on the last bit of m. It is right if m happens to be 1, which may "
+    "fail if the principal axes are computed in doubles.",
+    "**About the middle axis** the phase is infinite and the answer no number, although the motion is "
+    "the simplest of all.",
+    "Equal moments, a moment of force, a body at rest, an attitude, a fluid: it refuses them, because "
     "it is not made for them.",
     "The exact route of this suite has the same functions with 1 - m formed in rationals and as much "
     "precision as the answer needs: none of these orbits is difficult for it.",
@@ -67,22 +68,23 @@ def page(trades: Trades, folder: Path) -> str:
         "Speed against accuracy",
         _WHAT,
         "## What so many digits cost",
-        "The cheapest measured setting whose error leaves at least so many digits: its time over that "
-        f"of the yardstick, the interval for it in brackets, and the tolerance. *{_NOT_REACHED}* is "
-        "said where no measured setting leaves so many. Below 1 is faster than the yardstick, which "
-        "leaves the digits that the first line of each scene says. Where the intervals of neighbouring "
-        "tolerances overlap, which of them is the cheapest is chance.",
+        "The cheapest measured setting whose error leaves at least this number of digits: its time "
+        f"over that of the yardstick, the interval in brackets, and the tolerance. *{_NOT_REACHED}* "
+        "means that no measured setting leaves so many. A ratio below 1 is faster than the yardstick, "
+        "whose digits are in the first line of each scene. If the intervals of neighbouring "
+        "tolerances overlap, chance decides which one is the cheapest.",
         _by_digits(trades),
         "## Beside compiled integrators of other libraries",
         *peer_sections(trades),
         "## What a wider number costs",
-        "Taylor at each rung's own tolerance: time over that in float64, and the digits that are left. "
-        "*attainable* are those that rounding the state once a sample, and nothing else, would leave.",
+        "Taylor at each rung's own tolerance: time over that in float64, and the digits that are "
+        "left. *attainable* are the digits that would be left by rounding the state once for each "
+        "sample.",
         _by_rung(trades),
         figures.shown(folder, _of_rungs(trades.short)),
         "## Asked for and achieved",
-        "A tolerance bounds the error of one step, or what the solver takes for it, and promises "
-        "nothing of the answer. The digits that were left at each:",
+        "A tolerance bounds the solver's estimate of the error of one step, and not the error of the "
+        "answer. The table has the digits that were left at each tolerance:",
         _by_request(trades),
         "## In pictures",
         *(figures.shown(folder, _of_trade(one)) for one in trades.short),
@@ -90,10 +92,10 @@ def page(trades: Trades, folder: Path) -> str:
         "The settings in float64 that no other beats in both time and error, the fastest first.",
         *(_front(trade) for trade in trades.short),
         "## Geometric integrators",
-        "Fixed steps, in the scene's unit of time. They keep what they promise, to the last bits: all of "
-        "them the momentum in space, the midpoint and Moser and Veselov's the energy too, which "
-        "splitting lets swing and lie-rk4 drift. That is no accuracy. *drift* is the largest of all "
-        "conserved quantities, with its name.",
+        "Fixed steps, in the scene's unit of time. They conserve their quantities to the last bits: "
+        "all of them the momentum in space, the midpoint and Moser and Veselov's the energy too. With "
+        "splitting the energy oscillates, with lie-rk4 it drifts. Conservation is no accuracy. "
+        "*drift* is the largest of all conserved quantities, with its name.",
         _geometric(trades),
         "## What failed, and what was not run",
         "None of these is on a front, and none has a number above.",

@@ -19,13 +19,13 @@ _NONE: Final = (
     "Not measured: `taylor-verify publish tradeoff --outside` does, and makes their environments."
 )
 _WHAT: Final = (
-    "Integrators that are compiled as heyoka is, on the scenes above and on three of them for about a "
-    "hundred periods. Each runs in a process of its own that stays, and takes its turn with all others in "
-    "every round. All have the same equations, generated from one form, the same samples, and an error "
-    "measured by the same exact motion. A cell is the processor's time of the cheapest tolerance, of all "
-    "powers of ten from 1e-5 to 1e-15, that leaves so many digits, over that of the yardstick. *ahead* "
-    "is the fastest, with its lead: over the next peer where that is taylor, else over taylor. It is "
-    "*level* where the intervals of the two overlap."
+    "These integrators are compiled like heyoka's. They run on the scenes above, and on three of them "
+    "for about a hundred periods. Each runs in a process of its own that stays, and takes its turn "
+    "with all others in every round. All have the same equations, generated from one form, and the "
+    "same samples, and are compared with the same exact motion. A cell is the processor's time of the "
+    "cheapest tolerance, of all powers of ten from 1e-5 to 1e-15, that leaves this number of digits, "
+    "over that of the yardstick. *ahead* is the fastest, with its lead: over the next peer if the "
+    "fastest is taylor, else over taylor. They are *level* if the intervals of the two overlap."
 )
 # Titles of families of the columns; other families have their own names.
 TITLES: Final = {
@@ -42,15 +42,15 @@ _HOW: Final = (
     "CVODE (Adams, by scikit-sundae) is C, and calls equations that numba compiled by way of Python, for "
     "want of another.",
     "diffrax is compiled as a whole by XLA (`jit`).",
-    "The time of taylor has in it what its driver does in Python around heyoka's compiled steps.",
-    "Optimised code is `taylor?code=optimised`: it compiles for seconds, and is found again on disk. Every "
-    "second power of ten was measured.",
+    "The time of taylor includes its driver's work in Python around heyoka's compiled steps.",
+    "Optimised code is `taylor?code=optimised`: it compiles for seconds, and is read from disk later. "
+    "Every second power of ten was measured.",
 )
 _SET_UP: Final = (
-    "Set-up, which no time above has in it: the processor's seconds before the first solve of a process, "
-    "compiling above all, the longest of all processes. taylor compiles once for each tolerance and form, "
-    "and finds its code again on disk in later processes, which was switched off here; the others compile "
-    "once for a body, in every process anew."
+    "The times above exclude the set-up: the processor's seconds before the first solve of a process, "
+    "mainly of compiling, the longest of all processes. taylor compiles once for each tolerance and "
+    "form. Later processes would read its code from disk, which was switched off here. The others "
+    "compile once for a body, in every process anew."
 )
 
 

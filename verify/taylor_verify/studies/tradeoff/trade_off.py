@@ -137,8 +137,8 @@ def front_sentences(points: Sequence[Point]) -> list[str]:
     )
     if (widest := max(p.timed.spread or 1.0 for p in best)) > 1:
         sentences.append(
-            f"A setting's slowest solve took up to {widest:.2g} times its fastest: times nearer to "
-            "each other than that are not told apart."
+            f"A setting's slowest solve took up to {widest:.2g} times its fastest: smaller differences "
+            "of times mean nothing."
         )
     return sentences
 

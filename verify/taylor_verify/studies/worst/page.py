@@ -19,11 +19,10 @@ from taylor_verify.studies.worst.document import WorstOfFamily, WorstStudy
 WORST: Final = Stored(WorstStudy, "worst", fields=plain)
 
 _WHAT: Final = (
-    "A gate stands at {factor} times what is attainable, which is what independent roundings of every "
-    "component leave. How near does a sound solver come to it? {searched}; the Taylor driver answers "
-    "every scene on {rung}, and "
-    "the largest *error over attainable* of all its gates counts. A gate that is vacuous asks nothing "
-    "and does not count."
+    "A gate allows {factor} times the attainable error, which is the error that independent roundings "
+    "of every component leave. How near does a sound solver come to this bound? {searched}. The "
+    "Taylor driver answers every scene on {rung}, and the largest *error over attainable* of all its "
+    "gates counts. Vacuous gates do not count."
 )
 _KEPT: Final = (
     "The worst scene of every family is kept in exact numbers, and runs with the extremes: "
@@ -64,9 +63,9 @@ def _searched(study: WorstStudy) -> str:
 
 def _remade(study: WorstStudy) -> str:
     return (
-        f"`taylor-verify publish worst --runs {study.runs} --seed {study.seed}` hunts anew and replaces "
-        "the scenes. With the same versions it finds the same scenes: these are the fact, and not that "
-        "there are no others. "
+        f"`taylor-verify publish worst --runs {study.runs} --seed {study.seed}` repeats the hunt and "
+        "replaces the scenes. With the same versions it finds the same scenes. Other scenes may be "
+        "worse. "
     )
 
 
