@@ -1,4 +1,4 @@
-"""What a CI is told is never greener than the exit status, and is what its readers can read."""
+"""Reports for a CI are never greener than the exit status, and valid for their readers."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ def test_a_status_that_is_hidden_is_caught(
 
 
 def test_a_status_nobody_thought_of_is_not_green(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without an entry there is no file, rather than a green one."""
+    """A status without an entry raises an error instead of a green file."""
     rest = {
         status: name for status, name in junit._ELEMENTS.items() if status is not Status.VACUOUS
     }
@@ -212,7 +212,7 @@ def test_an_error_that_is_no_number_is_told() -> None:
 
 
 def test_a_regression_fails_the_case_that_passed() -> None:
-    """It stands in its row's case; a row that vanished gets one in the suite of its run."""
+    """A regression is in the case of its row; a vanished row gets a case in the suite of its run."""
     rows = [row(), row(quantity="T"), row(rung="f32")]
     root = ElementTree.fromstring(junit.junit(rows, [remark(), remark("H2", text="gone")]))
     messages = {
@@ -453,7 +453,7 @@ def test_check_tells_a_ci_the_same_way(short: Path, capsys: Captured) -> None:
 def test_a_spoiled_document_is_not_of_the_schema(
     spoil: Callable[[dict[str, Any]], Any], message: str
 ) -> None:
-    """Each broken twin of a row is named; a key that nobody knows yet is no fault."""
+    """The schema names the fault of each broken row; an unknown key is no fault."""
     counts = {status.value: 0 for status in Status}
     document: dict[str, Any] = {"verdicts": [{**row().row(), "new_key": 1}], "summary": counts}
     assert violations(document) == []
@@ -560,7 +560,7 @@ def inputs() -> set[str]:
 
 
 def test_the_action_uses_what_it_declares() -> None:
-    """Every input is used and declared, none is written into a script, and steps name a shell."""
+    """All inputs are declared and used, none is written into a script, and steps name a shell."""
     text = ACTION.read_text(encoding="utf-8")
     assert set(re.findall(r"inputs\.([a-z-]+)", text)) == inputs()
     assert {"scenes", "rung", "solver", "baseline", "python-version"} <= inputs()
@@ -571,7 +571,7 @@ def test_the_action_uses_what_it_declares() -> None:
 
 
 def test_the_example_calls_the_action_with_inputs_it_has() -> None:
-    """It starts by hand alone, so that it is no check of this project, and its action is there."""
+    """The example starts by hand only, and its action exists."""
     text = EXAMPLE.read_text(encoding="utf-8")
     assert "\non: workflow_dispatch\n" in text
     (used,) = re.findall(r"uses: \./(.*)", text)

@@ -99,7 +99,7 @@ def ensemble(model: str, rung: str) -> Ensemble:
 @pytest.mark.parametrize("rung", LADDER)
 @pytest.mark.parametrize("model", ["euler", "kirchhoff"])
 def test_median_state_error_is_within_300_epsilon(model: str, rung: str) -> None:
-    """After fifteen periods half of the bodies are right to 300 epsilon, epsilon = 2u, on every rung."""
+    """Half of the bodies are right to 300 epsilon after fifteen periods on every rung (epsilon = 2u)."""
     drawn_bodies = ensemble(model, rung)
     assert median(v.max / (2 * v.roundoff) for v in drawn_bodies.states) <= 300
 

@@ -133,7 +133,7 @@ def test_a_view_from_below_or_above_is_never_steep() -> None:
 
 @pytest.mark.parametrize("scene", FREE)
 def test_course_and_samples_are_on_the_ellipsoid(scene: str) -> None:
-    """Every point has length one in units of the semi-axes: the energy is conserved."""
+    """All points have length one in units of the semi-axes, because the energy is conserved."""
     series = of_polhode(scene)
     for points in (series.course, series.samples, *series.separatrices):
         q = points / np.array(series.semi_axes)
@@ -142,7 +142,7 @@ def test_course_and_samples_are_on_the_ellipsoid(scene: str) -> None:
 
 
 def test_the_separatrix_scene_runs_along_a_separatrix() -> None:
-    """Its course lies in the plane of one of the two curves, and that of the plain scene in neither."""
+    """The course of the separatrix scene lies in the plane of a curve, that of a plain scene in none."""
 
     def distance(scene: str) -> float:
         series = of_polhode(scene)
@@ -235,7 +235,7 @@ def test_what_is_not_tracked_is_not_drawn(module: Any) -> None:
 
 
 def test_the_line_is_the_largest_error_so_far() -> None:
-    """It never falls, is one of the errors, and ends at the largest."""
+    """The line never falls, has values of errors, and ends at the largest."""
     points = [(1.0, 2.0), (2.0, 0.5), (3.0, 4.0), (4.0, 1.0)]
     assert errors_over_time.so_far(points) == [(1.0, 2.0), (2.0, 2.0), (3.0, 4.0), (4.0, 4.0)]
 
@@ -252,7 +252,7 @@ def test_what_a_logarithm_cannot_show_is_left_out() -> None:
 
 
 def test_the_powers_are_those_of_brouwers_law() -> None:
-    """Every panel has one dashed line, straight in logarithms, of slope 1/2 or 3/2."""
+    """All panels have one dashed line, straight in logarithms, of slope 1/2 or 3/2."""
     records = [stored().record("euler/generic", rung) for rung in RUNGS]
     with plotting():
         figure = errors_over_time.picture("euler/generic", records).figure()
@@ -343,7 +343,7 @@ def fits(picture: Picture) -> None:
 
 @pytest.mark.parametrize("end", KINDS)
 def test_no_text_is_cut(end: str) -> None:
-    """Every name, number and note lies within its picture."""
+    """All names, numbers and notes lie within their pictures."""
     fits(next(one.picture for one in shown() if one.picture.stem.endswith(end)))
 
 
@@ -417,7 +417,7 @@ def test_two_drawings_are_the_same_file(tmp_path: Path) -> None:
 
 
 def test_the_page_shows_every_picture_and_where_it_comes_from() -> None:
-    """Its first line names its maker, no stem comes twice, and every file of data that it names is one."""
+    """The page names its maker first, has unique stems, and names existing files of data."""
     text = gallery.page(shown())
     stems = [one.picture.stem for one in shown()]
     assert text.startswith("<!-- made by taylor-verify publish; do not edit -->\n")

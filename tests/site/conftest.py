@@ -23,7 +23,7 @@ _OPTIONS = (
 
 
 def pytest_ignore_collect(config: pytest.Config) -> bool | None:
-    """Nothing here is collected unless `-m browser` asks for it."""
+    """Collect these tests only with `-m browser`."""
     return None if config.getoption("-m") == "browser" else True
 
 

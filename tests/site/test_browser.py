@@ -1,4 +1,4 @@
-"""What a reader gets of the built site, in a real browser: light and dark, wide and on a phone."""
+"""The built site in a real browser: light and dark, wide and on a phone."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ class Reader:
         self.driver.get((self.site / page).as_uri())
 
     def complaints(self) -> list[str]:
-        """What the console has had since the page was opened, but for the driver's own remarks."""
+        """Return the messages of the console since the page was opened, without the driver's own."""
         messages = [entry["message"] for entry in self.driver.get_log("browser")]
         return [text for text in messages if not any(word in text for word in OF_THE_DRIVER)]
 
@@ -102,7 +102,7 @@ class Reader:
         pytest.fail(f"expected {what} within {PATIENCE:g} s, got none @ {self.driver.current_url}")
 
     def draw(self) -> list[dict[str, Any]]:
-        """Scroll every picture into view, wait until it is drawn, and say what is in each."""
+        """Scroll every picture into view, wait until it is drawn, and return the contents of each."""
         pictures = self.run("return document.querySelectorAll('.plot').length")
         drawn = []
         for i in range(pictures):
@@ -153,7 +153,7 @@ def test_every_page_loads(reader: Reader, site: Path) -> None:
 @pytest.mark.parametrize("theme", [LIGHT, DARK])
 @pytest.mark.parametrize("page", KINDS)
 def test_a_phone_never_scrolls_sideways(reader: Reader, page: str, theme: str) -> None:
-    """At 390 pixels a page is no wider than the screen, pictures drawn; its tables scroll within."""
+    """A page at 390 pixels with drawn pictures is no wider than the screen; its tables scroll within."""
     reader.set(PHONE, theme)
     reader.open(page)
     reader.draw()
@@ -163,7 +163,7 @@ def test_a_phone_never_scrolls_sideways(reader: Reader, page: str, theme: str) -
 
 @pytest.mark.parametrize("page", KINDS)
 def test_a_phone_page_begins_with_content(reader: Reader, page: str) -> None:
-    """At 390 pixels the title is within the first quarter of the screen, and text within the first half."""
+    """A page at 390 pixels has its title in the first quarter of the screen, and text in the first half."""
     reader.set(PHONE)
     reader.open(page)
     tops = (
@@ -189,7 +189,7 @@ def test_text_can_be_read(reader: Reader, page: str, theme: str, size: tuple[int
 
 @pytest.mark.parametrize("page", SCENES)
 def test_pictures_are_drawn(reader: Reader, page: str) -> None:
-    """Every picture comes to have marks of its data when it is scrolled to."""
+    """Pictures get marks of their data when they are scrolled into view."""
     reader.open(page)
     drawn = reader.draw()
     assert drawn
@@ -284,7 +284,7 @@ def test_tables_of_groups_stay_in_order(reader: Reader) -> None:
 
 
 def test_each_table_has_a_filter_of_its_own(reader: Reader) -> None:
-    """On a page with two large tables a filter hides rows of its own table alone."""
+    """A filter hides rows of its own table alone on a page with two large tables."""
     reader.open(SCENE)
     # The arithmetic of the bounds is behind a fold.
     fold = reader.driver.find_element("css selector", "details:has(.filter) > summary")
@@ -427,7 +427,7 @@ def test_a_notebook_has_what_it_puts_out(reader: Reader) -> None:
 
 
 def test_formulas_are_set(reader: Reader) -> None:
-    """Every formula of a scene takes room, and letters of another alphabet are no empty boxes."""
+    """Formulas of a scene have a size, and letters of other alphabets are no empty boxes."""
     reader.open(SCENE)
     sizes = reader.run(
         "return Array.from(document.querySelectorAll('math'))"
@@ -451,7 +451,7 @@ def test_exact_values_can_be_copied(reader: Reader) -> None:
 
 
 def test_without_a_script_the_words_are_there(reader: Reader) -> None:
-    """With scripts switched off a scene still has its tables, its values, and each motion in words."""
+    """A scene without scripts still has its tables, its values, and each motion in words."""
     reader.driver.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": True})
     try:
         reader.open(SCENE)

@@ -1,4 +1,4 @@
-"""The extremes: each is what its name says, its truth is right, and the suite answers it."""
+"""The extremes: each agrees with its name, its truth is right, and the suite answers it."""
 
 from __future__ import annotations
 
@@ -54,14 +54,14 @@ def distance(a: Any, b: Any) -> Any:
 
 
 def test_there_are_enough_of_both_models() -> None:
-    """At least twenty-five of each, so that an empty folder cannot pass for a suite."""
+    """Each model has at least twenty-five extremes, so that an empty folder fails."""
     for model in ("euler", "kirchhoff"):
         assert sum(name.startswith(f"extremes/{model}-") for name in NAMES) >= 25
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_extreme_loads_and_says_why_it_is_there(name: str) -> None:
-    """It is read under its own name, as the model its name begins with; its reason is a sentence."""
+    """Each extreme is read under its own name, has the model of its name, and a sentence as reason."""
     scene, text = load(name), library.find(name).read_text(encoding="utf-8")
     assert scene.name == name
     assert scene.model == name.removeprefix("extremes/").split("-")[0]

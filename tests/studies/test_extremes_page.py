@@ -1,4 +1,4 @@
-"""The page of the extremes: what came, what was expected, and every mismatch in sight."""
+"""The page of the extremes: verdicts, expected verdicts, and every mismatch."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def test_what_is_stored_reads_back(tmp_path: Path) -> None:
 
 
 def test_a_row_that_was_compared_with_nothing_is_no_mismatch(tmp_path: Path) -> None:
-    """A rung that the machine lacks is expected to be nothing, in the file as on the page."""
+    """A rung that the machine lacks is no mismatch, in the file and on the page."""
     absent = passed("extremes/near", "f32", "omega", verdict=Status.UNAVAILABLE)
     publish_document(tmp_path, STUDY, extremes.EXTREMES, study((absent,), ()))
     (row,) = store.read_document(tmp_path / extremes.EXTREMES.name)["verdicts"]
@@ -61,7 +61,7 @@ def test_a_row_that_was_compared_with_nothing_is_no_mismatch(tmp_path: Path) -> 
 
 
 def test_a_row_of_an_earlier_version_has_its_reason(tmp_path: Path) -> None:
-    """A row with its reason in a sentence alone tells it on the page, and is written anew with it."""
+    """A row whose reason is a sentence alone keeps it on the page and in the file."""
     odd = passed("extremes/odd", "f64", "omega", verdict=Status.UNDECIDED)
     publish_document(tmp_path, STUDY, extremes.EXTREMES, study((odd,), ()))
     file = tmp_path / extremes.EXTREMES.name
@@ -77,14 +77,14 @@ def test_a_row_of_an_earlier_version_has_its_reason(tmp_path: Path) -> None:
 
 
 def test_a_scene_is_a_line_with_its_worst(page: str) -> None:
-    """Title, max and mean with the time, the largest ratio of all quantities, how many were foreseen."""
+    """The line has title, max and mean with the time, the largest ratio, and the count of expected rows."""
     (line,) = lines(page, "`near`")
     for part in ("Title of extremes/near", "3.00, 2.00 @ 7", "0.750 (`T`)", "| pass", "2 of 2"):
         assert part in line
 
 
 def test_an_answer_that_is_no_pass_has_its_reason(page: str) -> None:
-    """The verdict stands out in its cell, and below with what was expected and why."""
+    """The verdict is bold in its cell, and listed below with the expected verdict and the reason."""
     row, reason = lines(page, "`long`")
     assert "3.00, 2.00 @ 7 **vacuous**" in row
     assert "1 of 1" in row
@@ -94,7 +94,7 @@ def test_an_answer_that_is_no_pass_has_its_reason(page: str) -> None:
 
 
 def test_a_mismatch_stands_out(page: str) -> None:
-    """The failure is printed in the cell, its count is bold, and the sentence is in front."""
+    """The cell has the failure, its count is bold, and the page begins with the sentence."""
     row, reason = lines(page, "`vast`")
     assert "**fail**" in row
     assert "**0 of 1**" in row

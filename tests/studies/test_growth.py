@@ -1,4 +1,4 @@
-"""Growth of errors: exponents whose intervals cover, words that are right, a gate whose rate is known."""
+"""Growth of errors: intervals that cover exponents, right words, a gate with a known rate."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ SIGMAS = 4.5
 
 
 def of_law(law: Law, draw: np.random.Generator, lanes: int) -> np.ndarray:
-    """Lanes of one law exactly, their sizes spread over a factor of ten."""
+    """Lanes that follow one law exactly, with sizes spread over a factor of ten."""
     root = np.linalg.cholesky(covariance_of(law, TIMES))
     sizes = np.exp(draw.normal(0, 0.6, (lanes, 1)))
     errors: np.ndarray = sizes * (draw.standard_normal((lanes, len(TIMES))) @ root.T)
@@ -134,7 +134,7 @@ def test_the_interval_covers_as_often_as_it_says(
 
 @pytest.mark.parametrize(("law", "drawn", "_power", "expected"), KINDS)
 def test_the_word_is_right(law: Law, drawn: Draw, _power: float, expected: str) -> None:
-    """Sixteen lanes over four decades have the right word but for the interval's own misses."""
+    """Sixteen lanes over four decades have the right word, except for the misses of the interval."""
     draw, count = np.random.default_rng(5), 200
     words = [exponent(TIMES, drawn(draw, 16), law, 1e-9).word for _ in range(count)]
     wrong = sum(given_word != expected for given_word in words)
@@ -211,7 +211,7 @@ def test_the_law_itself_fails_as_often_as_is_stated(law: Law) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("law", Law)
 def test_the_false_alarm_rate_holds_far_out(law: Law) -> None:
-    """Of a million ensembles of the law about ten fail the published gate: its rate is 10^-5."""
+    """About ten of a million ensembles of the law fail the published gate, whose rate is 10^-5."""
     draw, count, lanes, times = np.random.default_rng(13), 1_000_000, 4, TIMES[::2]
     root = np.linalg.cholesky(covariance_of(law, times))
     statistics = np.zeros(count)

@@ -1,4 +1,4 @@
-"""An ensemble followed far: left and taken up, its errors told with their sign, judged, published."""
+"""An ensemble over many periods: stopped and continued, with signed errors, judged and published."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def several_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_instants_are_half_decades_of_periods() -> None:
-    """From 100 periods on every instant is later by the root of ten, and is a number of the rung."""
+    """Instants begin at 100 periods, have a ratio of the root of ten, and are numbers of the rung."""
     asked = question(periods=1e5)
     assert asked.counts == pytest.approx([10 ** (k / 2) for k in range(4, 11)], rel=1e-12)
     for problem in asked.problems:
@@ -231,14 +231,14 @@ def test_what_a_lane_did_not_reach_is_no_number() -> None:
 
 
 def test_without_a_closed_form_the_drifts_are_measured() -> None:
-    """Of a body that has no closed form there is no phase; its conserved quantities are all there."""
+    """A body without a closed form has no phase, and all of its conserved quantities."""
     result = experiment(question("kirchhoff/general-body", lanes=2))
     assert {one.quantity for one in result.quantities} == {"T", "F2", "FG"}
     assert all(one.growth.gate is not None for one in result.quantities)
 
 
 def test_a_phase_that_may_be_off_by_a_period_is_not_told() -> None:
-    """Beyond a quarter of a period, or where t^2 could have led there unseen, nothing is sure."""
+    """No phase is given beyond a quarter of a period, or if t^2 could have led there unseen."""
     times = [Fraction(10) ** k for k in range(4)]
     sure = sure_shifts(times, np.array([1e-6, -1e-4, 1e-3, 0.1]), 1.0)
     assert sure.tolist() == [1e-6, -1e-4, 1e-3, 0.1]

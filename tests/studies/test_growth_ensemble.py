@@ -1,4 +1,4 @@
-"""Many starts at once: every lane as if it were alone, however the others end, in exact numbers."""
+"""Many starts at once: every lane has the same exact numbers as alone, however the others end."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def blowing_up(n: Named) -> Mapping[str, Any]:
 
 
 def with_fates(until: int) -> tuple[list[Problem], list[bool]]:
-    """Lanes of which every third goes on for ever, and the k-th of the others until the time 2 + k."""
+    """Return lanes: every third goes on for ever, and the k-th of the others ends at the time 2 + k."""
     fated, lives = [], []
     for k, problem in enumerate(problems("euler/generic", "f64")):
         lives.append(k % 3 == 0 or 2 + k > until)
@@ -120,7 +120,7 @@ def test_a_lane_that_is_not_finite_stops_no_other() -> None:
 
 
 def test_a_lost_lane_stays_lost_and_the_others_go_on() -> None:
-    """After a stop the same holds: what was lost keeps its last state, what lives is unchanged by it."""
+    """A lost lane keeps its last state after a stop, and does not change the others."""
     asked, lives = with_fates(until=10)
     ensemble = Ensemble(asked)
     half = ensemble.advance(ensemble.start(), [Fraction(10)] * LANES)
@@ -153,7 +153,7 @@ def test_a_lane_that_would_never_end_is_not_begun(on: str, size: int, outcome: O
 
 
 def test_no_step_is_longer_than_the_cap() -> None:
-    """Where the error control sees little to do, close to an unstable axis, steps stay short."""
+    """Steps stay short near an unstable axis, where the error control would allow long ones."""
     asked = problems("euler/tennis-racket", "f64", 4, until=30)
     unstable = [
         replace(

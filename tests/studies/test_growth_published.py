@@ -1,4 +1,4 @@
-"""What the whole chain says of the Taylor integrator, sound and biased; and what is published of it."""
+"""Growth measured end to end, of a sound and of a biased integrator; and the published growth."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def verdict(result: Experiment, quantity: str) -> Status:
 
 @pytest.mark.parametrize("name", ["euler/about-max-axis", "kirchhoff/two-real-roots"])
 def test_the_integrator_walks(name: str) -> None:
-    """At its own tolerance no quantity grows faster than roundings make it, and every lane ends."""
+    """No quantity grows faster than a walk at the integrator's own tolerance, and every lane ends."""
     result = followed(name)
     assert result.lost == 0
     assert {verdict(result, one.quantity) for one in result.quantities if one.growth.gate} == {
@@ -68,7 +68,7 @@ def test_the_integrator_walks(name: str) -> None:
 
 
 def test_a_coarse_tolerance_is_a_bias() -> None:
-    """At 1e-12 truncation leads: energy and momentum go one way, phase as t^2, and the gates see it."""
+    """Truncation dominates at 1e-12: energy and momentum grow as t, the phase as t^2, and gates fail."""
     result = followed("euler/about-max-axis", 1e4, solver="taylor?tol=1e-12")
     for name in ("T", "H2", PHASE):
         assert verdict(result, name) is Status.FAIL
@@ -97,7 +97,7 @@ def test_brouwers_law_to_a_hundred_thousand_periods() -> None:
 
 
 def mean_rounding(coefficient: float, part: int) -> float:
-    """Of products with numbers of 53 bits in the part-th quarter of their range, in last places."""
+    """Return the mean rounding of products with random 53-bit numbers of one quarter of their range."""
     whole, draw = coefficient.as_integer_ratio()[0], random.Random(part)
     quarter, errors = 2**50, []
     for _ in range(20_000):
@@ -110,7 +110,7 @@ def mean_rounding(coefficient: float, part: int) -> float:
 
 
 def test_products_with_a_small_fraction_lean_to_one_side() -> None:
-    """Of 1/6 in f64 the mean rounding is a tenth of a unit in the last place; of other numbers, none."""
+    """The mean rounding of products with 1/6 is a tenth of a last place; of other numbers it is zero."""
     # One rounding is uniform within half a unit: the mean of 20000 is known to 0.29/sqrt(20000).
     noise = 4.5 * 0.29 / 20_000**0.5
     for coefficient in (0.1683725917, np.pi / 20, 2**0.5 / 8):

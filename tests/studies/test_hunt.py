@@ -1,4 +1,4 @@
-"""The hunt for the worst: what it finds passes, stays found, and is told as it was found."""
+"""The hunt for the worst: its scenes pass, are reproducible, and are published unchanged."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ def test_a_hunt_can_be_repeated(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_family_without_a_judged_scene_is_no_hunt(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where no place has a gate that asks something, the hunt says so and names the family."""
+    """The hunt raises an error that names a family without a gate that is not vacuous."""
     monkeypatch.setattr(hunt, "caught", lambda family, several: [None] * len(several))
     with pytest.raises(NotMeasured, match="euler-nothing"):
         hunt.hunt([quarry("euler-nothing")], 20, 1, str)

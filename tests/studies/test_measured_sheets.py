@@ -1,4 +1,4 @@
-"""The sheets of what was measured have every row of the data, and every digit."""
+"""Sheets of measurements have every row of the data, and every digit."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def number(cell: str) -> float | None:
 
 
 def test_growth_has_a_row_for_every_exponent() -> None:
-    """Each quantity of each ensemble, with the ends of its interval and its gate, to the last bit."""
+    """The sheet has each quantity of each ensemble, with its interval and its gate, to the last bit."""
     study = growth.GROWTH.load(measured_report())
     runs, lines = study.runs, read(growth.sheet(study))
     asked = [(run, row) for run in runs for row in run.quantities]

@@ -1,4 +1,4 @@
-"""The paper opens with findings that are computed, and has all of its tables, alone and within."""
+"""The paper opens with computed findings, and has all of its tables, also as files."""
 
 from __future__ import annotations
 
@@ -131,7 +131,7 @@ def test_every_table_is_named_and_shown(made: pack.Pack) -> None:
 
 
 def test_every_source_is_cited() -> None:
-    """What the list of references begins with is named in the text before it."""
+    """Each entry of the list of references is cited in the text."""
     body, listed = TEXT.split("# References")
     names = re.findall(r"^- \*?(?:Encyclopaedia )?(\w+)", listed, re.M)
     assert len(names) >= 10
@@ -170,7 +170,7 @@ def test_the_pack_is_whole_and_the_same_every_time(tmp_path: Path) -> None:
 def test_a_report_without_a_study_has_no_paper(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """All that is missing is said at once, the exit status is 2, and nothing is written."""
+    """One message names all missing studies, the exit status is 2, and nothing is written."""
     reports.write_runs(tmp_path, [("euler/rest", "f64")])
     before = sorted(tmp_path.rglob("*"))
     assert main(["publish", "--paper", "--from", str(tmp_path)]) == 2

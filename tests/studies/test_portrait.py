@@ -1,4 +1,4 @@
-"""The portraits of the scenes: what they hold is right, complete, and the same whenever it is made."""
+"""Portraits of the scenes are right, complete, and the same whenever they are made."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def test_a_portrait_is_small() -> None:
 
 @pytest.mark.parametrize("scene", FRESH)
 def test_a_portrait_is_the_same_when_made_again(scene: str) -> None:
-    """Without the run on f64, whose roundings are those of a machine, the stored one is made again."""
+    """A new portrait equals the stored one, except for the run on f64, which depends on the machine."""
     again = json.loads(json.dumps(portrait_without_run(scene)))
     before = dict(stored(scene))
     assert before.pop("made_by").endswith("do not edit")
@@ -207,7 +207,7 @@ def test_the_axial_impulse_follows_the_quartic() -> None:
 
 
 def test_the_interval_is_where_the_axial_impulse_goes() -> None:
-    """It lies between roots of the quartic, X3 is above zero within, and the course stays there."""
+    """The interval lies between roots of the quartic; X3 is positive inside, and the course stays there."""
     for name in with_quartic():
         portrait = stored(name)
         own = portrait["potential"]

@@ -72,7 +72,7 @@ def measured() -> PricesStudy:
 
 
 def test_the_barest_form_costs_one(measured: PricesStudy) -> None:
-    """Its ratio to itself is 1 in every round, so that median and interval are exactly 1."""
+    """The ratio of the barest form to itself is 1 in every round, so that its interval is exactly 1."""
     for row in measured.rows:
         if row.variant == row.against:
             assert row.step_ratio == row.time_ratio == (1.0, 1.0, 1.0)
@@ -101,7 +101,7 @@ def test_equal_error_is_read_between_two_tolerances() -> None:
 
 
 def test_page_is_made_of_what_was_stored(tmp_path: Path, measured: PricesStudy) -> None:
-    """Every row is on it, it is the same when made again, and without a measurement there is none."""
+    """The page has every row, is the same when made again, and needs a measurement."""
     assert STUDY.pages(tmp_path) == {}
     stored, *drawn, made, flat = publish_document(tmp_path, STUDY, page.PRICES, measured)
     assert {file.suffix for file in drawn} == {".svg", ".pdf"}

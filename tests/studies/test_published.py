@@ -243,7 +243,7 @@ def test_every_extreme_is_published_as_it_is_now() -> None:
 
 
 def test_exact_trajectories_are_those_of_the_code() -> None:
-    """Each CSV, the page and the examples are byte for byte what is computed now."""
+    """Each CSV, the page and the examples equal those computed now, byte for byte."""
     fresh_files = (reports.every_reference() / reference_files.FOLDER).iterdir()
     made_now = {
         f"{reference_files.FOLDER}/{f.name}": f.read_bytes()
@@ -285,7 +285,7 @@ def gallery_shown() -> tuple[gallery.Shown, ...]:
 
 @cache
 def drawable() -> tuple[Picture, ...]:
-    """Each picture that is drawn of published data: of measurements, and of exact motions."""
+    """Return each picture drawn from published data: of measurements, and of exact motions."""
     measured = [
         p for study in registry.STUDIES if study.name != "gallery" for p in study.pictures(REPORTS)
     ]
@@ -301,7 +301,7 @@ def published_as(picture: Picture) -> Path:
 
 
 def test_a_picture_of_each_kind_is_drawn_of_the_published_data() -> None:
-    """Of all pictures that one function draws the smallest is the published file, byte for byte."""
+    """The smallest picture of each drawing function equals the published file, byte for byte."""
     kinds: dict[Any, list[Picture]] = {}
     for picture in drawable():
         kinds.setdefault(picture.figure.func, []).append(picture)
@@ -342,7 +342,7 @@ def first_line_of(text: str) -> str:
 
 
 def test_the_docs_have_the_short_table_of_the_controls() -> None:
-    """Between its marks docs/results.md has what the published rows give, to the letter."""
+    """The block of docs/results.md is the one made from the published rows, to the letter."""
     page = (ROOT / "docs" / "results.md").read_text(encoding="utf-8")
     shown = page[page.index(controls.BEGIN) : page.index(controls.END) + len(controls.END)]
     assert shown == controls.short(CONTROLS.load(REPORTS))
@@ -387,8 +387,9 @@ def test_errors_agree_with_their_ratios() -> None:
 
 
 def test_unlike_rungs_are_in_one_class() -> None:
-    """In units of attainable every quantity has on all rungs an error of one class: independent draws,
-    and hundreds of pairs. As a baseline none raises a false alarm against another, in either order."""
+    """Errors in units of attainable ones are in one class on all rungs, which are independent draws.
+
+    No rung as a baseline raises a false alarm against another one, over hundreds of pairs."""
     drawn: dict[tuple[str, str], list[float]] = {}
     for verdict in verdicts():
         assert verdict.ratio is not None
@@ -443,7 +444,7 @@ def test_published_widths_are_remade() -> None:
 
 @pytest.mark.slow
 def test_the_published_paper_is_short(tmp_path: Path) -> None:
-    """It has at most twelve pages."""
+    """The paper has at most twelve pages."""
     made = pack(REPORTS)
     made.write(tmp_path)
     assert len(images(made.text, made.citation, tmp_path)) <= 12

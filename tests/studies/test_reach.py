@@ -69,7 +69,7 @@ def test_values_lead_to_the_extreme() -> None:
 
 @pytest.mark.parametrize(("one", "value"), EXTREMES, ids=lambda x: getattr(x, "name", x))
 def test_every_family_is_periodic_and_free(one: Family, value: str) -> None:
-    """Its most extreme member has a period, of the elements' own digits, and no loads."""
+    """The most extreme member of a family has a period with the elements' digits, and no loads."""
     scene = one.scene(value)
     assert scene.body.is_free
     exact = elements(scene, 30)["period"].value
@@ -153,7 +153,7 @@ def test_a_wider_rung_leaves_more(axis: dict[str, dict[str, ReachRow]]) -> None:
 
 
 def test_solvers_come_near_the_floor(axis: dict[str, dict[str, ReachRow]]) -> None:
-    """What is not lost is within the judge's factor of the attainable error."""
+    """Errors of motions that are not lost are within the judge's factor of the attainable error."""
     for row in axis["1e-2"].values():
         for error, least in zip(row.errors, row.floors, strict=True):
             assert error <= GATE_FACTOR * least or least >= 0.1
@@ -179,7 +179,7 @@ def test_what_is_lost_is_not_followed(axis: dict[str, dict[str, ReachRow]]) -> N
     ],
 )
 def test_another_orbit_is_not_followed(name: str, value: str, why: str) -> None:
-    """Where rounding the data makes another orbit of them, nothing is compared, and it is said."""
+    """A row has a reason in place of errors if its rounded data have another orbit."""
     row = measured(family(name), value, "f32")["f32"]
     assert row.errors == row.floors == ()
     assert why in row.why
@@ -242,7 +242,7 @@ def test_a_rung_that_cannot_reach_it_is_not_measured(generic: Scene) -> None:
 
 
 def test_a_rung_is_left_out_by_its_own_floor(generic: Scene) -> None:
-    """It takes a floor of the judge's factor times the target; what is nearer is measured."""
+    """A rung is left out if its floor is the judge's factor times the target, and measured below that."""
     least = least_error(generic, F64)
     assert least is not None
     assert left_out(generic, [F64], 0.99 * least / GATE_FACTOR).keys() == {F64}
@@ -251,7 +251,7 @@ def test_a_rung_is_left_out_by_its_own_floor(generic: Scene) -> None:
 
 
 def test_the_narrowest_precision_is_named(generic: Scene) -> None:
-    """Where nothing asked can do it, the text names a rung whose floor reaches it; one bit less may not."""
+    """The text of the error names the narrowest rung whose floor reaches the target."""
     target = 1e-30
     with pytest.raises(OutOfReach) as caught:
         recommend(generic, target, [setting("taylor", F64)])

@@ -1,4 +1,4 @@
-"""What is published of the reach of each precision: tables and maps that say what was measured."""
+"""Pages of the reach of each precision: tables and maps that show the measurements."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ ERRORS = st.lists(st.floats(0, 10) | st.sampled_from([None, nan, 1e-3, 1e-6, 1e-
 
 @given(st.lists(ERRORS.map(lambda errors: errors[:3]), min_size=1, max_size=6), st.integers(1, 15))
 def test_a_reach_is_of_all_that_is_easier(table: list[list[float]], digits: int) -> None:
-    """Up to the value told every error is small enough, and the next one's is not."""
+    """Every error up to the returned value is small enough, and the next one is not."""
     rows = [replace(row(str(k), "f64"), errors=tuple(e)) for k, e in enumerate(table)]
     last = page.last_value(rows, 10, digits)
     count = 0 if last is None else int(last) + 1
@@ -184,7 +184,7 @@ def test_whole_digits(digits: int) -> None:
 
 
 def test_alt_text_says_how_far_six_digits_go() -> None:
-    """Who cannot see the map is told the values at its two ends."""
+    """The alternative text of the map has the values at its two ends."""
     (picture,) = page.pictures(study())
     assert "On f32 six digits are left after 1 period up to 1e-1" in picture.alt
     assert "after 100 periods up to none of these" in picture.alt

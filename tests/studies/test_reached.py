@@ -131,7 +131,7 @@ def test_a_precision_that_does_not_suffice_is_named(monkeypatch: pytest.MonkeyPa
 
 
 class _Balls(Enclosed):
-    """One narrow ball and one that stays wide."""
+    """A closed form with one narrow ball and one that stays wide."""
 
     regime = "test"
 
@@ -140,7 +140,7 @@ class _Balls(Enclosed):
 
 
 class _Numbers(Settled):
-    """One number that settles and one that does not."""
+    """A closed form with one number that settles and one that does not."""
 
     regime, route = "test", "mpmath"
 

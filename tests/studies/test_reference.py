@@ -363,7 +363,7 @@ def test_a_scene_that_cannot_be_solved_is_named(error: Exception, text: str) -> 
 
 
 def test_documents_come_in_the_order_asked_for() -> None:
-    """Whichever worker ends first, and each is told of once."""
+    """Documents keep the order of the request, and each is reported once."""
     asked, finished = ["euler/rest", "euler/nesc-brick", "euler/generic"], []
     made = documents(reference, asked, finished.append)
     assert [each["scene"] for each in made] == asked

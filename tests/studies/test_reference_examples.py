@@ -80,7 +80,7 @@ def test_the_example_converges_to_the_reference(example: Path) -> None:
 
 
 def test_the_example_says_how_well_the_reference_is_known(example: Path) -> None:
-    """Its radius is that of the CSV, and below the roundoff of any double that is compared with it."""
+    """The printed radius is that of the CSV, and below the roundoff of doubles."""
     _, printed = run(example, generic(), MOMENTS, "1e-6")
     (radius,) = re.findall(r"the reference is known to ([0-9.e-]+)", printed)
     rows = generic().read_text(encoding="utf-8").splitlines()

@@ -141,7 +141,7 @@ def place_of(scene: str) -> str:
 
 
 def test_links_resolve(site: dict[str, str | bytes], pages: dict[str, Page]) -> None:
-    """Every link within the site leads to a file of it, and to an anchor that is there."""
+    """All links within the site lead to its files and to existing anchors."""
     links_resolve(pages, site)
 
 
@@ -184,7 +184,7 @@ def text_of(content: str | bytes) -> str:
 
 
 def test_docs_and_report_have_one_navigation(pages: dict[str, Page]) -> None:
-    """Every page, of docs, of the report or of a scene, lists the same pages beside it."""
+    """Pages of docs, of the report and of scenes have the same navigation."""
     listed = {
         name: re.findall(r'reference internal" href="[^"]*">([^<]+)<', page.navigation)
         for name, page in pages.items()
@@ -231,7 +231,7 @@ def test_anchors_are_one_of_a_kind(pages: dict[str, Page]) -> None:
 
 
 def test_motions_name_what_is_there(pages: dict[str, Page]) -> None:
-    """Every colour that a motion names is in both themes."""
+    """Both themes have all colours that a motion names."""
     themes = conf.html_theme_options
     light, dark = themes["light_css_variables"], themes["dark_css_variables"]
     assert light.keys() == dark.keys()
@@ -289,7 +289,7 @@ def test_exact_values_are_a_trajectory(
 
 
 def test_the_polhode_lies_on_its_ellipsoid(report: Path) -> None:
-    """Every omega of the course satisfies omega.I omega = 2T to the digits of the surface."""
+    """The course satisfies omega.I omega = 2T to the digits of the surface."""
     portrait = Report(report).portrait("euler/with-attitude")
     assert portrait is not None
     figure = motion.polhode(portrait, None)
@@ -323,7 +323,7 @@ def test_every_frame_holds_its_motion(report: Path, scene: str) -> None:
 
 
 def test_a_loaded_body_has_no_ellipsoid(report: Path) -> None:
-    """Under a moment the energy is not kept: the curve of omega stands alone."""
+    """A moment changes the energy, so that the curve of omega has no surface."""
     portrait = Report(report).portrait("euler/constant-moment")
     assert portrait is not None
     figure = motion.polhode(portrait, None)
@@ -333,7 +333,7 @@ def test_a_loaded_body_has_no_ellipsoid(report: Path) -> None:
 
 @given(st.lists(st.tuples(*[st.floats(-1, 1)] * 3), min_size=3, max_size=60), st.floats(1e-3, 0.2))
 def test_a_thinned_curve_is_the_same_curve(rows: list[tuple[float, ...]], part: float) -> None:
-    """Every point that was left out is within the tolerance of the chord between its neighbours."""
+    """All points that were left out are within the tolerance of the chords."""
     places = motion.thinned(rows, part)
     extent = max(max(row[i] for row in rows) - min(row[i] for row in rows) for i in range(3))
     assert (places[0], places[-1]) == (0, len(rows) - 1)
@@ -466,7 +466,7 @@ def test_the_command_says_what_is_missing(
 def test_a_site_of_committed_files_alone_is_whole(
     report: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Without records and portraits each scene has its page and all links resolve; that is said."""
+    """The site without records and portraits has a page for each scene, and a message says so."""
     place = tmp_path / "clone"
     shutil.copytree(report, place, ignore=shutil.ignore_patterns(*BULK))
     assert main(["publish", "--from", str(place), "--site", str(tmp_path / "site")]) == 0

@@ -42,7 +42,7 @@ from taylor_verify.studies.tradeoff.setting import setting as real_setting
 
 @given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=30))
 def test_the_interval_is_made_of_the_values_and_holds_the_median(values: list[float]) -> None:
-    """Its ends are two of the values, as far from the lowest as from the highest."""
+    """The ends of the interval are two of the values, with symmetric ranks."""
     estimated = estimate(values)
     assert estimated.median == median(values)
     if estimated.low is not None and estimated.high is not None:
@@ -53,7 +53,7 @@ def test_the_interval_is_made_of_the_values_and_holds_the_median(values: list[fl
 
 @pytest.mark.parametrize("count", range(1, 40))
 def test_the_rank_is_the_largest_that_has_the_confidence(count: int) -> None:
-    """One step further in, the probability is below it; and it is that of the binomial distribution."""
+    """The next rank has less than the confidence, by the binomial distribution."""
     rank = place(count, CONFIDENCE)
     if rank:
         assert coverage(count, rank) >= CONFIDENCE
@@ -63,14 +63,14 @@ def test_the_rank_is_the_largest_that_has_the_confidence(count: int) -> None:
 
 
 def test_the_published_number_of_processes_is_the_smallest_that_suffices() -> None:
-    """With one process fewer not even the extremes would hold the median with 95 %."""
+    """One process fewer is too few for 95 %, even for the interval between the extremes."""
     assert place(PROCESSES, CONFIDENCE) == 1
     assert place(PROCESSES - 1, CONFIDENCE) == 0
     assert estimate(range(PROCESSES - 1)).low is None
 
 
 def test_the_interval_holds_the_median_as_often_as_it_says() -> None:
-    """Drawn from a distribution with a long tail, whose median is 1, in a thousand sets of six."""
+    """A thousand sets of six values with a long tail have intervals that cover the median as stated."""
     draw = random.Random(7)
     sets = 4000
     covered = 0
@@ -166,7 +166,7 @@ def test_a_ratio_is_formed_within_its_round(machine: Machine, scene: Scene) -> N
 def test_each_round_has_an_order_of_its_own_and_every_setting(
     machine: Machine, scene: Scene
 ) -> None:
-    """Nothing meets always the same neighbour; the yardstick is in every round, asked for or not."""
+    """The order of each round is random, and every round has the yardstick."""
     asked = names(*(f"a{k}:0.04" for k in range(8)))
     measured(scene, asked, seed=3, rounds=4, resolution=1e-9, clock=machine.clock)
     each = [machine.solved[k : k + 9] for k in range(0, len(machine.solved), 9)]
@@ -196,7 +196,7 @@ def test_what_fails_is_left_out(machine: Machine, scene: Scene) -> None:
 def test_what_is_dear_is_solved_once(
     machine: Machine, scene: Scene, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Its only solve counts, over the yardstick of all the rounds."""
+    """The only solve of a dear setting is divided by the yardstick of all rounds."""
     monkeypatch.setattr(rounds, "_DEAR", -1.0)
     ratios = measured(scene, names("dear:0.3"), 1, 3, 1e-9, machine.clock)
     assert machine.solved.count("dear:0.3") == 1
@@ -206,7 +206,7 @@ def test_what_is_dear_is_solved_once(
 
 
 def test_the_resolution_is_the_smallest_step_of_the_clock() -> None:
-    """Of a clock that ticks in quarters, a quarter, however often it is asked in between."""
+    """The resolution of a clock that ticks in quarters is a quarter."""
     asked = 0
 
     def clock() -> float:
@@ -234,7 +234,7 @@ def test_every_published_setting_can_be_named_again(name: str) -> None:
 
 
 def test_the_compiled_integrators_of_other_libraries_are_known() -> None:
-    """Each name that is published with --outside is one that there is."""
+    """All names that are published with --outside are known solvers."""
     scene = load("kirchhoff/general-body")
     extra = set(published_settings(scene, with_outside=True)) - set(published_settings(scene))
     peers = {one for one in extra if isinstance(one.solver, Peer)}
@@ -279,12 +279,12 @@ def test_numbers_and_times_are_apart(monkeypatch: pytest.MonkeyPatch, scene: Sce
 
 
 def test_the_yardstick_is_what_everybody_gets() -> None:
-    """It is the driver as `run` takes it by default."""
+    """The yardstick is the default driver of `run`."""
     assert real_setting(*_taylor()).solver == Taylor()  # type: ignore[arg-type]
 
 
 def test_a_process_of_its_own_measures_the_same_settings(scene: Scene) -> None:
-    """What passes there and back is names and numbers."""
+    """Only names and numbers are sent between processes."""
     short = replace(scene, clock=replace(scene.clock, instants=scene.clock.instants[:3]))
     asked = [(short, names("taylor", "taylor?tol=1e-6"))]
     ratios = in_a_new_process(measurement.one_process, asked, 1, 1)

@@ -58,7 +58,7 @@ def test_no_time_stands_with_the_numbers(folder: Path) -> None:
 
 
 def test_what_was_stored_is_read_again(folder: Path) -> None:
-    """Every row comes back, with its ratio and the width of its interval as a spread."""
+    """All rows are read back, with ratios and spreads."""
     loaded = load(folder)
     assert loaded is not None
     (trade,) = loaded.trades
@@ -188,7 +188,7 @@ def test_the_front_is_what_nothing_beats() -> None:
 
 
 def test_a_false_success_of_the_closed_form_stands_out(folder: Path) -> None:
-    """Its error is bold, and what it claims is called false."""
+    """A false success of the closed form has a bold error and the word for it."""
     text = section(text_of(folder), "The closed form in plain doubles")
     assert "**4.00e18**" in text
     assert "**success, falsely**" in text
@@ -224,7 +224,7 @@ def test_the_sheet_has_a_row_for_every_setting(folder: Path) -> None:
 
 
 def test_the_page_can_be_made_again_from_the_data(folder: Path) -> None:
-    """It is a function of what is stored."""
+    """The page made from the loaded data is the same."""
     loaded = load(folder)
     assert loaded is not None
     assert page(loaded, folder) == text_of(folder)

@@ -1,4 +1,4 @@
-"""Which settings a trade-off compares, how each is named, and what one that cannot run is called."""
+"""Settings of a trade-off: their names, and the outcomes of those that cannot run."""
 
 from __future__ import annotations
 
@@ -122,7 +122,7 @@ def test_the_chosen_stand_beside_the_yardstick() -> None:
 
 
 def test_a_solver_that_knows_none_of_the_rungs_says_so() -> None:
-    """It stands in the trade with its reason rather than being forgotten."""
+    """A solver without any of the rungs is in the trade with its reason."""
     asked_settings = chosen(["closed-form:ellipj"], ["f80", "f128"])
     (one,) = [one for one in asked_settings if not one.is_integrator]
     (p,) = trade_off(short("euler/generic"), [one], repeats=1).points
@@ -131,7 +131,7 @@ def test_a_solver_that_knows_none_of_the_rungs_says_so() -> None:
 
 
 def test_the_integrators_of_other_libraries_are_asked_for_by_name() -> None:
-    """Each at four tolerances, coarsest first, on f64, where all of them are at home."""
+    """The integrators of other libraries have four tolerances each, coarsest first, on f64."""
     integrators = outside(["f64", "f128"])
     assert integrators
     assert {one.rung.name for one in integrators} == {"f64"}
@@ -145,7 +145,7 @@ def test_the_integrators_of_other_libraries_are_asked_for_by_name() -> None:
 
 
 def test_odefun_is_withheld_from_a_long_motion() -> None:
-    """It would take minutes: the trade says so and does not begin it."""
+    """The trade does not run odefun on a long motion, and gives the reason."""
     scene = load("euler/generic")
     long = replace(scene, clock=Clock(Fraction(0), (Fraction(0), Fraction(10**6))))
     slow = [one for one in settings(long, ["f64"]) if one.family == "mpmath odefun"]
@@ -167,7 +167,7 @@ def test_odefun_is_withheld_from_a_long_motion() -> None:
     ],
 )
 def test_an_unsuited_solver_is_unavailable_and_not_run(scene: str, name: str, reason: str) -> None:
-    """Its verdict fails no gate, and its point in the trade is not run; both say why."""
+    """An unsuited solver fails no gate, and its point in the trade is not run, with the reason."""
     (verdict,) = taylor_verify.run(short(scene), name).verdicts
     assert verdict.verdict is Status.UNAVAILABLE
     assert reason in verdict.because
@@ -187,7 +187,7 @@ def test_a_solver_of_ones_own_suits_everything() -> None:
 
 
 def test_a_recommendation_can_be_typed() -> None:
-    """Its name, given to `run`, is the same solver, and meets the target again."""
+    """The name of the recommended solver, given to `run`, meets the target again."""
     scene = short("euler/generic")
     asked = [one for one in settings(scene, ["f64"]) if isinstance(one.solver, Taylor)]
     recommendation = recommend(scene, 1e-5, asked)

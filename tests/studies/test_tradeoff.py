@@ -205,7 +205,7 @@ def test_a_trade_says_what_rounding_alone_leaves(scene: Scene) -> None:
 
 
 def test_each_round_has_an_order_of_its_own(scene: Scene) -> None:
-    """Every setting is solved once first and then once a round; the rounds differ in order."""
+    """All settings are solved once first and then once in each round, in different orders."""
     solved: list[str] = []
 
     @dataclass(frozen=True)
@@ -229,7 +229,7 @@ def test_each_round_has_an_order_of_its_own(scene: Scene) -> None:
 
 
 def test_a_family_is_not_set_finer_than_patience_has_it(scene: Scene) -> None:
-    """Behind a setting that takes too long the finer ones of its family are not run, and say why."""
+    """Settings finer than one that takes too long are not run, with the reason."""
     slow, finer, other = (
         Scripted(n, s) for n, s in (("slow", 1e3), ("finer", 1e3), ("other", 1.0))
     )
@@ -362,7 +362,7 @@ def test_nothing_drifts_under_loads() -> None:
 
 
 def test_cold_caches_leave_the_environment_as_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Inside, heyoka's cache is an empty folder of its own; after it, what was set before."""
+    """heyoka's cache is an empty folder inside the context, and the earlier one after it."""
     monkeypatch.setenv("HEYOKA_CACHE_DIR", "before")
     with cold_caches():
         assert list(Path(os.environ["HEYOKA_CACHE_DIR"]).iterdir()) == []

@@ -1,4 +1,4 @@
-"""How a plain call and the driver are measured on a free body: the same scene, the same judge.
+"""Measurement of a plain call and the driver on a free body: the same scene, the same judge.
 
 The plain call is judged on the moments and the omega that it was given, held exactly, as `check`
 holds anybody's answer; the driver on the data that it rounds itself.
@@ -51,7 +51,7 @@ def free(name: str, omega: Sequence[float], end: float, samples: int = 11, start
 
 
 def compared(scene: Scene, rung: str = "f64", typed: bool = False) -> TrapCase:
-    """The plain call and the driver on one scene, both as the judge finds them."""
+    """Return the judged case of the plain call and the driver on one scene."""
     problem = adopt(scene, rung_named(rung), scene.clock.instants)
     plain = Plain(typed=typed)
     trajectory = plain.solve(problem)
@@ -81,7 +81,7 @@ def driver_on(scene: Scene, rung: str = "f64") -> tuple[str, float | None]:
 
 
 def error_at(state: Iterable[Any], elapsed: Fraction) -> float:
-    """Of the generic body's omega so long after its start, relative to the true one."""
+    """Return the relative error of the generic body's omega at a time after its start."""
     numbers = [float(value) for value in state]
     if not all(isfinite(value) for value in numbers):
         return inf

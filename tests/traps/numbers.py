@@ -43,7 +43,7 @@ def to_real128(number: Any) -> Any:
 
 
 def equal(number: Any, other: Any) -> Any:
-    """Whether a real is the same number as one of another library."""
+    """Compare a real with a number of another library."""
     return number == other
 
 
@@ -71,7 +71,7 @@ def _relative(value: Any, truth: Any) -> float:
 
 
 def _held_norm(vector: tuple[Fraction, ...]) -> Any:
-    """As the judge forms a norm: of numbers held exactly, at a precision of its own."""
+    """Return a norm formed like the judge's: of exact numbers, at a precision of its own."""
     with mp.workprec(_BITS):
         return mp.norm([held_exactly(entry) for entry in vector])
 
@@ -148,7 +148,7 @@ def _to_real128() -> list[TrapCase]:
 
 
 def _sympy() -> list[TrapCase]:
-    """One case where SymPy is installed, none where it is not."""
+    """Return one case with SymPy installed, and none without it."""
     if find_spec("sympy") is None:
         return []
     digits = "0.1"

@@ -40,7 +40,7 @@ def tolerance_of_zero() -> Any:
 
 
 def unset(w: Sequence[float], end: float) -> tuple[Any, Array]:
-    """The same body with parameters in place of numbers, which are then forgotten."""
+    """Propagate the same body with parameters that are never set."""
     w1, w2, w3 = hy.make_vars("w1", "w2", "w3")
     equations = [
         (w1, hy.par[0] * (w2 * w3)),

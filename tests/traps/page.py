@@ -103,7 +103,7 @@ def load(folder: Path) -> TrapsStudy:
 
 
 def page(stored: TrapsStudy) -> str:
-    """What it proves, every trap in one line, every trap in numbers, and what the gates see."""
+    """Return the page: its findings, every trap in one line and in numbers, and the gates."""
     traps = stored.traps
     blocks = [
         f"{_MAKER}\n# A plain heyoka call against this suite's driver",
@@ -265,7 +265,7 @@ def _cases(trap: TrapRow) -> str:
 
 
 def proven(traps: Sequence[TrapRow]) -> list[str]:
-    """Sentences, each true of these rows; one that is true of none is not said."""
+    """Return the sentences that are true of these rows."""
     sentences = [_silently(traps), _conserving(traps), _unseen(traps), _seen_by_state(traps)]
     return [sentence for sentence in sentences if sentence]
 
@@ -282,7 +282,7 @@ def _silently(traps: Sequence[TrapRow]) -> str:
 
 
 def conserving(traps: Iterable[TrapRow]) -> list[tuple[TrapRow, TrapCase]]:
-    """Answers that every gate on a conserved quantity passes."""
+    """Return the answers that pass every gate on a conserved quantity."""
     return [
         (trap, case)
         for trap in traps
@@ -312,7 +312,7 @@ def _conserving(traps: Iterable[TrapRow]) -> str:
 
 
 def _unseen(traps: Iterable[TrapRow]) -> str:
-    """What passes the gate of the state too."""
+    """Return a sentence on answers that pass the gate of the state too."""
     lost = [
         (trap, case)
         for trap, case in conserving(traps)

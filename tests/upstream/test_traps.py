@@ -1,4 +1,4 @@
-"""Plain calls of heyoka go wrong as published, in silence where it says so; the driver does not."""
+"""Plain calls of heyoka go wrong as published, silently if marked so; the driver does not."""
 
 import ast
 import csv
@@ -71,7 +71,7 @@ def driver_errors(key: str) -> list[float]:
 
 
 def rising(values: Sequence[float], factor: float) -> bool:
-    """Each value is more than so many times the one before."""
+    """Return True if each value is more than ``factor`` times the one before."""
     return all(b >= factor * a for a, b in pairwise(values))
 
 
@@ -96,7 +96,7 @@ def test_literals_of_the_rung_leave_all_its_digits() -> None:
 
 
 def test_error_of_a_literal_does_not_depend_on_the_rung() -> None:
-    """It is an error of the equations and not of the arithmetic: the same at 113 and at 237 bits."""
+    """The error of a literal is one of the equations, and the same at 113 and at 237 bits."""
     quad, octuple = on_rung("T1", "f128", "f128").error, case("T1", "mp237").error
     assert quad == pytest.approx(octuple, rel=1e-12)
 
@@ -122,7 +122,7 @@ def test_tiny_states_are_taken_in_one_step() -> None:
 
 @pytest.mark.parametrize("key", ["T2a", "T2b", "S1", "T3"])
 def test_driver_answers_at_every_size_and_distance(key: str) -> None:
-    """Within a hundred roundings: fewer than 400 steps, a few roundings each, in random directions."""
+    """The driver's error is within 100 roundings, as of 400 steps with a few random roundings each."""
     assert all(error <= 100 * U for error in driver_errors(key))
 
 
@@ -281,7 +281,7 @@ def test_outcome_is_reported_as_published(key: str, outcome: str) -> None:
 
 
 def test_forgotten_parameters_stop_the_body() -> None:
-    """Without its coefficients a body keeps its omega, and at time_limit."""
+    """A body without its coefficients keeps its omega, and ends at time_limit."""
     (row,) = cases("S13")
     assert row.said == "time_limit"
     assert row.error >= 0.1

@@ -27,7 +27,7 @@ def test_every_script_belongs_to_a_trap_and_to_a_paragraph() -> None:
 def test_script_shows_its_behaviour_with_the_heyoka_that_is_installed(
     script: Path, tmp_path: Path
 ) -> None:
-    """It names one heyoka in its header, prints what is expected and what is got, and exits with 1."""
+    """A script names one heyoka in its header, prints expected and actual results, and exits with 1."""
     if script.stem == "sympy_float" and find_spec("sympy") is None:
         pytest.skip("sympy asks for mpmath below 1.4 and is not installed")
     assert re.search(r'^# dependencies = \["heyoka==[\d.]+"', script.read_text(), re.MULTILINE)

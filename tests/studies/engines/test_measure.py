@@ -48,14 +48,14 @@ def ran(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 
 def test_what_is_stored_is_not_run_again(ran: list[str], tmp_path: Path) -> None:
-    """With every answer known nothing is run, and the answers stand in the order of the list."""
+    """Nothing is run if every answer is known, and the answers are in the order of the list."""
     measured = measure(ENTRIES, known(), Unfinished(tmp_path), lambda words: None)
     assert ran == []
     assert [answer.row.key for answer in measured] == [run.key for run in ENTRIES.runs()]
 
 
 def test_a_measurement_goes_on_after_a_kill(ran: list[str], tmp_path: Path) -> None:
-    """What had ended is in the store and is not run again; a damaged file is."""
+    """Finished runs are in the store and are not repeated; those of damaged files are."""
     store = Unfinished(tmp_path / "unfinished")
     for answer in answers()[:4]:
         store.keep(answer)
@@ -88,7 +88,7 @@ def test_one_engine_is_measured_alone(ran: list[str], tmp_path: Path) -> None:
 def test_another_adapter_is_another_run(
     ran: list[str], tmp_path: Path, change: dict[str, Any]
 ) -> None:
-    """So is a run that failed, or had no environment: the machine may be at fault."""
+    """Runs of another adapter, failed runs and runs without an environment are run again."""
     key, answer = next(iter(known().items()))
     changed = {**known(), key: replace(answer, row=replace(answer.row, **change))}
     measure(ENTRIES, changed, Unfinished(tmp_path), lambda words: None)
@@ -98,7 +98,7 @@ def test_another_adapter_is_another_run(
 def test_an_engine_that_cannot_be_installed_is_no_failure(
     ran: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Its rows are unavailable with the reason, the environment is asked for once, the rest is run."""
+    """Its rows are unavailable with the reason, its environment is tried once, and the others are run."""
     prepared: list[str] = []
 
     def prepare(name: str, tell: object) -> None:
@@ -117,7 +117,7 @@ def test_an_engine_that_cannot_be_installed_is_no_failure(
 
 
 def test_a_run_that_ends_early_is_a_row() -> None:
-    """It failed, with how it ended; there is no trajectory and no error."""
+    """The row has failed, with the exit status; it has no trajectory and no error."""
     bad = replace(SPINNER, solver="process:false", values=())
     (answer,) = answered([next(bad.runs(ENTRIES.scene))])
     assert answer.row.standing is Standing.FAILED
@@ -129,7 +129,7 @@ def test_a_run_that_ends_early_is_a_row() -> None:
 
 
 def test_an_answer_reads_back_to_the_last_bit() -> None:
-    """Its states are of the kind of float that they were."""
+    """The states keep their type of float."""
     for answer in answers():
         assert answer.states is not None
         for states in (answer.states, answer.states.astype(np.float32)):
@@ -141,7 +141,7 @@ def test_an_answer_reads_back_to_the_last_bit() -> None:
 
 
 def test_stored_trajectories_are_judged_to_the_same_errors(tmp_path: Path) -> None:
-    """Without an engine the errors, floors and causes are those of the measurement."""
+    """The errors, floors and causes are those of the measurement, although no engine runs."""
     document, file = board()
     stored.write(tmp_path, document, file)
     read = stored.find(tmp_path)
@@ -151,7 +151,7 @@ def test_stored_trajectories_are_judged_to_the_same_errors(tmp_path: Path) -> No
 
 
 def test_a_changed_trajectory_has_other_errors(tmp_path: Path) -> None:
-    """The errors are those of the states in the file, and of nothing else."""
+    """The errors follow from the states in the file alone."""
     answer = answers()[0]
     assert answer.states is not None
     states = answer.states.copy()
@@ -174,7 +174,7 @@ def test_the_file_of_trajectories_is_the_same_every_time() -> None:
 
 
 def test_a_lost_trajectory_is_named(tmp_path: Path) -> None:
-    """A row whose trajectory is not in the file, and a file that is none, are told."""
+    """The error names a row without a trajectory in the file, and a file of another kind."""
     document, file = board()
     stored.write(tmp_path, document, file)
     row = replace(document.study.rows[0], place=99)
@@ -186,7 +186,7 @@ def test_a_lost_trajectory_is_named(tmp_path: Path) -> None:
 
 
 def test_all_are_judged_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The pool is given every answer, and says each as it ends."""
+    """Every answer is judged in the pool, and reported as it ends."""
     messages: list[str] = []
 
     def run_all(work: Any, asked: list[Answer], **options: Any) -> list[Answer]:

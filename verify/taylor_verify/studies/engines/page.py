@@ -63,8 +63,8 @@ _FAIRNESS: Final = (
 )
 _OBJECT: Final = (
     "A row that is unfair to an engine is a fault of this project. Please report the row, and the call of "
-    'the engine that would do better: `taylor-verify run SCENE --solver "outside:NAME?..."` of the engine\'s '
-    "page shows it as we see it.",
+    "the engine that would do better: "
+    '`taylor-verify run SCENE --solver "outside:NAME?..."` of the engine\'s page shows it as we see it.',
     "A better adapter is one file, `cases/README.md` says how (To add an engine); a new setting or "
     "version is a word in the engine's row of `verify/taylor_verify/studies/engines/entries.toml`.",
     "An engine of your own needs no adapter here to be judged: `docs/bring-your-engine.md`.",
