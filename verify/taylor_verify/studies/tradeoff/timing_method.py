@@ -54,7 +54,7 @@ def how_it_was_timed(trades: Trades) -> list[str]:
         f"{m.processes} fresh processes, one after the other. Hash seeds, places in memory and the "
         "processor's frequency vary between processes, not within one, so the sample is the number of "
         "processes, and not of solves.",
-        f"In each {m.rounds} rounds; in a round every setting once, in an order drawn anew (seed "
+        f"Each process has {m.rounds} rounds. A round has every setting once, in a random order (seed "
         f"{m.seed}). One measurement is as many solves as take {figure(m.least_seconds)} s or "
         f"{m.times_resolution} times the clock's resolution ({figure(m.clock_resolution)} s), "
         "whichever is longer, so that the resolution is below 1 %. Python's collector of garbage is "
@@ -79,8 +79,8 @@ def _brackets(trades: Trades) -> str:
     if not m.coverage >= m.confidence:
         return f"No interval is given: {formula}, where the extremes have no more than {coverage}."
     return (
-        f"The brackets enclose the median of the distribution of processes with {coverage}, however "
-        f"that is spread: {formula}. They do not apply to another machine."
+        f"The brackets enclose the median of the distribution of processes with {coverage}, for any "
+        f"distribution: {formula}. They do not apply to another machine."
     )
 
 

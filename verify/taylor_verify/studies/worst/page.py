@@ -56,7 +56,7 @@ def page(study: WorstStudy) -> str:
 
 def _searched(study: WorstStudy) -> str:
     return (
-        f"In each family {study.runs} runs are spent on a population of places that moves by "
+        f"In each family {study.runs} runs are spent on a population of points that moves by "
         "differential evolution"
     )
 
