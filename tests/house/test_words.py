@@ -23,13 +23,24 @@ BEGINNING: Final = re.compile(
 # Participles, pronouns and verbs that do not say what a variable holds.
 NAMELESS: Final = re.compile(r"_*(found|told|kept|held|seen|looks|said|gone|begun|it)_*")
 # The rooms without such names, in the package and among the tests.
-ROOMS: Final = ("judge", "exact", "models", "solvers", "scenes", "records", "claims", "batch")
+ROOMS: Final = (
+    "judge",
+    "exact",
+    "models",
+    "solvers",
+    "scenes",
+    "records",
+    "claims",
+    "batch",
+    "studies",
+    "publish",
+)
 # The tests of records are among those of the rooms that write them.
-TEST_ROOMS: Final = tuple(room for room in ROOMS if room != "records")
+TEST_ROOMS: Final = (*(room for room in ROOMS if room != "records"), "site", "upstream", "traps")
 # Functions of libraries, which take a flag without a name.
 UNNAMED_FLAGS: Final = re.compile(r"set_\w+|Parse|Rotation|integrand|c_numba_cysolve_ivp")
-# A key of published JSON.
-KEYS: Final = frozenset({("Convention", "found")})
+# Keys of published JSON.
+KEYS: Final = frozenset({("Convention", "found"), ("DefectRow", "told"), ("TrapCase", "said")})
 
 
 def docstrings(source: str) -> Iterator[tuple[int, str]]:

@@ -1,4 +1,4 @@
-"""What a CI is told is never greener than the exit status, and is what its readers can read."""
+"""Reports for a CI are never greener than the exit status, and valid for their readers."""
 
 from __future__ import annotations
 
@@ -57,9 +57,9 @@ def remark(quantity: str = "omega", status: Status = Status.FAIL, text: str = "g
 
 QUANTITIES = ("omega", "T", "H2", "attitude")
 MIXTURES = [
-    [row(status, quantity=name) for status, name in zip(found, QUANTITIES, strict=False)]
+    [row(status, quantity=name) for status, name in zip(rows, QUANTITIES, strict=False)]
     for count in (1, 2, 3)
-    for found in combinations_with_replacement(Status, count)
+    for rows in combinations_with_replacement(Status, count)
 ]
 
 
@@ -75,9 +75,7 @@ def is_green(text: str) -> bool:
 
 def hidden(mixtures: Iterable[list[Verdict]] = MIXTURES) -> list[list[Verdict]]:
     """The verdicts whose JUnit is of another colour than their exit status."""
-    return [
-        found for found in mixtures if is_green(junit.junit(found)) != (exit_status(found) == 0)
-    ]
+    return [rows for rows in mixtures if is_green(junit.junit(rows)) != (exit_status(rows) == 0)]
 
 
 def test_junit_is_green_where_the_exit_status_is_0_and_only_there() -> None:
@@ -97,7 +95,7 @@ def test_a_status_that_is_hidden_is_caught(
 
 
 def test_a_status_nobody_thought_of_is_not_green(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without an entry there is no file, rather than a green one."""
+    """A status without an entry raises an error instead of a green file."""
     rest = {
         status: name for status, name in junit._ELEMENTS.items() if status is not Status.VACUOUS
     }
@@ -116,7 +114,10 @@ def test_junit_counts_what_it_holds() -> None:
     ]
     root = ElementTree.fromstring(junit.junit(rows))
     assert [suite.get("name") for suite in root] == [
-        *("euler/generic f32", "euler/generic f64", "kirchhoff/screw f32", "kirchhoff/screw f64")
+        "euler/generic f32",
+        "euler/generic f64",
+        "kirchhoff/screw f32",
+        "kirchhoff/screw f64",
     ]
     assert len(list(root.iter("testcase"))) == len(rows)
     counted = {"tests": "testcase", "failures": "failure", "errors": "error", "skipped": "skipped"}
@@ -148,16 +149,16 @@ def faults(element: ElementTree.Element) -> list[str]:
     """The faults that either schema finds in a document of JUnit."""
     attributes, children = SUREFIRE[element.tag]
     names = {name.rstrip("*") for name in attributes}
-    found = [f"{element.tag}@{name}" for name in set(element.keys()) - names]
-    found += [
+    wrong = [f"{element.tag}@{name}" for name in set(element.keys()) - names]
+    wrong += [
         f"no {n}" for n in attributes if n.endswith("*") and element.get(n.rstrip("*")) is None
     ]
     places = [children.index(child.tag) if child.tag in children else -1 for child in element]
     if places != sorted(places) or -1 in places:
-        found.append(f"children of {element.tag}: {[child.tag for child in element]}")
+        wrong.append(f"children of {element.tag}: {[child.tag for child in element]}")
     if not re.fullmatch(r"[0-9]+\.[0-9]{3}", element.get("time", "0.000")):
-        found.append(f"time {element.get('time')}")
-    return found + [fault for child in element for fault in faults(child)]
+        wrong.append(f"time {element.get('time')}")
+    return wrong + [fault for child in element for fault in faults(child)]
 
 
 @pytest.mark.parametrize("seconds", [None, 0.0, 1234.56789, math.nan, math.inf, -1.0])
@@ -175,12 +176,12 @@ def test_junit_has_the_structure_of_surefire_and_jenkins(seconds: float | None) 
 def test_any_text_makes_a_document(scene: str, quantity: str, because: str) -> None:
     """Markup, control characters and lone surrogates of somebody's program are escaped; what XML can
     hold comes back as it was."""
-    found = row(Status.FAIL, scene=scene, quantity=quantity, reason=stated(Cause.STATED, because))
-    text = junit.junit([found])
+    verdict = row(Status.FAIL, scene=scene, quantity=quantity, reason=stated(Cause.STATED, because))
+    text = junit.junit([verdict])
     text.encode()
     (failure,) = ElementTree.fromstring(text).iter("failure")
-    if not junit._NOT_XML.search(sentence(found)):
-        assert failure.get("message") == sentence(found)
+    if not junit._NOT_XML.search(sentence(verdict)):
+        assert failure.get("message") == sentence(verdict)
 
 
 def test_what_xml_cannot_hold_is_escaped() -> None:
@@ -204,22 +205,22 @@ def test_a_failure_says_what_a_person_needs() -> None:
 def test_an_error_that_is_no_number_is_told() -> None:
     """NaN is neither left out nor printed as a size."""
     lost = row(Status.FAIL, max=None, ratio=None)
-    said = sentence(lost)
-    assert said.startswith("omega: not a finite number; ")
-    assert "largest error not finite (max|omega|) at t = 7, where 2.00e-13 is allowed" in said
+    text = sentence(lost)
+    assert text.startswith("omega: not a finite number; ")
+    assert "largest error not finite (max|omega|) at t = 7, where 2.00e-13 is allowed" in text
     assert sentence(unscored(Status.FAIL, "it crashed")) == "omega: it crashed"
 
 
 def test_a_regression_fails_the_case_that_passed() -> None:
-    """It stands in its row's case; a row that vanished gets one in the suite of its run."""
+    """A regression is in the case of its row; a vanished row gets a case in the suite of its run."""
     rows = [row(), row(quantity="T"), row(rung="f32")]
     root = ElementTree.fromstring(junit.junit(rows, [remark(), remark("H2", text="gone")]))
-    found = {
+    messages = {
         (suite.get("name"), case.get("name")): [inside.get("message") for inside in case]
         for suite in root
         for case in suite.iter("testcase")
     }
-    assert found == {
+    assert messages == {
         ("euler/generic f64", "omega"): ["grew"],
         ("euler/generic f64", "T"): [],
         ("euler/generic f64", "H2"): ["gone"],
@@ -251,11 +252,11 @@ COMMAND = re.compile(r"::(error|warning|notice) ([^:]*)::(.*)")
 
 def read_by_runner(line: str) -> tuple[str, dict[str, str], str]:
     """A line as the runner takes it apart."""
-    found = COMMAND.fullmatch(line)
-    assert found is not None
-    pairs = (pair.partition("=") for pair in found[2].split(","))
+    command = COMMAND.fullmatch(line)
+    assert command is not None
+    pairs = (pair.partition("=") for pair in command[2].split(","))
     properties = {name: _unescaped(value) for name, _, value in pairs}
-    return found[1], properties, _unescaped(found[3])
+    return command[1], properties, _unescaped(command[3])
 
 
 def _unescaped(text: str) -> str:
@@ -288,15 +289,15 @@ def test_each_status_has_its_level() -> None:
 @given(st.text(), st.text())
 def test_the_runner_reads_back_what_was_said(quantity: str, because: str) -> None:
     """Whatever a program wrote to stderr, a verdict is one line and no command of the program's."""
-    found = row(
+    verdict = row(
         Status.FAIL, scene="a,b: 100%.toml", quantity=quantity, reason=stated(Cause.STATED, because)
     )
-    (line,) = annotation_lines([found])
+    (line,) = annotation_lines([verdict])
     # GitHub's runner splits its input at these.
     assert not set(line) & {"\r", "\n"}
     if not re.search("%(0D|0A|3A|2C|25)", quantity + because):
         _, properties, text = read_by_runner(line)
-        assert text == sentence(found)
+        assert text == sentence(verdict)
         assert properties["file"] == "a,b: 100%.toml"
 
 
@@ -434,7 +435,7 @@ def test_check_tells_a_ci_the_same_way(short: Path, capsys: Captured) -> None:
 
 
 @pytest.mark.parametrize(
-    ("spoil", "said"),
+    ("spoil", "message"),
     [
         (lambda row: row.update(verdict="passed"), "'passed' is not one of"),
         (lambda row: row.update(max=None), "None is not of type 'number' @ $.verdicts[0].max"),
@@ -450,14 +451,14 @@ def test_check_tells_a_ci_the_same_way(short: Path, capsys: Captured) -> None:
     ],
 )
 def test_a_spoiled_document_is_not_of_the_schema(
-    spoil: Callable[[dict[str, Any]], Any], said: str
+    spoil: Callable[[dict[str, Any]], Any], message: str
 ) -> None:
-    """Each broken twin of a row is named; a key that nobody knows yet is no fault."""
+    """The schema names the fault of each broken row; an unknown key is no fault."""
     counts = {status.value: 0 for status in Status}
     document: dict[str, Any] = {"verdicts": [{**row().row(), "new_key": 1}], "summary": counts}
     assert violations(document) == []
     spoil(document["verdicts"][0])
-    assert said in "\n".join(violations(document))
+    assert message in "\n".join(violations(document))
 
 
 def test_the_schema_describes_every_field_of_a_verdict() -> None:
@@ -559,7 +560,7 @@ def inputs() -> set[str]:
 
 
 def test_the_action_uses_what_it_declares() -> None:
-    """Every input is used and declared, none is written into a script, and steps name a shell."""
+    """All inputs are declared and used, none is written into a script, and steps name a shell."""
     text = ACTION.read_text(encoding="utf-8")
     assert set(re.findall(r"inputs\.([a-z-]+)", text)) == inputs()
     assert {"scenes", "rung", "solver", "baseline", "python-version"} <= inputs()
@@ -570,7 +571,7 @@ def test_the_action_uses_what_it_declares() -> None:
 
 
 def test_the_example_calls_the_action_with_inputs_it_has() -> None:
-    """It starts by hand alone, so that it is no check of this project, and its action is there."""
+    """The example starts by hand only, and its action exists."""
     text = EXAMPLE.read_text(encoding="utf-8")
     assert "\non: workflow_dispatch\n" in text
     (used,) = re.findall(r"uses: \./(.*)", text)

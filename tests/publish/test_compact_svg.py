@@ -33,7 +33,7 @@ def drawn() -> str:
 
 
 def marks(svg: str) -> Iterator[tuple[str, dict[str, str], str]]:
-    """Every mark with its style written out and its own words, without names of groups."""
+    """Return all marks with their styles and words, without names of groups."""
     root = ElementTree.fromstring(svg)
     sheet = "".join(one.text or "" for one in root.iter(f"{SVG}style"))
     styles = dict(re.findall(r"\.(s\d+)\{([^}]*)\}", sheet))
@@ -77,7 +77,7 @@ def test_it_is_less_than_half_and_stays_as_it_is(drawn: str) -> None:
 
 
 def test_what_is_referred_to_keeps_its_name(drawn: str) -> None:
-    """Every reference to a marker, a clip or a hatching has its target, once."""
+    """References to markers, clips and hatchings have exactly one target."""
     text = compact(drawn)
     targets = re.findall(r' id="([^"]*)"', text)
     assert len(set(targets)) == len(targets)

@@ -88,10 +88,10 @@ def drawn(model: str) -> tuple[Scene, ...]:
 
 @lru_cache
 def ensemble(model: str, rung: str) -> Ensemble:
-    found = [run(scene, "taylor", rung).verdicts for scene in drawn(model)]
+    verdicts_by_scene = [run(scene, "taylor", rung).verdicts for scene in drawn(model)]
     return Ensemble(
-        tuple(v for verdicts in found for v in verdicts if v.quantity in STATES),
-        tuple(v for verdicts in found for v in verdicts if v.is_conserved),
+        tuple(v for verdicts in verdicts_by_scene for v in verdicts if v.quantity in STATES),
+        tuple(v for verdicts in verdicts_by_scene for v in verdicts if v.is_conserved),
     )
 
 
@@ -99,9 +99,9 @@ def ensemble(model: str, rung: str) -> Ensemble:
 @pytest.mark.parametrize("rung", LADDER)
 @pytest.mark.parametrize("model", ["euler", "kirchhoff"])
 def test_median_state_error_is_within_300_epsilon(model: str, rung: str) -> None:
-    """After fifteen periods half of the bodies are right to 300 epsilon, epsilon = 2u, on every rung."""
-    found = ensemble(model, rung)
-    assert median(v.max / (2 * v.roundoff) for v in found.states) <= 300
+    """Half of the bodies are right to 300 epsilon after fifteen periods on every rung (epsilon = 2u)."""
+    drawn_bodies = ensemble(model, rung)
+    assert median(v.max / (2 * v.roundoff) for v in drawn_bodies.states) <= 300
 
 
 @pytest.mark.slow
@@ -109,9 +109,9 @@ def test_median_state_error_is_within_300_epsilon(model: str, rung: str) -> None
 @pytest.mark.parametrize("model", ["euler", "kirchhoff"])
 def test_median_error_is_what_perfect_rounding_would_leave(model: str, rung: str) -> None:
     """Half of the bodies stay within the attainable error at every sample, and no gate fails."""
-    found = ensemble(model, rung)
-    assert median(v.ratio for v in found.states) <= 1
-    assert {v.verdict for v in found.states + found.conserved} == {Status.PASS}
+    drawn_bodies = ensemble(model, rung)
+    assert median(v.ratio for v in drawn_bodies.states) <= 1
+    assert {v.verdict for v in drawn_bodies.states + drawn_bodies.conserved} == {Status.PASS}
 
 
 @pytest.mark.slow
@@ -119,7 +119,7 @@ def test_median_error_is_what_perfect_rounding_would_leave(model: str, rung: str
 @pytest.mark.parametrize("model", ["euler", "kirchhoff"])
 def test_median_drift_is_within_30_units_of_roundoff(model: str, rung: str) -> None:
     """Conserved quantities of half of the bodies drift by less than 30 u."""
-    found = ensemble(model, rung)
-    for quantity in {v.quantity for v in found.conserved}:
-        drifts = [v.max / v.roundoff for v in found.conserved if v.quantity == quantity]
+    drawn_bodies = ensemble(model, rung)
+    for quantity in {v.quantity for v in drawn_bodies.conserved}:
+        drifts = [v.max / v.roundoff for v in drawn_bodies.conserved if v.quantity == quantity]
         assert median(drifts) <= 30

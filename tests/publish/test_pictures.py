@@ -82,7 +82,7 @@ def fallen(name: str, rung: str, digits: int, standing: str) -> dict:
     return row(name, rung, 10.0**-digits, error, standing=standing, seconds=seconds)
 
 
-OTHERS = [entry[0] for kind in KINDS for entry in kind.looks]
+OTHERS = [entry[0] for kind in KINDS for entry in kind.entries]
 
 
 def document(rows: list[dict], **other: Any) -> dict[str, Any]:
@@ -130,9 +130,9 @@ def crowded() -> dict[str, Figure]:
 
 def test_every_family_has_its_own_colour_and_marker() -> None:
     """No two of all known families and rungs share a colour and a marker."""
-    looks = [look_of_rung(rung) for rung in RUNGS] + [look_of(name, "f64") for name in OTHERS]
-    pairs = {(look.colour, look.marker) for look in looks}
-    assert len(pairs) == len(looks) >= 24
+    styles = [look_of_rung(rung) for rung in RUNGS] + [look_of(name, "f64") for name in OTHERS]
+    pairs = {(look.colour, look.marker) for look in styles}
+    assert len(pairs) == len(styles) >= 24
 
 
 def test_neighbours_differ_in_grey() -> None:
@@ -141,7 +141,7 @@ def test_neighbours_differ_in_grey() -> None:
     Ten of CIE lightness is one step of value in Munsell's scale, on which neighbours are told apart.
     """
     ladder = [look_of_rung(rung).colour for rung in RUNGS[:4]]
-    kinds = [[entry[1] for entry in kind.looks] for kind in KINDS]
+    kinds = [[entry[1] for entry in kind.entries] for kind in KINDS]
     lines = [look_of_line(i).colour for i in range(12)]
     for colours in (ladder, *kinds, lines):
         for one, other in pairwise(colours):
@@ -150,8 +150,8 @@ def test_neighbours_differ_in_grey() -> None:
 
 def test_a_longer_rung_is_darker() -> None:
     """Lightness falls along the ladder of precision."""
-    found = [lightness(look_of_rung(rung).colour) for rung in RUNGS]
-    assert found == sorted(found, reverse=True)
+    shades = [lightness(look_of_rung(rung).colour) for rung in RUNGS]
+    assert shades == sorted(shades, reverse=True)
 
 
 def test_lines_and_text_stand_out_from_paper() -> None:
@@ -212,7 +212,7 @@ def test_an_unknown_look_is_the_same_in_every_process() -> None:
         "from taylor_verify.publish.pictures.style import look_of;"
         "print([look_of(f'solver {i}', 'f64') for i in range(9)])"
     )
-    seen = {
+    printed = {
         subprocess.run(
             [sys.executable, "-c", code],
             env={"PYTHONHASHSEED": seed},
@@ -222,8 +222,8 @@ def test_an_unknown_look_is_the_same_in_every_process() -> None:
         ).stdout
         for seed in ("0", "1")
     }
-    assert len(seen) == 1
-    assert "Look(" in seen.pop()
+    assert len(printed) == 1
+    assert "Look(" in printed.pop()
 
 
 def test_rungs_are_in_order_of_their_bits() -> None:
@@ -236,7 +236,7 @@ def test_rungs_are_in_order_of_their_bits() -> None:
 
 
 def test_a_line_joins_neighbours_that_are_sound_and_nothing_else(crowded: dict) -> None:
-    """Every drawn line is a run of settings next to each other in their family, all of them sound."""
+    """All drawn lines are runs of neighbouring sound settings of one family."""
     rows = many()["points"]
     keys = {"time": "seconds", "evaluations": "evaluations", "steps": "steps"}
     checked = 0
@@ -257,7 +257,7 @@ def test_a_line_joins_neighbours_that_are_sound_and_nothing_else(crowded: dict) 
 
 
 def test_every_sound_point_is_drawn_once_a_panel(crowded: dict) -> None:
-    """Nothing sound is left out: each point of a family is on one of its lines or at the border."""
+    """Sound points of a family are all on its lines or at the border."""
     for one in many()["points"]:
         if one["standing"] != "sound" or one["error"] == 0:
             continue
@@ -318,13 +318,13 @@ def test_the_front_agrees_with_the_judgement() -> None:
     scene = load("euler/generic")
     asked = [one for one in all_settings(scene, ["f32", "f64"]) if one.family.startswith("taylor")]
     made = trade_off(scene, asked, repeats=1).document()
-    found = front_of(series_of(made, "seconds"))
-    assert [one.label for one in found] == made["front"]
+    points = front_of(series_of(made, "seconds"))
+    assert [one.label for one in points] == made["front"]
     assert next(p.stem for p in trade.pictures(made)) == "euler-generic-time"
 
 
 def test_the_diagonal_is_where_asked_and_achieved_agree(crowded: dict) -> None:
-    """Every panel of digits has it, and the points are the rows' own digits."""
+    """Panels of digits have the diagonal, and their points are the digits of the rows."""
     digits = {(one["requested_digits"], one["achieved_digits"]) for one in many()["points"]}
     for axes in crowded["digits"].axes:
         (diagonal,) = [line for line in axes.get_lines() if line.get_gid() == "diagonal"]
@@ -372,18 +372,18 @@ def boxes(figure: Figure) -> list[tuple[Any, Any]]:
 
 
 def assert_names_are_apart(figure: Figure) -> None:
-    found = boxes(figure)
-    for axes, box in found:
+    placed = boxes(figure)
+    for axes, box in placed:
         frame = axes.get_window_extent()
         assert frame.x0 <= box.x0 <= box.x1 <= frame.x1
         assert frame.y0 <= box.y0 <= box.y1 <= frame.y1
-    for (axes, one), (other_axes, other) in combinations(found, 2):
+    for (axes, one), (other_axes, other) in combinations(placed, 2):
         assert axes is not other_axes or not one.overlaps(other)
 
 
 @pytest.mark.parametrize("name", ["time", "evaluations", "steps", "digits"])
 def test_no_name_overlaps_another(crowded: dict, name: str) -> None:
-    """With all solvers there are, each has its name in its panel, and no two names touch."""
+    """All solvers have names in their panels, and no two names touch."""
     assert_names_are_apart(crowded[name])
     written = {text.get_text() for axes in crowded[name].axes for text in axes.texts}
     for series in series_of(many(), "seconds"):
@@ -418,7 +418,7 @@ def test_nothing_is_cut_off(kinds: list[str], panels: int) -> None:
 
 
 def test_nothing_of_many_is_cut_off(crowded: dict) -> None:
-    """Nor is it with all solvers there are."""
+    """Nothing is cut off in a picture with all solvers."""
     assert_all_is_on_the_page(crowded["time"])
 
 
@@ -453,14 +453,14 @@ def test_two_drawings_are_the_same_bytes(tmp_path: Path) -> None:
 
 
 def test_a_trade_off_has_four_pictures_in_two_formats(tmp_path: Path) -> None:
-    """Each is an SVG for pages and a PDF for print, named for its scene."""
-    found = trade.draw(document(family("taylor f64", "f64", 0.01, 9.0)), tmp_path)
-    assert [path.name for path in found] == [
+    """The pictures are SVG and PDF with the name of the scene."""
+    files = trade.draw(document(family("taylor f64", "f64", 0.01, 9.0)), tmp_path)
+    assert [path.name for path in files] == [
         f"euler-generic-{what}.{ending}"
         for what in ("time", "evaluations", "steps", "digits")
         for ending in ("svg", "pdf")
     ]
-    assert sorted(found) == sorted(tmp_path.iterdir())
+    assert sorted(files) == sorted(tmp_path.iterdir())
 
 
 def test_a_file_is_text_without_a_date(tmp_path: Path) -> None:
@@ -479,7 +479,7 @@ def test_a_file_is_text_without_a_date(tmp_path: Path) -> None:
 
 
 def test_a_notebook_shows_a_picture_with_its_words(tmp_path: Path) -> None:
-    """What a notebook shows is the file that is published, beside a text for who cannot see it."""
+    """A notebook shows the published SVG with its alternative text."""
     picture = priced()
     (svg,) = save([picture], tmp_path, ["svg"])
     html = ElementTree.fromstring(picture._repr_html_())
@@ -498,7 +498,7 @@ def test_settings_of_the_user_stay(tmp_path: Path) -> None:
 
 
 def test_a_picture_that_fails_leaves_the_old_files(tmp_path: Path) -> None:
-    """If one of the pictures cannot be drawn, none is written, and nothing is left lying about."""
+    """No picture is written if one of them cannot be drawn, and no temporary file stays."""
 
     def broken() -> Figure:
         raise ZeroDivisionError
@@ -514,7 +514,7 @@ def test_a_picture_that_fails_leaves_the_old_files(tmp_path: Path) -> None:
 def test_without_matplotlib_the_error_says_what_to_install(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """One sentence with the extra's name, and no file."""
+    """The error is one sentence with the name of the extra, and no file is written."""
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     with pytest.raises(ImportError, match=r"pip install 'taylor-verify\[plots\]'"):
         save([priced()], tmp_path / "there")
@@ -534,7 +534,7 @@ def test_alt_texts_need_no_matplotlib() -> None:
 
 
 def test_the_alt_text_has_the_numbers() -> None:
-    """It names the fastest and the most accurate, and counts what is no answer."""
+    """The alternative text names the fastest and the most accurate setting, and counts failures."""
     time = trade.pictures(many())[0].alt
     front = front_of(series_of(many(), "seconds"))
     assert front[0].label in time
@@ -543,7 +543,7 @@ def test_the_alt_text_has_the_numbers() -> None:
 
 
 def test_a_document_without_an_answer_is_refused() -> None:
-    """Where nothing is sound there is nothing to draw, and the error says where it looked."""
+    """A document without sound answers raises an error that names the document."""
     rows = [fallen("scipy RK45", "f64", 3, "failed")]
     with pytest.raises(
         ValueError, match=r"expected a sound point, got none @ euler/generic\.points"
@@ -579,13 +579,13 @@ def priced(ratios: Sequence[Ratio] = PRICES) -> Picture:
 
 
 def test_a_bar_ends_at_its_ratio() -> None:
-    """Every bar reaches from 1 to its ratio, the cheaper ones to the left, with the number beside."""
+    """Bars reach from 1 to their ratios, cheaper ones to the left, with the number beside."""
     with plotting():
         (axes,) = priced().figure().axes
     ends = [{bar.get_x(), bar.get_x() + bar.get_width()} for bar in axes.patches]
-    for found, one in zip(ends, PRICES, strict=True):
-        assert min(found) == pytest.approx(min(1, one.ratio), rel=1e-15)
-        assert max(found) == pytest.approx(max(1, one.ratio), rel=1e-15)
+    for own_ends, one in zip(ends, PRICES, strict=True):
+        assert min(own_ends) == pytest.approx(min(1, one.ratio), rel=1e-15)
+        assert max(own_ends) == pytest.approx(max(1, one.ratio), rel=1e-15)
     numbers = [text.get_text() for text in axes.texts if text.get_gid() == "number"]
     assert [float(text.split()[0]) for text in numbers] == [1.0, 2.1, 0.8, 214.0]
 
@@ -601,7 +601,7 @@ def test_numbers_of_bars_are_on_the_page() -> None:
 
 
 def test_time_is_drawn_by_bits() -> None:
-    """Each label is one line from the shortest rung to the longest, its ratios as given."""
+    """The ratios of each label make one line from the shortest rung to the longest."""
     with plotting():
         figure = time_by_rung.picture("two scenes", TIMES_BY_RUNG).figure()
         (axes,) = figure.axes
@@ -615,7 +615,7 @@ def test_time_is_drawn_by_bits() -> None:
 
 
 @pytest.mark.parametrize(
-    ("ratios", "said"),
+    ("ratios", "message"),
     [
         ([], r"expected ratios, got none @ ratios"),
         ([Ratio("", "f64", 1)], r"expected a text, got '' @ ratios\[0\]\.label"),
@@ -626,9 +626,9 @@ def test_time_is_drawn_by_bits() -> None:
         ([Ratio("a", "f64", 3, high=2)], r"between 3 and 2, got 3"),
     ],
 )
-def test_a_ratio_that_is_none_is_refused(ratios: list[Ratio], said: str) -> None:
-    """What has no text, no positive number or is outside its range is named with its place."""
-    with pytest.raises(ValueError, match=said):
+def test_a_ratio_that_is_none_is_refused(ratios: list[Ratio], message: str) -> None:
+    """The error names the place of an empty text, an invalid number or a ratio outside its range."""
+    with pytest.raises(ValueError, match=message):
         priced(ratios)
 
 
@@ -646,5 +646,5 @@ def test_a_rung_without_bits_is_refused() -> None:
 
 @pytest.mark.parametrize(("value", "text"), [(1.0, "10⁰"), (1e-33, "10⁻³³"), (1e12, "10¹²")])
 def test_a_decade_is_plain_text(value: float, text: str) -> None:
-    """Its exponent is raised, and no markup is needed."""
+    """A power of ten has a raised exponent in plain text."""
     assert power_of_ten(value) == text

@@ -114,10 +114,10 @@ def test_the_outline_is_on_the_surface_and_nothing_is_seen_beyond_it(
 def test_the_pieces_are_the_whole_line(mask: list[bool]) -> None:
     """The pieces stand in order, each from the end of the last, seen or hidden as its first point is."""
     line = np.arange(2.0 * len(mask)).reshape(-1, 2)
-    found = list(pieces(line, np.array(mask)))
-    joined = [found[0][1][0], *(point for _, piece in found for point in piece[1:])]
+    parts = list(pieces(line, np.array(mask)))
+    joined = [parts[0][1][0], *(point for _, piece in parts for point in piece[1:])]
     assert np.array_equal(np.array(joined), line)
-    for is_seen, piece in found:
+    for is_seen, piece in parts:
         assert is_seen == mask[int(piece[0, 0]) // 2]
 
 
@@ -133,21 +133,21 @@ def test_a_view_from_below_or_above_is_never_steep() -> None:
 
 @pytest.mark.parametrize("scene", FREE)
 def test_course_and_samples_are_on_the_ellipsoid(scene: str) -> None:
-    """Every point has length one in units of the semi-axes: the energy is conserved."""
-    found = of_polhode(scene)
-    for points in (found.course, found.samples, *found.separatrices):
-        q = points / np.array(found.semi_axes)
+    """All points have length one in units of the semi-axes, because the energy is conserved."""
+    series = of_polhode(scene)
+    for points in (series.course, series.samples, *series.separatrices):
+        q = points / np.array(series.semi_axes)
         assert np.abs(np.square(q).sum(axis=1) - 1).max() <= 1e-7
-    assert len(found.samples) == len(found.errors)
+    assert len(series.samples) == len(series.errors)
 
 
 def test_the_separatrix_scene_runs_along_a_separatrix() -> None:
-    """Its course lies in the plane of one of the two curves, and that of the plain scene in neither."""
+    """The course of the separatrix scene lies in the plane of a curve, that of a plain scene in none."""
 
     def distance(scene: str) -> float:
-        found = of_polhode(scene)
-        q = found.course / np.array(found.semi_axes)
-        curves = [curve / np.array(found.semi_axes) for curve in found.separatrices]
+        series = of_polhode(scene)
+        q = series.course / np.array(series.semi_axes)
+        curves = [curve / np.array(series.semi_axes) for curve in series.separatrices]
         normals = [np.cross(curve[0], curve[40]) for curve in curves]
         return min(float(np.abs(q @ n).max() / np.linalg.norm(n)) for n in normals)
 
@@ -159,8 +159,8 @@ def test_the_errors_are_those_of_the_record_in_its_roundoff() -> None:
     """1 is one u of the rung that the record is of."""
     record = stored().record("euler/generic", "f64")
     gate = next(gate for gate in record["gates"] if gate["quantity"] == "omega")
-    found = of_polhode("euler/generic").errors
-    assert [error * 2.0**-53 for error in found] == pytest.approx(gate["errors"])
+    errors = of_polhode("euler/generic").errors
+    assert [error * 2.0**-53 for error in errors] == pytest.approx(gate["errors"])
 
 
 @pytest.mark.parametrize(
@@ -180,9 +180,9 @@ def test_a_scene_without_a_polhode_is_refused(scene: str, what: str) -> None:
 def test_the_scale_of_colours_reads_the_same_in_grey() -> None:
     """Lightness falls all the way from little to much, by more than half of what paper has."""
     colours = [scale()(k / 20) for k in range(21)]
-    found = [lightness("#" + "".join(f"{round(255 * v):02X}" for v in c[:3])) for c in colours]
-    assert found == sorted(found, reverse=True)
-    assert found[0] - found[-1] >= 50
+    shades = [lightness("#" + "".join(f"{round(255 * v):02X}" for v in c[:3])) for c in colours]
+    assert shades == sorted(shades, reverse=True)
+    assert shades[0] - shades[-1] >= 50
 
 
 @given(st.lists(st.floats(0, 1e6), min_size=1, max_size=40))
@@ -201,9 +201,9 @@ def test_colours_keep_the_order_of_the_errors(errors: list[float]) -> None:
 def test_a_free_motion_keeps_a_direction_in_space() -> None:
     """The angular momentum or linear impulse of every free scene stands still, and no other's does."""
     for scene in ("euler/with-attitude", *WITH_CENTRE):
-        found = axis_path.series(stored().portrait(scene))
-        assert np.abs(np.linalg.norm(found.path, axis=1) - 1).max() <= 1e-7
-        assert (found.fixed is None) == scene.startswith("manufactured")
+        series = axis_path.series(stored().portrait(scene))
+        assert np.abs(np.linalg.norm(series.path, axis=1) - 1).max() <= 1e-7
+        assert (series.fixed is None) == scene.startswith("manufactured")
 
 
 def test_the_axis_is_that_of_the_motion() -> None:
@@ -219,9 +219,9 @@ def test_a_centre_moves_as_its_velocity_says() -> None:
     """The path drawn is the course's own, and its direction field is made of unit vectors."""
     for scene in WITH_CENTRE:
         portrait = stored().portrait(scene)
-        found = centre_path.series(portrait)
-        assert found.path.tolist() == portrait["course"]["centre"]
-        assert np.abs(np.linalg.norm(found.directions, axis=1) - 1).max() <= 1e-7
+        series = centre_path.series(portrait)
+        assert series.path.tolist() == portrait["course"]["centre"]
+        assert np.abs(np.linalg.norm(series.directions, axis=1) - 1).max() <= 1e-7
 
 
 @pytest.mark.parametrize("module", [axis_path, centre_path])
@@ -235,7 +235,7 @@ def test_what_is_not_tracked_is_not_drawn(module: Any) -> None:
 
 
 def test_the_line_is_the_largest_error_so_far() -> None:
-    """It never falls, is one of the errors, and ends at the largest."""
+    """The line never falls, has values of errors, and ends at the largest."""
     points = [(1.0, 2.0), (2.0, 0.5), (3.0, 4.0), (4.0, 1.0)]
     assert errors_over_time.so_far(points) == [(1.0, 2.0), (2.0, 2.0), (3.0, 4.0), (4.0, 4.0)]
 
@@ -245,14 +245,14 @@ def test_what_a_logarithm_cannot_show_is_left_out() -> None:
     gate = {"quantity": "omega", "errors": [0.0, 2e-7, 0.0, None, inf, 4e-7]}
     times = [10.0, 9.0, 8.0, 7.0, 6.0, 5.0]
     record = {"rung": "f32", "times": times, "unit_roundoff": 1e-7, "gates": [gate]}
-    found = errors_over_time.series([record])["omega"]["f32"]
-    assert found == [(1.0, pytest.approx(2)), (5.0, pytest.approx(4))]
+    points = errors_over_time.series([record])["omega"]["f32"]
+    assert points == [(1.0, pytest.approx(2)), (5.0, pytest.approx(4))]
     with pytest.raises(ValueError, match="expected errors above zero, got none @ euler/generic"):
         errors_over_time.picture("euler/generic", [])
 
 
 def test_the_powers_are_those_of_brouwers_law() -> None:
-    """Every panel has one dashed line, straight in logarithms, of slope 1/2 or 3/2."""
+    """All panels have one dashed line, straight in logarithms, of slope 1/2 or 3/2."""
     records = [stored().record("euler/generic", rung) for rung in RUNGS]
     with plotting():
         figure = errors_over_time.picture("euler/generic", records).figure()
@@ -276,7 +276,13 @@ def test_a_record_of_the_state_alone_has_one_panel() -> None:
 def test_shifts_are_those_of_rows_that_have_one() -> None:
     """No number, no shift or a shift that explains nothing: no line. The best explained comes first."""
     row = Verdict(
-        *("euler/a", "a", "f64", "control", "omega", Status.FAIL, "reached the last sample"),
+        "euler/a",
+        "a",
+        "f64",
+        "control",
+        "omega",
+        Status.FAIL,
+        "reached the last sample",
         **{"max": 1e-3, "residual": 1e-4, "time_shift": 0.5, "shift": "constant"},
     )
     rows = [
@@ -295,9 +301,9 @@ def test_shifts_are_those_of_rows_that_have_one() -> None:
 def test_the_half_millisecond_is_found() -> None:
     """The defect that is read half a millisecond early has that shift, and next to nothing is left."""
     rows = {row["solver"]: row for row in shifts.series(CONTROLS.load(stored().folder).verdicts)}
-    found = rows["half-a-millisecond-early"]
-    assert found["shift"] == pytest.approx(-5e-4, rel=1e-6)
-    assert found["residual"] <= 1e-10 * found["error"]
+    early = rows["half-a-millisecond-early"]
+    assert early["shift"] == pytest.approx(-5e-4, rel=1e-6)
+    assert early["residual"] <= 1e-10 * early["error"]
 
 
 # The quartic
@@ -306,13 +312,13 @@ def test_the_half_millisecond_is_found() -> None:
 def test_the_curve_touches_zero_at_the_ends_of_the_interval() -> None:
     """The ends are corners of the drawn curve, X3 is zero there, and the roots near by are inside."""
     for scene in ("whole-motion", "two-real-roots", "falling-away", "half-turn", "algebraic"):
-        found = potential.series(stored().portrait(f"kirchhoff/{scene}"))
-        z, X = found.curve.T
-        top = X[(z >= found.interval[0]) & (z <= found.interval[1])].max()
-        for end in found.interval:
+        series = potential.series(stored().portrait(f"kirchhoff/{scene}"))
+        z, X = series.curve.T
+        top = X[(z >= series.interval[0]) & (z <= series.interval[1])].max()
+        for end in series.interval:
             assert abs(X[np.flatnonzero(z == end)[0]]) <= 1e-6 * top
         assert (np.diff(z) > 0).all()
-        assert sum(count for _, count in found.roots) + 2 * (found.pair is not None) == 4
+        assert sum(count for _, count in series.roots) + 2 * (series.pair is not None) == 4
 
 
 def test_a_body_without_a_quartic_is_refused() -> None:
@@ -337,7 +343,7 @@ def fits(picture: Picture) -> None:
 
 @pytest.mark.parametrize("end", KINDS)
 def test_no_text_is_cut(end: str) -> None:
-    """Every name, number and note lies within its picture."""
+    """All names, numbers and notes lie within their pictures."""
     fits(next(one.picture for one in shown() if one.picture.stem.endswith(end)))
 
 
@@ -353,7 +359,7 @@ def overlaps(picture: Picture) -> list[tuple[str, str]]:
         figure = picture.figure()
         renderer = FigureCanvasAgg(figure).get_renderer()
         figure.draw(renderer)
-        found = []
+        pairs = []
         for axes in figure.axes:
             for axis, limits in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
                 ticks = [*axis.get_major_ticks(), *axis.get_minor_ticks()]
@@ -363,10 +369,10 @@ def overlaps(picture: Picture) -> list[tuple[str, str]]:
                     if tick.label1.get_visible() and min(limits) <= tick.get_loc() <= max(limits)
                 ]
                 named = [(box, text) for box, text in shown if text]
-                found += [
+                pairs += [
                     (a, b) for (p, a), (q, b) in combinations(named, 2) if p.overlaps(q) and a != b
                 ]
-    return found
+    return pairs
 
 
 @pytest.mark.parametrize("stem", ["euler-separatrix-errors", "kirchhoff-through-the-pole-errors"])
@@ -382,9 +388,10 @@ def test_a_short_logarithmic_axis_can_be_read(stem: str) -> None:
     assert overlaps(replace(picture, figure=lambda: figure)) == [("1.000000", "1.000001")]
 
 
-@given(st.floats(-300, 300), st.floats(0.3, 12), st.booleans())
+# Up to 10^308, the last power of ten that is a double.
+@given(st.floats(-300, 296), st.floats(0.3, 12), st.booleans())
 def test_a_number_at_an_axis_reads_as_it_stands(low: float, decades: float, is_long: bool) -> None:
-    """Whatever its decade, the text of 1, 2 or 5 of it is that number; an axis has few enough of them."""
+    """The text of 1, 2 or 5 of any decade is that number, and axes have as many powers as decades."""
     power = floor(low)
     for digit in (1,) if is_long else (1, 2, 5):
         text = log_axes.number(digit * 10.0**power, is_long)
@@ -406,12 +413,12 @@ def test_two_drawings_are_the_same_file(tmp_path: Path) -> None:
     assert first == {file.name: file.read_bytes() for file in save(chosen, tmp_path)}
     assert {name.rpartition(".")[2] for name in first} == {"svg", "pdf"}
     text = ElementTree.fromstring(first["euler-separatrix-polhode.svg"])
-    said = [node.text for node in text.iter() if node.tag.endswith("}description")]
-    assert said == [chosen[0].alt]
+    descriptions = [node.text for node in text.iter() if node.tag.endswith("}description")]
+    assert descriptions == [chosen[0].alt]
 
 
 def test_the_page_shows_every_picture_and_where_it_comes_from() -> None:
-    """Its first line names its maker, no stem comes twice, and every file of data that it names is one."""
+    """The page names its maker first, has unique stems, and names existing files of data."""
     text = gallery.page(shown())
     stems = [one.picture.stem for one in shown()]
     assert text.startswith("<!-- made by taylor-verify publish; do not edit -->\n")

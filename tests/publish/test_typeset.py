@@ -52,7 +52,7 @@ def test_words_without_marks_are_what_they_were() -> None:
 
 
 def test_a_table_is_a_tabular_that_any_journal_takes() -> None:
-    """Every cell is in it, numbers to the right, and every special sign is escaped."""
+    """The tabular has all cells, numbers to the right, and escaped special signs."""
     text = latex_table(f"{TABLE}\n\n: A caption.")
     assert r"\begin{tabular}{lr}" in text
     assert r"\caption{A caption.}" in text

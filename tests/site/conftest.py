@@ -12,13 +12,18 @@ import pytest
 SITE = Path(__file__).resolve().parents[2] / "reports" / "site"
 # WebGL by software: a machine without a screen has no other.
 _OPTIONS = (
-    *("--headless=new", "--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader"),
-    *("--hide-scrollbars", "--disable-dev-shm-usage", "--no-first-run"),
+    "--headless=new",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--enable-unsafe-swiftshader",
+    "--hide-scrollbars",
+    "--disable-dev-shm-usage",
+    "--no-first-run",
 )
 
 
 def pytest_ignore_collect(config: pytest.Config) -> bool | None:
-    """Nothing here is collected unless `-m browser` asks for it."""
+    """Collect these tests only with `-m browser`."""
     return None if config.getoption("-m") == "browser" else True
 
 

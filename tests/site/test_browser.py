@@ -1,4 +1,4 @@
-"""What a reader gets of the built site, in a real browser: light and dark, wide and on a phone."""
+"""The built site in a real browser: light and dark, wide and on a phone."""
 
 from __future__ import annotations
 
@@ -86,9 +86,9 @@ class Reader:
         self.driver.get((self.site / page).as_uri())
 
     def complaints(self) -> list[str]:
-        """What the console has had since the page was opened, but for the driver's own remarks."""
-        found = [entry["message"] for entry in self.driver.get_log("browser")]
-        return [text for text in found if not any(word in text for word in OF_THE_DRIVER)]
+        """Return the messages of the console since the page was opened, without the driver's own."""
+        messages = [entry["message"] for entry in self.driver.get_log("browser")]
+        return [text for text in messages if not any(word in text for word in OF_THE_DRIVER)]
 
     def run(self, script: str, *given: Any) -> Any:
         return self.driver.execute_script(script, *given)
@@ -96,15 +96,15 @@ class Reader:
     def until(self, holds: Callable[[], Any], what: str) -> Any:
         end = time.monotonic() + PATIENCE
         while time.monotonic() < end:
-            if found := holds():
-                return found
+            if result := holds():
+                return result
             time.sleep(0.1)
         pytest.fail(f"expected {what} within {PATIENCE:g} s, got none @ {self.driver.current_url}")
 
     def draw(self) -> list[dict[str, Any]]:
-        """Scroll every picture into view, wait until it is drawn, and say what is in each."""
+        """Scroll every picture into view, wait until it is drawn, and return the contents of each."""
         pictures = self.run("return document.querySelectorAll('.plot').length")
-        found = []
+        drawn = []
         for i in range(pictures):
             one = f"document.querySelectorAll('.plot')[{i}]"
             self.run(f"{one}.scrollIntoView({{behavior: 'instant', block: 'center'}})")
@@ -112,7 +112,7 @@ class Reader:
                 lambda one=one: self.run(f"return {one}.dataset.drawn !== undefined"),
                 f"picture {i} drawn",
             )
-            found.append(
+            drawn.append(
                 self.run(
                     f"""const plot = {one};
                     return {{
@@ -124,16 +124,16 @@ class Reader:
                     }}"""
                 )
             )
-        return found
+        return drawn
 
 
 @pytest.fixture
 def reader(browser: Any, site: Path) -> Iterator[Reader]:
-    found = Reader(browser, site)
-    found.set()
-    yield found
-    found.open("index.html")
-    found.run("try { localStorage.clear(); } catch (none) {}")
+    opened = Reader(browser, site)
+    opened.set()
+    yield opened
+    opened.open("index.html")
+    opened.run("try { localStorage.clear(); } catch (none) {}")
 
 
 def pages(site: Path) -> list[str]:
@@ -145,15 +145,15 @@ def test_every_page_loads(reader: Reader, site: Path) -> None:
     faults = {}
     for page in pages(site):
         reader.open(page)
-        if found := reader.complaints():
-            faults[page] = found
+        if complaints := reader.complaints():
+            faults[page] = complaints
     assert faults == {}
 
 
 @pytest.mark.parametrize("theme", [LIGHT, DARK])
 @pytest.mark.parametrize("page", KINDS)
 def test_a_phone_never_scrolls_sideways(reader: Reader, page: str, theme: str) -> None:
-    """At 390 pixels a page is no wider than the screen, pictures drawn; its tables scroll within."""
+    """A page at 390 pixels with drawn pictures is no wider than the screen; its tables scroll within."""
     reader.set(PHONE, theme)
     reader.open(page)
     reader.draw()
@@ -163,7 +163,7 @@ def test_a_phone_never_scrolls_sideways(reader: Reader, page: str, theme: str) -
 
 @pytest.mark.parametrize("page", KINDS)
 def test_a_phone_page_begins_with_content(reader: Reader, page: str) -> None:
-    """At 390 pixels the title is within the first quarter of the screen, and text within the first half."""
+    """A page at 390 pixels has its title in the first quarter of the screen, and text in the first half."""
     reader.set(PHONE)
     reader.open(page)
     tops = (
@@ -182,18 +182,18 @@ def test_text_can_be_read(reader: Reader, page: str, theme: str, size: tuple[int
     """All text has the contrast of 4.5 that WCAG 2.1 asks for (1.4.3), against what is behind it."""
     reader.set(size, theme)
     reader.open(page)
-    found = reader.run(CONTRAST)
-    assert len(found) > 10
-    assert [text for ratio, text in found if not ratio >= 4.5] == []
+    contrasts = reader.run(CONTRAST)
+    assert len(contrasts) > 10
+    assert [text for ratio, text in contrasts if not ratio >= 4.5] == []
 
 
 @pytest.mark.parametrize("page", SCENES)
 def test_pictures_are_drawn(reader: Reader, page: str) -> None:
-    """Every picture comes to have marks of its data when it is scrolled to."""
+    """Pictures get marks of their data when they are scrolled into view."""
     reader.open(page)
-    found = reader.draw()
-    assert found
-    for picture in found:
+    drawn = reader.draw()
+    assert drawn
+    for picture in drawn:
         assert picture["points"] > 0, picture
         assert picture["marks"] > 0, picture
         assert picture["height"] > 200, picture
@@ -284,7 +284,7 @@ def test_tables_of_groups_stay_in_order(reader: Reader) -> None:
 
 
 def test_each_table_has_a_filter_of_its_own(reader: Reader) -> None:
-    """On a page with two large tables a filter hides rows of its own table alone."""
+    """A filter hides rows of its own table alone on a page with two large tables."""
     reader.open(SCENE)
     # The arithmetic of the bounds is behind a fold.
     fold = reader.driver.find_element("css selector", "details:has(.filter) > summary")
@@ -305,13 +305,13 @@ def test_the_big_table_can_be_searched(reader: Reader) -> None:
     every = column(reader, "#table-1", 0)
     box = reader.driver.find_element("css selector", "#filter-1")
     box.send_keys("kirchhoff f80")
-    found = column(reader, "#table-1", 0)
-    assert found
-    assert len(found) < len(every)
-    assert all("kirchhoff" in name for name in found)
+    matching = column(reader, "#table-1", 0)
+    assert matching
+    assert len(matching) < len(every)
+    assert all("kirchhoff" in name for name in matching)
     assert set(column(reader, "#table-1", 1)) == {"f80"}
-    said = reader.driver.find_element("css selector", ".filter [role=status]").text
-    assert said == f"{len(found)} of {len(every)} rows"
+    status = reader.driver.find_element("css selector", ".filter [role=status]").text
+    assert status == f"{len(matching)} of {len(every)} rows"
     box.clear()
     box.send_keys(" ")
     assert column(reader, "#table-1", 0) == every
@@ -427,7 +427,7 @@ def test_a_notebook_has_what_it_puts_out(reader: Reader) -> None:
 
 
 def test_formulas_are_set(reader: Reader) -> None:
-    """Every formula of a scene takes room, and letters of another alphabet are no empty boxes."""
+    """Formulas of a scene have a size, and letters of other alphabets are no empty boxes."""
     reader.open(SCENE)
     sizes = reader.run(
         "return Array.from(document.querySelectorAll('math'))"
@@ -451,13 +451,13 @@ def test_exact_values_can_be_copied(reader: Reader) -> None:
 
 
 def test_without_a_script_the_words_are_there(reader: Reader) -> None:
-    """With scripts switched off a scene still has its tables, its values, and each motion in words."""
+    """A scene without scripts still has its tables, its values, and each motion in words."""
     reader.driver.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": True})
     try:
         reader.open(SCENE)
-        told = reader.driver.find_elements("css selector", "noscript > *")
-        assert len(told) >= 3
-        assert all(one.is_displayed() for one in told)
+        texts = reader.driver.find_elements("css selector", "noscript > *")
+        assert len(texts) >= 3
+        assert all(one.is_displayed() for one in texts)
         assert reader.driver.find_element("css selector", "#exact pre").text.split()[0] == "t,"
         assert reader.driver.find_elements("css selector", "table tbody tr")
     finally:

@@ -1,4 +1,4 @@
-"""The page of what was attainable and reached: every error in its cell, every failure in words."""
+"""The page of attainable and reached errors: every error in its cell, every failure in words."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def rows(text: str) -> dict[str, list[str]]:
 
 
 def test_a_cell_has_both_errors_and_where_they_are_nearest() -> None:
-    """Reached, attainable at its time, the largest ratio of all samples and its time."""
+    """A cell has the reached error, the attainable one at its time, and the largest ratio with its time."""
     verdict = passed("euler/a", "f64", "omega", max=3 * u, attainable=6 * u, ratio=0.75, ratio_at=2)
     text = attainable([verdict])
     assert rows(text)["euler/a"] == ["`euler/a`", "`omega`", "3.33e-16, 6.66e-16, 0.750 @ 2"]
@@ -49,7 +49,7 @@ def test_a_cell_has_both_errors_and_where_they_are_nearest() -> None:
     ],
 )
 def test_a_failure_is_printed_in_its_cell(verdict: Verdict, cell: str) -> None:
-    """A run that failed, stopped, was lost or never began has its word there, and no number hides it."""
+    """A run that failed, stopped, was lost or never began has a word in its cell, and no number."""
     assert rows(attainable([verdict]))["a"][-1] == cell
 
 
@@ -62,27 +62,33 @@ def test_a_rung_has_a_column_and_a_line() -> None:
             passed("euler/a", "mp237", "T", ratio=9.0),
         ]
     )
-    found = rows(text)
-    assert found["f64"] == [
-        *("f64", "1.11e-16", "2", "1.75", "1 of 2", "3.00", "`omega` of `euler/b` at t = 7")
+    cells = rows(text)
+    assert cells["f64"] == [
+        "f64",
+        "1.11e-16",
+        "2",
+        "1.75",
+        "1 of 2",
+        "3.00",
+        "`omega` of `euler/b` at t = 7",
     ]
     # The drift of a conserved quantity is no error of the state.
-    assert found["mp237"][2:6] == ["1", "1.00", "1 of 1", "1.00"]
-    assert found["euler/b"][2:] == ["3.33e-16, 6.66e-16, 3.00 @ 7", "–"]  # noqa: RUF001
+    assert cells["mp237"][2:6] == ["1", "1.00", "1 of 1", "1.00"]
+    assert cells["euler/b"][2:] == ["3.33e-16, 6.66e-16, 3.00 @ 7", "–"]  # noqa: RUF001
 
 
 def test_an_error_that_is_no_number_is_the_worst_of_its_rung() -> None:
-    """A NaN stands above every number: the median may be infinite, and is not left out."""
+    """NaN counts as larger than every number, so that the median may be infinite."""
     lost = passed("euler/lost", "f64", "omega", verdict=Status.FAIL, **LOST)
-    found = rows(attainable([lost, passed("euler/a", "f64", "omega", ratio=0.5)]))
-    assert found["f64"][3:] == ["**∞**", "1 of 2", "**fail**", "`omega` of `euler/lost` at t = 7"]
+    cells = rows(attainable([lost, passed("euler/a", "f64", "omega", ratio=0.5)]))
+    assert cells["f64"][3:] == ["**∞**", "1 of 2", "**fail**", "`omega` of `euler/lost` at t = 7"]
 
 
 def test_the_sheet_has_every_digit() -> None:
-    """A row for every state quantity of every run, in which attainable times ratio bounds the error."""
+    """The sheet has a row for every state quantity, and attainable times ratio bounds the error."""
     text = sheets.attainable(MIXED)
-    found = list(csv.DictReader(text.splitlines()))
-    assert len(found) == sum(v.quantity in ("omega", "impulse") for v in MIXED)
-    generic = next(r for r in found if (r["scene"], r["rung"]) == ("euler/generic", "f64"))
+    lines = list(csv.DictReader(text.splitlines()))
+    assert len(lines) == sum(v.quantity in ("omega", "impulse") for v in MIXED)
+    generic = next(r for r in lines if (r["scene"], r["rung"]) == ("euler/generic", "f64"))
     assert (float(generic["max"]), float(generic["attainable"])) == (3 * u, 6 * u)
     assert (generic["max_u"], generic["attainable_u"]) == ("3.0", "6.0")

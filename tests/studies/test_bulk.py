@@ -40,12 +40,12 @@ def missing(place: Path) -> bulk.Missing:
 
 def lacking(place: Path, what: str) -> Sequence[Any]:
     """Return what is missing of one kind of files."""
-    found = {kind.what: lacking for kind, lacking in missing(place).lacking}
-    return found.get(what, ())
+    lacks = {kind.what: lacking for kind, lacking in missing(place).lacking}
+    return lacks.get(what, ())
 
 
 def without_bulk(place: Path) -> dict[str, bytes]:
-    """Remove what no clone has, and return it by its path."""
+    """Remove the files that no clone has, and return them by their paths."""
     files = [
         f for pattern in bulk.patterns() for f in place.glob(pattern + "*" * pattern.endswith("/"))
     ]
@@ -63,10 +63,10 @@ def test_what_a_clone_lacks_is_made_as_it_was(report: Path, capsys: Captured) ->
     )
     committed = {file: file.read_bytes() for file in report.rglob("*") if file.is_file()}
     assert main(["publish", "--missing", "--from", str(report), "--json"]) == 0
-    out, said = capsys.readouterr()
+    out, messages = capsys.readouterr()
     assert (
         "2 tables of gates, 4 records of runs, 2 portraits of scenes, 2 exact trajectories as JSON"
-        in said
+        in messages
     )
     assert {Path(name) for name in json.loads(out)["written"]} == {report / n for n in removed}
     assert {name: (report / name).read_bytes() for name in removed} == removed
@@ -75,8 +75,9 @@ def test_what_a_clone_lacks_is_made_as_it_was(report: Path, capsys: Captured) ->
 
 
 def test_records_of_other_verdicts_are_made_again(report: Path) -> None:
-    """A record belongs to the verdicts beside it: where these were changed, all are missing. Records of
-    an earlier version, which do not say whose they are, are taken for those of the verdicts."""
+    """Records are missing if they belong to other verdicts.
+
+    Records of an earlier version, which do not name their verdicts, are accepted."""
     stamp = report / "data" / store.STAMP
     line = stamp.read_bytes()
     assert lacking(report, "records of runs") == ()
@@ -88,23 +89,23 @@ def test_records_of_other_verdicts_are_made_again(report: Path) -> None:
     stored["verdicts"][0]["max"] = 0.5
     file.write_text(store.laid_out(stored), encoding="utf-8")
     assert len(lacking(report, "records of runs")) == 4
-    mine, gone = (report / "data" / store.RECORDS / f"{n}.json" for n in ("mine", "gone"))
+    mine, obsolete = (report / "data" / store.RECORDS / f"{n}.json" for n in ("mine", "gone"))
     mine.write_text("{}\n", encoding="utf-8")
-    shutil.copy(next(file.parent.glob("records/euler-rest*")), gone)
+    shutil.copy(next(file.parent.glob("records/euler-rest*")), obsolete)
     store.add_records(report, [])
     assert [f.name for f in mine.parent.glob("*.json")] == ["mine.json"]
     assert len(lacking(report, "records of runs")) == 4
 
 
 def test_documents_of_another_text_of_a_scene_are_made_again(report: Path) -> None:
-    """Portrait and exact trajectory have the digest of their scene; with another one they are missing."""
+    """Portraits and exact trajectories are missing if their digest is that of another scene."""
     digests = {name: load(name).digest for name in SCENES} | {"euler/rest": "another"}
-    found = [scenes for _, scenes in bulk.missing(report, digests).lacking]
-    assert found == [("euler/rest",), ("euler/rest",)]
+    scenes_lacking = [scenes for _, scenes in bulk.missing(report, digests).lacking]
+    assert scenes_lacking == [("euler/rest",), ("euler/rest",)]
 
 
 def test_a_run_that_was_never_judged_has_no_record(report: Path) -> None:
-    """A scene that the rung cannot hold, or a rung that the machine lacks, is not tried again for ever."""
+    """A refused scene and a missing rung have no record, and are not run again."""
     file = report / "data" / store.VERDICTS
     stored = json.loads(file.read_text(encoding="utf-8"))
     for row in stored["verdicts"]:
@@ -122,7 +123,7 @@ def test_scenes_and_solvers_that_are_not_ours_are_not_made(tmp_path: Path) -> No
 
 
 def test_a_report_is_packed_the_same_every_time(report: Path, tmp_path: Path) -> None:
-    """Two archives are the same bytes; what a user's own runs wrote is not in them."""
+    """Two archives have the same bytes, and do not contain a user's own runs."""
     (report / "local").mkdir()
     for place in (report / "local" / "mine.csv", report / ".hidden"):
         place.write_text("mine", encoding="utf-8")
@@ -151,7 +152,7 @@ def test_a_report_is_packed_the_same_every_time(report: Path, tmp_path: Path) ->
 def test_a_report_that_lacks_something_is_not_packed(
     report: Path, tmp_path: Path, capsys: Captured
 ) -> None:
-    """Without its records it is a wrong call that says what makes them; no file is left."""
+    """Packing a report without records is a wrong call that names the command to make them."""
     call = ["publish", "--from", str(report), "--archive", str(tmp_path / "dist")]
     assert main(call) == 0
     shutil.rmtree(report / "data" / store.RECORDS)

@@ -1,4 +1,4 @@
-"""The picture of an enclosure's width shows what was stored, and a true error is never above it."""
+"""The picture of an enclosure's width shows the stored data; no true error is above the width."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ TIMES = [Fraction(k, 2) for k in range(1, 9)]
 
 
 def test_the_middle_errs_by_less_than_the_width() -> None:
-    """The enclosure with twice the bits is within the one with few, which gives digits away."""
+    """The enclosure with twice the bits lies within the one with few bits."""
     moving = Impulse(vector("0.1", "0.2", 1), vector("0.3", 0, 1))
     rows = widths(one_instant(GENERAL, moving), TIMES, 80)
     assert [row.t for row in rows] == [float(t) for t in TIMES]
@@ -38,7 +38,7 @@ def test_the_middle_errs_by_less_than_the_width() -> None:
 
 
 def test_a_width_that_is_too_small_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without its radii an enclosure is narrower than the error that the truth shows."""
+    """An enclosure without its radii is narrower than its true error."""
     moving = Impulse(vector("0.1", "0.2", 1), vector("0.3", 0, 1))
     sound = Course.rows
 
@@ -68,6 +68,6 @@ def test_what_is_drawn_is_what_is_stored(tmp_path: Path) -> None:
 
 
 def test_a_document_without_rows_is_refused() -> None:
-    """A picture of nothing is no picture."""
+    """A document without rows raises an error instead of an empty picture."""
     with pytest.raises(ValueError, match="expected widths and errors above zero"):
         pictures.picture(EnclosureStudy(140, ()))

@@ -1,4 +1,4 @@
-"""The extremes: each is what its name says, its truth is right, and the suite answers it."""
+"""The extremes: each agrees with its name, its truth is right, and the suite answers it."""
 
 from __future__ import annotations
 
@@ -54,14 +54,14 @@ def distance(a: Any, b: Any) -> Any:
 
 
 def test_there_are_enough_of_both_models() -> None:
-    """At least twenty-five of each, so that an empty folder cannot pass for a suite."""
+    """Each model has at least twenty-five extremes, so that an empty folder fails."""
     for model in ("euler", "kirchhoff"):
         assert sum(name.startswith(f"extremes/{model}-") for name in NAMES) >= 25
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_extreme_loads_and_says_why_it_is_there(name: str) -> None:
-    """It is read under its own name, as the model its name begins with; its reason is a sentence."""
+    """Each extreme is read under its own name, has the model of its name, and a sentence as reason."""
     scene, text = load(name), library.find(name).read_text(encoding="utf-8")
     assert scene.name == name
     assert scene.model == name.removeprefix("extremes/").split("-")[0]
@@ -112,8 +112,8 @@ def test_the_distance_from_the_unstable_axis_is_as_named(name: str) -> None:
 @pytest.mark.parametrize("on", LADDER)
 def test_a_separatrix_is_exact_on_every_rung(name: str, on: str) -> None:
     """The rounded data, too, lie exactly between the two families: the regime says so in rationals."""
-    found = solution(pose(load(name), rung(on)).given).regime
-    assert found == ("separatrix" if "euler" in name else "hyperbolic")
+    regime = solution(pose(load(name), rung(on)).given).regime
+    assert regime == ("separatrix" if "euler" in name else "hyperbolic")
 
 
 @pytest.mark.parametrize("name", [n for n in NAMES if "modulus" in n])
@@ -121,8 +121,8 @@ def test_the_modulus_is_as_named(name: str) -> None:
     """1 - k^2 is what the name says, for Kirchhoff 0.476 of it, to a hundredth of itself."""
     scene, named = load(name), mpf(name.rpartition("modulus-")[2])
     share = mpf("0.476") if scene.model == "kirchhoff" else mpf(1)
-    found = elements(scene, 10)["m_prime"].value
-    assert abs(found / (share * named) - 1) <= mpf("0.01")
+    m_prime = elements(scene, 10)["m_prime"].value
+    assert abs(m_prime / (share * named) - 1) <= mpf("0.01")
 
 
 @pytest.mark.parametrize(
@@ -272,7 +272,9 @@ class Flushed(Solver):
 @pytest.mark.parametrize(
     "name",
     [
-        *("euler-unstable-axis-1e-4", "euler-unstable-axis-1e-16", "kirchhoff-unstable-spin-1e-4"),
+        "euler-unstable-axis-1e-4",
+        "euler-unstable-axis-1e-16",
+        "kirchhoff-unstable-spin-1e-4",
         pytest.param("euler-unstable-axis-1e-8", marks=pytest.mark.slow),
         pytest.param("euler-unstable-axis-1e-40", marks=pytest.mark.slow),
     ],

@@ -1,4 +1,4 @@
-"""The page of the extremes: what came, what was expected, and every mismatch in sight."""
+"""The page of the extremes: verdicts, expected verdicts, and every mismatch."""
 
 from __future__ import annotations
 
@@ -38,30 +38,30 @@ def page(tmp_path: Path) -> str:
 def test_what_is_stored_reads_back(tmp_path: Path) -> None:
     """Verdicts without their seconds, expectations, titles and what made them are the same again."""
     publish_document(tmp_path, STUDY, extremes.EXTREMES, study())
-    found = extremes.EXTREMES.load(tmp_path)
+    loaded = extremes.EXTREMES.load(tmp_path)
     stored = [
         replace(v, seconds=None, provenance={"scene": f"digest of {v.scene}"})
         for v in study().verdicts
     ]
-    assert found == replace(study(), verdicts=tuple(stored))
-    assert [verdict.expected for verdict in found.verdicts] == list(FORESEEN.values())
-    assert [verdict.is_met for verdict in found.verdicts] == [True, True, True, False]
-    assert found.titles["extremes/long"] == "Title of extremes/long"
+    assert loaded == replace(study(), verdicts=tuple(stored))
+    assert [verdict.expected for verdict in loaded.verdicts] == list(FORESEEN.values())
+    assert [verdict.is_met for verdict in loaded.verdicts] == [True, True, True, False]
+    assert loaded.titles["extremes/long"] == "Title of extremes/long"
 
 
 def test_a_row_that_was_compared_with_nothing_is_no_mismatch(tmp_path: Path) -> None:
-    """A rung that the machine lacks is expected to be nothing, in the file as on the page."""
+    """A rung that the machine lacks is no mismatch, in the file and on the page."""
     absent = passed("extremes/near", "f32", "omega", verdict=Status.UNAVAILABLE)
     publish_document(tmp_path, STUDY, extremes.EXTREMES, study((absent,), ()))
     (row,) = store.read_document(tmp_path / extremes.EXTREMES.name)["verdicts"]
     assert row["expected"] is None
-    (found,) = extremes.EXTREMES.load(tmp_path).verdicts
-    assert found.expected is None
-    assert found.is_met
+    (verdict,) = extremes.EXTREMES.load(tmp_path).verdicts
+    assert verdict.expected is None
+    assert verdict.is_met
 
 
 def test_a_row_of_an_earlier_version_has_its_reason(tmp_path: Path) -> None:
-    """A row with its reason in a sentence alone tells it on the page, and is written anew with it."""
+    """A row whose reason is a sentence alone keeps it on the page and in the file."""
     odd = passed("extremes/odd", "f64", "omega", verdict=Status.UNDECIDED)
     publish_document(tmp_path, STUDY, extremes.EXTREMES, study((odd,), ()))
     file = tmp_path / extremes.EXTREMES.name
@@ -77,14 +77,14 @@ def test_a_row_of_an_earlier_version_has_its_reason(tmp_path: Path) -> None:
 
 
 def test_a_scene_is_a_line_with_its_worst(page: str) -> None:
-    """Title, max and mean with the time, the largest ratio of all quantities, how many were foreseen."""
+    """The line has title, max and mean with the time, the largest ratio, and the count of expected rows."""
     (line,) = lines(page, "`near`")
     for part in ("Title of extremes/near", "3.00, 2.00 @ 7", "0.750 (`T`)", "| pass", "2 of 2"):
         assert part in line
 
 
 def test_an_answer_that_is_no_pass_has_its_reason(page: str) -> None:
-    """The verdict stands out in its cell, and below with what was expected and why."""
+    """The verdict is bold in its cell, and listed below with the expected verdict and the reason."""
     row, reason = lines(page, "`long`")
     assert "3.00, 2.00 @ 7 **vacuous**" in row
     assert "1 of 1" in row
@@ -94,12 +94,12 @@ def test_an_answer_that_is_no_pass_has_its_reason(page: str) -> None:
 
 
 def test_a_mismatch_stands_out(page: str) -> None:
-    """The failure is printed in the cell, its count is bold, and the sentence is in front."""
+    """The cell has the failure, its count is bold, and the page begins with the sentence."""
     row, reason = lines(page, "`vast`")
     assert "**fail**" in row
     assert "**0 of 1**" in row
     assert "**refused**" in reason
-    assert "1 of 2 answers other than pass came as expected. **1 mismatches**:" in page
+    assert "1 of 2 verdicts other than pass were expected. **1 mismatches**:" in page
     assert MISMATCH in page
 
 
@@ -125,12 +125,16 @@ def test_the_sheet_has_every_quantity(tmp_path: Path) -> None:
     """A row for each verdict with every digit, what was expected and whether it came."""
     publish_document(tmp_path, STUDY, extremes.EXTREMES, study())
     text = (tmp_path / "tables/extremes.csv").read_text(encoding="utf-8")
-    found = {(r["scene"], r["quantity"]): r for r in csv.DictReader(text.splitlines())}
-    assert set(found) == {(v.scene, v.quantity) for v in ALL}
-    assert float(found["extremes/near", "T"]["max"]) == DRIFT.max
-    told = found["extremes/vast", "impulse"]
-    assert (told["max"], told["expected"], told["as_expected"]) == ("fail", "refused", "no")
-    assert found["extremes/long", "omega"]["why_expected"] == WHY
+    cells = {(r["scene"], r["quantity"]): r for r in csv.DictReader(text.splitlines())}
+    assert set(cells) == {(v.scene, v.quantity) for v in ALL}
+    assert float(cells["extremes/near", "T"]["max"]) == DRIFT.max
+    impulse = cells["extremes/vast", "impulse"]
+    assert (impulse["max"], impulse["expected"], impulse["as_expected"]) == (
+        "fail",
+        "refused",
+        "no",
+    )
+    assert cells["extremes/long", "omega"]["why_expected"] == WHY
 
 
 def test_publish_remakes_it_from_the_data_alone(tmp_path: Path) -> None:
@@ -176,8 +180,8 @@ def test_the_command_fails_at_a_mismatch(
 
     def answered(jobs: list[Any], *_: Any) -> list[Any]:
         asked.extend(job.name for job in jobs)
-        found = passed(scene, "f64", "omega", verdict=verdict)
-        return [SimpleNamespace(verdicts=(found,))]
+        row = passed(scene, "f64", "omega", verdict=verdict)
+        return [SimpleNamespace(verdicts=(row,))]
 
     monkeypatch.setattr("taylor_verify.studies.extremes.measure.judge_all", answered)
     call = ["publish", "extremes", "--from", str(tmp_path), "--json"]

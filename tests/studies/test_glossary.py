@@ -1,4 +1,4 @@
-"""Words of the glossary: each that is linked is defined, and every page links it where it first stands."""
+"""Words of the glossary: each linked word is defined, and every page links its first use."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ WORDS = (
 
 
 def test_every_linked_term_is_defined() -> None:
-    """Each term that pages link is a heading of the glossary."""
+    """Each linked term is a heading of the glossary."""
     assert set(TERMS) <= set(HEADINGS)
 
 
@@ -56,7 +56,7 @@ def test_a_definition_is_in_plain_words(term: str) -> None:
 
 @pytest.fixture(scope="module")
 def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
-    """Three pages as Sphinx makes them, by name."""
+    """Three pages made by Sphinx, by name."""
     place = tmp_path_factory.mktemp("terms")
     files = {"conf.py": CONF, "index.md": INDEX, "other.md": OTHER, "glossary.md": WORDS}
     for name, text in files.items():
@@ -90,7 +90,7 @@ def test_the_glossary_does_not_link_to_itself(pages: dict[str, str]) -> None:
 
 
 def test_links_written_by_hand_lead_to_a_heading() -> None:
-    """Each page that names a place of the glossary names one that is there."""
+    """Each link to the glossary leads to an existing heading."""
     slugs = {re.sub(r"[^\w -]", "", word.lower()).replace(" ", "-") for word in HEADINGS}
     for page in sorted(Path(DOCS).rglob("*.md")):
         named = re.findall(r"glossary\.md#([\w-]+)", page.read_text(encoding="utf-8"))

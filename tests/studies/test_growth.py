@@ -1,4 +1,4 @@
-"""Growth of errors: exponents whose intervals cover, words that are right, a gate whose rate is known."""
+"""Growth of errors: intervals that cover exponents, right words, a gate with a known rate."""
 
 from __future__ import annotations
 
@@ -39,11 +39,11 @@ SIGMAS = 4.5
 
 
 def of_law(law: Law, draw: np.random.Generator, lanes: int) -> np.ndarray:
-    """Lanes of one law exactly, their sizes spread over a factor of ten."""
+    """Lanes that follow one law exactly, with sizes spread over a factor of ten."""
     root = np.linalg.cholesky(covariance_of(law, TIMES))
     sizes = np.exp(draw.normal(0, 0.6, (lanes, 1)))
-    found: np.ndarray = sizes * (draw.standard_normal((lanes, len(TIMES))) @ root.T)
-    return found
+    errors: np.ndarray = sizes * (draw.standard_normal((lanes, len(TIMES))) @ root.T)
+    return errors
 
 
 def walk(draw: np.random.Generator, lanes: int) -> np.ndarray:
@@ -64,8 +64,8 @@ def biased(power: float) -> Draw:
     def drawn(draw: np.random.Generator, lanes: int) -> np.ndarray:
         size = np.exp(draw.normal(0, 0.6, (lanes, 1)))
         swing = 1 + 0.2 * draw.uniform(-1, 1, (lanes, len(TIMES)))
-        found: np.ndarray = size * swing * (TIMES / TIMES[-1]) ** power
-        return found
+        errors: np.ndarray = size * swing * (TIMES / TIMES[-1]) ** power
+        return errors
 
     return drawn
 
@@ -109,9 +109,9 @@ def test_the_covariances_are_those_of_sums() -> None:
     double = np.cumsum(single, axis=1)
     at = np.array([99, 199, 399])
     for law, sums in ((Law.WALK, single), (Law.INTEGRATED, double)):
-        found = np.cov(sums[:, at].T)
+        sampled = np.cov(sums[:, at].T)
         expected = covariance_of(law, at + 1.0)
-        ratio = (found / found[-1, -1]) / (expected / expected[-1, -1])
+        ratio = (sampled / sampled[-1, -1]) / (expected / expected[-1, -1])
         # Each entry is known to some sqrt(2/samples) of itself, sums of 100 steps to one part in 100.
         assert np.all(np.abs(ratio - 1) <= SIGMAS * sqrt(2 / samples) + 0.02)
 
@@ -126,18 +126,18 @@ def test_the_interval_covers_as_often_as_it_says(
 ) -> None:
     """The interval misses the true exponent once in a hundred, whatever the kind of growth."""
     draw, count = np.random.default_rng(lanes), 800
-    found = [exponent(TIMES, drawn(draw, lanes), law, 1e-9) for _ in range(count)]
-    missed = sum(not one.low <= power <= one.high for one in found)
+    exponents = [exponent(TIMES, drawn(draw, lanes), law, 1e-9) for _ in range(count)]
+    missed = sum(not one.low <= power <= one.high for one in exponents)
     expected = (1 - LEVEL) * count
     assert abs(missed - expected) <= SIGMAS * sqrt(expected)
 
 
 @pytest.mark.parametrize(("law", "drawn", "_power", "expected"), KINDS)
 def test_the_word_is_right(law: Law, drawn: Draw, _power: float, expected: str) -> None:
-    """Sixteen lanes over four decades have the right word but for the interval's own misses."""
+    """Sixteen lanes over four decades have the right word, except for the misses of the interval."""
     draw, count = np.random.default_rng(5), 200
     words = [exponent(TIMES, drawn(draw, 16), law, 1e-9).word for _ in range(count)]
-    wrong = sum(found != expected for found in words)
+    wrong = sum(given_word != expected for given_word in words)
     misses = (1 - LEVEL) * count
     assert wrong <= misses + SIGMAS * sqrt(misses)
 
@@ -145,15 +145,15 @@ def test_the_word_is_right(law: Law, drawn: Draw, _power: float, expected: str) 
 def test_the_exponent_does_not_depend_on_units() -> None:
     """Errors and times in other units have the same exponent, and so has each lane in its own."""
     errors = walk(np.random.default_rng(7), 8)
-    found = exponent(TIMES, errors, Law.WALK, 1e-9)
+    first = exponent(TIMES, errors, Law.WALK, 1e-9)
     sizes = np.logspace(-6, 6, 8)[:, None]
     again = exponent(TIMES * 7, errors * sizes, Law.WALK, 1e-9)
-    assert again.value == pytest.approx(found.value, abs=1e-12)
-    assert again.high - again.low == pytest.approx(found.high - found.low, abs=1e-12)
+    assert again.value == pytest.approx(first.value, abs=1e-12)
+    assert again.high - again.low == pytest.approx(first.high - first.low, abs=1e-12)
 
 
 @pytest.mark.parametrize(
-    ("value", "reach", "law", "said"),
+    ("value", "reach", "law", "expected"),
     [
         (0.5, 0.1, Law.WALK, "random walk"),
         (0.75, 0.3, Law.WALK, "unclear: random walk or bias"),
@@ -165,9 +165,11 @@ def test_the_exponent_does_not_depend_on_units() -> None:
         (nan, nan, Law.INTEGRATED, NO_WORD),
     ],
 )
-def test_words_follow_from_the_interval(value: float, reach: float, law: Law, said: str) -> None:
+def test_words_follow_from_the_interval(
+    value: float, reach: float, law: Law, expected: str
+) -> None:
     """One exponent inside is its word; several are unclear; none is between its neighbours."""
-    assert word(value, reach, law) == said
+    assert word(value, reach, law) == expected
 
 
 def test_no_error_at_all_is_exact() -> None:
@@ -202,14 +204,14 @@ def test_the_law_itself_fails_as_often_as_is_stated(law: Law) -> None:
     draw, count = np.random.default_rng(11), 2500
     chances = np.array([gate(TIMES, of_law(law, draw, 8), law, 0).chance for _ in range(count)])
     for rate in (0.5, 0.1, 0.01):
-        found = np.sum(chances < rate)
-        assert abs(found - rate * count) <= SIGMAS * sqrt(rate * (1 - rate) * count)
+        failures = np.sum(chances < rate)
+        assert abs(failures - rate * count) <= SIGMAS * sqrt(rate * (1 - rate) * count)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("law", Law)
 def test_the_false_alarm_rate_holds_far_out(law: Law) -> None:
-    """Of a million ensembles of the law about ten fail the published gate: its rate is 10^-5."""
+    """About ten of a million ensembles of the law fail the published gate, whose rate is 10^-5."""
     draw, count, lanes, times = np.random.default_rng(13), 1_000_000, 4, TIMES[::2]
     root = np.linalg.cholesky(covariance_of(law, times))
     statistics = np.zeros(count)
@@ -255,9 +257,9 @@ def test_an_error_that_is_no_number_fails(lost: float) -> None:
     """One lane that is lost at the end fails the gate, which says what it expected."""
     errors = walk(np.random.default_rng(1), 8)
     errors[2, -1] = lost
-    found = gate(TIMES, errors, Law.WALK, 0)
-    assert found.verdict is Status.FAIL
-    assert "finite errors" in found.because
+    judgement = gate(TIMES, errors, Law.WALK, 0)
+    assert judgement.verdict is Status.FAIL
+    assert "finite errors" in judgement.because
 
 
 def test_early_errors_below_a_rounding_raise_no_alarm() -> None:
@@ -269,7 +271,7 @@ def test_early_errors_below_a_rounding_raise_no_alarm() -> None:
 
 
 @pytest.mark.parametrize(
-    ("times", "errors", "said"),
+    ("times", "errors", "message"),
     [
         (TIMES, np.ones((8, 3)), r"expected errors of shape \(lanes, 9\), got \(8, 3\)"),
         (TIMES, np.ones((1, 9)), "at least 2 lanes and 4 instants, got 1 and 9"),
@@ -278,7 +280,7 @@ def test_early_errors_below_a_rounding_raise_no_alarm() -> None:
         (TIMES - TIMES[0], np.ones((8, 9)), "instants after the start that increase"),
     ],
 )
-def test_too_little_is_refused(times: np.ndarray, errors: np.ndarray, said: str) -> None:
+def test_too_little_is_refused(times: np.ndarray, errors: np.ndarray, message: str) -> None:
     """An array of another shape, too few lanes or instants, instants out of order: each is named."""
-    with pytest.raises(ValueError, match=said):
+    with pytest.raises(ValueError, match=message):
         growth(times, errors, Law.WALK, 1e-16)

@@ -1,4 +1,4 @@
-"""An ensemble followed far: left and taken up, its errors told with their sign, judged, published."""
+"""An ensemble over many periods: stopped and continued, with signed errors, judged and published."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def several_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_instants_are_half_decades_of_periods() -> None:
-    """From 100 periods on every instant is later by the root of ten, and is a number of the rung."""
+    """Instants begin at 100 periods, have a ratio of the root of ten, and are numbers of the rung."""
     asked = question(periods=1e5)
     assert asked.counts == pytest.approx([10 ** (k / 2) for k in range(4, 11)], rel=1e-12)
     for problem in asked.problems:
@@ -62,7 +62,7 @@ def test_pieces_lead_to_every_instant(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize(
-    ("changed", "said"),
+    ("changed", "message"),
     [
         ({"periods": 1000}, "expected at least 3162 periods, got 1000"),
         ({"periods": float("nan")}, "expected at least 3162 periods, got nan"),
@@ -76,9 +76,9 @@ def test_pieces_lead_to_every_instant(monkeypatch: pytest.MonkeyPatch) -> None:
         ({"solver": "scipy:RK45"}, "expected a method .taylor., got 'RK45'"),
     ],
 )
-def test_what_cannot_be_followed_is_refused(changed: dict[str, Any], said: str) -> None:
+def test_what_cannot_be_followed_is_refused(changed: dict[str, Any], message: str) -> None:
     """Too few periods for the gate, too many, too few lanes, and a solver that is none of ours."""
-    with pytest.raises(ValueError, match=said):
+    with pytest.raises(ValueError, match=message):
         question(**changed)
 
 
@@ -128,7 +128,7 @@ def test_a_checkpoint_holds_everything(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("changed", "made_with", "said"),
+    ("changed", "made_with", "message"),
     [
         ({"seed": 2}, {}, "expected a checkpoint with seed 2, got 1; remove"),
         ({"lanes": 5}, {}, "expected a checkpoint with lanes 5, got 4"),
@@ -138,14 +138,14 @@ def test_a_checkpoint_holds_everything(tmp_path: Path) -> None:
     ],
 )
 def test_a_checkpoint_of_something_else_is_refused(
-    changed: dict[str, Any], made_with: dict[str, str], said: str, tmp_path: Path
+    changed: dict[str, Any], made_with: dict[str, str], message: str, tmp_path: Path
 ) -> None:
     """Another start, ensemble, setting, scene or version is named, and nothing is computed."""
     file, asked = tmp_path / "run.json", question()
     progress = Progress(0, (Lane(Fraction(0), (Fraction(1),)),) * 4)
     checkpoint.write(file, asked.document(), numerical_versions(), progress)
     other, versions = question(**changed).document(), numerical_versions() | made_with
-    with pytest.raises(OfAnotherError, match=said):
+    with pytest.raises(OfAnotherError, match=message):
         checkpoint.read(file, other, versions)
 
 
@@ -202,10 +202,10 @@ def test_the_phase_is_the_shift_of_time(late: float) -> None:
             )
             for row in omega
         ]
-    found = by_name(problem, states, asked.period)[PHASE]
+    phase = by_name(problem, states, asked.period)[PHASE]
     # The states are rounded: u over the slowest rate, of which this orbit has a tenth per unit of time.
     rounding = 2 * pi / asked.period * 10 * float(problem.rung.unit_roundoff) * 10
-    assert found == pytest.approx(2 * pi * late / asked.period, rel=2e-6, abs=rounding)
+    assert phase == pytest.approx(2 * pi * late / asked.period, rel=2e-6, abs=rounding)
 
 
 def test_drifts_have_their_sign() -> None:
@@ -213,11 +213,11 @@ def test_drifts_have_their_sign() -> None:
     problem = question("euler/generic", lanes=2).problems[0]
     for factor in (1 + Fraction(1, 2**20), 1 - Fraction(1, 2**20)):
         state = tuple(factor * value for value in problem.initial_momenta)
-        found = by_name(problem, [state], 1.0)
+        drifts = by_name(problem, [state], 1.0)
         for name in ("T", "H2"):
             # Drifts are relative to the larger of both values, as a gate has them.
             expected = float((factor**2 - 1) / max(factor**2, 1))
-            assert found[name] == pytest.approx([expected], rel=1e-12)
+            assert drifts[name] == pytest.approx([expected], rel=1e-12)
 
 
 def test_what_a_lane_did_not_reach_is_no_number() -> None:
@@ -230,15 +230,15 @@ def test_what_a_lane_did_not_reach_is_no_number() -> None:
         assert np.isfinite(values).tolist() == [True, False, False, False], name
 
 
-def test_without_a_closed_form_the_drifts_are_told() -> None:
-    """Of a body that has no closed form there is no phase; its conserved quantities are all there."""
-    found = experiment(question("kirchhoff/general-body", lanes=2))
-    assert {one.quantity for one in found.found} == {"T", "F2", "FG"}
-    assert all(one.growth.gate is not None for one in found.found)
+def test_without_a_closed_form_the_drifts_are_measured() -> None:
+    """A body without a closed form has no phase, and all of its conserved quantities."""
+    result = experiment(question("kirchhoff/general-body", lanes=2))
+    assert {one.quantity for one in result.quantities} == {"T", "F2", "FG"}
+    assert all(one.growth.gate is not None for one in result.quantities)
 
 
 def test_a_phase_that_may_be_off_by_a_period_is_not_told() -> None:
-    """Beyond a quarter of a period, or where t^2 could have led there unseen, nothing is sure."""
+    """No phase is given beyond a quarter of a period, or if t^2 could have led there unseen."""
     times = [Fraction(10) ** k for k in range(4)]
     sure = sure_shifts(times, np.array([1e-6, -1e-4, 1e-3, 0.1]), 1.0)
     assert sure.tolist() == [1e-6, -1e-4, 1e-3, 0.1]

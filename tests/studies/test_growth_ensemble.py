@@ -1,4 +1,4 @@
-"""Many starts at once: every lane as if it were alone, however the others end, in exact numbers."""
+"""Many starts at once: every lane has the same exact numbers as alone, however the others end."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ def problems(name: str, on: str, count: int = LANES, until: int = 50) -> list[Pr
     return [pose(one, rung(on)) for one in [scene, *nearby(scene, 1, count - 1)]]
 
 
-def ends(found: Sequence[Problem]) -> list[Fraction]:
-    return [problem.times[-1] for problem in found]
+def ends(asked: Sequence[Problem]) -> list[Fraction]:
+    return [problem.times[-1] for problem in asked]
 
 
 def blowing_up(n: Named) -> Mapping[str, Any]:
@@ -43,14 +43,14 @@ def blowing_up(n: Named) -> Mapping[str, Any]:
 
 
 def with_fates(until: int) -> tuple[list[Problem], list[bool]]:
-    """Lanes of which every third goes on for ever, and the k-th of the others until the time 2 + k."""
-    found, lives = [], []
+    """Return lanes: every third goes on for ever, and the k-th of the others ends at the time 2 + k."""
+    fated, lives = [], []
     for k, problem in enumerate(problems("euler/generic", "f64")):
         lives.append(k % 3 == 0 or 2 + k > until)
         first = Fraction(-1 if k % 3 == 0 else 1, 2 + k)
         start = rung("f64").round(first), *problem.initial_momenta[1:]
-        found.append(replace(problem, initial_momenta=start).with_equations(blowing_up))
-    return found, lives
+        fated.append(replace(problem, initial_momenta=start).with_equations(blowing_up))
+    return fated, lives
 
 
 @pytest.mark.parametrize("on", ["f32", "f64"])
@@ -59,11 +59,11 @@ def test_a_lane_is_the_same_in_any_company(name: str, on: str) -> None:
     """The same start has the same bits and steps among others, in another place, and by itself."""
     asked = problems(name, on)
     together = Ensemble(asked)
-    found = together.advance(together.start(), ends(asked))
-    assert all(lane.goes_on for lane in found)
+    lanes = together.advance(together.start(), ends(asked))
+    assert all(lane.goes_on for lane in lanes)
     for some in (slice(3, 10), slice(18, 19), slice(None, None, -1)):
         fewer = Ensemble(asked[some])
-        assert fewer.advance(fewer.start(), ends(asked[some])) == found[some]
+        assert fewer.advance(fewer.start(), ends(asked[some])) == lanes[some]
 
 
 @pytest.mark.parametrize("on", ["f32", "f64", "f80", "mp64"])
@@ -89,14 +89,14 @@ def test_lanes_hold_numbers_of_the_rung(on: str) -> None:
     """Nothing is rounded on the way out: a state is made of numbers that the rung holds, as it stood."""
     asked = problems("euler/generic", on, 3)
     ensemble = Ensemble(asked)
-    found = ensemble.advance(ensemble.start(), ends(asked))
-    for problem, lane in zip(asked, found, strict=True):
+    lanes = ensemble.advance(ensemble.start(), ends(asked))
+    for problem, lane in zip(asked, lanes, strict=True):
         assert lane.time == problem.times[-1]
         assert all(problem.rung.holds(value) for value in lane.state)
     # No step, no change: what goes in comes out.
-    again = ensemble.advance(found, ends(asked))
-    assert [lane.state for lane in again] == [lane.state for lane in found]
-    assert [lane.steps for lane in again] == [lane.steps for lane in found]
+    again = ensemble.advance(lanes, ends(asked))
+    assert [lane.state for lane in again] == [lane.state for lane in lanes]
+    assert [lane.steps for lane in again] == [lane.steps for lane in lanes]
 
 
 def test_a_lane_that_is_not_finite_stops_no_other() -> None:
@@ -104,32 +104,32 @@ def test_a_lane_that_is_not_finite_stops_no_other() -> None:
     asked, lives = with_fates(until=10)
     assert lives.count(False) > batch_width(rung("f64")) / 2
     ensemble = Ensemble(asked)
-    found = ensemble.advance(ensemble.start(), [Fraction(10)] * LANES)
-    assert [lane.goes_on for lane in found] == lives
-    assert {lane.outcome for lane in found} == {Outcome.FINISHED, Outcome.NON_FINITE}
+    lanes = ensemble.advance(ensemble.start(), [Fraction(10)] * LANES)
+    assert [lane.goes_on for lane in lanes] == lives
+    assert {lane.outcome for lane in lanes} == {Outcome.FINISHED, Outcome.NON_FINITE}
     living = [i for i in range(LANES) if lives[i]]
     alone = Ensemble([asked[i] for i in living])
     expected = alone.advance(alone.start(), [Fraction(10)] * len(living))
-    assert [found[i] for i in living] == list(expected)
+    assert [lanes[i] for i in living] == list(expected)
     for i in living:
         # The exact H1 is 1/(1/H1(0) - t).
         exact = 1 / (1 / asked[i].initial_momenta[0] - 10)
-        assert abs(found[i].state[0] / exact - 1) <= 2.0**-53 * 200 * abs(
+        assert abs(lanes[i].state[0] / exact - 1) <= 2.0**-53 * 200 * abs(
             exact / asked[i].initial_momenta[0]
         )
 
 
 def test_a_lost_lane_stays_lost_and_the_others_go_on() -> None:
-    """After a stop the same holds: what was lost keeps its last state, what lives is unchanged by it."""
+    """A lost lane keeps its last state after a stop, and does not change the others."""
     asked, lives = with_fates(until=10)
     ensemble = Ensemble(asked)
     half = ensemble.advance(ensemble.start(), [Fraction(10)] * LANES)
-    found = ensemble.advance(half, [Fraction(12)] * LANES)
-    living = [i for i, lane in enumerate(found) if lane.goes_on]
-    assert all(found[i] == half[i] for i in range(LANES) if not lives[i])
+    lanes = ensemble.advance(half, [Fraction(12)] * LANES)
+    living = [i for i, lane in enumerate(lanes) if lane.goes_on]
+    assert all(lanes[i] == half[i] for i in range(LANES) if not lives[i])
     alone = Ensemble([asked[i] for i in living])
     expected = alone.advance([half[i] for i in living], [Fraction(12)] * len(living))
-    assert [found[i] for i in living] == list(expected)
+    assert [lanes[i] for i in living] == list(expected)
 
 
 @pytest.mark.parametrize(
@@ -145,15 +145,15 @@ def test_a_lane_that_would_never_end_is_not_begun(on: str, size: int, outcome: O
     asked = problems("euler/generic", on, 6)
     large = replace(asked[2], initial_momenta=(Fraction(size),) * 3)
     ensemble = Ensemble([*asked[:2], large, *asked[3:]])
-    found = ensemble.advance(ensemble.start(), ends(asked))
-    assert found[2] == Lane(Fraction(0), large.initial_momenta, outcome=outcome)
+    lanes = ensemble.advance(ensemble.start(), ends(asked))
+    assert lanes[2] == Lane(Fraction(0), large.initial_momenta, outcome=outcome)
     sound = Ensemble(asked)
     expected = sound.advance(sound.start(), ends(asked))
-    assert [found[i] == expected[i] for i in range(6)] == [True, True, False, True, True, True]
+    assert [lanes[i] == expected[i] for i in range(6)] == [True, True, False, True, True, True]
 
 
 def test_no_step_is_longer_than_the_cap() -> None:
-    """Where the error control sees little to do, close to an unstable axis, steps stay short."""
+    """Steps stay short near an unstable axis, where the error control would allow long ones."""
     asked = problems("euler/tennis-racket", "f64", 4, until=30)
     unstable = [
         replace(
@@ -173,7 +173,7 @@ def test_no_step_is_longer_than_the_cap() -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "message"),
     [
         (lambda asked: [], "expected at least one start, got none"),
         (
@@ -186,9 +186,9 @@ def test_no_step_is_longer_than_the_cap() -> None:
         ),
     ],
 )
-def test_unlike_starts_are_refused(change: Any, said: str) -> None:
+def test_unlike_starts_are_refused(change: Any, message: str) -> None:
     """Problems of another rung or form have no place in one batch, and are named."""
-    with pytest.raises(ValueError, match=said):
+    with pytest.raises(ValueError, match=message):
         Ensemble(change(problems("euler/generic", "f64", 2)))
 
 

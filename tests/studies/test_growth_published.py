@@ -1,4 +1,4 @@
-"""What the whole chain says of the Taylor integrator, sound and biased; and what is published of it."""
+"""Growth measured end to end, of a sound and of a biased integrator; and the published growth."""
 
 from __future__ import annotations
 
@@ -39,13 +39,13 @@ def followed(name: str, periods: float = SHORT, lanes: int = 8, **changed: Any) 
     return experiment(Question(load(name), rung("f64"), periods, lanes, **changed))
 
 
-def of(found: Experiment, quantity: str) -> QuantityGrowth:
-    (one,) = [one for one in found.found if one.quantity == quantity]
+def of(result: Experiment, quantity: str) -> QuantityGrowth:
+    (one,) = [one for one in result.quantities if one.quantity == quantity]
     return one
 
 
-def verdict(found: Experiment, quantity: str) -> Status:
-    judged = of(found, quantity).growth.gate
+def verdict(result: Experiment, quantity: str) -> Status:
+    judged = of(result, quantity).growth.gate
     assert judged is not None
     return judged.verdict
 
@@ -55,60 +55,62 @@ def verdict(found: Experiment, quantity: str) -> Status:
 
 @pytest.mark.parametrize("name", ["euler/about-max-axis", "kirchhoff/two-real-roots"])
 def test_the_integrator_walks(name: str) -> None:
-    """At its own tolerance no quantity grows faster than roundings make it, and every lane ends."""
-    found = followed(name)
-    assert found.lost == 0
-    assert {verdict(found, one.quantity) for one in found.found if one.growth.gate} == {Status.PASS}
-    walks = {row.quantity: row.in_walks for row in found.ensemble().quantities}
+    """No quantity grows faster than a walk at the integrator's own tolerance, and every lane ends."""
+    result = followed(name)
+    assert result.lost == 0
+    assert {verdict(result, one.quantity) for one in result.quantities if one.growth.gate} == {
+        Status.PASS
+    }
+    walks = {row.quantity: row.in_walks for row in result.ensemble().quantities}
     # A step rounds its end once, to half a unit in the last place at most, and each of its sums
     # once more, much smaller: a walk of steps of about u. Ten of them would be another integrator.
     assert 0.01 <= walks["T"] <= 10
 
 
 def test_a_coarse_tolerance_is_a_bias() -> None:
-    """At 1e-12 truncation leads: energy and momentum go one way, phase as t^2, and the gates see it."""
-    found = followed("euler/about-max-axis", 1e4, solver="taylor?tol=1e-12")
+    """Truncation dominates at 1e-12: energy and momentum grow as t, the phase as t^2, and gates fail."""
+    result = followed("euler/about-max-axis", 1e4, solver="taylor?tol=1e-12")
     for name in ("T", "H2", PHASE):
-        assert verdict(found, name) is Status.FAIL
-        assert of(found, name).growth.exponent.word == BIAS
+        assert verdict(result, name) is Status.FAIL
+        assert of(result, name).growth.exponent.word == BIAS
     # What always has one sign has it in every lane.
-    drift = of(found, "T").errors[:, -1]
+    drift = of(result, "T").errors[:, -1]
     assert np.all(np.sign(drift) == np.sign(drift[0]))
 
 
 def test_one_lane_alone_is_the_same_lane() -> None:
     """The errors of a lane do not change with the ensemble around it."""
     few, many = followed("euler/about-max-axis", lanes=2), followed("euler/about-max-axis", lanes=5)
-    for one in few.found:
+    for one in few.quantities:
         assert np.array_equal(one.errors, of(many, one.quantity).errors[:2])
 
 
 @pytest.mark.slow
 def test_brouwers_law_to_a_hundred_thousand_periods() -> None:
     """Three decades of f64: drifts grow as the root of time, the phase as its three halves."""
-    found = followed("euler/about-max-axis", 1e5, 16)
+    result = followed("euler/about-max-axis", 1e5, 16)
     for name, power in (("T", 0.5), ("H2", 0.5), (PHASE, 1.5)):
-        assert verdict(found, name) is Status.PASS
+        assert verdict(result, name) is Status.PASS
         # Half way to the next word. The slopes of sixteen lanes have a mean that scatters by 0.04, and
         # another processor draws other roundings.
-        assert abs(of(found, name).growth.exponent.value - power) <= 0.25
+        assert abs(of(result, name).growth.exponent.value - power) <= 0.25
 
 
 def mean_rounding(coefficient: float, part: int) -> float:
-    """Of products with numbers of 53 bits in the part-th quarter of their range, in last places."""
+    """Return the mean rounding of products with random 53-bit numbers of one quarter of their range."""
     whole, draw = coefficient.as_integer_ratio()[0], random.Random(part)
     quarter, errors = 2**50, []
     for _ in range(20_000):
         exact = whole * draw.randrange(2**52 + part * quarter, 2**52 + (part + 1) * quarter)
         unit = 1 << (exact.bit_length() - 53)
-        kept, rest = divmod(exact, unit)
-        is_up = rest > unit // 2 or (rest == unit // 2 and kept % 2)
+        quotient, rest = divmod(exact, unit)
+        is_up = rest > unit // 2 or (rest == unit // 2 and quotient % 2)
         errors.append(((unit - rest) if is_up else -rest) / unit)
     return sum(errors) / len(errors)
 
 
 def test_products_with_a_small_fraction_lean_to_one_side() -> None:
-    """Of 1/6 in f64 the mean rounding is a tenth of a unit in the last place; of other numbers, none."""
+    """The mean rounding of products with 1/6 is a tenth of a last place; of other numbers it is zero."""
     # One rounding is uniform within half a unit: the mean of 20000 is known to 0.29/sqrt(20000).
     noise = 4.5 * 0.29 / 20_000**0.5
     for coefficient in (0.1683725917, np.pi / 20, 2**0.5 / 8):
@@ -185,7 +187,7 @@ def test_a_run_that_was_stopped_goes_on(
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "message"),
     [
         (["growth", "--periods", "10"], "expected at least 3162 periods, got 10"),
         (["growth", "--periods", "many"], "expected a number of periods, got 'many'"),
@@ -197,12 +199,12 @@ def test_a_run_that_was_stopped_goes_on(
     ],
 )
 def test_a_wrong_call_is_refused(
-    options: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    options: list[str], message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Too few periods, no number, options misspelt or without their study: exit status 2, one line."""
     assert main(["publish", *options, "--from", str(tmp_path)]) == 2
     error = capsys.readouterr().err
-    assert said in error
+    assert message in error
     assert "expected a study" not in error
 
 
@@ -229,14 +231,14 @@ def test_checkpoints_have_names_of_their_own() -> None:
 
 def test_a_number_that_is_not_finite_is_stored_as_none() -> None:
     """An ensemble is the same when it is read again; one without a finite error has no numbers."""
-    found = followed("euler/about-max-axis", lanes=2)
-    errors = np.full((2, len(found.steps)), np.nan)
-    nothing = growth(np.array(found.question.counts), errors, Law.WALK, 1e-16)
-    lost = replace(found, found=(QuantityGrowth("T", errors, nothing),))
-    for one in (found.ensemble("a test"), lost.ensemble()):
+    result = followed("euler/about-max-axis", lanes=2)
+    errors = np.full((2, len(result.steps)), np.nan)
+    nothing = growth(np.array(result.question.counts), errors, Law.WALK, 1e-16)
+    lost = replace(result, quantities=(QuantityGrowth("T", errors, nothing),))
+    for one in (result.ensemble("a test"), lost.ensemble()):
         assert converted(complete(one), Ensemble) == one
     (row,) = lost.ensemble().quantities
-    assert row.rms == (None,) * len(found.steps)
+    assert row.rms == (None,) * len(result.steps)
     assert row.exponent is row.in_walks is row.gate.chance is None
 
 
@@ -245,8 +247,8 @@ def test_a_file_of_something_else_is_named(tmp_path: Path) -> None:
     file = tmp_path / pages.GROWTH.name
     file.parent.mkdir()
     file.write_text('{"runs": [{"scene": "euler/generic"}], "left_out": []}', encoding="utf-8")
-    said = r"expected a key digest, got none @ runs\[0\] @ .*growth\.json"
-    with pytest.raises(ValueError, match=said):
+    message = r"expected a key digest, got none @ runs\[0\] @ .*growth\.json"
+    with pytest.raises(ValueError, match=message):
         STUDY.pages(tmp_path)
 
 

@@ -1,4 +1,4 @@
-"""The hunt for the worst: what it finds passes, stays found, and is told as it was found."""
+"""The hunt for the worst: its scenes pass, are reproducible, and are published unchanged."""
 
 from __future__ import annotations
 
@@ -84,39 +84,39 @@ def _peaks(family: Family, several: Sequence[Sequence[float]]) -> list[Catch | N
 def test_hunt_climbs(monkeypatch: pytest.MonkeyPatch) -> None:
     """The hunt comes from its first places to the top of a hill, in five dimensions too."""
     monkeypatch.setattr(hunt, "caught", _peaks)
-    (found,) = hunt.hunt([quarry("euler-hill", 5)], 2000, 1, lambda name: None)
+    (result,) = hunt.hunt([quarry("euler-hill", 5)], 2000, 1, lambda name: None)
     # A cloud of as many places comes no nearer than some 0.1.
-    assert found.worst.ratio >= 5 - 0.05
+    assert result.worst.ratio >= 5 - 0.05
 
 
 @pytest.mark.parametrize("runs", [10, 77, 400])
 def test_a_budget_is_a_number_of_runs(monkeypatch: pytest.MonkeyPatch, runs: int) -> None:
     """No more runs are made than were asked for, and less than a generation is left over."""
     monkeypatch.setattr(hunt, "caught", _peaks)
-    (found,) = hunt.hunt([quarry("euler-hill", 3)], runs, 1, lambda name: None)
-    assert runs * 0.6 < found.judged <= runs
+    (result,) = hunt.hunt([quarry("euler-hill", 3)], runs, 1, lambda name: None)
+    assert runs * 0.6 < result.judged <= runs
 
 
 def test_a_hunt_can_be_repeated(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every place follows from seed and family; another seed has others."""
-    seen: list[list[float]] = []
+    points: list[list[float]] = []
 
     def noted(family: Family, several: Sequence[Sequence[float]]) -> list[Catch | None]:
-        seen.extend(map(list, several))
+        points.extend(map(list, several))
         return _peaks(family, several)
 
     monkeypatch.setattr(hunt, "caught", noted)
     rounds = []
     for seed in (1, 1, 2):
-        seen.clear()
+        points.clear()
         hunt.hunt([quarry("euler-hill", 2)], 60, seed, str)
-        rounds.append([*seen])
+        rounds.append([*points])
     assert rounds[0] == rounds[1]
     assert rounds[0][0] != rounds[2][0]
 
 
 def test_a_family_without_a_judged_scene_is_no_hunt(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where no place has a gate that asks something, the hunt says so and names the family."""
+    """The hunt raises an error that names a family without a gate that is not vacuous."""
     monkeypatch.setattr(hunt, "caught", lambda family, several: [None] * len(several))
     with pytest.raises(NotMeasured, match="euler-nothing"):
         hunt.hunt([quarry("euler-nothing")], 20, 1, str)

@@ -1,4 +1,4 @@
-"""The sheets of what was measured have every row of the data, and every digit."""
+"""Sheets of measurements have every row of the data, and every digit."""
 
 from __future__ import annotations
 
@@ -44,17 +44,19 @@ def number(cell: str) -> float | None:
 
 
 def test_growth_has_a_row_for_every_exponent() -> None:
-    """Each quantity of each ensemble, with the ends of its interval and its gate, to the last bit."""
+    """The sheet has each quantity of each ensemble, with its interval and its gate, to the last bit."""
     study = growth.GROWTH.load(measured_report())
-    runs, found = study.runs, read(growth.sheet(study))
+    runs, lines = study.runs, read(growth.sheet(study))
     asked = [(run, row) for run in runs for row in run.quantities]
-    assert len(found) == len(asked)
-    for cells, (run, row) in zip(found, asked, strict=True):
+    assert len(lines) == len(asked)
+    for cells, (run, row) in zip(lines, asked, strict=True):
         assert (cells["scene"], cells["rung"], cells["quantity"]) == (
-            *(run.scene, run.rung, row.quantity),
+            run.scene,
+            run.rung,
+            row.quantity,
         )
-        kept = [number(cells[name]) for name in ("exponent", "low", "high", "rms_last")]
-        assert kept == [row.exponent, row.low, row.high, row.rms[-1]]
+        numbers = [number(cells[name]) for name in ("exponent", "low", "high", "rms_last")]
+        assert numbers == [row.exponent, row.low, row.high, row.rms[-1]]
         assert tuple(number(cells[f"late{end}"]) for end in ("", "_low", "_high")) == row.late
         assert cells["gate"] == (row.gate.verdict.value if row.gate else "")
 
@@ -62,36 +64,36 @@ def test_growth_has_a_row_for_every_exponent() -> None:
 def test_reach_has_a_row_for_every_number_of_periods() -> None:
     """An error that is missing says `lost`; a run that was not made has one row with its reason."""
     stored = reach.REACH.load(measured_report())
-    rows, found = stored.rows, read(reach.sheet(stored))
-    assert len(found) == sum(len(row.periods) if row.errors else 1 for row in rows)
-    made = [cells for cells in found if cells["periods"]]
+    rows, lines = stored.rows, read(reach.sheet(stored))
+    assert len(lines) == sum(len(row.periods) if row.errors else 1 for row in rows)
+    made = [cells for cells in lines if cells["periods"]]
     assert {cells["lost"] for cells in made} == {"yes", "no"}
     assert all((cells["error"] == "") == (cells["lost"] == "yes") for cells in made)
-    assert all(cells["why"] for cells in found if not cells["periods"])
+    assert all(cells["why"] for cells in lines if not cells["periods"])
     first = rows[0]
-    kept = [number(cells["error"]) for cells in found[: len(first.periods)]]
-    assert tuple(kept) == first.errors
+    errors = [number(cells["error"]) for cells in lines[: len(first.periods)]]
+    assert tuple(errors) == first.errors
 
 
 def test_prices_have_a_row_for_every_variant_and_rung() -> None:
     """A row has both intervals; the price at equal error stands in the rows of f64 alone."""
     study = prices.PRICES.load(measured_report())
-    found = read(prices.sheet(study))
-    assert len(found) == len(study.rows)
-    for cells, row in zip(found, study.rows, strict=True):
+    lines = read(prices.sheet(study))
+    assert len(lines) == len(study.rows)
+    for cells, row in zip(lines, study.rows, strict=True):
         ends = tuple(number(cells[f"step_{end}"]) for end in ("ratio", "low", "high"))
         assert ends == row.step_ratio
     equal = {one.variant: one.ratio for one in study.equal}
-    told = {c["variant"]: number(c["ratio_at_equal_error"]) for c in found if c["rung"] == "f64"}
-    assert {name: told[name] for name in equal} == equal
-    assert {c["ratio_at_equal_error"] for c in found if c["rung"] != "f64"} <= {""}
+    ratios = {c["variant"]: number(c["ratio_at_equal_error"]) for c in lines if c["rung"] == "f64"}
+    assert {name: ratios[name] for name in equal} == equal
+    assert {c["ratio_at_equal_error"] for c in lines if c["rung"] != "f64"} <= {""}
 
 
 def test_worst_has_a_row_for_every_family() -> None:
     """A row has the family's scene and ratio."""
     study = worst.WORST.load(measured_report())
-    found = read(worst.sheet(study))
-    assert [(c["family"], number(c["ratio"]), c["scene"]) for c in found] == [
+    lines = read(worst.sheet(study))
+    assert [(c["family"], number(c["ratio"]), c["scene"]) for c in lines] == [
         (row.name, row.ratio, row.scene) for row in study.families
     ]
 
@@ -110,20 +112,20 @@ def test_claims_have_a_row_for_every_entry() -> None:
         bound=1e-35,
         because="it is",
     )
-    (found,) = read(claims.sheet(ClaimsStudy(Provenance(), {}, (row,))))
-    assert (found["id"], found["statement"]) == (row.id, "a, b")
-    assert (found["verdict"], found["remark"]) == ("false as transcribed", "")
-    assert (found["residual"], found["residual_transcribed"]) == ("0.0", "4.3")
-    assert found["mutations"] == "one; two"
+    (cells,) = read(claims.sheet(ClaimsStudy(Provenance(), {}, (row,))))
+    assert (cells["id"], cells["statement"]) == (row.id, "a, b")
+    assert (cells["verdict"], cells["remark"]) == ("false as transcribed", "")
+    assert (cells["residual"], cells["residual_transcribed"]) == ("0.0", "4.3")
+    assert cells["mutations"] == "one; two"
 
 
 @pytest.mark.parametrize("name", ["growth", "prices", "reach", "worst"])
 def test_what_is_remade_is_page_and_sheet(name: str) -> None:
     """`publish` makes both of what is stored, and the end of the page says what made it, and where."""
     (study,) = registry.find([name])
-    found = study.pages(measured_report())
-    assert set(found) == {study.path, f"tables/{name}.csv"}
-    end = "".join(found[study.path].split("\n## ")[-2:])
+    pages = study.pages(measured_report())
+    assert set(pages) == {study.path, f"tables/{name}.csv"}
+    end = "".join(pages[study.path].split("\n## ")[-2:])
     assert "heyoka 7." in end or "Made with unknown versions" in end
     assert "`taylor-verify publish" in end
 

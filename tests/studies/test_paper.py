@@ -1,4 +1,4 @@
-"""The paper opens with findings that are computed, and has all of its tables, alone and within."""
+"""The paper opens with computed findings, and has all of its tables, also as files."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ TEXT = (Path(pack.__file__).parent / "text.md").read_text(encoding="utf-8")
 
 @pytest.fixture(scope="module")
 def sources() -> Sources:
-    found = read(reports.for_paper())
-    numbers = found.trades.numbers
+    published = read(reports.for_paper())
+    numbers = published.trades.numbers
     # So that a rival leaves the digits that the paper asks for.
     points = tuple(replace(p, error=1e-3 * p.error if p.error else None) for p in numbers.points)
-    trades = replace(found.trades, numbers=replace(numbers, points=points))
-    return replace(found, trades=trades)
+    trades = replace(published.trades, numbers=replace(numbers, points=points))
+    return replace(published, trades=trades)
 
 
 @pytest.fixture(scope="module")
@@ -131,7 +131,7 @@ def test_every_table_is_named_and_shown(made: pack.Pack) -> None:
 
 
 def test_every_source_is_cited() -> None:
-    """What the list of references begins with is named in the text before it."""
+    """Each entry of the list of references is cited in the text."""
     body, listed = TEXT.split("# References")
     names = re.findall(r"^- \*?(?:Encyclopaedia )?(\w+)", listed, re.M)
     assert len(names) >= 10
@@ -170,12 +170,12 @@ def test_the_pack_is_whole_and_the_same_every_time(tmp_path: Path) -> None:
 def test_a_report_without_a_study_has_no_paper(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """All that is missing is said at once, the exit status is 2, and nothing is written."""
+    """One message names all missing studies, the exit status is 2, and nothing is written."""
     reports.write_runs(tmp_path, [("euler/rest", "f64")])
     before = sorted(tmp_path.rglob("*"))
     assert main(["publish", "--paper", "--from", str(tmp_path)]) == 2
-    said = capsys.readouterr().err
-    assert "expected what `publish controls engines reach tradeoff` writes" in said
+    errors = capsys.readouterr().err
+    assert "expected what `publish controls engines reach tradeoff` writes" in errors
     assert [file for file in sorted(tmp_path.rglob("*")) if file not in before] == []
     assert bulk.missing(tmp_path, {}).renderings == ()
 

@@ -1,4 +1,4 @@
-"""The portraits of the scenes: what they hold is right, complete, and the same whenever it is made."""
+"""Portraits of the scenes are right, complete, and the same whenever they are made."""
 
 from __future__ import annotations
 
@@ -43,9 +43,9 @@ HALF = 0.5 * 10.0 ** (1 - FIGURES)
 
 @cache
 def stored(scene: str) -> dict[str, Any]:
-    found = PORTRAITS.find(every_portrait(), scene)
-    assert found is not None
-    return found
+    own = PORTRAITS.find(every_portrait(), scene)
+    assert own is not None
+    return own
 
 
 def with_quartic() -> list[str]:
@@ -73,13 +73,13 @@ def test_a_portrait_is_small() -> None:
 
 @pytest.mark.parametrize("scene", FRESH)
 def test_a_portrait_is_the_same_when_made_again(scene: str) -> None:
-    """Without the run on f64, whose roundings are those of a machine, the stored one is made again."""
+    """A new portrait equals the stored one, except for the run on f64, which depends on the machine."""
     again = json.loads(json.dumps(portrait_without_run(scene)))
-    kept = dict(stored(scene))
-    assert kept.pop("made_by").endswith("do not edit")
+    before = dict(stored(scene))
+    assert before.pop("made_by").endswith("do not edit")
     assert again.pop("explain") == {"cost": {"seconds": None}}
-    assert kept.pop("explain")["rung"] == "f64"
-    assert again == kept
+    assert before.pop("explain")["rung"] == "f64"
+    assert again == before
 
 
 def test_no_portrait_holds_a_time_of_the_clock() -> None:
@@ -90,11 +90,11 @@ def test_no_portrait_holds_a_time_of_the_clock() -> None:
 def test_the_comment_and_the_text_are_those_of_the_file() -> None:
     """`toml` is the scene file to the letter, and `why` all that it says about itself."""
     for name in SCENES:
-        found = stored(name)
-        lines = [line for line in found["toml"].splitlines() if line.startswith("#")]
-        assert found["toml"] == (ROOT / "cases" / f"{name}.toml").read_text(encoding="utf-8")
-        assert [f"# {line}".rstrip() for line in found["why"]] == lines
-        assert found["why"]
+        portrait = stored(name)
+        lines = [line for line in portrait["toml"].splitlines() if line.startswith("#")]
+        assert portrait["toml"] == (ROOT / "cases" / f"{name}.toml").read_text(encoding="utf-8")
+        assert [f"# {line}".rstrip() for line in portrait["why"]] == lines
+        assert portrait["why"]
 
 
 # The motion
@@ -117,9 +117,9 @@ def test_the_course_is_the_motion_at_the_times_printed(scene: str) -> None:
 def test_a_course_begins_at_the_start_and_covers_the_span_or_some_periods() -> None:
     """A course goes from the start, either way, to the farthest instant or through three periods."""
     for name in SCENES:
-        scene, found = load(name), stored(name)
-        times = found["course"]["t"]
-        period = next((e["value"] for e in found["analytic"] if e["name"] == "period"), None)
+        scene, portrait = load(name), stored(name)
+        times = portrait["course"]["t"]
+        period = next((e["value"] for e in portrait["analytic"] if e["name"] == "period"), None)
         spans = [float(t - scene.clock.start) for t in scene.clock.instants]
         span = max(spans, key=abs)
         most = abs(span) if period is None else min(abs(span), PERIODS * float(period))
@@ -163,9 +163,9 @@ def test_the_values_are_those_of_the_other_route() -> None:
 def test_the_numbers_of_the_orbit_are_those_of_explain() -> None:
     """Thirty digits here, fifteen there, of the same elements in the same order."""
     for name in SCENES:
-        found = stored(name)
-        ours = {row["name"]: float(row["value"]) for row in found["analytic"]}
-        theirs = {row["name"]: float(row["value"]) for row in found["explain"]["elements"]}
+        portrait = stored(name)
+        ours = {row["name"]: float(row["value"]) for row in portrait["analytic"]}
+        theirs = {row["name"]: float(row["value"]) for row in portrait["explain"]["elements"]}
         assert ours.keys() == theirs.keys()
         assert ours == pytest.approx(theirs, rel=1e-14, abs=1e-14)
 
@@ -176,10 +176,10 @@ def test_the_numbers_of_the_orbit_are_those_of_explain() -> None:
 def test_the_principal_frame_makes_the_tensor_again() -> None:
     """The moments about the axes add up to the scene's tensor, and the axes are right-handed."""
     for name in SCENES:
-        body, found = load(name).body, stored(name)["body"]
-        assert (found is None) == isinstance(body, ImmersedBody)
+        body, frame = load(name).body, stored(name)["body"]
+        assert (frame is None) == isinstance(body, ImmersedBody)
         if isinstance(body, RigidBody):
-            axes, moments = np.array(found["axes"]), np.array(found["principal_moments"])
+            axes, moments = np.array(frame["axes"]), np.array(frame["principal_moments"])
             inertia = np.array([[float(entry) for entry in row] for row in body.inertia])
             assert np.linalg.det(axes) == pytest.approx(1, abs=1e-8)
             assert np.abs(axes.T @ np.diag(moments) @ axes - inertia).max() <= 1e-8 * moments.max()
@@ -191,11 +191,11 @@ def test_the_axial_impulse_follows_the_quartic() -> None:
     y is about the point where T is of Clebsch's form: y - d x x, with d from the origin to it.
     """
     for name in with_quartic():
-        found = stored(name)
-        axis = int(found["potential"]["variable"][1:]) - 1
+        portrait = stored(name)
+        axis = int(portrait["potential"]["variable"][1:]) - 1
         i, k = (axis + 1) % 3, (axis + 2) % 3
-        x, y = (np.array(found["course"][f"{what}_impulse"]).T for what in ("linear", "angular"))
-        coefficients = found["potential"]["coefficients"]
+        x, y = (np.array(portrait["course"][f"{what}_impulse"]).T for what in ("linear", "angular"))
+        coefficients = portrait["potential"]["coefficients"]
         value = np.polyval(coefficients, x[axis])
         largest = np.polyval(np.abs(coefficients), np.abs(x[axis]))
         d = [float(entry) for entry in symmetric_origin(solid(load(name))[0])]
@@ -207,12 +207,12 @@ def test_the_axial_impulse_follows_the_quartic() -> None:
 
 
 def test_the_interval_is_where_the_axial_impulse_goes() -> None:
-    """It lies between roots of the quartic, X3 is above zero within, and the course stays there."""
+    """The interval lies between roots of the quartic; X3 is positive inside, and the course stays there."""
     for name in with_quartic():
-        found = stored(name)
-        own = found["potential"]
+        portrait = stored(name)
+        own = portrait["potential"]
         low, high = own["interval"]
-        course = np.array(found["course"]["linear_impulse"]).T[int(own["variable"][1:]) - 1]
+        course = np.array(portrait["course"]["linear_impulse"]).T[int(own["variable"][1:]) - 1]
         size = max(abs(low), abs(high))
         assert low - 1e-8 * size <= course.min()
         assert course.max() <= high + 1e-8 * size
@@ -235,14 +235,17 @@ def test_the_roots_make_the_polynomial_again() -> None:
 def test_a_repeated_root_is_told_from_two_near_ones() -> None:
     """(z - 1)^2 (z^2 + 1) has 1 twice; moved apart by 1e-20 they are equal in nine digits only."""
     assert roots([Fraction(c) for c in (1, -2, 2, -2, 1)]) == [
-        *([1.0, 0.0], [1.0, 0.0]),
-        *([0.0, -1.0], [0.0, 1.0]),
+        [1.0, 0.0],
+        [1.0, 0.0],
+        [0.0, -1.0],
+        [0.0, 1.0],
     ]
     split = Fraction(1, 10**20)
     near = roots([Fraction(1), Fraction(-2), 1 - split**2])
     assert near == [[1.0, 0.0], [1.0, 0.0]]
     assert roots([Fraction(1), Fraction(-2), 1 + Fraction(1, 10**8)]) == [
-        *([1.0, -1e-4], [1.0, 1e-4]),
+        [1.0, -1e-4],
+        [1.0, 1e-4],
     ]
 
 
@@ -283,9 +286,9 @@ def test_the_equations_become_mathml() -> None:
 def test_portraits_of_scenes_that_are_gone_are_removed(tmp_path: Path) -> None:
     """A second set takes the place of the first; a file that names no maker of ours stays."""
     document = portrait_without_run(FRESH[0])
-    gone = {**document, "scene": "euler/gone"}
+    removed = {**document, "scene": "euler/gone"}
     mine = tmp_path / PORTRAITS.folder / "mine.json"
-    first = PORTRAITS.write(tmp_path, [document, gone])
+    first = PORTRAITS.write(tmp_path, [document, removed])
     mine.write_text("{}", encoding="utf-8")
     contents = {file: file.read_bytes() for file in first}
     second = PORTRAITS.write(tmp_path, [document])
@@ -303,8 +306,8 @@ def test_the_command_writes_one_file_a_scene(
     out, err = capfd.readouterr()
     assert "1/1 euler/rest" in err
     assert out.split() == [str(tmp_path / PORTRAITS.folder / "euler-rest.json")]
-    told = explanation("euler/rest", "f64")
-    told["cost"]["seconds"] = None
-    found = PORTRAITS.find(tmp_path, "euler/rest")
-    assert found is not None
-    assert found["explain"] == json.loads(json.dumps(told))
+    explained = explanation("euler/rest", "f64")
+    explained["cost"]["seconds"] = None
+    written = PORTRAITS.find(tmp_path, "euler/rest")
+    assert written is not None
+    assert written["explain"] == json.loads(json.dumps(explained))

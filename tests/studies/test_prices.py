@@ -30,8 +30,8 @@ NAMES = [variant.name for variant in variants()]
 def rates_at(problem: Problem, state: Mapping[str, Fraction]) -> dict[str, Any]:
     form = problem.form
     parameters = [state.get(n, problem.parameter.get(n)) for n in form.parameters]
-    found = form.rates([state[n] for n in form.states], parameters)
-    return dict(zip(form.states, found, strict=True))
+    rates = form.rates([state[n] for n in form.states], parameters)
+    return dict(zip(form.states, rates, strict=True))
 
 
 def test_each_variant_is_held_against_one_that_comes_before_it() -> None:
@@ -49,8 +49,8 @@ def test_a_variant_is_another_form_of_the_same_body(name: str) -> None:
     general = in_general_form(problem)
     for _ in range(3):
         state = {n: Fraction(random.randint(-99, 99), 8) for n in general.form.states}
-        held = {n: problem.parameter.get(n, Fraction(0)) for n in state}
-        state |= {n: held[n] for n in state if n not in problem.form.states}
+        constants = {n: problem.parameter.get(n, Fraction(0)) for n in state}
+        state |= {n: constants[n] for n in state if n not in problem.form.states}
         chosen = rates_at(problem, state)
         assert rates_at(general, state) == {n: chosen.get(n, 0) for n in state}
 
@@ -72,7 +72,7 @@ def measured() -> PricesStudy:
 
 
 def test_the_barest_form_costs_one(measured: PricesStudy) -> None:
-    """Its ratio to itself is 1 in every round, so that median and interval are exactly 1."""
+    """The ratio of the barest form to itself is 1 in every round, so that its interval is exactly 1."""
     for row in measured.rows:
         if row.variant == row.against:
             assert row.step_ratio == row.time_ratio == (1.0, 1.0, 1.0)
@@ -101,7 +101,7 @@ def test_equal_error_is_read_between_two_tolerances() -> None:
 
 
 def test_page_is_made_of_what_was_stored(tmp_path: Path, measured: PricesStudy) -> None:
-    """Every row is on it, it is the same when made again, and without a measurement there is none."""
+    """The page has every row, is the same when made again, and needs a measurement."""
     assert STUDY.pages(tmp_path) == {}
     stored, *drawn, made, flat = publish_document(tmp_path, STUDY, page.PRICES, measured)
     assert {file.suffix for file in drawn} == {".svg", ".pdf"}

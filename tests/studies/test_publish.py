@@ -321,7 +321,14 @@ def test_the_headline_numbers_are_those_of_the_verdicts(tmp_path: Path) -> None:
     assert "below **2.50** of what is attainable; 1 conserved quantities are kept exactly" in text
     (line,) = (line for line in text.splitlines() if line.startswith("| f64"))
     assert cells(line) == [
-        *("f64", "1.11e-16", "3", "3", "3.00", "40.0", "40.0", "`omega` of `euler/c`")
+        "f64",
+        "1.11e-16",
+        "3",
+        "3",
+        "3.00",
+        "40.0",
+        "40.0",
+        "`omega` of `euler/c`",
     ]
 
 
@@ -416,7 +423,14 @@ def test_the_numbers_of_a_cell_are_the_verdicts(report: Path) -> None:
     (line,) = lines(report, "accuracy.md", "euler/generic", "f64")
     u = 2.0**-53
     assert cells(line)[3:] == [
-        *(figure(3 * u), figure(2 * u), "7", "3.00", "2.00", "0.500", figure(60 * u), "41"),
+        figure(3 * u),
+        figure(2 * u),
+        "7",
+        "3.00",
+        "2.00",
+        "0.500",
+        figure(60 * u),
+        "41",
         "pass",
     ]
 
@@ -441,11 +455,14 @@ def test_rows_are_in_reading_order(report: Path) -> None:
     extra = [passed("euler/generic", "f32", "omega")]
     write(report, [*MIXED, *extra], [])
     publish(report)
-    found = [(row["scene"], row["rung"]) for row in rows(report, "accuracy.csv")]
-    assert [rung for scene, rung in found if scene == "euler/generic"] == [
-        *("f32", "f64", "f80", "mp237")
+    order = [(row["scene"], row["rung"]) for row in rows(report, "accuracy.csv")]
+    assert [rung for scene, rung in order if scene == "euler/generic"] == [
+        "f32",
+        "f64",
+        "f80",
+        "mp237",
     ]
-    scenes = [scene for scene, _ in found]
+    scenes = [scene for scene, _ in order]
     assert scenes == [*sorted(s for s in scenes if s.startswith("euler")), "kirchhoff/screw"]
 
 

@@ -182,8 +182,8 @@ def test_the_ledger_is_made_of_the_published_rows() -> None:
     assert text_of("tables/claims.csv") == claims_page.sheet(stored)
     assert stored.cited == dict(CITED)
     assert text_of("claims.md").startswith(MADE_BY)
-    told = {row.id: row.statement for row in stored.claims}
-    assert told == {claim.id: claim.statement for claim in claims()}
+    statements = {row.id: row.statement for row in stored.claims}
+    assert statements == {claim.id: claim.statement for claim in claims()}
 
 
 @pytest.mark.slow
@@ -205,9 +205,19 @@ def test_data_are_laid_out_as_the_code_writes_them() -> None:
 @pytest.mark.parametrize(
     "stored",
     [
-        *(growth.GROWTH, growth.LONG, REACH, PRICES, WORST, ENCLOSURE, CONTROLS),
-        *(extremes.EXTREMES, claims_page.CLAIMS, trades.NUMBERS, trades.TIMINGS),
-        *(board.ENGINES, board.TIMINGS),
+        growth.GROWTH,
+        growth.LONG,
+        REACH,
+        PRICES,
+        WORST,
+        ENCLOSURE,
+        CONTROLS,
+        extremes.EXTREMES,
+        claims_page.CLAIMS,
+        trades.NUMBERS,
+        trades.TIMINGS,
+        board.ENGINES,
+        board.TIMINGS,
     ],
     ids=lambda stored: stored.name,
 )
@@ -233,7 +243,7 @@ def test_every_extreme_is_published_as_it_is_now() -> None:
 
 
 def test_exact_trajectories_are_those_of_the_code() -> None:
-    """Each CSV, the page and the examples are byte for byte what is computed now."""
+    """Each CSV, the page and the examples equal those computed now, byte for byte."""
     fresh_files = (reports.every_reference() / reference_files.FOLDER).iterdir()
     made_now = {
         f"{reference_files.FOLDER}/{f.name}": f.read_bytes()
@@ -275,7 +285,7 @@ def gallery_shown() -> tuple[gallery.Shown, ...]:
 
 @cache
 def drawable() -> tuple[Picture, ...]:
-    """Each picture that is drawn of published data: of measurements, and of exact motions."""
+    """Return each picture drawn from published data: of measurements, and of exact motions."""
     measured = [
         p for study in registry.STUDIES if study.name != "gallery" for p in study.pictures(REPORTS)
     ]
@@ -291,7 +301,7 @@ def published_as(picture: Picture) -> Path:
 
 
 def test_a_picture_of_each_kind_is_drawn_of_the_published_data() -> None:
-    """Of all pictures that one function draws the smallest is the published file, byte for byte."""
+    """The smallest picture of each drawing function equals the published file, byte for byte."""
     kinds: dict[Any, list[Picture]] = {}
     for picture in drawable():
         kinds.setdefault(picture.figure.func, []).append(picture)
@@ -332,7 +342,7 @@ def first_line_of(text: str) -> str:
 
 
 def test_the_docs_have_the_short_table_of_the_controls() -> None:
-    """Between its marks docs/results.md has what the published rows give, to the letter."""
+    """The block of docs/results.md is the one made from the published rows, to the letter."""
     page = (ROOT / "docs" / "results.md").read_text(encoding="utf-8")
     shown = page[page.index(controls.BEGIN) : page.index(controls.END) + len(controls.END)]
     assert shown == controls.short(CONTROLS.load(REPORTS))
@@ -365,20 +375,21 @@ def test_published_rows_are_of_the_schema() -> None:
 
 def test_errors_agree_with_their_ratios() -> None:
     """The ratio of a published error at its own time is at most the largest of all samples."""
-    found = [v for v in verdicts() if v.attainable and v.max is not None]
-    assert found
+    scored = [v for v in verdicts() if v.attainable and v.max is not None]
+    assert scored
     # The three are rounded to doubles on their own.
-    assert [v for v in found if not v.max / v.attainable <= v.ratio * (1 + 1e-12)] == []
-    lines = [line for line in attainable(found).splitlines() if line.startswith("|")]
+    assert [v for v in scored if not v.max / v.attainable <= v.ratio * (1 + 1e-12)] == []
+    lines = [line for line in attainable(scored).splitlines() if line.startswith("|")]
     moving = [
-        v for v in found if v.quantity in ("omega", "impulse", "attitude", "centre") and v.max
+        v for v in scored if v.quantity in ("omega", "impulse", "attitude", "centre") and v.max
     ]
     assert sum(line.count(" @ ") for line in lines) == len(moving)
 
 
 def test_unlike_rungs_are_in_one_class() -> None:
-    """In units of attainable every quantity has on all rungs an error of one class: independent draws,
-    and hundreds of pairs. As a baseline none raises a false alarm against another, in either order."""
+    """Errors in units of attainable ones are in one class on all rungs, which are independent draws.
+
+    No rung as a baseline raises a false alarm against another one, over hundreds of pairs."""
     drawn: dict[tuple[str, str], list[float]] = {}
     for verdict in verdicts():
         assert verdict.ratio is not None
@@ -396,9 +407,14 @@ def test_published_rows_are_no_departures_from_themselves() -> None:
     assert compared.departures == ()
     assert compared.compared == len(verdicts()) > 0
     read = baseline.load(REPORTS / "data" / "verdicts.json")
-    held = baseline.hold(read, read)
-    assert held.compared == len(read) > 0
-    assert (held.regressions, held.undecided, held.changes, held.status) == ((), (), (), 0)
+    comparison = baseline.hold(read, read)
+    assert comparison.compared == len(read) > 0
+    assert (
+        comparison.regressions,
+        comparison.undecided,
+        comparison.changes,
+        comparison.status,
+    ) == ((), (), (), 0)
     keys = [(v.scene, v.rung, v.quantity, v.max, v.ratio) for v in verdicts()]
     assert [(v.scene, v.rung, v.quantity, v.max, v.ratio) for v in read] == keys
 
@@ -428,7 +444,7 @@ def test_published_widths_are_remade() -> None:
 
 @pytest.mark.slow
 def test_the_published_paper_is_short(tmp_path: Path) -> None:
-    """It has at most twelve pages."""
+    """The paper has at most twelve pages."""
     made = pack(REPORTS)
     made.write(tmp_path)
     assert len(images(made.text, made.citation, tmp_path)) <= 12

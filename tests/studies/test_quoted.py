@@ -21,7 +21,7 @@ PAGE = f"before\n\n{BEGIN}\n\nstale\n\n{END}\n\nafter\n"
 
 
 def test_a_quoted_block_is_made_again(tmp_path: Path) -> None:
-    """Between its marks the block is that of the verdicts; what stands around it stays."""
+    """The block between its marks is made again from the verdicts; other text stays."""
     (tmp_path / "README.md").write_text(PAGE)
     (text,) = quoted.requoted(tmp_path / "reports", VERDICTS).values()
     assert text == PAGE.replace(f"{BEGIN}\n\nstale\n\n{END}", quoted.accuracy(VERDICTS))

@@ -69,7 +69,7 @@ def test_values_lead_to_the_extreme() -> None:
 
 @pytest.mark.parametrize(("one", "value"), EXTREMES, ids=lambda x: getattr(x, "name", x))
 def test_every_family_is_periodic_and_free(one: Family, value: str) -> None:
-    """Its most extreme member has a period, of the elements' own digits, and no loads."""
+    """The most extreme member of a family has a period with the elements' digits, and no loads."""
     scene = one.scene(value)
     assert scene.body.is_free
     exact = elements(scene, 30)["period"].value
@@ -81,9 +81,9 @@ def test_every_family_is_periodic_and_free(one: Family, value: str) -> None:
 def test_the_separatrix_is_as_far_as_it_says(value: str) -> None:
     """1 - k^2 of the member d is d, to as many digits as d has before its square counts."""
     d = Fraction(value)
-    found = elements(family("separatrix").scene(value), 30)["m_prime"].value
+    m_prime = elements(family("separatrix").scene(value), 30)["m_prime"].value
     with mp.workdps(30):
-        assert abs(found / mp.convert(d) - 1) <= mp.convert(d)
+        assert abs(m_prime / mp.convert(d) - 1) <= mp.convert(d)
 
 
 def test_instants_are_the_quarters_of_the_periods_named() -> None:
@@ -116,16 +116,16 @@ def test_an_orbit_without_a_period_is_refused() -> None:
 def test_errors_and_floors_are_the_judges(name: str, value: str) -> None:
     """The error is the largest that the judge finds in the same run; so is the attainable one there."""
     one = short(name, {"f64": 3})
-    found = measured(one, value)["f64"]
-    asked = at_quarters(one.scene(value), found.periods)
+    row = measured(one, value)["f64"]
+    asked = at_quarters(one.scene(value), row.periods)
     states = {"omega", "impulse", "attitude"}
     verdicts = [
         v for v in taylor_verify.run(asked, Taylor(), "f64").verdicts if v.quantity in states
     ]
-    assert found.errors[-1] == pytest.approx(max(v.max for v in verdicts), rel=1e-3)
+    assert row.errors[-1] == pytest.approx(max(v.max for v in verdicts), rel=1e-3)
     # The judge's stands at the sample of its largest error, ours is the largest of all samples.
-    assert max(v.attainable for v in verdicts) <= 1.001 * found.floors[-1]
-    assert found.floors[-1] <= 10 * max(v.attainable for v in verdicts)
+    assert max(v.attainable for v in verdicts) <= 1.001 * row.floors[-1]
+    assert row.floors[-1] <= 10 * max(v.attainable for v in verdicts)
 
 
 @pytest.fixture(scope="module")
@@ -138,10 +138,10 @@ def axis() -> dict[str, dict[str, ReachRow]]:
 def test_digits_only_get_fewer(axis: dict[str, dict[str, ReachRow]]) -> None:
     """Errors and floors are the largest so far: neither falls with the periods."""
     for by_rung in axis.values():
-        for found in by_rung.values():
-            assert list(found.errors) == sorted(found.errors)
-            assert list(found.floors) == sorted(found.floors)
-            assert len(found.errors) == len(found.periods)
+        for row in by_rung.values():
+            assert list(row.errors) == sorted(row.errors)
+            assert list(row.floors) == sorted(row.floors)
+            assert len(row.errors) == len(row.periods)
 
 
 def test_a_wider_rung_leaves_more(axis: dict[str, dict[str, ReachRow]]) -> None:
@@ -153,21 +153,21 @@ def test_a_wider_rung_leaves_more(axis: dict[str, dict[str, ReachRow]]) -> None:
 
 
 def test_solvers_come_near_the_floor(axis: dict[str, dict[str, ReachRow]]) -> None:
-    """What is not lost is within the judge's factor of the attainable error."""
-    for found in axis["1e-2"].values():
-        for error, least in zip(found.errors, found.floors, strict=True):
+    """Errors of motions that are not lost are within the judge's factor of the attainable error."""
+    for row in axis["1e-2"].values():
+        for error, least in zip(row.errors, row.floors, strict=True):
             assert error <= GATE_FACTOR * least or least >= 0.1
 
 
 def test_what_is_lost_is_not_followed(axis: dict[str, dict[str, ReachRow]]) -> None:
     """1e-10 beside the axis doubles are lost in the first period: none is run after, and none told."""
-    found = axis["1e-10"]["f64"]
-    assert found.errors[0] >= 1
-    assert found.errors[1:] == (inf,) * (len(found.periods) - 1)
-    assert found.floors[0] >= 1
+    row = axis["1e-10"]["f64"]
+    assert row.errors[0] >= 1
+    assert row.errors[1:] == (inf,) * (len(row.periods) - 1)
+    assert row.floors[0] >= 1
     one = short("unstable-axis", {"f64": 1})
-    assert found.steps == measured(one, "1e-10")["f64"].steps
-    assert reach.stored(found).errors[1:] == (None,) * (len(found.periods) - 1)
+    assert row.steps == measured(one, "1e-10")["f64"].steps
+    assert reach.stored(row).errors[1:] == (None,) * (len(row.periods) - 1)
 
 
 @pytest.mark.parametrize(
@@ -179,10 +179,10 @@ def test_what_is_lost_is_not_followed(axis: dict[str, dict[str, ReachRow]]) -> N
     ],
 )
 def test_another_orbit_is_not_followed(name: str, value: str, why: str) -> None:
-    """Where rounding the data makes another orbit of them, nothing is compared, and it is said."""
-    found = measured(family(name), value, "f32")["f32"]
-    assert found.errors == found.floors == ()
-    assert why in found.why
+    """A row has a reason in place of errors if its rounded data have another orbit."""
+    row = measured(family(name), value, "f32")["f32"]
+    assert row.errors == row.floors == ()
+    assert why in row.why
 
 
 def test_a_coarse_solver_reaches_less(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -233,16 +233,16 @@ def test_the_least_error_is_below_what_is_measured(generic: Scene) -> None:
 def test_a_rung_that_cannot_reach_it_is_not_measured(generic: Scene) -> None:
     """Single precision is left out at 1e-10 with the reason in words, and double is recommended."""
     asked = [setting("taylor", F32), setting("taylor", F64)]
-    found = recommend(generic, 1e-10, asked)
-    assert found.rung == F64
-    (reason,) = found.left_out
+    recommendation = recommend(generic, 1e-10, asked)
+    assert recommendation.rung == F64
+    (reason,) = recommendation.left_out
     assert "on f32 rounding alone leaves" in reason
-    assert reason in found.sentence
-    assert found.document()["left_out"] == [reason]
+    assert reason in recommendation.sentence
+    assert recommendation.document()["left_out"] == [reason]
 
 
 def test_a_rung_is_left_out_by_its_own_floor(generic: Scene) -> None:
-    """It takes a floor of the judge's factor times the target; what is nearer is measured."""
+    """A rung is left out if its floor is the judge's factor times the target, and measured below that."""
     least = least_error(generic, F64)
     assert least is not None
     assert left_out(generic, [F64], 0.99 * least / GATE_FACTOR).keys() == {F64}
@@ -251,13 +251,13 @@ def test_a_rung_is_left_out_by_its_own_floor(generic: Scene) -> None:
 
 
 def test_the_narrowest_precision_is_named(generic: Scene) -> None:
-    """Where nothing asked can do it, the text names a rung whose floor reaches it; one bit less may not."""
+    """The text of the error names the narrowest rung whose floor reaches the target."""
     target = 1e-30
     with pytest.raises(OutOfReach) as caught:
         recommend(generic, target, [setting("taylor", F64)])
-    found = narrowest(generic, target / MARGIN)
-    assert found is not None
-    wide, least = found
+    precision = narrowest(generic, target / MARGIN)
+    assert precision is not None
+    wide, least = precision
     assert least <= target / MARGIN
     assert (
         f"the narrowest precision on which rounding alone leaves so little is {wide.name}"

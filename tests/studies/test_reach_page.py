@@ -1,4 +1,4 @@
-"""What is published of the reach of each precision: tables and maps that say what was measured."""
+"""Pages of the reach of each precision: tables and maps that show the measurements."""
 
 from __future__ import annotations
 
@@ -55,12 +55,12 @@ def test_the_last_value_and_the_most_periods() -> None:
 ERRORS = st.lists(st.floats(0, 10) | st.sampled_from([None, nan, 1e-3, 1e-6, 1e-12]), min_size=3)
 
 
-@given(st.lists(ERRORS.map(lambda found: found[:3]), min_size=1, max_size=6), st.integers(1, 15))
+@given(st.lists(ERRORS.map(lambda errors: errors[:3]), min_size=1, max_size=6), st.integers(1, 15))
 def test_a_reach_is_of_all_that_is_easier(table: list[list[float]], digits: int) -> None:
-    """Up to the value told every error is small enough, and the next one's is not."""
+    """Every error up to the returned value is small enough, and the next one is not."""
     rows = [replace(row(str(k), "f64"), errors=tuple(e)) for k, e in enumerate(table)]
-    told = page.last_value(rows, 10, digits)
-    count = 0 if told is None else int(told) + 1
+    last = page.last_value(rows, 10, digits)
+    count = 0 if last is None else int(last) + 1
     good = [errors[1] is not None and errors[1] <= 10.0**-digits for errors in table]
     assert all(good[:count])
     assert not any(good[count : count + 1])
@@ -130,12 +130,12 @@ def figure() -> Iterator[Figure]:
 
 def test_every_cell_tells_its_digits(figure: Figure) -> None:
     """Achieved and attainable, each rung, value and number of periods; what was not run is hatched."""
-    found = {text.get_gid(): text.get_text() for axes in figure.axes for text in axes.texts}
-    assert found["f32 achieved 1e-1 1"] == "6"
-    assert found["f32 attainable 1e-1 1"] == "7"
-    assert found["f32 achieved 1e-2 100"] == "0"
-    assert found["f64 achieved 1e-2 10"] == "11"
-    assert "f32 achieved 1e-3 1" not in found
+    digits = {text.get_gid(): text.get_text() for axes in figure.axes for text in axes.texts}
+    assert digits["f32 achieved 1e-1 1"] == "6"
+    assert digits["f32 attainable 1e-1 1"] == "7"
+    assert digits["f32 achieved 1e-2 100"] == "0"
+    assert digits["f64 achieved 1e-2 10"] == "11"
+    assert "f32 achieved 1e-3 1" not in digits
     patches = [p for axes in figure.axes for p in axes.patches if isinstance(p, Rectangle)]
     assert sum(p.get_gid() == "cell" for p in patches) == 2 * (6 + 9)
     assert sum(p.get_gid() == "not run" for p in patches) == 2 * 3
@@ -184,7 +184,7 @@ def test_whole_digits(digits: int) -> None:
 
 
 def test_alt_text_says_how_far_six_digits_go() -> None:
-    """Who cannot see the map is told the values at its two ends."""
+    """The alternative text of the map has the values at its two ends."""
     (picture,) = page.pictures(study())
     assert "On f32 six digits are left after 1 period up to 1e-1" in picture.alt
     assert "after 100 periods up to none of these" in picture.alt

@@ -39,15 +39,17 @@ def asked(capsys: pytest.CaptureFixture[str], scene: str, times: str) -> tuple[i
 
 def test_rows_before_a_time_out_of_reach_are_printed(capsys: pytest.CaptureFixture[str]) -> None:
     """Rows stand in the order asked, of both signs; the exit is 3, and the first missing time is named."""
-    status, found, error = asked(capsys, UNSTABLE, "1e5,-20,60,-1e6,0,2e5")
+    status, document, error = asked(capsys, UNSTABLE, "1e5,-20,60,-1e6,0,2e5")
     assert status == 3
-    assert [row["t"] for row in found["rows"]] == ["-20", "60", "0"]
+    assert [row["t"] for row in document["rows"]] == ["-20", "60", "0"]
     alone = asked(capsys, UNSTABLE, "-20,60,0")
-    assert (alone[0], alone[1]["rows"]) == (0, found["rows"])
+    assert (alone[0], alone[1]["rows"]) == (0, document["rows"])
     for time in ("t = 100000 needs more than 10100 bits", "t = -1000000 needs"):
-        assert re.search(rf"loses about 0\.\d+ digits per unit of time; {time}", found["because"])
-    assert "200000" not in found["because"]
-    assert found["because"] in error.replace("\n", " ")
+        assert re.search(
+            rf"loses about 0\.\d+ digits per unit of time; {time}", document["because"]
+        )
+    assert "200000" not in document["because"]
+    assert document["because"] in error.replace("\n", " ")
 
 
 def test_a_person_sees_the_rows_that_were_reached(capsys: pytest.CaptureFixture[str]) -> None:
@@ -64,10 +66,10 @@ def test_a_time_is_named_as_the_clock_shows_it(capsys: pytest.CaptureFixture[str
     """A scene that begins at t = 1e16 has no time of its own called 1."""
     later = "extremes/euler-start-1e16"
     start = taylor_verify.load(later).clock.start
-    status, found, _ = asked(capsys, later, f"{start + 1},{start + 10**9}")
+    status, document, _ = asked(capsys, later, f"{start + 1},{start + 10**9}")
     assert status == 3
-    assert [row["t"] for row in found["rows"]] == [str(start + 1)]
-    assert f"t = {start + 10**9}" in found["because"]
+    assert [row["t"] for row in document["rows"]] == [str(start + 1)]
+    assert f"t = {start + 10**9}" in document["because"]
 
 
 def test_python_raises_and_hands_over_the_rows() -> None:
@@ -129,7 +131,7 @@ def test_a_precision_that_does_not_suffice_is_named(monkeypatch: pytest.MonkeyPa
 
 
 class _Balls(Enclosed):
-    """One narrow ball and one that stays wide."""
+    """A closed form with one narrow ball and one that stays wide."""
 
     regime = "test"
 
@@ -138,7 +140,7 @@ class _Balls(Enclosed):
 
 
 class _Numbers(Settled):
-    """One number that settles and one that does not."""
+    """A closed form with one number that settles and one that does not."""
 
     regime, route = "test", "mpmath"
 

@@ -66,8 +66,8 @@ def sheet(scene: str) -> Rows:
 
 
 def question(scene: str) -> dict[str, Any]:
-    found: dict[str, Any] = json.loads(file(scene, "json").read_text(encoding="utf-8"))
-    return found
+    published: dict[str, Any] = json.loads(file(scene, "json").read_text(encoding="utf-8"))
+    return published
 
 
 def vector(row: dict[str, str], quantity: str) -> list[Fraction]:
@@ -107,13 +107,13 @@ def size(v: Vector) -> float:
 @pytest.mark.parametrize("scene", names())
 def test_every_shipped_scene_has_its_files(scene: str) -> None:
     """CSV and JSON hold the same columns, a row for every instant, of the scene as it is now."""
-    found, asked = question(scene), load(scene)
-    assert found["sha256"] == asked.digest
+    published, asked = question(scene), load(scene)
+    assert published["sha256"] == asked.digest
     rows = sheet(scene)
     assert len(file(scene, "csv").read_bytes().splitlines()) == len(asked.clock.instants) + 1
     assert len(rows) == len(asked.clock.instants)
     for name in rows[0]:
-        assert found[name] == [row[name] for row in rows]
+        assert published[name] == [row[name] for row in rows]
     tracked = {"omega"} if asked.model == "euler" else {"linear_impulse", "angular_impulse"}
     expected = [n for q in VECTORS if q in tracked | asked.track for n in VECTORS[q]]
     assert list(rows[0]) == ["t", *expected, "radius"]
@@ -122,16 +122,16 @@ def test_every_shipped_scene_has_its_files(scene: str) -> None:
 @pytest.mark.parametrize("scene", names())
 def test_the_question_is_that_of_the_scene(scene: str) -> None:
     """Body and initial state read back exactly, and every time is the instant to 32 digits."""
-    found, asked = question(scene), load(scene)
-    for name, value in found["body"].items():
+    published, asked = question(scene), load(scene)
+    for name, value in published["body"].items():
         assert flat(rational(value)) == flat(getattr(asked.body, name))
-    initial = {name: rational(value) for name, value in found["initial"].items()}
+    initial = {name: rational(value) for name, value in published["initial"].items()}
     state = asked.initial
     assert initial.pop("t") == asked.clock.start
     short = {"linear_impulse": "linear", "angular_impulse": "angular"}
     for name, value in initial.items():
         assert flat(value) == list(getattr(state, short.get(name, name)))
-    for text, instant in zip(found["t"], asked.clock.instants, strict=True):
+    for text, instant in zip(published["t"], asked.clock.instants, strict=True):
         # Half a unit of the last of 32 digits.
         assert abs(Fraction(text) - instant) <= abs(instant) * Fraction(1, 2 * 10**31)
 
@@ -189,13 +189,13 @@ def test_the_digits_are_those_of_exact(scene: str) -> None:
 def drift(scene: str, rows: Rows) -> float:
     """The largest change over the rows of what a free motion conserves, relative to its scale."""
     body = load(scene).body
-    found = [_euler(row, body) if load(scene).model == "euler" else _kirchhoff(row, body)
+    conserved = [_euler(row, body) if load(scene).model == "euler" else _kirchhoff(row, body)
              for row in rows]  # fmt: skip
     largest = 0.0
-    for name, (first, _) in found[0].items():
-        scale = max(each[name][1] for each in found) or 1.0
+    for name, (first, _) in conserved[0].items():
+        scale = max(each[name][1] for each in conserved) or 1.0
         change = max(size([p - q for p, q in zip(each[name][0], first, strict=True)])
-                     for each in found)  # fmt: skip
+                     for each in conserved)  # fmt: skip
         largest = max(largest, change / scale)
     return largest
 
@@ -207,13 +207,13 @@ def _euler(row: dict[str, str], body: Any) -> dict[str, tuple[list[Fraction], fl
     H = [p + q for p, q in zip(alone, wheels, strict=True)]
     inertia = size(flat(body.inertia))
     momentum = inertia * size(w) + size(wheels)
-    found = {
+    conserved = {
         "T": ([dot(w, alone) / 2], inertia * size(w) ** 2),
         "H2": ([dot(H, H)], momentum**2),
     }
     if "r11" in row:
-        found["H_space"] = (turned(row, H), momentum)
-    return found
+        conserved["H_space"] = (turned(row, H), momentum)
+    return conserved
 
 
 def _kirchhoff(row: dict[str, str], body: Any) -> dict[str, tuple[list[Fraction], float]]:
@@ -222,14 +222,14 @@ def _kirchhoff(row: dict[str, str], body: Any) -> dict[str, tuple[list[Fraction]
     T = (dot(x, applied(body.linear, x)) + dot(y, applied(body.angular, y))) / 2
     T += dot(x, applied(body.coupling, y))
     a, b, c = (size(flat(m)) for m in (body.linear, body.coupling, body.angular))
-    found = {
+    conserved = {
         "T": ([T], a * size(x) ** 2 + 2 * b * size(x) * size(y) + c * size(y) ** 2),
         "F2": ([dot(x, x)], size(x) ** 2),
         "FG": ([dot(x, y)], size(x) * size(y)),
     }
     if "r11" in row:
         X = turned(row, x)
-        found["x_space"] = (X, size(x))
+        conserved["x_space"] = (X, size(x))
         if "c1" in row:
             p = vector(row, "centre")
             cross = [
@@ -238,8 +238,8 @@ def _kirchhoff(row: dict[str, str], body: Any) -> dict[str, tuple[list[Fraction]
                 p[0] * X[1] - p[1] * X[0],
             ]
             moment = [m + n for m, n in zip(turned(row, y), cross, strict=True)]
-            found["y_space"] = (moment, size(y) + size(p) * size(x))
-    return found
+            conserved["y_space"] = (moment, size(y) + size(p) * size(x))
+    return conserved
 
 
 FREE = [name for name in names() if load(name).body.is_free and not load(name).body.damping]
@@ -287,7 +287,9 @@ def test_remaking_gives_the_same_bytes(tmp_path: Path) -> None:
     """The files of a scene computed anew are those of the folder, byte by byte."""
     written = reference_files.write(tmp_path, [reference(load("euler/generic"))])
     assert {path.name for path in written} == {
-        *("euler-generic.csv", "euler-generic.json", "README.md"),
+        "euler-generic.csv",
+        "euler-generic.json",
+        "README.md",
         *reference_files.EXAMPLES,
     }
     for path in written:
@@ -303,13 +305,13 @@ def test_a_time_without_a_finite_decimal_is_the_decimal_that_is_printed(tmp_path
         '[initial]\nomega = ["1e9", "2e9", "1/3"]\n[time]\nat = ["1/3"]\n',
         encoding="utf-8",
     )
-    found = reference(load(str(scene)))
-    assert found["columns"]["t"] == ["0." + "3" * 32]
-    assert found["initial"]["omega"] == ["1000000000", "2000000000", "1/3"]
+    published = reference(load(str(scene)))
+    assert published["columns"]["t"] == ["0." + "3" * 32]
+    assert published["initial"]["omega"] == ["1000000000", "2000000000", "1/3"]
     asked = load(str(scene))
-    time = ("", Fraction(found["columns"]["t"][0]))
+    time = ("", Fraction(published["columns"]["t"][0]))
     (row,) = document(asked, solution(asked), [time], DIGITS)["rows"]
-    assert [found["columns"][name][0] for name in VECTORS["omega"]] == row["omega"]
+    assert [published["columns"][name][0] for name in VECTORS["omega"]] == row["omega"]
 
 
 def test_the_verb_writes_the_folder(
@@ -332,11 +334,11 @@ def test_the_verb_writes_the_folder(
 
 def test_a_scene_that_is_gone_loses_its_csv_without_its_json(tmp_path: Path) -> None:
     """A clone has the CSV alone: the page says which of them are ours. Somebody's own stays."""
-    rest, gone = (
+    rest, removed = (
         reference(load("euler/rest")),
         {**reference(load("euler/rest")), "scene": "euler/x"},
     )
-    for path in reference_files.write(tmp_path, [rest, gone]):
+    for path in reference_files.write(tmp_path, [rest, removed]):
         if path.suffix == ".json":
             path.unlink()
     mine = tmp_path / "reference" / "mine.csv"
@@ -361,12 +363,12 @@ def test_a_scene_that_cannot_be_solved_is_named(error: Exception, text: str) -> 
 
 
 def test_documents_come_in_the_order_asked_for() -> None:
-    """Whichever worker ends first, and each is told of once."""
-    asked, told = ["euler/rest", "euler/nesc-brick", "euler/generic"], []
-    found = documents(reference, asked, told.append)
-    assert [each["scene"] for each in found] == asked
-    assert sorted(told) == sorted(asked)
-    assert found[2] == reference(load("euler/generic"))
+    """Documents keep the order of the request, and each is reported once."""
+    asked, finished = ["euler/rest", "euler/nesc-brick", "euler/generic"], []
+    made = documents(reference, asked, finished.append)
+    assert [each["scene"] for each in made] == asked
+    assert sorted(finished) == sorted(asked)
+    assert made[2] == reference(load("euler/generic"))
 
 
 # Read.

@@ -53,7 +53,7 @@ def run(example: Path, reference: Path, moments: Sequence[str], tolerance: str) 
 
 
 def errors(printed: str) -> list[float]:
-    return [float(found) for found in re.findall(r"error ([0-9.e+-]+|NaN|inf)", printed)]
+    return [float(number) for number in re.findall(r"error ([0-9.e+-]+|NaN|inf)", printed)]
 
 
 def test_the_moments_of_the_page_are_those_of_the_scene() -> None:
@@ -73,14 +73,14 @@ def test_the_example_converges_to_the_reference(example: Path) -> None:
     """
     status, printed = run(example, generic(), MOMENTS, "1e-10")
     assert status == 0
-    found = errors(printed)
-    assert len(found) >= 3
-    assert found[-1] <= 1e-10
-    assert all(abs(a / b / 16 - 1) <= 0.1 for a, b in pairwise(found))
+    errors_by_step = errors(printed)
+    assert len(errors_by_step) >= 3
+    assert errors_by_step[-1] <= 1e-10
+    assert all(abs(a / b / 16 - 1) <= 0.1 for a, b in pairwise(errors_by_step))
 
 
 def test_the_example_says_how_well_the_reference_is_known(example: Path) -> None:
-    """Its radius is that of the CSV, and below the roundoff of any double that is compared with it."""
+    """The printed radius is that of the CSV, and below the roundoff of doubles."""
     _, printed = run(example, generic(), MOMENTS, "1e-6")
     (radius,) = re.findall(r"the reference is known to ([0-9.e-]+)", printed)
     rows = generic().read_text(encoding="utf-8").splitlines()

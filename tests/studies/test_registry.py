@@ -123,7 +123,7 @@ def call(folder: Path, *words: str) -> int:
 
 
 def test_a_study_is_listed(capsys: Captured) -> None:
-    """With what it is, how long it takes, and whether it needs heyoka; as JSON too."""
+    """The list has title, duration and need of heyoka of each study; as JSON too."""
     assert main(["publish", "--list"]) == 0
     text = capsys.readouterr().out
     assert "smallest   the smallest study there can be\n" in text
@@ -141,14 +141,16 @@ def test_a_study_is_listed(capsys: Captured) -> None:
 
 
 def test_a_study_is_measured_drawn_and_told(folder: Path, capsys: Captured) -> None:
-    """Its document, page, sheet and picture are written and named; each step is told on stderr."""
+    """Document, page, sheet and picture are written and named; each step is reported on stderr."""
     assert call(folder, "smallest", "--terms", "4", "--json") == 0
     out, err = capsys.readouterr()
     names = [Path(name).relative_to(folder).as_posix() for name in json.loads(out)["written"]]
     assert names == [
         "data/smallest.json",
-        *("figures/smallest-4.svg", "figures/smallest-4.pdf"),
-        *("tables/smallest.md", "tables/smallest.csv"),
+        "figures/smallest-4.svg",
+        "figures/smallest-4.pdf",
+        "tables/smallest.md",
+        "tables/smallest.csv",
     ]
     assert "4/4 term 3" in err
     stored = json.loads((folder / SUM.name).read_text(encoding="utf-8"))
@@ -157,7 +159,7 @@ def test_a_study_is_measured_drawn_and_told(folder: Path, capsys: Captured) -> N
 
 
 def test_what_a_study_says_is_the_answer(folder: Path, capsys: Captured) -> None:
-    """Its messages are on stderr and its status is that of the command; of several the gravest."""
+    """The messages of a study are on stderr; the exit status is the gravest of all studies."""
     assert call(folder, "smallest") == 1
     assert "it is odd" in capsys.readouterr().err
     assert call(folder, "smallest", "--terms", "13") == 2
@@ -222,15 +224,15 @@ def test_without_matplotlib_the_page_is_made_all_the_same(
     SUM.write(folder, Sum(2, 1.0))
     made = SMALLEST.publish(folder)
     assert [path.name for path in made.written] == ["smallest.md", "smallest.csv"]
-    (said,) = made.messages
-    assert "pictures of smallest are not drawn: expected matplotlib" in said
+    (message,) = made.messages
+    assert "pictures of smallest are not drawn: expected matplotlib" in message
 
 
 # Calls that are wrong.
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (["smalest"], "expected a study, got 'smalest'; did you mean smallest?"),
         (["--growth"], "expected `publish growth`, got --growth"),
@@ -254,13 +256,13 @@ def test_without_matplotlib_the_page_is_made_all_the_same(
     ids=str,
 )
 def test_a_wrong_call_is_told_in_a_sentence(
-    folder: Path, capsys: Captured, words: list[str], said: str
+    folder: Path, capsys: Captured, words: list[str], message: str
 ) -> None:
-    """Exit status 2, and no file."""
+    """A wrong call ends with exit status 2 and writes no file."""
     assert call(folder, *words) == 2
     captured = capsys.readouterr()
     assert captured.out == ""
-    assert said in captured.err
+    assert message in captured.err
     assert not folder.exists()
 
 
@@ -281,7 +283,7 @@ def test_every_study_has_a_name_of_its_own() -> None:
 
 
 def test_a_study_is_found_once() -> None:
-    """Named twice, in the order asked."""
+    """A study that is named twice is run once, in the order of the names."""
     assert [study.name for study in find(["worst", "claims", "worst"])] == ["worst", "claims"]
     with pytest.raises(UnknownStudy):
         find(["worst", "nothing"])

@@ -107,14 +107,16 @@ class Page(HTMLParser):
         self.feed(text)
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        found = dict(attrs)
-        if found.get("id"):
-            self.anchors.append(str(found["id"]))
-        if tag == "a" and found.get("href"):
-            self.links.append(str(found["href"]))
-        if tag in ("script", "img", "link") and (link := found.get("src") or found.get("href")):
+        attributes = dict(attrs)
+        if attributes.get("id"):
+            self.anchors.append(str(attributes["id"]))
+        if tag == "a" and attributes.get("href"):
+            self.links.append(str(attributes["href"]))
+        if tag in ("script", "img", "link") and (
+            link := attributes.get("src") or attributes.get("href")
+        ):
             self.loads.append(link)
-        self._is_stored = tag == "script" and found.get("type") == "application/json"
+        self._is_stored = tag == "script" and attributes.get("type") == "application/json"
 
     def handle_data(self, data: str) -> None:
         if self._is_stored:
@@ -139,7 +141,7 @@ def place_of(scene: str) -> str:
 
 
 def test_links_resolve(site: dict[str, str | bytes], pages: dict[str, Page]) -> None:
-    """Every link within the site leads to a file of it, and to an anchor that is there."""
+    """All links within the site lead to its files and to existing anchors."""
     links_resolve(pages, site)
 
 
@@ -182,7 +184,7 @@ def text_of(content: str | bytes) -> str:
 
 
 def test_docs_and_report_have_one_navigation(pages: dict[str, Page]) -> None:
-    """Every page, of docs, of the report or of a scene, lists the same pages beside it."""
+    """Pages of docs, of the report and of scenes have the same navigation."""
     listed = {
         name: re.findall(r'reference internal" href="[^"]*">([^<]+)<', page.navigation)
         for name, page in pages.items()
@@ -229,7 +231,7 @@ def test_anchors_are_one_of_a_kind(pages: dict[str, Page]) -> None:
 
 
 def test_motions_name_what_is_there(pages: dict[str, Page]) -> None:
-    """Every colour that a motion names is in both themes."""
+    """Both themes have all colours that a motion names."""
     themes = conf.html_theme_options
     light, dark = themes["light_css_variables"], themes["dark_css_variables"]
     assert light.keys() == dark.keys()
@@ -287,7 +289,7 @@ def test_exact_values_are_a_trajectory(
 
 
 def test_the_polhode_lies_on_its_ellipsoid(report: Path) -> None:
-    """Every omega of the course satisfies omega.I omega = 2T to the digits of the surface."""
+    """The course satisfies omega.I omega = 2T to the digits of the surface."""
     portrait = Report(report).portrait("euler/with-attitude")
     assert portrait is not None
     figure = motion.polhode(portrait, None)
@@ -321,7 +323,7 @@ def test_every_frame_holds_its_motion(report: Path, scene: str) -> None:
 
 
 def test_a_loaded_body_has_no_ellipsoid(report: Path) -> None:
-    """Under a moment the energy is not kept: the curve of omega stands alone."""
+    """A moment changes the energy, so that the curve of omega has no surface."""
     portrait = Report(report).portrait("euler/constant-moment")
     assert portrait is not None
     figure = motion.polhode(portrait, None)
@@ -331,11 +333,11 @@ def test_a_loaded_body_has_no_ellipsoid(report: Path) -> None:
 
 @given(st.lists(st.tuples(*[st.floats(-1, 1)] * 3), min_size=3, max_size=60), st.floats(1e-3, 0.2))
 def test_a_thinned_curve_is_the_same_curve(rows: list[tuple[float, ...]], part: float) -> None:
-    """Every point that was left out is within the tolerance of the chord between its neighbours."""
-    kept = motion.thinned(rows, part)
+    """All points that were left out are within the tolerance of the chords."""
+    places = motion.thinned(rows, part)
     extent = max(max(row[i] for row in rows) - min(row[i] for row in rows) for i in range(3))
-    assert (kept[0], kept[-1]) == (0, len(rows) - 1)
-    for first, last in pairwise(kept):
+    assert (places[0], places[-1]) == (0, len(rows) - 1)
+    for first, last in pairwise(places):
         for k in range(first + 1, last):
             # A thousand points of the chord come within its length / 2000 of the nearest one.
             chord = [on_chord(rows[first], rows[last], n / 1000) for n in range(1001)]
@@ -464,13 +466,13 @@ def test_the_command_says_what_is_missing(
 def test_a_site_of_committed_files_alone_is_whole(
     report: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Without records and portraits each scene has its page and all links resolve; that is said."""
+    """The site without records and portraits has a page for each scene, and a message says so."""
     place = tmp_path / "clone"
     shutil.copytree(report, place, ignore=shutil.ignore_patterns(*BULK))
     assert main(["publish", "--from", str(place), "--site", str(tmp_path / "site")]) == 0
-    said = capsys.readouterr().err
-    assert "without 2 tables of gates, 10 records of runs, 5 portraits of scenes" in said
-    assert "`taylor-verify publish --missing` makes" in said
+    errors = capsys.readouterr().err
+    assert "without 2 tables of gates, 10 records of runs, 5 portraits of scenes" in errors
+    assert "`taylor-verify publish --missing` makes" in errors
     target = tmp_path / "site"
     files = {file.relative_to(target).as_posix(): file for file in target.rglob("*.*")}
     read = {name: file.read_text("utf-8") for name, file in files.items() if name.endswith(".html")}

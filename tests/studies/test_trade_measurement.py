@@ -42,18 +42,18 @@ from taylor_verify.studies.tradeoff.setting import setting as real_setting
 
 @given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=30))
 def test_the_interval_is_made_of_the_values_and_holds_the_median(values: list[float]) -> None:
-    """Its ends are two of the values, as far from the lowest as from the highest."""
-    found = estimate(values)
-    assert found.median == median(values)
-    if found.low is not None and found.high is not None:
-        assert found.low <= found.median <= found.high
+    """The ends of the interval are two of the values, with symmetric ranks."""
+    estimated = estimate(values)
+    assert estimated.median == median(values)
+    if estimated.low is not None and estimated.high is not None:
+        assert estimated.low <= estimated.median <= estimated.high
         rank, ranked = place(len(values), CONFIDENCE), sorted(values)
-        assert (found.low, found.high) == (ranked[rank - 1], ranked[::-1][rank - 1])
+        assert (estimated.low, estimated.high) == (ranked[rank - 1], ranked[::-1][rank - 1])
 
 
 @pytest.mark.parametrize("count", range(1, 40))
 def test_the_rank_is_the_largest_that_has_the_confidence(count: int) -> None:
-    """One step further in, the probability is below it; and it is that of the binomial distribution."""
+    """The next rank has less than the confidence, by the binomial distribution."""
     rank = place(count, CONFIDENCE)
     if rank:
         assert coverage(count, rank) >= CONFIDENCE
@@ -63,25 +63,25 @@ def test_the_rank_is_the_largest_that_has_the_confidence(count: int) -> None:
 
 
 def test_the_published_number_of_processes_is_the_smallest_that_suffices() -> None:
-    """With one process fewer not even the extremes would hold the median with 95 %."""
+    """One process fewer is too few for 95 %, even for the interval between the extremes."""
     assert place(PROCESSES, CONFIDENCE) == 1
     assert place(PROCESSES - 1, CONFIDENCE) == 0
     assert estimate(range(PROCESSES - 1)).low is None
 
 
 def test_the_interval_holds_the_median_as_often_as_it_says() -> None:
-    """Drawn from a distribution with a long tail, whose median is 1, in a thousand sets of six."""
+    """A thousand sets of six values with a long tail have intervals that cover the median as stated."""
     draw = random.Random(7)
     sets = 4000
-    held = 0
+    covered = 0
     for _ in range(sets):
-        found = estimate(2.0 ** draw.gauss(0, 3) for _ in range(PROCESSES))
-        assert found.low is not None
-        assert found.high is not None
-        held += found.low <= 1 <= found.high
+        estimated = estimate(2.0 ** draw.gauss(0, 3) for _ in range(PROCESSES))
+        assert estimated.low is not None
+        assert estimated.high is not None
+        covered += estimated.low <= 1 <= estimated.high
     expected = coverage(PROCESSES, 1)
     # Four standard deviations of a binomial count.
-    assert abs(held / sets - expected) <= 4 * (expected * (1 - expected) / sets) ** 0.5
+    assert abs(covered / sets - expected) <= 4 * (expected * (1 - expected) / sets) ** 0.5
 
 
 # The rounds of a process.
@@ -124,17 +124,17 @@ class Paced(Solver):
 @pytest.fixture
 def machine(monkeypatch: pytest.MonkeyPatch) -> Machine:
     """Settings are made up; each name says how long a solve takes, or that it fails."""
-    found = Machine()
+    made = Machine()
 
     def made_up(name: str, on: object) -> object:
         if name == YARDSTICK[0]:
-            return replace(real_setting(*_taylor()), solver=Paced(found, name, 0.02))
+            return replace(real_setting(*_taylor()), solver=Paced(made, name, 0.02))
         word, _, seconds = name.partition(":")
         outcome = Outcome.NON_FINITE if word == "broken" else Outcome.FINISHED
-        return replace(real_setting(*_taylor()), solver=Paced(found, name, float(seconds), outcome))
+        return replace(real_setting(*_taylor()), solver=Paced(made, name, float(seconds), outcome))
 
     monkeypatch.setattr(rounds, "setting", made_up)
-    return found
+    return made
 
 
 def _taylor() -> tuple[str, object]:
@@ -155,10 +155,10 @@ def names(*words: str) -> list[tuple[str, str]]:
 def test_a_ratio_is_formed_within_its_round(machine: Machine, scene: Scene) -> None:
     """A machine that slows down tenfold over a run shifts no ratio by more than one round does."""
     asked = names(*(f"a{k}:0.04" for k in range(12)))
-    found = measured(scene, asked, seed=3, rounds=18, resolution=1e-9, clock=machine.clock)
+    ratios = measured(scene, asked, seed=3, rounds=18, resolution=1e-9, clock=machine.clock)
     assert machine.slowness > 10
     # A round has 13 solves or so, each a per cent slower than the one before.
-    for one in found.values():
+    for one in ratios.values():
         assert 2 / 1.01**14 <= one.ratio <= 2 * 1.01**14
         assert one.inner == pytest.approx(one.seconds / 2)
 
@@ -166,7 +166,7 @@ def test_a_ratio_is_formed_within_its_round(machine: Machine, scene: Scene) -> N
 def test_each_round_has_an_order_of_its_own_and_every_setting(
     machine: Machine, scene: Scene
 ) -> None:
-    """Nothing meets always the same neighbour; the yardstick is in every round, asked for or not."""
+    """The order of each round is random, and every round has the yardstick."""
     asked = names(*(f"a{k}:0.04" for k in range(8)))
     measured(scene, asked, seed=3, rounds=4, resolution=1e-9, clock=machine.clock)
     each = [machine.solved[k : k + 9] for k in range(0, len(machine.solved), 9)]
@@ -188,25 +188,25 @@ def test_a_short_solve_is_repeated_until_the_clock_resolves_it(
 
 def test_what_fails_is_left_out(machine: Machine, scene: Scene) -> None:
     """A setting that does not finish has no time, and the others do."""
-    found = measured(scene, names("broken:0.01", "sound:0.01"), 1, 2, 1e-9, machine.clock)
-    assert set(found) == {("sound:0.01", "f64")}
+    ratios = measured(scene, names("broken:0.01", "sound:0.01"), 1, 2, 1e-9, machine.clock)
+    assert set(ratios) == {("sound:0.01", "f64")}
     assert machine.solved.count("broken:0.01") == 1
 
 
 def test_what_is_dear_is_solved_once(
     machine: Machine, scene: Scene, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Its only solve counts, over the yardstick of all the rounds."""
+    """The only solve of a dear setting is divided by the yardstick of all rounds."""
     monkeypatch.setattr(rounds, "_DEAR", -1.0)
-    found = measured(scene, names("dear:0.3"), 1, 3, 1e-9, machine.clock)
+    ratios = measured(scene, names("dear:0.3"), 1, 3, 1e-9, machine.clock)
     assert machine.solved.count("dear:0.3") == 1
     assert machine.solved.count(YARDSTICK[0]) == 4
-    (one,) = found.values()
+    (one,) = ratios.values()
     assert 0.3 / 0.02 / 1.01**6 <= one.ratio <= 0.3 / 0.02
 
 
 def test_the_resolution_is_the_smallest_step_of_the_clock() -> None:
-    """Of a clock that ticks in quarters, a quarter, however often it is asked in between."""
+    """The resolution of a clock that ticks in quarters is a quarter."""
     asked = 0
 
     def clock() -> float:
@@ -223,10 +223,10 @@ def test_the_resolution_is_the_smallest_step_of_the_clock() -> None:
 @pytest.mark.parametrize("name", SCENES)
 def test_every_published_setting_can_be_named_again(name: str) -> None:
     """A worker process gets names alone: each leads to the same solver, once."""
-    asked = tuple(published_settings(scene_named(name), True))
-    found = [(one.solver.name, one.rung.name) for one in asked]
-    assert len(set(found)) == len(found)
-    assert YARDSTICK in found
+    asked = tuple(published_settings(scene_named(name), with_outside=True))
+    names_and_rungs = [(one.solver.name, one.rung.name) for one in asked]
+    assert len(set(names_and_rungs)) == len(names_and_rungs)
+    assert YARDSTICK in names_and_rungs
     for one in asked:
         again = real_setting(one.solver.name, one.rung)
         assert again.solver == one.solver
@@ -234,9 +234,9 @@ def test_every_published_setting_can_be_named_again(name: str) -> None:
 
 
 def test_the_compiled_integrators_of_other_libraries_are_known() -> None:
-    """Each name that is published with --outside is one that there is."""
+    """All names that are published with --outside are known solvers."""
     scene = load("kirchhoff/general-body")
-    extra = set(published_settings(scene, True)) - set(published_settings(scene))
+    extra = set(published_settings(scene, with_outside=True)) - set(published_settings(scene))
     peers = {one for one in extra if isinstance(one.solver, Peer)}
     assert len(peers) == len(measurement.PEERS) * len(measurement._FOR_THE_COLUMNS)
     assert {one.family for one in extra - peers} == {"taylor f64 optimised"}
@@ -248,7 +248,7 @@ def test_a_scene_beyond_its_end_has_the_solvers_of_the_columns_alone() -> None:
     scene, shipped = scene_named(name), load("kirchhoff/whole-motion")
     assert (scene.name, scene.body, scene.initial) == (name, shipped.body, shipped.initial)
     assert (scene.clock.instants[0], scene.clock.instants[-1]) == (0, 1600)
-    families = {one.family for one in published_settings(scene, True)}
+    families = {one.family for one in published_settings(scene, with_outside=True)}
     ours = {"taylor f64", "taylor f64 optimised"}
     assert families == ours | {f"outside {peer}" for peer in measurement.PEERS}
 
@@ -262,8 +262,8 @@ def test_numbers_and_times_are_apart(monkeypatch: pytest.MonkeyPatch, scene: Sce
     monkeypatch.setattr(measurement, "published_settings", lambda scene, outside: few)
     monkeypatch.setattr(measurement, "plain_doubles", lambda: iter(()))
     monkeypatch.setattr(measurement, "in_a_new_process", lambda work, *given: work(*given))
-    told: list[str] = []
-    numbers, times = measurement.measurement(["euler/generic"], 2, 1, finished=told.append)
+    finished: list[str] = []
+    numbers, times = measurement.measurement(["euler/generic"], 2, 1, finished=finished.append)
     (one,) = numbers.scenes
     assert {p.scene for p in numbers.points} == {one.scene}
     assert not {"seconds", "spread", "repeats"} & {f.name for f in fields(TradePoint)}
@@ -275,22 +275,22 @@ def test_numbers_and_times_are_apart(monkeypatch: pytest.MonkeyPatch, scene: Sce
     assert timed[YARDSTICK].processes == 2
     # Two processes are too few for an interval, and none is claimed.
     assert timed[YARDSTICK].low is None
-    assert len(told) == 4
+    assert len(finished) == 4
 
 
 def test_the_yardstick_is_what_everybody_gets() -> None:
-    """It is the driver as `run` takes it by default."""
+    """The yardstick is the default driver of `run`."""
     assert real_setting(*_taylor()).solver == Taylor()  # type: ignore[arg-type]
 
 
 def test_a_process_of_its_own_measures_the_same_settings(scene: Scene) -> None:
-    """What passes there and back is names and numbers."""
+    """Only names and numbers are sent between processes."""
     short = replace(scene, clock=replace(scene.clock, instants=scene.clock.instants[:3]))
     asked = [(short, names("taylor", "taylor?tol=1e-6"))]
-    found = in_a_new_process(measurement.one_process, asked, 1, 1)
-    assert set(found) == {short.name}
-    assert set(found[short.name]) == set(names("taylor", "taylor?tol=1e-6"))
-    assert all(one.seconds > 0 for one in found[short.name].values())
+    ratios = in_a_new_process(measurement.one_process, asked, 1, 1)
+    assert set(ratios) == {short.name}
+    assert set(ratios[short.name]) == set(names("taylor", "taylor?tol=1e-6"))
+    assert all(one.seconds > 0 for one in ratios[short.name].values())
 
 
 def test_the_verb_writes_data_and_page(
@@ -311,7 +311,10 @@ def test_the_verb_writes_data_and_page(
     pictures = {name for name in written if Path(name).parent.name == "figures"}
     assert {Path(name).suffix for name in pictures} == {".svg", ".pdf"}
     assert {Path(name).name for name in set(written) - pictures} == {
-        *("tradeoff.json", "tradeoff-timings.json", "tradeoff.md", "tradeoff.csv")
+        "tradeoff.json",
+        "tradeoff-timings.json",
+        "tradeoff.md",
+        "tradeoff.csv",
     }
     page = tmp_path / "tables" / "tradeoff.md"
     before = page.read_text(encoding="utf-8")

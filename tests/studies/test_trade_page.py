@@ -45,8 +45,8 @@ def section(text: str, heading: str) -> str:
 
 def line(text: str, *words: str) -> list[str]:
     """The cells of the only line that has all these words."""
-    (found,) = [row for row in text.splitlines() if all(word in row for word in words)]
-    return [cell.strip() for cell in re.split(r"(?<!\\)\|", found)[1:-1]]
+    (matching,) = [row for row in text.splitlines() if all(word in row for word in words)]
+    return [cell.strip() for cell in re.split(r"(?<!\\)\|", matching)[1:-1]]
 
 
 def test_no_time_stands_with_the_numbers(folder: Path) -> None:
@@ -58,11 +58,11 @@ def test_no_time_stands_with_the_numbers(folder: Path) -> None:
 
 
 def test_what_was_stored_is_read_again(folder: Path) -> None:
-    """Every row comes back, with its ratio and the width of its interval as a spread."""
-    found = load(folder)
-    assert found is not None
-    (trade,) = found.trades
-    assert found == Trades(NUMBERS_MADE, TIMES_MADE)
+    """All rows are read back, with ratios and spreads."""
+    loaded = load(folder)
+    assert loaded is not None
+    (trade,) = loaded.trades
+    assert loaded == Trades(NUMBERS_MADE, TIMES_MADE)
     assert trade.points == POINTS
     assert trade.rows[1]["ratio"] == 1.0
     assert trade.rows[1]["spread"] == pytest.approx(1.2 / 0.9)
@@ -86,7 +86,7 @@ def test_the_cheapest_setting_for_so_many_digits(folder: Path) -> None:
 def test_a_peer_that_is_ahead_is_named(tmp_path: Path) -> None:
     """The fastest stands in the last column with its lead; level are two whose intervals meet."""
     name = "outside:cvode-bdf?rtol=1e-9&atol=1e-9"
-    told = {}
+    lines = {}
     for ratio in (0.2, 0.7, 2.0):
         low, high = ratio * 0.9, ratio * 1.2
         timings = tuple(
@@ -96,17 +96,17 @@ def test_a_peer_that_is_ahead_is_named(tmp_path: Path) -> None:
             for one in TIMES_MADE.timings
         )
         write(tmp_path, NUMBERS_MADE, replace(TIMES_MADE, timings=timings))
-        found = load(tmp_path)
-        assert found is not None
-        table = section(page(found, tmp_path), "Beside compiled integrators of other libraries")
+        loaded = load(tmp_path)
+        assert loaded is not None
+        table = section(page(loaded, tmp_path), "Beside compiled integrators of other libraries")
         assert "7.00 s" in table
-        told[ratio] = line(table, "`euler/generic`", " 6 |")
+        lines[ratio] = line(table, "`euler/generic`", " 6 |")
         twelve = line(table, " 12 |")
     # taylor at 1e-6 takes 0.8, from 0.72 to 0.96.
     cells = ["**0.800** @ 1e-06", NOTHING, "**0.200** @ 1e-09", "**cvode-bdf**, 4.0 times"]
-    assert told[0.2][2:] == cells
-    assert told[0.7][-1] == "level: cvode-bdf and taylor"
-    assert told[2.0][-1] == "taylor, 2.5 times"
+    assert lines[0.2][2:] == cells
+    assert lines[0.7][-1] == "level: cvode-bdf and taylor"
+    assert lines[2.0][-1] == "taylor, 2.5 times"
     # The yardstick takes two milliseconds, one of them in heyoka.
     assert twelve[2:] == ["**1.00**", "0.500", "not reached", "taylor, alone"]
 
@@ -115,11 +115,11 @@ def test_without_peers_the_page_says_how_to_measure_them(tmp_path: Path) -> None
     """The section has a command in place of a table."""
     points = tuple(p for p in POINTS if not p.solver.startswith("outside"))
     write(tmp_path, replace(NUMBERS_MADE, points=points), TIMES_MADE)
-    found = load(tmp_path)
-    assert found is not None
-    told = section(page(found, tmp_path), "Beside compiled integrators of other libraries")
-    assert "publish tradeoff --outside" in told
-    assert "|" not in told
+    loaded = load(tmp_path)
+    assert loaded is not None
+    text = section(page(loaded, tmp_path), "Beside compiled integrators of other libraries")
+    assert "publish tradeoff --outside" in text
+    assert "|" not in text
 
 
 def test_a_wider_number_has_its_price(folder: Path) -> None:
@@ -137,14 +137,14 @@ def test_what_rounding_alone_leaves_stands_beside_it(
     write(tmp_path, replace(NUMBERS_MADE, scenes=(replace(SCENE, attainable=floors),)), TIMES_MADE)
     if not floors:
         without_key(tmp_path / NUMBERS.name, "attainable")
-    found = load(tmp_path)
-    assert found is not None
-    table = section(page(found, tmp_path), "What a wider number costs")
+    loaded = load(tmp_path)
+    assert loaded is not None
+    table = section(page(loaded, tmp_path), "What a wider number costs")
     if not floors:
         assert "| *attainable*" not in table
         return
     assert line(table, "| *attainable*")[1:] == ["15.7 digits", NOTHING]
-    assert floors_of(found.trades[0].document()) == {"f64": 2e-16}
+    assert floors_of(loaded.trades[0].document()) == {"f64": 2e-16}
 
 
 def without_key(file: Path, key: str) -> None:
@@ -169,8 +169,8 @@ def test_a_failure_is_listed_and_nowhere_else(folder: Path) -> None:
 
 def test_the_front_is_told_with_and_without_the_closed_form(folder: Path) -> None:
     """A closed form leads the front; behind it the integrators have a front of their own."""
-    told = section(text_of(folder), "The front")
-    whole, _, integrators = told.partition("And of the integrators alone:")
+    text = section(text_of(folder), "The front")
+    whole, _, integrators = text.partition("And of the integrators alone:")
     assert "closed-form:ellipj" in whole
     assert "outside:cvode-bdf" not in whole
     assert "closed-form:ellipj" not in integrators
@@ -188,18 +188,18 @@ def test_the_front_is_what_nothing_beats() -> None:
 
 
 def test_a_false_success_of_the_closed_form_stands_out(folder: Path) -> None:
-    """Its error is bold, and what it claims is called false."""
-    told = section(text_of(folder), "The closed form in plain doubles")
-    assert "**4.00e18**" in told
-    assert "**success, falsely**" in told
-    assert line(told, "| easy ")[-1] == "success"
+    """A false success of the closed form has a bold error and the word for it."""
+    text = section(text_of(folder), "The closed form in plain doubles")
+    assert "**4.00e18**" in text
+    assert "**success, falsely**" in text
+    assert line(text, "| easy ")[-1] == "success"
 
 
 def test_the_method_is_on_the_page(folder: Path) -> None:
     """Processes, rounds, confidence, formula, machine and command, as they were."""
-    told = section(text_of(folder), "How it was timed, and where")
+    text = section(text_of(folder), "How it was timed, and where")
     for word in ("6 fresh processes", "3 rounds", "96.9%", "A chip", "seed 1", "n = 6"):
-        assert word in told
+        assert word in text
     assert "make tradeoff" in section(text_of(folder), "To remake this")
 
 
@@ -224,10 +224,10 @@ def test_the_sheet_has_a_row_for_every_setting(folder: Path) -> None:
 
 
 def test_the_page_can_be_made_again_from_the_data(folder: Path) -> None:
-    """It is a function of what is stored."""
-    found = load(folder)
-    assert found is not None
-    assert page(found, folder) == text_of(folder)
+    """The page made from the loaded data is the same."""
+    loaded = load(folder)
+    assert loaded is not None
+    assert page(loaded, folder) == text_of(folder)
 
 
 def test_a_folder_without_a_measurement_has_no_page(tmp_path: Path) -> None:

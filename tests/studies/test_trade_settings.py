@@ -1,4 +1,4 @@
-"""Which settings a trade-off compares, how each is named, and what one that cannot run is called."""
+"""Settings of a trade-off: their names, and the outcomes of those that cannot run."""
 
 from __future__ import annotations
 
@@ -51,10 +51,10 @@ def short(name: str) -> Scene:
 
 def test_a_tolerance_of_taylor_has_a_name() -> None:
     """`taylor?tol=NUMBER` is the driver at that tolerance, exactly as written."""
-    found = solver_named("taylor?tol=1e-9")
-    assert isinstance(found, Taylor)
-    assert found.tolerance == Fraction(1, 10**9)
-    assert found == at_tolerance("1e-9")
+    solver = solver_named("taylor?tol=1e-9")
+    assert isinstance(solver, Taylor)
+    assert solver.tolerance == Fraction(1, 10**9)
+    assert solver == at_tolerance("1e-9")
     assert solver_named("taylor") == Taylor()
 
 
@@ -101,42 +101,42 @@ def test_a_setting_is_read_from_its_name(
     name: str, asked: str, requested: float | None, family: str
 ) -> None:
     """The setting of a solver is read from its name, but for a command of one's own."""
-    found = setting(name, F64)
-    assert (found.asked, found.requested, found.family) == (asked, requested, family)
-    assert found.solver.name == name
+    parsed = setting(name, F64)
+    assert (parsed.asked, parsed.requested, parsed.family) == (asked, requested, family)
+    assert parsed.solver.name == name
 
 
 def test_the_chosen_stand_beside_the_yardstick() -> None:
     """Named solvers on the rungs they know, every tolerance of taylor, and nothing else, each once."""
     names = ["scipy:DOP853?rtol=1e-6", "taylor?tol=1e-6", "process:./mine"]
-    found = chosen(names, ["f64", "f128"])
-    assert len(set(found)) == len(found)
-    others = [one for one in found if not isinstance(one.solver, Taylor)]
+    asked_settings = chosen(names, ["f64", "f128"])
+    assert len(set(asked_settings)) == len(asked_settings)
+    others = [one for one in asked_settings if not isinstance(one.solver, Taylor)]
     assert [(one.solver.name, one.rung.name) for one in others] == [
         ("scipy:DOP853?rtol=1e-6", "f64"),
         ("process:./mine", "f64"),
         ("process:./mine", "f128"),
     ]
-    taylor = {one.rung.name for one in found if one.solver == Taylor()}
+    taylor = {one.rung.name for one in asked_settings if one.solver == Taylor()}
     assert taylor == {"f64", "f128"}
 
 
 def test_a_solver_that_knows_none_of_the_rungs_says_so() -> None:
-    """It stands in the trade with its reason rather than being forgotten."""
-    found = chosen(["closed-form:ellipj"], ["f80", "f128"])
-    (one,) = [one for one in found if not one.is_integrator]
+    """A solver without any of the rungs is in the trade with its reason."""
+    asked_settings = chosen(["closed-form:ellipj"], ["f80", "f128"])
+    (one,) = [one for one in asked_settings if not one.is_integrator]
     (p,) = trade_off(short("euler/generic"), [one], repeats=1).points
     assert p.standing is Standing.NOT_RUN
     assert "f64 alone" in p.because
 
 
 def test_the_integrators_of_other_libraries_are_asked_for_by_name() -> None:
-    """Each at four tolerances, coarsest first, on f64, where all of them are at home."""
-    found = outside(["f64", "f128"])
-    assert found
-    assert {one.rung.name for one in found} == {"f64"}
-    for name in {one.family for one in found}:
-        its = [one for one in found if one.family == name]
+    """The integrators of other libraries have four tolerances each, coarsest first, on f64."""
+    integrators = outside(["f64", "f128"])
+    assert integrators
+    assert {one.rung.name for one in integrators} == {"f64"}
+    for name in {one.family for one in integrators}:
+        its = [one for one in integrators if one.family == name]
         assert name.startswith("outside ")
         assert [one.requested for one in its] == [1e-3, 1e-6, 1e-9, 1e-12]
     assert outside(["f128"]) == ()
@@ -145,7 +145,7 @@ def test_the_integrators_of_other_libraries_are_asked_for_by_name() -> None:
 
 
 def test_odefun_is_withheld_from_a_long_motion() -> None:
-    """It would take minutes: the trade says so and does not begin it."""
+    """The trade does not run odefun on a long motion, and gives the reason."""
     scene = load("euler/generic")
     long = replace(scene, clock=Clock(Fraction(0), (Fraction(0), Fraction(10**6))))
     slow = [one for one in settings(long, ["f64"]) if one.family == "mpmath odefun"]
@@ -167,7 +167,7 @@ def test_odefun_is_withheld_from_a_long_motion() -> None:
     ],
 )
 def test_an_unsuited_solver_is_unavailable_and_not_run(scene: str, name: str, reason: str) -> None:
-    """Its verdict fails no gate, and its point in the trade is not run; both say why."""
+    """An unsuited solver fails no gate, and its point in the trade is not run, with the reason."""
     (verdict,) = taylor_verify.run(short(scene), name).verdicts
     assert verdict.verdict is Status.UNAVAILABLE
     assert reason in verdict.because
@@ -187,14 +187,16 @@ def test_a_solver_of_ones_own_suits_everything() -> None:
 
 
 def test_a_recommendation_can_be_typed() -> None:
-    """Its name, given to `run`, is the same solver, and meets the target again."""
+    """The name of the recommended solver, given to `run`, meets the target again."""
     scene = short("euler/generic")
     asked = [one for one in settings(scene, ["f64"]) if isinstance(one.solver, Taylor)]
-    found = recommend(scene, 1e-5, asked)
-    assert solver_named(found.solver.name) == found.solver
-    (_, omega, *_) = taylor_verify.run(scene, found.solver.name, found.rung).verdicts
+    recommendation = recommend(scene, 1e-5, asked)
+    assert solver_named(recommendation.solver.name) == recommendation.solver
+    (_, omega, *_) = taylor_verify.run(
+        scene, recommendation.solver.name, recommendation.rung
+    ).verdicts
     assert omega.max <= 1e-5
-    assert found.solver.name in found.document()["command"]
+    assert recommendation.solver.name in recommendation.document()["command"]
 
 
 # The first solve of all.
@@ -216,13 +218,13 @@ class Unsendable(Solver):
 
 def test_a_cold_solve_is_told_part_by_part() -> None:
     """Importing, compiling and solving are parts of the whole, and taylor has something to compile."""
-    told: list[str] = []
+    labels: list[str] = []
     asked = [setting("taylor", F64), Setting(Unsendable(), F64, None, NOTHING, "")]
-    found = cold(short("euler/generic"), asked, told.append)
+    times = cold(short("euler/generic"), asked, labels.append)
     # What cannot be sent has no cold figure, and is no error.
-    assert list(found) == asked[:1]
-    assert told == [one.label for one in asked]
-    (one,) = found.values()
+    assert list(times) == asked[:1]
+    assert labels == [one.label for one in asked]
+    (one,) = times.values()
     whole = one.pop("whole")
     assert set(one) == {"process", "importing", "compiling", "solving", "rest"}
     assert sum(one.values()) == pytest.approx(whole)

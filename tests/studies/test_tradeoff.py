@@ -121,24 +121,24 @@ def dominates(one: Point, other: Point) -> bool:
 @example([made_up(1e-3, 1.0), made_up(1e-3, 1.0)])
 def test_the_front_is_what_nothing_sound_beats(points: list[Point]) -> None:
     """No point of the front is dominated, every sound point off it is, and all on it are sound."""
-    found = front(points)
+    fastest = front(points)
     sound = [p for p in points if p.standing is Standing.SOUND]
-    for p in found:
+    for p in fastest:
         assert p.standing is Standing.SOUND
         assert p.timed.trajectory.outcome is Outcome.FINISHED
         assert p.error < 1
         assert not any(dominates(other, p) for other in sound)
-    on = {id(p) for p in found}
+    on = {id(p) for p in fastest}
     for p in sound:
-        assert id(p) in on or any(dominates(other, p) for other in found)
-    assert bool(found) == bool(sound)
+        assert id(p) in on or any(dominates(other, p) for other in fastest)
+    assert bool(fastest) == bool(sound)
 
 
 @given(st.lists(MADE, max_size=12))
 def test_the_front_trades(points: list[Point]) -> None:
     """Along the front times do not fall, and errors do not rise."""
-    found = front(points)
-    for before, after in pairwise(found):
+    fastest = front(points)
+    for before, after in pairwise(fastest):
         assert before.seconds <= after.seconds
         assert before.error >= after.error
 
@@ -154,10 +154,10 @@ def test_an_error_of_the_motions_size_is_a_false_success(error: float) -> None:
 
 def test_nan_in_one_quantity_is_the_worst() -> None:
     """An error of the attitude that is no number is not lost beside a small one of omega."""
-    found = Accuracy({"omega": 1e-9, "attitude": nan})
-    assert not found.worst < 1
-    found = Accuracy({"attitude": nan, "omega": 1e-9})
-    assert not found.worst < 1
+    accuracy = Accuracy({"omega": 1e-9, "attitude": nan})
+    assert not accuracy.worst < 1
+    accuracy = Accuracy({"attitude": nan, "omega": 1e-9})
+    assert not accuracy.worst < 1
 
 
 def test_a_lost_or_failed_run_is_never_on_the_front(scene: Scene) -> None:
@@ -205,7 +205,7 @@ def test_a_trade_says_what_rounding_alone_leaves(scene: Scene) -> None:
 
 
 def test_each_round_has_an_order_of_its_own(scene: Scene) -> None:
-    """Every setting is solved once first and then once a round; the rounds differ in order."""
+    """All settings are solved once first and then once in each round, in different orders."""
     solved: list[str] = []
 
     @dataclass(frozen=True)
@@ -219,17 +219,17 @@ def test_each_round_has_an_order_of_its_own(scene: Scene) -> None:
 
     names = [f"n{k}" for k in range(8)]
     problem = pose(scene, F64)
-    found = timed({setting_of(Noted(name)): problem for name in names}, 3, seed=2)
+    timings = timed({setting_of(Noted(name)): problem for name in names}, 3, seed=2)
     rounds = [solved[k : k + 8] for k in range(0, len(solved), 8)]
     assert rounds[0] == names
     assert len(rounds) == 4
     assert all(sorted(one) == names for one in rounds)
     assert len({tuple(one) for one in rounds[1:]}) > 1
-    assert all(one.seconds == (0.5, 0.5, 0.5) and one.spread == 1 for one in found)
+    assert all(one.seconds == (0.5, 0.5, 0.5) and one.spread == 1 for one in timings)
 
 
 def test_a_family_is_not_set_finer_than_patience_has_it(scene: Scene) -> None:
-    """Behind a setting that takes too long the finer ones of its family are not run, and say why."""
+    """Settings finer than one that takes too long are not run, with the reason."""
     slow, finer, other = (
         Scripted(n, s) for n, s in (("slow", 1e3), ("finer", 1e3), ("other", 1.0))
     )
@@ -277,8 +277,8 @@ def test_errors_are_the_judges(scene: Scene) -> None:
 
 def test_the_attitude_counts() -> None:
     """A tracked attitude has an error of its own, and the larger one is the point's."""
-    found = load("euler/with-attitude")
-    short = replace(found, clock=replace(found.clock, instants=found.clock.instants[:5]))
+    whole = load("euler/with-attitude")
+    short = replace(whole, clock=replace(whole.clock, instants=whole.clock.instants[:5]))
     (p,) = trade_off(short, [setting_of(at_tolerance("1e-4"))], repeats=1).points
     assert set(p.accuracy.max) == {"omega", "attitude"}
     assert p.error == max(p.accuracy.max.values())
@@ -288,12 +288,14 @@ def test_the_attitude_counts() -> None:
 def test_the_recommended_setting_meets_the_target(scene: Scene, target: float) -> None:
     """Run again, the setting stays below the target with its margin, here and on every near start."""
     asked = [s for s in settings(scene, ["f64"]) if isinstance(s.solver, Taylor)]
-    found = recommend(scene, target, asked)
-    assert isinstance(found.solver, Solver)
-    for start in (scene, *nearby(scene, found.seed)):
-        problem = pose(start, found.rung)
-        assert MARGIN * Truth(problem).accuracy(found.solver.solve(problem)).worst <= target
-    (_, omega, *_) = taylor_verify.run(scene, found.solver, found.rung).verdicts
+    recommendation = recommend(scene, target, asked)
+    assert isinstance(recommendation.solver, Solver)
+    for start in (scene, *nearby(scene, recommendation.seed)):
+        problem = pose(start, recommendation.rung)
+        assert (
+            MARGIN * Truth(problem).accuracy(recommendation.solver.solve(problem)).worst <= target
+        )
+    (_, omega, *_) = taylor_verify.run(scene, recommendation.solver, recommendation.rung).verdicts
     assert omega.max is not None
     assert omega.max <= target
 
@@ -327,9 +329,9 @@ def test_a_setting_that_fails_from_a_near_start_is_passed_over(scene: Scene) -> 
     asked = [setting_of(Fitted(scene)), setting_of(Scripted("steady", 1.0))]
     trade = trade_off(scene, asked, repeats=1)
     assert next(p.timed.setting.solver.name for p in trade.front) == "fitted"
-    found = recommended(trade, 1e-10)
-    assert found.solver.name == "steady"
-    assert found.starts == 1 + STARTS
+    recommendation = recommended(trade, 1e-10)
+    assert recommendation.solver.name == "steady"
+    assert recommendation.starts == 1 + STARTS
 
 
 def test_what_is_not_there_is_said(scene: Scene) -> None:
@@ -352,15 +354,15 @@ def test_what_is_not_there_is_said(scene: Scene) -> None:
 
 def test_nothing_drifts_under_loads() -> None:
     """A loaded body conserves nothing, so that its points have errors and no drift."""
-    found = load("euler/constant-moment")
-    short = replace(found, clock=replace(found.clock, instants=found.clock.instants[:4]))
+    whole = load("euler/constant-moment")
+    short = replace(whole, clock=replace(whole.clock, instants=whole.clock.instants[:4]))
     (p,) = trade_off(short, [setting_of(Taylor())], repeats=1).points
     assert p.standing is Standing.SOUND
     assert p.accuracy.drift is None
 
 
 def test_cold_caches_leave_the_environment_as_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Inside, heyoka's cache is an empty folder of its own; after it, what was set before."""
+    """heyoka's cache is an empty folder inside the context, and the earlier one after it."""
     monkeypatch.setenv("HEYOKA_CACHE_DIR", "before")
     with cold_caches():
         assert list(Path(os.environ["HEYOKA_CACHE_DIR"]).iterdir()) == []
@@ -405,9 +407,9 @@ def test_starts_are_near_and_drawn_from_the_seed(scene: Scene) -> None:
 def test_a_request_is_held_against_what_came_of_it() -> None:
     """The digits asked for and those achieved are the logarithms of tolerance and error."""
     p = made_up(1e-7, 1.0)
-    (said,) = request_sentences([p])
-    assert f"{-log10(1e-9):.1f} digits asked for, {-log10(1e-7):.1f} got" in said
-    assert "1e+02 times the tolerance" in said
+    (sentence,) = request_sentences([p])
+    assert f"{-log10(1e-9):.1f} digits asked for, {-log10(1e-7):.1f} got" in sentence
+    assert "1e+02 times the tolerance" in sentence
     assert request_sentences([made_up(nan, 1.0)]) == []
 
 
@@ -451,7 +453,7 @@ def test_the_verb_says_that_nothing_reaches_the_target(
 
 
 @pytest.mark.parametrize(
-    ("call", "said"),
+    ("call", "message"),
     [
         ([], "expected a scene"),
         (["euler/generic", "--target", "0"], "positive error"),
@@ -462,11 +464,11 @@ def test_the_verb_says_that_nothing_reaches_the_target(
     ],
 )
 def test_a_wrong_call_is_refused(
-    call: list[str], said: str, capsys: pytest.CaptureFixture[str]
+    call: list[str], message: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Exit status 2, and what was expected."""
     assert main(["tradeoff", *call]) == 2
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
 
 
 def test_the_pictures_and_their_numbers_are_written_on_request(

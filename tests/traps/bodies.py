@@ -18,7 +18,7 @@ _WIDEST: Final = "mp237"
 
 
 def _literals() -> list[TrapCase]:
-    """Moments as doubles on every rung; then, at the widest, as numbers of the rung."""
+    """Return cases with moments as doubles on every rung, and as numbers of the widest rung."""
     rungs = [rung for rung in ("f64", "f80", "f128", _WIDEST) if _has(rung)]
     cases = [compared(free(rung, GENERIC, _TURNS), rung) for rung in rungs]
     typed = free(f"{_WIDEST}, moments of its own type", GENERIC, _TURNS)
@@ -30,7 +30,7 @@ def _has(rung: str) -> bool:
 
 
 def _of_size(*sizes: float) -> list[TrapCase]:
-    """The generic spin made faster or slower, over the same turns."""
+    """Return cases of the generic spin made faster or slower, over the same turns."""
     return [
         compared(free(f"omega of size {size:g}", _sized(size), _TURNS / size)) for size in sizes
     ]
@@ -53,12 +53,12 @@ def _sized(size: float) -> list[float]:
 
 
 def first_tumble(d: float) -> float:
-    """When a start at the distance d from the spin about axis 2 has left it."""
+    """Return the time at which a start at the distance d from the spin about axis 2 has left it."""
     return log(1 / d) / _RATE
 
 
 def _tumbles() -> list[TrapCase]:
-    """In doubles at many distances; then on wide rungs, with moments of their own types."""
+    """Return cases in doubles at many distances, and on wide rungs with moments of their types."""
     asked = [(d, "f64") for d in (1e-4, 1e-6, 1e-8, 1e-12, 1e-16, 1e-20, 1e-40)]
     asked += [(d, rung) for d, rung in ((1e-20, "f128"), (1e-80, _WIDEST)) if _has(rung)]
     return [
@@ -70,7 +70,7 @@ def _tumbles() -> list[TrapCase]:
 
 
 def _returns() -> list[TrapCase]:
-    """A body that has come back to the unstable spin: a motion that no double determines."""
+    """Return the case of a body back at the unstable spin, a motion that doubles cannot determine."""
     return [compared(free("d = 1e-15, back twice", (1e-15, 1.0, 0.0), 300.0, samples=41))]
 
 

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 import heyoka as hy
 import numpy as np
-from continuous_output_view import kept
+from continuous_output_view import kept as overwritten
 from mpmath import mp
 from time_in_equations import driven
 
@@ -51,8 +51,8 @@ def _starting_late() -> list[TrapCase]:
         with mp.workdps(_DIGITS):
             truth = mp.sin(held_exactly(Fraction(_DURATION)))
             error = float(abs(held_exactly(exact_value(x)) - truth))
-        said, of_driver = driver_on(free("", GENERIC, _DURATION, start=start))
-        cases.append(TrapCase(f"start at {start:g}", outcome.name, error, said, of_driver))
+        ending, of_driver = driver_on(free("", GENERIC, _DURATION, start=start))
+        cases.append(TrapCase(f"start at {start:g}", outcome.name, error, ending, of_driver))
     return cases
 
 
@@ -64,24 +64,24 @@ def _until_late() -> list[TrapCase]:
         outcome, steps, state = until(typed_equations(), GENERIC, float(start), end)
         scene = free("", GENERIC, 1.0, start=start)
         scene = replace(scene, clock=Clock(Fraction(start), (start + wanted,)))
-        said, driven = driver_on(scene)
+        ending, driven = driver_on(scene)
         case = f"from {start:g} for 0.3"
-        cases.append(TrapCase(case, outcome.name, error_at(state, wanted), said, driven, steps))
+        cases.append(TrapCase(case, outcome.name, error_at(state, wanted), ending, driven, steps))
     return cases
 
 
 def _beyond() -> list[TrapCase]:
     state = beyond(typed_equations(), GENERIC, 10.0, _DURATION)
-    said, driven = driver_on(free("", GENERIC, _DURATION))
+    ending, driven = driver_on(free("", GENERIC, _DURATION))
     where = "output over [0, 10], asked at 100"
-    return [TrapCase(where, "three numbers", error_at(state, Fraction(_DURATION)), said, driven)]
+    return [TrapCase(where, "three numbers", error_at(state, Fraction(_DURATION)), ending, driven)]
 
 
-def _kept() -> list[TrapCase]:
-    state = kept(typed_equations(), GENERIC, 1.0, 2.0)
-    said, driven = driver_on(free("", GENERIC, 2.0, samples=3))
+def _views() -> list[TrapCase]:
+    state = overwritten(typed_equations(), GENERIC, 1.0, 2.0)
+    ending, driven = driver_on(free("", GENERIC, 2.0, samples=3))
     what = "output at 1, kept while that at 2 is asked for"
-    return [TrapCase(what, "three numbers", error_at(state, Fraction(1)), said, driven)]
+    return [TrapCase(what, "three numbers", error_at(state, Fraction(1)), ending, driven)]
 
 
 _DENSE: Final = "notebooks/Dense%20output.html"
@@ -112,8 +112,8 @@ CLOCK: Final = (
     Trap(
         "T8b",
         "the next call overwrites the last answer",
-        (kept,),
-        _kept,
+        (overwritten,),
+        _views,
         "keeps the answer of one call of the continuous output and makes another",
         "every sample is a row of its own",
         Cause.DESIGN,

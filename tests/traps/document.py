@@ -1,4 +1,4 @@
-"""Plain calls of heyoka that are wrong without saying so, as they were measured."""
+"""Document of plain calls of heyoka that are wrong silently."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class TrapGate:
 
 @dataclass(frozen=True)
 class TrapCase:
-    """One measured use of the plain call, and of the driver on the same question.
+    """A measured use of the plain call, and of the driver on the same scene.
 
     ``said`` is what heyoka reports and ``driver`` what the driver does. ``error`` and ``driver_error``
     are relative to the size of the true answer; None where nothing is returned that could have one.
@@ -35,7 +35,7 @@ class TrapCase:
 
 @dataclass(frozen=True)
 class TrapRow:
-    """One trap: ``code`` as it was run, ``where`` an address, ``script`` the minimal reproduction."""
+    """A trap: ``code`` that was run, ``where`` an address, ``script`` the minimal reproduction."""
 
     key: str
     title: str

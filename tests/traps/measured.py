@@ -1,4 +1,4 @@
-"""How a plain call and the driver are measured on a free body: the same scene, the same judge.
+"""Measurement of a plain call and the driver on a free body: the same scene, the same judge.
 
 The plain call is judged on the moments and the omega that it was given, held exactly, as `check`
 holds anybody's answer; the driver on the data that it rounds itself.
@@ -51,7 +51,7 @@ def free(name: str, omega: Sequence[float], end: float, samples: int = 11, start
 
 
 def compared(scene: Scene, rung: str = "f64", typed: bool = False) -> TrapCase:
-    """The plain call and the driver on one scene, both as the judge finds them."""
+    """Return the judged case of the plain call and the driver on one scene."""
     problem = adopt(scene, rung_named(rung), scene.clock.instants)
     plain = Plain(typed=typed)
     trajectory = plain.solve(problem)
@@ -74,20 +74,20 @@ def _gate(verdict: Verdict) -> TrapGate:
 
 
 def driver_on(scene: Scene, rung: str = "f64") -> tuple[str, float | None]:
-    """What the driver and the judge say of a scene, and its largest error."""
+    """Return the words of the driver and the judge on a scene, and its largest error."""
     verdict = next(v for v in run(scene, "taylor", rung).verdicts if v.quantity != INITIAL)
-    said = f"{verdict.outcome}; state: {verdict.verdict.value}"
-    return said, verdict.max
+    ending = f"{verdict.outcome}; state: {verdict.verdict.value}"
+    return ending, verdict.max
 
 
 def error_at(state: Iterable[Any], elapsed: Fraction) -> float:
-    """Of the generic body's omega so long after its start, relative to the true one."""
-    held = [float(value) for value in state]
-    if not all(isfinite(value) for value in held):
+    """Return the relative error of the generic body's omega at a time after its start."""
+    numbers = [float(value) for value in state]
+    if not all(isfinite(value) for value in numbers):
         return inf
     truth = solution(free("", GENERIC, 1.0)).motion([elapsed], _DIGITS)["omega"][0]
     with mp.workdps(_DIGITS):
-        off = [held_exactly(exact_value(v)) - t for v, t in zip(held, truth, strict=True)]
+        off = [held_exactly(exact_value(v)) - t for v, t in zip(numbers, truth, strict=True)]
         return float(mp.norm(off) / mp.norm(list(truth)))
 
 

@@ -43,7 +43,7 @@ def to_real128(number: Any) -> Any:
 
 
 def equal(number: Any, other: Any) -> Any:
-    """Whether a real is the same number as one of another library."""
+    """Compare a real with a number of another library."""
     return number == other
 
 
@@ -71,7 +71,7 @@ def _relative(value: Any, truth: Any) -> float:
 
 
 def _held_norm(vector: tuple[Fraction, ...]) -> Any:
-    """As the judge forms a norm: of numbers held exactly, at a precision of its own."""
+    """Return a norm formed like the judge's: of exact numbers, at a precision of its own."""
     with mp.workprec(_BITS):
         return mp.norm([held_exactly(entry) for entry in vector])
 
@@ -81,7 +81,7 @@ def _norms() -> list[TrapCase]:
     number, tenth = vector[0], held_exactly(_TENTH)
     with mp.workprec(_BITS):
         length, square_root = mp.sqrt(14) * tenth, mp.sqrt(tenth)
-    found = norm(vector)
+    length_returned = norm(vector)
     root_found = root(number)
     digits = printed(number)
     exact = tuple(arithmetic(rung_named(_WIDE)).exact(entry) for entry in vector)
@@ -91,8 +91,8 @@ def _norms() -> list[TrapCase]:
     return [
         TrapCase(
             "numpy.linalg.norm of a vector of 237 bits",
-            f"a number of type {type(found).__name__}",
-            _relative(held_exactly(exact_value(found)), length),
+            f"a number of type {type(length_returned).__name__}",
+            _relative(held_exactly(exact_value(length_returned)), length),
             driver,
             _relative(_held_norm(exact), length),
         ),
@@ -131,10 +131,10 @@ def _to_real128() -> list[TrapCase]:
     for _ in range(_DRAWS):
         value = Fraction(draw.getrandbits(_DRAWN_BITS) | 1) * power_of_two(-_DRAWN_BITS)
         nearest = rung_named("f128").round(value)
-        found = narrow.exact(to_real128(wide.number(value)))
+        converted = narrow.exact(to_real128(wide.number(value)))
         driven = narrow.exact(narrow.number(nearest))
-        wrong += found != nearest
-        worst = max(worst, float(abs(found - value) / value))
+        wrong += converted != nearest
+        worst = max(worst, float(abs(converted - value) / value))
         worst_driver = max(worst_driver, float(abs(driven - value) / value))
     return [
         TrapCase(
@@ -148,7 +148,7 @@ def _to_real128() -> list[TrapCase]:
 
 
 def _sympy() -> list[TrapCase]:
-    """One case where SymPy is installed, none where it is not."""
+    """Return one case with SymPy installed, and none without it."""
     if find_spec("sympy") is None:
         return []
     digits = "0.1"
@@ -169,12 +169,12 @@ def _sympy() -> list[TrapCase]:
 def _equality() -> list[TrapCase]:
     half = Fraction(1, 2)
     number = arithmetic(rung_named(_WIDE)).number(half)
-    found = equal(number, held_exactly(half))
+    is_equal = equal(number, held_exactly(half))
     driven = arithmetic(rung_named(_WIDE)).exact(number) == half
     return [
         TrapCase(
             "1/2 as a real and as a number of mpmath",
-            f"equal: {found}",
+            f"equal: {is_equal}",
             None,
             f"compared as rationals: {driven}",
         )

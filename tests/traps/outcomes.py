@@ -40,7 +40,7 @@ def tolerance_of_zero() -> Any:
 
 
 def unset(w: Sequence[float], end: float) -> tuple[Any, Array]:
-    """The same body with parameters in place of numbers, which are then forgotten."""
+    """Propagate the same body with parameters that are never set."""
     w1, w2, w3 = hy.make_vars("w1", "w2", "w3")
     equations = [
         (w1, hy.par[0] * (w2 * w3)),
@@ -105,15 +105,15 @@ def _lanes() -> list[TrapCase]:
 
 def _not_finite() -> list[TrapCase]:
     ta, (outcome, *_) = decay(float("nan"), 1.0)
-    said = f"{outcome.name}; time {ta.time}, state {ta.state[0]}"
-    return [TrapCase("x' = -x from NaN", said, None, _refusal(_NAN_SCENE))]
+    ending = f"{outcome.name}; time {ta.time}, state {ta.state[0]}"
+    return [TrapCase("x' = -x from NaN", ending, None, _refusal(_NAN_SCENE))]
 
 
 def _blown_up() -> list[TrapCase]:
     ta, (outcome, min_h, _, steps, *_) = blow_up(1.0, 2.0)
-    said = f"{outcome.name} at t = {ta.time:.17g} after steps down to {min_h:.2g}"
+    ending = f"{outcome.name} at t = {ta.time:.17g} after steps down to {min_h:.2g}"
     driver = "no such equation: energy bounds every omega and impulse, and loads are constant"
-    return [TrapCase("x' = x^2 from 1, until 2", said, None, driver, steps=steps)]
+    return [TrapCase("x' = x^2 from 1, until 2", ending, None, driver, steps=steps)]
 
 
 def _stopped() -> list[TrapCase]:
@@ -143,20 +143,20 @@ def _without_return() -> list[TrapCase]:
 
 
 def _truth_of_outcomes() -> list[TrapCase]:
-    found = {}
+    truth = {}
     _, (outcome, *_) = decay(1.0, 1.0)
-    found[outcome.name] = bool(outcome)
+    truth[outcome.name] = bool(outcome)
     _, (outcome, *_) = decay(float("nan"), 1.0)
-    found[outcome.name] = bool(outcome)
-    said = ", ".join(f"{name} is {value}" for name, value in found.items())
+    truth[outcome.name] = bool(outcome)
+    ending = ", ".join(f"{name} is {value}" for name, value in truth.items())
     driver = "each outcome is looked up, and an unknown one is no success"
-    return [TrapCase("if outcome: ...", said, None, driver)]
+    return [TrapCase("if outcome: ...", ending, None, driver)]
 
 
 def _clamped() -> list[TrapCase]:
     _, (outcome, min_h, max_h, steps, *_) = decay(1.0, 1.0, max_delta_t=0.125)
-    said = f"{outcome.name}; smallest step {min_h:g}, largest {max_h:g}"
-    return [TrapCase("steps of at most 0.125, until 1", said, None, "reads neither", steps=steps)]
+    ending = f"{outcome.name}; smallest step {min_h:g}, largest {max_h:g}"
+    return [TrapCase("steps of at most 0.125, until 1", ending, None, "reads neither", steps=steps)]
 
 
 def _zero_tolerance() -> list[TrapCase]:

@@ -29,9 +29,19 @@ _MAKER: Final = "<!-- made by make traps; do not edit -->"
 # The quantities that a free body has gates for.
 _GATES: Final = {"omega": "state", "T": "T", "H2": "H²"}
 _SHEET: Final = (
-    *("trap", "title", "case", "reports", "silent", "error", "driver", "driver_error", "steps"),
+    "trap",
+    "title",
+    "case",
+    "reports",
+    "silent",
+    "error",
+    "driver",
+    "driver_error",
+    "steps",
     *(f"{name}_{field}" for name in _GATES for field in ("verdict", "over_bound")),
-    *("cause", "documented", "script"),
+    "cause",
+    "documented",
+    "script",
 )
 _STATE: Final = "omega"
 # Below the roundoff of every format that is shown.
@@ -93,7 +103,7 @@ def load(folder: Path) -> TrapsStudy:
 
 
 def page(stored: TrapsStudy) -> str:
-    """What it proves, every trap in one line, every trap in numbers, and what the gates see."""
+    """Return the page: its findings, every trap in one line and in numbers, and the gates."""
     traps = stored.traps
     blocks = [
         f"{_MAKER}\n# A plain heyoka call against this suite's driver",
@@ -105,7 +115,7 @@ def page(stored: TrapsStudy) -> str:
         "## In short",
         _in_short(traps),
         "## What the gates see of the plain answers",
-        _seen(traps),
+        _gate_table(traps),
         "## One by one",
         *_entries(traps),
         "## To remake this",
@@ -159,7 +169,7 @@ def _behind(case: TrapCase) -> float:
     return case.error / max(case.driver_error or 0.0, _NO_ERROR)
 
 
-def _seen(traps: Iterable[TrapRow]) -> str:
+def _gate_table(traps: Iterable[TrapRow]) -> str:
     columns = [
         "trap",
         "case",
@@ -255,9 +265,9 @@ def _cases(trap: TrapRow) -> str:
 
 
 def proven(traps: Sequence[TrapRow]) -> list[str]:
-    """Sentences, each true of these rows; one that is true of none is not said."""
-    told = [_silently(traps), _conserving(traps), _unseen(traps), _seen_by_state(traps)]
-    return [sentence for sentence in told if sentence]
+    """Return the sentences that are true of these rows."""
+    sentences = [_silently(traps), _conserving(traps), _unseen(traps), _seen_by_state(traps)]
+    return [sentence for sentence in sentences if sentence]
 
 
 def _silently(traps: Sequence[TrapRow]) -> str:
@@ -272,7 +282,7 @@ def _silently(traps: Sequence[TrapRow]) -> str:
 
 
 def conserving(traps: Iterable[TrapRow]) -> list[tuple[TrapRow, TrapCase]]:
-    """Answers that every gate on a conserved quantity passes."""
+    """Return the answers that pass every gate on a conserved quantity."""
     return [
         (trap, case)
         for trap in traps
@@ -291,7 +301,7 @@ def _conserving(traps: Iterable[TrapRow]) -> str:
     ]
     if not wrong:
         return ""
-    trap, worst = max(wrong, key=lambda found: found[1].error or 0.0)
+    trap, worst = max(wrong, key=lambda pair: pair[1].error or 0.0)
     return (
         f"{bold('A plain answer can pass every gate on conserved quantities and be wrong')}: "
         f"{len(wrong)} do, and are more than a hundred times as far off as the driver on the same "
@@ -302,7 +312,7 @@ def _conserving(traps: Iterable[TrapRow]) -> str:
 
 
 def _unseen(traps: Iterable[TrapRow]) -> str:
-    """What passes the gate of the state too."""
+    """Return a sentence on answers that pass the gate of the state too."""
     lost = [
         (trap, case)
         for trap, case in conserving(traps)
@@ -324,7 +334,7 @@ def _unseen(traps: Iterable[TrapRow]) -> str:
 
 
 def _seen_by_state(traps: Iterable[TrapRow]) -> str:
-    seen = sorted(
+    names = sorted(
         {
             t.key
             for t in traps
@@ -332,7 +342,7 @@ def _seen_by_state(traps: Iterable[TrapRow]) -> str:
             if c.error is not None and c.gates and c.gates[_STATE].verdict == "fail"
         }
     )
-    return f"The gate of the state sees {', '.join(seen)}, from some size on." if seen else ""
+    return f"The gate of the state sees {', '.join(names)}, from some size on." if names else ""
 
 
 # The sheet.

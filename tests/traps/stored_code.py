@@ -1,4 +1,4 @@
-"""Traps of the code that heyoka compiles and keeps on disk."""
+"""Traps of the compiled code that heyoka stores on disk."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from traps.trap import Cause, Trap
 
 
 def stored_key(database: Path) -> str:
-    """What is stored beside each piece of code, to be found by."""
+    """Return the key that is stored beside each piece of code."""
     connection = sqlite3.connect(database)
     try:
         ((key,),) = connection.execute("SELECT DISTINCT env_fingerprint FROM cache")
@@ -27,7 +27,7 @@ def stored_key(database: Path) -> str:
 
 
 def cache_key() -> str:
-    """What the disk cache has stored of the surroundings in which a piece of code was compiled."""
+    """Return the part of the key in the disk cache that describes the environment of compiling."""
     before = hy.llvm_state.get_diskcache_path()
     enabled = hy.llvm_state.get_diskcache_enabled()
     with TemporaryDirectory() as folder:
@@ -43,7 +43,7 @@ def cache_key() -> str:
 
 
 def stored_by(processes: int) -> int:
-    """How many pieces of code these processes leave on disk, each compiling one system in MPFR."""
+    """Return the number of pieces of code that processes store, each compiling one system in MPFR."""
     with TemporaryDirectory() as folder:
         for _ in range(processes):
             subprocess.run([sys.executable, "-c", _IN_MPFR, folder], check=True)
@@ -61,8 +61,8 @@ def _stored_code() -> list[TrapCase]:
 
 
 def _never_found() -> list[TrapCase]:
-    found = f"{stored_by(processes=3)} pieces of code on disk"
-    return [TrapCase("one system in MPFR, compiled by three processes", found, None, "none")]
+    count = f"{stored_by(processes=3)} pieces of code on disk"
+    return [TrapCase("one system in MPFR, compiled by three processes", count, None, "none")]
 
 
 STORED_CODE: Final = (

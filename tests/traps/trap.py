@@ -1,4 +1,4 @@
-"""A trap: a plain call of heyoka, what it reports, how wrong it is, and what the driver does there."""
+"""Trap: a plain call of heyoka, its report, its error, and the driver's behaviour."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ DOCS: Final = "https://bluescarni.github.io/heyoka.py"
 
 
 class Cause(StrEnum):
-    """Whose a trap is; the value is what is published."""
+    """The origin of a trap; the values are published."""
 
     DOCUMENTED = "by design, and documented"
     CONSEQUENCE = "follows from a documented rule"
@@ -30,7 +30,7 @@ class Cause(StrEnum):
 
 @dataclass(frozen=True)
 class Trap:
-    """``calls`` are the functions that are published, ``cases`` measures them anew.
+    """A trap; ``calls`` are the published functions, ``cases`` measures them.
 
     ``silent`` tells a call that reports success, or reports nothing. ``documented`` is quoted from
     heyoka's documentation, ``where`` its page below DOCS; ``remark`` is what the quotation leaves

@@ -1,4 +1,4 @@
-"""The findings about engines: each script is a report by itself, short, and free of this project."""
+"""Findings about engines: each script is a short report that is independent of this project."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ MODULES = {
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
 def test_a_script_is_a_report(script: Path) -> None:
-    """It has its title, versions, expectation, finding and evidence, and at most 40 lines of code."""
-    found = read(script)
-    assert found.title
-    assert set(found.parts) - {"To run"} == set(PARTS)
-    assert re.search(r"\d+\.\d+", found.parts["Versions"])
+    """A script has title, versions, expectation, finding and evidence, and at most 40 lines of code."""
+    report = read(script)
+    assert report.title
+    assert set(report.parts) - {"To run"} == set(PARTS)
+    assert re.search(r"\d+\.\d+", report.parts["Versions"])
     lines = script.read_text(encoding="utf-8").splitlines()
     after = lines.index("import sys") if script.suffix == ".py" else lines.index("")
     assert 5 <= len([line for line in lines[after:] if line.strip()]) <= 40
@@ -37,7 +37,7 @@ def test_a_script_is_a_report(script: Path) -> None:
 
 @pytest.mark.parametrize("script", PYTHON, ids=lambda script: script.stem)
 def test_a_script_in_python_needs_its_engine_alone(script: Path) -> None:
-    """It imports its engine, NumPy at most, and the standard library: nothing of ours."""
+    """A script imports only its engine, NumPy and the standard library."""
     text = script.read_text(encoding="utf-8")
     (listed,) = re.findall(r"^# dependencies = \[(.*)\]$", text, re.MULTILINE)
     dependencies = re.findall(r'"([^"]*)"', listed)
@@ -55,7 +55,7 @@ def test_a_script_in_python_needs_its_engine_alone(script: Path) -> None:
 
 @pytest.mark.parametrize("script", JAVASCRIPT, ids=lambda script: script.stem)
 def test_a_script_in_javascript_needs_its_engine_alone(script: Path) -> None:
-    """It imports the package that its command installs, pinned, modules of node, and nothing of ours."""
+    """A script imports only the pinned package that its command installs and modules of node."""
     text = script.read_text(encoding="utf-8")
     command = rf"^// To run: npm install (\S+)@[\d.]+ && node {re.escape(script.name)}$"
     (package,) = re.findall(command, text, re.MULTILINE)
@@ -65,28 +65,28 @@ def test_a_script_in_javascript_needs_its_engine_alone(script: Path) -> None:
 
 
 def test_the_readme_has_a_row_for_every_script() -> None:
-    """Its table has each script with its title, in alphabetical order, and nothing else."""
+    """The table of the README has exactly the scripts with their titles, in alphabetical order."""
     text = (REPORTS / FOLDER / "README.md").read_text(encoding="utf-8")
     rows = [line for line in text.splitlines() if line.startswith("| [")]
     assert rows == [f"| [{one.name}]({one.name}) | {read(one).title} |" for one in SCRIPTS]
 
 
 def test_the_page_lists_every_script() -> None:
-    """Each has a line on the page of the board, with what came and in which versions."""
+    """The page of the board has a line for each script, with its finding and versions."""
     page = "\n".join(findings(REPORTS))
     assert all(f"../{FOLDER}/{script.name})" in page for script in SCRIPTS)
     assert len(SCRIPTS) >= 3
 
 
 def test_a_script_in_javascript_is_a_report_too(tmp_path: Path) -> None:
-    """Its first comment has the paragraphs; what follows is no part of them."""
+    """The paragraphs of a script in JavaScript are those of its first comment."""
     file = tmp_path / "it.mjs"
     words = ["A title", "", *(f"{part}: of {part}\n" for part in PARTS)]
     comment = "\n".join(words).replace("\n", "\n// ")
     file.write_text(f"// {comment}\nimport it from 'it';\n// Came: not this.\n", encoding="utf-8")
-    found = read(file)
-    assert found.title == "A title"
-    assert found.parts == {part: f"of {part}" for part in PARTS}
+    report = read(file)
+    assert report.title == "A title"
+    assert report.parts == {part: f"of {part}" for part in PARTS}
 
 
 def test_a_script_without_a_part_is_named(tmp_path: Path) -> None:

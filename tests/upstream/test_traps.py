@@ -1,4 +1,4 @@
-"""Plain calls of heyoka go wrong as published, in silence where it says so; the driver does not."""
+"""Plain calls of heyoka go wrong as published, silently if marked so; the driver does not."""
 
 import ast
 import csv
@@ -47,8 +47,8 @@ def cases(key: str) -> tuple[TrapCase, ...]:
 
 
 def case(key: str, name: str) -> TrapCase:
-    (found,) = (found for found in cases(key) if found.case == name)
-    return found
+    (named,) = (named for named in cases(key) if named.case == name)
+    return named
 
 
 def on_rung(key: str, name: str, on: str) -> TrapCase:
@@ -59,19 +59,19 @@ def on_rung(key: str, name: str, on: str) -> TrapCase:
 
 
 def errors(key: str) -> list[float]:
-    found = [c.error for c in cases(key)]
-    assert None not in found
-    return [error for error in found if error is not None]
+    values = [c.error for c in cases(key)]
+    assert None not in values
+    return [error for error in values if error is not None]
 
 
 def driver_errors(key: str) -> list[float]:
-    found = [c.driver_error for c in cases(key)]
-    assert None not in found
-    return [error for error in found if error is not None]
+    values = [c.driver_error for c in cases(key)]
+    assert None not in values
+    return [error for error in values if error is not None]
 
 
 def rising(values: Sequence[float], factor: float) -> bool:
-    """Each value is more than so many times the one before."""
+    """Return True if each value is more than ``factor`` times the one before."""
     return all(b >= factor * a for a, b in pairwise(values))
 
 
@@ -81,31 +81,31 @@ def rising(values: Sequence[float], factor: float) -> bool:
 @pytest.mark.parametrize("name", ["f128", "mp237"])
 def test_typed_literal_limits_every_wide_rung_to_a_double(name: str) -> None:
     """The rounding of 1/3 to 53 bits stays in the answer, while the driver has the rung's digits."""
-    found = on_rung("T1", name, name)
-    assert found.said == "time_limit"
+    row = on_rung("T1", name, name)
+    assert row.said == "time_limit"
     # 1/3 is off by 2^-54 of itself, which ten radians may shrink or magnify by some powers of two.
-    assert 2**-60 <= found.error <= 2**-48
-    assert found.driver_error <= 1e4 * float(rung(name).unit_roundoff)
+    assert 2**-60 <= row.error <= 2**-48
+    assert row.driver_error <= 1e4 * float(rung(name).unit_roundoff)
 
 
 def test_literals_of_the_rung_leave_all_its_digits() -> None:
     """Only the type of the three moments differs, and the plain call is as good as the driver."""
-    found = case("T1", "mp237, moments of its own type")
-    assert found.error <= 1e4 * float(rung("mp237").unit_roundoff)
-    assert {gate.verdict for gate in found.gates.values()} == {"pass"}
+    row = case("T1", "mp237, moments of its own type")
+    assert row.error <= 1e4 * float(rung("mp237").unit_roundoff)
+    assert {gate.verdict for gate in row.gates.values()} == {"pass"}
 
 
 def test_error_of_a_literal_does_not_depend_on_the_rung() -> None:
-    """It is an error of the equations and not of the arithmetic: the same at 113 and at 237 bits."""
+    """The error of a literal is one of the equations, and the same at 113 and at 237 bits."""
     quad, octuple = on_rung("T1", "f128", "f128").error, case("T1", "mp237").error
     assert quad == pytest.approx(octuple, rel=1e-12)
 
 
 def test_small_states_lose_digits_and_steps() -> None:
     """The smaller the state, the fewer the steps and the larger the relative error, at time_limit."""
-    found = cases("T2a")
-    assert {c.said for c in found} == {"time_limit"}
-    steps = [c.steps for c in found]
+    rows = cases("T2a")
+    assert {c.said for c in rows} == {"time_limit"}
+    steps = [c.steps for c in rows]
     assert steps == sorted(steps, reverse=True)
     assert len(set(steps)) == len(steps)
     # From size to size the absolute tolerance counts for at least a hundred times as much.
@@ -122,16 +122,16 @@ def test_tiny_states_are_taken_in_one_step() -> None:
 
 @pytest.mark.parametrize("key", ["T2a", "T2b", "S1", "T3"])
 def test_driver_answers_at_every_size_and_distance(key: str) -> None:
-    """Within a hundred roundings: fewer than 400 steps, a few roundings each, in random directions."""
+    """The driver's error is within 100 roundings, as of 400 steps with a few random roundings each."""
     assert all(error <= 100 * U for error in driver_errors(key))
 
 
 def test_error_beside_the_unstable_axis_grows_as_the_distance_shrinks() -> None:
     """d = 1e-8 costs four digits, d = 1e-40 all of them in a single step, always at time_limit."""
-    found = cases("T3")
-    assert {c.said for c in found} == {"time_limit"}
+    rows = cases("T3")
+    assert {c.said for c in rows} == {"time_limit"}
     # The first, at d = 1e-4, is not yet above the roundings.
-    in_doubles = [c.error for c in found if c.case.endswith("f64")]
+    in_doubles = [c.error for c in rows if c.case.endswith("f64")]
     assert len(in_doubles) == 7
     assert rising(in_doubles[1:], 10)
     assert case("T3", "d = 1e-08, f64").error >= 1000 * U
@@ -144,36 +144,36 @@ def test_error_beside_the_unstable_axis_grows_as_the_distance_shrinks() -> None:
 )
 def test_more_digits_do_not_help_beside_the_unstable_axis(name: str, on: str) -> None:
     """A wide rung with moments of its own type loses as many digits as d has, the driver none."""
-    found, u = on_rung("T3", name, on), float(rung(on).unit_roundoff)
-    assert found.said == "time_limit"
-    assert found.error >= 1e12 * u
+    row, u = on_rung("T3", name, on), float(rung(on).unit_roundoff)
+    assert row.said == "time_limit"
+    assert row.error >= 1e12 * u
     # At most 640 steps of a few roundings, in random directions.
-    assert found.driver_error <= 300 * u
+    assert row.driver_error <= 300 * u
 
 
 def test_the_gate_of_the_state_alone_sees_what_is_lost_beside_the_unstable_axis() -> None:
     """Energy and momentum pass at every distance; omega fails from where the loss shows, at 1e-8."""
-    for found in cases("T3"):
-        assert found.gates["T"].verdict == found.gates["H2"].verdict == "pass"
-        near = float(found.case.partition(",")[0].removeprefix("d = ")) <= 1e-8
-        assert found.gates["omega"].verdict == ("fail" if near else "pass")
-        assert found.driver.endswith("state: pass")
+    for row in cases("T3"):
+        assert row.gates["T"].verdict == row.gates["H2"].verdict == "pass"
+        near = float(row.case.partition(",")[0].removeprefix("d = ")) <= 1e-8
+        assert row.gates["omega"].verdict == ("fail" if near else "pass")
+        assert row.driver.endswith("state: pass")
 
 
 @pytest.mark.parametrize("key", ["T2a", "T2b"])
 def test_every_gate_sees_a_state_that_is_too_small(key: str) -> None:
     """State, energy and momentum all fail from 1e-5 on; at size one all pass."""
-    for found in cases(key):
-        expected = "pass" if found.case == "omega of size 1" else "fail"
-        assert {gate.verdict for gate in found.gates.values()} == {expected}
+    for row in cases(key):
+        expected = "pass" if row.case == "omega of size 1" else "fail"
+        assert {gate.verdict for gate in row.gates.values()} == {expected}
 
 
 def test_conserved_quantities_certify_no_state() -> None:
     """A body back at its unstable spin is off by its own size, driver and all; what is kept, passes."""
-    (found,) = cases("T10")
-    assert min(found.error, found.driver_error) >= 0.1
-    assert found.gates["T"].verdict == found.gates["H2"].verdict == "pass"
-    assert found.driver.endswith("state: vacuous")
+    (row,) = cases("T10")
+    assert min(row.error, row.driver_error) >= 0.1
+    assert row.gates["T"].verdict == row.gates["H2"].verdict == "pass"
+    assert row.driver.endswith("state: vacuous")
 
 
 def test_overflow_is_reported_and_in_other_units_does_not_happen() -> None:
@@ -196,25 +196,25 @@ def test_half_of_the_conversions_to_real128_are_not_the_nearest() -> None:
     """Cutting off is wrong for one number in two (within ten standard deviations of 2000 draws)."""
     if missing := Plain().unavailable(rung("f128")):
         pytest.skip(missing)
-    (found,) = cases("T5")
-    wrong = int(re.search(r"for (\d+) of 2000", found.said)[1])
+    (row,) = cases("T5")
+    wrong = int(re.search(r"for (\d+) of 2000", row.said)[1])
     assert abs(wrong - 1000) <= 10 * (2000 / 4) ** 0.5
     u = float(rung("f128").unit_roundoff)
-    assert u < found.error <= 2 * u
-    assert found.driver_error <= u
+    assert u < row.error <= 2 * u
+    assert row.driver_error <= u
 
 
 @needs_sympy
 def test_sympy_number_of_fifty_digits_arrives_as_a_double() -> None:
     """The error is that of 0.1 as a double, and with mpmath's precision raised it is gone."""
-    (found,) = cases("T6")
-    assert found.error == pytest.approx(2**-54, rel=0.1)
+    (row,) = cases("T6")
+    assert row.error == pytest.approx(2**-54, rel=0.1)
 
 
 def test_equal_numbers_of_two_libraries_are_unequal() -> None:
     """A real of 1/2 is not equal to mpmath's 1/2, as it is to a double of 1/2."""
-    (found,) = cases("S2")
-    assert found.said == "equal: False"
+    (row,) = cases("S2")
+    assert row.said == "equal: False"
     assert equal(hy.real("0.5", 237), 0.5)
 
 
@@ -262,7 +262,7 @@ def test_one_lane_stops_the_others_which_report_success() -> None:
 
 
 @pytest.mark.parametrize(
-    ("key", "said"),
+    ("key", "outcome"),
     [
         ("S4", "err_nf_state; time nan, state nan"),
         ("S5", "err_nf_state at t = 0.99999"),
@@ -274,32 +274,32 @@ def test_one_lane_stops_the_others_which_report_success() -> None:
         ("S11", "KeyboardInterrupt at t = 200000"),
     ],
 )
-def test_outcome_is_reported_as_published(key: str, said: str) -> None:
+def test_outcome_is_reported_as_published(key: str, outcome: str) -> None:
     """heyoka reports today what the page quotes."""
-    (found,) = cases(key)
-    assert found.said.startswith(said)
+    (row,) = cases(key)
+    assert row.said.startswith(outcome)
 
 
 def test_forgotten_parameters_stop_the_body() -> None:
-    """Without its coefficients a body keeps its omega, and at time_limit."""
-    (found,) = cases("S13")
-    assert found.said == "time_limit"
-    assert found.error >= 0.1
-    assert found.driver_error <= 100 * U
+    """A body without its coefficients keeps its omega, and ends at time_limit."""
+    (row,) = cases("S13")
+    assert row.said == "time_limit"
+    assert row.error >= 0.1
+    assert row.driver_error <= 100 * U
 
 
 def test_tolerance_of_zero_is_refused_here() -> None:
     """The driver refuses the tolerance that heyoka takes for its default."""
-    (found,) = cases("S10")
-    assert found.driver.startswith("refused: expected a positive")
+    (row,) = cases("S10")
+    assert row.driver.startswith("refused: expected a positive")
 
 
 def test_stored_code_is_found_without_naming_a_processor() -> None:
     """The key has versions alone, and is read without leaving the cache elsewhere than before."""
     heyoka_cache_off()
     before = hy.llvm_state.get_diskcache_path(), hy.llvm_state.get_diskcache_enabled()
-    (found,) = cases("S12")
-    assert re.fullmatch(r"HEYOKA_VERSION=[\d.]+;LLVM_VERSION=[\d.]+", found.said)
+    (row,) = cases("S12")
+    assert re.fullmatch(r"HEYOKA_VERSION=[\d.]+;LLVM_VERSION=[\d.]+", row.said)
     after = hy.llvm_state.get_diskcache_path(), hy.llvm_state.get_diskcache_enabled()
     assert after == before
 
@@ -337,11 +337,11 @@ def test_driver_hears_signals_on_the_way(monkeypatch: pytest.MonkeyPatch) -> Non
 @pytest.mark.parametrize("trap", [pytest.param(trap, id=trap.key) for trap in TRAPS])
 def test_silent_is_what_reports_no_failure(trap: Trap) -> None:
     """A trap is called silent if some case is not told by an outcome that is no success."""
-    told = ("err_nf_state", "step_limit", "cb_stop")
+    reported = ("err_nf_state", "step_limit", "cb_stop")
     behind = published.worst_of(stored(trap.key))
     if behind is None:
         pytest.skip("what it needs is not installed here")
-    assert trap.silent == (not behind.said.startswith(told))
+    assert trap.silent == (not behind.said.startswith(reported))
 
 
 @lru_cache
@@ -360,8 +360,8 @@ def as_measured(key: str) -> Callable[[], list[TrapCase]]:
 
 
 def stored(key: str) -> TrapRow:
-    (found,) = (trap for trap in fresh().traps if trap.key == key)
-    return found
+    (matching,) = (trap for trap in fresh().traps if trap.key == key)
+    return matching
 
 
 def test_shown_code_is_python_without_hints() -> None:
@@ -401,12 +401,12 @@ def judged(traps: Sequence[TrapRow]) -> dict[tuple[str, str], object]:
 
 def test_page_says_that_conservation_does_not_certify_and_that_the_state_does() -> None:
     """The sentence is there, with the worst case and its error, and no answer that no gate sees."""
-    told = " ".join(published.proven(fresh().traps))
-    assert "pass every gate on conserved quantities and be wrong" in told
-    assert "The worst is d = 1e-40, f64 (T3)" in told
-    (seen,) = re.findall(r"The gate of the state sees ([^.]*), from", told)
-    assert {"T2a", "T2b", "T3"} <= set(seen.split(", "))
-    assert "No gate of this suite sees" not in told
+    text = " ".join(published.proven(fresh().traps))
+    assert "pass every gate on conserved quantities and be wrong" in text
+    assert "The worst is d = 1e-40, f64 (T3)" in text
+    (names,) = re.findall(r"The gate of the state sees ([^.]*), from", text)
+    assert {"T2a", "T2b", "T3"} <= set(names.split(", "))
+    assert "No gate of this suite sees" not in text
 
 
 def test_nothing_is_said_to_be_proven_by_rows_that_do_not() -> None:
@@ -415,9 +415,9 @@ def test_nothing_is_said_to_be_proven_by_rows_that_do_not() -> None:
         replace(trap, cases=tuple(replace(c, error=c.driver_error) for c in trap.cases))
         for trap in fresh().traps
     ]
-    told = " ".join(published.proven(equal))
-    assert "be wrong" not in told
-    assert "No gate of this suite sees" not in told
+    text = " ".join(published.proven(equal))
+    assert "be wrong" not in text
+    assert "No gate of this suite sees" not in text
 
 
 def test_rows_that_are_no_rows_are_refused(tmp_path: Path) -> None:
@@ -450,10 +450,10 @@ def test_sheet_has_a_row_for_every_case(tmp_path: Path) -> None:
     rows = published.load(measured_report(tmp_path)).traps
     headings, *lines = csv.reader(published.sheet(rows).splitlines())
     assert len(set(headings)) == len(headings)
-    found = [dict(zip(headings, line, strict=True)) for line in lines]
+    sheet = [dict(zip(headings, line, strict=True)) for line in lines]
     cases = [(row, case) for row in rows for case in row.cases]
-    assert len(found) == len(cases)
-    for cells, (row, case) in zip(found, cases, strict=True):
+    assert len(sheet) == len(cases)
+    for cells, (row, case) in zip(sheet, cases, strict=True):
         assert (cells["trap"], cells["reports"]) == (row.key, " ".join(case.said.split()))
         assert number(cells["error"]) == case.error
         for name, gate in case.gates.items():
@@ -463,9 +463,9 @@ def test_sheet_has_a_row_for_every_case(tmp_path: Path) -> None:
 
 def test_remade_files_are_page_and_sheet(tmp_path: Path) -> None:
     """The end of the page names the command and the versions that made it."""
-    found = published.pages(measured_report(tmp_path))
-    assert set(found) == {published.PAGE, published.SHEET}
-    end = found[published.PAGE].rpartition("\n## ")[2]
+    pages = published.pages(measured_report(tmp_path))
+    assert set(pages) == {published.PAGE, published.SHEET}
+    end = pages[published.PAGE].rpartition("\n## ")[2]
     assert "heyoka 7." in end
     assert "`make traps`" in end
 

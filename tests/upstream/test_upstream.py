@@ -18,16 +18,16 @@ def test_every_script_belongs_to_a_trap_and_to_a_paragraph() -> None:
     """The scripts that the page names, those that are there and those of the README are the same."""
     named = {trap.script for trap in TRAPS if trap.script}
     text = (FOLDER / "README.md").read_text(encoding="utf-8")
-    told = dict(re.findall(r"^## \[(\w+)\.py\]\(\w+\.py\) \((\w+)\)$", text, re.MULTILINE))
-    assert named == {script.stem for script in SCRIPTS} == set(told)
-    assert told == {trap.script: trap.key for trap in TRAPS if trap.script}
+    keys = dict(re.findall(r"^## \[(\w+)\.py\]\(\w+\.py\) \((\w+)\)$", text, re.MULTILINE))
+    assert named == {script.stem for script in SCRIPTS} == set(keys)
+    assert keys == {trap.script: trap.key for trap in TRAPS if trap.script}
 
 
 @pytest.mark.parametrize("script", [pytest.param(path, id=path.stem) for path in SCRIPTS])
 def test_script_shows_its_behaviour_with_the_heyoka_that_is_installed(
     script: Path, tmp_path: Path
 ) -> None:
-    """It names one heyoka in its header, prints what is expected and what is got, and exits with 1."""
+    """A script names one heyoka in its header, prints expected and actual results, and exits with 1."""
     if script.stem == "sympy_float" and find_spec("sympy") is None:
         pytest.skip("sympy asks for mpmath below 1.4 and is not installed")
     assert re.search(r'^# dependencies = \["heyoka==[\d.]+"', script.read_text(), re.MULTILINE)

@@ -1,4 +1,4 @@
-"""The entry list: what a row asks for, and that every row of the shipped list can be run."""
+"""The entry list: the runs of a row, and a shipped list whose rows can all be run."""
 
 from __future__ import annotations
 
@@ -17,7 +17,10 @@ SCENES = (
     BoardScene("engines/ten-minutes", least=0.01),
 )
 ROW = Entry(
-    *("it", "It", "outside:it", ("0.02", "0.005")),
+    "it",
+    "It",
+    "outside:it",
+    ("0.02", "0.005"),
     versions=("1.0", "2.0"),
     settings={"integrator": ("euler", "rk4"), "flags": ("2",)},
     shipped={"defaults": "shipped"},
@@ -25,7 +28,7 @@ ROW = Entry(
 
 
 def test_the_newest_version_is_run_on_every_scene() -> None:
-    """Older ones are run where the scene says `sweep`, and no step is below the least of a scene."""
+    """Older versions are run on scenes with `sweep`, and no step is below the least one of its scene."""
     runs = [run for run in ROW.runs(SCENES) if not run.shipped]
     assert {(run.version, run.scene, run.value) for run in runs} == {
         *(("2.0", "engines/oblique", value) for value in ("0.02", "0.005")),
@@ -35,7 +38,7 @@ def test_the_newest_version_is_run_on_every_scene() -> None:
 
 
 def test_a_run_has_the_whole_name_of_its_solver() -> None:
-    """Version, words and step are in it, and a number among the words keeps its key in tables."""
+    """The name has version, words and step, and a number among the words keeps its key in tables."""
     first = next(ROW.runs(SCENES))
     assert first.solver == "outside:it?version=2.0&integrator=euler&flags=2&step=0.02"
     assert first.variant == "euler, flags=2"
@@ -43,7 +46,7 @@ def test_a_run_has_the_whole_name_of_its_solver() -> None:
 
 
 def test_as_shipped_is_run_where_the_scene_asks_for_it() -> None:
-    """With the newest version and one step alone, its settings beside those of the row."""
+    """The settings as shipped are added to those of the row, in the newest version at one step."""
     runs = [run for run in ROW.runs(SCENES) if run.shipped]
     assert {(run.version, run.scene) for run in runs} == {("2.0", "engines/oblique")}
     assert len(runs) == 2
@@ -51,7 +54,7 @@ def test_as_shipped_is_run_where_the_scene_asks_for_it() -> None:
 
 
 def test_a_solver_without_steps_is_run_once() -> None:
-    """Its name has no setting then."""
+    """The name of a solver without steps has no setting."""
     (run,) = Entry("it", "It", "outside:it").runs(SCENES[:1])
     assert run.solver == "outside:it"
 
@@ -65,7 +68,7 @@ def test_every_run_of_the_list_is_a_solver() -> None:
 
 
 def test_the_scenes_of_the_list_are_those_of_the_folder() -> None:
-    """Each has 21 samples, all of them at whole numbers of every step that is run there."""
+    """Each scene has 21 samples, all at whole numbers of every step that is run on it."""
     entries = entry_list()
     assert sorted(scene.name for scene in entries.scene) == sorted(names(ENGINES))
     for run in entries.runs():
@@ -76,7 +79,7 @@ def test_the_scenes_of_the_list_are_those_of_the_folder() -> None:
 
 
 def test_the_list_asks_for_what_a_comparison_needs() -> None:
-    """Six versions of MuJoCo, four of Rapier, four steps of each engine, and three plain solvers."""
+    """The list has six versions of MuJoCo, four of Rapier, four steps an engine, three plain solvers."""
     entries = entry_list()
     rows = {row.name: row for row in reversed(entries.entry)}
     assert len(rows["mujoco"].versions) >= 6
@@ -87,7 +90,7 @@ def test_the_list_asks_for_what_a_comparison_needs() -> None:
 
 
 def test_a_fault_of_the_list_is_named(tmp_path: Path) -> None:
-    """With its place and the file."""
+    """The error names the place and the file."""
     file = tmp_path / "list.toml"
     file.write_text('[[scene]]\nname = "a"\n[[entry]]\nname = 3\n', encoding="utf-8")
     with pytest.raises(ValueError, match=r"expected a text, got 3 @ entry\[0\]\.name @ list\.toml"):

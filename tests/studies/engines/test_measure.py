@@ -36,34 +36,34 @@ def ran(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     def run_all(
         work: Callable[[list[Asked]], list[Answer]], asked: list[list[Asked]], **options: Any
     ) -> list[list[Answer]]:
-        found = []
+        results = []
         for some in asked:
             made.extend(one.key for one in some)
-            found.append([known().get(one.key) or work([one])[0] for one in some])
-            options["ended"](some, found[-1])
-        return found
+            results.append([known().get(one.key) or work([one])[0] for one in some])
+            options["ended"](some, results[-1])
+        return results
 
     monkeypatch.setattr(measuring, "run_all", run_all)
     return made
 
 
 def test_what_is_stored_is_not_run_again(ran: list[str], tmp_path: Path) -> None:
-    """With every answer known nothing is run, and the answers stand in the order of the list."""
-    found = measure(ENTRIES, known(), Unfinished(tmp_path), lambda words: None)
+    """Nothing is run if every answer is known, and the answers are in the order of the list."""
+    measured = measure(ENTRIES, known(), Unfinished(tmp_path), lambda words: None)
     assert ran == []
-    assert [answer.row.key for answer in found] == [run.key for run in ENTRIES.runs()]
+    assert [answer.row.key for answer in measured] == [run.key for run in ENTRIES.runs()]
 
 
 def test_a_measurement_goes_on_after_a_kill(ran: list[str], tmp_path: Path) -> None:
-    """What had ended is in the store and is not run again; a damaged file is."""
+    """Finished runs are in the store and are not repeated; those of damaged files are."""
     store = Unfinished(tmp_path / "unfinished")
     for answer in answers()[:4]:
         store.keep(answer)
     (damaged, *_) = sorted(store.folder.glob("*.json"))
     damaged.write_text("{", encoding="utf-8")
-    found = measure(ENTRIES, {}, store, lambda words: None)
+    measured = measure(ENTRIES, {}, store, lambda words: None)
     assert len(ran) == len(ENTRIES.runs()) - 3
-    assert len(store.answers()) == len(found) == len(ENTRIES.runs())
+    assert len(store.answers()) == len(measured) == len(ENTRIES.runs())
     store.forget()
     assert store.answers() == []
 
@@ -71,9 +71,9 @@ def test_a_measurement_goes_on_after_a_kill(ran: list[str], tmp_path: Path) -> N
 def test_one_engine_is_measured_alone(ran: list[str], tmp_path: Path) -> None:
     """The rows of the others stay as they are."""
     others = {key: answer for key, answer in known().items() if answer.row.engine != "spinner"}
-    found = measure(ENTRIES, others, Unfinished(tmp_path), lambda words: None, only=["spinner"])
+    measured = measure(ENTRIES, others, Unfinished(tmp_path), lambda words: None, only=["spinner"])
     assert {key.partition("?")[0] for key in ran} == {SPINNER.solver}
-    assert len(found) == len(known())
+    assert len(measured) == len(known())
 
 
 @pytest.mark.parametrize(
@@ -88,7 +88,7 @@ def test_one_engine_is_measured_alone(ran: list[str], tmp_path: Path) -> None:
 def test_another_adapter_is_another_run(
     ran: list[str], tmp_path: Path, change: dict[str, Any]
 ) -> None:
-    """So is a run that failed, or had no environment: the machine may be at fault."""
+    """Runs of another adapter, failed runs and runs without an environment are run again."""
     key, answer = next(iter(known().items()))
     changed = {**known(), key: replace(answer, row=replace(answer.row, **change))}
     measure(ENTRIES, changed, Unfinished(tmp_path), lambda words: None)
@@ -98,7 +98,7 @@ def test_another_adapter_is_another_run(
 def test_an_engine_that_cannot_be_installed_is_no_failure(
     ran: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Its rows are unavailable with the reason, the environment is asked for once, the rest is run."""
+    """Its rows are unavailable with the reason, its environment is tried once, and the others are run."""
     prepared: list[str] = []
 
     def prepare(name: str, tell: object) -> None:
@@ -108,8 +108,8 @@ def test_an_engine_that_cannot_be_installed_is_no_failure(
     monkeypatch.setattr(measuring, "prepare", prepare)
     lost = replace(SPINNER, name="lost", solver="outside:mujoco", versions=("1.0",))
     entries = EntryList(ENTRIES.scene, (*ENTRIES.entry, lost))
-    found = measure(entries, known(), Unfinished(tmp_path), lambda words: None)
-    rows = [answer.row for answer in found if answer.row.engine == "lost"]
+    measured = measure(entries, known(), Unfinished(tmp_path), lambda words: None)
+    rows = [answer.row for answer in measured if answer.row.engine == "lost"]
     assert [row.standing for row in rows] == [Standing.UNAVAILABLE] * len(SPINNER.values)
     assert {row.detail for row in rows} == {"no such package"}
     assert prepared == ["outside:mujoco?version=1.0"]
@@ -117,19 +117,19 @@ def test_an_engine_that_cannot_be_installed_is_no_failure(
 
 
 def test_a_run_that_ends_early_is_a_row() -> None:
-    """It failed, with how it ended; there is no trajectory and no error."""
+    """The row has failed, with the exit status; it has no trajectory and no error."""
     bad = replace(SPINNER, solver="process:false", values=())
-    (found,) = answered([next(bad.runs(ENTRIES.scene))])
-    assert found.row.standing is Standing.FAILED
-    assert "exit status" in found.row.detail
-    assert (found.states, found.row.errors) == (None, {})
+    (answer,) = answered([next(bad.runs(ENTRIES.scene))])
+    assert answer.row.standing is Standing.FAILED
+    assert "exit status" in answer.row.detail
+    assert (answer.states, answer.row.errors) == (None, {})
 
 
 # What is stored.
 
 
 def test_an_answer_reads_back_to_the_last_bit() -> None:
-    """Its states are of the kind of float that they were."""
+    """The states keep their type of float."""
     for answer in answers():
         assert answer.states is not None
         for states in (answer.states, answer.states.astype(np.float32)):
@@ -141,7 +141,7 @@ def test_an_answer_reads_back_to_the_last_bit() -> None:
 
 
 def test_stored_trajectories_are_judged_to_the_same_errors(tmp_path: Path) -> None:
-    """Without an engine the errors, floors and causes are those of the measurement."""
+    """The errors, floors and causes are those of the measurement, although no engine runs."""
     document, file = board()
     stored.write(tmp_path, document, file)
     read = stored.find(tmp_path)
@@ -151,7 +151,7 @@ def test_stored_trajectories_are_judged_to_the_same_errors(tmp_path: Path) -> No
 
 
 def test_a_changed_trajectory_has_other_errors(tmp_path: Path) -> None:
-    """The errors are those of the states in the file, and of nothing else."""
+    """The errors follow from the states in the file alone."""
     answer = answers()[0]
     assert answer.states is not None
     states = answer.states.copy()
@@ -174,7 +174,7 @@ def test_the_file_of_trajectories_is_the_same_every_time() -> None:
 
 
 def test_a_lost_trajectory_is_named(tmp_path: Path) -> None:
-    """A row whose trajectory is not in the file, and a file that is none, are told."""
+    """The error names a row without a trajectory in the file, and a file of another kind."""
     document, file = board()
     stored.write(tmp_path, document, file)
     row = replace(document.study.rows[0], place=99)
@@ -186,8 +186,8 @@ def test_a_lost_trajectory_is_named(tmp_path: Path) -> None:
 
 
 def test_all_are_judged_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The pool is given every answer, and says each as it ends."""
-    said: list[str] = []
+    """Every answer is judged in the pool, and reported as it ends."""
+    messages: list[str] = []
 
     def run_all(work: Any, asked: list[Answer], **options: Any) -> list[Answer]:
         for one in asked:
@@ -195,5 +195,5 @@ def test_all_are_judged_again(monkeypatch: pytest.MonkeyPatch) -> None:
         return list(asked)
 
     monkeypatch.setattr(measuring, "run_all", run_all)
-    assert judged_again(answers(), said.append) == list(answers())
-    assert said[-1].startswith(f"{len(answers())}/{len(answers())} ")
+    assert judged_again(answers(), messages.append) == list(answers())
+    assert messages[-1].startswith(f"{len(answers())}/{len(answers())} ")

@@ -1,4 +1,4 @@
-"""The page of the board: its advice is computed, and what was measured is on it."""
+"""The page of the board: computed advice, and all measurements."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def with_errors(entry: Entry, *errors: float) -> list[EngineRow]:
 
 
 def test_the_best_setting_is_advised() -> None:
-    """That engine and step whose error on the scenes is smallest; a plain solver is no engine."""
+    """The advised engine and step have the smallest error on the scenes; a plain solver is no engine."""
     rows = with_errors(SPINNER, 1e-2, 1e-6, 1e-4), with_errors(WOBBLER, 1e-3, 1e-5, 1e-7)
     first, *_ = advised(*rows[0], *rows[1], *with_errors(PLAIN, 1e-12))
     assert first.startswith(
@@ -67,43 +67,48 @@ def test_the_cheapest_of_the_sufficient_is_advised() -> None:
     """The time decides among those whose error is small enough."""
     rows = [*with_errors(SPINNER, 1e-2, 1e-4, 1e-6), *with_errors(WOBBLER, 1e-4, 1e-5, 1e-9)]
     seconds = dict(zip((row.key for row in rows), (1e-3, 0.5, 2.0, 0.2, 0.6, 5.0), strict=True))
-    said = advised(*rows, **seconds)
-    assert "**Wobbler** with splitting and a step of 0.1 is the cheapest: 1.00e4 micro" in said[1]
+    sentences = advised(*rows, **seconds)
+    assert (
+        "**Wobbler** with splitting and a step of 0.1 is the cheapest: 1.00e4 micro" in sentences[1]
+    )
 
 
 def test_a_method_that_loses_the_motion_is_warned_of() -> None:
-    """With its least error, what it conserves, and the method of the same engine that follows it."""
+    """The warning has the least error of the method and the better method of the same engine."""
     other = replace(WOBBLER, name="spinner", title="Spinner")
     entries = replace(ENTRIES, entry=(SPINNER, other))
     rows = [*with_errors(SPINNER, 1e-2, 1e-4, 1e-6), *with_errors(other, 0.9, 0.8, 0.7)]
-    said = advised(*rows, entries=entries)
-    assert ("Never **Spinner** with splitting (least error 0.700; lie-rk4 has 1.00e-6).") in said
+    sentences = advised(*rows, entries=entries)
+    assert (
+        "Never **Spinner** with splitting (least error 0.700; lie-rk4 has 1.00e-6)."
+    ) in sentences
 
 
 def test_an_engine_that_follows_no_motion_is_warned_of() -> None:
-    """Where none of its settings does."""
-    said = advised(*with_errors(SPINNER, 0.9, 0.8, 0.7))
-    assert said[-1].startswith("Not for free rotation, with the least error at any step")
-    assert said[-1].endswith(": **Spinner** (0.700, drift of the energy 1.00e-7).")
+    """The warning names engines of which no setting follows the motion."""
+    sentences = advised(*with_errors(SPINNER, 0.9, 0.8, 0.7))
+    assert sentences[-1].startswith("Not for free rotation, with the least error at any step")
+    assert sentences[-1].endswith(": **Spinner** (0.700, drift of the energy 1.00e-7).")
 
 
 def test_what_is_shipped_is_warned_of() -> None:
-    """Where it is far worse than what the board sets, at the same step; the list says what it lacks."""
+    """A warning is given if the shipped settings are far worse than the board's at the same step."""
     row = replace(SPINNER, shipped={"defaults": "shipped"}, warning="its damping switched off")
     entries = replace(ENTRIES, entry=(row,))
     usual = with_errors(SPINNER, 1e-3, 1e-4, 1e-5)
     bare = [replace(one, shipped=True, variant=f"{one.variant}, shipped") for one in usual]
-    assert not any("without" in said for said in advised(*usual, *bare, entries=entries))
+    assert not any("without" in sentences for sentences in advised(*usual, *bare, entries=entries))
     bare[1] = replace(bare[1], errors={"omega": 0.2, "attitude": 0.05})
-    said = advised(*usual, *bare, entries=entries)
-    assert ("Never **Spinner** without its damping switched off (0.200, not 1.00e-4).") in said
+    sentences = advised(*usual, *bare, entries=entries)
+    assert ("Never **Spinner** without its damping switched off (0.200, not 1.00e-4).") in sentences
 
 
 def test_steps_that_make_it_worse_are_warned_of() -> None:
-    """Below the best step errors grow again."""
-    said = advised(*with_errors(SPINNER, 1e-3, 1e-5, 1e-4))
+    """The warning names the step below which errors grow again."""
+    sentences = advised(*with_errors(SPINNER, 1e-3, 1e-5, 1e-4))
     assert (
-        "No smaller step than 0.05 in **Spinner** (1.00e-5 becomes 1.00e-4 with 0.025)." in said[-1]
+        "No smaller step than 0.05 in **Spinner** (1.00e-5 becomes 1.00e-4 with 0.025)."
+        in sentences[-1]
     )
 
 
@@ -118,7 +123,7 @@ def test_without_an_engine_there_is_no_advice() -> None:
 
 
 def test_the_page_has_what_was_measured(tmp_path: Path) -> None:
-    """Every engine with its best step, its orders and errors; a page for each; the sheet has all rows."""
+    """The page has every engine with its best step, orders and errors, and the sheet has all rows."""
     document, file = board()
     stored.write(tmp_path, document, file)
     made = {path.name for path in STUDY.publish(tmp_path).written}
@@ -148,7 +153,7 @@ def test_an_error_that_changes_is_changed_on_the_page(tmp_path: Path) -> None:
 
 
 def test_an_engine_that_the_list_lacks_is_named(tmp_path: Path) -> None:
-    """Its rows make no page and no picture: one sentence says which engine it is, and how they go."""
+    """The error names the engine, and says how to remove its rows."""
     other = replace(SPINNER, name="of-yesterday")
     stale = board_with(*made_up(SPINNER, {"omega": 1e-3}), *made_up(other, {"omega": 1e-3}))
     for make in (lambda: page.page(stale, tmp_path), lambda: page.pictures(stale)):
@@ -157,7 +162,7 @@ def test_an_engine_that_the_list_lacks_is_named(tmp_path: Path) -> None:
 
 
 def test_what_has_no_number_is_told_with_its_reason(tmp_path: Path) -> None:
-    """Unavailable and failed are no errors of zero: they stand in a list of their own, on both pages."""
+    """Both pages list unavailable and failed runs with their reasons, and without numbers."""
     lost = made_up(SPINNER, {}, standing=Standing.UNAVAILABLE, detail="no such package", floors={})
     document = board_with(*lost, *with_errors(WOBBLER, 1e-3, 1e-4, 1e-5))
     text = page.page(document, tmp_path)
@@ -168,7 +173,7 @@ def test_what_has_no_number_is_told_with_its_reason(tmp_path: Path) -> None:
 
 
 def test_the_page_of_an_engine_has_its_commands() -> None:
-    """One for each setting, with all steps and scenes that it was run with."""
+    """The page has a command for each setting, with all its steps and scenes."""
     own = pages(board()[0], ENTRIES)["tables/engines-spinner.md"]
     assert "# step 0.1 0.05 0.025; engines/oblique\n" in own
     assert f'taylor-verify run {SCENE} --solver "geometric:lie-rk4?step=0.1"\n' in own
@@ -194,7 +199,7 @@ def test_a_table_as_shipped_stands_beside_what_is_set(tmp_path: Path) -> None:
 
 
 def test_digits_are_those_of_the_largest_error() -> None:
-    """None is right of an error as large as the motion, nor of none that is a number."""
+    """An error as large as the motion, and NaN, have no right digits."""
     assert digits(1e-3) == pytest.approx(3)
     assert digits(2.0) == digits(float("inf")) == 0
 
@@ -203,7 +208,7 @@ def test_digits_are_those_of_the_largest_error() -> None:
 
 
 def test_a_picture_has_a_line_for_each_engine() -> None:
-    """Its points are the rows of the best setting; plain solvers have no step."""
+    """The points of a line are the rows of the best setting; plain solvers have no step."""
     document = board()[0]
     (panel,) = work.panels(document, ENTRIES, SCENE, document.pace, 1e6)
     assert [line.name for line in panel.lines] == ["Spinner", "Wobbler", "SciPy"]
@@ -216,7 +221,7 @@ def test_a_picture_has_a_line_for_each_engine() -> None:
 
 
 def test_engines_in_float32_have_a_panel_of_their_own() -> None:
-    """The plain solvers stand in both."""
+    """The plain solvers are in both panels."""
     single = [replace(row, rung="f32") for row in with_errors(SPINNER, 1e-3, 1e-4, 1e-5)]
     document = board_with(
         *single, *with_errors(WOBBLER, 0.05, 0.01, 1e-3), *with_errors(PLAIN, 1e-9)
@@ -230,7 +235,7 @@ def test_engines_in_float32_have_a_panel_of_their_own() -> None:
 
 
 def test_energy_stands_beside_the_motion() -> None:
-    """Each engine once, at its best; the text names the one that keeps the energy and loses the motion."""
+    """The picture has each engine at its best; the text names one with good energy and a wrong motion."""
     rows = [
         *with_errors(SPINNER, 1e-3, 1e-5, 1e-4),
         *with_errors(WOBBLER, 1.5, 1.4, 1.39),

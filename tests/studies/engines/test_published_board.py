@@ -1,4 +1,4 @@
-"""The published board: its rows are what the judge says of its trajectories today, without an engine."""
+"""The published board: its rows agree with today's judgement of its trajectories."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ DIGITS = 2e-3
 
 @cache
 def board() -> Board:
-    found = stored.find(REPORTS)
-    assert found is not None
-    return found
+    published = stored.find(REPORTS)
+    assert published is not None
+    return published
 
 
 def rows() -> list[EngineRow]:
@@ -34,15 +34,15 @@ def is_still_so(row: EngineRow) -> bool:
     """True if the stored trajectory of a row has its errors, its cause and its start."""
     states = trajectories.states_of(trajectories.load(REPORTS), row)
     assert states is not None
-    found = errors_of(judged(row.scene, row.rung, row.solver, states, row.steps))
-    assert found.errors == pytest.approx(row.errors, rel=DIGITS)
-    assert found.floors == pytest.approx(row.floors, rel=0.1)
-    assert found.start == pytest.approx(row.start, rel=DIGITS)
-    return found.cause == row.cause
+    errors = errors_of(judged(row.scene, row.rung, row.solver, states, row.steps))
+    assert errors.errors == pytest.approx(row.errors, rel=DIGITS)
+    assert errors.floors == pytest.approx(row.floors, rel=0.1)
+    assert errors.start == pytest.approx(row.start, rel=DIGITS)
+    return errors.cause == row.cause
 
 
 def test_rows_of_some_engines_are_judged_again() -> None:
-    """The first of every fourth engine on the shortest scene has the errors that are published."""
+    """The first row of every fourth engine on the shortest scene has the published errors."""
     first = {row.engine: row for row in reversed(rows()) if row.scene == "engines/oblique"}
     assert len(first) >= 3
     assert all(is_still_so(row) for row in list(first.values())[::4])
@@ -50,12 +50,12 @@ def test_rows_of_some_engines_are_judged_again() -> None:
 
 @pytest.mark.slow
 def test_every_row_is_judged_again() -> None:
-    """No number of the board is older than the judge."""
+    """Every number of the board is that of today's judge."""
     assert [row.key for row in rows() if not is_still_so(row)] == []
 
 
 def test_every_trajectory_has_its_row() -> None:
-    """As many blocks as rows, each of the samples and columns of its scene; two megabytes at most."""
+    """The file has a block for each row, with the samples and columns of its scene, in two megabytes."""
     arrays = trajectories.load(REPORTS)
     assert sum(map(len, arrays.values())) == len(rows())
     assert len({(row.array, row.place) for row in rows()}) == len(rows())
@@ -67,7 +67,7 @@ def test_every_trajectory_has_its_row() -> None:
 
 
 def test_the_first_row_of_every_trajectory_is_the_start() -> None:
-    """To the rounding of the arithmetic: what comes after is the engine's, and no convention of ours.
+    """The first row is the start to the rounding of the arithmetic, so that conventions are right.
 
     Orekit takes no step: it evaluates the first row like any other, and a thousandth beside the separatrix
     the motion magnifies its roundings a thousandfold.
@@ -84,5 +84,5 @@ def test_the_first_row_of_every_trajectory_is_the_start() -> None:
 
 
 def test_no_engine_is_lost() -> None:
-    """A run that has no trajectory says why."""
+    """A run without a trajectory has a reason."""
     assert [row.key for row in board().study.rows if not row.is_judged and not row.detail] == []

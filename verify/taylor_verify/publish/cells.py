@@ -1,4 +1,4 @@
-"""Cells of tables: a number in three digits, or a word for why there is none; whole rows of verdicts."""
+"""Cells of tables: a number in three digits or a word for a missing one; whole rows of verdicts."""
 
 from __future__ import annotations
 
@@ -30,40 +30,40 @@ def figure(value: float | None) -> str:
 
 
 def instant(value: float | None) -> str:
-    """Return a time of the scene, which has its own number of digits."""
+    """Return a time of the scene in six digits."""
     return NOTHING if value is None else f"{value:.6g}"
 
 
 def in_roundoffs(verdict: Verdict, value: float | None) -> float | None:
-    """Return an error in units of the rung's u; None where u is unknown or too small for a double."""
+    """Return an error in units of the rung's u; None if u is unknown or too small for a double."""
     return value / verdict.roundoff if value is not None and verdict.roundoff else None
 
 
 def word(verdict: Verdict) -> str:
-    """Return what stands for an error that is no number: the verdict, or how a failed run ended."""
+    """Return the word for an error that is no number: the verdict, or the outcome of a failed run."""
     unfinished = verdict.verdict is Status.FAIL and not verdict.is_compared
     return verdict.outcome if unfinished else verdict.verdict.value
 
 
 def error(verdict: Verdict) -> str:
-    """Return the largest error, or a word where it is no number."""
+    """Return the largest error, or a word if it is no number."""
     return word(verdict) if verdict.max is None else figure(verdict.max)
 
 
 def ratio(verdict: Verdict) -> str:
-    """Return error over attainable: infinite where there is an error and nothing is attainable."""
+    """Return error over attainable; infinite for an error above an attainable one of zero."""
     if verdict.ratio is None and verdict.is_compared:
         return word(verdict) if verdict.max is None else INFINITE
     return figure(verdict.ratio)
 
 
 def judged(verdict: Status) -> str:
-    """Return the verdict's word; one that is no pass stands out."""
+    """Return the word of the verdict, in bold unless it is a pass."""
     return verdict.value if verdict is Status.PASS else bold(verdict.value)
 
 
 def peak(verdict: Verdict) -> str:
-    """Return maximum, mean and where, in units of u."""
+    """Return maximum, mean and time of the maximum, in units of u."""
     largest, mean = (in_roundoffs(verdict, value) for value in (verdict.max, verdict.mean))
     if largest is None:
         return word(verdict)
@@ -73,12 +73,12 @@ def peak(verdict: Verdict) -> str:
 
 
 def reason(verdict: Verdict) -> str:
-    """Return the reason of a verdict in one line; an error that is no number is said first."""
+    """Return the reason of a verdict in one line, which begins with an error that is no number."""
     return "; ".join(filter(None, (_not_finite(verdict), verdict.because)))
 
 
 def conclusion(verdict: Verdict) -> str:
-    """Return the remarks of a reason alone; an error that is no number is said first."""
+    """Return only the remarks of a reason, after an error that is no number."""
     return "; ".join(filter(None, (_not_finite(verdict), verdict.reason.conclusion)))
 
 
@@ -87,7 +87,7 @@ def _not_finite(verdict: Verdict) -> str:
     return "" if is_number else "the error is not a finite number"
 
 
-# A column of a table of verdicts, by its heading.
+# Columns of a table of verdicts by their headings.
 CELLS: Final[Mapping[str, Callable[[Verdict], str]]] = {
     "scene": lambda verdict: code(verdict.scene),
     "rung": lambda verdict: verdict.rung,
@@ -112,7 +112,7 @@ def verdict_table(headings: Sequence[str], verdicts: Iterable[Verdict]) -> str:
 
 
 def over_attainable(verdict: Verdict) -> float:
-    """Return the ratio; one that is no finite number is above every number."""
+    """Return the ratio, or infinity for one that is no finite number."""
     return inf if verdict.ratio is None else verdict.ratio
 
 
@@ -124,12 +124,16 @@ def worst(verdicts: Iterable[Verdict]) -> Verdict | None:
 
 def worst_ratio(verdicts: Iterable[Verdict]) -> str:
     """Return the largest error over attainable with the name of its quantity."""
-    found = worst(verdicts)
-    return f"{ratio(found)} ({code(found.quantity)})" if found else NOTHING
+    gravest_verdict = worst(verdicts)
+    return (
+        f"{ratio(gravest_verdict)} ({code(gravest_verdict.quantity)})"
+        if gravest_verdict
+        else NOTHING
+    )
 
 
 def main_error(run: Run | None) -> str:
-    """Return the error of omega or the impulse, and the verdict of the run if that is no pass."""
+    """Return the error of omega or the impulse, with the verdict of the run unless it is a pass."""
     if run is None:
         return NOTHING
     status = gravest(run.verdicts)

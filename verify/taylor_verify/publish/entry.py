@@ -1,4 +1,4 @@
-"""An entry of an index: a page of a report folder, with its sheet where there is one."""
+"""Entry of an index: a page of a report folder, and its sheet if there is one."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import PurePosixPath
 
 @dataclass(frozen=True)
 class Page:
-    """A file or folder below the report's own, and what it has."""
+    """A file or folder of a report, and its contents in words."""
 
     path: str
     what: str
@@ -22,5 +22,5 @@ class Page:
 
     @property
     def sheet(self) -> str:
-        """The place of the page's own numbers with every digit; those of a page at the top too."""
+        """The path of the CSV with the page's numbers."""
         return f"tables/{PurePosixPath(self.path).stem}.csv"

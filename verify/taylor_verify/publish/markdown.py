@@ -5,17 +5,17 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 
-# A bar ends a table's cell even inside a code span.
+# A bar ends a cell of a table even inside a code span.
 _BAR = r"\|"
-# What Markdown gives a meaning: an underscore has none inside a word.
+# Characters with a meaning in Markdown; an underscore has none inside a word.
 _MEANT = re.compile(r"[\\`*\[\]<>|~&$]|(?<!\w)_|_(?!\w)")
 _MARK = re.compile(r"\\(.)|[*`]")
 
 
 def table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Return a table whose source lines up too, but for its last column, which may be long.
+    """Return a table with aligned columns, except the last one, which may be long.
 
-    A heading that ends with a colon is that of a column of numbers, which stand to the right.
+    A heading that ends with a colon marks a column of numbers, which are aligned to the right.
     """
     is_number = [heading.endswith(":") for heading in headings]
     first, *body = [[heading.removesuffix(":") for heading in headings], *rows]
@@ -34,7 +34,7 @@ def _line(row: Sequence[str], widths: Sequence[int], is_number: Sequence[bool]) 
 
 
 def code(text: str) -> str:
-    """Return a code span; prose where the text holds a backtick or backslash, which no span can escape."""
+    """Return a code span, or prose for a text with a backtick or backslash, which no span can hold."""
     plain = " ".join(text.split())
     if "`" in plain or "\\" in plain:
         return prose(plain)
@@ -42,7 +42,7 @@ def code(text: str) -> str:
 
 
 def prose(text: str) -> str:
-    """Return somebody's words on one line, none of them taken for Markdown or HTML."""
+    """Return a text in one line, escaped so that nothing of it is Markdown or HTML."""
     return _MEANT.sub(r"\\\g<0>", " ".join(text.split()))
 
 
@@ -56,4 +56,4 @@ def bullets(items: Iterable[str]) -> str:
 
 def plain(text: str) -> str:
     """Return the words of a line without its marks: bold, code and the backslashes of `prose`."""
-    return _MARK.sub(lambda found: found[1] or "", text)
+    return _MARK.sub(lambda match: match[1] or "", text)

@@ -1,4 +1,4 @@
-"""LaTeX as MathML, which browsers set without a script."""
+"""LaTeX as MathML, which browsers show without a script."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from typing import Final
 
 from markupsafe import Markup, escape
 
-# Browsers have dropped the attribute: a bold x is a character of its own.
+# Browsers ignore the attribute mathvariant: a bold x is a character of its own.
 _VARIANT: Final = re.compile(r'<mi mathvariant="([a-z-]+)">(&#x[0-9A-F]+;|.)</mi>')
-# Between the name of a function and what is beside it TeX leaves a thin space.
+# TeX leaves a thin space beside the name of a function.
 _FUNCTION: Final = re.compile(r"<mi>(sin|cos|tan|exp|ln|log|sinh|cosh|tanh|sn|cn|dn|am)</mi>")
 _SPACED: Final = r'<mspace width="0.14em"/><mi>\1</mi><mspace width="0.14em"/>'
 _WORDS: Final = re.compile(r"\\text\{([^{}]*)\}")
@@ -27,27 +27,27 @@ def mathml(tex: str, display: bool = False) -> Markup:
     from latex2mathml.converter import convert
 
     try:
-        found = convert(tex, display="block" if display else "inline")
+        markup = convert(tex, display="block" if display else "inline")
     except Exception as fault:
-        # The converter has classes of its own for each fault, and some it meets by accident.
+        # The converter raises its own exceptions, and some of Python's.
         raise ValueError(f"expected LaTeX, got {tex!r} ({type(fault).__name__})") from fault
-    named = found.replace("<math ", f'<math alttext="{escape(tex)}" ', 1)
+    named = markup.replace("<math ", f'<math alttext="{escape(tex)}" ', 1)
     return Markup(_FUNCTION.sub(_SPACED, _VARIANT.sub(_letter, named)))
 
 
-def _letter(found: re.Match[str]) -> str:
-    """Return a letter of another alphabet as the character that Unicode has for it, or as it was."""
-    alphabet = found[1].upper().replace("BOLD-", "BOLD ")
+def _letter(match: re.Match[str]) -> str:
+    """Return a letter of another alphabet as its Unicode character, or unchanged."""
+    alphabet = match[1].upper().replace("BOLD-", "BOLD ")
     # Such as LATIN SMALL LETTER X.
-    _, case, _, letter = (*unicodedata.name(unescape(found[2]), "").split(), "", "", "", "")[:4]
+    _, case, _, letter = (*unicodedata.name(unescape(match[2]), "").split(), "", "", "", "")[:4]
     try:
         return f"<mi>{unicodedata.lookup(f'MATHEMATICAL {alphabet} {case} {letter}')}</mi>"
     except KeyError:
-        return found[0]
+        return match[0]
 
 
 def inline(tex: str) -> Markup:
-    """Return a formula within a line: its words are text, which can be broken at its spaces."""
+    """Return a formula within a line; its words are text, so that lines can break at spaces."""
     parts, at = [], 0
     for words in _WORDS.finditer(tex):
         before = tex[at : words.start()]
@@ -58,6 +58,6 @@ def inline(tex: str) -> Markup:
 
 
 def _formula(tex: str) -> Markup:
-    """Return a formula in a box of its own, which a narrow page can scroll; nothing for nothing."""
-    found = mathml(tex.strip()) if tex.strip() else None
-    return Markup('<span class="formula">{}</span>').format(found) if found else Markup()
+    """Return a formula in a box that a narrow page can scroll; empty without a formula."""
+    markup = mathml(tex.strip()) if tex.strip() else None
+    return Markup('<span class="formula">{}</span>').format(markup) if markup else Markup()

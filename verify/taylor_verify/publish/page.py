@@ -1,4 +1,4 @@
-"""Parts of every published page: its maker, a summary, a legend, and how to remake it."""
+"""Parts of published pages: maker, summary, legend, and how to remake the page."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ MADE_BY: Final = "<!-- made by taylor-verify publish; do not edit -->"
 
 
 def whole(title: str, *blocks: str) -> str:
-    """Return a page: its maker, its title, and the blocks that are not empty, one below the other."""
+    """Return a page: its maker, its title, and the blocks that are not empty."""
     return "\n\n".join(filter(None, [f"{MADE_BY}\n# {title}", *blocks])) + "\n"
 
 
 def page(title: str, verdicts: Sequence[Verdict], *parts: str) -> str:
-    """Return a page of verdicts, which ends with what made them and how to remake them."""
+    """Return a page of verdicts, which ends with their versions and how to remake them."""
     return whole(
         title,
         *parts,
@@ -41,49 +41,49 @@ def page(title: str, verdicts: Sequence[Verdict], *parts: str) -> str:
 
 def counts(verdicts: Iterable[Verdict]) -> str:
     """Return the number of verdicts of each kind, the largest error over attainable, and tolerances."""
-    found = list(verdicts)
-    by_status = summary(found)
+    rows = list(verdicts)
+    by_status = summary(rows)
     row = [
         bold(str(count)) if count and status == Status.FAIL else str(count)
         for status, count in by_status.items()
     ]
     counted = table([f"{status}:" for status in by_status], [row])
-    return "\n\n".join(filter(None, [counted, _worst(found), _tolerated(found)]))
+    return "\n\n".join(filter(None, [counted, _worst(rows), _tolerated(rows)]))
 
 
 def _tolerated(verdicts: Sequence[Verdict]) -> str:
-    """Return how many rows have a tolerance for their bound; empty for none."""
+    """Return the number of rows judged by a tolerance, in words; empty for none."""
     count = sum(verdict.tolerance is not None for verdict in verdicts)
     if not count:
         return ""
     return (
-        f"{bold(str(count))} of them were judged by a tolerance that was asked for, and not by "
+        f"{bold(str(count))} of them were judged by a tolerance given by the user, and not by "
         f"{GATE_FACTOR} times what is attainable."
     )
 
 
 def _worst(verdicts: Sequence[Verdict]) -> str:
     lost = sum(verdict.is_compared and verdict.ratio is None for verdict in verdicts)
-    found = worst(verdict for verdict in verdicts if verdict.ratio is not None)
+    gravest = worst(verdict for verdict in verdicts if verdict.ratio is not None)
     parts = [
         bold(f"{lost} of {len(verdicts)} without a finite error over attainable.") if lost else "",
-        f"Largest error over attainable: {bold(figure(found.ratio))}, {code(found.quantity)} "
-        f"of {code(found.scene)} on {found.rung} at t = {instant(found.ratio_at)}."
-        if found
+        f"Largest error over attainable: {bold(figure(gravest.ratio))}, {code(gravest.quantity)} "
+        f"of {code(gravest.scene)} on {gravest.rung} at t = {instant(gravest.ratio_at)}."
+        if gravest
         else "",
     ]
     return " ".join(filter(None, parts)) or "Nothing was compared."
 
 
 def roundoffs(verdicts: Iterable[Verdict]) -> str:
-    """Return the legend of u, for the rungs that occur."""
-    found = {verdict.rung: verdict.roundoff for verdict in verdicts if verdict.roundoff}
-    each = (f"{rung} {figure(found[rung])}" for rung in sorted(found, key=place_of_rung))
+    """Return the legend of u for the rungs of the verdicts."""
+    units = {verdict.rung: verdict.roundoff for verdict in verdicts if verdict.roundoff}
+    each = (f"{rung} {figure(units[rung])}" for rung in sorted(units, key=place_of_rung))
     return f"u is the unit roundoff of the rung: {', '.join(each) or 'none was run'}."
 
 
 def sections(runs: Iterable[Run], lay_out: Callable[[list[Run]], str]) -> str:
-    """Return a section for each model and solver, as ``lay_out`` writes its runs."""
+    """Return a section for each model and solver; ``lay_out`` writes its runs."""
     blocks = []
     groups = groupby(runs, key=lambda run: (run.model, run.solver, run.setting))
     for (model, *solver), group in groups:
@@ -93,7 +93,7 @@ def sections(runs: Iterable[Run], lay_out: Callable[[list[Run]], str]) -> str:
 
 
 def unscored(runs: Iterable[Run]) -> str:
-    """Return why the runs without a number have none."""
+    """Return the runs without a number, with their reasons."""
     rows = [
         f"{code(run.scene)}, {run.rung}: {judged(verdict.verdict)}, {prose(reason(verdict))}"
         for run in runs
@@ -104,17 +104,17 @@ def unscored(runs: Iterable[Run]) -> str:
 
 
 def packages(versions: Mapping[str, str]) -> str:
-    """Return the packages that made something, with their versions."""
+    """Return packages with their versions as a list."""
     return ", ".join(f"{name} {version}" for name, version in versions.items())
 
 
 def made_with(versions: Mapping[str, str]) -> str:
-    """Return what made the numbers, in a sentence."""
+    """Return the versions behind the numbers, in a sentence."""
     return f"Made with {packages(versions) or 'unknown versions'}."
 
 
 def traced(provenance: Mapping[str, Any]) -> str:
-    """Return what made the numbers, with the processor and the command where these are known."""
+    """Return the versions behind the numbers, and the processor and the command if known."""
     made = made_with(provenance.get("versions", {}))
     if "processor" not in provenance or "command" not in provenance:
         return made

@@ -1,8 +1,8 @@
-"""A paper written in Markdown, as a PDF that Typst sets and as LaTeX. Neither needs TeX.
+"""Paper written in Markdown, as PDF by Typst and as LaTeX. Neither needs TeX.
 
 pandoc, in the wheel of `pypandoc-binary`, writes both forms. Typst compiles in this process, with the fonts
-that its wheel brings and no others, so that the PDF is the same on another machine. `paper.lua` has what
-pandoc's LaTeX lacks; `paper.typst` and `paper.latex` are the frames around the text.
+of its wheel alone, so that the PDF is the same on another machine. `paper.lua` adds to pandoc's LaTeX;
+`paper.typst` and `paper.latex` are the frames around the text.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from typing import Any, Final
 MADE_BY: Final = "made by taylor-verify publish --paper; do not edit"
 
 _HERE: Final = Path(__file__).with_suffix("")
-# In the words of a table a tilde, a caret or an at sign is what it is.
+# Tildes, carets and at signs in words of a table are plain characters.
 _READER: Final = "markdown-superscript-subscript-citations"
 _OPTIONS: Final = ("--fail-if-warnings", "--wrap=none", "--columns=10000")
-# Signs of cells that the fonts of LaTeX lack.
+# Signs in cells that LaTeX's fonts lack.
 _SIGNS: Final = {"→": r"$\to$", "µ": r"$\mu$", "∞": r"$\infty$"}
 _POWER: Final = re.compile(r"(?<![\w.`])(-?\d+(?:\.\d+)?)e\+?(-?)0*(\d+)(?![\w`])")
 
@@ -60,7 +60,7 @@ def _compile(text: str, citation: Path, folder: Path, form: str) -> Any:
     import typst
 
     source = _convert(text, "typst", citation).encode()
-    # The time of making would make two files of one paper differ.
+    # Without the time of making, two files of one paper are the same.
     return typst.compile(source, root=folder, ignore_system_fonts=True, format=form, timestamp=0)
 
 

@@ -1,4 +1,4 @@
-"""A sheet: rows as CSV with one heading line, every digit in place, for a program or a spreadsheet."""
+"""Rows as CSV with one heading line and all digits, for programs and spreadsheets."""
 
 from __future__ import annotations
 
@@ -7,15 +7,15 @@ import io
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final
 
-# What a spreadsheet begins a formula with; a tab has gone with the line ends.
+# First characters of formulas in spreadsheets; tabs are removed with the line ends.
 _FORMULA: Final = ("=", "+", "-", "@")
 
 
 def sheet(names: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> str:
-    """A line for every row: the columns of these names, empty where a row has none.
+    """Return a line for every row with these columns; missing values are empty.
 
-    A text that a spreadsheet would take for a formula has an apostrophe before it: the name of a scene
-    is a path, and may be anybody's.
+    A text that a spreadsheet would take for a formula gets an apostrophe in front, because the name of a
+    scene may be the path of anybody's file.
     """
     text = io.StringIO()
     writer = csv.DictWriter(text, names, extrasaction="ignore", lineterminator="\n")
@@ -25,7 +25,7 @@ def sheet(names: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> str:
 
 
 def _cell(value: Any) -> Any:
-    """A text without line ends, which readers take differently, and without the force of a formula."""
+    """Return a text without line ends, and never a formula of a spreadsheet."""
     if not isinstance(value, str):
         return value
     text = " ".join(value.split())

@@ -1,4 +1,4 @@
-"""A report folder as one archive: the same bytes whenever and wherever it is packed."""
+"""A report folder as one archive, with the same bytes on every machine and day."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from typing import Final
 from taylor_verify.records.replacement import replace_files
 
 SUMS: Final = "SHA256SUMS"
-# What a user's own runs and the site write below the folder.
+# Folders that a user's own runs and the site write.
 _LOCAL: Final = ("local", "site")
 
 
@@ -33,7 +33,7 @@ def pack(folder: Path, target: Path, name: str) -> list[Path]:
 
 
 def _paths(folder: Path) -> list[str]:
-    """Return the path of every file; of none that is hidden, local or compiled Python."""
+    """Return the paths of all files except hidden ones, local ones and compiled Python."""
     paths = [file.relative_to(folder) for file in folder.rglob("*") if file.is_file()]
     return sorted(
         path.as_posix()

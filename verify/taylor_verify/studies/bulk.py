@@ -1,6 +1,6 @@
-"""The bulk of a report folder: files that are made from the rest, which the repository does not hold.
+"""Bulk of a report folder: files made from the stored data, which the repository does not hold.
 
-Every study names its own; beside them there are the paper and the pictures as PDF (`paper`).
+Every study names its own bulk. The paper and the pictures as PDF come from `paper`.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ _RENDERINGS: Final = (f"{figures.FOLDER}/*.pdf", f"{FOLDER}/")
 
 
 def patterns() -> tuple[str, ...]:
-    """Return the patterns that .gitignore has, below the folder."""
+    """Return the patterns of .gitignore, relative to the folder."""
     own = (pattern for study in STUDIES for bulk in study.bulk for pattern in bulk.patterns)
     return (*own, *_RENDERINGS)
 
 
 @dataclass(frozen=True)
 class Missing:
-    """Bulk that a report folder lacks: of each kind what is to be made, and what `--paper` writes."""
+    """Bulk that a report folder lacks: data by kind, and the files that `--paper` writes."""
 
     folder: Path
     lacking: tuple[tuple[Bulk, Sequence[Any]], ...]
@@ -38,7 +38,7 @@ class Missing:
 
     @property
     def data(self) -> str:
-        """The data that are missing, in words; empty for none."""
+        """The missing data in words; empty if nothing is missing."""
         return ", ".join(f"{len(lacking)} {bulk.what}" for bulk, lacking in self.lacking)
 
     def make(self, progress: Progress) -> Iterator[Path]:
@@ -48,20 +48,20 @@ class Missing:
 
 
 def missing(folder: Path, digests: Mapping[str, str] | None = None) -> Missing:
-    """Return what ``folder`` lacks, or has of other verdicts or of another text of a scene.
+    """Return the bulk that ``folder`` lacks, or has of outdated verdicts or scenes.
 
-    ``digests`` has the SHA-256 of every scene that can be run; of those that are shipped unless given.
+    ``digests`` has the SHA-256 of every scene that can be run; by default, of the shipped scenes.
     Raises OSError for a folder without verdicts, and ValueError for files that hold something else.
     """
     known = {name: load(name).digest for name in names()} if digests is None else digests
     report = Published(folder, store.load(folder), known)
-    found = [(bulk, bulk.lacking(report)) for study in STUDIES for bulk in study.bulk]
+    bulks = [(bulk, bulk.lacking(report)) for study in STUDIES for bulk in study.bulk]
     drawings = sorted((folder / figures.FOLDER).glob("*.svg"))
     drawn = (f"{figures.FOLDER}/{drawing.stem}.pdf" for drawing in drawings)
-    # A report without the studies that the paper tells of can have none.
+    # The paper needs all of its studies.
     renderings = () if unmeasured(folder) else (f"{FOLDER}/{PDF}", *drawn)
     return Missing(
         folder,
-        tuple((bulk, lacking) for bulk, lacking in found if lacking),
+        tuple((bulk, lacking) for bulk, lacking in bulks if lacking),
         tuple(name for name in renderings if not (folder / name).exists()),
     )

@@ -1,7 +1,7 @@
-"""The pictures that stand beside the tables: drawn when something is measured, shown where they are.
+"""Pictures beside the tables: drawn after a measurement, shown if their files exist.
 
-A page shows the pictures that lie in ``figures`` already; without matplotlib none are drawn, and the
-pages that are made of stored data are the same but for them.
+A page shows the pictures of ``figures`` that exist. Without matplotlib no pictures are drawn; the pages
+are otherwise the same.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def draw(place: Path, pictures: Iterable[Picture]) -> list[Path]:
 
 
 def shown(place: Path, pictures: Iterable[Picture]) -> str:
-    """Return the pictures that are there, as a page in ``place``/tables shows them."""
+    """Return Markdown that shows the existing pictures on a page in ``place``/tables."""
     return "\n\n".join(
         f"![{prose(one.alt)}](../{FOLDER}/{one.stem}.svg)"
         for one in pictures

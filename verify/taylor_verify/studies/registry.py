@@ -1,4 +1,4 @@
-"""List of all studies, the only one, in the order in which indexes name them."""
+"""List of all studies, in the order of the indexes."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ STUDIES: Final[list[Study[Any]]] = [
 
 
 class UnknownStudy(ValueError):  # noqa: N818 (it names what was asked for)
-    """Names of no studies; the text has a line for each."""
+    """Unknown names of studies; the text has a line for each."""
 
 
 def find(names: Iterable[str]) -> list[Study[Any]]:
@@ -62,18 +62,18 @@ def _fault(name: str, known: list[str]) -> str:
 
 
 def hint(word: str, known: list[str]) -> str:
-    """Return the nearest of the known words as a question; all of them where none is near."""
+    """Return the nearest known word as a question; all known words if none is near."""
     close = get_close_matches(word, known, n=1)
     return f"did you mean {close[0]}?" if close else f"known: {', '.join(known)}"
 
 
 def others() -> list[Study[Any]]:
-    """Return the studies with a page beside those of accuracy, which are the report itself."""
+    """Return the studies that have a page, except accuracy, whose pages are the report itself."""
     return [study for study in STUDIES if study.path and study is not ACCURACY]
 
 
 def pictures(folder: Path) -> list[Picture]:
-    """Return every picture of a report folder whose data are there.
+    """Return every picture of a report folder whose data are stored.
 
     Raises OSError for files that cannot be read and ValueError for files that hold something else.
     """

@@ -37,7 +37,7 @@ _BESIDES = (
 def write(folder: Path | str, verdicts: Iterable[Verdict], records: Iterable[Record]) -> list[Path]:
     """Write verdicts and records to ``folder``/data, in place of earlier ones.
 
-    Raises OSError for a folder that cannot be written; what it held then stays as it was.
+    Raises OSError for a folder that cannot be written; its content then stays as it was.
     """
     return list(store.write(Path(folder), verdicts, records))
 
@@ -50,8 +50,8 @@ def load(folder: Path | str) -> tuple[Verdict, ...]:
 def publish(folder: Path | str) -> list[Path]:
     """Make ``folder``/tables and its front page from ``folder``/data; return the files written.
 
-    Tables of an earlier version that are no longer made are removed; other files are left alone,
-    a README.md that is not ours among them. Raises OSError for files that cannot be read or
+    Tables that are no longer made are removed. Other files stay, also a README.md by somebody else.
+    Raises OSError for files that cannot be read or
     written, ValueError for data that are none.
     """
     place = Path(folder)
@@ -63,7 +63,7 @@ def publish(folder: Path | str) -> list[Path]:
 
 
 def publish_index(folder: Path | str) -> list[Path]:
-    """Make the front page, the index of the tables and what other pages quote; the rest stays."""
+    """Make the front page, the index of the tables and the quoted blocks of other pages again."""
     place = Path(folder)
     verdicts = load(place)
     return [*replace_files(place, _index(place, verdicts)), *_requote(place, verdicts)]
@@ -80,7 +80,7 @@ def write_report(folder: str | PathLike[str], results: Judgements) -> list[Path]
 
 
 def _index(place: Path, verdicts: Sequence[Verdict], made: Collection[str] = ()) -> dict[str, str]:
-    """Return the pages that name all others: those that are there, and those about to be ``made``."""
+    """Return the front page and the index, which link pages that exist or are about to be ``made``."""
     besides = entries(place, made)
     texts = {f"{TABLES}/README.md": page.readme(verdicts, besides)}
     if not (place / FRONT).exists() or first_line(place / FRONT) == MADE_BY:
@@ -89,7 +89,7 @@ def _index(place: Path, verdicts: Sequence[Verdict], made: Collection[str] = ())
 
 
 def entries(place: Path, made: Collection[str] = ()) -> list[Page]:
-    """Return what lies beside the tables of every run, or is among the files about to be ``made``."""
+    """Return the pages beside the tables of runs that exist or are about to be ``made``."""
 
     def is_there(path: str) -> bool:
         return path in made or (place / path).exists()
@@ -103,6 +103,6 @@ def _requote(place: Path, verdicts: Sequence[Verdict]) -> tuple[Path, ...]:
 
 
 def _own_tables(target: Path) -> list[Path]:
-    """Return the Markdown files that name us as their maker, each with its CSV twin."""
+    """Return the Markdown files that this program made, each with its CSV."""
     own = [file for file in target.glob("*.md") if first_line(file) == MADE_BY]
     return own + [file.with_suffix(".csv") for file in own]

@@ -1,4 +1,4 @@
-"""Documents of a report folder: written by the one who measured them, read by whoever tells of them."""
+"""Documents of a report folder: written by measurements, read by pages and pictures."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ def made_by(study: str) -> dict[str, str]:
 
 @dataclass(frozen=True)
 class Stored(Generic[Document]):
-    """A type of documents, and the study that writes one: to data/NAME.json, after the study unless given.
+    """A type of document and its place: data/STEM.json, by default with the name of its study.
 
-    ``fields`` makes keys and values of a document, ``reader`` a document of a file.
+    ``fields`` returns the keys and values of a document, ``reader`` reads a document from a file.
     """
 
     kind: type[Document]
@@ -52,13 +52,13 @@ class Stored(Generic[Document]):
         return self.reader(folder / self.name, self.kind)
 
     def find(self, folder: Path) -> Document | None:
-        """Return the document that is stored below ``folder``; None where there is none."""
+        """Return the document stored below ``folder``; None if there is none."""
         return self.load(folder) if (folder / self.name).exists() else None
 
 
 @dataclass(frozen=True)
 class SceneDocuments:
-    """JSON files below ``folder``, one a scene; ``maker`` stands in their first line.
+    """JSON files below ``folder``, one for each scene; their first line names their ``maker``.
 
     ``separators`` are those of json.dumps.
     """
@@ -72,7 +72,7 @@ class SceneDocuments:
         return f"{self.folder}/{of_scene(scene)}.json"
 
     def texts(self, documents: Iterable[Mapping[str, Any]]) -> dict[str, str]:
-        """Return the files of documents by their paths: a line for every key."""
+        """Return the text of each document by its path; every key has its own line."""
         return {self.name(str(document["scene"])): self._text(document) for document in documents}
 
     def _text(self, document: Mapping[str, Any]) -> str:
@@ -87,17 +87,17 @@ class SceneDocuments:
     def write(self, report: Path, documents: Iterable[Mapping[str, Any]]) -> list[Path]:
         """Write documents in place of earlier ones, and return the files written.
 
-        Those of scenes that are no longer there are removed, other people's files are left alone. Raises
-        OSError; what the folder held then stays as it was.
+        Documents of scenes that no longer exist are removed; other people's files stay. Raises OSError; the
+        folder then stays as it was.
         """
         return list(replace_files(report, self.texts(documents), stale=self.own(report)))
 
     def add(self, report: Path, documents: Iterable[Mapping[str, Any]]) -> list[Path]:
-        """Write documents beside those that are there, and return the files written. Raises OSError."""
+        """Write documents beside the stored ones, and return the files written. Raises OSError."""
         return list(replace_files(report, self.texts(documents)))
 
     def find(self, report: Path, scene: str) -> dict[str, Any] | None:
-        """Return the document of a scene; None where there is none.
+        """Return the document of a scene; None if there is none.
 
         Raises OSError for a file that cannot be read and ValueError for one that holds something else.
         """
@@ -105,6 +105,6 @@ class SceneDocuments:
         return store.read_document(file) if file.exists() else None
 
     def own(self, report: Path) -> list[Path]:
-        """Return the files that name us as their maker."""
+        """Return the files that this program made."""
         first = f'{{"made_by": {json.dumps(self.maker)},'
         return [file for file in (report / self.folder).glob("*.json") if first_line(file) == first]

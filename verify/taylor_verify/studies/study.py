@@ -1,7 +1,7 @@
-"""A study: something that is measured, stored below a report folder, and told in pages and pictures.
+"""A study: a measurement, its document below a report folder, its pages and its pictures.
 
-Every folder of `studies` with a module `study` has one, and `registry` lists them all: the command line,
-the report, its index, the pictures and the missing data are made by going through that list.
+Each folder of `studies` that has a module `study` holds one, and `registry` lists them all. The command
+line, the report, its index, the pictures and the missing data are made by loops over that list.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ Document = TypeVar("Document")
 
 
 class NotMeasured(ValueError):  # noqa: N818 (it names what did not happen)
-    """A study that cannot be measured as it was asked for; the text is the message."""
+    """A study that cannot be measured with the given options; the text is the message."""
 
 
 @dataclass(frozen=True)
 class Progress:
-    """Signs of life of a measurement; silent unless given.
+    """Reports of the progress of a measurement; silent by default.
 
-    ``jobs`` and ``working`` open a bar for many runs, and a line for one long thing.
+    ``jobs`` opens a bar for many runs, ``working`` a line for one long task.
     """
 
     say: Callable[[str], None] = lambda words: None
@@ -43,7 +43,7 @@ class Progress:
     working: Callable[[str], AbstractContextManager[None]] = lambda what: nullcontext()
 
     def counting(self, total: int) -> Callable[[str], None]:
-        """Return a function that names each thing as it ends, with its place among all."""
+        """Return a function that reports each finished item with its number and the total."""
         done = 0
 
         def finished(name: str) -> None:
@@ -55,7 +55,7 @@ class Progress:
 
 
 class Measured(NamedTuple):
-    """Files that a study has written, what is to be said of them, and the exit status."""
+    """Files that a study has written, messages to the user, and the exit status."""
 
     written: Sequence[Path] = ()
     messages: Sequence[str] = ()
@@ -66,8 +66,8 @@ class Measured(NamedTuple):
 class Option:
     """An option of one study, by its name without hyphens.
 
-    ``read`` makes its value of a text, and raises ValueError with what was expected and got; an option
-    without it is a switch.
+    ``read`` makes the value from a text, and raises ValueError that says what it expected and got. An
+    option without ``read`` is a switch.
     """
 
     name: str
@@ -90,23 +90,23 @@ class Published:
         return tuple(run for run in runs(self.verdicts) if run.scene in self.digests)
 
     def without(self, place: str) -> tuple[str, ...]:
-        """Return the scenes that have no document of their present text in a folder below."""
+        """Return the scenes that have no document of their present text in the folder ``place``."""
         scenes = dict.fromkeys(run.scene for run in self.runs)
         return tuple(s for s in scenes if self._digest(place, s) != self.digests[s])
 
     def _digest(self, place: str, scene: str) -> Any:
-        """Return the SHA-256 of the scene that a document was made of; None without a document."""
+        """Return the SHA-256 of the scene that a document was made from; None without a document."""
         file = self.folder / place / f"{of_scene(scene)}.json"
         return store.read_document(file).get("sha256") if file.exists() else None
 
 
 @dataclass(frozen=True)
 class Bulk:
-    """Files of a study that are made from the rest, which the repository leaves out.
+    """Files of a study that are made from stored data, and that the repository leaves out.
 
-    ``what`` names them where they are counted, ``patterns`` are those of .gitignore below the folder.
-    ``lacking`` returns what is missing of a report, or belongs to other verdicts or to another text of a
-    scene; ``make`` makes that.
+    ``what`` names the files in counts, ``patterns`` are their lines of .gitignore below the folder.
+    ``lacking`` returns what a report lacks, or has of outdated verdicts or scenes; ``make`` makes these
+    files.
     """
 
     what: str
@@ -122,22 +122,22 @@ class Study(Generic[Document]):
     Attributes
     ----------
     name, title
-        The word on the command line, and what its page has in a few words.
+        The word on the command line, and the contents of its page in a few words.
     duration
         The time that it takes to measure, in words.
     measure
-        ``measure(folder, progress, **options)`` writes what it finds below the folder. It imports what it
-        needs when it is called: the list of all studies stays light. Raises NotMeasured.
+        ``measure(folder, progress, **options)`` measures and writes below the folder. It imports its
+        modules when it is called, so that the list of all studies loads fast. Raises NotMeasured.
     find
-        Returns what is stored below a folder, None where nothing is.
+        Returns the document stored below a folder, None if there is none.
     page
-        Makes the page of a document. It is given the folder too, and shows the pictures that lie there.
+        Makes the page of a document. Its second argument is the folder, whose pictures it shows.
     sheet
         Makes the sheet of a document, with every digit.
     beside
         Further pages and sheets, by their paths below the folder.
     parts
-        Makes further pages whose number is the document's, by their paths.
+        Makes further pages by their paths; their number depends on the document.
     draw
         Returns the pictures made of a document.
     place
@@ -161,11 +161,11 @@ class Study(Generic[Document]):
 
     @property
     def path(self) -> str:
-        """The page that indexes link to, below the folder; empty for a study without one."""
+        """The path of the page below the folder, for indexes; empty for a study without a page."""
         return self.place or (f"tables/{self.name}.md" if self.page else "")
 
     def pages(self, folder: Path) -> dict[str, str]:
-        """Return pages and sheets of what is stored below ``folder``; nothing where nothing is.
+        """Return the pages and sheets of the document stored below ``folder``; empty without one.
 
         Raises OSError for files that cannot be read and ValueError for files that hold something else.
         """
@@ -173,12 +173,12 @@ class Study(Generic[Document]):
         return {} if document is None else self._pages(document, folder)
 
     def pictures(self, folder: Path) -> list[Picture]:
-        """Return the pictures of what is stored below ``folder``. The errors are those of `pages`."""
+        """Return the pictures of the document stored below ``folder``. Raises the errors of `pages`."""
         document = self.find(folder)
         return [] if document is None else [*self.draw(document)]
 
     def publish(self, folder: Path) -> Measured:
-        """Draw what is stored below ``folder``, then make its pages.
+        """Draw the pictures of the document stored below ``folder``, then make its pages.
 
         Without matplotlib the pages are made all the same, and a message says so. Raises OSError, and
         ValueError as `pages`.

@@ -1,8 +1,8 @@
-"""A case: one row as a CI shows it, its verdict and what else is said of it taken together.
+"""Case of a CI report: one row with its verdict and all remarks.
 
-A CI knows red and green, and the exit status has decided which: what is no pass, and not merely
-unavailable or waived by the caller, is red here too, so that no table of test results is greener than
-the command.
+A CI knows red and green, and the exit status decides between them. A row that is no pass is red here too,
+unless it is unavailable or waived by the caller, so that no table of test results is greener than the
+command.
 """
 
 from __future__ import annotations
@@ -33,12 +33,12 @@ class Remark(NamedTuple):
 
 @dataclass(frozen=True)
 class Case:
-    """Quantity of a run; ``verdict`` is None for a row that only a remark speaks of.
+    """Quantity of a run; ``verdict`` is None for a row that has only remarks.
 
-    ``status`` is the gravest of the verdict's and the remarks', ``sentences`` say why, none for a
-    pass without a remark. ``counted`` is the status that colours the row: that of the remarks where they
-    alone decide. ``mark`` tells runs of one scene and rung apart: the setting, such as a file; empty where
-    there is one run alone.
+    ``status`` is the gravest of the verdict's and the remarks', and ``sentences`` are its reasons; a pass
+    without a remark has none. ``counted`` is the status that colours the row: that of the remarks if they
+    alone decide. ``mark`` distinguishes several runs of one scene and rung: the setting, such as a file;
+    empty for a single run.
     """
 
     scene: str
@@ -54,7 +54,7 @@ class Case:
 
     @property
     def is_harmless(self) -> bool:
-        """True if the row is no pass and yet leaves the exit status as it is."""
+        """True if the row is no pass but does not change the exit status."""
         is_waived = self.verdict is not None and self.verdict.is_waived
         return self.counted is Status.UNAVAILABLE or (is_waived and self.counted is Status.VACUOUS)
 
@@ -66,27 +66,27 @@ class Case:
 
     @property
     def text(self) -> str:
-        """The reasons, a line each."""
+        """The reasons, one in each line."""
         return "\n".join(self.sentences)
 
 
 def cases(
     verdicts: Iterable[Verdict], remarks: Iterable[Remark] = (), by_remarks: bool = False
 ) -> tuple[Case, ...]:
-    """Return a case for every row, in the order of the verdicts; then those of remarks alone.
+    """Return a case for every row in the order of the verdicts, then cases that have only remarks.
 
-    ``by_remarks`` tells that the remarks alone decide, as with `--gate baseline`.
+    ``by_remarks`` is true if the remarks alone decide, as with `--gate baseline`.
     """
     rows = {_key(verdict): verdict for verdict in verdicts}
-    said: dict[Key, list[Remark]] = {key: [] for key in rows}
+    remarks_of: dict[Key, list[Remark]] = {key: [] for key in rows}
     for remark in remarks:
-        said.setdefault(_key(remark), []).append(remark)
-    runs = {(scene, rung, solver, setting) for scene, solver, setting, rung, _ in said}
+        remarks_of.setdefault(_key(remark), []).append(remark)
+    runs = {(scene, rung, solver, setting) for scene, solver, setting, rung, _ in remarks_of}
     alike = Counter((scene, rung) for scene, rung, *_ in runs)
-    found = (_case(key, rows.get(key), told, by_remarks) for key, told in said.items())
+    every = (_case(key, rows.get(key), own, by_remarks) for key, own in remarks_of.items())
     return tuple(
         replace(case, mark=case.setting) if alike[case.scene, case.rung] > 1 else case
-        for case in found
+        for case in every
     )
 
 
@@ -95,18 +95,20 @@ def _key(row: Verdict | Remark) -> Key:
 
 
 def _case(key: Key, verdict: Verdict | None, remarks: list[Remark], by_remarks: bool) -> Case:
-    said = [remark.status for remark in remarks]
+    statuses = [remark.status for remark in remarks]
     own = [] if verdict is None else [verdict.verdict]
     counted = own
     if by_remarks and verdict is not None and exit_status([verdict]):
         counted = [Status.PASS]
     faults = [] if verdict is None or verdict.verdict is Status.PASS else [sentence(verdict)]
     sentences = (*faults, *(remark.text for remark in remarks))
-    return Case(*key, gravest((*own, *said)), gravest((*counted, *said)), sentences, verdict)
+    return Case(
+        *key, gravest((*own, *statuses)), gravest((*counted, *statuses)), sentences, verdict
+    )
 
 
 def sentence(verdict: Verdict) -> str:
-    """Return the sentence of a verdict, and the numbers that a person needs beside it."""
+    """Return the sentence of a verdict, with the numbers that a reader needs."""
     if not verdict.is_compared:
         return verdict.sentence
     size = "not finite" if verdict.max is None else figure(verdict.max)

@@ -1,4 +1,4 @@
-"""Verdicts as the summary of a GitHub step: Markdown, what is no pass first, all rows folded away."""
+"""Verdicts as the summary of a GitHub step: Markdown with failures first, and all rows folded."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from taylor_verify.publish.markdown import bold, code, prose, table
 from taylor_verify.publish.page import counts
 from taylor_verify.records.verdict import Verdict
 
-# GitHub takes 1 MiB from a step, and drops a larger summary altogether.
+# GitHub takes 1 MiB from a step, and drops a larger summary.
 _MOST_BYTES: Final = 1_000_000
 _LEGEND: Final = (
     "*Over attainable* is the largest error over what perfect rounding would leave on this orbit. "
@@ -23,27 +23,27 @@ _NUMBERS: Final = ("max:", "at t:", "bound:", "over attainable:")
 def step_summary(
     verdicts: Iterable[Verdict], remarks: Iterable[Remark] = (), decision: str = ""
 ) -> str:
-    """Return the page, never longer than GitHub takes; ``decision`` names what decided if not verdicts."""
+    """Return the page within GitHub's limit; ``decision`` is a sentence if the verdicts do not decide."""
     rows = list(verdicts)
-    found = cases(rows, remarks)
-    notable = [case for case in found if case.sentences]
-    for most in (len(found), len(found) // 10, 100, 10):
-        text = _page(rows, found, notable, most, decision)
+    every = cases(rows, remarks)
+    notable = [case for case in every if case.sentences]
+    for most in (len(every), len(every) // 10, 100, 10):
+        text = _page(rows, every, notable, most, decision)
         if len(text.encode()) <= _MOST_BYTES:
             return text
-    return _page(rows, found, notable, 0, decision)
+    return _page(rows, every, notable, 0, decision)
 
 
 def _page(
     verdicts: Sequence[Verdict],
-    found: Sequence[Case],
+    every: Sequence[Case],
     notable: Sequence[Case],
     most: int,
     decision: str,
 ) -> str:
-    # A row of the second table is short; it is the reasons that are long.
-    folded = found if most == len(found) else ()
-    beyond = sum(case.verdict is None or case.status != case.verdict.verdict for case in found)
+    # A row of the second table is short, because it has no reasons.
+    folded = every if most == len(every) else ()
+    beyond = sum(case.verdict is None or case.status != case.verdict.verdict for case in every)
     blocks = [
         "## taylor-verify",
         bold(prose(decision)) if decision else "",
@@ -55,23 +55,24 @@ def _page(
         else "",
         _table("What is no pass, or not what it was", notable[:most], reasons=True),
         f"And {len(notable) - most} more." if len(notable) > most else "",
-        f"<details><summary>All rows: {len(found)}</summary>\n\n{_table('', folded)}\n\n</details>"
+        f"<details><summary>All rows: {len(every)}</summary>\n\n{_table('', folded)}\n\n</details>"
         if folded
-        else f"The table of all {len(found)} rows is left out: a summary has no room for it.",
+        else f"The table of all {len(every)} rows is left out: a summary has no room for it.",
         _LEGEND,
     ]
     return "\n\n".join(filter(None, blocks)) + "\n"
 
 
-def _table(heading: str, found: Sequence[Case], reasons: bool = False) -> str:
-    if not found:
+def _table(heading: str, rows_shown: Sequence[Case], reasons: bool = False) -> str:
+    if not rows_shown:
         return ""
     columns = ["scene", "rung", "quantity", *_NUMBERS, "verdict"]
-    rows = [_row(case) for case in found]
+    rows = [_row(case) for case in rows_shown]
     if reasons:
         columns.append("because")
         rows = [
-            [*row, prose("; ".join(case.sentences))] for row, case in zip(rows, found, strict=True)
+            [*row, prose("; ".join(case.sentences))]
+            for row, case in zip(rows, rows_shown, strict=True)
         ]
     text = table(columns, rows)
     return f"### {heading}\n\n{text}" if heading else text

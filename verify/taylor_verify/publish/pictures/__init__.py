@@ -1,1 +1,1 @@
-"""Pictures, drawn from plain documents as JSON holds them; matplotlib is imported to draw alone."""
+"""Pictures, drawn from plain documents; matplotlib is imported only to draw."""

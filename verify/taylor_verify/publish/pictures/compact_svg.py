@@ -1,8 +1,8 @@
-"""SVG of a picture in a third of matplotlib's bytes, and the same to the eye.
+"""Compact SVG of a picture, with a third of matplotlib's bytes and the same appearance.
 
-Coordinates have two digits after the point, a hundredth of a point of print. A style that many marks
-share is written once, as a class. Groups and names that nothing refers to are left out. scour writes a
-style at every mark: its maps of digits and time diagrams are up to twice as large.
+Coordinates have two digits after the point, a hundredth of a point of print. A style that many marks share
+is written once, as a class. Groups and names without references are left out. The tool scour writes a
+style at every mark, and makes maps of digits and time diagrams up to twice as large.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ _COORDINATES: Final = ("d", "x", "y", "transform")
 _PATH: Final = re.compile(r"([A-Za-z])\s*([^A-Za-z]*)")
 _NO_TURN: Final = re.compile(r"^rotate\(-?0 [^)]*\)$")
 _REFERENCE: Final = re.compile(r"#([\w.-]+)")
-# A class pays from the third mark on.
+# A class is shorter from the third mark on.
 _FEW: Final = 2
 
 
 def compact(svg: str) -> str:
-    """Return the same drawing in fewer bytes; its title, description and texts stay.
+    """Return the same drawing in fewer bytes, with title, description and texts.
 
     Raises xml.etree.ElementTree.ParseError for a text that is no XML.
     """
@@ -67,7 +67,7 @@ def _two_digits(number: re.Match[str]) -> str:
 
 
 def _path(text: str) -> str:
-    """Return the commands without blanks, and without the letter of a line that follows a line."""
+    """Return the commands without blanks and without repeated letters of lines."""
     parts, before = [], ""
     for letter, numbers in _PATH.findall(text):
         continues = letter == "L" and before in ("M", "L")
@@ -85,7 +85,7 @@ def _drop_unused_names(root: Element) -> None:
 
 
 def _unwrap_plain_groups(element: Element) -> None:
-    """Put the contents of each group that says nothing of its own in the group's place."""
+    """Replace each group without attributes by its contents."""
     for child in element:
         _unwrap_plain_groups(child)
     element[:] = [

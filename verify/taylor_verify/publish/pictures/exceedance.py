@@ -1,4 +1,4 @@
-"""The share of bodies whose error over attainable is above a size: a line for each quantity of a sweep."""
+"""Picture of the share of bodies with an error over attainable above a size, by quantity of a sweep."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ _HEIGHT: Final = 3.2
 
 
 def picture(summary: SweepSummary) -> Picture:
-    """Return the picture of a sweep. Raises ValueError where no error over attainable is above zero."""
+    """Return the picture of a sweep. Raises ValueError if no error over attainable is above zero."""
     drawn = [each for each in summary.quantities if each.quantity != INITIAL and _points(each)]
     if not drawn:
         raise ValueError("expected an error above zero, got none @ sweep")
-    said = "; ".join(
+    largest = "; ".join(
         f"{each.quantity} {plain(each.ratio.largest)}"
         for each in drawn
         if each.ratio is not None and each.ratio.largest is not None
@@ -40,13 +40,13 @@ def picture(summary: SweepSummary) -> Picture:
         f"Error over attainable of {summary.total} bodies: {summary.name}",
         f"Share of {summary.total} bodies of {summary.name} whose largest error, by {summary.solver} on "
         f"{summary.rung}, is above a multiple of what is attainable; both axes are logarithmic, and a gate "
-        f"stands at {summary.factor}. The largest: {said}.",
+        f"stands at {summary.factor}. The largest: {largest}.",
         partial(_figure, summary, drawn),
     )
 
 
 def _points(spread: Spread) -> Points:
-    """Return the points of a line: the largest of all lies at half a body."""
+    """Return the points of a line; the largest error lies at half a body."""
     least = 0.5 / spread.judged if spread.judged else 1.0
     return [(size, max(share, least)) for size, share in spread.above]
 
@@ -87,7 +87,7 @@ def _figure(summary: SweepSummary, drawn: list[Spread]) -> Figure:
             gid=each.quantity,
             zorder=3,
         )
-        # Marks enough for a name to stand anywhere beside its line.
+        # Enough points for a name to stand anywhere beside its line.
         named.append(
             Named(each.quantity, look.colour, [points[:: -max(len(points) // 20, 1)][::-1]])
         )

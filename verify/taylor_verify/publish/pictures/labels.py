@@ -1,11 +1,11 @@
-"""Names written beside the lines that they belong to, where nothing lies and none overlap.
+"""Names beside their lines, in places without marks and without overlaps.
 
-Lengths are in points from the figure's lower left corner. A figure has 72 pixels to the inch while
-it is laid out, so that both are the same; what is written stays there at any other resolution. Boxes
-have shape (n, 4), each left, low, right, top; spots have shape (n, 2).
+Lengths are in points from the figure's lower left corner. A figure has 72 pixels per inch during the
+layout, so that pixels are points; names stay in place at other resolutions. Boxes have shape (n, 4), each
+left, low, right, top; spots have shape (n, 2).
 
-textalloc and adjustText place the name of a point. They take no line that may be named at any of its
-marks: at one end alone, names strike through marks or leave a full panel.
+textalloc and adjustText place the name of a point, but not of a line that may be named at any of its
+marks. Names at one end of the lines cover marks or leave a full panel.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ Numbers = NDArray[np.float64]
 # To the inch.
 POINTS: Final = 72
 
-# How far a name's box may be from its point, and how far it stays from other names and the frame.
+# Distances of a name's box from its point, and its least distance from other names and the frame.
 _RADII: Final = (6.0, 10.0, 16.0, 24.0, 34.0)
 _DIRECTIONS: Final = 16
 _GAP: Final = 1.5
@@ -40,12 +40,12 @@ _GAP: Final = 1.5
 _FAR: Final = 12.0
 _SAMPLING: Final = 3.0
 _DOTS: Final = 8
-# Half the size of a mark, and how near to each other lines count as one.
+# Half the size of a mark, and the distance below which lines count as one.
 _MARK: Final = 2.5
 _SAME: Final = 2.0
 
-# What a place costs: a name on a mark hides a number, on a line it only crosses it, and where lines
-# run together it could be the name of each.
+# Costs of a place: a name on a mark hides a number, a name on a line only crosses it, and a name beside
+# several lines is ambiguous.
 _ON_A_MARK: Final = 5.0
 _ON_A_LINE: Final = 1.0
 _ON_ANOTHER: Final = 0.4
@@ -60,7 +60,7 @@ _SWEEPS: Final = 4
 
 @dataclass(frozen=True)
 class _Line:
-    """A named line in points: its marks, and samples so dense that no box misses it."""
+    """A named line in points: its marks, and samples that are dense enough for every box to hit one."""
 
     name: str
     colour: str
@@ -70,7 +70,7 @@ class _Line:
 
 @dataclass(frozen=True)
 class _Places:
-    """Places where a name may stand: its box, its point, their distance, and what each costs."""
+    """Possible places of a name: box, point, their distance, and cost."""
 
     boxes: Numbers
     anchors: Numbers
@@ -81,10 +81,10 @@ class _Places:
 def write_names(
     axes: Axes, lines: Sequence[Named], beside: Iterable[Sequence[Spot]] = ()
 ) -> list[Text]:
-    """Write the name of every line that has a point; return the texts, in the order of the lines.
+    """Write the name of every line that has a point; return the texts in the order of the lines.
 
-    ``beside`` are other lines, in the axes' units, that a name had better not cross. The limits of
-    the axes must be final.
+    ``beside`` are other lines, in the axes' units, that names should not cross. The limits of the axes
+    must be final.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.transforms import Affine2D
@@ -93,22 +93,22 @@ def write_names(
     assert figure is not None
     renderer = FigureCanvasAgg(figure).get_renderer()  # type: ignore[no-untyped-call]
     in_points = Affine2D().scale(1 / POINTS) + figure.dpi_scale_trans
-    seen = [_in_points(axes, line) for line in lines if any(line.pieces)]
+    visible = [_in_points(axes, line) for line in lines if any(line.pieces)]
     texts = []
-    for line in seen:
+    for line in visible:
         text = axes.text(0, 0, line.name, color=for_text(line.colour), size=SMALL)
         text.set(va="bottom", ha="left", transform=in_points, zorder=2.5, gid="name")
-        # Below the lines, so that it hides no number; what is thin it covers, and stays legible.
+        # Below the lines, so that it hides no number, and above thin lines, so that it is legible.
         text.set_bbox({"facecolor": PAPER, "alpha": 0.75, "linewidth": 0, "pad": 0.4})
         texts.append(text)
     extents = [text.get_window_extent(renderer) for text in texts]
     frame = np.array(axes.get_window_extent(renderer).extents)
     obstacles = _sampled(axes, beside)
     places = [
-        _priced(_candidates(line, extent.width, extent.height), line, seen, frame, obstacles)
-        for line, extent in zip(seen, extents, strict=True)
+        _priced(_candidates(line, extent.width, extent.height), line, visible, frame, obstacles)
+        for line, extent in zip(visible, extents, strict=True)
     ]
-    for text, line, its, i in zip(texts, seen, places, _chosen(places), strict=True):
+    for text, line, its, i in zip(texts, visible, places, _chosen(places), strict=True):
         box, anchor = its.boxes[i], its.anchors[i]
         text.set_position((float(box[0]), float(box[1])))
         if its.away[i] > _FAR:
@@ -126,7 +126,7 @@ def write_names(
 
 
 def _chosen(places: Sequence[_Places]) -> list[int]:
-    """Return a place for each name, chosen in turn, and again once the others are known."""
+    """Return a place for each name, chosen one after the other, and once more with all others known."""
     chosen: dict[int, int] = {}
     # The names with the fewest free places choose first.
     order = sorted(range(len(places)), key=lambda i: -float(places[i].cost.min()))
@@ -160,37 +160,37 @@ def _candidates(line: _Line, width: float, height: float) -> _Places:
 def _priced(
     places: _Places, own: _Line, lines: Sequence[_Line], frame: Numbers, obstacles: Numbers
 ) -> _Places:
-    """Return the places with what they hide, and what they could be mistaken for, in their cost."""
+    """Return the places with the costs of hidden marks and of ambiguity added."""
     boxes = _grown(places.boxes, _GAP)
     areas = (boxes[:, 2] - boxes[:, 0]) * (boxes[:, 3] - boxes[:, 1])
-    # Rounding leaves a trace of an area that is wholly inside.
+    # Rounding leaves a small area even for a box inside the frame.
     outside = np.maximum(areas - _overlap(boxes, frame) - 1e-6, 0)
-    cost = places.cost + _FORBIDDEN * outside + _ON_ANOTHER * _held(boxes, obstacles)
+    cost = places.cost + _FORBIDDEN * outside + _ON_ANOTHER * _covered_counts(boxes, obstacles)
     here = _around(places.anchors)
     own_distance = _distance(boxes, own.samples)
     for line in lines:
-        cost += _ON_A_MARK * _held(_grown(boxes, _MARK), line.marks)
-        cost += _ON_A_LINE * _held(boxes, line.samples)
+        cost += _ON_A_MARK * _covered_counts(_grown(boxes, _MARK), line.marks)
+        cost += _ON_A_LINE * _covered_counts(boxes, line.samples)
         if line is not own:
-            cost += _SHARED * (_held(here, line.samples) > 0)
+            cost += _SHARED * (_covered_counts(here, line.samples) > 0)
             cost += _ON_ANOTHER * _crossed(places, line.samples)
             cost += _NEARER_TO_ANOTHER * (_distance(boxes, line.samples) < own_distance)
     return replace(places, cost=cost)
 
 
 def _crossed(places: _Places, spots: Numbers) -> Numbers:
-    """Return how many spots the thin line to each name touches; none where the name is near."""
+    """Return the number of spots that the thin line to each name touches; zero for a near name."""
     far = places.away > _FAR
     ends = _nearest(places.boxes, places.anchors)
     touched = np.zeros(len(far))
     for i in range(1, _DOTS):
         dots = places.anchors + (ends - places.anchors) * i / _DOTS
-        touched[far] += _held(_around(dots)[far], spots)
+        touched[far] += _covered_counts(_around(dots)[far], spots)
     return touched
 
 
-def _held(boxes: Numbers, spots: Numbers) -> Numbers:
-    """Return how many of the spots each box holds."""
+def _covered_counts(boxes: Numbers, spots: Numbers) -> Numbers:
+    """Return the number of spots that each box covers."""
     (x, y), (left, low, right, top) = spots.T, boxes.T[:, :, None]
     inside = (left <= x) & (x <= right) & (low <= y) & (y <= top)
     return np.asarray(np.count_nonzero(inside, axis=1), dtype=np.float64)
@@ -220,7 +220,7 @@ def _grown(boxes: Numbers, gap: float) -> Numbers:
 
 
 def _around(spots: Numbers) -> Numbers:
-    """Return a box round each spot; what lies in it counts as the same place."""
+    """Return a box around each spot, whose points count as the same place."""
     return _grown(np.concatenate([spots, spots], 1), _SAME)
 
 
@@ -231,7 +231,7 @@ def _in_points(axes: Axes, line: Named) -> _Line:
 
 
 def _sampled(axes: Axes, pieces: Iterable[Sequence[Spot]]) -> Numbers:
-    """Return points along the pieces, their corners among them."""
+    """Return points along the pieces, including their corners."""
     samples = [np.empty((0, 2))]
     for piece in filter(None, pieces):
         corners = axes.transData.transform(list(piece))

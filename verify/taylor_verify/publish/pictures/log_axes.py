@@ -1,4 +1,4 @@
-"""Limits and numbers of logarithmic axes: powers of ten, and on a short axis 1, 2 and 5 of each."""
+"""Limits and numbers of logarithmic axes: powers of ten, and their multiples by 2 and 5 on short axes."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 
 Limits = tuple[float, float]
 
-# An axis shows a decade at least, however close its points.
+# An axis shows at least a decade, even for close points.
 _LEAST_DECADES: Final = 1.0
-# Between them a number is shorter in plain digits.
+# Plain digits are shorter between these numbers.
 _LEAST_PLAIN: Final = 1e-3
 _MOST_PLAIN: Final = 1e5
 
@@ -25,7 +25,7 @@ def number_axes(axes: Axes) -> None:
     """Give numbers and a grid to axes whose limits are set."""
     from matplotlib.ticker import LogLocator, NullFormatter
 
-    axes.grid(True, which="major")
+    axes.grid(visible=True, which="major")
     axes.tick_params(which="minor", length=1.5)
     for axis, limits in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
         is_long = powers_within(*limits) >= 2
@@ -39,7 +39,7 @@ def _formatted(is_long: bool, value: float, _place: int | None) -> str:
 
 
 def powers_within(low: float, high: float) -> int:
-    """Return how many powers of ten lie on an axis."""
+    """Return the number of powers of ten on an axis."""
     return floor(log10(high)) - ceil(log10(low)) + 1
 
 
@@ -55,7 +55,7 @@ def number(value: float, is_long: bool) -> str:
 
 
 def widened(values: Sequence[float], before: float, after: float) -> Limits:
-    """Return limits of a logarithmic axis that shows these with so much room, in parts of its length."""
+    """Return limits of a logarithmic axis for these values, with margins as parts of its length."""
     least, most = (log10(end(values)) if values else 0.0 for end in (min, max))
     lacking = max(_LEAST_DECADES - (most - least), 0.0) / 2
     least, most = least - lacking, most + lacking

@@ -1,4 +1,4 @@
-"""A line of a picture with its name. Texts about pictures need it, and no array."""
+"""Named line of a picture, without NumPy, for texts about pictures."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ Spot = tuple[float, float]
 
 @dataclass(frozen=True)
 class Named:
-    """A line with its name: its pieces are joined points, in the axes' own units."""
+    """A line with its name; its pieces are joined points in the axes' own units."""
 
     name: str
     colour: str

@@ -1,4 +1,4 @@
-"""Errors of several files against their steps: a line for each quantity, and its roundoff floor."""
+"""Picture of the errors of several files against their steps: lines of quantities, and their floors."""
 
 from __future__ import annotations
 
@@ -33,18 +33,18 @@ def has_points(order: Order) -> bool:
 
 
 def picture(title: str, orders: Sequence[Order]) -> Picture:
-    """Return the picture of all quantities, the state on the left and what is conserved on the right.
+    """Return the picture of all quantities: state on the left, conserved quantities on the right.
 
-    Raises ValueError where no error is above zero.
+    Raises ValueError if no error is above zero.
     """
     drawn = [order for order in orders if has_points(order)]
     if not drawn:
         raise ValueError("expected an error above zero, got none @ order")
-    said = ". ".join(order.sentence for order in drawn)
+    sentences = ". ".join(order.sentence for order in drawn)
     return Picture(
         stem_of({"scene": title.partition(" ")[0]}, "order"),
         f"Error against step: {title}",
-        f"Largest error against the step h on {title}, both logarithmic. {said}.",
+        f"Largest error against the step h on {title}, both logarithmic. {sentences}.",
         partial(_figure, drawn),
     )
 

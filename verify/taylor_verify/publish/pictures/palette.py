@@ -1,7 +1,7 @@
-"""Colours by their lightness, so that what differs in colour also differs in grey.
+"""Colours by their lightness, so that different colours also differ in grey.
 
 Y is the relative luminance of WCAG 2 (linear sRGB, 0 black to 1 white), L the lightness of CIE 1976
-(0 to 100), which is what a greyscale print shows.
+(0 to 100), which greyscale prints show.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ QUIET: Final = "#6A6A6A"
 FAINT: Final = "#E2E2E2"
 PAPER: Final = "#FFFFFF"
 
-# WCAG 2.1 asks this of text (1.4.3) and of lines and marks (1.4.11) against what is behind them.
+# Contrast with the background that WCAG 2.1 requires of text (1.4.3) and of lines and marks (1.4.11).
 TEXT_CONTRAST: Final = 4.5
 
 
@@ -36,7 +36,7 @@ def contrast(one: str, other: str = PAPER) -> float:
 
 
 def for_text(colour: str) -> str:
-    """Return the hue of a colour, as dark as text on paper has to be."""
+    """Return the hue of a colour, darkened for text on paper."""
     while contrast(colour) < TEXT_CONTRAST:
         parts = (int(colour[i : i + 2], 16) for i in (1, 3, 5))
         colour = "#" + "".join(f"{part * 24 // 25:02X}" for part in parts)

@@ -1,4 +1,4 @@
-"""A picture: its name, what it shows in words, and how it is drawn; saved for pages and for print."""
+"""Pictures with a name and an alternative text, saved for pages and for print."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _MAKER: Final = "taylor-verify"
-# A date would make two files of one picture differ.
+# Without a date, two files of one picture are the same.
 _METADATA: Final[dict[str, dict[str, str | None]]] = {
     "svg": {"Creator": _MAKER, "Date": None},
     "pdf": {"Creator": _MAKER, "CreationDate": None},
@@ -27,15 +27,15 @@ _METADATA: Final[dict[str, dict[str, str | None]]] = {
 }
 _PUBLISHED: Final = ("svg", "pdf")
 ENDINGS: Final = tuple(f".{ending}" for ending in _METADATA)
-# Pixels to the inch of a PNG: legible on a screen and in print at the width of a page.
+# Pixels per inch of a PNG: legible on a screen, and in print at the width of a page.
 _RESOLUTION: Final = 200
 
 
 @dataclass(frozen=True)
 class Picture:
-    """A picture by the name of its file, its title, and a text for who cannot see it.
+    """A picture: the stem of its file, its title, and its alternative text for those who cannot see it.
 
-    ``figure`` draws it, inside `plotting` only. The alt text asks for no matplotlib.
+    ``figure`` draws it, and must be called inside `plotting`. The alternative text needs no matplotlib.
     """
 
     stem: str
@@ -44,7 +44,7 @@ class Picture:
     figure: Callable[[], Figure]
 
     def _repr_html_(self) -> str:
-        """Return the drawing as a notebook shows it, with its text for who cannot see it."""
+        """Return the drawing for a notebook, with its alternative text."""
         drawn = b64encode(content(self, "svg")).decode()
         return f'<p><img alt="{escape(self.alt)}" src="data:image/svg+xml;base64,{drawn}"/></p>'
 
@@ -54,9 +54,9 @@ def save(
 ) -> list[Path]:
     """Write each picture as SVG and as PDF, in place of earlier ones; return the paths.
 
-    ``formats`` may name others (svg, pdf, png). All are drawn before the first is written, and each is
-    moved into its place whole. Raises ImportError without matplotlib, OSError for a folder that cannot be
-    written.
+    ``formats`` may name other formats (svg, pdf, png). All pictures are drawn before the first is
+    written, and each is replaced as a whole. Raises ImportError without matplotlib, OSError for a
+    folder that cannot be written.
     """
     with plotting():
         contents = {name: file for picture in pictures for name, file in _files(picture, formats)}
@@ -64,7 +64,7 @@ def save(
 
 
 def save_as(picture: Picture, file: Path) -> None:
-    """Write one picture to a file, whose ending says the format.
+    """Write one picture to a file in the format of its ending.
 
     Raises ImportError without matplotlib, OSError for a file that cannot be written.
     """
@@ -79,7 +79,7 @@ def content(picture: Picture, ending: str) -> bytes:
 
 @contextmanager
 def plotting() -> Iterator[None]:
-    """Have matplotlib draw with the settings of `style`, whatever the user's file says."""
+    """Let matplotlib draw with the settings of `style` instead of the user's own."""
     try:
         from matplotlib import style
     except ImportError as fault:

@@ -1,4 +1,4 @@
-"""A time over that of a yardstick, as a picture shows it."""
+"""Ratio of a time to that of a yardstick, for pictures."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from math import inf
 
 @dataclass(frozen=True)
 class Ratio:
-    """The ratio of one run; ``low`` and ``high`` are the least and the greatest seen, where known."""
+    """The ratio of one run; ``low`` and ``high`` are the least and the greatest ratio, if known."""
 
     label: str
     rung: str
@@ -31,7 +31,8 @@ class Ratio:
 def check(ratios: Sequence[Ratio]) -> None:
     """Raise a ValueError that names every fault.
 
-    Faults are no ratio at all, an empty text, no positive finite number, a ratio outside its range.
+    Faults are an empty list, an empty text, a number that is not positive and finite, and a ratio outside
+    its range.
     """
     if not ratios:
         raise ValueError("expected ratios, got none @ ratios")
@@ -45,7 +46,7 @@ def check(ratios: Sequence[Ratio]) -> None:
 
 
 def _faults(ratio: Ratio) -> Iterator[tuple[str, str, str]]:
-    """Yield the name of what is wrong, what was expected, and the value."""
+    """Yield each fault: the name of the field, the expectation, and the value."""
     for name, text in (("label", ratio.label), ("rung", ratio.rung)):
         if not text:
             yield name, "a text", repr(text)

@@ -14,24 +14,24 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-# How a line or mark is drawn, and what it means.
+# Style of a line or mark, and its meaning.
 Entry = tuple[dict[str, Any], str]
 
-# The columns beside a panel hold numbers and a name, the rows below them too.
+# Margins of a panel for numbers and the name of an axis.
 LEFT: Final = 0.66
 RIGHT: Final = 0.08
 HEADING: Final = 0.26
 BELOW: Final = 0.46
 HEIGHT: Final = 2.35
-# Of a family's line in the strip above a panel.
+# Height of a family's line in the strip above a panel.
 STRIP: Final = 0.15
-# Of a line of the legend, and below the last.
+# Height of a line of the legend, and of the space below.
 _LINE: Final = 0.2
 _FOOT: Final = 0.06
-# Entries of a legend that the page is wide enough for, and the space between its lines.
+# Entries in a line of the legend, and the space between its lines.
 _ABREAST: Final = 4
 _SPACING: Final = 0.8
-# Letters of a note beside a panel, and the inches that a letter takes.
+# Letters in a line of a note beside a panel, and the width of a letter in inches.
 _NARROW: Final = 38
 _LETTER: Final = 0.055
 
@@ -49,7 +49,7 @@ class Frame:
 def sheet(
     count: int, entries: Sequence[Entry], note: str = "", height: float = HEIGHT
 ) -> tuple[Figure, list[Axes]]:
-    """Return a figure with so many panels, two in a row, and its legend."""
+    """Return a figure with ``count`` panels, two in a row, and its legend."""
     frames, total = frames_of([0] * count, foot_of(entries, note), height)
     figure = blank(total)
     draw_legend(figure, entries, note, free_place(frames))
@@ -57,7 +57,7 @@ def sheet(
 
 
 def blank(height: float) -> Figure:
-    """Return an empty figure; while it is laid out a pixel is a point."""
+    """Return an empty figure, in which a pixel is a point during the layout."""
     from matplotlib.figure import Figure
 
     return Figure(figsize=(PAGE_WIDTH, height), dpi=72)
@@ -74,15 +74,15 @@ def add_axes(figure: Figure, frame: Frame) -> Axes:
 def frames_of(
     strips: Sequence[int], foot: float, height: float = HEIGHT
 ) -> tuple[list[Frame], float]:
-    """Return the place of each panel below its strip of so many lines, and the height of the figure.
+    """Return the place of each panel below its strip of lines, and the height of the figure.
 
-    The headings of a row are on one line: a panel with a lower strip is higher by the difference.
+    The headings of a row are on one line. A panel with a lower strip is higher by the difference.
     """
     across = min(2, len(strips))
     width = PAGE_WIDTH / across - LEFT - RIGHT
     rows = [list(strips[i : i + across]) for i in range(0, len(strips), across)]
     heights = [HEADING + STRIP * max(row) + height + BELOW for row in rows]
-    # A place free beside the last panel has the legend; else it is at the foot.
+    # The legend is in a free place beside the last panel, else at the foot.
     top = total = sum(heights) + (0.0 if _leaves_a_place(len(strips)) else foot)
     frames = []
     for row, whole in zip(rows, heights, strict=True):
@@ -96,7 +96,7 @@ def frames_of(
 
 
 def free_place(frames: Sequence[Frame]) -> Frame | None:
-    """Return the place beside the last panel, where that stands alone in a row of two."""
+    """Return the free place beside the last panel, if that is alone in its row."""
     if not _leaves_a_place(len(frames)):
         return None
     last, right = frames[-1], frames[1]
@@ -108,7 +108,7 @@ def _leaves_a_place(count: int) -> bool:
 
 
 def foot_of(entries: Sequence[Entry], note: str) -> float:
-    """Return the height of the legend where it is at the foot."""
+    """Return the height of a legend at the foot."""
     return _FOOT + _LINE * (_lines(entries) + bool(note))
 
 
@@ -119,9 +119,9 @@ def _lines(entries: Sequence[Entry]) -> int:
 def draw_legend(
     figure: Figure, entries: Sequence[Entry], note: str = "", free: Frame | None = None
 ) -> None:
-    """Draw the legend in a free place, one entry below the other, else in lines at the foot.
+    """Draw the legend in a free place with one entry in each line, else in full lines at the foot.
 
-    The note, a sentence of its own, is below.
+    The note, which is a sentence, is below.
     """
     from matplotlib.lines import Line2D
 
@@ -135,7 +135,7 @@ def draw_legend(
             [name for _, name in entries],
             loc="upper left",
             bbox_to_anchor=(left / width, top / height),
-            # As few lines as the page's width allows, and these about as long as each other.
+            # As few lines as the page's width allows, of about the same length.
             ncols=1 if free else -(-len(entries) // _lines(entries)),
             frameon=False,
             fontsize=SMALL,

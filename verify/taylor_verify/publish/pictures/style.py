@@ -1,8 +1,8 @@
-"""Looks of every solver and rung, the same in every picture, and what all pictures share.
+"""Looks of solvers and rungs, the same in every picture, and settings of all pictures.
 
-A look is a colour, a marker and a line: each pair of colour and marker belongs to one family, the
-line tells the kind of solver, and neighbours of one kind differ in lightness, so that a family is
-told from the others in colour, in grey and with any colour vision. Colours follow Okabe and Ito
+A look is a colour, a marker and a line. Each pair of colour and marker belongs to one family, and the line
+shows the kind of solver. Neighbours of one kind differ in lightness, so that families can be distinguished
+in colour, in grey and with any colour vision. Colours follow Okabe and Ito
 (https://jfly.uni-koeln.de/color) and Tol (SRON/EPS/TN/09-002), darkened until a line has the
 contrast of 3 that WCAG 2.1 (1.4.11) asks for.
 """
@@ -24,7 +24,7 @@ DASHED: Final[Dashes] = (5.0, 1.6)
 DOTTED: Final[Dashes] = (1.2, 1.4)
 DASHDOT: Final[Dashes] = (6.0, 1.4, 1.2, 1.4)
 
-# In points. The width is that of a page with margins of an inch on both A4 and letter, in inches.
+# In points; the width in inches: that of a page with margins of an inch on both A4 and letter.
 PAGE_WIDTH: Final = 6.3
 FONT_SIZE: Final = 9
 SMALL: Final = 7.5
@@ -32,7 +32,7 @@ SMALL: Final = 7.5
 
 @dataclass(frozen=True)
 class Look:
-    """The look of one family; ``dashes`` are on and off lengths in line widths, none is solid.
+    """The look of one family; ``dashes`` are on and off lengths in line widths, empty for a solid line.
 
     ``marker`` is matplotlib's name of it, or (corners, 1, angle) for a star.
     """
@@ -45,7 +45,7 @@ class Look:
 
     @property
     def line(self) -> dict[str, Any]:
-        """The line and its marks as matplotlib draws them."""
+        """The keywords of matplotlib for the line and its marks."""
         return {
             "color": self.colour,
             "marker": self.marker,
@@ -59,23 +59,23 @@ class Look:
 
 @dataclass(frozen=True)
 class Kind:
-    """Solvers of one sort: their heading, and a look for each by the words its name contains."""
+    """Solvers of one kind: their heading, and a look for each by the words in its name."""
 
     name: str
     heading: str
     dashes: Dashes
-    looks: tuple[tuple[str, str, str], ...]
+    entries: tuple[tuple[str, str, str], ...]
 
 
 TAYLOR: Final = "taylor"
 OTHERS: Final = "others"
 PROCESS: Final = "process"
 
-# A star of the same width looks smaller.
+# A star is larger, because it looks smaller at the same width.
 _SIZES: Final = {"*": 6.5, "d": 5.5}
 _BEYOND: Final = ("p", "h", "8", "*", "P", "X")
 
-# Every kind in reading order; of two entries that fit a name the one with more words counts.
+# All kinds in reading order. If two entries fit a name, the one with more words counts.
 KINDS: Final = (
     Kind(
         "scipy",
@@ -127,16 +127,16 @@ KINDS: Final = (
     ),
 )
 
-# Of names that stand nowhere above: a star, which no known family has, by a hash of the name.
+# Stars for unknown names, chosen by a hash of the name; no known family has a star.
 _UNKNOWN_COLOURS: Final = ("#C48600", "#882255", "#2F9E8F", "#0E5F2A", "#C04FAF", "#333333")
 _UNKNOWN_CORNERS: Final = (3, 4, 5, 6, 7)
 _UNKNOWN_ANGLES: Final = (0, 20)
-# As many as are coprime to the colours, so that the pairs repeat late.
+# Their number is coprime to that of the colours, so that pairs repeat late.
 _LINE_MARKERS: Final = ("o", "s", "^", "D", "v", "p", "h")
 
 
 def kind_of(family: str) -> str:
-    """Return the name of the family's kind: ``taylor``, one of `KINDS`, or ``others`` for the unknown."""
+    """Return the name of the family's kind: ``taylor``, one of `KINDS`, or ``others`` if unknown."""
     words = _words(family)
     if words[:1] == [TAYLOR]:
         return TAYLOR
@@ -146,12 +146,12 @@ def kind_of(family: str) -> str:
 
 
 def heading_of(kind: str) -> str:
-    """Return what stands above the solvers of a kind."""
+    """Return the heading of a kind of solvers."""
     return next((one.heading for one in KINDS if one.name == kind), "taylor, by rung")
 
 
 def look_of(family: str, rung: str) -> Look:
-    """Return the look of a family on a rung; a rung changes that of taylor alone."""
+    """Return the look of a family on a rung; the rung matters for taylor alone."""
     words = _words(family)
     if words in ([TAYLOR], [TAYLOR, rung]):
         return look_of_rung(rung)
@@ -163,7 +163,7 @@ def look_of(family: str, rung: str) -> Look:
 
 
 def look_of_rung(rung: str) -> Look:
-    """Return the look of taylor on a rung, or of the rung where nothing else is compared."""
+    """Return the look of taylor on a rung, or of a rung in pictures without solvers."""
     if rung in FORMATS:
         format = FORMATS[rung]
         return Look(format.colour, format.marker, width=format.width, size=format.size)
@@ -172,7 +172,7 @@ def look_of_rung(rung: str) -> Look:
 
 
 def look_of_line(number: int) -> Look:
-    """Return the look of the n-th of some lines that are no solvers; neighbours differ."""
+    """Return the look of the n-th line of a picture without solvers; neighbours differ."""
     colour = _UNKNOWN_COLOURS[number % len(_UNKNOWN_COLOURS)]
     return Look(colour, _LINE_MARKERS[number % len(_LINE_MARKERS)])
 
@@ -182,13 +182,13 @@ def place(family: str, rung: str) -> tuple[int, int, int, str]:
     kind, named = kind_of(family), _named(_words(family))
     if kind == TAYLOR:
         return (0, *place_of_rung(rung)[:2], family)
-    looks = [look for one in KINDS for look in one.looks]
-    number = looks.index(named[1]) if named else len(looks)
+    known_looks = [look for one in KINDS for look in one.entries]
+    number = known_looks.index(named[1]) if named else len(known_looks)
     return (1 + [one.name for one in KINDS].index(kind), number, 0, family)
 
 
 def settings() -> dict[str, Any]:
-    """Return matplotlib's rcParams of every picture; all others are at its defaults."""
+    """Return matplotlib's rcParams of every picture; all others have their defaults."""
     return {
         "font.family": ["DejaVu Sans", "sans-serif"],
         "font.size": FONT_SIZE,
@@ -211,25 +211,25 @@ def settings() -> dict[str, Any]:
         "axes.axisbelow": True,
         "grid.color": FAINT,
         "grid.linewidth": 0.5,
-        # Dashes are in points, the same for a thin and a thick line.
+        # Dashes are in points, and independent of the width of the line.
         "lines.scale_dashes": True,
-        # Text that can be searched and read aloud, and ids that are the same in every run.
+        # Text can be searched and read aloud, and ids are the same in every run.
         "svg.fonttype": "none",
         "svg.hashsalt": "taylor-verify",
-        # TrueType, which can be searched and which journals ask for.
+        # TrueType can be searched, and journals require it.
         "pdf.fonttype": 42,
     }
 
 
 def _named(words: list[str]) -> tuple[Kind, tuple[str, str, str]] | None:
-    """Return the entry of `KINDS` whose words are all in the name, the longest of several."""
+    """Return the longest entry of `KINDS` whose words are all in the name."""
     if words[:1] == [PROCESS]:
-        # What follows is somebody's command, and means none of ours.
+        # The other words are a user's command, and name no solver of ours.
         return None
     fitting = [
-        (kind, entry) for kind in KINDS for entry in kind.looks if {*_words(entry[0])} <= {*words}
+        (kind, entry) for kind in KINDS for entry in kind.entries if {*_words(entry[0])} <= {*words}
     ]
-    return max(fitting, key=lambda found: len(_words(found[1][0])), default=None)
+    return max(fitting, key=lambda pair: len(_words(pair[1][0])), default=None)
 
 
 def _words(name: str) -> list[str]:

@@ -1,4 +1,4 @@
-"""The words of the pictures: names of files, and numbers in plain text."""
+"""Words of pictures: names of files, and numbers in plain text."""
 
 from __future__ import annotations
 
@@ -26,5 +26,5 @@ def times(ratio: float) -> str:
 
 
 def power_of_ten(value: float) -> str:
-    """Return a decade in plain text, its exponent raised, which any reader of an SVG shows and finds."""
+    """Return a power of ten in plain text with a raised exponent, which readers of SVG can search."""
     return "10" + str(round(log10(value))).translate(_RAISED)

@@ -25,27 +25,27 @@ from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 
 _WHAT: Final = (
-    "Attainable is what would be left if every step rounded each component once and did nothing else "
-    "wrong: such roundings add up like a random walk, and the orbit carries them on. How near to that "
-    "did each run come?"
+    "The attainable error is the error that would be left if every step only rounded each component "
+    "once. Such roundings add up like a random walk, and the orbit propagates them. How near did each "
+    "run come to this error?"
 )
 _MODEL: Final = (
-    "It is a model of random roundings and no bound: a run of few steps may be lucky and stay far below "
-    "it, and the largest of hundreds of samples may lie somewhat above. A gate stands at "
+    "It is a model of random roundings, and no bound. A run of few steps may stay far below it by "
+    "chance, and the largest of hundreds of samples may be somewhat above. A gate allows "
     f"{GATE_FACTOR} times it."
 )
 
 
 def attainable(verdicts: Sequence[Verdict]) -> str:
-    """Return the page: a line a rung, then one for every state quantity with a cell for each rung."""
-    found = runs(verdicts)
-    shown = [verdict for run in found for verdict in run.state]
+    """Return the page: a line for each rung, then a line for each state quantity, rung by rung."""
+    judged_runs = runs(verdicts)
+    shown = [verdict for run in judged_runs for verdict in run.state]
     legend = [
-        "A cell is *reached, attainable, ratio @ t*: the largest error of all samples; what was "
-        "attainable at its time; and the largest ratio of the two at one sample, with the time of that "
-        "sample, which may be another one.",
-        "A single 0 with what was attainable is a state without any error.",
-        "A word, or a bold one behind the numbers, is a verdict other than pass.",
+        "A cell is *reached, attainable, ratio @ t*: the largest error of all samples, the attainable "
+        "error at its time, and the largest ratio of the two at one sample with the time of that "
+        "sample.",
+        "A single 0 with the attainable error is a state without any error.",
+        "A word, or a bold word after the numbers, is a verdict other than pass.",
         roundoffs(shown),
         "`gates.md` has the arithmetic of every attainable error, in words.",
     ]
@@ -58,7 +58,7 @@ def attainable(verdicts: Sequence[Verdict]) -> str:
         _by_rung(shown),
         "## How to read a cell",
         bullets(legend),
-        sections(found, _section),
+        sections(judged_runs, _section),
     )
 
 

@@ -1,4 +1,4 @@
-"""The front page of a report: what it is, its headline numbers, how to read them, what else is there."""
+"""Front page of a report: its purpose, its headline numbers, how to read them, and further pages."""
 
 from __future__ import annotations
 
@@ -22,19 +22,20 @@ _WHAT = (
     "How accurately can a computer follow a tumbling rigid body, or a solid moving through an ideal "
     "fluid? Each *scene* is one such motion, given in exact numbers. The Taylor integrator of "
     "[heyoka](https://bluescarni.github.io/heyoka.py/) computes it in several number formats, the "
-    "*rungs*, from float32 upwards, and every computed state is compared with the exact motion, "
-    "known to more digits than the rung has. What is left is the error of the computation and of "
-    "nothing else: the exact motion starts from the very numbers that the integrator was given."
+    "*rungs*, from float32 upwards, and every computed state is compared with the exact motion, known "
+    "to more digits than the rung has. The difference is the error of the computation alone, because "
+    "the exact motion starts from the same numbers as the integrator."
 )
 _READING = (
-    "*u* is the unit roundoff of the rung, what a single rounding may leave of a number near one. "
-    "An error of 100 u costs the last two decimal digits.",
+    "*u* is the unit roundoff of the rung, the largest error of a single rounding of a number near "
+    "one. An error of 100 u costs the last two decimal digits.",
     "*Attainable* is the error that would remain if each step were rounded perfectly: such roundings "
     "add up like a random walk, and the motion itself magnifies them. *Error over attainable* near "
     "1 says that the solver does all that its arithmetic allows.",
     f"A quantity *passes* if no sample's error exceeds {GATE_FACTOR} times what is attainable there. Only "
     "**pass** is good: the [other verdicts](tables/README.md#how-to-read-a-cell) each have a meaning.",
-    "A conserved energy or momentum certifies no motion: a wrong solution may conserve both.",
+    "A conserved energy or momentum does not prove that a motion is right: a wrong solution may "
+    "conserve both.",
 )
 _CONTENTS = (
     ("[tables](tables/README.md)", "every number, and how a cell is read"),
@@ -46,29 +47,29 @@ _CONTENTS = (
     ("[tables/conserved.md](tables/conserved.md)", "the drift of energy, momenta and the like"),
     ("`tables/gates.md`", "every verdict, its bound and the reason of the bound (not committed)"),
     ("[data/verdicts.json](data/verdicts.json)", "the same for programs, to the last bit"),
-    ("[data/timings.json](data/timings.json)", "seconds and machine, which may differ each time"),
-    ("`data/records`", "of each run the equations and every sample's error (not committed)"),
+    ("[data/timings.json](data/timings.json)", "seconds and machine, which differ from run to run"),
+    ("`data/records`", "the equations and every sample's error of each run (not committed)"),
 )
 
 
 def front(verdicts: Sequence[Verdict], others: Iterable[Page]) -> str:
-    """Return the front page of a report, with links to what else there is."""
-    found = runs(verdicts)
+    """Return the front page of a report, with links to all other pages."""
+    judged_runs = runs(verdicts)
     contents = [*_CONTENTS, *((page.link(), page.what) for page in others)]
     return whole(
         "How accurate it is",
         _WHAT,
         "## In short",
-        _in_short(found, verdicts),
+        _in_short(judged_runs, verdicts),
         counts(verdicts),
-        table(BY_RUNG, by_rung(found)),
+        table(BY_RUNG, by_rung(judged_runs)),
         "## How to read it",
         bullets(_READING),
         "## The error of every scene",
-        "The largest error of the main quantity, relative to its size: the angular velocity "
-        "(`euler`) or the impulse (`kirchhoff`). A word stands where a run has another verdict than "
-        "pass in any of its quantities.",
-        _by_scene(found),
+        "The largest error of the main quantity, relative to its size: the angular velocity (`euler`) "
+        "or the impulse (`kirchhoff`). A word is a verdict other than pass of any quantity of the "
+        "run.",
+        _by_scene(judged_runs),
         "## What else is here",
         table(["file", "what it has"], contents),
         "## To remake this",
@@ -78,41 +79,49 @@ def front(verdicts: Sequence[Verdict], others: Iterable[Page]) -> str:
         "and order operations in their own ways, so the roundings differ, and with them the "
         "digits of an error, but neither its verdict nor its size. "
         "`verify/taylor_verify/judge/rounding_class.py` says what that means in numbers, and why.",
-        "What is *not committed* is large and made from the rest: records, portraits of the "
-        "scenes, `gates`, pictures as PDF, the paper, and the JSON of `reference`. `taylor-verify "
-        "publish --missing` makes the data of these in minutes, `make paper` the paper and the "
-        "pictures, and `make release-data` packs all into one archive.",
+        "Files that are *not committed* are large, and made from the other files: records, portraits "
+        "of the scenes, `gates`, pictures as PDF, the paper, and the JSON of `reference`. "
+        "`taylor-verify publish --missing` makes the data of these in minutes, `make paper` the paper "
+        "and the pictures, and `make release-data` packs all into one archive.",
         made_with(versions(verdicts)),
     )
 
 
-def _in_short(found: Sequence[Run], verdicts: Sequence[Verdict]) -> str:
+def _in_short(judged_runs: Sequence[Run], verdicts: Sequence[Verdict]) -> str:
     counted = {
-        "scenes": len({run.scene for run in found}),
-        "runs": len(found),
+        "scenes": len({run.scene for run in judged_runs}),
+        "runs": len(judged_runs),
         "verdicts": len(verdicts),
     }
     text = ", ".join(f"{bold(str(number))} {what}" for what, number in counted.items())
     finite = [v.ratio for v in verdicts if v.is_compared and v.ratio is not None]
     if not finite:
         return f"{text}."
-    kept = sum(verdict.max == 0 for run in found for verdict in run.conserved.values())
+    exact_drifts = sum(
+        verdict.max == 0 for run in judged_runs for verdict in run.conserved.values()
+    )
     return (
         f"{text}. Half of the errors are below {bold(figure(median(finite)))} of what is attainable; "
-        f"{kept} conserved quantities are kept exactly."
+        f"{exact_drifts} conserved quantities are kept exactly."
     )
 
 
 BY_RUNG: Final = (
-    *("rung", "u:", "runs:", "all pass:"),
-    *("median error, u:", "largest error, u:", "over attainable:", "where"),
+    "rung",
+    "u:",
+    "runs:",
+    "all pass:",
+    "median error, u:",
+    "largest error, u:",
+    "over attainable:",
+    "where",
 )
 
 
-def by_rung(found: Sequence[Run]) -> list[list[str]]:
-    """Return a row a rung: roundoff, median and worst error of state, the worst over attainable."""
-    rungs = sorted({run.rung for run in found}, key=place_of_rung)
-    return [_rung_row([r for r in found if r.rung == rung]) for rung in rungs]
+def by_rung(judged_runs: Sequence[Run]) -> list[list[str]]:
+    """Return a row for each rung: roundoff, median and worst error of state, worst over attainable."""
+    rungs = sorted({run.rung for run in judged_runs}, key=place_of_rung)
+    return [_rung_row([r for r in judged_runs if r.rung == rung]) for rung in rungs]
 
 
 def _rung_row(of_rung: Sequence[Run]) -> list[str]:
@@ -134,12 +143,12 @@ def _rung_row(of_rung: Sequence[Run]) -> list[str]:
     ]
 
 
-def _by_scene(found: Sequence[Run]) -> str:
-    """Return a line a scene and solver, with the main quantity's largest error on each rung."""
-    rungs = sorted({run.rung for run in found}, key=place_of_rung)
-    solvers = {(run.solver, run.setting) for run in found}
+def _by_scene(judged_runs: Sequence[Run]) -> str:
+    """Return a line for each scene and solver: the main quantity's largest error on each rung."""
+    rungs = sorted({run.rung for run in judged_runs}, key=place_of_rung)
+    solvers = {(run.solver, run.setting) for run in judged_runs}
     lines: dict[tuple[str, str, str], dict[str, Run]] = {}
-    for run in found:
+    for run in judged_runs:
         lines.setdefault((run.scene, run.solver, run.setting), {})[run.rung] = run
     columns = ["scene", *(["solver"] if len(solvers) > 1 else [])]
     rows = [

@@ -32,7 +32,7 @@ _MEANINGS: Final[Mapping[Status, str]] = {
     Status.UNAVAILABLE: "this machine does not have the rung",
 }
 _RATIO: Final = (
-    "*Over attainable* is the largest ratio, over all samples, of the error to what perfect "
+    "*Over attainable* is the largest ratio, over all samples, of the error to the error that perfect "
     "rounding of every step would leave on this orbit"
 )
 _CONTENTS: Final = (
@@ -40,35 +40,53 @@ _CONTENTS: Final = (
     (
         "[Attainable and reached](attainable.md)",
         "[csv](attainable.csv)",
-        "the same beside what perfect rounding would leave, a column a rung",
+        "the same beside the errors of perfect rounding, a column for each rung",
     ),
     ("[Conserved quantities](conserved.md)", "[csv](conserved.csv)", "their drift, a run a line"),
     (
         "Gates",
         "`gates.csv`",
-        "every verdict, its bound and why that bound: `gates.md`, not committed",
+        "every verdict, its bound and the reason of the bound: `gates.md`, not committed",
     ),
 )
 _PAPER: Final = (
-    "`make paper` makes a paper of what the studies found, with its tables alone as LaTeX and CSV, in "
+    "`make paper` makes a paper of the studies' results, with its tables as LaTeX and CSV, in "
     "`reports/paper`. It is not committed, nor are `gates.md` and `gates.csv`: `taylor-verify publish "
-    "--missing` makes the tables of the gates, a line for every verdict with its reason, for searching and "
-    "not for reading."
+    "--missing` makes the tables of the gates, with a line for every verdict and its reason, which "
+    "are for searching."
 )
 _ACCURACY: Final = (
-    *("scene", "rung", "quantity", "max:", "mean:", "at t:", "max, u:", "mean, u:"),
-    *("over attainable:", "bound:", "steps:", "verdict"),
+    "scene",
+    "rung",
+    "quantity",
+    "max:",
+    "mean:",
+    "at t:",
+    "max, u:",
+    "mean, u:",
+    "over attainable:",
+    "bound:",
+    "steps:",
+    "verdict",
 )
 _GATES: Final = (
-    *("scene", "rung", "quantity", "max:", "at t:", "bound:", "attainable:", "over attainable:"),
-    *("verdict", "because"),
+    "scene",
+    "rung",
+    "quantity",
+    "max:",
+    "at t:",
+    "bound:",
+    "attainable:",
+    "over attainable:",
+    "verdict",
+    "because",
 )
 
 
 def accuracy(verdicts: Sequence[Verdict]) -> str:
     """Return the page of the error of every state quantity of every run."""
-    found = runs(verdicts)
-    shown = [verdict for run in found for verdict in run.state]
+    judged_runs = runs(verdicts)
+    shown = [verdict for run in judged_runs for verdict in run.state]
     units = {verdict.quantity: verdict.unit for verdict in shown if verdict.unit}
     legend = [
         "*max* and *mean* are over all samples, *at t* is the time of the maximum.",
@@ -81,10 +99,10 @@ def accuracy(verdicts: Sequence[Verdict]) -> str:
         "State errors",
         verdicts,
         "Every scene was integrated on every rung and compared, at every sample, with the exact "
-        "solution of the same rounded data: what is left is the error of the solver.",
+        "solution of the same rounded data. The difference is the error of the solver.",
         counts(shown),
         bullets(legend),
-        sections(found, _accuracy_section),
+        sections(judged_runs, _accuracy_section),
     )
 
 
@@ -94,26 +112,26 @@ def _accuracy_section(group: Sequence[Run]) -> str:
 
 
 def conserved(verdicts: Sequence[Verdict]) -> str:
-    """Return the page of the drift of every conserved quantity, a run a line."""
-    found = runs(verdicts)
-    shown = [verdict for run in found for verdict in run.drifts]
+    """Return the page of the drift of every conserved quantity, a line for each run."""
+    judged_runs = runs(verdicts)
+    shown = [verdict for run in judged_runs for verdict in run.drifts]
     legend = [
         "A cell is *max, mean @ t of the max*, in u, each quantity relative to a scale of its own "
-        f"that does not vanish. A single 0 is a quantity kept exactly; {NOTHING} is one that the "
-        "scene does not have.",
+        f"that does not vanish. A single 0 is a quantity that is conserved exactly; {NOTHING} is a "
+        "quantity that the scene does not have.",
         roundoffs(shown),
         f"{_RATIO}; the worst quantity of the line is named.",
-        "Under loads these quantities change. Their cell is then what the work and the impulse of "
-        "the loads leave unexplained.",
-        "A small drift certifies no state: [state errors](accuracy.md) do.",
+        "Under loads these quantities change. The cell is then the part of the change that the work "
+        "and the impulse of the loads do not explain.",
+        "A small drift does not prove a small error of the state; see [state errors](accuracy.md).",
     ]
     return page(
         "Conserved quantities",
         verdicts,
-        "How far each run departed from what the exact motion conserves.",
+        "The drift of every quantity that the exact motion conserves, for each run.",
         counts(shown),
         bullets(legend),
-        sections(found, _conserved_section),
+        sections(judged_runs, _conserved_section),
     )
 
 
@@ -152,7 +170,7 @@ def gates(verdicts: Sequence[Verdict]) -> str:
     return page(
         "Gates",
         verdicts,
-        "Every quantity that was compared, the bound it was held against, and why that bound.",
+        "Every quantity that was compared, its bound, and the reason of the bound.",
         counts(verdicts),
         bullets(legend),
         sections(
@@ -163,16 +181,17 @@ def gates(verdicts: Sequence[Verdict]) -> str:
 
 
 def readme(verdicts: Sequence[Verdict], others: Iterable[Page] = ()) -> str:
-    """Return the index of the tables, and how a cell is read; ``others`` are what else is there."""
+    """Return the index of the tables, and how to read a cell; ``others`` are further pages."""
     how = [
-        "A number has three significant digits; the CSV has them all. A time has its own digits.",
-        "Where there is no number stands a word: the verdict, or how a failed run ended. "
-        f"{NOTHING} is a cell that has nothing to say.",
+        "Numbers have three significant digits, and all digits in the CSV. Times have up to six "
+        "digits.",
+        f"A word replaces a missing number: the verdict, or the outcome of a failed run. {NOTHING} is "
+        "an empty cell.",
         "An error is absolute or relative as its unit says, and also given in u, the unit roundoff "
-        "2^-p of a rung of p bits: 1 u is what one rounding may leave.",
-        f"{_RATIO}. Near 1 a solver does all that its arithmetic allows.",
-        "In the CSV the word stands in the column of the maximum, and a cell with nothing to say "
-        "is empty; `max_u` and `mean_u` are in u.",
+        "2^-p of a rung of p bits: 1 u is the largest error of one rounding.",
+        f"{_RATIO}. A ratio near 1 is the best that the arithmetic allows.",
+        "In the CSV the word is in the column of the maximum, and empty cells have no mark; `max_u` "
+        "and `mean_u` are in u.",
     ]
     meanings = [[judged(status), text] for status, text in _MEANINGS.items()]
     besides = [

@@ -1,7 +1,7 @@
-"""Published numbers that the project's own pages quote, between marks, made again with the report.
+"""Published numbers that the project's own pages quote; every report makes them again.
 
-A page beside the folder `reports` quotes a block by having its marks; a page without marks is nobody's
-but its author's, and other folders are nobody's source.
+A page beside the folder `reports` quotes a block if it has the marks of that block. Pages without
+marks and reports in other folders are left alone.
 """
 
 from __future__ import annotations
@@ -22,19 +22,24 @@ END: Final = "<!-- end of accuracy -->"
 
 _FOLDER: Final = "reports"
 _PAGES: Final = ("README.md", "docs/results.md")
-# One of each kind of body and of each quantity that a state has.
+# At least one scene for each kind of body and each quantity of a state.
 _SHOWN: Final = (
-    *(("euler/generic", "omega"), ("euler/full-tensor", "omega")),
-    *(("euler/tennis-racket", "omega"), ("euler/nesc-brick", "omega")),
-    *(("euler/nesc-brick", "attitude"), ("kirchhoff/screw", "impulse")),
-    *(("kirchhoff/general-body", "impulse"), ("kirchhoff/remus-100", "impulse")),
-    *(("kirchhoff/whole-motion", "impulse"), ("kirchhoff/whole-motion", "attitude")),
+    ("euler/generic", "omega"),
+    ("euler/full-tensor", "omega"),
+    ("euler/tennis-racket", "omega"),
+    ("euler/nesc-brick", "omega"),
+    ("euler/nesc-brick", "attitude"),
+    ("kirchhoff/screw", "impulse"),
+    ("kirchhoff/general-body", "impulse"),
+    ("kirchhoff/remus-100", "impulse"),
+    ("kirchhoff/whole-motion", "impulse"),
+    ("kirchhoff/whole-motion", "attitude"),
     ("kirchhoff/whole-motion", "centre"),
 )
 
 
 def requoted(folder: Path, verdicts: Sequence[Verdict]) -> dict[str, str]:
-    """Return the pages beside ``folder`` that quote it, by their paths from there, with today's blocks.
+    """Return the pages beside ``folder`` that quote it, with new blocks, by their relative paths.
 
     Raises ValueError for a page with the first mark of a block and not the second.
     """
@@ -60,11 +65,11 @@ def accuracy(verdicts: Iterable[Verdict]) -> str:
 
 def chosen(verdicts: Iterable[Verdict]) -> tuple[list[str], list[list[str]]]:
     """Return headings and rows of the chosen scenes."""
-    found = {(v.scene, v.quantity, v.rung): v for v in verdicts if v.solver == "taylor"}
-    rungs = sorted({rung for _, _, rung in found}, key=place_of_rung)
+    published = {(v.scene, v.quantity, v.rung): v for v in verdicts if v.solver == "taylor"}
+    rungs = sorted({rung for _, _, rung in published}, key=place_of_rung)
     columns = ["scene", "what is compared", *(f"{r}:" for r in rungs)]
     return columns, [
-        [code(scene), quantity, *(_cell(found.get((scene, quantity, rung))) for rung in rungs)]
+        [code(scene), quantity, *(_cell(published.get((scene, quantity, rung))) for rung in rungs)]
         for scene, quantity in _SHOWN
     ]
 

@@ -1,4 +1,4 @@
-"""The published tables as CSV: one heading line, then every digit of what the Markdown shows."""
+"""The published tables as CSV: one heading line, then the numbers of the Markdown in all digits."""
 
 from __future__ import annotations
 
@@ -21,12 +21,32 @@ _ERROR: Final = ("quantity", "max", "mean", "final", "at", "unit", "max_u", "mea
 _ACCURACY: Final = (*_RUN, *_ERROR, "ratio", "ratio_at", "bound", "steps", "verdict", "outcome")
 _ATTAINABLE: Final = (
     *_RUN,
-    *("quantity", "max", "at", "attainable", "ratio", "ratio_at", "unit", "max_u", "attainable_u"),
+    "quantity",
+    "max",
+    "at",
+    "attainable",
+    "ratio",
+    "ratio_at",
+    "unit",
+    "max_u",
+    "attainable_u",
     "verdict",
 )
 _GATES: Final = (
-    *(*_RUN, *_ERROR, "ratio", "ratio_at", "bound", "attainable", "roundoff", "exponent"),
-    *("steps", "evaluations", "verdict", "outcome", "because", "scene_sha256"),
+    *_RUN,
+    *_ERROR,
+    "ratio",
+    "ratio_at",
+    "bound",
+    "attainable",
+    "roundoff",
+    "exponent",
+    "steps",
+    "evaluations",
+    "verdict",
+    "outcome",
+    "because",
+    "scene_sha256",
 )
 _CONSERVED: Final = ("max_u", "mean_u", "at", "ratio", "verdict")
 
@@ -43,10 +63,10 @@ def attainable(verdicts: Iterable[Verdict]) -> str:
 
 def conserved(verdicts: Iterable[Verdict]) -> str:
     """Return a row for every run, with five columns for each quantity: ``T_max_u`` and so on."""
-    found = runs(verdicts)
-    quantities = conserved_quantities(found)
+    judged_runs = runs(verdicts)
+    quantities = conserved_quantities(judged_runs)
     names = [f"{quantity}_{field}" for quantity in quantities for field in _CONSERVED]
-    rows = [_conserved_row(run, quantities_of_scene(run, found)) for run in found]
+    rows = [_conserved_row(run, quantities_of_scene(run, judged_runs)) for run in judged_runs]
     return sheet([*_RUN, "verdict", *names], rows)
 
 
@@ -55,15 +75,15 @@ def gates(
     more: Callable[[Verdict], dict[str, Any]] | None = None,
     without: Container[str] = (),
 ) -> str:
-    """Return a row for every verdict; ``more`` has further columns of each, the same ones for all.
+    """Return a row for every verdict; ``more`` returns further columns, the same for all verdicts.
 
     The columns ``without`` are left out.
     """
-    found = [v for run in runs(verdicts) for v in run.verdicts]
-    further = [more(v) if more else {} for v in found]
+    rows = [v for run in runs(verdicts) for v in run.verdicts]
+    further = [more(v) if more else {} for v in rows]
     names = [name for name in _GATES if name not in without]
     names += further[0] if further else ()
-    return sheet(names, (_fields(v) | own for v, own in zip(found, further, strict=True)))
+    return sheet(names, (_fields(v) | own for v, own in zip(rows, further, strict=True)))
 
 
 def _conserved_row(run: Run, of_scene: Iterable[str]) -> dict[str, Any]:
@@ -77,9 +97,9 @@ def _conserved_row(run: Run, of_scene: Iterable[str]) -> dict[str, Any]:
 
 
 def _fields(verdict: Verdict) -> dict[str, Any]:
-    """Return a verdict's own fields, and errors in u; a word in place of a maximum that is none.
+    """Return the fields of a verdict, with errors in u; a word replaces a maximum that is no number.
 
-    What is a quotient of two other columns has six digits.
+    A quotient of two other columns has six digits.
     """
     row = verdict.row() | {
         "mean_u": _short(in_roundoffs(verdict, verdict.mean)),

@@ -1,4 +1,4 @@
-"""The study of accuracy: the standard set on every rung, in tables of what was judged."""
+"""The study of accuracy: tables of the verdicts on the standard set on every rung."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ _GATES: Final = {"tables/gates.md": page.gates, "tables/gates.csv": sheet.gates}
 
 
 def _gates_lacking(report: Published) -> list[tuple[str, str]]:
-    """Return path and text of each table of gates that is not the one of the verdicts."""
+    """Return path and text of each table of gates that is missing or outdated."""
     lacking = []
     for name, make in _GATES.items():
         file, text = report.folder / name, make(report.verdicts)
@@ -56,7 +56,7 @@ def _gates_lacking(report: Published) -> list[tuple[str, str]]:
 
 
 def _runs_lacking(report: Published) -> tuple[Run, ...]:
-    """Return the runs without a record, all of them where the records are those of other verdicts."""
+    """Return the runs without a record; all runs if the records belong to other verdicts."""
     data = report.folder / store.FOLDER
     own = [run for run in report.runs if run.solver == _SOLVER and not run.setting]
     judged = [run for run in own if any(v.verdict not in _UNJUDGED for v in run.verdicts)]
@@ -67,7 +67,7 @@ def _runs_lacking(report: Published) -> tuple[Run, ...]:
 
 
 def _add_records(folder: Path, lacking: Sequence[Run], progress: Progress) -> tuple[Path, ...]:
-    """Run what was published once more, for its records alone."""
+    """Run the published runs once more to write their records."""
     from taylor_verify.batch.job import Job
     from taylor_verify.batch.judging import judge_all
 

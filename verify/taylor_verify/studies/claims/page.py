@@ -1,7 +1,7 @@
-"""Page of the ledger: first what a reader of the two texts must correct, then every entry.
+"""Page of the ledger: first the corrections to the two texts, then every entry.
 
-It is made from the rows of `claims --json` alone, and holds nothing that another machine would change: what
-made the rows stands beside them, in data/claims.json.
+It is made from the rows of `claims --json` alone, and is the same on every machine. The versions that
+made the rows are in data/claims.json.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ from taylor_verify.studies.stored import Stored
 CLAIMS: Final = Stored(ClaimsStudy, "claims", lambda study: study.document())
 
 _INTRODUCTION: Final = (
-    "Every numbered equation of two classic texts, and every sentence of theirs that claims something, "
-    "each with a check that can fail: a page of Heinbockel's *Introduction to Tensor Calculus* (Euler's "
-    "equations, page 210) and sections 48 and 49 of the *Encyclopædia Britannica*'s Hydromechanics "
-    "(Kirchhoff's equations). Both were read as transcribed; the printed pages were not seen, so that a "
-    "fault may be the print's or the transcription's."
+    "Every numbered equation of two classic texts, and every sentence of theirs that claims "
+    "something, each with a check that can fail: a page of Heinbockel's *Introduction to Tensor "
+    "Calculus* (Euler's equations, page 210) and sections 48 and 49 of the *Encyclopædia "
+    "Britannica*'s Hydromechanics (Kirchhoff's equations). Both were read as transcriptions without "
+    "the printed pages, so that a fault may be in the print or in the transcription."
 )
 _HOW: Final = (
-    "An identity is expanded in exact rationals, with the equations of motion put in: it leaves zero or "
-    "it does not. What is claimed of orbits is held to trajectories of 30 to 60 digits, enclosed "
-    "by Taylor series that share no closed form with the texts. Every entry also has mutations, the "
+    "An identity is expanded in exact rationals, with the equations of motion put in: it leaves zero "
+    "or it does not. Claims on orbits are compared with trajectories of 30 to 60 digits, enclosed by "
+    "Taylor series that share no closed form with the texts. Every entry also has mutations, the "
     "statement with a sign, a factor or an index changed, that its check rejects."
 )
 _REMAKE: Final = (
@@ -74,14 +74,14 @@ def _counts(rows: Sequence[ClaimRow]) -> str:
 def _entries(
     rows: Iterable[ClaimRow], lines: Callable[[ClaimRow], Sequence[str]], *verdicts: Verdict
 ) -> Iterator[str]:
-    """Yield the entries with one of the verdicts, each with its lines that are not empty."""
+    """Yield the entries that have one of the verdicts, each with its lines."""
     for row in rows:
         if row.verdict in verdicts:
             yield f"{bold(code(row.id))}\n\n{bullets(filter(None, lines(row)))}"
 
 
 def _erratum(row: ClaimRow) -> list[str]:
-    """Return a false entry as transcribed, correct, and where the first form fails."""
+    """Return a false entry: as transcribed, corrected, and a counterexample."""
     return [
         f"as transcribed: {_math(row.statement)}",
         f"correct: {_math(row.correction)}",
@@ -120,7 +120,7 @@ def _statement(row: ClaimRow) -> list[str]:
 
 
 def _restored(rows: Sequence[ClaimRow]) -> str:
-    """Return what the scan lost, where the equation is true once that is put back."""
+    """Return the table of the signs that the scan lost, and that make their equations true."""
     lost = [[code(r.id), prose(r.lost or "")] for r in rows if r.verdict is Verdict.RESTORED]
     return table(["equation", "what the scan lost"], lost)
 
@@ -147,7 +147,7 @@ def _math(latex: str | None) -> str:
 
 
 def _residual(row: ClaimRow) -> str:
-    """Return zero where the check is exact; else its bound, which no machine's rounding moves."""
+    """Return zero for an exact check, else its bound, which is the same on every machine."""
     return "0, exactly" if row.bound == 0 else f"within {_short(row.bound)}"
 
 
@@ -156,9 +156,23 @@ def _short(size: float | None) -> str:
 
 
 _SHEET: Final = (
-    *("id", "verdict", "statement", "correction", "condition", "counterexample"),
-    *("residual", "residual_transcribed", "bound", "because", "domain", "method", "mutations"),
-    *("lost", "open", "void", "remark"),
+    "id",
+    "verdict",
+    "statement",
+    "correction",
+    "condition",
+    "counterexample",
+    "residual",
+    "residual_transcribed",
+    "bound",
+    "because",
+    "domain",
+    "method",
+    "mutations",
+    "lost",
+    "open",
+    "void",
+    "remark",
 )
 
 

@@ -11,7 +11,7 @@ from taylor_verify.studies.study import Measured, Progress, Study
 
 
 def _measure(folder: Path, progress: Progress) -> Measured:
-    """Check the whole ledger; one whose entries have left their verdicts is not stored."""
+    """Check the whole ledger, and store it only if every entry still has its verdict."""
     from taylor_verify.claims.document import ClaimsStudy
     from taylor_verify.claims.ledger import claims, examined, missed
     from taylor_verify.claims.numbers import CITED

@@ -18,9 +18,9 @@ from taylor_verify.studies.stored import Stored
 
 @dataclass(frozen=True)
 class DefectRow:
-    """Defect in words; ``twin`` names the sound solver that differs from it by the defect alone.
+    """Defect in words; ``twin`` names the sound solver without this defect, otherwise equal.
 
-    ``gate`` is the quantity that must see it, and ``told`` marks what is in the short table.
+    ``gate`` is the quantity that must see it; ``told`` is true for defects of the short table.
     """
 
     name: str
@@ -53,17 +53,17 @@ class Sight:
 
     @property
     def quantities(self) -> tuple[str, ...]:
-        """The gates of the scene: the sound twin came to a verdict on all of them."""
+        """The quantities with a gate, which are those with a verdict on the sound twin."""
         return tuple(self.sound)
 
     @property
     def conserved(self) -> tuple[str, ...]:
-        """The conserved quantities among them."""
+        """The conserved quantities with a gate."""
         return tuple(name for name in self.quantities if is_conserved(name))
 
     @property
     def state(self) -> tuple[str, ...]:
-        """The quantities of state among them."""
+        """The state quantities with a gate."""
         return tuple(name for name in self.quantities if name in STATES)
 
     @property
@@ -85,7 +85,7 @@ class Sight:
         return judged is not None and judged.verdict is Status.PASS
 
     def over_bound(self, quantity: str) -> float | None:
-        """Return the largest error over its bound; None where that is no finite number."""
+        """Return the largest error over its bound; None if the error is no finite number."""
         ratio = self.verdicts[quantity].ratio
         return None if ratio is None else ratio / self.factor
 
@@ -107,16 +107,16 @@ class ControlsStudy:
 
     @cached_property
     def sights(self) -> tuple[Sight, ...]:
-        """The defects with their verdicts. Raises ValueError for one without, or with a twin without."""
+        """The defects with their verdicts. Raises ValueError if verdicts on one or its twin are missing."""
         return tuple(self._sights())
 
     def _sights(self) -> Iterator[Sight]:
         for defect in self.defects:
-            found = self._verdicts_on(defect.scene, defect.name, defect.setting)
+            verdicts = self._verdicts_on(defect.scene, defect.name, defect.setting)
             sound = self._verdicts_on(defect.scene, defect.twin, defect.twin_setting)
-            if not found or not sound:
+            if not verdicts or not sound:
                 raise ValueError(f"expected verdicts on {defect.name} and its twin, got none")
-            yield Sight(defect, found, sound, self.factor)
+            yield Sight(defect, verdicts, sound, self.factor)
 
     def _verdicts_on(self, *run: str) -> dict[str, Verdict]:
         return {v.quantity: v for v in self.verdicts if (v.scene, v.solver, v.setting) == run}
@@ -129,19 +129,19 @@ _SHIFT: Final = ("time_shift", "residual", "shift", "trend", "remains")
 
 
 def _fields(study: ControlsStudy) -> dict[str, Any]:
-    """Return keys and values as they are stored: of a verdict what is the same in every run."""
+    """Return the stored keys and values: those fields of a verdict that are the same in every run."""
     rows = [_row(verdict) for verdict in study.verdicts]
     return {**complete(study), "machine": plain(study.machine), "verdicts": rows}
 
 
 def _row(verdict: Verdict) -> dict[str, Any]:
-    # Which way roundings push the time is another draw on every machine.
+    # The sign of a shift of time by roundings is random on each machine.
     apart = _APART if verdict.verdict is Status.FAIL else (*_APART, *_SHIFT)
     return {name: value for name, value in verdict.row().items() if name not in apart}
 
 
 def _checked(file: Path, kind: type[ControlsStudy]) -> ControlsStudy:
-    """Return the document in a file. Raises ValueError for a defect without its verdicts too."""
+    """Return the document in a file. Raises ValueError also for a defect without verdicts."""
     study = read_study(file, kind)
     try:
         _ = study.sights

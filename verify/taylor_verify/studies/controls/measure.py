@@ -1,4 +1,4 @@
-"""Runs of every defect and of its sound twin, as the study that the published table is made of."""
+"""Runs of every defect and of its sound twin, as the document of the published table."""
 
 from __future__ import annotations
 
@@ -26,27 +26,27 @@ def sights(
     finished: Callable[[str], None] | None = None,
     twins: Twins | None = None,
 ) -> list[Sight]:
-    """Run every defect and, once for all that share it, every sound twin.
+    """Run every defect, and every sound twin once, even if several defects share it.
 
-    ``finished`` is called with the name of each defect as it ends. ``twins`` has the verdicts of those
-    that have run before, by scene, solver and setting, and is added to.
+    ``finished`` is called with the name of each defect as it ends. ``twins`` has the verdicts of twins that
+    ran before, by scene, solver and setting; new ones are added to it.
     """
     twins = {} if twins is None else twins
-    seen = []
+    rows = []
     for defect in defects:
         key = (defect.scene, defect.twin.name, defect.twin.setting)
         if key not in twins:
             twins[key] = _verdicts(defect.scene, defect.twin)
         verdicts = _verdicts(defect.scene, defect)
-        seen.append(Sight(_row(defect), verdicts, twins[key], GATE_FACTOR))
+        rows.append(Sight(_row(defect), verdicts, twins[key], GATE_FACTOR))
         if finished is not None:
             finished(defect.name)
-    return seen
+    return rows
 
 
-def study(seen: Iterable[Sight]) -> ControlsStudy:
-    """Return the rows that the published table is made from: each defect, each verdict once."""
-    rows = list(seen)
+def study(measured: Iterable[Sight]) -> ControlsStudy:
+    """Return the document of the published table: each defect, and each verdict once."""
+    rows = list(measured)
     verdicts = {
         (v.scene, v.solver, v.setting, v.quantity): v
         for sight in rows

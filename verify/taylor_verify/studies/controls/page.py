@@ -1,4 +1,4 @@
-"""Table of what each gate sees, and the sentences that it proves, from stored rows alone."""
+"""Table of the defects that each gate sees, and the sentences that it proves, from stored rows."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ from taylor_verify.studies.controls.proof import (
     title,
 )
 
-# Where the short table stands in a page that is otherwise written by hand.
+# Marks around the short table in a page that is otherwise written by hand.
 BEGIN: Final = "<!-- controls: made by taylor-verify publish; do not edit -->"
 END: Final = "<!-- end of controls -->"
 
 _NOT_SEEN: Final = NOTHING
-# A heading and the quantities under it: of a body, one of them at most.
+# A heading and its quantities, of which a body has one at most.
 _COLUMNS: Final = (
     ("start", (INITIAL,)),
     ("state", MAIN),
@@ -46,28 +46,25 @@ _COLUMNS: Final = (
 _MODELS: Final = {"omega": "A rigid body", "impulse": "A solid in an ideal fluid"}
 
 _WHAT: Final = (
-    "A suite that has never failed anything has shown nothing. So these solvers were broken on "
-    "purpose, one thing in each, and judged like any other. Which of the usual checks would have "
-    "noticed?"
+    "A suite must be able to fail. These solvers were therefore broken on purpose, each in one thing, "
+    "and judged like any other. Which of the usual checks see the defects?"
 )
 _HOW: Final = (
-    f"A {bold('bold')} number is a gate that *sees* the defect: the largest error over the bound of "
-    f"that gate. {_NOT_SEEN} is a gate that does not: the defect passes. A gate sees no defect where "
-    "its sound twin fails too.",
-    "*start* is the first sample alone, which every solver was given. "
-    "*state* is omega, or the impulse, in body axes, and with *attitude* and *centre* it is what a "
-    "comparison with the exact motion asks. All columns after these are conserved quantities: T the "
-    "energy; H² and F² the squares of momentum and impulse, F·G and y3 the other two in body axes; "
-    "then the vectors in space.",
-    "*time shift* is filled where a constant shift of time explains most of the error of the state: "
-    "the shift, in the scene's unit, positive for an answer that is late. *outcome* is what the "
-    "solver says of itself.",
+    f"A {bold('bold')} number is the largest error over the bound of a gate that *sees* the defect. "
+    f"{_NOT_SEEN} is a gate that the defect passes. A gate that the sound twin fails too does not see "
+    "the defect.",
+    "*start* is the first sample, which every solver was given. *state* is omega, or the impulse, in "
+    "body axes. A comparison with the exact motion checks it together with *attitude* and *centre*. "
+    "All columns after these are conserved quantities: T the energy; H² and F² the squares of "
+    "momentum and impulse, F·G and y3 the other two in body axes; then the vectors in space.",
+    "*time shift* is given if a constant shift of time explains most of the error of the state: the "
+    "shift in the scene's unit, positive for a late answer. *outcome* is the solver's own report.",
     "Defects that fewer conserved quantities see come first.",
 )
 
 
 def page(study: ControlsStudy) -> str:
-    """Return the whole page: what it proves, a table for each kind of body, every defect in words."""
+    """Return the whole page: its findings, a table for each kind of body, every defect in words."""
     sights = study.sights
     return whole(
         "What each gate sees",
@@ -82,8 +79,8 @@ def page(study: ControlsStudy) -> str:
         "## The defects, and why",
         _in_words(sights),
         "## The sound twins",
-        "Each defect stands beside a sound solver that differs from it by the defect alone, the "
-        "step included: what fails here is not a step that is too long.",
+        "Each defect is compared with a sound solver of the same step that differs from it by the "
+        "defect alone, so that no failure comes from a step that is too long.",
         _twins(sights),
         "## To remake this",
         f"`taylor-verify publish controls` runs every defect and its twin, and writes "
@@ -97,19 +94,20 @@ def page(study: ControlsStudy) -> str:
 
 
 def _section(sights: Sequence[Sight], quantity: str, heading: str) -> str:
-    found = [sight for sight in sights if quantity in sight.quantities]
-    if not found:
+    group = [sight for sight in sights if quantity in sight.quantities]
+    if not group:
         return ""
-    there = {name for sight in found for name in sight.quantities}
+    there = {name for sight in group for name in sight.quantities}
     shown = [(words, names) for words, names in _COLUMNS if there.intersection(names)]
     columns = ["defect", *(f"{words}:" for words, _ in shown), "time shift:", "outcome"]
     rows = []
-    for sight in _blindest_first(found):
+    for sight in _blindest_first(group):
         shift = constant_shift(sight)
         cells = [_cell(sight, names) for _, names in shown]
         rows.append(
             [
-                *(title(sight), *cells),
+                title(sight),
+                *cells,
                 _NOT_SEEN if shift is None else bold(figure(shift)),
                 _NOT_SEEN if sight.is_finished else bold("stopped"),
             ]
@@ -118,7 +116,7 @@ def _section(sights: Sequence[Sight], quantity: str, heading: str) -> str:
 
 
 def _cell(sight: Sight, names: Iterable[str]) -> str:
-    """Return the cell of the quantity that the scene has; empty where it has none, or nothing ran."""
+    """Return the cell of the quantity that the scene has; empty if it has none, or nothing ran."""
     here = [name for name in names if name in sight.quantities]
     if not here or not sight.is_finished:
         return ""
@@ -129,7 +127,7 @@ def _cell(sight: Sight, names: Iterable[str]) -> str:
 
 
 def _blindest_first(sights: Iterable[Sight]) -> list[Sight]:
-    """Return first those that fewer conserved quantities see; last what was not compared."""
+    """Return the defects, first those that few conserved quantities see, last the uncompared."""
 
     def key(sight: Sight) -> tuple[bool, int, int]:
         conserved = sum(name in sight.seen_by for name in sight.conserved)
@@ -139,7 +137,7 @@ def _blindest_first(sights: Iterable[Sight]) -> list[Sight]:
 
 
 def _by_gate(sights: Sequence[Sight]) -> str:
-    """Return how many defects each gate sees of those that it was asked about, and which it misses."""
+    """Return, for each gate, how many of its defects it sees, and which it misses."""
     finished = [sight for sight in sights if sight.is_finished]
     rows = []
     for heading, name in ((heading, name) for heading, names in _COLUMNS for name in names):
@@ -188,7 +186,7 @@ SHORT: Final = (
 
 
 def short(study: ControlsStudy) -> str:
-    """Return some fifteen rows and four columns, between the marks BEGIN and END."""
+    """Return the short table of some fifteen rows, between the marks BEGIN and END."""
     legend = (
         "A number is the largest error over its bound: that check sees the defect. *not seen* is a "
         "check that passes it."
@@ -213,10 +211,10 @@ def short_rows(study: ControlsStudy) -> list[list[str]]:
 def _summed(sight: Sight, wanted: Callable[[str], bool]) -> str:
     """Return the largest error over its bound among these quantities."""
     names = [name for name in sight.quantities if wanted(name)]
-    seen = [name for name in names if sight.is_seen_by(name)]
-    if not seen:
+    failing = [name for name in names if sight.is_seen_by(name)]
+    if not failing:
         return "not seen" if all(sight.is_missed_by(name) for name in names) else "undecided"
-    worst = max(seen, key=lambda name: or_infinite(sight.over_bound(name)))
+    worst = max(failing, key=lambda name: or_infinite(sight.over_bound(name)))
     return bold(times_bound(sight, worst))
 
 
@@ -224,8 +222,22 @@ def _summed(sight: Sight, wanted: Callable[[str], bool]) -> str:
 
 
 _FIELDS: Final = (
-    *("defect", "scene", "quantity", "seen", "error_over_bound", "max", "bound", "unit", "verdict"),
-    *("outcome", "time_shift", "residual", "shift", "twin", "twin_verdict", "twin_ratio"),
+    "defect",
+    "scene",
+    "quantity",
+    "seen",
+    "error_over_bound",
+    "max",
+    "bound",
+    "unit",
+    "verdict",
+    "outcome",
+    "time_shift",
+    "residual",
+    "shift",
+    "twin",
+    "twin_verdict",
+    "twin_ratio",
 )
 
 
@@ -236,7 +248,7 @@ def sheet(study: ControlsStudy) -> str:
 
 def _rows_of(sight: Sight) -> Iterator[dict[str, Any]]:
     for name, verdict in sight.verdicts.items():
-        # A sound quaternion is a unit one, and has no row that says so.
+        # A sound quaternion has norm 1, and no row of its own.
         twin = sight.sound.get(name)
         yield verdict.row() | {
             "defect": sight.defect.name,

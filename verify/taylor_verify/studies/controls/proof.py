@@ -13,7 +13,7 @@ from taylor_verify.studies.controls.document import Sight
 
 MAIN: Final = ("omega", "impulse")
 
-# A shift of time that leaves no more of the error than this is all of it, in words.
+# A shift of time explains an error entirely if it leaves less than this part of it.
 _WHOLLY: Final = 0.01
 # Two draws of the same roundings differ by less than this factor.
 _ALIKE: Final = 2
@@ -21,7 +21,7 @@ _SPELT: Final = {"nan": "NaN", "munk": "Munk"}
 
 
 def proven(sights: Sequence[Sight]) -> list[str]:
-    """Return sentences, each true of these rows; one that is true of none is left out."""
+    """Return the sentences that are true of these rows."""
     finished = [sight for sight in sights if sight.is_finished]
     sentences = [
         _energy_alone(finished),
@@ -31,7 +31,7 @@ def proven(sights: Sequence[Sight]) -> list[str]:
         f"{_seeing(finished, lambda sight: sight.state)} of {len(finished)}; all conserved quantities "
         f"together see {_seeing(finished, lambda sight: sight.conserved)}.",
         _shifted(finished),
-        f"{len(finished)} of {len(sights)} report success: a solver's own word is no gate."
+        f"{len(finished)} of {len(sights)} report success: a solver's own report is no evidence."
         if finished
         else "",
         _all_caught(sights),
@@ -44,10 +44,10 @@ def _energy_alone(sights: Sequence[Sight]) -> str:
     if not blind:
         return ""
     worse = [sight for sight in blind if not _keeps_energy_like_its_twin(sight)]
-    kept = f"All but {_names(worse)}" if worse else "All of them"
+    exact = f"All but {_names(worse)}" if worse else "All of them"
     return (
         f"{bold(f'{len(blind)} of {len(sights)} defects pass the gate of the energy')}: "
-        f"{_names(blind)}. {kept} conserve it to the last digit, as well as the sound solver beside "
+        f"{_names(blind)}. {exact} conserve it to the last digit, as well as the sound solver beside "
         "them."
     )
 
@@ -67,14 +67,14 @@ def _conservation_together(sights: Sequence[Sight]) -> str:
         listed.append(f"{title(sight)} ({_short(max(map(or_infinite, over)))})")
     return (
         f"{bold(f'{len(blind)} pass every gate on a conserved quantity')} that their scene has, "
-        "vectors in space included where there are any, and are wrong all the same, by so many "
-        f"times what a gate of the state allows: {_listed(listed)}. "
+        "vectors in space included where there are any, although their state is wrong, by these "
+        f"multiples of the bound of its gate: {_listed(listed)}. "
         f"{bold('No gate on conserved quantities certifies a state, nor do all of them together.')}"
     )
 
 
 def conserving(sights: Iterable[Sight]) -> list[Sight]:
-    """Return the defects that every gate on a conserved quantity passes, and one of the state sees."""
+    """Return the defects that pass all gates on conserved quantities, but fail one of the state."""
     return [
         sight
         for sight in sights
@@ -114,7 +114,7 @@ def _shifted(sights: Sequence[Sight]) -> str:
     if not listed:
         return ""
     return (
-        "What no conserved quantity can see, a comparison in time names: the error of "
+        "A comparison in time names an error that no conserved quantity can see: the error of "
         f"{_listed(listed)} is {'a' if len(listed) == 1 else 'in each case a'} constant shift of time."
     )
 
@@ -146,7 +146,7 @@ def title(sight: Sight) -> str:
 
 
 def times_bound(sight: Sight, quantity: str) -> str:
-    """Return the error over the bound in two digits; NaN, and infinity where the bound is zero."""
+    """Return the error over the bound in two digits, as NaN or as infinity if the bound is zero."""
     over = sight.over_bound(quantity)
     if over is None:
         return "NaN" if sight.verdicts[quantity].max is None else INFINITE
@@ -162,7 +162,7 @@ def _short(value: float) -> str:
 
 
 def constant_shift(sight: Sight) -> float | None:
-    """Return the shift of time that explains the error of the state; None where none does."""
+    """Return the shift of time that explains the error of the state; None if there is none."""
     for name in MAIN:
         verdict = sight.verdicts.get(name)
         if verdict is not None and sight.is_seen_by(name) and verdict.shift == "constant":

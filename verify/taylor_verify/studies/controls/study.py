@@ -1,4 +1,4 @@
-"""The study of the controls: what each gate sees of solvers that are broken on purpose."""
+"""The study of the controls: deliberately broken solvers, and the gates that see their faults."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ def _measure(folder: Path, progress: Progress) -> Measured:
     from taylor_verify.controls.defects import DEFECTS
     from taylor_verify.studies.controls.measure import sights, study
 
-    seen = sights(DEFECTS, progress.counting(len(DEFECTS)))
-    return Measured(CONTROLS.write(folder, study(seen)))
+    measured = sights(DEFECTS, progress.counting(len(DEFECTS)))
+    return Measured(CONTROLS.write(folder, study(measured)))
 
 
 STUDY: Final = Study(

@@ -17,7 +17,7 @@ class WidthRow:
 
 @dataclass(frozen=True)
 class EnclosureStudy:
-    """Document of all rows, of enclosures with so many bits."""
+    """Document of all rows; ``bits`` is the precision of the enclosures."""
 
     bits: int
     rows: tuple[WidthRow, ...]

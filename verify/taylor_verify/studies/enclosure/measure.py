@@ -22,7 +22,7 @@ from taylor_verify.studies.enclosure.document import EnclosureStudy, WidthRow
 
 # A regular motion of a general body, and an irregular one, whose errors grow like an exponential.
 SCENES: Final = ("kirchhoff/general-body", "kirchhoff/swimmer-vehicle")
-# Those with which 30 digits are tried first.
+# The precision of the first attempt at 30 digits.
 BITS: Final = 140
 _END: Final = 100
 _SAMPLES: Final = 200
@@ -39,8 +39,8 @@ def study() -> EnclosureStudy:
 def widths(scene: Scene, times: Sequence[Fraction], bits: int) -> list[WidthRow]:
     """Return a row for each time, all after the start: the state alone, at one precision.
 
-    ``width`` and ``error`` are relative to the vector, of the vector for which they are largest. Raises
-    exact.enclosure.course.Coarse where so many bits do not lead to the last time.
+    ``width`` and ``error`` are relative to a vector, the largest over the vectors of the state. Raises
+    exact.enclosure.course.Coarse if this precision does not lead to the last time.
     """
     bare = replace(scene, track=frozenset())
     spans = posed(bare).spans
@@ -63,6 +63,6 @@ def _states(scene: Scene, times: Sequence[Fraction], bits: int) -> list[list[arb
 
 
 def _relative(deviations: Sequence[arb], truth: Sequence[arb], span: range) -> float:
-    """An upper bound to three digits of a vector beside the true one."""
+    """Return the size of a vector of deviations over that of the true vector, in three digits."""
     size = norm([truth[i] for i in span])
     return float(f"{float(norm([deviations[i] for i in span]) / size):.2e}")

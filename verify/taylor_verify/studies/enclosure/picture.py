@@ -29,12 +29,12 @@ _LINES: Final[Mapping[str, Entry]] = {
 
 def series(study: EnclosureStudy) -> dict[str, dict[str, Points]]:
     """Return the points of ``width`` and of ``error`` for each scene; a zero is left out."""
-    found: dict[str, dict[str, Points]] = {}
+    scenes: dict[str, dict[str, Points]] = {}
     for row in study.rows:
-        for name, points in found.setdefault(row.scene, {name: [] for name in _LINES}).items():
+        for name, points in scenes.setdefault(row.scene, {name: [] for name in _LINES}).items():
             if (value := getattr(row, name)) > 0:
                 points.append((row.t, value))
-    return found
+    return scenes
 
 
 def picture(study: EnclosureStudy) -> Picture:
@@ -56,14 +56,14 @@ def picture(study: EnclosureStudy) -> Picture:
 
 def _figure(motions: Motions) -> Figure:
     figure, places = sheet(len(motions), list(_LINES.values()))
-    # One scale for all: a motion that is regular is told from one that is not.
+    # One scale for all panels shows the difference between regular and irregular motions.
     points = [point for lines in motions.values() for drawn in lines.values() for point in drawn]
     limits = widened([e for _, e in points], 0.04, 0.04)
     for axes, (scene, lines) in zip(places, motions.items(), strict=True):
         axes.set(yscale="log", ylim=limits, xlim=(0, _BEYOND * max(t for t, _ in points)))
         axes.set(xlabel="time since the start", ylabel="relative to the vector")
         axes.yaxis.set_major_formatter(lambda value, _: power_of_ten(value))
-        axes.grid(True, which="major")
+        axes.grid(visible=True, which="major")
         axes.set_title(scene, pad=4)
         for name in ("error", "width"):
             axes.plot(*zip(*lines[name], strict=True), gid=name, **_LINES[name][0])

@@ -19,21 +19,21 @@ from taylor_verify.studies.engines.ranking import (
     settings,
 )
 
-# What most uses of an engine ask for: a milliradian, or a thousandth of omega.
+# Accuracy that suffices for most uses: a milliradian, or a thousandth of omega.
 ENOUGH: Final = 1e-3
-# A body that is off by so much is somewhere else.
+# An error of this size means that the motion is lost.
 LOST: Final = 0.05
-# A setting is warned of where another one of the same engine has an error so many times smaller.
+# A setting gets a warning if another one of its engine has an error this many times smaller.
 FAR_WORSE: Final = 10.0
-# Errors that smaller steps make so many times larger.
+# A warning of small steps is given if they increase the error by this factor.
 WORSE_BELOW: Final = 2.0
 
 
 def advice(board: Board, entries: EntryList) -> list[str]:
     """Return the sentences that say what a user should do, the most useful first.
 
-    They follow from the rows of the ``board``; ``entries`` is the list of the engines, which names the
-    scenes that an advice rests on.
+    The sentences follow from the rows of the ``board``; ``entries`` is the list of engines, which names the
+    scenes of the advice.
     """
     names = {row.name: row.title for row in entries.entry}
     plain = {row.name for row in entries.entry if row.plain}
@@ -60,7 +60,7 @@ def error(size: float) -> str:
 
 
 def named(setting: EngineSetting, names: dict[str, str]) -> str:
-    """Return an engine with its version and the words that are set."""
+    """Return the name of an engine with its version and its settings."""
     words = f" with {prose(setting.words)}" if setting.words else ""
     return f"{bold(prose(f'{names[setting.engine]} {setting.version}'.strip()))}{words}"
 
@@ -87,7 +87,7 @@ def _take(
 def _never(
     engines: Sequence[EngineSetting], scenes: Sequence[str], names: dict[str, str]
 ) -> Iterator[str]:
-    """Yield the methods that lose the motion, and the engines of which every method does."""
+    """Yield warnings of methods that lose the motion, and of engines whose methods all do."""
     methods, without = [], []
     for engine, group in groupby(engines, key=lambda one: one.engine):
         own = [best for one in group if (best := best_of(one.scores(scenes))) is not None]
@@ -116,7 +116,7 @@ def _energy(score: Score) -> str:
 
 
 def _either(words: Sequence[str]) -> str:
-    """Return a list as a sentence has it."""
+    """Return the words as a list in a sentence, with "or" before the last one."""
     *others, last = words
     return f"{', '.join(others)} or {last}" if others else last
 
@@ -127,8 +127,8 @@ def _as_shipped(
     names: dict[str, str],
     entries: EntryList,
 ) -> Iterator[str]:
-    """Yield the engines that are far worse as shipped than with what the board sets."""
-    found = []
+    """Yield a warning of engines that are far worse as shipped than with the board's settings."""
+    warnings = []
     for engine, group in groupby(shipped, key=lambda one: one.engine):
         pairs = [(row, like(row, engines, entries)) for one in group for row in one.rows]
         ratios = [(a.worst / b.worst, a, b) for a, b in pairs if a.is_judged and b and b.worst > 0]
@@ -137,15 +137,15 @@ def _as_shipped(
             continue
         warning = next((e.warning for e in entries.entry if e.name == engine and e.warning), "")
         without = f" without {warning}" if warning else " as it is shipped"
-        found.append(
+        warnings.append(
             f"{bold(prose(names[engine]))}{without} ({error(row.worst)}, not {figure(usual.worst)})"
         )
-    if found:
-        yield f"Never {'; '.join(found)}."
+    if warnings:
+        yield f"Never {'; '.join(warnings)}."
 
 
 def like(row: EngineRow, engines: Sequence[EngineSetting], entries: EntryList) -> EngineRow | None:
-    """Return the row with what the board sets, all else being equal; None where there is none."""
+    """Return the row of the same run with the board's settings; None if there is none."""
     bare = {
         word
         for entry in entries.entry
@@ -170,8 +170,8 @@ def like(row: EngineRow, engines: Sequence[EngineSetting], entries: EntryList) -
 def _too_fine(
     engines: Sequence[EngineSetting], scenes: Sequence[str], names: dict[str, str]
 ) -> Iterator[str]:
-    """Yield the engines whose best step is not their smallest one."""
-    said = []
+    """Yield a warning of engines whose smallest step is not their best."""
+    steps = []
     for engine, group in groupby(engines, key=lambda one: one.engine):
         best = best_of(score for one in group for score in one.scores(scenes))
         if best is None or not best.value or best.error >= LOST or best.setting.knob != "step":
@@ -179,9 +179,9 @@ def _too_fine(
         finest = best.setting.scores(scenes)[-1]
         if finest.error > WORSE_BELOW * best.error:
             growth = f"{figure(best.error)} becomes {error(finest.error)} with {finest.value}"
-            said.append(f"{best.value} in {bold(prose(names[engine]))} ({growth})")
-    if said:
-        yield f"No smaller step than {', '.join(said)}."
+            steps.append(f"{best.value} in {bold(prose(names[engine]))} ({growth})")
+    if steps:
+        yield f"No smaller step than {', '.join(steps)}."
 
 
 def _step(score: Score) -> str:

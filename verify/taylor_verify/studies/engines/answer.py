@@ -1,4 +1,4 @@
-"""The answers of runs of the board: the row of each, its trajectory and its time."""
+"""Answers of runs of the board, each with its row, its trajectory and its time."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _PINNED: Final = re.compile(r"(.+?)(?:==|@)(\d[^@=]*)")
 
 @dataclass(frozen=True)
 class Answer:
-    """A row with the seconds of its propagation, and its states, None where there are none."""
+    """A row with the seconds of its propagation and its states; None for a run without states."""
 
     row: EngineRow
     seconds: float = 0.0
@@ -76,35 +76,39 @@ class _Read:
 
 
 def answered(asked: Sequence[Asked]) -> list[Answer]:
-    """Run one engine on scenes, of one version and precision, and judge what it answers."""
+    """Run an engine in one version and precision on several scenes, and judge its answers."""
     return [_judged(*pair) for pair in zip(asked, _trajectories(asked), strict=True)]
 
 
 def _trajectories(asked: Sequence[Asked]) -> list[Trajectory]:
-    """Return the trajectories; the scripts of an environment answer all that they take in one process."""
+    """Return the trajectories; the script of an environment answers all its runs in one process."""
     solvers = [solver_named(run.solver) for run in asked]
     posing = zip(asked, solvers, strict=True)
     problems = [posed(load(run.scene), solver, rung(run.rung)) for run, solver in posing]
-    found = {k: problem for k, problem in enumerate(problems) if isinstance(problem, Trajectory)}
+    trajectories = {
+        k: problem for k, problem in enumerate(problems) if isinstance(problem, Trajectory)
+    }
     pairs = {
         k: (solver, problem)
         for k, (solver, problem) in enumerate(zip(solvers, problems, strict=True))
         if isinstance(solver, Outside) and isinstance(problem, Problem)
     }
     if pairs:
-        found |= zip(pairs, solve_together([*pairs.values()]), strict=True)
-    return [found.get(k) or solve(run.scene, run.solver, run.rung) for k, run in enumerate(asked)]
+        trajectories |= zip(pairs, solve_together([*pairs.values()]), strict=True)
+    return [
+        trajectories.get(k) or solve(run.scene, run.solver, run.rung) for k, run in enumerate(asked)
+    ]
 
 
 def _judged(asked: Asked, trajectory: Trajectory) -> Answer:
-    """Return the row of a run, its numbers by the judge."""
+    """Return the row of a run with the errors that the judge measures."""
     standing = _STANDINGS.get(trajectory.outcome, Standing.FAILED)
     if standing is not Standing.JUDGED:
         return Answer(row_of(asked, standing, detail=_reason(trajectory)))
     states, steps = states_of(load(asked.scene), trajectory), trajectory.steps
-    found = errors_of(judged(asked.scene, asked.rung, asked.solver, states, steps))
+    errors = errors_of(judged(asked.scene, asked.rung, asked.solver, states, steps))
     bits = 8 * states.dtype.itemsize
-    row = row_of(asked, standing, steps=steps, bits=bits, detail=trajectory.detail, **vars(found))
+    row = row_of(asked, standing, steps=steps, bits=bits, detail=trajectory.detail, **vars(errors))
     return Answer(row, trajectory.seconds, states)
 
 
@@ -127,7 +131,7 @@ def row_of(asked: Asked, standing: Standing, **numbers: Any) -> EngineRow:
 
 
 def version_of(asked: Asked) -> str:
-    """Return the version of an engine: the one asked for, the pin of its script, or what is installed."""
+    """Return the version of an engine: as asked for, as pinned in its script, or as installed."""
     if asked.version or not asked.entry.package:
         return asked.version or _pinned(asked.entry.solver)
     try:
@@ -138,7 +142,7 @@ def version_of(asked: Asked) -> str:
 
 @cache
 def made_of(scene: str, solver: str) -> str:
-    """Return a digest of the scene and of the script of the engine: another one is another run."""
+    """Return the digest of the scene and of the engine's script, by which outdated runs are known."""
     digest = hashlib.sha256(load(scene).digest.encode())
     if solver.startswith(PREFIX):
         engine = engines()[solver.removeprefix(PREFIX)]

@@ -8,7 +8,7 @@ from typing import Final
 
 from taylor_verify.records.provenance import Machine
 
-# What an engine answers, as far as a scene tracks it.
+# State quantities that an engine answers, if the scene tracks them.
 STATES: Final = ("omega", "impulse", "attitude", "centre")
 
 
@@ -23,14 +23,14 @@ class Standing(StrEnum):
 
 @dataclass(frozen=True)
 class EngineRow:
-    """A run: what was asked, and what the judge says of the stored trajectory.
+    """A run: its settings, and the judgement of its stored trajectory.
 
-    ``errors`` are the largest of all samples by quantity, relative or in radians, to four digits; a
-    quantity whose error is no finite number is not among them. ``floors`` are what perfect rounding would
-    leave of the states. ``start`` is the error of the first row. ``cause`` is the judge's hypothesis about
-    the dynamics that explains nearly all of the error. ``bits`` are those of the floats that hold the
-    trajectory, and ``place`` is its place in the array of its scene. ``made_of`` is the digest of the scene
-    and the adapter.
+    ``errors`` are the largest errors of all samples by quantity, relative or in radians, to four digits;
+    errors that are no finite number are left out. ``floors`` are the errors of the states that perfect
+    rounding would leave. ``start`` is the error of the first row. ``cause`` is the judge's hypothesis about
+    the dynamics that explains nearly all of the error. ``bits`` is the size of the floats that hold the
+    trajectory, ``place`` its index in the array of its scene. ``made_of`` is the digest of the scene and
+    the adapter.
     """
 
     engine: str
@@ -55,30 +55,30 @@ class EngineRow:
 
     @property
     def key(self) -> str:
-        """The text that no other run has."""
+        """The text that identifies the run."""
         return f"{self.solver} {self.rung} {self.scene}"
 
     @property
     def array(self) -> str:
-        """The name of the array of its scene in the file of the trajectories."""
+        """The name of the array that holds the trajectory in the file of all trajectories."""
         return f"{self.scene.rpartition('/')[2]}-f{self.bits}"
 
     @property
     def is_judged(self) -> bool:
-        """True if the run came to a trajectory that was compared."""
+        """True if the run ended with a trajectory that was compared."""
         return self.standing is Standing.JUDGED
 
     @property
     def worst(self) -> float:
-        """The largest error of the states; infinite where one is missing or no finite number."""
-        found = [self.errors[name] for name in STATES if name in self.errors]
+        """The largest error of the states; infinite if one is missing or no finite number."""
+        errors = [self.errors[name] for name in STATES if name in self.errors]
         lost = [name for name in self.floors if name not in self.errors]
-        return float("inf") if lost or not found else max(found)
+        return float("inf") if lost or not errors else max(errors)
 
 
 @dataclass(frozen=True)
 class EnginesTimings:
-    """Seconds of the propagation of each run by its key, and the machine; ``workers`` went at a time."""
+    """Seconds of each run's propagation by its key, the machine, and the number of ``workers`` at once."""
 
     workers: int
     machine: Machine
@@ -87,7 +87,7 @@ class EnginesTimings:
 
 @dataclass(frozen=True)
 class EnginesStudy:
-    """All rows, in the order of the entry list; ``spans`` are the times that the scenes last."""
+    """All rows, in the order of the entry list; ``spans`` are the durations of the scenes."""
 
     versions: dict[str, str]
     spans: dict[str, float]
@@ -96,12 +96,12 @@ class EnginesStudy:
 
 @dataclass(frozen=True)
 class Board:
-    """The document of the study: rows and, where they are stored, their times."""
+    """The document of the study: its rows, and their times if these are stored."""
 
     study: EnginesStudy
     timings: EnginesTimings
 
     def pace(self, row: EngineRow) -> float | None:
-        """Return the seconds of a unit of the scene's time; None where they are not known."""
+        """Return the seconds per unit of the scene's time; None if they are not known."""
         seconds = self.timings.seconds.get(row.key, 0.0)
         return seconds / self.study.spans[row.scene] if seconds > 0 else None

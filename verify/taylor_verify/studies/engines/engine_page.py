@@ -79,16 +79,16 @@ def _cells(
 
 
 def _order(setting: EngineSetting, scene: str, states: Sequence[str]) -> str:
-    """Return the orders of one setting in a line; empty where a setting has no steps."""
-    found = {name: setting.order(scene, name) for name in states}
-    said = [f"{name}: {prose(order.reason)}" for name, order in found.items() if order]
+    """Return the orders of one setting in a line; empty for a setting without steps."""
+    orders = {name: setting.order(scene, name) for name in states}
+    reasons = [f"{name}: {prose(order.reason)}" for name, order in orders.items() if order]
     words = [setting.version, setting.words, "as shipped" * setting.shipped]
     named = prose(" ".join(filter(None, words)))
-    return f"{named}. {'. '.join(said)}." if said else ""
+    return f"{named}. {'. '.join(reasons)}." if reasons else ""
 
 
 def _not_judged(own: Iterable[EngineSetting]) -> Iterator[str]:
-    """Yield what was asked for and has no numbers, each reason once."""
+    """Yield the runs without numbers by their reason, each reason once."""
     reasons: dict[str, list[EngineRow]] = {}
     for one in own:
         for row in one.rows:
@@ -108,7 +108,7 @@ def _not_judged(own: Iterable[EngineSetting]) -> Iterator[str]:
 
 
 def _commands(own: Iterable[EngineSetting]) -> str:
-    """Return a command for each setting, as a block: with the first of its steps."""
+    """Return a block with a command for each setting at its first step."""
     lines = []
     for one in own:
         steps = " ".join(filter(None, dict.fromkeys(row.value for row in one.rows)))

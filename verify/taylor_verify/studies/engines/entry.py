@@ -10,9 +10,9 @@ values     its values, from coarse to fine, as text
 rungs      optional: the precisions of the arithmetic, f64 unless given
 only       optional: the scenes that are run; without them all scenes that the solver takes
 without    optional: scenes that are not run
-shipped    optional: the settings that bring back what the engine does unless it is told; they are run
-           with the second of the values alone
-warning    optional: what an engine as shipped lacks, in words
+shipped    optional: the settings that restore the engine's defaults; they are run with the second of
+           the values alone
+warning    optional: the fault of an engine as shipped, in words
 package    optional: the installed package whose version is shown, for a solver that runs here
 plain      true for a solver of differential equations that is no engine
 """
@@ -34,10 +34,10 @@ FILE: Final = Path(__file__).with_name("entries.toml")
 
 @dataclass(frozen=True)
 class BoardScene:
-    """A scene of the board; no step below ``least`` is run on it.
+    """A scene of the board; ``least`` is the smallest step that is run on it.
 
-    The advice rests on the scenes that say so, older versions are run on those of a ``sweep``, and
-    ``shipped`` ones are those of the table "as shipped".
+    ``advice`` marks the scenes of the advice, ``sweep`` those on which older versions are run, and
+    ``shipped`` those of the table "as shipped".
     """
 
     name: str
@@ -67,7 +67,7 @@ class Entry:
     plain: bool = False
 
     def runs(self, scenes: tuple[BoardScene, ...]) -> Iterator[Asked]:
-        """Yield the runs of this row: each version, setting, value and rung on the scenes it is for."""
+        """Yield the runs of this row: each version, setting, value and rung on each of its scenes."""
         newest = self.versions[-1] if self.versions else ""
         for version in reversed(self.versions or ("",)):
             for words, rung, scene in product(self._words(), self.rungs, scenes):
@@ -77,8 +77,8 @@ class Entry:
             for words, rung, scene in product(self._words(), self.rungs, scenes):
                 if self._is_asked(scene) and scene.shipped:
                     bare = {**words, **self.shipped}
-                    every = self._at_values(newest, bare, rung, scene, True)
-                    # One step says what is lacking.
+                    every = self._at_values(newest, bare, rung, scene, shipped=True)
+                    # One step is enough to show the fault.
                     yield from (run for run in every if run.value in self.values[1:2])
 
     def _at_values(
@@ -124,16 +124,16 @@ class Asked:
 
     @property
     def variant(self) -> str:
-        """The method and the words that are set, as tables name them."""
+        """The method and its settings, as tables name them."""
         family, _, method = self.entry.solver.partition(":")
         method = method.partition("-")[2] if family == "outside" else method
-        # A number says nothing without its key.
+        # A number is meaningless without its key.
         words = [word if word[:1].isalpha() else f"{key}={word}" for key, word in self.words]
         return ", ".join(filter(None, [method, *words]))
 
     @property
     def key(self) -> str:
-        """The text that no other run has."""
+        """The text that identifies the run."""
         return f"{self.solver} {self.rung} {self.scene}"
 
     def __str__(self) -> str:
@@ -165,7 +165,7 @@ class EntryList:
 
 @cache
 def entry_list(file: Path = FILE) -> EntryList:
-    """Return the list in a file. Raises ValueError for one that is none, with the place in it."""
+    """Return the list in a file. Raises ValueError that names the place of a fault."""
     try:
         return converted(tomllib.loads(file.read_text(encoding="utf-8")), EntryList)
     except ValueError as error:

@@ -1,7 +1,7 @@
-"""The findings about engines that are proven: scripts below reports/upstream/engines, told on the board.
+"""Proven findings about engines: scripts below reports/upstream/engines, reported on the board.
 
 The docstring of a script in Python, and the first comment of one in JavaScript, begins with its title. Then
-come paragraphs, each behind a word of `PARTS`.
+come paragraphs, each of which begins with a word of `PARTS`.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Finding:
 
 
 def read(file: Path) -> Finding:
-    """Return the finding of a script. Raises ValueError for one without a part of it."""
+    """Return the finding of a script. Raises ValueError for a script that lacks a part."""
     words = _report(file.read_text(encoding="utf-8"), file.suffix)
     title, *paragraphs = [" ".join(each.split()) for each in re.split(r"\n\s*\n", words)]
     parts = {word: text.strip() for each in paragraphs for word, _, text in [each.partition(":")]}
@@ -46,7 +46,7 @@ def scripts(folder: Path) -> list[Path]:
 
 
 def _report(text: str, suffix: str) -> str:
-    """Return the docstring, or the comment that begins a script; empty where there is none."""
+    """Return the docstring of a script, or its first comment; empty if it has neither."""
     if suffix == ".py":
         return ast.get_docstring(ast.parse(text)) or ""
     lines = takewhile(lambda line: line.startswith("//"), text.splitlines())
@@ -54,9 +54,9 @@ def _report(text: str, suffix: str) -> str:
 
 
 def findings(folder: Path) -> Iterator[str]:
-    """Yield the section of the findings of a report folder; nothing where there are none."""
-    found = [read(file) for file in scripts(folder)]
-    if found:
+    """Yield the section of the findings of a report folder; nothing without findings."""
+    results = [read(file) for file in scripts(folder)]
+    if results:
         yield "## Findings"
         yield (
             "Each has a script that runs with the engine and at most NumPy, and evidence beside our "
@@ -65,5 +65,5 @@ def findings(folder: Path) -> Iterator[str]:
         yield bullets(
             f"[{prose(one.title)}](../{FOLDER}/{one.script}): {prose(one.parts['Came'])} "
             f"({prose(one.parts['Versions'])})"
-            for one in found
+            for one in results
         )

@@ -1,9 +1,9 @@
 """The runs of the entry list, each in processes of its own, and the board that they make.
 
-A run that is stored already, with the same scene, setting, version and adapter, is not run again, nor is
-one that the engine is not made for. Runs that failed, and those of an engine that could not be installed,
-are asked for again by the next measurement: a time limit, too little memory and a registry that does not
-answer are faults of a machine and a day. An environment that cannot be had is asked for once, for all runs.
+Stored runs with the same scene, setting, version and adapter are not run again, and neither are runs for
+which the engine is not made. Failed runs, and runs of an engine that could not be installed, are tried
+again by the next measurement: a time limit, too little memory and a registry that does not answer are
+faults of a machine and a day. Each environment is made once for all runs.
 """
 
 from __future__ import annotations
@@ -32,10 +32,10 @@ from taylor_verify.studies.engines.entry import Asked, EntryList
 from taylor_verify.studies.engines.replay import errors_of, judged
 from taylor_verify.studies.engines.unfinished import Unfinished
 
-# Below the folder that is published: what is local there is nobody else's.
+# Below the published folder, where local files are neither published nor committed.
 UNFINISHED: Final = "local/engines"
 
-# Runs of one process: more of them load a library less often, and are more to do again after a kill.
+# Runs of one process: more runs load a library less often, but more of them are lost after a kill.
 _TOGETHER: Final = 12
 
 Say = Callable[[str], None]
@@ -50,10 +50,10 @@ def measure(
     only: Collection[str] = (),
     workers: int | None = None,
 ) -> list[Answer]:
-    """Return an answer for each run of the list that is known or asked for, in the order of the list.
+    """Return an answer for each run of the list that is known or made now, in the order of the list.
 
-    ``known`` are answers by their key. With ``only`` no other engine is run. Each answer is stored as it
-    comes.
+    ``known`` are answers by their key. ``only`` restricts the measurement to engines of these names. Each
+    answer is stored as soon as it is there.
     """
     every = entries.runs()
     ended_before = {answer.row.key: answer for answer in store.answers()}
@@ -71,20 +71,20 @@ def measure(
     waiting = [run for run in waiting if not lacking.get(_environment(run), "")]
     done = 0
 
-    def ended(runs: Sequence[Asked], found: Sequence[Answer]) -> None:
+    def ended(runs: Sequence[Asked], set_answers: Sequence[Answer]) -> None:
         nonlocal done
-        for run, answer in zip(runs, found, strict=True):
+        for run, answer in zip(runs, set_answers, strict=True):
             done += 1
             store.keep(answer)
             say(f"{done}/{len(waiting)} {run}: {answer.row.standing}")
 
     made = run_all(answered, _sets(waiting), workers=workers or available_cores(), ended=ended)
-    answers |= {answer.row.key: answer for found in made for answer in found}
+    answers |= {answer.row.key: answer for set_answers in made for answer in set_answers}
     return [answers[run.key] for run in every if run.key in answers]
 
 
 def _sets(runs: Iterable[Asked]) -> list[list[Asked]]:
-    """Return the runs in sets that one process can answer: of one environment and one precision."""
+    """Return the runs in sets for one process each, with one environment and one precision."""
     alike: dict[tuple[str, str], list[Asked]] = {}
     for run in runs:
         solver = solver_named(run.solver)
@@ -102,7 +102,7 @@ def _is_final(answer: Answer) -> bool:
 
 
 def _is_current(run: Asked, answer: Answer | None) -> bool:
-    """Return True for an answer to this scene by this adapter, which need not be asked for again."""
+    """Return True for an answer to the present scene by the present adapter, which stays valid."""
     digest = made_of(run.scene, run.entry.solver)
     return answer is not None and answer.row.made_of == digest
 
@@ -115,7 +115,7 @@ def _environment(run: Asked) -> str:
 
 
 def _prepared(runs: Iterable[Asked], say: Say) -> dict[str, str]:
-    """Make the environments of runs, and return the reasons why some of them cannot be had."""
+    """Make the environments of runs, and return the reasons why some of them could not be made."""
     lacking = {}
     names = [name for name in dict.fromkeys(map(_environment, runs)) if name]
     for place, name in enumerate(names, 1):
@@ -132,7 +132,7 @@ def _unavailable(run: Asked, reason: str) -> Answer:
 
 
 def judged_again(answers: Iterable[Answer], say: Say, workers: int | None = None) -> list[Answer]:
-    """Return the answers with the errors that the judge finds today in their stored trajectories."""
+    """Return the answers with the errors of their stored trajectories measured again."""
     asked, done = [*answers], 0
 
     def ended(answer: Answer, again: Answer) -> None:
@@ -147,12 +147,12 @@ def _judged_again(answer: Answer) -> Answer:
     row, states = answer.row, answer.states
     if states is None:
         return answer
-    found = errors_of(judged(row.scene, row.rung, row.solver, states, row.steps))
-    return replace(answer, row=replace(row, **vars(found)))
+    errors = errors_of(judged(row.scene, row.rung, row.solver, states, row.steps))
+    return replace(answer, row=replace(row, **vars(errors)))
 
 
 def board_of(answers: Sequence[Answer], workers: int | None) -> tuple[Board, bytes]:
-    """Return the document of answers, and the file of their trajectories."""
+    """Return the document of the board made from answers, and the file of their trajectories."""
     rows, file = trajectories.packed(answers)
     seconds = {a.row.key: float(f"{a.seconds:.3g}") for a in answers if a.row.is_judged}
     spans = {scene: _span(scene) for scene in dict.fromkeys(row.scene for row in rows)}
@@ -161,7 +161,7 @@ def board_of(answers: Sequence[Answer], workers: int | None) -> tuple[Board, byt
 
 
 def answers_of(board: Board, folder: Path) -> list[Answer]:
-    """Return the answers that a report folder holds. Raises OSError and ValueError for a broken one."""
+    """Return the answers of a report folder. Raises OSError and ValueError for a broken folder."""
     arrays, seconds = trajectories.load(folder), board.timings.seconds
     return [
         Answer(row, seconds.get(row.key, 0.0), trajectories.states_of(arrays, row))

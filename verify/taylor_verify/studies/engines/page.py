@@ -1,4 +1,4 @@
-"""The page of the engine board: first what a user should do, then the tables and pictures it rests on."""
+"""The page of the engine board: first advice to users, then the tables and pictures behind it."""
 
 from __future__ import annotations
 
@@ -30,40 +30,41 @@ from taylor_verify.studies.engines.ranking import (
 from taylor_verify.studies.engines.stored import ENGINES, TIMINGS, TRAJECTORIES
 
 _WHAT: Final = (
-    "Each engine turns a free body, and its answer is compared with the exact motion of the same numbers. "
-    "Energy and angular momentum are compared too: they say nothing of where the body is. We sell no "
-    "engine. Every trajectory behind these tables is stored, and anybody can judge it again."
+    "Each engine turns a free body, and its answer is compared with the exact motion of the same "
+    "numbers. Energy and angular momentum are compared too, although they do not show whether the "
+    "body is in the right place. The authors of this page sell no engine. Every trajectory behind "
+    "these tables is stored, and anybody can judge it again."
 )
 _LEGEND: Final = (
     "*omega* is the largest error of all samples relative to the largest omega, *attitude* the largest "
     "angle in radians, *energy* and *H in space* the largest relative drift.",
-    "*order* is the observed order of the error over the steps, of omega and of the attitude; a dash where "
-    "the steps show none.",
-    "*time* is that of a second of the motion, in microseconds, by the engine's own calls alone: without "
-    "starting it, and without compiling. It is of one run, beside another on the same machine: believe its "
-    "order of magnitude.",
+    "*order* is the observed order of the error over the steps, of omega and of the attitude; a dash "
+    "means that the steps show no order.",
+    "*time* is the time of the engine's own calls for a second of the motion, in microseconds, "
+    "without starting and compiling. It comes from a single run beside another one on the same "
+    "machine: only its order of magnitude is reliable.",
     "*best step* is the coarsest of the steps with the least error. Steps are decimal, and every sample is "
     "at a whole number of steps.",
-    "Adapters switch sleeping, damping and caps on the velocity off wherever an engine has them. The table "
-    "*as shipped* shows what an engine does where nobody does that.",
+    "Adapters switch off sleeping, damping and caps on the velocity if an engine has them. The table "
+    "*as shipped* shows the engines without these changes.",
 )
 _FAIRNESS: Final = (
-    "The first row of every trajectory is the start of the scene, from an oblique attitude: axes, order of "
-    "the quaternion and units are right before anything else is believed. The column *start* of the "
+    "The first row of every trajectory is the start of the scene, from an oblique attitude. It proves "
+    "that axes, order of the quaternion and units are right. The column *start* of the "
     "[sheet](engines.csv) has its error.",
     "Every engine gets the same numbers, each rounded once to the precision of its arithmetic, and is "
-    "compared with the exact motion of the rounded ones.",
+    "compared with the exact motion of the rounded numbers.",
     "An engine that takes principal moments alone is given the principal axes of `engines/full-tensor`, "
     "and its answer is turned back; the remark on its page says so. In space that is the motion of "
     "`engines/oblique`.",
-    "A surprising finding is published where a second demonstration stands beside it that does not use our "
-    "adapter: the engine's own data, its source or its changelog, and a script of few lines that runs with "
-    "the engine alone. A finding that rests on our adapter alone is not published.",
+    "A surprising finding is published only with a second demonstration that does not use our "
+    "adapter: the engine's own data, its source or its changelog, and a short script that runs with "
+    "the engine alone.",
 )
 _OBJECT: Final = (
-    "A row that is unfair to an engine is a fault of this project. Name the row, and say which call of the "
-    'engine would do better: `taylor-verify run SCENE --solver "outside:NAME?..."` of the engine\'s page '
-    "shows it as we see it.",
+    "A row that is unfair to an engine is a fault of this project. Please report the row, and the call of "
+    "the engine that would do better: "
+    '`taylor-verify run SCENE --solver "outside:NAME?..."` of the engine\'s page shows it as we see it.',
     "A better adapter is one file, `cases/README.md` says how (To add an engine); a new setting or "
     "version is a word in the engine's row of `verify/taylor_verify/studies/engines/entries.toml`.",
     "An engine of your own needs no adapter here to be judged: `docs/bring-your-engine.md`.",
@@ -102,7 +103,7 @@ def pictures(board: Board) -> list[Picture]:
 
 
 def _entries(board: Board) -> EntryList:
-    """Return the entry list; ValueError for rows of an engine that is not on it."""
+    """Return the entry list. Raises ValueError for rows of an engine that is not in the list."""
     entries = entry_list()
     stored = dict.fromkeys(row.engine for row in board.study.rows)
     if unknown := [name for name in stored if name not in entries.engines]:
@@ -114,7 +115,7 @@ def _entries(board: Board) -> EntryList:
 
 
 def _best(board: Board, entries: EntryList, every: Sequence[EngineSetting]) -> str:
-    """Return a line for each engine: its best setting on the scenes that all of them take."""
+    """Return a line for each engine: its best setting on the scenes that all engines take."""
     scene = entries.advised[0]
     titles, rows = {row.name: row.title for row in entries.entry}, []
     for best in best_of_each(every, scene):
@@ -129,21 +130,28 @@ def _best(board: Board, entries: EntryList, every: Sequence[EngineSetting]) -> s
 
 
 COLUMNS: Final = (
-    *("engine", "setting", "best step:", "omega:", "attitude:", "order:", "energy:", "time:"),
+    "engine",
+    "setting",
+    "best step:",
+    "omega:",
+    "attitude:",
+    "order:",
+    "energy:",
+    "time:",
 )
 
 
 def cells(board: Board, setting: EngineSetting, row: EngineRow) -> list[str]:
-    """Return the cells of a row behind the name of its engine."""
+    """Return the cells of a row after the name of its engine."""
     orders = [setting.order(row.scene, name) for name in ("omega", "attitude")]
-    said = [f"{o.order:.1f}" if o and o.order is not None else NOTHING for o in orders]
+    order_cells = [f"{o.order:.1f}" if o and o.order is not None else NOTHING for o in orders]
     pace = board.pace(row)
     return [
         prose(setting.words) or NOTHING,
         _knob(row),
         figure(row.errors.get("omega")),
         figure(row.errors.get("attitude")),
-        ", ".join(said),
+        ", ".join(order_cells),
         figure(row.errors.get("T")),
         figure(None if pace is None else 1e6 * pace),
     ]
@@ -161,8 +169,8 @@ def _scenes(board: Board, entries: EntryList, every: Sequence[EngineSetting]) ->
     for scene in dict.fromkeys(row.scene for row in board.study.rows):
         rows = []
         for engine, group in groupby(newest(every), key=lambda one: one.engine):
-            found = [row for one in group if (row := one.best(scene)) is not None]
-            best = min(found, key=lambda row: row.worst, default=None)
+            best_rows = [row for one in group if (row := one.best(scene)) is not None]
+            best = min(best_rows, key=lambda row: row.worst, default=None)
             if best is not None:
                 rows.append(_scene_row(best, titles.get(engine, engine)))
         if rows:
@@ -198,7 +206,7 @@ def _states(board: Board, scene: str) -> set[str]:
 
 
 def _as_shipped(board: Board, entries: EntryList, every: Sequence[EngineSetting]) -> Iterator[str]:
-    """Yield the table of the engines as people get them, beside what the board sets."""
+    """Yield the table of the engines as shipped beside the settings of the board."""
     titles, rows, usual = {row.name: row.title for row in entries.entry}, [], newest(every)
     for one in newest(every, shipped=True):
         for row in one.rows:
@@ -257,8 +265,23 @@ def sheet(board: Board) -> str:
     """Return a row for every run, with every quantity."""
     quantities = dict.fromkeys(name for row in board.study.rows for name in row.errors)
     names = [
-        *("engine", "version", "variant", "knob", "value", "scene", "rung", "shipped", "standing"),
-        *("steps", "start", *quantities, "microseconds", "cause", "array", "place", "solver"),
+        "engine",
+        "version",
+        "variant",
+        "knob",
+        "value",
+        "scene",
+        "rung",
+        "shipped",
+        "standing",
+        "steps",
+        "start",
+        *quantities,
+        "microseconds",
+        "cause",
+        "array",
+        "place",
+        "solver",
     ]
     return csv_sheet(names, (_sheet_row(board, row) for row in board.study.rows))
 

@@ -1,6 +1,6 @@
-"""The settings of the board beside each other: orders, best steps, and the worst of several scenes.
+"""Comparison of the settings of the board: orders, best steps, and the worst of several scenes.
 
-An engine, a version, the words that are set and a precision are one setting; its rows differ in the step
+A setting is an engine, a version, its options and a precision; the rows of a setting differ in the step
 and the scene.
 """
 
@@ -28,24 +28,24 @@ class EngineSetting:
 
     @property
     def knob(self) -> str:
-        """The name of what is made finer from row to row."""
+        """The name of the option that becomes finer from row to row."""
         return self.rows[0].knob
 
     @property
     def words(self) -> str:
-        """The words that tell it from the other settings of its engine and version."""
+        """The words that distinguish the setting from others of its engine and version."""
         return ", ".join(filter(None, [self.variant, self.rung if self.rung != "f64" else ""]))
 
     def on(self, scene: str) -> tuple[EngineRow, ...]:
-        """Return the rows of a scene that were judged."""
+        """Return the judged rows of a scene."""
         return tuple(row for row in self.rows if row.scene == scene and row.is_judged)
 
     def best(self, scene: str) -> EngineRow | None:
-        """Return the row with the smallest error of a scene, the coarsest of several; None without one."""
+        """Return the coarsest row with the smallest error on a scene; None without judged rows."""
         return min(self.on(scene), key=lambda row: row.worst, default=None)
 
     def order(self, scene: str, quantity: str) -> Convergence | None:
-        """Return the order of a quantity over the steps of a scene; None for what has no steps."""
+        """Return the order of a quantity over the steps on a scene; None for a setting without steps."""
         rows = [row for row in self.on(scene) if row.value and row.knob == "step"]
         if not rows:
             return None
@@ -56,7 +56,7 @@ class EngineSetting:
         )
 
     def at(self, value: str, scenes: Iterable[str]) -> Score | None:
-        """Return the worst of several scenes at one step; None where one of them was not judged."""
+        """Return the worst of several scenes at one step; None if one of them was not judged."""
         rows = {row.scene: row for row in self.rows if row.value == value and row.is_judged}
         asked = [*scenes]
         if not asked or any(scene not in rows for scene in asked):
@@ -64,14 +64,14 @@ class EngineSetting:
         return Score(self, value, max((rows[scene] for scene in asked), key=lambda row: row.worst))
 
     def scores(self, scenes: Sequence[str]) -> list[Score]:
-        """Return the scores at every step at which all of the scenes were judged."""
+        """Return the scores at every step for which all of the scenes were judged."""
         values = dict.fromkeys(row.value for row in self.rows)
         return [score for value in values if (score := self.at(value, scenes)) is not None]
 
 
 @dataclass(frozen=True)
 class Score:
-    """A setting at one step: ``row`` is that of the scene on which it is worst."""
+    """A setting at one step; ``row`` belongs to the scene with its worst error."""
 
     setting: EngineSetting
     value: str
@@ -95,32 +95,32 @@ def settings(study: EnginesStudy) -> list[EngineSetting]:
 def newest(every: Iterable[EngineSetting], shipped: bool = False) -> list[EngineSetting]:
     """Return the settings of the newest version of each engine, of ``every`` setting there is.
 
-    The list names that version last, and it is run first. With ``shipped`` they are those as shipped, with
-    sleep and damping left on, in place of those that the board sets.
+    The list names that version last, and it is run first. With ``shipped`` the settings are those as
+    shipped, with sleep and damping left on, instead of the board's own.
     """
     first: dict[str, str] = {}
-    found = []
+    chosen = []
     for setting in every:
         if setting.version == first.setdefault(setting.engine, setting.version):
-            found += [setting] if setting.shipped == shipped else []
-    return found
+            chosen += [setting] if setting.shipped == shipped else []
+    return chosen
 
 
 def best_of(scores: Iterable[Score]) -> Score | None:
-    """Return the score with the smallest finite error; None where there is none."""
+    """Return the score with the smallest finite error; None if there is none."""
     finite = [score for score in scores if score.error < inf]
     return min(finite, key=lambda score: score.error, default=None)
 
 
 def best_of_each(every: Iterable[EngineSetting], scene: str) -> list[Score]:
     """Return the best score of each engine in its newest version on a scene, in the order of the list."""
-    found = []
+    best = []
     for _, group in groupby(newest(every), key=lambda one: one.engine):
         scores = [score for one in group for score in one.scores([scene])]
-        found += sorted(scores, key=lambda score: score.error)[:1]
-    return found
+        best += sorted(scores, key=lambda score: score.error)[:1]
+    return best
 
 
 def digits(error: float) -> float:
-    """Return the decimal digits that are right; none of an error as large as the motion, or no number."""
+    """Return the number of right decimal digits; zero for a lost motion and for NaN."""
     return max(0.0, -log10(error)) if 0 < error < inf else (0.0 if error else inf)

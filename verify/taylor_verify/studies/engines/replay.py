@@ -1,4 +1,4 @@
-"""A stored trajectory judged again: no engine runs, and the same states have the same errors everywhere."""
+"""Judgement of stored trajectories, without running an engine; it is the same on every machine."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ from taylor_verify.studies.engines.document import STATES
 
 States = np.ndarray[Any, Any]
 
-# A cause has to explain the error of the motion; one that is said of several quantities is named once.
+# A cause must explain the error of the motion; a cause of several quantities is named once.
 _DIGITS: Final = 4
 
 
 @final
 @dataclass(frozen=True)
 class Stored(Solver):
-    """The solver of a trajectory that is already there: shape (samples, n), as `columns` has them."""
+    """Solver that returns a stored trajectory of shape (samples, n), with the columns of `columns`."""
 
     name: str
     states: States
@@ -64,7 +64,7 @@ class Errors:
 def states_of(scene: Scene, trajectory: Trajectory) -> States:
     """Return a trajectory as an array of the smallest floats that hold it: float32, else float64.
 
-    Its numbers are the engine's own: what is no double is rounded to one, which no engine here needs.
+    The numbers are those of the engine. Numbers that are no doubles are rounded; no engine here has any.
     """
     parts = [trajectory.quantities[name] for name in state_groups(scene.model, scene.track)]
     doubles = np.array(
@@ -78,19 +78,19 @@ def states_of(scene: Scene, trajectory: Trajectory) -> States:
 def judged(scene: str, rung: str, solver: str, states: States, steps: int) -> Judgement:
     """Return the judgement of stored states, with the likely causes of what failed.
 
-    The problem is that of the data which the solver takes. No time limits the steps that are counted: a
+    The problem has the data that the solver takes. The count of steps has no time limit, so that the
     judgement is the same on every machine.
     """
     problem = solver_named(solver).problem(load(scene), rung_named(rung))
     stored = Stored(solver, states, steps)
     trajectory = stored.solve(problem)
-    found = with_initial(judgement(problem, stored, trajectory), float(problem.given.clock.start))
-    return with_causes(found, problem, trajectory)
+    result = with_initial(judgement(problem, stored, trajectory), float(problem.given.clock.start))
+    return with_causes(result, problem, trajectory)
 
 
-def errors_of(found: Judgement) -> Errors:
-    """Return what the board stores of a judgement."""
-    verdicts = {verdict.quantity: verdict for verdict in found.verdicts}
+def errors_of(result: Judgement) -> Errors:
+    """Return the numbers of a judgement that the board stores."""
+    verdicts = {verdict.quantity: verdict for verdict in result.verdicts}
     first = verdicts.pop(INITIAL, None)
     return Errors(
         start=None if first is None else _short(first.max),
@@ -100,19 +100,19 @@ def errors_of(found: Judgement) -> Errors:
             for name, v in verdicts.items()
             if name in STATES and (a := _short(v.attainable)) is not None
         },
-        cause=_cause(found.causes, verdicts.values()),
+        cause=_cause(result.causes, verdicts.values()),
     )
 
 
 def _cause(causes: Iterable[LikelyCause], verdicts: Iterable[Verdict]) -> str:
-    """Return the name of the cause that leaves the least of an error, the main quantity's first."""
+    """Return the name of the cause that explains most of an error, first of the main quantity."""
     order = [verdict.quantity for verdict in verdicts]
-    found = sorted(causes, key=lambda one: (order.index(one.quantity), one.leaves))
-    return found[0].name if found else ""
+    ordered = sorted(causes, key=lambda one: (order.index(one.quantity), one.leaves))
+    return ordered[0].name if ordered else ""
 
 
 def _short(value: float | None) -> float | None:
-    """Return a number to four digits: the rest of an error says nothing, and costs bytes."""
+    """Return a number in four digits, which are enough for an error."""
     if value is None or not isfinite(value):
         return None
     return float(f"{value:.{_DIGITS - 1}e}")

@@ -13,7 +13,7 @@ from taylor_verify.studies.stored import Stored
 
 
 def _fields(study: EnginesStudy) -> Mapping[str, Any]:
-    """Return the keys of the rows, fields at their default left out: there are some thousand rows."""
+    """Return the keys and values of the rows without defaults, to save bytes in thousands of rows."""
     rows = [plain(row) for row in study.rows]
     return {"versions": study.versions, "spans": study.spans, "rows": rows}
 
@@ -25,7 +25,7 @@ TIMINGS: Final = Stored(EnginesTimings, "engines", complete, stem="engines-timin
 
 def write(folder: Path, board: Board, file: bytes) -> list[Path]:
     """Store a board and the file of its trajectories below a report folder. Raises OSError."""
-    # The rows come last: once they are in place, what they speak of is there.
+    # The rows come last, because they refer to the other files.
     return [
         *replace_files(folder, {TRAJECTORIES: file}),
         *TIMINGS.write(folder, board.timings),
@@ -34,7 +34,7 @@ def write(folder: Path, board: Board, file: bytes) -> list[Path]:
 
 
 def find(folder: Path) -> Board | None:
-    """Return the board that is stored below a report folder; None where there is none.
+    """Return the board that is stored below a report folder; None if there is none.
 
     Raises OSError for files that cannot be read and ValueError for files that hold something else.
     """

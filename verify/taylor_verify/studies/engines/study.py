@@ -20,7 +20,7 @@ def _measure(
     rejudge: bool = False,
     workers: int | None = None,
 ) -> Measured:
-    """Run what is not stored, or judge again what is; a measurement that was stopped goes on."""
+    """Run what is not stored, or judge the stored trajectories again; continue a stopped measurement."""
     from taylor_verify.studies.engines.measure import (
         UNFINISHED,
         answers_of,
@@ -51,7 +51,7 @@ def _measure(
         }
         answers = measure(entries, recalled, store, progress.say, only, workers)
     written = stored.write(folder, *board_of(answers, workers))
-    # Only what is stored is done: until then it could still be taken up.
+    # Until the results are stored, the measurement can be continued.
     store.forget()
     return Measured(written)
 

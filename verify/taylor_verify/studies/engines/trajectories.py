@@ -1,4 +1,4 @@
-"""The stored trajectories: one NPZ with an array for each scene and kind of floats, a block for each run.
+"""Stored trajectories: one NPZ with an array for each scene and type of float, a block for each run.
 
 `numpy.load` reads it: `file["oblique-f64"]` has shape (runs, samples, columns): those of float64 on the
 scene engines/oblique. The row of a run in engines.json has its place there. Columns are those of an
@@ -24,7 +24,7 @@ from taylor_verify.studies.engines.stored import TRAJECTORIES
 
 
 def packed(answers: Iterable[Answer]) -> tuple[list[EngineRow], bytes]:
-    """Return the rows of answers, each with the place of its trajectory, and the file of these."""
+    """Return the rows of answers with the places of their trajectories, and the file of trajectories."""
     rows, arrays = [], dict[str, list[States]]()
     for answer in answers:
         place = 0
@@ -34,7 +34,7 @@ def packed(answers: Iterable[Answer]) -> tuple[list[EngineRow], bytes]:
             stored.append(answer.states)
         rows.append(replace(answer.row, place=place))
     file = BytesIO()
-    # numpy gives every member one and the same date.
+    # numpy gives every member the same date.
     stacked: dict[str, Any] = {name: np.array(each) for name, each in arrays.items()}
     np.savez_compressed(file, **stacked)
     return rows, file.getvalue()
@@ -50,7 +50,7 @@ def load(folder: Path) -> Mapping[str, States]:
         with np.load(place, allow_pickle=False) as file:
             return {name: file[name] for name in file.files}
     except (BadZipFile, EOFError, AttributeError, ValueError) as error:
-        # numpy takes what is no NPZ for a pickle, which is not read.
+        # numpy takes any other file for a pickle, and refuses it.
         expected = "expected an NPZ of trajectories, got another file"
         raise ValueError(f"{expected} @ {place}") from error
 
@@ -62,9 +62,9 @@ def states_of(arrays: Mapping[str, States], row: EngineRow) -> States | None:
     """
     if not row.is_judged:
         return None
-    found: Sequence[States] = arrays.get(row.array, np.empty(0))  # type: ignore[assignment]
-    if not 0 <= row.place < len(found):
+    array: Sequence[States] = arrays.get(row.array, np.empty(0))  # type: ignore[assignment]
+    if not 0 <= row.place < len(array):
         raise ValueError(
             f"expected a trajectory {row.array}[{row.place}], got none @ {TRAJECTORIES}"
         )
-    return found[row.place]
+    return array[row.place]

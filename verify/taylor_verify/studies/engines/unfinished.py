@@ -1,4 +1,4 @@
-"""The answers of a measurement that has not ended: one file a run, so that it goes on after a kill."""
+"""Answers of an unfinished measurement, one file for each run, so that it continues after a kill."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from taylor_verify.studies.engines.answer import Answer
 
 @dataclass(frozen=True)
 class Unfinished:
-    """The store of a measurement in a folder that is nobody else's."""
+    """The store of a measurement in a folder of its own."""
 
     folder: Path
 
@@ -23,15 +23,15 @@ class Unfinished:
         replace_files(self.folder, {_name(answer.row.key): answer.to_bytes()})
 
     def answers(self) -> list[Answer]:
-        """Return the answers that are stored; a file that is damaged is no answer."""
-        found = []
+        """Return the stored answers; damaged files are skipped."""
+        answers = []
         for file in sorted(self.folder.glob("*.json")):
             with suppress(ValueError):
-                found.append(Answer.from_bytes(file.read_bytes()))
-        return found
+                answers.append(Answer.from_bytes(file.read_bytes()))
+        return answers
 
     def forget(self) -> None:
-        """Remove everything."""
+        """Remove the folder."""
         shutil.rmtree(self.folder, ignore_errors=True)
 
 

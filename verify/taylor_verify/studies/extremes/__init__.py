@@ -1,1 +1,1 @@
-"""The hardest scenes, and what was expected of each."""
+"""The hardest scenes, and the verdicts expected of each."""

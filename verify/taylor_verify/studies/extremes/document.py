@@ -1,4 +1,4 @@
-"""A run of all extremes, every row beside what was expected of it."""
+"""A run of all extremes, every row with the expected verdict."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from taylor_verify.records.verdict import Verdict
 
 @dataclass(frozen=True)
 class Expected:
-    """The verdict that was expected of a row, and the reason where that is no pass."""
+    """The expected verdict of a row, and the reason if it is no pass."""
 
     verdict: Status
     why: str
@@ -23,18 +23,18 @@ class Expected:
 
 @dataclass(frozen=True)
 class ExtremeVerdict(Verdict):
-    """A verdict beside what was expected of it; None where the row was compared with nothing."""
+    """A verdict and the expected one; None if the row was compared with nothing."""
 
     expected: Expected | None = None
 
     @property
     def is_met(self) -> bool:
-        """False for a mismatch; a row that was compared with nothing is none."""
+        """False for a mismatch; a row that was compared with nothing is no mismatch."""
         return self.expected is None or self.expected.verdict is self.verdict
 
     @classmethod
     def of(cls, verdict: Verdict, expected: Expected | None) -> ExtremeVerdict:
-        """Return a verdict with what was expected of it."""
+        """Return a verdict with the expected one."""
         return cls(**vars(verdict), expected=expected)
 
     def row(self) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""A run of all extremes beside what was expected of each, as the document that is published."""
+"""Run of all extremes beside the expected verdicts, as a document."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _SOLVER: Final = "taylor"
 
 
 def extremes(progress: Progress | None = None) -> Judgements:
-    """Solve and judge every extreme that is run on the published rung."""
+    """Solve and judge every extreme on the published rung."""
     selection = select([EXTREMES], [_RUNG])
     judgements = judge_all(selection.jobs(_SOLVER), progress)
     return Judgements(tuple(judgements), selection, _SOLVER)

@@ -1,10 +1,10 @@
-"""Fate of the extremes: the stored verdicts of one run of them, and the page made of those.
+"""Page of the extremes, made from the stored verdicts of one run.
 
-    extremes.json   every verdict, beside it what was expected; the scenes with their titles; the runs that
-                    were left out; what made the rows
+        extremes.json   every verdict with the expected one; the titles of the scenes; the runs that were
+                        left out; the versions that made the rows
 
-Every extreme is there to be hard. An answer of theirs that is no `pass` is foreseen, with the reason, or it
-is a mismatch: the page tells the two apart and shows both.
+The extremes are hard scenes. A verdict other than `pass` is either expected, with a reason, or a mismatch.
+The page shows both, apart from each other.
 """
 
 from __future__ import annotations
@@ -27,19 +27,19 @@ from taylor_verify.studies.stored import Stored
 _FOLDER: Final = "extremes/"
 
 _WHAT: Final = (
-    "Scenes at the edge of what can be asked: beside a separatrix and on it, moments nearly equal or "
-    "far apart, sizes near the ends of the number range, many periods, and the worst that a search has "
-    "found. The right answer is not always *pass*: where rounding alone may carry a motion as far as it "
-    "is large, the only honest word is *vacuous*. What is right for each is written down beforehand, "
-    "with the reason, and a mismatch either way is a fail."
+    "These scenes are extreme: beside a separatrix and on it, with moments nearly equal or far apart, "
+    "sizes near the ends of the number range, many periods, and the worst scenes that a search has "
+    "found. The right verdict is not always *pass*. If rounding alone may change a motion by its own "
+    "size, the right verdict is *vacuous*. The right verdict of each scene is written down "
+    "beforehand, with its reason, and a mismatch in either direction is a fail."
 )
 _LEGEND: Final = (
-    "*state* is the main quantity, the angular velocity or the impulse: *max, mean @ t of the max*, in u, "
-    "or the word for why there is no number.",
-    "*over attainable* is the largest of all quantities of the scene, which is named; a gate stands at "
-    "ten.",
-    "*verdict* is the gravest of all quantities. *as expected* counts the quantities whose verdict is "
-    "the one foreseen; a mismatch stands out.",
+    "*state* is the main quantity, the angular velocity or the impulse: *max, mean @ t of the max*, "
+    "in u, or a word for a missing number.",
+    "*over attainable* is the largest of all quantities of the scene, with the name of the quantity; "
+    "a gate allows ten.",
+    "*verdict* is the gravest of all quantities. *as expected* counts the quantities with the "
+    "expected verdict; a mismatch is bold.",
 )
 
 
@@ -47,7 +47,7 @@ _LEGEND: Final = (
 
 
 def _fields(study: ExtremesStudy) -> dict[str, Any]:
-    """Return keys and values as they are stored: the seconds of a run are nobody else's."""
+    """Return the stored keys and values, without the seconds of runs, which differ on every machine."""
     rows = [store.row(verdict) for verdict in study.verdicts]
     return {**complete(study), "machine": plain(study.machine), "verdicts": rows}
 
@@ -58,56 +58,56 @@ EXTREMES: Final = Stored(ExtremesStudy, "extremes", _fields, read_study)
 # The page.
 
 
-def page(found: ExtremesStudy) -> str:
-    """Return the counts, a line a scene, and every answer that is no pass with its reason."""
+def page(study: ExtremesStudy) -> str:
+    """Return the counts, a line for each scene, and every verdict other than pass with its reason."""
     by_model: dict[str, list[Run]] = {}
-    for run in runs(found.verdicts):
+    for run in runs(study.verdicts):
         by_model.setdefault(run.model, []).append(run)
     return whole(
         "The extremes",
         _WHAT,
-        counts(found.verdicts),
-        _held(found),
-        bullets([*_LEGEND, roundoffs(found.verdicts)]),
-        *(_section(found, own, model) for model, own in by_model.items()),
+        counts(study.verdicts),
+        _summary(study),
+        bullets([*_LEGEND, roundoffs(study.verdicts)]),
+        *(_section(study, own, model) for model, own in by_model.items()),
         "## No pass, and why",
-        _not_passed(found),
-        _left_out(found),
+        _not_passed(study),
+        _left_out(study),
         "## To remake this",
         f"`taylor-verify publish extremes` runs all of them on float64 and writes "
         f"[extremes.json](../{EXTREMES.name}), this page and its [CSV](extremes.csv), which has every "
         "quantity. `taylor-verify run extremes` prints the same and fails at a mismatch; with `--rung` it "
         "runs them on others. The expectations are in `cases/extremes/EXPECTED.toml`.",
-        traced({"versions": found.versions, **plain(found.machine)}),
+        traced({"versions": study.versions, **plain(study.machine)}),
     )
 
 
-def _held(found: ExtremesStudy) -> str:
-    """Return how many answers were foreseen, and whatever was not, in full."""
-    others = [verdict for verdict in found.verdicts if verdict.verdict is not Status.PASS]
+def _summary(study: ExtremesStudy) -> str:
+    """Return the number of expected verdicts, and all mismatches in full."""
+    others = [verdict for verdict in study.verdicts if verdict.verdict is not Status.PASS]
     met = sum(verdict.is_met for verdict in others)
-    counted = f"{met} of {len(others)} answers other than pass came as expected."
-    if not found.mismatches:
+    counted = f"{met} of {len(others)} verdicts other than pass were expected."
+    if not study.mismatches:
         return counted
-    faults = bullets(map(prose, found.mismatches))
-    return f"{counted} {bold(f'{len(found.mismatches)} mismatches')}:\n\n{faults}"
+    faults = bullets(map(prose, study.mismatches))
+    return f"{counted} {bold(f'{len(study.mismatches)} mismatches')}:\n\n{faults}"
 
 
-def _section(found: ExtremesStudy, own: Sequence[Run], model: str) -> str:
+def _section(study: ExtremesStudy, own: Sequence[Run], model: str) -> str:
     numbers = ("state:", "over attainable:")
     columns = ["scene", "rung", "what it is", *numbers, "verdict", "as expected:"]
-    rows = [_cells(found, run) for run in own]
+    rows = [_cells(study, run) for run in own]
     return f"## {model or 'Without a state'}\n\n{table(columns, rows)}"
 
 
-def _cells(found: ExtremesStudy, run: Run) -> list[str]:
+def _cells(study: ExtremesStudy, run: Run) -> list[str]:
     main = run.state[0] if run.state else run.verdicts[0]
     met = sum(isinstance(row, ExtremeVerdict) and row.is_met for row in run.verdicts)
     counted = f"{met} of {len(run.verdicts)}"
     return [
         code(run.scene.removeprefix(_FOLDER)),
         run.rung,
-        prose(found.titles.get(run.scene, "")),
+        prose(study.titles.get(run.scene, "")),
         _state(main),
         worst_ratio(v for v in run.verdicts if v.verdict in (Status.PASS, Status.FAIL)),
         judged(gravest(run.verdicts)),
@@ -116,19 +116,19 @@ def _cells(found: ExtremesStudy, run: Run) -> list[str]:
 
 
 def _state(verdict: Verdict) -> str:
-    """Return the error, and the word of the verdict where it is no pass."""
+    """Return the error, and the verdict if it is no pass."""
     if verdict.max is None:
         return bold(prose(word(verdict)))
     text = prose(peak(verdict))
     return text if verdict.verdict is Status.PASS else f"{text} {judged(verdict.verdict)}"
 
 
-def _not_passed(found: ExtremesStudy) -> str:
-    """Return a line for every answer that is no pass, beside what was foreseen."""
+def _not_passed(study: ExtremesStudy) -> str:
+    """Return a line for every verdict other than pass, beside the expected one."""
     columns = ["scene", "quantity", "verdict", "expected", "bound:", "why"]
     rows = [
         _row(verdict)
-        for verdict in found.verdicts
+        for verdict in study.verdicts
         if verdict.verdict is not Status.PASS or not verdict.is_met
     ]
     return table(columns, rows) if rows else "Every answer is a pass."
@@ -147,23 +147,23 @@ def _row(verdict: ExtremeVerdict) -> list[str]:
     ]
 
 
-def _left_out(found: ExtremesStudy) -> str:
-    lines = [f"{code(run.scene)}, {run.rung}: {prose(run.why)}" for run in found.left_out]
+def _left_out(study: ExtremesStudy) -> str:
+    lines = [f"{code(run.scene)}, {run.rung}: {prose(run.why)}" for run in study.left_out]
     return f"Not run:\n\n{bullets(lines)}" if lines else ""
 
 
-def sheet(found: ExtremesStudy) -> str:
+def sheet(study: ExtremesStudy) -> str:
     """Return a row for every quantity of every scene."""
 
     def expected(verdict: Verdict) -> dict[str, Any]:
         assert isinstance(verdict, ExtremeVerdict)
         wanted = verdict.expected
         return {
-            "title": found.titles.get(verdict.scene),
+            "title": study.titles.get(verdict.scene),
             "expected": wanted.verdict.value if wanted else None,
             "why_expected": wanted.why if wanted else None,
             "as_expected": "yes" if verdict.is_met else "no",
         }
 
-    # A reason is for reading, and stands in the data.
-    return sheets.gates(found.verdicts, expected, without=("because", "scene_sha256"))
+    # The reasons are long texts, and stand in the data.
+    return sheets.gates(study.verdicts, expected, without=("because", "scene_sha256"))

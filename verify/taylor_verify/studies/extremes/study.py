@@ -1,4 +1,4 @@
-"""The study of the extremes: each of them run on float64, beside what was expected of it."""
+"""The study of the extremes: each one run on float64, beside the expected verdict."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from taylor_verify.studies.study import Measured, Progress, Study
 
 
 def _measure(folder: Path, progress: Progress) -> Measured:
-    """Run all of them; an unexpected answer is published too, where it stands out."""
+    """Run all extremes; unexpected verdicts are published too, and marked."""
     from taylor_verify.studies.extremes.measure import extremes, extremes_study
 
-    with progress.jobs() as told:
-        results = extremes(told)
+    with progress.jobs() as job_progress:
+        results = extremes(job_progress)
     study = extremes_study(results)
     return Measured(EXTREMES.write(folder, study), study.mismatches, results.exit_status)
 

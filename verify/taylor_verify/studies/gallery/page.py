@@ -1,7 +1,7 @@
-"""The gallery: pictures of some motions and of their errors, made of stored data alone.
+"""Gallery: pictures of some motions and of their errors, made from stored data alone.
 
-What is drawn comes from data/portraits (the motion), data/records (the errors of a run), reference/NAME.csv
-(the exact motion at its samples) and data/controls.json (broken solvers); figures/README.md shows it.
+Its data are data/portraits (the motion), data/records (the errors of a run), reference/NAME.csv (the
+exact motion at its samples) and data/controls.json (broken solvers). The page is figures/README.md.
 """
 
 from __future__ import annotations
@@ -41,8 +41,8 @@ _WHAT: Final = (
 _ELSEWHERE: Final = (
     "Other pictures of this folder stand beside their numbers: speed against accuracy in "
     "[tradeoff](../tables/tradeoff.md), the digits that each precision leaves in "
-    "[reach](../tables/reach.md), drift over decades of time in [growth](../tables/growth.md), what each "
-    "thing costs in [prices](../tables/prices.md)."
+    "[reach](../tables/reach.md), drift over decades of time in [growth](../tables/growth.md), the "
+    "cost of each option in [prices](../tables/prices.md)."
 )
 
 Document = Mapping[str, Any]
@@ -50,7 +50,7 @@ Document = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class Shown:
-    """A picture under its heading, what it shows in words, and the files it was made of."""
+    """A picture with its heading, its caption, and the files that it is made from."""
 
     heading: str
     picture: Picture
@@ -64,16 +64,16 @@ class Shown:
 
 
 def _named(source: str) -> str:
-    """Return a link to a file of data, or its name where the repository does not hold it."""
+    """Return a link to a file of data, or its name if the repository does not hold it."""
     is_made = source.startswith((PORTRAITS.folder, f"{store.FOLDER}/{store.RECORDS}"))
     return code(source) if is_made else f"[{Path(source).name}](../{source})"
 
 
 @dataclass(frozen=True)
 class Stored:
-    """The data of a report folder as the pictures ask for them.
+    """The data of a report folder that the pictures need.
 
-    Raises FileNotFoundError for what is not there, and ValueError for files that hold something else.
+    Raises FileNotFoundError for missing files, and ValueError for files that hold something else.
     """
 
     folder: Path
@@ -124,16 +124,16 @@ def shown(stored: Stored) -> Iterator[Shown]:
     yield Shown("Errors split in lateness and the rest", *_shifts(stored))
 
 
-def page(found: Sequence[Shown]) -> str:
-    """Return the page of all of them below their headings."""
+def page(pictures: Sequence[Shown]) -> str:
+    """Return the page of all pictures below their headings."""
     blocks = []
-    for heading, group in groupby(found, key=lambda one: one.heading):
+    for heading, group in groupby(pictures, key=lambda one: one.heading):
         blocks += [f"## {heading}", *(one.block() for one in group)]
     title = "Pictures of motions and of their errors"
     return whole(title, _WHAT, *blocks, "## Elsewhere", _ELSEWHERE)
 
 
-# The kinds of pictures, each with its caption and the files that it is made of.
+# The kinds of pictures, each with its caption and its files of data.
 
 Made = tuple[Picture, str, tuple[str, ...]]
 
@@ -141,9 +141,9 @@ Made = tuple[Picture, str, tuple[str, ...]]
 def _polhode(stored: Stored, portrait: Document) -> Made:
     scene = portrait["scene"]
     caption = (
-        f"{code(scene)}: the angular velocity on its ellipsoid of inertia. The line is the exact course, "
-        f"the marks are the samples of {_SOLVER} on {_RUNG}, coloured by their error in units of u; dashed "
-        "the separatrices. Repeated turns lie on each other: later marks are above earlier ones."
+        f"{code(scene)}: the angular velocity on its ellipsoid of inertia. The line is the exact "
+        f"course, the marks are the samples of {_SOLVER} on {_RUNG}, coloured by their error in units "
+        "of u; dashed the separatrices. Repeated turns overlap, with later marks above earlier ones."
     )
     samples, record = stored.samples(scene, COLUMNS["omega"]), stored.record(scene, _RUNG)
     sources = PORTRAITS.name(scene), record_name(scene, _RUNG)
@@ -152,20 +152,20 @@ def _polhode(stored: Stored, portrait: Document) -> Made:
 
 
 def _axis(stored: Stored, portrait: Document) -> Made:
-    found = axis_path.series(portrait)
-    still = "" if found.fixed is None else f"; the cross is the direction of its {found.fixed_name}"
+    path = axis_path.series(portrait)
+    still = "" if path.fixed is None else f"; the cross is the direction of its {path.fixed_name}"
     caption = (
-        f"{code(portrait['scene'])}: where body axis {found.axis} points in space, from light to dark with "
+        f"{code(portrait['scene'])}: where body axis {path.axis} points in space, from light to dark with "
         f"time, on the unit sphere{still}."
     )
     return axis_path.picture(portrait), caption, (PORTRAITS.name(portrait["scene"]),)
 
 
 def _path(stored: Stored, portrait: Document) -> Made:
-    found = centre_path.series(portrait)
+    path = centre_path.series(portrait)
     caption = (
         f"{code(portrait['scene'])}: the path of the body's origin through the fluid, with its projections "
-        f"on three walls; the short lines are body axis {found.axis} at equal intervals of time."
+        f"on three walls; the short lines are body axis {path.axis} at equal intervals of time."
     )
     return centre_path.picture(portrait), caption, (PORTRAITS.name(portrait["scene"]),)
 
@@ -188,9 +188,10 @@ def _errors(stored: Stored, portrait: Document) -> Made:
 
 def _quartics(stored: Stored) -> Made:
     caption = (
-        "The quartic X3 of Clebsch's body, whose root the axial impulse follows: x3'^2 = r^2 X3(x3). The "
-        "body swings between two simple roots; a double root it only approaches, like an exponential, and "
-        "a triple one like 1/t^2. With two real roots the other two are a complex pair."
+        "The quartic X3 of Clebsch's body, whose root the axial impulse follows: x3'^2 = r^2 X3(x3). "
+        "The body swings between two simple roots; it only approaches a double root, like an "
+        "exponential, and a triple one like 1/t^2. With two real roots the other two are a complex "
+        "pair."
     )
     picture = potential.picture([stored.portrait(scene) for scene in QUARTICS], "kirchhoff")
     return picture, caption, tuple(PORTRAITS.name(scene) for scene in QUARTICS)
@@ -198,11 +199,11 @@ def _quartics(stored: Stored) -> Made:
 
 def _shifts(stored: Stored) -> Made:
     caption = (
-        "Solvers that were broken on purpose: the largest error of each, and what the best shift of time "
-        "leaves of it. Of a sound run the shift is as random as its roundings, and is not stored. A body "
-        "read half a millisecond early has a large error and almost none left: every conserved quantity "
-        "is right. Where the second mark lies on the first, the motion is another one, or only some of its "
-        "samples are late."
+        "Solvers that were broken on purpose: the largest error of each, and the rest after the best "
+        "shift of time. The shift of a sound run is as random as its roundings, and is not stored. A "
+        "body read half a millisecond early has a large error and almost no rest: every conserved "
+        "quantity is right. If the second mark lies on the first, the motion is wrong, or only some "
+        "of its samples are late."
     )
     verdicts = CONTROLS.load(stored.folder).verdicts
     return shifts.picture(verdicts, "controls"), caption, (CONTROLS.name,)
@@ -220,11 +221,15 @@ _SCENES: Final[tuple[tuple[str, tuple[Callable[[Stored, Document], Made], ...]],
     ("manufactured/euler-resonance", (_errors,)),
 )
 QUARTICS: Final = (
-    *("kirchhoff/whole-motion", "kirchhoff/two-real-roots", "kirchhoff/falling-away"),
-    *("kirchhoff/half-turn", "kirchhoff/algebraic", "kirchhoff/ellipsoid-disc"),
+    "kirchhoff/whole-motion",
+    "kirchhoff/two-real-roots",
+    "kirchhoff/falling-away",
+    "kirchhoff/half-turn",
+    "kirchhoff/algebraic",
+    "kirchhoff/ellipsoid-disc",
 )
 
 
 def scenes() -> tuple[str, ...]:
-    """Return the scenes that the gallery shows by themselves."""
+    """Return the scenes of the gallery."""
     return tuple(scene for scene, _ in _SCENES)

@@ -1,4 +1,4 @@
-"""The gallery as a study: pictures of some motions and of their errors, from other studies' data."""
+"""The study of the gallery: pictures of motions and errors, made from other studies' data."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from taylor_verify.studies.study import Measured, NotMeasured, Progress, Study
 if TYPE_CHECKING:
     from taylor_verify.studies.gallery.page import Shown
 
-# The pictures are built with NumPy, which nothing else that makes pages asks for: it is imported late.
+# The pictures need NumPy, and other pages do not: it is imported late.
 
 
 def _measure(folder: Path, progress: Progress) -> Measured:
-    """Make sure that all data are there; nothing is measured."""
+    """Check that all data are stored; nothing is measured."""
     from taylor_verify.studies.gallery.page import gallery
 
     del progress
@@ -35,7 +35,7 @@ def _measure(folder: Path, progress: Progress) -> Measured:
 
 
 def _find(folder: Path) -> list[Shown] | None:
-    """Return every picture of the gallery; None for a folder without some of its data."""
+    """Return every picture of the gallery; None if some of its data are missing."""
     if not (folder / PORTRAITS.folder).exists():
         return None
     from taylor_verify.studies.gallery.page import gallery
@@ -46,12 +46,12 @@ def _find(folder: Path) -> list[Shown] | None:
         return None
 
 
-def _page(found: list[Shown], folder: Path) -> str:
-    """Return the page of those that are drawn already; nothing without any."""
+def _page(pictures: list[Shown], folder: Path) -> str:
+    """Return the page of the pictures that are drawn already; empty without any."""
     from taylor_verify.studies.gallery.page import page
 
     drawn = {file.stem for file in (folder / FOLDER).glob("*.svg")}
-    shown = [one for one in found if one.picture.stem in drawn]
+    shown = [one for one in pictures if one.picture.stem in drawn]
     return page(shown) if shown else ""
 
 
@@ -63,6 +63,6 @@ STUDY: Final = Study(
     find=_find,
     page=_page,
     place=f"{FOLDER}/README.md",
-    draw=lambda found: [one.picture for one in found],
+    draw=lambda pictures: [one.picture for one in pictures],
     needs_heyoka=False,
 )

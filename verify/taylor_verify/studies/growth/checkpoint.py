@@ -1,7 +1,7 @@
-"""A checkpoint: how far a course has come, with everything needed to go on as if it had never been left.
+"""A checkpoint: the state of a course, with everything that is needed to continue it bit for bit.
 
 States and times are exact hexadecimal numbers. The file is replaced whole, after each piece of the
-course; one that belongs to another question, or was made by other versions, is refused.
+course. A checkpoint of another question or of other versions is refused.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ from taylor_verify.solvers.taylor.ensemble import Lane
 from taylor_verify.solvers.values import exact
 from taylor_verify.studies.stored import made_by
 
-# Another format would be another number.
+# The number of the file format.
 _FORMAT: Final = 2
 
-# The state of every lane at one instant, and the steps that it took to there; None if it never came.
+# The state of every lane at one instant and its steps up to then; None for a lane that never came there.
 Sample = tuple[tuple[Fraction, ...], int] | None
 
 
@@ -35,7 +35,7 @@ class OfAnotherError(ValueError):
 
 @dataclass(frozen=True)
 class Progress:
-    """The lanes where they stand after so many ``pieces`` of the course.
+    """The lanes after the first ``pieces`` pieces of the course.
 
     ``samples[k][i]`` is lane i at instant k, in its problem's own units, for the instants passed.
     """
@@ -48,7 +48,7 @@ class Progress:
 def write(
     file: Path, question: Mapping[str, Any], versions: Mapping[str, str], progress: Progress
 ) -> None:
-    """Put the checkpoint in place of an earlier one, whole or not at all. Raises OSError."""
+    """Replace an earlier checkpoint, entirely or not at all. Raises OSError."""
     content = {
         **made_by("growth"),
         "format": _FORMAT,
@@ -62,15 +62,15 @@ def write(
     with unfinished.open("w", encoding="utf-8", newline="\n") as stream:
         stream.write(text)
         stream.flush()
-        # The new name must not be on the disk before what it names.
+        # The content must be on the disk before its new name.
         os.fsync(stream.fileno())
     os.replace(unfinished, file)
 
 
 def read(file: Path, question: Mapping[str, Any], versions: Mapping[str, str]) -> Progress | None:
-    """Return what was written for this question; None where there is no file.
+    """Return the checkpoint of this question; None if there is no file.
 
-    Raises OfAnotherError for a checkpoint of something else, and ValueError for what is none.
+    Raises OfAnotherError for a checkpoint of another question, and ValueError for any other file.
     """
     try:
         text = file.read_text(encoding="utf-8")
@@ -94,13 +94,13 @@ def read(file: Path, question: Mapping[str, Any], versions: Mapping[str, str]) -
 def _check_origin(
     content: Mapping[str, Any], question: Mapping[str, Any], versions: Mapping[str, str], file: Path
 ) -> None:
-    """Raise for the first thing in which the checkpoint is another one."""
+    """Raise OfAnotherError that names the first difference between the checkpoint and the question."""
     asked = {"format": _FORMAT, **question, **versions}
-    found = {"format": content["format"], **content["question"], **content["versions"]}
-    for name in dict.fromkeys([*asked, *found]):
-        if asked.get(name) != found.get(name):
+    stored = {"format": content["format"], **content["question"], **content["versions"]}
+    for name in dict.fromkeys([*asked, *stored]):
+        if asked.get(name) != stored.get(name):
             raise OfAnotherError(
-                f"expected a checkpoint with {name} {asked.get(name)}, got {found.get(name)}; remove "
+                f"expected a checkpoint with {name} {asked.get(name)}, got {stored.get(name)}; remove "
                 f"the file to begin anew @ {file}"
             )
 
@@ -110,7 +110,7 @@ def _checksum(content: Mapping[str, Any]) -> str:
 
 
 def _number(kind: type, text: Any) -> Any:
-    """Return the exact number of a text, for a field that holds one."""
+    """Return the exact number of a text for a field that holds a number."""
     value = exact(text)
     if not isinstance(value, kind):
         raise ValueError(f"expected a finite number, got {text!r}")

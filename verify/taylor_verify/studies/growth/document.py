@@ -11,7 +11,7 @@ from taylor_verify.records.status import Status
 # None stands for a number that is not finite.
 Number = float | None
 
-# The word of a quantity without any error.
+# The word for a quantity without any error.
 EXACT: Final = "exact"
 
 
@@ -30,9 +30,10 @@ class GrowthGate:
 class GrowthOfQuantity:
     """A quantity of an ensemble and its growth.
 
-    ``rms`` are root mean squares over the starts at each of the ensemble's instants, ``in_walks`` the last
-    over that of a walk whose every step is one roundoff. ``exponent`` lies between ``low`` and ``high`` at
-    the confidence ``level``; ``late`` are the same three numbers of the second half of the decades.
+    ``rms`` are root mean squares over the starts at each of the ensemble's instants. ``in_walks`` is the
+    last one, relative to a random walk whose steps are single roundoffs. ``exponent`` lies between ``low``
+    and ``high`` at the confidence ``level``; ``late`` has these three numbers for the second half of the
+    decades.
     """
 
     quantity: str
@@ -70,7 +71,7 @@ class Ensemble:
 
 @dataclass(frozen=True)
 class GrowthStudy:
-    """All ensembles; ``left_out`` names those that this machine has no rung for."""
+    """All ensembles; ``left_out`` names those whose rung this machine does not have."""
 
     runs: tuple[Ensemble, ...]
     left_out: tuple[str, ...]

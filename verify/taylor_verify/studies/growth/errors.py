@@ -1,4 +1,4 @@
-"""The errors of one lane at its instants: signed drifts, the shift of its phase, and its state.
+"""Errors of one lane at its instants: signed drifts, the shift of its phase, and its state.
 
 c       shift of time, answer(t) = exact(t - c) but for a remainder; the phase is 2 pi c over the period
 e, v    answer(t) - exact(t - c), and the velocity of exact(t - c), each component in its own unit
@@ -29,29 +29,29 @@ from taylor_verify.solvers.trajectory import Outcome, Trajectory, from_scaled
 from taylor_verify.studies.growth.fit import Floats, Law
 
 PHASE: Final = "phase"
-# What tells the time; attitude and centre follow it.
+# Quantities that determine the shift of time; attitude and centre follow them.
 _STATES: Final = ("omega", "linear_impulse", "angular_impulse")
 
-# Errors are wanted to so many digits below the rung's own, and far beyond what their sums lose.
+# Digits of errors below the rung's own, far more than their sums lose.
 _MORE_DIGITS: Final = 12
 _MORE_BITS: Final = 64
-# Gauss-Newton from a shift that is small beside a period: convergence is quadratic.
+# Gauss-Newton converges quadratically, because the first shift is small beside a period.
 _EVALUATIONS: Final = 12
 _SETTLED: Final = 1e-6
-# A shift can be told from one by a whole period more if it was so small at the instant before that no
-# law lets it grow beyond a quarter of a period since.
+# A shift is unique up to a whole period if the one before is so small that no law lets it grow beyond
+# a quarter of a period in between.
 _QUARTER: Final = 0.25
 _FASTEST_GROWTH: Final = 2
-# Where the motion is slower than this part of its fastest it tells no time.
+# A motion slower than this part of its fastest does not determine the time.
 _AT_REST: Final = 1e-3
 
 
 @dataclass(frozen=True)
 class Measured:
-    """The errors of a quantity at the instants, NaN where there are none, and the law they are held to.
+    """Errors of a quantity at the instants, NaN if missing, and the law that they are compared with.
 
     Drifts are relative to the quantity's scale, the phase is in radians, the state is relative to its
-    largest size. ``signed`` tells the first two from the last, which is a norm.
+    largest size. ``signed`` is true for drifts and the phase; the error of the state is a norm.
     """
 
     quantity: str
@@ -63,30 +63,30 @@ class Measured:
 def lane_errors(
     problem: Problem, states: Sequence[tuple[Fraction, ...] | None], period: float
 ) -> list[Measured]:
-    """Return the errors of one lane, whose states are in the problem's own form and units.
+    """Return the errors of one lane from states in the problem's own form and units.
 
-    What comes after a state that is missing is missing too. Without a closed form there is nothing
-    so long to compare with, and the drifts are all there is.
+    Errors after a missing state are missing too. Without a closed form there is no exact state at such
+    times, so that there are drifts alone.
     """
     reached = [state for state in states if state is not None]
     rows = [problem.initial_momenta, *reached]
     trajectory = Trajectory(Outcome.FINISHED, from_scaled(problem, rows))
-    # Products of two numbers of the rung are exact in this, and sums of them nearly so.
+    # A precision in which products of two numbers are exact, and sums nearly so.
     with mp.workprec(2 * problem.rung.bits + _MORE_BITS):
         motion = trajectory.motion(mp.prec)
-        found = _drifts(problem.given, motion)
+        measured = _drifts(problem.given, motion)
         exact = solution(problem.given)
         if exact.regime != NO_CLOSED_FORM and reached:
             quantities = {name: values[1:] for name, values in motion.quantities.items()}
             answer = Motion(quantities, motion.radius[1:])
-            found += _state_and_phase(problem, exact, answer, period)
+            measured += _state_and_phase(problem, exact, answer, period)
     missing = [nan] * (len(states) - len(reached))
-    return [replace(one, values=np.append(one.values, missing)) for one in found]
+    return [replace(one, values=np.append(one.values, missing)) for one in measured]
 
 
 def _drifts(scene: Scene, motion: Motion) -> list[Measured]:
-    """Return the drifts since the first row; of a vector in space every component by itself."""
-    found: list[Measured] = []
+    """Return the drifts since the first row, of vectors in space component by component."""
+    drifts: list[Measured] = []
     for invariant in invariants(scene):
         values, scale = invariant.value(motion), invariant.scale(motion)
         drift = (values[1:] - values[0]) / scale
@@ -94,8 +94,8 @@ def _drifts(scene: Scene, motion: Motion) -> list[Measured]:
         if drift.ndim > 1:
             names = [f"{invariant.name}.{i}" for i in range(1, drift.shape[1] + 1)]
         columns = drift.reshape(len(drift), len(names)).T.astype(float)
-        found += [Measured(n, Law.WALK, one) for n, one in zip(names, columns, strict=True)]
-    return found
+        drifts += [Measured(n, Law.WALK, one) for n, one in zip(names, columns, strict=True)]
+    return drifts
 
 
 def _state_and_phase(
@@ -107,20 +107,20 @@ def _state_and_phase(
     reached = Clock(clock.start, clock.instants[: len(elapsed)])
     given = replace(problem.given, clock=reached, track=frozenset())
     (state,) = state_errors(given, exact.motion(elapsed, digits), answer)
-    found = [Measured(state.quantity, Law.INTEGRATED, state.values.astype(float), signed=False)]
+    measured = [Measured(state.quantity, Law.INTEGRATED, state.values.astype(float), signed=False)]
     shifts = _shifts(problem.given, exact, answer, elapsed, digits)
     if shifts is not None:
         phases = 2 * pi * sure_shifts(elapsed, shifts, period) / period
-        found.append(Measured(PHASE, Law.INTEGRATED, phases))
-    return found
+        measured.append(Measured(PHASE, Law.INTEGRATED, phases))
+    return measured
 
 
 def _shifts(
     scene: Scene, exact: Solution, answer: Motion, elapsed: Sequence[Fraction], digits: int
 ) -> Floats | None:
-    """Return the c of every instant by itself that leaves least of e, NaN where none is found.
+    """Return for each instant the c with the least e, or NaN if the search fails.
 
-    None for a motion that rests, or slows down so much that it tells no time.
+    The result is None for a motion that rests, or slows down so much that it determines no time.
     """
     names = [name for name in _STATES if name in answer.quantities]
     shifts = [Fraction(0)] * len(elapsed)
@@ -135,12 +135,12 @@ def _shifts(
         steps = -np.sum(e * v, axis=1) / speeds**2
         unit = power_of_two(flow.time)
         shifts = [c + Fraction(s) * unit for c, s in zip(shifts, steps.tolist(), strict=True)]
-        found = np.array([float(c) for c in shifts])
+        numbers = np.array([float(c) for c in shifts])
         # Written so that a NaN has not settled.
-        settled = np.abs(steps) * float(unit) <= _SETTLED * np.abs(found)
+        settled = np.abs(steps) * float(unit) <= _SETTLED * np.abs(numbers)
         if np.all(settled):
             break
-    return np.where(settled, found, nan)
+    return np.where(settled, numbers, nan)
 
 
 def _scaled(rows: np.ndarray[Any, Any], exponent: int) -> Floats:
@@ -151,10 +151,10 @@ def _scaled(rows: np.ndarray[Any, Any], exponent: int) -> Floats:
 
 
 def sure_shifts(elapsed: Sequence[Fraction], shifts: Floats, period: float) -> Floats:
-    """Return the shifts as far as they are sure, NaN from the first that may be off by a whole period.
+    """Return the shifts, with NaN from the first one on that may be off by a whole period.
 
-    Each is found next to zero. It is the right one if the one before, growing as t^2 at most, could
-    not have come further than a quarter of a period.
+    Each search starts at zero. Its result is right if the shift before, which grows as t^2 at most,
+    cannot have reached a quarter of a period.
     """
     times, sizes = np.abs(np.array(elapsed, dtype=float)), np.abs(shifts)
     reach = np.append(0.0, sizes[:-1] * (times[1:] / times[:-1]) ** _FASTEST_GROWTH)

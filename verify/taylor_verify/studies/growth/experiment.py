@@ -1,4 +1,4 @@
-"""The experiment: an ensemble followed piece by piece, and the growth of each of its errors."""
+"""Experiment: an ensemble followed piece by piece, and the growth of each of its errors."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from taylor_verify.studies.growth.question import Question
 # The packages that the numbers of a course depend on.
 _NUMERICAL = ("taylor-verify", "heyoka", "numpy")
 
-# Called after each piece with the number of pieces done, and of all.
+# Called after each piece with the number of finished pieces and that of all pieces.
 Finished = Callable[[int, int], None]
 
 
 @dataclass(frozen=True)
 class QuantityGrowth:
-    """A quantity of an ensemble: its signed errors (lanes, instants), and how they grow."""
+    """A quantity of an ensemble: its signed errors (lanes, instants), and their growth."""
 
     quantity: str
     errors: Floats
@@ -39,16 +39,16 @@ class QuantityGrowth:
 class Experiment:
     """An answered question; ``steps`` is the mean over the lanes at every instant.
 
-    ``lost`` is the number of lanes that did not come to the end.
+    ``lost`` is the number of lanes that did not reach the end.
     """
 
     question: Question
     lost: int
     steps: tuple[float, ...]
-    found: tuple[QuantityGrowth, ...]
+    quantities: tuple[QuantityGrowth, ...]
 
     def ensemble(self, why: str = "") -> Ensemble:
-        """Return the ensemble as it is stored; ``why`` says what it is measured for."""
+        """Return the ensemble in its stored form; ``why`` is the reason to measure it."""
         question = self.question
         return Ensemble(
             scene=question.scene.name,
@@ -62,7 +62,7 @@ class Experiment:
             lost=self.lost,
             counts=question.counts,
             steps=self.steps,
-            quantities=tuple(map(self._quantity, self.found)),
+            quantities=tuple(map(self._quantity, self.quantities)),
             why=why,
         )
 
@@ -73,7 +73,7 @@ class Experiment:
             **complete(grown.exponent),
             "quantity": one.quantity,
             "rms": grown.rms,
-            # Of a walk whose every step is one roundoff.
+            # Relative to a walk whose steps are single roundoffs.
             "in_walks": grown.rms[-1] / (u * sqrt(self.steps[-1])) if self.steps[-1] else None,
             "exponent": grown.exponent.value,
             "late": (late.value, late.low, late.high),
@@ -87,10 +87,10 @@ class Experiment:
 def course(
     question: Question, file: Path | None = None, finished: Finished = lambda done, all_: None
 ) -> Progress:
-    """Follow the question to its end, from the checkpoint in ``file`` where there is one.
+    """Follow the question to its end, from the checkpoint in ``file`` if there is one.
 
-    It ends the same to the last bit however often it was left and taken up. Raises ValueError for a
-    checkpoint that is not this question's, and OSError where it cannot be written.
+    The result is the same to the last bit however often the course was stopped and continued. Raises
+    ValueError for a checkpoint of another question, and OSError if a checkpoint cannot be written.
     """
     asked, made_with = question.document(), numerical_versions()
     ensemble = Lanes(question.problems, question.tolerance)
@@ -116,20 +116,20 @@ def numerical_versions() -> dict[str, str]:
 def experiment(
     question: Question, file: Path | None = None, finished: Finished = lambda done, all_: None
 ) -> Experiment:
-    """Follow the ensemble and judge it; ``file`` is where its checkpoint is kept."""
+    """Follow the ensemble and judge it; ``file`` holds its checkpoint."""
     end = course(question, file, finished)
     by_lane = [
         lane_errors(problem, [sample and sample[0] for sample in samples], question.period)
         for problem, *samples in zip(question.problems, *end.samples, strict=True)
     ]
     u, times = float(question.rung.unit_roundoff), np.array(question.counts)
-    found = []
+    grown = []
     for name, kind in {one.quantity: one for lane in by_lane for one in lane}.items():
-        # A lane that does not have the quantity has no number for it.
+        # A lane without the quantity has NaN.
         rows = [{one.quantity: one.values for one in lane} for lane in by_lane]
         errors = np.array([row.get(name, np.full(len(times), np.nan)) for row in rows])
-        found.append(QuantityGrowth(name, errors, growth(times, errors, kind.law, u, kind.signed)))
+        grown.append(QuantityGrowth(name, errors, growth(times, errors, kind.law, u, kind.signed)))
     counts = [[sample[1] for sample in row if sample is not None] for row in end.samples]
     steps = tuple(float(np.mean(row)) if row else 0.0 for row in counts)
     lost = sum(not lane.goes_on for lane in end.lanes)
-    return Experiment(question, lost, steps, tuple(found))
+    return Experiment(question, lost, steps, tuple(grown))

@@ -1,11 +1,11 @@
-"""The growth of errors over an ensemble of starts: exponent, interval, word, and a gate.
+"""Growth of errors over an ensemble of starts: exponent, interval, word, and a gate.
 
 t_k          instants, equally many to a decade        e_ik   error of lane i at t_k, signed
 p_i          slope of log |e_ik| against log t_k       n      lanes, independent of each other
 
-The roundings of a run are as good as independent of each other (Brouwer's law): what they do to a
-conserved quantity is a random walk, e ~ t^1/2, and to a phase, whose rate depends on the conserved
-quantities, the integral of one, e ~ t^3/2. An error that always has the same sign makes t and t^2.
+The roundings of a run are practically independent of each other (Brouwer's law). They change a conserved
+quantity by a random walk, e ~ t^1/2. They change a phase, whose rate depends on the conserved quantities,
+by the integral of such a walk, e ~ t^3/2. Errors of constant sign give t and t^2 instead.
 
 A process with e(ct) ~ c^p e(t) in distribution has E log |e_ik| = p log t_k + constant, whatever its
 distribution and however its instants are correlated. So p_i is unbiased, the lanes are draws of it,
@@ -34,13 +34,13 @@ LEVEL: Final = 0.99
 # A page of a hundred gates raises a false alarm once in a thousand publications.
 FALSE_ALARM: Final = 1e-5
 
-# Powers are half apart. What swings within a period, and a bias that has a walk beside it, bend a line
-# over few decades: an interval that is narrower than a tenth of that half, on either side, counts
-# as so wide where a word is looked for.
+# Powers differ by a half. Oscillations within a period, and a bias beside a walk, bend a line over few
+# decades. For the choice of a word, an interval therefore extends at least a tenth of that half to
+# either side.
 _RESOLUTION: Final = 0.05
 
 _LEAST_LANES: Final = 2
-# Two late instants are held against the early ones, of which one alone has no spread to speak of.
+# Two late instants are compared with the early ones; a single one has hardly any spread.
 _LATE: Final = 2
 _LEAST_INSTANTS: Final = _LATE + 2
 
@@ -61,8 +61,8 @@ RANDOM_WALK: Final = "random walk"
 BIAS: Final = "bias"
 NO_WORD: Final = "no number"
 
-# The words of a phase say what the single errors are: one that is passed on to the rate of the phase
-# grows by one power of time more.
+# The words of a phase name the kind of the single errors, which grow by one power of time more when they
+# pass to the rate of the phase.
 _WORDS: Final[Mapping[Law, Mapping[float, str]]] = {
     Law.WALK: {0: BOUNDED, 0.5: RANDOM_WALK, 1: BIAS},
     Law.INTEGRATED: {0: BOUNDED, 0.5: "jitter", 1: "constant rate", 1.5: RANDOM_WALK, 2: BIAS},
@@ -73,7 +73,7 @@ _WORDS: Final[Mapping[Law, Mapping[float, str]]] = {
 class Exponent:
     """The mean slope of the lanes, its interval at ``level``, and the word for it.
 
-    NaN where no two lanes have finite errors throughout.
+    All are NaN unless two lanes have finite errors throughout.
     """
 
     value: float
@@ -86,10 +86,10 @@ class Exponent:
 
 @dataclass(frozen=True)
 class Gate:
-    """The judgement on errors: they grow no faster than ``law`` allows, or they do.
+    """The judgement on errors: whether they grow faster than ``law`` allows.
 
-    ``chance`` is the probability that the law makes them grow as fast as they do, or faster; the gate
-    fails where it is less than ``false_alarm``, which is therefore how often the law itself fails.
+    ``chance`` is the probability of at least this growth under the law. The gate fails if it is less than
+    ``false_alarm``, which is therefore the probability that the law itself fails.
     """
 
     verdict: Status
@@ -103,10 +103,10 @@ class Gate:
 
 @dataclass(frozen=True)
 class Growth:
-    """The growth of a quantity of an ensemble: root mean squares over the lanes at every instant, and more.
+    """Growth of a quantity of an ensemble: root mean squares over the lanes, exponents and gate.
 
-    ``late`` is the exponent of the second half of the decades alone; ``gate`` is None for an error
-    without a sign, of which no law gives the distribution.
+    ``late`` is the exponent of the second half of the decades; ``gate`` is None for an error without a
+    sign, because no law gives its distribution.
     """
 
     times: tuple[float, ...]
@@ -117,12 +117,11 @@ class Growth:
 
 
 def growth(times: Floats, errors: Floats, law: Law, roundoff: float, signed: bool = True) -> Growth:
-    """Return the growth of errors of shape (lanes, instants); NaN is what a lane did not reach.
+    """Return the growth of errors of shape (lanes, instants); NaN marks instants not reached.
 
-    ``times`` (instants) are since the start and increase. ``law`` is what the errors are held
-    against, if they are ``signed``; ``roundoff`` is the size of one rounding in the unit of the
-    errors. Raises ValueError for fewer than two lanes or four instants, and for instants that do
-    not increase.
+    ``times`` (instants) are since the start and increase. ``law`` is the law that the errors are compared
+    with, if they are ``signed``; ``roundoff`` is the size of one rounding in the unit of the errors.
+    Raises ValueError for fewer than two lanes or four instants, and for instants that do not increase.
     """
     times, errors = np.asarray(times, dtype=float), np.asarray(errors, dtype=float)
     _check(times, errors)
@@ -169,16 +168,16 @@ def exponent(times: Floats, errors: Floats, law: Law, roundoff: float) -> Expone
     if not whole.any():
         return Exponent(0.0, 0.0, 0.0, EXACT, count)
     x = np.log(times) - np.mean(np.log(times))
-    # Of the least-squares line of every lane.
+    # The least-squares line of every lane.
     slopes = np.log(np.where(whole == 0, roundoff, np.abs(whole))) @ x / (x @ x)
     mean = float(np.mean(slopes))
     reach = student(count - 1, LEVEL) * float(np.std(slopes, ddof=1)) / sqrt(count)
-    found = word(mean, max(reach, _RESOLUTION), law)
-    return Exponent(mean, mean - reach, mean + reach, found, count)
+    judgement = word(mean, max(reach, _RESOLUTION), law)
+    return Exponent(mean, mean - reach, mean + reach, judgement, count)
 
 
 def word(value: float, reach: float, law: Law) -> str:
-    """Return the word whose exponent is within reach; else that several are, or between which it is."""
+    """Return the word whose exponent is within reach, or words for several or none of them."""
     if isnan(value):
         return NO_WORD
     words, low, high = _WORDS[law], value - reach, value + reach
@@ -198,17 +197,17 @@ def word(value: float, reach: float, law: Law) -> str:
 def gate(
     times: Floats, errors: Floats, law: Law, roundoff: float, false_alarm: float = FALSE_ALARM
 ) -> Gate:
-    """Judge whether the last two instants are further out than the law allows after those before them.
+    """Judge whether the errors of the last two instants are larger than the law and the earlier ones allow.
 
-    The law's covariance makes of the errors of a lane independent numbers z_ik of one variance (of a
-    walk: its increments over the square roots of their times). With L_i and E_i the sums of squares
-    of the last two and of the m before, (L_i/2)/(E_i/m) has Fisher's distribution F(2, m) exactly,
-    P(L_i/E_i > r) = (1 + r)^(-m/2), whatever the size of the lane's roundings; and of n independent
-    lanes -2 sum log P_i = m sum log(1 + L_i/E_i) is chi-square with 2n degrees of freedom.
+    The law's covariance turns the errors of a lane into independent numbers z_ik of one variance (for a
+    walk: its increments over the square roots of their times). Let L_i and E_i be the sums of squares of
+    the last two and of the m before. Then (L_i/2)/(E_i/m) has Fisher's distribution F(2, m) exactly,
+    P(L_i/E_i > r) = (1 + r)^(-m/2), for any size of the lane's roundings. For n independent lanes
+    -2 sum log P_i = m sum log(1 + L_i/E_i) is chi-square with 2n degrees of freedom.
 
-    The gate fails where that chance is below ``false_alarm``. Errors that are bounded, or smaller
-    early than one rounding (``roundoff``), make E_i larger than the law does: the gate then fails
-    less often. An error that is not finite fails.
+    The gate fails if that chance is below ``false_alarm``. Errors that are bounded, or early errors
+    smaller than one rounding (``roundoff``), make E_i larger than the law does, and the gate then fails
+    less often. Errors that are not finite fail.
     """
     early, late = early_and_late(times, errors, law, roundoff)
     lanes, m = len(errors), len(times) - _LATE
@@ -244,19 +243,19 @@ def covariance_of(law: Law, times: Floats) -> Floats:
 
     That of the integral is s^2 (3 t - s)/6 for s <= t.
 
-    Times count the last one, which leaves both laws as they are but for their size.
+    Times are relative to the last one, which changes the size of both laws alone.
     """
     scaled = times / times[-1]
     s, t = np.minimum.outer(scaled, scaled), np.maximum.outer(scaled, scaled)
-    found: Floats = s if law is Law.WALK else s * s * (3 * t - s) / 6
-    return found
+    values: Floats = s if law is Law.WALK else s * s * (3 * t - s) / 6
+    return values
 
 
-# Two distributions. They are not SciPy's, which is no dependency of what judges.
+# Two distributions, written here because the judging code does not depend on SciPy.
 
 
 def chi_square_tail(value: float, freedom: int) -> float:
-    """Return P(chi-square > value); NaN for a value that is none."""
+    """Return P(chi-square > value); NaN for NaN."""
     if not value >= 0:
         return nan
     return float(mpmath.gammainc(freedom / 2, value / 2, regularized=True))

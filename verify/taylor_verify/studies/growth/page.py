@@ -1,7 +1,7 @@
-"""The page of errors that grow over decades of time, made of the stored ensembles.
+"""Page of errors that grow over decades of time, made from the stored ensembles.
 
 growth.json        the published ensembles: of every quantity its root mean squares and the gate
-growth-long.json   the same of the long run, where somebody has made it
+growth-long.json   the same for the long run, if somebody has made it
 """
 
 from __future__ import annotations
@@ -32,52 +32,53 @@ GROWTH: Final = Stored(GrowthStudy, "growth")
 LONG: Final = Stored(GrowthStudy, "growth", stem="growth-long")
 
 _WHAT: Final = (
-    "If every rounding is independent of all others, what they do to a conserved quantity is a random "
-    "walk and grows as the square root of time, and what they do to the phase, whose rate depends on "
-    "the conserved quantities, grows as its three halves: Brouwer's law. An error that always has the "
-    "same sign, however small, makes that 1 and 2, and in a long run it wins. Each ensemble here is a "
-    "scene and starts within one per cent of it, followed by the Taylor integrator and compared with "
-    "the exact motion of the same rounded data."
+    "If roundings are independent of each other, they change a conserved quantity like a random walk, "
+    "which grows as the square root of time. The error of the phase, whose rate depends on the "
+    "conserved quantities, then grows with the power 3/2 of time. This is Brouwer's law. Errors of "
+    "constant sign, however small, grow with the powers 1 and 2 instead, and dominate a long run. "
+    "Each ensemble here is a scene and starts within one per cent of it, followed by the Taylor "
+    "integrator and compared with the exact motion of the same rounded data."
 )
 _LEGEND: Final = (
-    "*rms* is the root mean square over the starts at the first and the last instant: drifts relative to "
-    "the quantity's own size, the state relative to its largest, *phase* in radians of the orbit's "
-    "period. *walks* is the last over u times the square root of the steps, u being the rung's unit "
-    "roundoff: a walk whose every step is one u has 1.",
-    "*exponent* is the mean of the starts' own slopes, log error against log time, with Student's "
-    "interval at 99 %; it needs no assumption on how errors are distributed. *late* is that of the "
-    "second half of the decades.",
-    "The word is the one whose exponent the interval contains: bounded 0, random walk ½, bias 1; for "
-    "phase and state one more, as they follow the rate (and *jitter* ½, *constant rate* 1). Where it "
-    "contains several the word is *unclear*, where none, *between*; an interval of less than a "
-    "twentieth on either side counts as so wide, as no error is a pure power of time.",
+    "*rms* is the root mean square over the starts at the first and the last instant: drifts relative "
+    "to the quantity's own size, the state relative to its largest, *phase* in radians of the orbit's "
+    "period. *walks* is the last one over u times the square root of the steps, where u is the rung's "
+    "unit roundoff. A random walk with steps of one u has 1.",
+    "*exponent* is the mean of the slopes of all starts, log error against log time, with Student's "
+    "interval at 99 %. It needs no assumption on the distribution of errors. *late* is the exponent "
+    "of the second half of the decades.",
+    "The word names the exponent that the interval contains: bounded 0, random walk ½, bias 1. Phase "
+    "and state have one more, because they follow the rate (and *jitter* ½, *constant rate* 1). The "
+    "word is *unclear* if the interval contains several exponents, and *between* if it contains none. "
+    "Every interval counts as at least a twentieth wide on either side, because no error is a pure "
+    "power of time.",
 )
 _NO_CONSERVATION: Final = (
-    "A small drift certifies no state: compare it with the phase beside it, which is larger by a "
-    "factor that itself grows with time."
+    "A small drift does not prove a small error of the state. The error of the phase beside it is "
+    "larger, by a factor that grows with time."
 )
 
 _LEANING: Final = (
-    "**Where roundings lean to one side.** A product with a coefficient of many random digits is rounded "
-    "up as far as down. A coefficient that is a rounded small fraction, such as 1/6, leaves remainders "
-    "that are nearly thirds of a unit in the last place; the coefficient's own rounding moves all of "
-    "them to one side, and the mean rounding is up to a sixth of a unit, with a sign that "
-    "hangs on the size of the other factor. An orbit that favours a size has a bias then, which no "
-    "tolerance removes: round numbers make a handy example and a hard one."
+    "**Where roundings lean to one side.** A product with a coefficient of many random digits is "
+    "rounded up as far as down. A coefficient that is a rounded small fraction, such as 1/6, leaves "
+    "remainders that are nearly thirds of a unit in the last place. The coefficient's own rounding "
+    "moves all of them to one side. The mean rounding is then up to a sixth of a unit, and its sign "
+    "depends on the size of the other factor. An orbit that favours a size has a bias, which no "
+    "tolerance removes. Examples with round numbers are therefore hard ones."
 )
 _REMAKE: Final = (
-    "`taylor-verify publish growth` follows the ensembles anew, writes "
-    f"[growth.json](../{GROWTH.name}), the picture and this page: minutes, all cores. "
-    "It may be stopped and goes on from where it was.",
-    "`taylor-verify publish growth --long` follows the long run, 100 million periods, likewise: "
-    "a thousand pieces of some seconds.",
-    "Roundings are other draws on another processor, and so are the last digits here; the exponents "
-    "are the same within their intervals.",
+    "`taylor-verify publish growth` repeats the measurement, and writes "
+    f"[growth.json](../{GROWTH.name}), the picture and this page. It takes minutes on all cores. It "
+    "may be stopped, and continues from there when it is started again.",
+    "`taylor-verify publish growth --long` follows the long run of 100 million periods in the same "
+    "way, in a thousand pieces of some seconds.",
+    "Roundings differ between processors, and so do the last digits here. The exponents are the same "
+    "within their intervals.",
 )
 
 
 def find(folder: Path) -> GrowthStudy | None:
-    """Return both documents as one: the published runs, then the long ones; None without any."""
+    """Return both documents as one: the published runs, then the long ones; None without runs."""
     stored = [study for study in (GROWTH.find(folder), LONG.find(folder)) if study and study.runs]
     if not stored:
         return None
@@ -107,7 +108,7 @@ def page(study: GrowthStudy, folder: Path) -> str:
 
 
 def pictures(study: GrowthStudy) -> list[Picture]:
-    """Return all ensembles in one picture; none where there is nothing above zero to draw."""
+    """Return all ensembles in one picture; none if no error is above zero."""
     try:
         return [picture(study.runs)]
     except ValueError:
@@ -115,7 +116,7 @@ def pictures(study: GrowthStudy) -> list[Picture]:
 
 
 def _gates(runs: Iterable[Ensemble]) -> str:
-    """Return how many gates passed, and the names of those that did not."""
+    """Return the number of gates that passed, and the names of the others."""
     gates = [(run, row, row.gate) for run in runs for row in run.quantities if row.gate]
     failed = [
         f"{code(row.quantity)} of {_name(run)}"
@@ -133,7 +134,9 @@ def _section(run: Ensemble) -> list[str]:
     rows = [
         [
             code(row.quantity),
-            *(figure(row.rms[0]), figure(row.rms[-1]), figure(row.in_walks)),
+            figure(row.rms[0]),
+            figure(row.rms[-1]),
+            figure(row.in_walks),
             _interval(row.word, row.exponent, row.low, row.high),
             prose(row.word),
             _interval(row.late_word, *row.late),
@@ -161,13 +164,14 @@ def _gate_in_words(runs: Sequence[Ensemble]) -> str:
     rates = {row.gate.false_alarm for run in runs for row in run.quantities if row.gate}
     rate = figure(max(rates)) if rates else NOTHING
     return (
-        "*no worse than a walk* holds the last decade against those before it. A walk's increments over "
-        "the square roots of their times are independent numbers of one variance, and the covariance of "
-        "its integral makes the same of a phase; so the ratio of the late squares to the early ones has "
-        "Fisher's distribution for every start, whatever the size of its roundings, and the starts "
-        "together are chi-square. *chance* is how often a true walk looks so bad; the gate fails "
-        f"below {rate}, which is how often a true walk fails it. The state has no gate: an error "
-        "without a sign has no such distribution, and the phase says the same."
+        "*no worse than a walk* compares the last decade with those before it. A walk's increments "
+        "over the square roots of their times are independent numbers of one variance. The covariance "
+        "of its integral turns a phase into such numbers too. Therefore the ratio of the late squares "
+        "to the early ones has Fisher's distribution for every start, for any size of its roundings, "
+        "and all starts together are chi-square. *chance* is the probability that a true walk looks "
+        f"this bad. The gate fails below {rate}, which is the probability that a true walk fails. The "
+        "state has no gate, because an error without a sign has no such distribution; its growth is "
+        "that of the phase."
     )
 
 
@@ -179,10 +183,33 @@ def _name(run: Ensemble) -> str:
 
 
 _SHEET: Final = (
-    *("scene", "solver", "rung", "quantity", "starts", "lost", "period"),
-    *("periods_first", "periods_last", "steps_last", "rms_first", "rms_last", "in_walks"),
-    *("exponent", "low", "high", "word", "late", "late_low", "late_high", "late_word"),
-    *("level", "gate", "law", "chance", "false_alarm", "scene_sha256"),
+    "scene",
+    "solver",
+    "rung",
+    "quantity",
+    "starts",
+    "lost",
+    "period",
+    "periods_first",
+    "periods_last",
+    "steps_last",
+    "rms_first",
+    "rms_last",
+    "in_walks",
+    "exponent",
+    "low",
+    "high",
+    "word",
+    "late",
+    "late_low",
+    "late_high",
+    "late_word",
+    "level",
+    "gate",
+    "law",
+    "chance",
+    "false_alarm",
+    "scene_sha256",
 )
 
 

@@ -1,7 +1,8 @@
-"""The growth of errors over decades of time: a line for each ensemble, beside Brouwer's powers.
+"""Picture of growing errors over decades of time: a line for each ensemble, and Brouwer's powers.
 
-Left the drift of a conserved quantity, right the phase, over periods. The thin lines rise as powers of
-time: solid that of roundings, dashed that of a bias. The note names them, so that no names meet.
+The left panel has the drift of a conserved quantity, the right one the phase, over periods. Thin lines
+are powers of time: solid for roundings, dashed for a bias. The note names them, so that names of lines
+do not overlap.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 
 Points = list[tuple[float, float]]
 
-# Of each panel: its quantity, its heading, and the powers of roundings and of a bias.
+# The quantity of each panel, its heading, and the powers of roundings and of a bias.
 PANELS: Final = (
     ("T", "energy, relative", (0.5, 1.0)),
     ("phase", "phase (rad)", (1.5, 2.0)),
@@ -33,9 +34,9 @@ PANELS: Final = (
 _THIN: Final[dict[str, Any]] = {"color": QUIET, "linewidth": 0.6, "zorder": 1}
 # In the order of the powers above.
 _LOOKS: Final = (_THIN, {**_THIN, "dashes": (5, 3)})
-# The lines have no scene in common.
+# The lines belong to different scenes.
 _TITLE: Final = "ensembles of starts"
-# In decades, between two beginnings that each have their powers drawn.
+# Least distance, in decades, between the first points of two lines with powers of their own.
 _APART: Final = 1.0
 _NOTE: Final = (
     "Root mean square over the starts. Thin: powers of time, 1/2 and 3/2 solid, 1 and 2 dashed."
@@ -43,7 +44,7 @@ _NOTE: Final = (
 
 
 def picture(runs: Sequence[Ensemble]) -> Picture:
-    """Return the picture of all runs. Raises ValueError where none has points to draw."""
+    """Return the picture of all runs. Raises ValueError if no run has points to draw."""
     by_label = dict(zip(labels_of(runs), runs, strict=True))
     lines = {
         quantity: {label: _points(run, quantity) for label, run in by_label.items()}
@@ -51,17 +52,17 @@ def picture(runs: Sequence[Ensemble]) -> Picture:
     }
     if not any(points for by_run in lines.values() for points in by_run.values()):
         raise ValueError("expected a run with errors above zero, got none @ runs")
-    said = []
+    sentences = []
     for label in by_label:
         ends = []
         for quantity, by_run in lines.items():
             if points := by_run[label]:
                 (n0, e0), (n1, e1) = points[0], points[-1]
                 ends.append(f"{quantity} {plain(e0)} at {n0:g} and {plain(e1)} at {n1:g} periods")
-        said.append(f"{label}: {', '.join(ends) or 'nothing above zero'}")
+        sentences.append(f"{label}: {', '.join(ends) or 'nothing above zero'}")
     alt = (
         f"Errors against periods on {_TITLE}, both logarithmic, energy on the left and "
-        f"phase on the right. {'; '.join(said)}."
+        f"phase on the right. {'; '.join(sentences)}."
     )
     title = f"Growth of errors: {_TITLE}"
     return Picture(stem_of({"scene": _TITLE}, "growth"), title, alt, partial(_figure, lines))
@@ -75,8 +76,8 @@ def _points(run: Ensemble, quantity: str) -> Points:
 
 def _figure(lines: Mapping[str, Mapping[str, Points]]) -> Figure:
     labels = list(next(iter(lines.values())))
-    looks = {label: look_of_line(i) for i, label in enumerate(labels)}
-    entries = [(looks[label].line, label) for label in labels]
+    styles = {label: look_of_line(i) for i, label in enumerate(labels)}
+    entries = [(styles[label].line, label) for label in labels]
     figure, places = sheet(len(PANELS), entries, _NOTE)
     for axes, (quantity, heading, powers) in zip(places, PANELS, strict=True):
         drawn = {label: points for label, points in lines[quantity].items() if points}
@@ -92,21 +93,21 @@ def _figure(lines: Mapping[str, Mapping[str, Points]]) -> Figure:
             for power, look in zip(powers, _LOOKS, strict=True):
                 _draw_power(axes, points, power, look)
         for label, points in drawn.items():
-            axes.plot(*zip(*points, strict=True), gid=label, zorder=3, **looks[label].line)
+            axes.plot(*zip(*points, strict=True), gid=label, zorder=3, **styles[label].line)
     return figure
 
 
 def _apart(lines: Sequence[Points]) -> list[Points]:
-    """Return lines that begin far from each other: of several that begin in one place the first."""
-    found: list[Points] = []
+    """Return the lines that begin far from the others; of neighbours only the first."""
+    separate: list[Points] = []
     for points in lines:
-        if all(abs(log10(points[0][1] / other[0][1])) > _APART for other in found):
-            found.append(points)
-    return found
+        if all(abs(log10(points[0][1] / other[0][1])) > _APART for other in separate):
+            separate.append(points)
+    return separate
 
 
 def _draw_power(axes: Axes, points: Points, power: float, look: Mapping[str, Any]) -> None:
-    """Draw a power of time from the first point of a line to the border that it meets first."""
+    """Draw a power of time from the first point of a line to the border of the panel."""
     (n0, e0), top, right = points[0], axes.get_ylim()[1], axes.get_xlim()[1]
     end = min(right, n0 * (top / e0) ** (1 / power))
     level = e0 * (end / n0) ** power
@@ -114,17 +115,17 @@ def _draw_power(axes: Axes, points: Points, power: float, look: Mapping[str, Any
 
 
 def labels_of(runs: Sequence[Ensemble]) -> list[str]:
-    """Return the names of the lines: scene, rung, and the setting of the solver where it has one.
+    """Return the names of the lines: scene, rung, and the setting of the solver if it has one.
 
-    A scene goes by the last part of its name where no other has the same; of two ensembles with one name
-    the longer one says how far it goes.
+    A scene is named by the last part of its name if that is unique. Of two ensembles with one name the
+    longer one has its number of periods too.
     """
     tails = {run.scene: run.scene.rpartition("/")[2] for run in runs}
-    found: list[str] = []
+    names: list[str] = []
     for run in runs:
         is_alone = list(tails.values()).count(tails[run.scene]) == 1
         scene = tails[run.scene] if is_alone else run.scene
         setting = run.solver.removeprefix("taylor").lstrip("?")
         label = " ".join([scene, run.rung, setting]).strip()
-        found.append(f"{label}, to {run.periods:.0e}" if label in found else label)
-    return found
+        names.append(f"{label}, to {run.periods:.0e}" if label in names else label)
+    return names

@@ -1,4 +1,4 @@
-"""The ensembles that are published, and the long one. Each can be stopped and taken up again."""
+"""Published ensembles, and the long one. Each can be stopped and continued."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from taylor_verify.studies.growth.question import Question
 
 @dataclass(frozen=True)
 class Entry:
-    """An ensemble by names; ``why`` says what it is there for."""
+    """An ensemble by names; ``why`` is its purpose."""
 
     scene: str
     rung: str
@@ -31,7 +31,7 @@ class Entry:
     solver: str = TAYLOR
 
     def question(self, most: float | None = None) -> Question:
-        """Return what is asked of it: as long as it is published, or at most so many periods."""
+        """Return the question of the ensemble, cut to ``most`` periods if these are given."""
         periods = self.periods if most is None else min(self.periods, most)
         return Question(load(self.scene), rung(self.rung), periods, self.lanes, self.solver)
 
@@ -41,26 +41,39 @@ class Entry:
 
     @property
     def file(self) -> str:
-        """The name of its checkpoint."""
+        """The name of the file of the checkpoint."""
         plain = "".join(c if c.isalnum() or c in ".-" else "-" for c in self.label)
         return f"growth-{plain}-{self.periods:.0e}.json"
 
 
 PUBLISHED: Final = (
-    Entry("euler/about-max-axis", "f64", 1e6, 16, "Brouwer's law over four decades"),
-    # x87 has no batch: a lane takes a minute or two, and six are enough for an interval.
-    Entry("euler/about-max-axis", "f80", 1e6, 6, "the same with eleven bits more"),
     Entry(
-        *("euler/generic", "f64", 1e6, 16),
-        "moments 1, 2, 3, whose coefficients are rounded small fractions",
+        "euler/about-max-axis", "f64", periods=1e6, lanes=16, why="Brouwer's law over four decades"
+    ),
+    # x87 has no batch mode: a lane takes a minute or two, and six are enough for an interval.
+    Entry(
+        "euler/about-max-axis", "f80", periods=1e6, lanes=6, why="the same with eleven bits more"
     ),
     Entry(
-        *("euler/about-max-axis", "f64", 1e5, 16),
-        *("a bias that is known: truncation at a coarse tolerance", f"{TAYLOR}?tol=1e-12"),
+        "euler/generic",
+        "f64",
+        periods=1e6,
+        lanes=16,
+        why="moments 1, 2, 3, whose coefficients are rounded small fractions",
     ),
-    Entry("kirchhoff/two-real-roots", "f64", 1e5, 16, "a solid in a fluid"),
+    Entry(
+        "euler/about-max-axis",
+        "f64",
+        periods=1e5,
+        lanes=16,
+        why="a bias that is known: truncation at a coarse tolerance",
+        solver=f"{TAYLOR}?tol=1e-12",
+    ),
+    Entry("kirchhoff/two-real-roots", "f64", periods=1e5, lanes=16, why="a solid in a fluid"),
 )
-LONG: Final = (Entry("euler/about-max-axis", "f64", 1e8, 8, "a hundred million periods"),)
+LONG: Final = (
+    Entry("euler/about-max-axis", "f64", periods=1e8, lanes=8, why="a hundred million periods"),
+)
 
 # Called after each piece with the label of the ensemble, the pieces done, and their number.
 Finished = Callable[[str, int, int], None]
@@ -72,10 +85,10 @@ def followed(
     finished: Finished,
     most: float | None = None,
 ) -> GrowthStudy:
-    """Return the ensembles of the entries, in their order; a rung that is not here is left out and named.
+    """Return the ensembles of the entries, and the names of those whose rung is missing here.
 
-    ``checkpoints`` is the folder in which those of ensembles that are under way are kept. Raises
-    ValueError for too few periods, and for a checkpoint of something else.
+    ``checkpoints`` is the folder for the checkpoints of unfinished ensembles. Raises ValueError for too few
+    periods, and for a checkpoint of another question.
     """
     runs: list[Ensemble] = []
     left_out: list[str] = []
@@ -84,6 +97,6 @@ def followed(
             left_out.append(f"{entry.label}: {missing}")
             continue
         file = checkpoints / entry.file if checkpoints else None
-        found = experiment(entry.question(most), file, partial(finished, entry.label))
-        runs.append(found.ensemble(entry.why))
+        result = experiment(entry.question(most), file, partial(finished, entry.label))
+        runs.append(result.ensemble(entry.why))
     return GrowthStudy(tuple(runs), tuple(left_out), Provenance(versions(), processor(), command()))

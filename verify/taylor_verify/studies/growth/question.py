@@ -1,4 +1,4 @@
-"""The question of an ensemble: a scene and starts near it, at a few instants in each decade of time."""
+"""Question of an ensemble: a scene and starts near it, at a few instants in each decade of time."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ from taylor_verify.solvers.registry import TAYLOR
 from taylor_verify.solvers.taylor.driver import tolerance
 from taylor_verify.studies.tradeoff.starts import nearby
 
-# A hundred periods are thousands of steps: their roundings have made a walk by then, and what swings
-# within a period is small beside it.
+# A hundred periods are thousands of steps. Their roundings are a walk by then, and oscillations within a
+# period are small beside it.
 FIRST_PERIODS: Final = 100
 INSTANTS_PER_DECADE: Final = 2
-# Half a decade less than the gate can judge would leave it nothing early.
+# The gate needs early instants besides the late ones.
 LEAST_PERIODS: Final = 10**3.5
 MOST_PERIODS: Final = 1e9
-# Between two checkpoints. It is part of the question: a step ends at every one of them.
+# The distance of checkpoints, which is part of the question because a step ends at each checkpoint.
 PIECE_PERIODS: Final = 100_000
 
 _LEAST_LANES: Final = 2
-# Half-decades are met by a number of periods that was rounded.
+# Half-decades are rounded to whole periods.
 _SLACK: Final = 1e-6
 
 
@@ -39,7 +39,7 @@ _SLACK: Final = 1e-6
 class Question:
     """A scene and ``lanes`` - 1 starts drawn near it from ``seed``, followed for ``periods``.
 
-    ``solver`` is a name of heyoka's integrator. Raises ValueError for what cannot be followed.
+    ``solver`` is a name of heyoka's integrator. Raises ValueError for a scene that cannot be followed.
     """
 
     scene: Scene
@@ -56,8 +56,8 @@ class Question:
                 f"@ {self.scene.name}"
             )
         if self.scene.body.damping:
-            # A motion through tau = (1 - e^{-ct})/c has no decades of periods: for c > 0 it ends at
-            # tau = 1/c, and for c < 0 a power of the time is an exponential of it.
+            # A motion in tau = (1 - e^{-ct})/c has no decades of periods: for c > 0 it ends at
+            # tau = 1/c, and for c < 0 a power of tau is an exponential of the time.
             fate = "dies away" if self.scene.body.damping > 0 else "speeds up"
             raise ValueError(
                 "expected a motion that recurs, whose errors grow as powers of the time, got one that "
@@ -81,10 +81,10 @@ class Question:
 
     @cached_property
     def period(self) -> float:
-        """The period of the scene's orbit; where that has none, of its fastest linear rate at the start."""
-        found = elements(self.scene).get("period")
-        if found is not None:
-            return float(found.value)
+        """The period of the scene's orbit, or of its fastest linear rate at the start if it has none."""
+        period = elements(self.scene).get("period")
+        if period is not None:
+            return float(period.value)
         problem = pose(self.scene, self.rung)
         rate = Linearised(problem).fastest([float(value) for value in problem.initial_momenta])
         return 2 * pi / rate * float(problem.units.time)
@@ -98,7 +98,7 @@ class Question:
 
     @cached_property
     def problems(self) -> tuple[Problem, ...]:
-        """A problem for every lane, asked at the instants; the scene's own start is the first."""
+        """A problem for every lane with the instants as its times; the first has the scene's own start."""
         start = self.scene.clock.start
         clock = Clock(start, tuple(start + Fraction(n * self.period) for n in self.counts))
         scenes = [self.scene, *nearby(self.scene, self.seed, self.lanes - 1)]
@@ -106,7 +106,7 @@ class Question:
 
     @cached_property
     def pieces(self) -> tuple[tuple[tuple[Fraction, ...], bool], ...]:
-        """The stops of every lane, in its own units: at the instants (True) and on the way to them."""
+        """The stops of every lane in its own units, with True for instants and False for others."""
         stops: list[tuple[tuple[Fraction, ...], bool]] = []
         instants = [*zip(*(problem.times for problem in self.problems), strict=True)]
         start = (Fraction(0),) * len(self.problems)
@@ -121,7 +121,7 @@ class Question:
         return tuple(stops)
 
     def document(self) -> dict[str, Any]:
-        """Return what is asked, with a fingerprint of every exact number that the answer depends on."""
+        """Return the question, with a fingerprint of all exact numbers that the answer depends on."""
         return {
             "scene": self.scene.name,
             "digest": self.scene.digest,
@@ -134,10 +134,10 @@ class Question:
         }
 
     def _fingerprint(self) -> str:
-        found = hashlib.sha256()
+        digest = hashlib.sha256()
         for problem in self.problems:
             numbers = (*problem.parameters, *problem.initial_momenta, *problem.times)
-            found.update(" ".join([*problem.form.text(), *map(hexadecimal, numbers)]).encode())
+            digest.update(" ".join([*problem.form.text(), *map(hexadecimal, numbers)]).encode())
         for stops, _ in self.pieces:
-            found.update(" ".join(map(hexadecimal, stops)).encode())
-        return found.hexdigest()
+            digest.update(" ".join(map(hexadecimal, stops)).encode())
+        return digest.hexdigest()

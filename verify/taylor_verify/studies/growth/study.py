@@ -11,16 +11,16 @@ from taylor_verify.studies.growth import page
 from taylor_verify.studies.growth.page import GROWTH, LONG
 from taylor_verify.studies.study import Measured, NotMeasured, Option, Progress, Study
 
-# Below the folder that is published: what is local there is nobody else's.
+# Below the published folder, where local files are neither published nor committed.
 _CHECKPOINTS: Final = "local/growth"
-# Between two signs of life, in seconds.
+# Seconds between two reports.
 _PATIENCE: Final = 10.0
 
 
 def _measure(
     folder: Path, progress: Progress, periods: float | None = None, long: bool = False
 ) -> Measured:
-    """Follow the published ensembles, or the long one alone; a run that was stopped goes on."""
+    """Follow the published ensembles, or the long one alone; continue a stopped run."""
     from taylor_verify.studies.growth import published
 
     entries = published.LONG if long else published.PUBLISHED
@@ -30,7 +30,7 @@ def _measure(
     except ValueError as error:
         raise NotMeasured(str(error)) from error
     written = (LONG if long else GROWTH).write(folder, study)
-    # Only what is stored is done: until then it could still be taken up.
+    # Until the results are stored, the measurement can be continued.
     for entry in entries:
         (checkpoints / entry.file).unlink(missing_ok=True)
     return Measured(written)
@@ -46,19 +46,19 @@ def _periods(text: str) -> float:
 
 
 class Pieces:
-    """A line for every ensemble, and now and then how far it is."""
+    """Progress report: a line for every ensemble, and its progress from time to time."""
 
     def __init__(self, say: Callable[[str], None]) -> None:
-        self._say, self._label, self._said = say, "", 0.0
+        self._say, self._label, self._reported = say, "", 0.0
 
     def __call__(self, label: str, done: int, of: int) -> None:
         if done == of:
             self._say(f"{label}: done")
-        elif label != self._label or monotonic() - self._said >= _PATIENCE:
+        elif label != self._label or monotonic() - self._reported >= _PATIENCE:
             self._say(f"{label}: piece {done} of {of}")
         else:
             return
-        self._label, self._said = label, monotonic()
+        self._label, self._reported = label, monotonic()
 
 
 STUDY: Final = Study(

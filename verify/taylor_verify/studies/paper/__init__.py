@@ -1,1 +1,1 @@
-"""The paper: twelve pages at most that open with the findings, made of what the studies have stored."""
+"""The paper: at most twelve pages that open with the findings, made from the stored studies."""

@@ -1,4 +1,4 @@
-"""The caption of a table or a picture: what is shown, of which data, and on which machine."""
+"""Caption of a table or a picture: its subject, its data, and their machine."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ TRADEOFF: Final = (tradeoff.NUMBERS.name, tradeoff.TIMINGS.name)
 
 @dataclass(frozen=True)
 class Caption:
-    """A sentence in Markdown on what is shown, the files that it is made of, and the processor."""
+    """A sentence in Markdown on the subject, the files of data, and the processor."""
 
     words: str
     data: tuple[str, ...]

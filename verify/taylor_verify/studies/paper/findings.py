@@ -1,4 +1,4 @@
-"""The findings that the paper opens with: sentences whose every number is computed from stored rows."""
+"""Findings at the beginning of the paper: sentences whose numbers are computed from stored rows."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from taylor_verify.studies.reach.page import last_value, most_periods
 from taylor_verify.studies.tradeoff.peers import OUTSIDE, TAYLOR
 from taylor_verify.studies.tradeoff.stored import TimedPoint, Trade, cheapest
 
-# An error that most users of an engine would call none.
+# An error that most users of an engine would ignore.
 GOOD: Final = 1e-6
-# Digits that are asked of the trade-off and of the reach.
+# Digits for the findings on the trade-off and on the reach.
 TRADED: Final = 9
 REACHED: Final = 6
 _RUNG: Final = "f64"
@@ -30,19 +30,19 @@ _RIVAL: Final = "scipy DOP853"
 
 
 def controls(sources: Sources) -> str:
-    """Return how many defects each kind of gate sees."""
+    """Return the number of defects that each kind of gate sees, in words."""
     sights = [sight for sight in sources.controls.sights if sight.is_finished]
     energy = sum(sight.is_missed_by("T") for sight in sights)
-    seen = sum(any(map(sight.is_seen_by, sight.state)) for sight in sights)
+    failing = sum(any(map(sight.is_seen_by, sight.state)) for sight in sights)
     return (
         f"Of {len(sights)} solvers that were broken on purpose, {energy} pass the gate on the energy and "
         f"{len(conserving(sights))} pass the gate of every conserved quantity of their scene; the "
-        f"comparison with the exact motion sees {seen}."
+        f"comparison with the exact motion sees {failing}."
     )
 
 
 def engines(sources: Sources) -> str:
-    """Return how well engines turn a free body, each at the best of its settings."""
+    """Return the errors of engines on a free body, each at its best setting, in words."""
     scores = [score for score in sources.best if not sources.name_of(score)[1]]
     finite = [score for score in scores if score.error < inf]
     if not finite:
@@ -71,7 +71,7 @@ def _drift(score: Score) -> float:
 
 
 def accuracy(sources: Sources) -> str:
-    """Return what a Taylor integrator achieves, over what perfect rounding would leave."""
+    """Return the error of a Taylor integrator over that of perfect rounding, in words."""
     verdicts = sources.verdicts
     ratios = [over_attainable(verdict) for verdict in verdicts if verdict.is_compared]
     if not ratios:
@@ -89,7 +89,7 @@ def accuracy(sources: Sources) -> str:
 
 
 def reach(sources: Sources) -> str:
-    """Return how long float64 keeps some digits of a motion, and how near an unstable one."""
+    """Return the reach of float64 in periods, and near an unstable motion, in words."""
     rows = [row for row in sources.reach.rows if row.rung == _RUNG]
     long = next((f for f in sources.reach.families if not f.symbol), None)
     near = next((f for f in sources.reach.families if f.symbol == "d"), None)
@@ -113,7 +113,7 @@ def _of(family: ReachFamily) -> str:
 
 
 def trade(sources: Sources) -> str:
-    """Return the time that rivals of the Taylor integrator take for as many digits."""
+    """Return the time of the Taylor integrator's rivals for the same digits, in words."""
     trades = sources.trades.short
     rival = _multiples(trades, lambda family: family == _RIVAL)
     outside = _multiples(trades, lambda family: family.startswith(OUTSIDE))
@@ -131,14 +131,14 @@ def trade(sources: Sources) -> str:
 
 
 def _multiples(trades: Iterable[Trade], is_wanted: Callable[[str], bool]) -> list[float]:
-    """Return for each scene the time of the fastest of some families over that of taylor."""
-    found = []
+    """Return for each scene the time of the fastest of the given families over that of taylor."""
+    multiples = []
     for one in trades:
         taylor = _fastest(one, lambda family: family == TAYLOR)
         other = _fastest(one, is_wanted)
         if taylor is not None and other is not None:
-            found.append(other.timing.ratio / taylor.timing.ratio)
-    return found
+            multiples.append(other.timing.ratio / taylor.timing.ratio)
+    return multiples
 
 
 def _fastest(one: Trade, is_wanted: Callable[[str], bool]) -> TimedPoint | None:

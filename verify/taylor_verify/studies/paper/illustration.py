@@ -1,4 +1,4 @@
-"""The pictures of the paper, which are those of the studies."""
+"""Pictures of the paper, taken from the studies."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from taylor_verify.studies.tradeoff import page as tradeoff_page
 
 @dataclass(frozen=True)
 class Illustration:
-    """A picture with its caption; ``width`` is in percent of that of the text."""
+    """A picture with its caption; ``width`` is in percent of the width of the text."""
 
     name: str
     picture: Picture
@@ -25,12 +25,12 @@ class Illustration:
 
     @property
     def markdown(self) -> str:
-        """The picture as a block of its own."""
+        """The picture as a block of Markdown."""
         return f"![{self.caption.markdown}]({self.picture.stem}.pdf){{width={self.width}%}}"
 
 
 def pictures(sources: Sources) -> list[Illustration]:
-    """Return all pictures, in the order of the paper. Raises ValueError for a study without one."""
+    """Return all pictures, in the order of the paper. Raises ValueError for a study without a picture."""
     return [make(sources) for make in (_engines, _reach, _trade)]
 
 
@@ -62,7 +62,7 @@ def _trade(sources: Sources) -> Illustration:
     return Illustration("tradeoff", picture, Caption(words, TRADEOFF, machine), width=90)
 
 
-def _first(found: Sequence[Picture], study: str) -> Picture:
-    if not found:
+def _first(pictures: Sequence[Picture], study: str) -> Picture:
+    if not pictures:
         raise ValueError(f"expected a picture of what `publish {study}` has stored, got none")
-    return found[0]
+    return pictures[0]

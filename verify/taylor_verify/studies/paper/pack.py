@@ -1,7 +1,7 @@
 """Pack of the paper: paper.pdf, paper.tex with its pictures, and each table alone as LaTeX and CSV.
 
-All of it is made of stored rows and stored pictures, and `text.md` beside this file: it has the words, and
-marks such as §{engines} where a finding, a table, a picture or the number of one stands.
+It is made from stored rows, stored pictures and `text.md` beside this file. That text has marks such as
+§{engines} for findings, tables, pictures and their numbers.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ class Pack:
 
 
 def write(folder: Path) -> list[Path]:
-    """Write the pack into ``folder``/paper, and each picture that is in ``folder``/figures as PDF there.
+    """Write the pack into ``folder``/paper, and each picture of ``folder``/figures as PDF beside it.
 
     The errors are those of `pack` and of `Pack.write`.
     """
@@ -79,7 +79,7 @@ def write(folder: Path) -> list[Path]:
 
 
 def pack(folder: Path) -> Pack:
-    """Return the paper of a report folder, of which nothing is written yet.
+    """Return the paper of a report folder without writing it.
 
     Raises OSError for files that cannot be read, and ValueError for a study that is missing, a file that
     holds something else, or a checkout without its CITATION.cff.
@@ -99,7 +99,7 @@ def pack(folder: Path) -> Pack:
 
 
 def _citation(folder: Path) -> Path:
-    """Return the file that names title and authors: beside the report, or in the checkout of this code."""
+    """Return the CITATION.cff with title and authors: beside the report, or in this checkout."""
     places = (folder.resolve().parent, Path(__file__).resolve().parents[4])
     for place in places:
         if (place / _CITATION).is_file():

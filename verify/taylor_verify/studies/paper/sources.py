@@ -1,4 +1,4 @@
-"""The stored documents that the paper is made of."""
+"""Stored documents that the paper is made from."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from taylor_verify.studies.reach.page import REACH
 from taylor_verify.studies.tradeoff import stored as tradeoff
 from taylor_verify.studies.tradeoff.stored import Trades
 
-# A study, and the file without which it is not measured.
+# Each study with its file, which exists once the study is measured.
 _FILES: Final = {
     "controls": CONTROLS.name,
     "engines": engines.ENGINES.name,
@@ -49,8 +49,10 @@ class Sources:
     @property
     def processors(self) -> str:
         """The machines of the runs."""
-        found = {v.provenance["processor"] for v in self.verdicts if "processor" in v.provenance}
-        return ", ".join(sorted(found))
+        processors = {
+            v.provenance["processor"] for v in self.verdicts if "processor" in v.provenance
+        }
+        return ", ".join(sorted(processors))
 
     @cached_property
     def entries(self) -> EntryList:
@@ -75,7 +77,7 @@ class Sources:
 
 
 def lacking(folder: Path) -> list[str]:
-    """Return the studies that the paper tells of and a report folder does not have."""
+    """Return the studies of the paper that a report folder lacks."""
     return [name for name, file in _FILES.items() if not (folder / file).exists()]
 
 

@@ -1,4 +1,4 @@
-"""The tables of the paper: columns and rows cut to what a page shows, each with a caption."""
+"""Tables of the paper: as many columns and rows as fit a page, each with a caption."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Table:
 
     @property
     def csv(self) -> str:
-        """A sheet of these cells for a program."""
+        """The cells as CSV."""
         names = [heading.removesuffix(":") for heading in self.headings]
         rows = (dict(zip(names, map(plain, row), strict=True)) for row in self.rows)
         return sheet(names, rows)
@@ -104,9 +104,9 @@ def _engines(sources: Sources) -> Table:
 
 def _reach(sources: Sources) -> Table:
     words = (
-        f"The last value of each family at which the Taylor integrator leaves {REACHED} digits: the number "
-        "of periods, or the parameter that leads to the extreme, after one period. An arrow stands behind "
-        f"the last value that was tried, {NOTHING} where there is none."
+        f"The last value of each family at which the Taylor integrator leaves {REACHED} digits: the "
+        "number of periods, or the parameter that leads to the extreme, after one period. An arrow "
+        f"stands behind the last value that was tried, {NOTHING} where there is no value."
     )
     study = sources.reach
     rungs = list(dict.fromkeys(rung for family in study.families for rung in family.rungs))

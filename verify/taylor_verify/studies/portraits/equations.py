@@ -1,4 +1,4 @@
-"""The equations of motion in general form, in LaTeX: one table by the class of a body.
+"""Equations of motion in general form, in LaTeX, by the class of a body.
 
 H, x, y and their rates are in body axes, as are the loads; the attitude R takes body components to space
 components, and c is the body's origin in space.
@@ -43,7 +43,7 @@ _CENTRE: Final = r"\dot{\mathbf c} = \mathsf R \mathbf U"
 
 
 def equations(scene: Scene) -> list[str]:
-    """Return a line for each equation that applies to the scene: its loads, and what it tracks."""
+    """Return a line for each equation of the scene, with its loads and its tracked quantities."""
     of_body, omega = _EQUATIONS[type(scene.body)]
     tracked = {"attitude": rf"\dot{{\mathsf R}} = \mathsf R [{omega}]_\times", "centre": _CENTRE}
     return [*of_body(scene.body), *(line for name, line in tracked.items() if name in scene.track)]
@@ -74,7 +74,7 @@ def _gyrostat_equations(body: Gyrostat) -> list[str]:
     return [f"{_EULER}{damped}{loaded}", r"\mathbf H = \mathsf I \boldsymbol\omega + \mathbf h"]
 
 
-# For each kind of body its equations, and what its angular velocity is called in them.
+# For each kind of body its equations, and the name of its angular velocity in them.
 _EQUATIONS: Final[Mapping[type[Body], tuple[Callable[[Any], list[str]], str]]] = {
     RigidBody: (_euler_equations, r"\boldsymbol\omega"),
     ImmersedBody: (_kirchhoff_equations, r"\boldsymbol\Omega"),

@@ -1,11 +1,11 @@
-"""The portrait of a shipped scene: all that a page shows of it, as one plain document.
+"""Portrait of a shipped scene: everything that its page shows, as one plain document.
 
-    document["course"]["omega"]      the motion at dense times, in plain floats, to be drawn
-    document["values"]["rows"]       the motion at ten times, in 30 digits, to be compared with
+        document["course"]["omega"]      the motion at dense times, in plain floats, for pictures
+        document["values"]["rows"]       the motion at ten times, in 30 digits, for comparisons
     document["potential"]            the quartic X3 of Clebsch's body, x3'^2 = r^2 X3(x3)
 
-All but ``explain``, a run on f64, belongs to the scene's own rational numbers. Nothing here depends on
-the machine or the hour: two portraits of one scene are the same.
+All of it belongs to the scene's own rational numbers, except ``explain``, which is a run on f64. Nothing
+depends on the machine or the hour: two portraits of one scene are the same.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ from taylor_verify.scenes.library import find
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.studies.portraits.equations import equations
 
-# Times at which the values are given: these parts of the span.
+# Times of the values, as parts of the span.
 TIMES: Final = 10
 _RUNG: Final = "f64"
 _ROOT_BITS: Final = 160
@@ -52,7 +52,7 @@ Document = dict[str, Any]
 
 
 def portrait(scene: Scene) -> Document:
-    """Return the whole document of one shipped scene. Raises Unsettled where a number does not settle."""
+    """Return the whole document of one shipped scene. Raises Unsettled if a number does not settle."""
     text = find(scene.name).read_text(encoding="utf-8")
     formed = formed_to(scene, DIGITS)
     exact, orbit = solution(formed), orbit_of(scene)
@@ -71,7 +71,7 @@ def portrait(scene: Scene) -> Document:
         "warnings": list(scene.warnings),
         "tex": equations(scene),
         "analytic": analytic(orbit),
-        # A run takes another time each time.
+        # The time of a run is different each time.
         "explain": {**explained, "cost": {**explained["cost"], "seconds": None}},
         "values": values,
         "course": course_of(scene, exact, length(scene, orbit)),
@@ -82,7 +82,7 @@ def portrait(scene: Scene) -> Document:
 
 
 def _comment(text: str) -> list[str]:
-    """Return the comments of the file without their marks: they say why the scene exists."""
+    """Return the comments of the file, which say why the scene exists, without their marks."""
     return [line.lstrip("# ").rstrip() for line in text.splitlines() if line.startswith("#")]
 
 
@@ -94,13 +94,13 @@ def _tracked(scene: Scene) -> list[str]:
 
 
 def _times(scene: Scene) -> list[tuple[str, Fraction]]:
-    """Return parts of the span with their texts, which are decimals and exact."""
+    """Return parts of the span with their texts, which are exact decimals."""
     spread = [scene.clock.start + span(scene) * k / TIMES for k in range(1, TIMES + 1)]
     texts = [shortest_text(t, DIGITS) for t in spread]
     return [(text, Fraction(text)) for text in texts]
 
 
-# What is drawn besides the motion.
+# The potential.
 
 
 def _potential(scene: Scene, orbit: Elements) -> Document | None:
@@ -112,10 +112,10 @@ def _potential(scene: Scene, orbit: Elements) -> Document | None:
     body = scene.body
     if not isinstance(body, ImmersedBody) or not body.is_free:
         return None
-    found = revolution(Reduced(scene))
-    if found is None or not isinstance(found.subject, Nutation):
+    motion = revolution(Reduced(scene))
+    if motion is None or not isinstance(motion.subject, Nutation):
         return None
-    nutation = found.subject
+    nutation = motion.subject
     X3 = [coefficient / nutation.body.r**2 for coefficient in nutation.f]  # noqa: N806 (as in 49)
     if nutation.F2 == 0 or len(X3) < 2 or nutation.axes.number is None:
         return None
@@ -132,18 +132,18 @@ def _potential(scene: Scene, orbit: Elements) -> Document | None:
 
 
 def roots(polynomial: Sequence[Fraction]) -> list[list[float]]:
-    """Return [real, imaginary] of every root as often as it is one: the real ones first, upwards.
+    """Return [real, imaginary] of every root with its multiplicity: real roots first, in rising order.
 
     The polynomial has its highest power first. Its roots are isolated from exact integers, so that
-    repeated ones are known as such, and a real one has no imaginary part.
+    multiplicities are exact, and a real root has no imaginary part.
     """
     scale = lcm(*(coefficient.denominator for coefficient in polynomial))
     integers = [int(coefficient * scale) for coefficient in reversed(polynomial)]
     with ctx.workprec(_ROOT_BITS):
-        # With multiplicities, which flint's type stubs leave out.
+        # flint's type stubs leave out the multiplicities.
         isolated: list[Any] = list(fmpz_poly(integers).complex_roots())
-        found = [_parts(acb(root)) for root, times in isolated for _ in range(times)]
-    return sorted(found, key=lambda root: (root[1] != 0, root))
+        parts = [_parts(acb(root)) for root, times in isolated for _ in range(times)]
+    return sorted(parts, key=lambda root: (root[1] != 0, root))
 
 
 def _parts(root: acb) -> list[float]:

@@ -1,4 +1,4 @@
-"""The portraits as a study: all that pages and pictures show of each shipped scene."""
+"""The study of the portraits: the data of the page and the pictures of each shipped scene."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from taylor_verify.records import store
 from taylor_verify.studies.stored import SceneDocuments
 from taylor_verify.studies.study import Bulk, Measured, Progress, Study
 
-# Most of a portrait is rows of numbers, which need no blanks.
+# Without blanks the rows of numbers are shorter.
 PORTRAITS: Final = SceneDocuments(
     f"{store.FOLDER}/portraits", "taylor-verify publish; do not edit", (",", ":")
 )

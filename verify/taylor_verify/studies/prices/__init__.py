@@ -1,1 +1,1 @@
-"""The price of each thing that a scene may ask for."""
+"""The price of each option of a scene."""

@@ -1,4 +1,4 @@
-"""The cost of each thing that a scene may ask for, as a multiple of the barest form of its model."""
+"""The cost of each option of a scene, as a multiple of the barest form of its model."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 from taylor_verify.records.provenance import SceneProvenance
 
-# A median, and the ends of its interval. The ends are None where there were too few rounds for one.
+# A median, and the ends of its interval, which are None if there were too few rounds.
 Interval = tuple[float, float | None, float | None]
 
 
 @dataclass(frozen=True)
 class PriceRow:
-    """A variant on a rung: its equations, and the cost of a step and of a unit of time."""
+    """A variant on a rung: the size of its equations, and the cost of a step and of a unit of time."""
 
     rung: str
     variant: str
@@ -33,7 +33,7 @@ class PriceRow:
 
 @dataclass(frozen=True)
 class PriceAtEqualError:
-    """The time of a variant over that of the barest form, where both achieve one error."""
+    """The time of a variant over that of the barest form at the same achieved error."""
 
     variant: str
     against: str

@@ -1,8 +1,8 @@
-"""The price of each thing that a scene may ask for, measured in turns, in multiples of the barest form.
+"""Measurement of the price of each option of a scene, as a multiple of the barest form.
 
-A price is the processor time of a step, and that of a unit of the scene's time, over the same of the
-barest form of the model in the same round: an integrator steps from the start to the end of a stretch,
-again and again, unsampled. Compiling is not in it.
+A price is the processor time of a step, or of a unit of the scene's time, over that of the barest form
+of the model in the same round. An integrator steps from the start to the end of a stretch, again and
+again, without samples. The time of compiling is left out.
 """
 
 from __future__ import annotations
@@ -35,27 +35,27 @@ from taylor_verify.studies.tradeoff.accuracy import Truth
 from taylor_verify.studies.tradeoff.order_statistics import estimate
 from taylor_verify.studies.tradeoff.rounds import in_rounds
 
-# Each rung with its rounds: the interval of the median asks for six, and a wide rung takes its time.
+# Rounds by rung: the interval of the median needs six, and a wide rung takes long.
 RUNGS: Final = {"f64": 31, "f80": 31, "f128": 9, "mp237": 7}
-# On the wide rungs only what the three questions are about: omega, attitude, the whole state.
+# The wide rungs have only the variants of the three questions: omega, attitude, the whole state.
 _ON_WIDE_RUNGS: Final = ("omega", "attitude", "impulse", "whole")
 _WIDE: Final = ("f128", "mp237")
 _SEED: Final = 1
-# One measurement is many times the resolution of the clock, about a microsecond, and an interrupt.
+# A measurement lasts many times the clock's resolution, about a microsecond, and an interrupt.
 _LEAST_SECONDS: Final = 4e-3
 # The stretch, in the problem's units of time: some hundreds of steps.
 _SPAN: Final = Fraction(128)
 _SPAN_ON_WIDE_RUNGS: Final = Fraction(8)
-# Costs at one and the same achieved error are read between tolerances, on f64.
+# Costs at the same achieved error are interpolated between tolerances, on f64.
 _EQUAL_ERROR: Final = 1e-11
 _TOLERANCES: Final = ("1e-7", "1e-9", "1e-11", "1e-13")
 
 
 @dataclass
 class _Bench:
-    """A problem and a solver, ready to run; ``count`` runs of ``steps`` each make one measurement.
+    """A problem and a solver, ready to run; ``count`` runs of ``steps`` steps make one measurement.
 
-    ``unit`` is the stretch in the scene's units of time, ``taken`` has seconds of a run by rounds.
+    ``unit`` is the stretch in the scene's units of time; ``taken`` has the seconds of a run in each round.
     """
 
     problem: Problem
@@ -71,7 +71,7 @@ class _Bench:
         problem = variant.posed(rung)
         span = _SPAN_ON_WIDE_RUNGS if rung.name in _WIDE else _SPAN
         pace = Pace(problem, span, solver.tolerance, variant.literals)
-        # The first run is not timed: what it touches is there afterwards.
+        # The first run, which fills caches, is not timed.
         made = cls(problem, solver, pace, float(span * problem.units.time), pace.run())
         made.count = max(1, ceil(_LEAST_SECONDS / max(made.seconds(), 1e-6)))
         return made
@@ -85,8 +85,8 @@ class _Bench:
 
     def error(self) -> float:
         """Return the largest relative error over the scene's samples, of omega or the impulses alone."""
-        found = Truth(self.problem).accuracy(self.solver.solve(self.problem))
-        return max(found.max[name] for name in ("omega", "impulse") if name in found.max)
+        accuracy = Truth(self.problem).accuracy(self.solver.solve(self.problem))
+        return max(accuracy.max[name] for name in ("omega", "impulse") if name in accuracy.max)
 
 
 def study(finished: Callable[[str], None] = lambda rung: None) -> PricesStudy:
@@ -115,7 +115,7 @@ def _rows(rung: Rung, rounds: int) -> list[PriceRow]:
 
 
 def _take(benches: Sequence[_Bench], rounds: int) -> None:
-    """Time every bench once a round."""
+    """Time every bench once in each round."""
     seconds = in_rounds([bench.seconds for bench in benches], rounds, _SEED)
     for bench, taken in zip(benches, seconds, strict=True):
         bench.taken = taken
@@ -142,7 +142,7 @@ def _row(variant: Variant, rung: Rung, bench: _Bench, base: _Bench) -> PriceRow:
 
 
 def _at_equal_error(rung: Rung) -> tuple[PriceAtEqualError, ...]:
-    """Return the time over that of the barest form at one error, from a row of tolerances."""
+    """Return the time over that of the barest form at one error, from runs at several tolerances."""
     asked = [v for v in variants() if not v.literals]
     solvers = [at_tolerance(text) for text in _TOLERANCES]
     benches = {v.name: [_Bench.of(v, rung, solver) for solver in solvers] for v in asked}
@@ -160,7 +160,7 @@ def _at_equal_error(rung: Rung) -> tuple[PriceAtEqualError, ...]:
 
 
 def _between(errors: Sequence[float], costs: Sequence[float]) -> float | None:
-    """Return the cost at the error asked for, on straight lines in logarithms; None outside the row."""
+    """Return the cost at an error by linear interpolation of logarithms; None outside the range."""
     points = sorted(zip(errors, costs, strict=True), reverse=True)
     for (e, c), (f, d) in pairwise(points):
         if e >= _EQUAL_ERROR >= f > 0 and e > f:

@@ -1,4 +1,4 @@
-"""The page of the price of each thing that a scene may ask for, made of the stored measurement."""
+"""Page of the price of each option of a scene, made from the stored measurement."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from taylor_verify.studies.stored import Stored
 
 PRICES: Final = Stored(PricesStudy, "prices")
 
-# The models by their barest forms.
+# The models by the names of their barest forms.
 _MODELS: Final = {"omega": "a rigid body", "impulse": "a solid in an ideal fluid"}
 # The three questions: the barest form, its attitude, and all of a solid in a fluid.
 _ASKED: Final = (
@@ -31,29 +31,29 @@ _ASKED: Final = (
 )
 
 _WHAT: Final = (
-    "The suite integrates what a scene requires and nothing else. These are the prices of the things "
-    "that a scene may require, and of the forms that the same equations may be given. A price is a "
-    "multiple of that of the barest form of its model, *omega* or *impulse*, measured in the same "
-    "round on the same machine."
+    "The suite integrates only the quantities that a scene requires. This page has the prices of the "
+    "options of a scene, and of different forms of the same equations. A price is a multiple of that "
+    "of the barest form of its model, *omega* or *impulse*, measured in the same round on the same "
+    "machine."
 )
 
 _LEGEND: Final = (
     "*operations* are the distinct sums, products and quotients of one evaluation of the equations; "
     "the integrator forms each of them once for every order of a step.",
     "*a step* and *a unit of time* are medians of the ratios to the barest form, in the brackets the "
-    "interval that holds the median of their distribution with at least 95 %. A unit of time is "
-    "one of the scene's: it has more steps in it where the motion is faster.",
+    "interval that holds the median of their distribution with at least 95 %. A unit of time is that "
+    "of the scene: faster motions have more steps in it.",
     "*error* is that of omega or of the impulses at the rung's own tolerance, the largest of all "
-    "samples, relative; *at equal error* is the price of a unit of time where tolerances are "
-    "set so that both forms achieve 1e-11, on f64.",
+    "samples, relative; *at equal error* is the price of a unit of time at tolerances for which both "
+    "forms achieve 1e-11, on f64.",
     "Up to five states are compiled as straight-line code, more as loops over tables, which "
     "compile in a fraction of the time and run slower: part of the price of a sixth state.",
 )
 
 
 def pictures(study: PricesStudy) -> list[Picture]:
-    """Return the price of each thing that a scene may ask for on f64, a picture for each model."""
-    found = []
+    """Return a picture for each model: the price on f64 of each option of a scene."""
+    drawn = []
     for root, words in _MODELS.items():
         rows = [
             Ratio(row.variant, row.rung, *row.step_ratio)
@@ -61,8 +61,8 @@ def pictures(study: PricesStudy) -> list[Picture]:
             if row.against == root and row.rung == "f64" and row.variant != root
         ]
         if rows:
-            found.append(picture(words, f"{root} alone", rows))
-    return found
+            drawn.append(picture(words, f"{root} alone", rows))
+    return drawn
 
 
 def page(study: PricesStudy, folder: Path) -> str:
@@ -80,8 +80,8 @@ def page(study: PricesStudy, folder: Path) -> str:
         "## How it was measured",
         bullets(_method(study)),
         "## To remake this",
-        f"`taylor-verify publish prices` measures anew, writes [prices.json](../{PRICES.name}) and this "
-        "page; nothing is ever compared with these times.",
+        "`taylor-verify publish prices` repeats the measurement, and writes "
+        f"[prices.json](../{PRICES.name}) and this page. No test compares these times.",
     )
 
 
@@ -90,8 +90,8 @@ def _three_questions(rows: Iterable[PriceRow]) -> str:
     rungs = list(dict.fromkeys(rung for _, rung in cost))
     lines = []
     for name, words in _ASKED:
-        found = [(cost.get((name, rung)), cost.get(("omega", rung))) for rung in rungs]
-        cells = [f"{figure(a)} ({figure(a / b)})" if a and b else NOTHING for a, b in found]
+        pairs = [(cost.get((name, rung)), cost.get(("omega", rung))) for rung in rungs]
+        cells = [f"{figure(a)} ({figure(a / b)})" if a and b else NOTHING for a, b in pairs]
         lines.append([words, *cells])
     return table(["what is followed", *(f"{rung}:" for rung in rungs)], lines)
 
@@ -100,9 +100,9 @@ def _sections(rows: Sequence[PriceRow], equal: Mapping[str, float | None]) -> li
     blocks = []
     for root, model in _MODELS.items():
         blocks.append(f"## {model[0].upper()}{model[1:]}")
-        found = [row for row in rows if row.against == root]
-        for rung in dict.fromkeys(row.rung for row in found):
-            of_rung = [row for row in found if row.rung == rung]
+        own = [row for row in rows if row.against == root]
+        for rung in dict.fromkeys(row.rung for row in own):
+            of_rung = [row for row in own if row.rung == rung]
             blocks += [f"On {rung}, order {of_rung[0].order}:", _prices(of_rung, equal)]
     return blocks
 
@@ -149,9 +149,26 @@ def _method(study: PricesStudy) -> list[str]:
 
 
 _SHEET: Final = (
-    *("rung", "variant", "against", "states", "parameters", "sums", "products", "quotients"),
-    *("order", "steps_per_time", "microseconds", "step_ratio", "step_low", "step_high"),
-    *("time_ratio", "time_low", "time_high", "error", "ratio_at_equal_error", "what"),
+    "rung",
+    "variant",
+    "against",
+    "states",
+    "parameters",
+    "sums",
+    "products",
+    "quotients",
+    "order",
+    "steps_per_time",
+    "microseconds",
+    "step_ratio",
+    "step_low",
+    "step_high",
+    "time_ratio",
+    "time_low",
+    "time_high",
+    "error",
+    "ratio_at_equal_error",
+    "what",
 )
 
 

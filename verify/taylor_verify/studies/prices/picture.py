@@ -1,4 +1,4 @@
-"""The cost of what a scene requires: a bar for each thing, as a multiple of the one at the foot."""
+"""Picture of the cost of each option of a scene: a bar for each, as a multiple of the yardstick."""
 
 from __future__ import annotations
 
@@ -23,48 +23,48 @@ _ABOVE: Final = 0.12
 _BELOW: Final = 0.52
 _FOOT: Final = 0.24
 _RIGHT: Final = 0.15
-# Of a character of a label, about, and the most that labels may take of the page.
+# The width of a character of a label, about, and the largest width of all labels.
 _LETTER: Final = 0.068
 _WIDEST: Final = 3.0
 _RANGE: Final[Mapping[str, Any]] = {"color": INK, "linewidth": 0.8, "marker": "|"}
 
 
-def picture(scene: str, yardstick: str, found: Sequence[Ratio]) -> Picture:
-    """Return the picture of ratios to the yardstick. Raises ValueError for ratios that are none."""
-    check(found)
-    dearest = max(found, key=lambda one: one.ratio)
-    said = "; ".join(f"{one.label} on {one.rung} {times(one.ratio)}" for one in found)
+def picture(scene: str, yardstick: str, ratios: Sequence[Ratio]) -> Picture:
+    """Return the picture of ratios to the yardstick. Raises ValueError for invalid ratios."""
+    check(ratios)
+    dearest = max(ratios, key=lambda one: one.ratio)
+    words = "; ".join(f"{one.label} on {one.rung} {times(one.ratio)}" for one in ratios)
     alt = (
         f"Cost of what {scene} requires, as a multiple of the time of {yardstick}: "
-        f"{said}. The dearest is {dearest.label} on {dearest.rung}."
+        f"{words}. The dearest is {dearest.label} on {dearest.rung}."
     )
     title = f"Cost of what is required: {scene}"
     return Picture(
-        stem_of({"scene": scene}, "prices"), title, alt, partial(_figure, found, yardstick)
+        stem_of({"scene": scene}, "prices"), title, alt, partial(_figure, ratios, yardstick)
     )
 
 
-def _figure(found: Sequence[Ratio], yardstick: str) -> Figure:
-    bars, below = _BAR * len(found), _BELOW + _FOOT
+def _figure(ratios: Sequence[Ratio], yardstick: str) -> Figure:
+    bars, below = _BAR * len(ratios), _BELOW + _FOOT
     figure = blank(_ABOVE + bars + below)
-    left = min(0.25 + _LETTER * max(len(_name(one)) for one in found), _WIDEST)
+    left = min(0.25 + _LETTER * max(len(_name(one)) for one in ratios), _WIDEST)
     axes = add_axes(figure, Frame(left, below, PAGE_WIDTH - left - _RIGHT, bars))
-    _draw_bars(axes, found)
+    _draw_bars(axes, ratios)
     axes.set(xlabel=f"time, as a multiple of that of {yardstick}")
-    if any(one.least < one.greatest for one in found):
+    if any(one.least < one.greatest for one in ratios):
         draw_legend(figure, [(dict(_RANGE), "least to greatest seen")])
     return figure
 
 
-def _draw_bars(axes: Axes, found: Sequence[Ratio]) -> None:
-    """Draw bars from 1, the yardstick, to the right what is dearer; the number is behind its range."""
-    axes.set(xscale="log", ylim=(len(found) - 0.4, -0.6))
-    for i, one in enumerate(found):
+def _draw_bars(axes: Axes, ratios: Sequence[Ratio]) -> None:
+    """Draw bars from 1, the yardstick, to each ratio, with the number after the range."""
+    axes.set(xscale="log", ylim=(len(ratios) - 0.4, -0.6))
+    for i, one in enumerate(ratios):
         colour = look_of_rung(one.rung).colour
         axes.barh(i, one.ratio - 1, left=1, height=0.62, color=colour, gid=one.label, zorder=2)
         axes.plot([one.ratio], [i], marker="|", color=colour, markersize=9, zorder=2)
         if one.least < one.greatest:
-            # White beneath, to be seen on a dark bar.
+            # White beneath makes the line visible on a dark bar.
             below = {"color": PAPER, "linewidth": 2.0, "marker": "|", "markeredgewidth": 2.4}
             for look in (below, _RANGE):
                 axes.plot([one.least, one.greatest], [i, i], zorder=3, **look)
@@ -78,14 +78,14 @@ def _draw_bars(axes: Axes, found: Sequence[Ratio]) -> None:
             gid="number",
         )
     axes.axvline(1, color=QUIET, linewidth=0.8, zorder=4)
-    least = min(1.0, *(one.least for one in found))
-    most = max(1.0, *(one.greatest for one in found))
+    least = min(1.0, *(one.least for one in ratios))
+    most = max(1.0, *(one.greatest for one in ratios))
     # The last number needs room: an inch of four or five.
     axes.set_xlim(least / 1.15, most * max((most / least) ** 0.22, 1.3))
-    axes.set_yticks(range(len(found)), [_name(one) for one in found])
+    axes.set_yticks(range(len(ratios)), [_name(one) for one in ratios])
     axes.tick_params(axis="y", length=0)
     axes.xaxis.set_major_formatter("{x:g}")
-    axes.grid(True, axis="x", which="major")
+    axes.grid(visible=True, axis="x", which="major")
 
 
 def _name(one: Ratio) -> str:

@@ -1,4 +1,4 @@
-"""The study of prices: the cost of each thing that a scene may ask for."""
+"""The study of prices: the cost of each option of a scene."""
 
 from __future__ import annotations
 

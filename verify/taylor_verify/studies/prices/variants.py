@@ -1,4 +1,4 @@
-"""The variants that are priced: one motion in several forms, one body with more and more asked of it."""
+"""Variants that are priced: one motion in several forms, one body with more and more options."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _LOAD: Final = (Fraction(1, 64), Fraction(-1, 128), Fraction(1, 256))
 
 @dataclass(frozen=True)
 class Variant:
-    """A form of a scene. ``against`` names the variant that its price is a multiple of."""
+    """A form of a scene. ``against`` names the variant that is the unit of its price."""
 
     name: str
     against: str
@@ -32,18 +32,28 @@ class Variant:
 
 
 def variants() -> tuple[Variant, ...]:
-    """Return the variants in reading order; each comes after the one that it is held against."""
+    """Return the variants in reading order; each comes after the one that is its unit."""
     omega, impulse = "omega", "impulse"
     whole = _of(_CLEBSCH, "attitude", "centre")
     return (
         Variant(omega, omega, "three moments, free, omega alone", _of(_PRINCIPAL)),
-        Variant("literals", omega, "the coefficients written into the code", _of(_PRINCIPAL), True),
         Variant(
-            *("differences", omega, "differences of K's diagonal formed by the integrator"),
+            "literals",
+            omega,
+            "the coefficients written into the code",
+            _of(_PRINCIPAL),
+            literals=True,
+        ),
+        Variant(
+            "differences",
+            omega,
+            "differences of K's diagonal formed by the integrator",
             lambda rung: pose(load(_PRINCIPAL), rung).with_equations(euler_equations),
         ),
         Variant(
-            *("zeros", omega, "products of inertia and moment carried along, all of them zero"),
+            "zeros",
+            omega,
+            "products of inertia and moment carried along, all of them zero",
             lambda rung: in_general_form(pose(load(_PRINCIPAL), rung), zeros=True),
         ),
         Variant("moment", omega, "a constant moment about all axes", _of(_PRINCIPAL, loaded=True)),
@@ -51,21 +61,28 @@ def variants() -> tuple[Variant, ...]:
         Variant("tensor", omega, "a tensor with products of inertia", _of(_TENSOR)),
         Variant("tensor, attitude", omega, "and the attitude", _of(_TENSOR, "attitude")),
         Variant(impulse, impulse, "Clebsch's body, free, x and y alone", _of(_CLEBSCH)),
-        Variant("impulse, literals", impulse, "as above, in the code", _of(_CLEBSCH), True),
+        Variant(
+            "impulse, literals", impulse, "as above, in the code", _of(_CLEBSCH), literals=True
+        ),
         Variant("y3 a state", impulse, "the constant y3 integrated", _with_y3),
         Variant(
-            *("21 coefficients", impulse, "the same body by the general equations, zeros left out"),
+            "21 coefficients",
+            impulse,
+            "the same body by the general equations, zeros left out",
             lambda rung: in_general_form(_of(_CLEBSCH)(rung)),
         ),
         Variant(
-            *("21, zeros carried", impulse, "and with 15 coefficients and 6 loads that are zero"),
+            "21, zeros carried",
+            impulse,
+            "and with 15 coefficients and 6 loads that are zero",
             lambda rung: in_general_form(_of(_CLEBSCH)(rung), zeros=True),
         ),
         Variant("loads", impulse, "a constant force and couple", _of(_CLEBSCH, loaded=True)),
         Variant("impulse, attitude", impulse, "and the attitude", _of(_CLEBSCH, "attitude")),
         Variant("whole", impulse, "attitude and centre", whole),
         Variant(
-            *("whole, 21", impulse),
+            "whole, 21",
+            impulse,
             "attitude and centre by the general equations, zeros left out",
             lambda rung: in_general_form(whole(rung)),
         ),
@@ -76,7 +93,7 @@ def _of(name: str, *track: str, loaded: bool = False) -> Callable[[Rung], Proble
     def posed(rung: Rung) -> Problem:
         scene = replace(load(name), track=frozenset(track))
         if loaded:
-            # They change the motion little in the time of the scene.
+            # Loads so small that they change the motion little in the time of the scene.
             opposed = tensors.scaled(Fraction(-1), _LOAD)
             loads = dict(zip(scene.body.load_names(), (_LOAD, opposed), strict=False))
             scene = replace(scene, body=scene.body.with_parts(loads))

@@ -1,1 +1,1 @@
-"""The reach of each precision: how far it carries, and where it ends."""
+"""The reach of each precision in periods and in extreme values."""

@@ -1,4 +1,4 @@
-"""The number of periods that each precision carries a motion through, and with what error."""
+"""The errors of each precision after given numbers of periods."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from taylor_verify.records.provenance import SceneProvenance
 
 @dataclass(frozen=True)
 class ReachFamily:
-    """A family of motions: its values, and the periods that each rung is followed for."""
+    """A family of motions: its values, and the numbers of periods on each rung."""
 
     name: str
     title: str
@@ -23,9 +23,9 @@ class ReachFamily:
 class ReachRow:
     """A member of a family on a rung, after each number of periods.
 
-    ``errors`` and ``floors`` are the largest up to then; of a motion that was lost they are None, and
-    infinite while it is measured. There are no floors for periods that no rung was followed for. Both
-    are empty where nothing was run, and ``why`` says why.
+    ``errors`` and ``floors`` are the largest up to that number. For a lost motion they are None, and
+    infinite during the measurement. Periods that no rung was followed for have no floor. Both are empty if
+    nothing was run, and ``why`` gives the reason.
     """
 
     family: str
@@ -40,7 +40,7 @@ class ReachRow:
 
 @dataclass(frozen=True)
 class ReachStudy:
-    """All families and their rows; from an error of ``lost`` on nothing of a motion is left."""
+    """All families and their rows; a motion with an error of ``lost`` or more is lost."""
 
     families: tuple[ReachFamily, ...]
     rows: tuple[ReachRow, ...]

@@ -6,9 +6,8 @@
     R   a ratio of moments of inertia or of masses
     S   a scale
 
-Every scene is made of exact rationals. It is asked at the quarters of some of its periods: wherever on
-its orbit the start lies, beside an unstable spin the motion is slow at two of the quarters and quick at
-the other two, where an error of the phase shows.
+Every scene is made of exact rationals. Its samples are at the quarters of some periods. Beside an unstable
+spin the motion is slow at two of the quarters and quick at the other two, where errors of the phase show.
 """
 
 from __future__ import annotations
@@ -33,17 +32,17 @@ from taylor_verify.studies.reach.document import ReachFamily
 Numbers = tuple[Fraction | int, ...] | str
 
 QUARTERS: Final = 4
-# Half-decades, then decades, where a period is cheap.
+# Half-decades, then decades for cheap periods.
 PERIODS: Final = (1, 3, 10, 30, 100, 300, 1000, 10_000, 100_000)
-# The period enters the instants alone, which are exact again as soon as they are written down.
+# The period is only used to choose instants, which are exact decimals.
 _PERIOD_DIGITS: Final = 12
 _START: Final = Fraction(0)
 
-# How many periods are worth their seconds: on f128 a period takes hundreds of times as long as on f64.
+# The most periods in a reasonable time: on f128 a period takes hundreds of times as long as on f64.
 _FAR: Final = {"f32": 1000, "f64": 1000, "f80": 100, "f128": 10}
-# Beside an unstable motion of six impulses the floor is what takes long.
+# Beside an unstable motion of six impulses the floor takes long.
 _NEARER: Final = {"f32": 30, "f64": 30, "f80": 30, "f128": 10}
-# A period of 1/e turns, in steps that the driver allows to be no longer than some hundred turns.
+# A period has 1/e turns, and the driver allows steps of some hundred turns at most.
 _SLOW: Final = {"f32": 10, "f64": 10, "f80": 3, "f128": 1}
 _FARTHER: Final = {"f32": 1000, "f64": 1000, "f80": 1000, "f128": 100, "mp237": 3}
 _FARTHEST: Final = {"f32": 100_000, "f64": 100_000, "f80": 10_000, "f128": 100, "mp237": 10}
@@ -51,10 +50,10 @@ _FARTHEST: Final = {"f32": 100_000, "f64": 100_000, "f80": 10_000, "f128": 100, 
 
 @dataclass(frozen=True)
 class Family:
-    """Scenes by one number, called ``symbol``; ``values`` are its texts, the easiest first.
+    """Scenes that depend on one number, called ``symbol``; ``values`` are its texts, the easiest first.
 
-    ``extreme`` says where it leads. Values are decimals with an exponent; a family of one value is
-    there for its periods alone. ``far`` has the rungs it is run on, each with the most periods.
+    ``extreme`` names the limit of the family. Values are decimals with an exponent; a family of one value
+    shows its periods alone. ``far`` has the rungs of its runs, each with the most periods.
     """
 
     name: str
@@ -73,7 +72,7 @@ class Family:
         return f"{self.name} {self.symbol} = {value}" if self.symbol else self.name
 
     def described(self) -> ReachFamily:
-        """Return the family as it is stored."""
+        """Return the family in its stored form."""
         about = (self.name, self.title, self.symbol, self.extreme, self.values)
         return ReachFamily(*about, dict(self.far))
 
@@ -82,7 +81,7 @@ class Family:
 
 
 def at_quarters(scene: Scene, periods: Sequence[int]) -> Scene:
-    """Return the scene asked at the quarters of the n-th period, for every n."""
+    """Return the scene with samples at the quarters of the n-th period, for every n."""
     period = period_of(scene)
     instants = [
         (n - 1 + Fraction(quarter, QUARTERS)) * period
@@ -94,15 +93,15 @@ def at_quarters(scene: Scene, periods: Sequence[int]) -> Scene:
 
 @lru_cache(maxsize=64)
 def period_of(scene: Scene) -> Fraction:
-    """Return the period of omega or the impulses, to a dozen digits; ValueError without one."""
-    found = elements(scene)
-    if "period" not in found:
-        raise ValueError(f"expected a periodic orbit, got a {found.regime} one @ {scene.name}")
-    return Fraction(mp.nstr(found["period"].value, _PERIOD_DIGITS))
+    """Return the period of omega or the impulses, to a dozen digits. Raises ValueError without one."""
+    values = elements(scene)
+    if "period" not in values:
+        raise ValueError(f"expected a periodic orbit, got a {values.regime} one @ {scene.name}")
+    return Fraction(mp.nstr(values["period"].value, _PERIOD_DIGITS))
 
 
 def family(name: str) -> Family:
-    """Return the family of that name; ValueError for a name that is none."""
+    """Return the family of this name. Raises ValueError for an unknown name."""
     for one in FAMILIES:
         if one.name == name:
             return one
@@ -140,87 +139,144 @@ _SIX: Final = "1 2 0 1/10 1 1/2"
 # Its unstable spin grows: A = 29/16 in Hydromechanics 49 (25).
 _FALLING: Final = "1 5/4 0 1/4 1 1/2"
 
-# In reading order: how long, then how near a separatrix, how equal, how unequal, how large.
+# In reading order: many periods, then near a separatrix, nearly equal, unlike and large numbers.
 FAMILIES: Final = (
     Family(
-        *("euler-periods", "a triaxial body, omega alone", "", "many periods", ("1",)),
-        *(lambda _: _euler("1 2 3", "3/10 1 1/5"), _FARTHEST),
+        "euler-periods",
+        "a triaxial body, omega alone",
+        symbol="",
+        extreme="many periods",
+        values=("1",),
+        made=lambda _: _euler("1 2 3", "3/10 1 1/5"),
+        far=_FARTHEST,
     ),
     Family(
-        *("euler-attitude", "a triaxial body with its attitude", "", "many periods", ("1",)),
-        lambda _: _euler("1 2 3", "3/10 1 1/5", "attitude"),
-        {**_FARTHEST, "f64": 10_000, "f80": 1000, "f128": 30, "mp237": 3},
+        "euler-attitude",
+        "a triaxial body with its attitude",
+        symbol="",
+        extreme="many periods",
+        values=("1",),
+        made=lambda _: _euler("1 2 3", "3/10 1 1/5", "attitude"),
+        far={**_FARTHEST, "f64": 10_000, "f80": 1000, "f128": 30, "mp237": 3},
     ),
     Family(
-        *("kirchhoff-periods", "Clebsch's body, impulses alone", "", "many periods", ("1",)),
-        lambda _: _kirchhoff(_SIX, "3/10 1/5 1", "2/5 -1/2 1"),
-        {**_FARTHEST, "f64": 10_000, "f80": 1000},
+        "kirchhoff-periods",
+        "Clebsch's body, impulses alone",
+        symbol="",
+        extreme="many periods",
+        values=("1",),
+        made=lambda _: _kirchhoff(_SIX, "3/10 1/5 1", "2/5 -1/2 1"),
+        far={**_FARTHEST, "f64": 10_000, "f80": 1000},
     ),
     Family(
-        *("unstable-axis", "a triaxial body at d beside its unstable axis", "d"),
-        *("the axis itself", _decades(-2, -40, -2)),
-        *(lambda d: _euler("1 2 3", (d, 1, 0)), _FARTHER),
+        "unstable-axis",
+        "a triaxial body at d beside its unstable axis",
+        symbol="d",
+        extreme="the axis itself",
+        values=_decades(-2, -40, -2),
+        made=lambda d: _euler("1 2 3", (d, 1, 0)),
+        far=_FARTHER,
     ),
     Family(
-        # Half-way from one turn of the unstable spin to the next, where omega2 is zero.
-        *("separatrix", "a triaxial body, 1 - k^2 = d, from the middle of a flip", "d"),
-        *("the separatrix itself", _decades(-2, -14, -2)),
-        lambda d: _euler("1 4/3 2", (1, 0, Fraction(1, 2) + d / 4)),
+        # The start is half-way between two flips of the unstable spin, where omega2 is zero.
+        "separatrix",
+        "a triaxial body, 1 - k^2 = d, from the middle of a flip",
+        symbol="d",
+        extreme="the separatrix itself",
+        values=_decades(-2, -14, -2),
+        made=lambda d: _euler("1 4/3 2", (1, 0, Fraction(1, 2) + d / 4)),
     ),
     Family(
-        *("unstable-spin", "Clebsch's body at d beside its unstable spin", "d"),
-        *("the spin itself", _decades(-2, -18, -4)),
-        *(lambda d: _kirchhoff(_FALLING, (d, 0, Fraction(5, 4)), "0 0 1"), _NEARER),
+        "unstable-spin",
+        "Clebsch's body at d beside its unstable spin",
+        symbol="d",
+        extreme="the spin itself",
+        values=_decades(-2, -18, -4),
+        made=lambda d: _kirchhoff(_FALLING, (d, 0, Fraction(5, 4)), "0 0 1"),
+        far=_NEARER,
     ),
     Family(
-        *("homoclinic", "Clebsch's body, y3 off the homoclinic orbit's by d", "d"),
-        *("the orbit itself", _decades(-2, -14, -4)),
-        lambda d: _kirchhoff(_FALLING, "1 0 3/4", (Fraction(1, 2), Fraction(-1, 2), 1 + d)),
-        _NEARER,
+        "homoclinic",
+        "Clebsch's body, y3 off the homoclinic orbit's by d",
+        symbol="d",
+        extreme="the orbit itself",
+        values=_decades(-2, -14, -4),
+        made=lambda d: _kirchhoff(_FALLING, "1 0 3/4", (Fraction(1, 2), Fraction(-1, 2), 1 + d)),
+        far=_NEARER,
     ),
     Family(
-        *("nearly-spherical", "moments 1, 1 + e, 1 - e", "e", "a sphere", _decades(-2, -6, -1)),
-        *(lambda e: _euler((1, 1 + e, 1 - e), "3/4 1/2 -5/8"), _SLOW),
+        "nearly-spherical",
+        "moments 1, 1 + e, 1 - e",
+        symbol="e",
+        extreme="a sphere",
+        values=_decades(-2, -6, -1),
+        made=lambda e: _euler((1, 1 + e, 1 - e), "3/4 1/2 -5/8"),
+        far=_SLOW,
     ),
     Family(
-        *("nearly-axisymmetric", "moments 1, 1 + e, 2", "e"),
-        *("an axis of symmetry", _decades(-2, -14, -3)),
-        lambda e: _euler((1, 1 + e, 2), "1/2 -1/4 1"),
+        "nearly-axisymmetric",
+        "moments 1, 1 + e, 2",
+        symbol="e",
+        extreme="an axis of symmetry",
+        values=_decades(-2, -14, -3),
+        made=lambda e: _euler((1, 1 + e, 2), "1/2 -1/4 1"),
     ),
     Family(
-        *("nearly-singular", "Clebsch's body with q = 1 - e beside p = r = 1", "e"),
-        *("an energy that is none", _decades(-2, -14, -3)),
-        lambda e: _kirchhoff(
+        "nearly-singular",
+        "Clebsch's body with q = 1 - e beside p = r = 1",
+        symbol="e",
+        extreme="an energy that is none",
+        values=_decades(-2, -14, -3),
+        made=lambda e: _kirchhoff(
             (1, 2, 1 - e, Fraction(1, 2), 1, Fraction(3, 4)), "1/2 1/4 1", "-1/2 3/4 1/4"
         ),
     ),
     Family(
-        *("inertia-ratio", "moments 1, sqrt R, R, all spins alike", "R"),
-        *("unlike moments", _decades(2, 14, 2)),
-        lambda r: _euler((1, isqrt(int(r)), r), "1 1 1"),
+        "inertia-ratio",
+        "moments 1, sqrt R, R, all spins alike",
+        symbol="R",
+        extreme="unlike moments",
+        values=_decades(2, 14, 2),
+        made=lambda r: _euler((1, isqrt(int(r)), r), "1 1 1"),
     ),
     Family(
-        *("thin-rod", "a rod, moments 1/R, 1, 1 + 1/R", "R", "a line", _decades(2, 14, 3)),
-        lambda r: _euler((1 / r, 1, 1 + 1 / r), "1 1/1000 2/1000"),
+        "thin-rod",
+        "a rod, moments 1/R, 1, 1 + 1/R",
+        symbol="R",
+        extreme="a line",
+        values=_decades(2, 14, 3),
+        made=lambda r: _euler((1 / r, 1, 1 + 1 / r), "1 1/1000 2/1000"),
     ),
     Family(
-        *("added-mass", "Clebsch's body, p = 1, p' = 1/R", "R"),
-        *("a disc without mass", _decades(2, 14, 3)),
-        lambda r: _kirchhoff((1, 1 / r, 0, 0, 1, 2), "1/2 1/4 1", "1/4 -1/2 1"),
+        "added-mass",
+        "Clebsch's body, p = 1, p' = 1/R",
+        symbol="R",
+        extreme="a disc without mass",
+        values=_decades(2, 14, 3),
+        made=lambda r: _kirchhoff((1, 1 / r, 0, 0, 1, 2), "1/2 1/4 1", "1/4 -1/2 1"),
     ),
     Family(
-        *("small-impulse", "Clebsch's body, |x| = F beside y of size 1", "F"),
-        *("no linear impulse", _decades(-2, -32, -6)),
-        lambda f: _kirchhoff(_SIX, (3 * f / 5, 0, 4 * f / 5), "2/5 -1/2 1"),
+        "small-impulse",
+        "Clebsch's body, |x| = F beside y of size 1",
+        symbol="F",
+        extreme="no linear impulse",
+        values=_decades(-2, -32, -6),
+        made=lambda f: _kirchhoff(_SIX, (3 * f / 5, 0, 4 * f / 5), "2/5 -1/2 1"),
     ),
     Family(
-        *("large-impulse", "Clebsch's body, x of size S beside y of size 1", "S"),
-        *("no angular impulse", _decades(2, 20, 3)),
-        lambda s: _kirchhoff(_SIX, (3 * s / 10, s / 5, s), "2/5 -1/2 1"),
+        "large-impulse",
+        "Clebsch's body, x of size S beside y of size 1",
+        symbol="S",
+        extreme="no angular impulse",
+        values=_decades(2, 20, 3),
+        made=lambda s: _kirchhoff(_SIX, (3 * s / 10, s / 5, s), "2/5 -1/2 1"),
     ),
     Family(
-        *("mixed-scales", "moments of 1/S, omega of S", "S"),
-        *("the ends of the range of numbers", _decades(10, 250, 80)),
-        lambda s: _euler((1 / s, 2 / s, 3 / s), (3 * s / 10, s, s / 5)),
+        "mixed-scales",
+        "moments of 1/S, omega of S",
+        symbol="S",
+        extreme="the ends of the range of numbers",
+        values=_decades(10, 250, 80),
+        made=lambda s: _euler((1 / s, 2 / s, 3 / s), (3 * s / 10, s, s / 5)),
     ),
 )

@@ -1,9 +1,9 @@
-"""The reach of each precision: digits left of families of extremes, over their number and periods.
+"""Measurement of the reach of each precision: digits left in families of extremes.
 
 Every member of a family is solved once on a rung, at the quarters of its 1st, 3rd, 10th ... period. The
-digits left after N periods are -log10 of the largest error at any instant up to then, against the
-exact motion of the data that the solver was given; the attainable error beside it is the judge's own, of
-the same orbit, instants and steps. An error of 1 is the size of the motion: from there on none are left.
+digits left after N periods are -log10 of the largest error at any instant up to then, compared with the
+exact motion of the data that the solver was given. The attainable error is the judge's own, for the same
+orbit, instants and steps. An error of 1 is the size of the motion: no digits are left.
 """
 
 from __future__ import annotations
@@ -45,9 +45,9 @@ from taylor_verify.studies.reach.families import (
 
 # Of a truth that says only how large the motion is.
 _DIGITS_OF_SCALES: Final = 15
-# From here on nothing is left, and a longer run would tell nothing new.
+# From this error on nothing is left, and a longer run would show nothing new.
 _LOST: Final = 1.0
-# Rounded data whose period is off by more are another orbit: the rung cannot hold the number asked for.
+# Rounded data whose period differs by more are another orbit, which the rung cannot represent.
 _SAME_PERIOD: Final = Fraction(1, 10)
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
@@ -56,7 +56,7 @@ Member = tuple[str, str]
 
 
 def study(finished: Callable[[str], None] = lambda label: None) -> ReachStudy:
-    """Return every row of what is published; ``finished`` is called with each member as it ends."""
+    """Return the document of all rows; ``finished`` is called with each member as it ends."""
 
     def ended(member: Member, _: object) -> None:
         name, value = member
@@ -72,22 +72,22 @@ def study(finished: Callable[[str], None] = lambda label: None) -> ReachStudy:
 
 
 def members() -> list[Member]:
-    """Return every value of every family, by name: small enough to be sent to a process."""
+    """Return every value of every family with its name, small enough to send to a process."""
     return [(one.name, value) for one in FAMILIES for value in one.values]
 
 
 def reaches(one: Family, value: str, rungs: Iterable[Rung]) -> list[ReachRow]:
-    """Return what is left of one member on each of the rungs, with all digits."""
+    """Return the rows of one member on each of the rungs, with all digits."""
     scene = one.scene(value)
-    found = []
+    rows = []
     for rung in rungs:
         nothing = ReachRow(one.name, value, rung.name, one.periods(rung.name), (), (), 0, "")
-        found.append(_followed(nothing, scene, rung))
-    return _with_floors(found, scene)
+        rows.append(_followed(nothing, scene, rung))
+    return _with_floors(rows, scene)
 
 
 def stored(row: ReachRow) -> ReachRow:
-    """Return the row as it is stored: four digits, and None for an error that is not finite."""
+    """Return the row in its stored form: four digits, and None for an error that is not finite."""
     errors, floors = (
         tuple(None if e is None or not isfinite(e) else float(f"{e:.4g}") for e in each)
         for each in (row.errors, row.floors)
@@ -96,15 +96,15 @@ def stored(row: ReachRow) -> ReachRow:
 
 
 class _Another(Exception):  # noqa: N818 (it names what the rounded orbit is)
-    """Rounding the data makes another orbit of them; the text says which."""
+    """The rounded data have another orbit; the text says which."""
 
 
 def _followed(nothing: ReachRow, scene: Scene, rung: Rung) -> ReachRow:
-    """Return the row with the errors of as many periods as were run, or the reason why there are none."""
+    """Return the row with the errors of the periods that were run, or the reason for none."""
     if reason := Taylor().unavailable(rung):
         return replace(nothing, why=reason)
     try:
-        # A member that is lost within its first period is not followed for a thousand.
+        # A member that is lost within its first period is not followed further.
         first = _solved(nothing, nothing.periods[:1], scene, rung)
         error = first.errors[-1]
         is_lost = error is None or not error < _LOST
@@ -116,7 +116,7 @@ def _followed(nothing: ReachRow, scene: Scene, rung: Rung) -> ReachRow:
 def _solved(nothing: ReachRow, periods: Sequence[int], scene: Scene, rung: Rung) -> ReachRow:
     """Return the row with the errors after so many periods.
 
-    Raises NotRepresentable, Unsettled, and _Another where the rung has no such orbit.
+    Raises NotRepresentable, Unsettled, and _Another if the rung does not have the orbit.
     """
     problem = pose(at_quarters(scene, periods), rung)
     _check_orbit(scene, problem)
@@ -128,17 +128,17 @@ def _solved(nothing: ReachRow, periods: Sequence[int], scene: Scene, rung: Rung)
 
 
 def _check_orbit(scene: Scene, problem: Problem) -> None:
-    asked, found = period_of(scene), elements(problem.given)
-    if "period" not in found:
-        raise _Another(f"rounded to {problem.rung.name}, the orbit is a {found.regime} one")
-    period = found["period"].value
+    asked, rounded = period_of(scene), elements(problem.given)
+    if "period" not in rounded:
+        raise _Another(f"rounded to {problem.rung.name}, the orbit is a {rounded.regime} one")
+    period = rounded["period"].value
     if not abs(period - mp.convert(asked)) <= mp.convert(_SAME_PERIOD * asked):
         ratio = float(period / mp.convert(asked))
         raise _Another(f"rounded to {problem.rung.name}, its period is {ratio:.3g} times as long")
 
 
 def _errors(problem: Problem, trajectory: Trajectory) -> Floats:
-    """Return the largest of all tracked quantities at every instant; NaN for an answer that is none."""
+    """Return the largest error of all tracked quantities at every instant; NaN for NaN."""
     given, bits = problem.given, working_bits(problem.rung.bits)
     instants = given.clock.elapsed
     if trajectory.outcome is not Outcome.FINISHED:
@@ -151,23 +151,23 @@ def _errors(problem: Problem, trajectory: Trajectory) -> Floats:
     return worst
 
 
-def _with_floors(found: Sequence[ReachRow], scene: Scene) -> list[ReachRow]:
-    """Return the rows with their floors, and to the end of their periods.
+def _with_floors(rows: Sequence[ReachRow], scene: Scene) -> list[ReachRow]:
+    """Return the rows with their floors, extended to the end of their periods.
 
-    One orbit serves them all: on each rung it is that of the number asked for, or nothing was run.
-    Raises Unsettled where its condition cannot be had.
+    One orbit serves all rows, because a rung with another orbit has no run. Raises Unsettled if the
+    condition of the orbit does not settle.
     """
-    followed = max((one.periods[: len(one.errors)] for one in found), key=len)
+    followed = max((one.periods[: len(one.errors)] for one in rows), key=len)
     if not followed:
-        return list(found)
+        return list(rows)
     asked = at_quarters(scene, followed)
     truth = solution(asked).motion(asked.clock.elapsed, _DIGITS_OF_SCALES)
-    return [_with_floor(one, asked, truth) if one.errors else one for one in found]
+    return [_with_floor(one, asked, truth) if one.errors else one for one in rows]
 
 
 def _with_floor(one: ReachRow, asked: Scene, truth: Motion) -> ReachRow:
     elapsed, count = asked.clock.elapsed, len(one.errors)
-    # On another rung the orbit may be followed further: this one takes steps in proportion.
+    # The orbit may be followed further than on this rung: steps are extrapolated in proportion.
     steps = round(one.steps * elapsed[-1] / elapsed[count * QUARTERS - 1])
     base = floor(asked, asked, rung_named(one.rung).unit_roundoff, steps)
     # Only the parts and their scales are asked for: the truth is compared with itself.
@@ -180,7 +180,7 @@ def _with_floor(one: ReachRow, asked: Scene, truth: Motion) -> ReachRow:
 
 
 def _up_to(values: Floats) -> tuple[float, ...]:
-    """Return the largest up to the end of each group of quarters; NaN is the largest of all."""
+    """Return the largest number up to the end of each group of quarters; NaN is the largest of all."""
     groups = np.max(np.reshape(values, (-1, QUARTERS)), axis=1)
     return tuple(np.maximum.accumulate(groups).tolist())
 
@@ -191,6 +191,6 @@ def _measured(member: Member) -> list[ReachRow]:
 
 
 def _expense(member: Member) -> float:
-    """Return the rank of a member: first the wide rungs, whose periods are long where it is extreme."""
+    """Return the rank of a member by its expense: wide rungs, then extreme values."""
     far = family(member[0]).far
     return -(1000.0 * far.get("mp237", 0) + 100.0 * far.get("f128", 0) + far.get("f64", 0) / 10)

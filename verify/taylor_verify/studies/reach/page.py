@@ -1,4 +1,4 @@
-"""The page of the reach of each precision, made of the stored measurement."""
+"""Page of the reach of each precision, made from the stored measurement."""
 
 from __future__ import annotations
 
@@ -21,29 +21,31 @@ from taylor_verify.studies.stored import Stored
 REACH: Final = Stored(ReachStudy, "reach")
 DIGITS: Final = (3, 6, 12)
 
-# Of the numbers of periods, those that have a line of their own.
+# The numbers of periods that have a line.
 _AFTER: Final = (1, 10, 100, 1000)
-# Behind the last that was tried, where it may go on.
+# Mark after the last value that was tried, beyond which the reach may extend.
 _LAST: Final = " \N{RIGHTWARDS ARROW}"
 _NOT_HELD, _NOT_RUN = "not held", "not run"
 _ROUNDED: Final = "rounded"
 
 _WHAT: Final = (
-    "How long a motion, how near a separatrix, how unlike the moments: where each precision still has "
-    "3, 6 or 12 digits. The Taylor integrator runs at the rung's own tolerance; the digits left after "
-    "N periods are those of the largest error up to then, against the exact motion of the very data "
-    "that it was given. Beside them stands what perfect rounding would leave on the same orbit."
+    "This page shows how far each precision keeps 3, 6 or 12 digits: for long motions, near a "
+    "separatrix, and for unlike moments of inertia. The Taylor integrator runs at the rung's own "
+    "tolerance; the digits left after N periods are those of the largest error up to then, compared "
+    "with the exact motion of the same rounded data. Beside them are the digits that perfect rounding "
+    "would leave on the same orbit."
 )
 _LEGEND: Final = (
-    f"*3, 6, 12 digits* tell the last value at which so many are left, and at all easier ones too; "
-    f"{_LAST.strip()} stands behind the last that was tried: the reach goes on. {NOTHING} is none.",
-    "*attainable* tells the same of the judge's floor: one rounding of every component in every step, "
-    "carried on by the orbit. It is a model of random roundings, and no bound.",
-    f"*{_NOT_HELD}*: rounded to the rung, the numbers are those of another orbit, its period off by "
-    "more than a tenth or none at all. However exactly that one is followed, it is not the one asked for. "
-    f"*{_NOT_RUN}*: there is no such rung on the machine, or its numbers do not hold the scene at all.",
-    "Periods are those of omega or of the impulses, instants their quarters. Only omega or the "
-    "impulses are compared, but where the attitude is named.",
+    "*3, 6, 12 digits* are the last values at which this number of digits is left, as at all easier "
+    f"values; {_LAST.strip()} marks the last value that was tried: the reach may be longer. {NOTHING} "
+    "means that there is no value.",
+    "*attainable* has the same values for the judge's floor: the effect on the orbit of one rounding "
+    "of every component in every step. It is a model of random roundings, and no bound.",
+    f"*{_NOT_HELD}*: the numbers rounded to the rung belong to another orbit, whose period differs by "
+    "more than a tenth or does not exist. The requested orbit is then out of reach of the rung. "
+    f"*{_NOT_RUN}*: the machine does not have the rung, or its numbers cannot represent the scene.",
+    "Periods are those of omega or of the impulses, and the instants are their quarters. Only omega "
+    "or the impulses are compared, except in the family that names the attitude.",
 )
 
 
@@ -66,7 +68,7 @@ def page(study: ReachStudy, folder: Path) -> str:
         "## How it was measured",
         bullets(_method(study)),
         "## To remake this",
-        f"`taylor-verify publish reach` measures anew, in some minutes, and writes "
+        "`taylor-verify publish reach` repeats the measurement in some minutes, and writes "
         f"[reach.json](../{REACH.name}), this page and its pictures.",
     )
 
@@ -91,22 +93,22 @@ def _rows_of(study: ReachStudy, family: ReachFamily) -> list[ReachRow]:
 def last_value(
     rows: Sequence[ReachRow], after: int, digits: int, key: str = ACHIEVED
 ) -> str | None:
-    """Return the last value up to which so many digits are left after so many periods; None at none.
+    """Return the last value up to which ``digits`` are left after ``after`` periods, or None.
 
     ``rows`` are those of one rung, the easiest value first.
     """
-    kept = list(takewhile(lambda row: _keeps(row, after, digits, key), rows))
-    return kept[-1].value if kept else None
+    precise = list(takewhile(lambda row: _keeps(row, after, digits, key), rows))
+    return precise[-1].value if precise else None
 
 
 def most_periods(row: ReachRow, digits: int, key: str = ACHIEVED) -> int | None:
-    """Return the most periods after which so many digits are left; None where the first leaves fewer."""
-    kept = list(takewhile(lambda count: _keeps(row, count, digits, key), row.periods))
-    return kept[-1] if kept else None
+    """Return the most periods after which ``digits`` are left; None if the first leave fewer."""
+    precise = list(takewhile(lambda count: _keeps(row, count, digits, key), row.periods))
+    return precise[-1] if precise else None
 
 
 def _keeps(row: ReachRow, after: int, digits: int, key: str) -> bool:
-    """Return True if the largest error until then is small enough; None, or no number, is not."""
+    """Return True if the largest error after so many periods is small enough, and a number."""
     error = dict(zip(row.periods, numbers_of(row, key), strict=False)).get(after)
     return error is not None and error <= 10.0**-digits
 
@@ -129,14 +131,14 @@ def _by_value(one: ReachFamily, rows: Sequence[ReachRow]) -> str:
 
 
 def cell(value: str | int | None, last: str | int) -> str:
-    """Return the value; behind the last that was tried stands that it may go on."""
+    """Return the value, with a mark if it is the last that was tried."""
     if value is None:
         return NOTHING
     return f"{value}{_LAST}" if value == last else str(value)
 
 
 def _by_periods(one: ReachFamily, rows: Sequence[ReachRow]) -> str:
-    """Return a line for each value with three numbers for every rung; a single value is turned round."""
+    """Return a line for each value with three numbers for every rung, or a transposed single value."""
     by_place = {(row.value, row.rung): row for row in rows}
     lines = []
     if len(one.values) == 1:
@@ -164,18 +166,18 @@ def _nothing(row: ReachRow) -> str:
 
 
 def _over_attainable(rows: Sequence[ReachRow]) -> str:
-    """Return the errors over the floors, where these leave a digit."""
-    found = sorted(
+    """Return the errors over the floors that leave a digit, in words."""
+    ratios = sorted(
         error / least
         for row in rows
         for error, least in zip(row.errors, row.floors, strict=False)
         if error is not None and least and least <= 0.1
     )
-    if not found:
+    if not ratios:
         return "No error was compared with a floor."
     return (
-        f"Error over attainable, where that leaves a digit: {figure(found[-1])} at most, "
-        f"{figure(found[len(found) // 2])} in the middle of {len(found)}."
+        f"Error over attainable, if the attainable error leaves a digit: {figure(ratios[-1])} at most, "
+        f"with a median of {figure(ratios[len(ratios) // 2])} over {len(ratios)} errors."
     )
 
 
@@ -183,15 +185,15 @@ def _method(study: ReachStudy) -> list[str]:
     rows = study.rows
     lost = sum(bool(row.errors) and row.errors[-1] is None for row in rows)
     blurred = sum(row.why.startswith(_ROUNDED) for row in rows)
-    # No number tells a run that ended on its own from one that was lost.
+    # A run that ended early has no number, like one that was lost.
     stopped = [row for row in rows if row.errors and row.why]
     return [
-        f"{len(rows)} runs: a family's value on a rung each. An error of {study.lost:g} is the size "
-        "of the motion: a run that reaches it within its first period is followed no further, and its "
-        f"floor is that of as many steps in proportion. There were {lost}; in {blurred} the "
-        "rung could not hold the value.",
-        "The wider a rung, the fewer periods are run: a period takes hundreds of times as long on f128 "
-        "as on f64.",
+        f"{len(rows)} runs: one for each value of a family and each rung. An error of {study.lost:g} "
+        "is the size of the motion. A run that reaches this error within its first period is not "
+        f"continued, and the steps for its floor are extrapolated in proportion. {lost} runs were "
+        f"lost; in {blurred} runs the rung could not represent the value.",
+        "Wider rungs are run for fewer periods, because a period takes hundreds of times as long on "
+        "f128 as on f64.",
         _over_attainable(rows),
         *(f"{r.family} {r.value}, {r.rung}: {prose(r.why)}. It counts as lost." for r in stopped),
         made_on(study.provenance),
@@ -202,17 +204,25 @@ def _method(study: ReachStudy) -> list[str]:
 
 
 _SHEET: Final = (
-    *("family", "value", "rung", "periods", "error", "attainable", "lost", "steps", "why"),
+    "family",
+    "value",
+    "rung",
+    "periods",
+    "error",
+    "attainable",
+    "lost",
+    "steps",
+    "why",
 )
 
 
 def sheet(study: ReachStudy) -> str:
-    """Return a row for every number of periods; one row, with the reason, where nothing was run."""
-    return csv_sheet(_SHEET, (found for row in study.rows for found in _reached(row)))
+    """Return a row for every number of periods, or one row with the reason if nothing was run."""
+    return csv_sheet(_SHEET, (line for row in study.rows for line in _reached(row)))
 
 
 def _reached(row: ReachRow) -> Iterator[dict[str, Any]]:
-    """Yield the rows of a run. An error that is missing stands for a motion that was lost."""
+    """Yield the rows of a run. A missing error means that the motion was lost."""
     own = {name: getattr(row, name) for name in ("family", "value", "rung", "steps", "why")}
     if not row.errors:
         yield own

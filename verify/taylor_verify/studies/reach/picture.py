@@ -1,7 +1,7 @@
-"""Digits left, over the distance to a separatrix and the periods: achieved, and attainable beside it.
+"""Maps of the digits left, over the distance to a separatrix and the periods.
 
-A line of two maps for each rung. A cell is a run up to so many periods; its number is of whole decimal
-digits, its lightness the class that the legend explains, so that the map reads the same in grey.
+Each rung has two maps: achieved and attainable digits. A cell is a run up to a number of periods; it
+shows whole decimal digits. Its lightness is a class of the legend, so that the map is readable in grey.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from itertools import pairwise, product
+from itertools import pairwise, product, takewhile
 from math import floor, log10
 from typing import TYPE_CHECKING, Final
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-# From so many digits on, and the colour: one hue, darker by equal steps.
+# The least digits of each class, and its colour: one hue, darker by equal steps.
 CLASSES: Final = (
     (0, "#FFFFFF"),
     (1, "#DCE9F5"),
@@ -56,7 +56,7 @@ def numbers_of(row: ReachRow, key: str) -> tuple[float | None, ...]:
 
 
 def picture(family: ReachFamily, rows: Sequence[ReachRow]) -> Picture:
-    """Return the map of a family from its own rows. Raises ValueError for none."""
+    """Return the map of a family from its own rows. Raises ValueError without rows."""
     maps = [_Map.of(family, rung, rows) for rung in family.rungs]
     maps = [one for one in maps if one.periods]
     if not maps:
@@ -74,7 +74,7 @@ def picture(family: ReachFamily, rows: Sequence[ReachRow]) -> Picture:
 class _Map:
     """The map of a rung: digits achieved and attainable, of each value and number of periods.
 
-    A cell that is missing was not run.
+    A missing cell was not run.
     """
 
     rung: str
@@ -97,19 +97,19 @@ class _Map:
     @property
     def sentence(self) -> str:
         """The values up to which six digits are left, in words."""
-        said = []
+        limits = []
         for n in sorted({self.periods[0], self.periods[-1]}):
-            left = [self.cells.get((value, n, ACHIEVED), 0) >= 6 for value in self.values]
-            last = ("none of these", *self.values)[[*left, False].index(False)]
-            said.append(f"after {n} {'period' if n == 1 else 'periods'} up to {last}")
-        return f"On {self.rung} six digits are left {' and '.join(said)}."
+            precise = [self.cells.get((value, n, ACHIEVED), 0) >= 6 for value in self.values]
+            last = ("none of these", *self.values)[sum(takewhile(bool, precise))]
+            limits.append(f"after {n} {'period' if n == 1 else 'periods'} up to {last}")
+        return f"On {self.rung} six digits are left {' and '.join(limits)}."
 
 
 def digits_of(error: float | None) -> int:
-    """Return whole digits; 0 of what is lost, which is stored as null, or no number."""
+    """Return whole digits; 0 for a lost motion, which is stored as null, and for NaN."""
     if error is None or not error < 1:
         return 0
-    # An error of zero leaves all digits that a double can tell.
+    # An error of zero leaves all digits of a double.
     return floor(-log10(error)) if error > 0 else 307
 
 
@@ -127,7 +127,7 @@ def _figure(family: ReachFamily, maps: Sequence[_Map]) -> Figure:
             if one is maps[0]:
                 axes.set_title(_HEADINGS[key], pad=5)
             if one is maps[-1]:
-                # Where the values are many, some are named.
+                # Only some of many values are named.
                 values = family.values
                 shown = range(0, len(values), -(-len(values) // _MOST_NAMES))
                 axes.set_xticks(list(shown), [power_of_ten(float(values[i])) for i in shown])
@@ -160,7 +160,9 @@ def _draw_cells(axes: Axes, one: _Map, key: str) -> None:
         colour = next(colour for least, colour in reversed(CLASSES) if digits >= least)
         cell.set(facecolor=colour, linewidth=0.4, gid="cell")
         axes.text(
-            *(x, y, str(digits)),
+            x,
+            y,
+            str(digits),
             size=_NUMBER,
             ha="center",
             va="center_baseline",
@@ -170,7 +172,7 @@ def _draw_cells(axes: Axes, one: _Map, key: str) -> None:
 
 
 def text_on(colour: str) -> str:
-    """Return ink or paper, whichever is told better from the colour."""
+    """Return the one of ink and paper that has more contrast with the colour."""
     return max((INK, PAPER), key=lambda text: contrast(text, colour))
 
 

@@ -1,1 +1,1 @@
-"""Exact motions in digits, to test other programs with."""
+"""Exact motions in digits, for tests of other programs."""

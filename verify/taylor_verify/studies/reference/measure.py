@@ -1,4 +1,4 @@
-"""The exact trajectory of a shipped scene as a plain document, for those who have no Python.
+"""Exact trajectory of a shipped scene as a plain document, for users without Python.
 
 The numbers are those of the scene's own rational values, not of values rounded to a rung.
 """
@@ -23,9 +23,9 @@ DIGITS: Final = 32
 def reference(scene: Scene) -> dict[str, Any]:
     """Return the scene in exact text, and its motion at all its instants, column by column.
 
-    A row is the motion at exactly the time printed in its column ``t``, also where the instant
-    itself has no finite decimal. ``radius`` is that of `exact`, the rounding of the digits included.
-    Raises Unsettled where the exact solution does not settle.
+    A row is the motion at exactly the time printed in its column ``t``, even if the instant itself has no
+    finite decimal. ``radius`` is that of `exact`, and includes the rounding of the digits. Raises Unsettled
+    if the exact solution does not settle.
     """
     texts = [shortest_text(instant, DIGITS) for instant in scene.clock.instants]
     times = [(text, Fraction(text)) for text in texts]
@@ -66,7 +66,7 @@ def _manufactured(motion: Manufactured | None) -> dict[str, Any]:
 
 
 def _initial(scene: Scene) -> dict[str, Any]:
-    """Return the state at the time ``t``; of attitude and centre, what the scene tracks."""
+    """Return the state at the time ``t``, with attitude and centre if the scene tracks them."""
     state = scene.initial
     asked = {*state.MOVING, *scene.track}
     parts = {name: value for name, value in state.parts().items() if name in asked}
@@ -78,7 +78,7 @@ def _exact_parts(parts: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _exact(value: Any) -> Any:
-    """Return rationals as text that loses nothing: a decimal where 32 digits suffice, else a/b."""
+    """Return rationals as exact text: a decimal if 32 digits suffice, else a/b."""
     if not isinstance(value, Fraction):
         return [_exact(entry) for entry in value]
     text = shortest_text(value, DIGITS)

@@ -1,8 +1,8 @@
-"""The exact trajectories as CSV and JSON files, with a page that says how to read them.
+"""Exact trajectories as CSV and JSON files, with a page on how to read them.
 
 NAME.csv      a heading line and a row for every sample time, in decimal text
-NAME.json     the same columns as arrays of strings, and the question they answer; no page links to
-              it, for the repository does not hold it
+    NAME.json     the same columns as arrays of strings, and the scene; no page links to it, because the
+                  repository does not hold it
 README.md     columns, conventions, tolerances
 example.cpp   a program that compares a trajectory with a reference
 example.rs    a program that integrates a body and compares itself with a reference
@@ -36,8 +36,8 @@ Document = Mapping[str, Any]
 def write(folder: Path, documents: Sequence[Document]) -> list[Path]:
     """Write ``folder``/reference, in place of an earlier one, and return the files written.
 
-    Files of scenes that are no longer there are removed, other people's files are left alone.
-    Raises OSError; what the folder held then stays as it was.
+    Files of scenes that no longer exist are removed; other people's files stay. Raises OSError; the folder
+    then stays as it was.
     """
     examples = {name: (_TEMPLATES / name).read_text(encoding="utf-8") for name in EXAMPLES}
     beside = {
@@ -52,12 +52,12 @@ def write(folder: Path, documents: Sequence[Document]) -> list[Path]:
 
 
 def add_json(folder: Path, documents: Iterable[Document]) -> list[Path]:
-    """Write the JSON files alone, beside what is there, and return them. Raises OSError."""
+    """Write the JSON files alone, beside existing files, and return them. Raises OSError."""
     return TRAJECTORIES.add(folder, map(_flat, documents))
 
 
 def _flat(document: Document) -> dict[str, Any]:
-    """Return a document whose columns stand beside its other keys."""
+    """Return a document with its columns as keys of their own."""
     others = {name: value for name, value in document.items() if name != "columns"}
     return {**others, **document["columns"]}
 
@@ -67,7 +67,7 @@ def _stem(document: Document) -> str:
 
 
 def _sheet(columns: Mapping[str, Sequence[str]]) -> str:
-    """Return columns as CSV. Nothing in it needs a quotation mark, and no line is a comment."""
+    """Return columns as CSV, without quotation marks and comments."""
     lines = [columns.keys(), *zip(*columns.values(), strict=True)]
     return "".join(",".join(cells) + "\n" for cells in lines)
 
@@ -75,9 +75,9 @@ def _sheet(columns: Mapping[str, Sequence[str]]) -> str:
 def _readme(documents: Iterable[Document], examples: Mapping[str, str]) -> str:
     columns = ["scene", "regime", "route", "columns", "rows:", "file"]
     text = (_TEMPLATES / "reference.md").read_text(encoding="utf-8")
-    filled = text.replace("{{scenes}}", table(columns, [_row(found) for found in documents]))
+    filled = text.replace("{{scenes}}", table(columns, [_row(document) for document in documents]))
     for name, program in examples.items():
-        # A program is the same as in its file, and written once.
+        # The page quotes the programs from their files.
         filled = filled.replace(f"{{{{{name}}}}}", program.rstrip())
     return f"{MADE_BY}\n{filled}"
 
@@ -96,7 +96,7 @@ def _row(document: Document) -> list[str]:
 
 
 def _own_sheets(target: Path) -> list[Path]:
-    """Return the CSV files that our page links to."""
+    """Return the CSV files that the page made by this program links to."""
     page = target / "README.md"
     if not page.exists() or first_line(page) != MADE_BY:
         return []

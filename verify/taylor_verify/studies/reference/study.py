@@ -1,4 +1,4 @@
-"""The reference as a study: the exact trajectory of every shipped scene, in digits."""
+"""The study of the reference: the exact trajectory of every shipped scene, in digits."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def _measure(folder: Path, progress: Progress) -> Measured:
 
 
 def _lacking(report: Published) -> tuple[str, ...]:
-    """Return the scenes with a sheet whose JSON is missing, or is of another text of the scene."""
+    """Return the scenes with a sheet whose JSON is missing or outdated."""
     target = report.folder / page.FOLDER
     return tuple(
         scene

@@ -1,4 +1,4 @@
-"""Whole site: every page of docs, report and scenes, made by Sphinx from one source folder."""
+"""Builder of the whole site: docs, report and scenes, made by Sphinx from one source folder."""
 
 from __future__ import annotations
 
@@ -20,14 +20,20 @@ MADE_BY: Final = "<!-- made by taylor-verify publish --site; do not edit -->"
 FRONT: Final = "index.html"
 
 _SCRIPT: Final = "plotly.min.js"
-# Modules to import; pip knows them by these names with hyphens.
+# Modules to import; their packages have these names with hyphens.
 _NEEDED: Final = (
-    *("sphinx", "myst_nb", "ipykernel", "furo", "sphinx_copybutton"),
-    *("latex2mathml", "matplotlib", "plotly"),
+    "sphinx",
+    "myst_nb",
+    "ipykernel",
+    "furo",
+    "sphinx_copybutton",
+    "latex2mathml",
+    "matplotlib",
+    "plotly",
 )
-# Other Markdown comes along as files.
+# Other Markdown is copied as files.
 _PAGES: Final = ["index.md", "docs/**", "reports/**"]
-# Tables have tens of thousands of code spans and cells: a tenth of the site would be these marks.
+# Shorter marks of code spans and cells, of which tables have tens of thousands, save a tenth of the site.
 _SHORTER: Final = {
     r'<code class="docutils literal notranslate"><span class="pre">([^<]*)</span></code>': (
         r'<code class="literal">\1</code>'
@@ -35,24 +41,24 @@ _SHORTER: Final = {
     r'<tr class="row-(?:even|odd)">': "<tr>",
     r"(<td[^>]*>)<p>([^<]*)</p></td>": r"\1\2</td>",
 }
-# What Sphinx and the theme's authors write for themselves.
+# Files of Sphinx and the theme that no page needs.
 _OWN: Final = (".buildinfo", ".inv", ".map")
 
 
 def build(folder: Path, target: Path) -> list[Path]:
     """Make the site of the report in ``folder`` in place of an earlier one in ``target``.
 
-    The pages of docs are part of it where the folder lies in a checkout. Returns the files written.
-    Raises ImportError without Sphinx or another package that it asks for, OSError for files that
-    cannot be read or written, and ValueError for data that are none, for pages with a fault, and for
-    a target that holds something else.
+    The site has the pages of docs if the folder lies in a checkout. Returns the files written. Raises
+    ImportError without Sphinx or another necessary package, OSError for files that cannot be read or
+    written, and ValueError for invalid data, for pages with a fault, and for a target that holds
+    something else.
     """
     stale = _earlier(target)
     return list(replace_files(target, contents(folder), stale=stale))
 
 
 def contents(folder: Path) -> dict[str, str | bytes]:
-    """Return every file of the site by its place in it. The errors are those of `build`."""
+    """Return every file of the site by its path. Raises the errors of `build`."""
     for module in _NEEDED:
         if find_spec(module) is None:
             package = module.replace("_", "-")
@@ -68,19 +74,19 @@ def contents(folder: Path) -> dict[str, str | bytes]:
             for file in files
             if not file.name.endswith(_OWN)
         }
-    # No page loads Plotly's script before a motion comes into view.
+    # Pages load Plotly's script when a motion comes into view.
     plotly = resources.files("plotly") / "package_data" / _SCRIPT
     return {**site, f"_static/{_SCRIPT}": plotly.read_bytes()}
 
 
 def _run_sphinx(source: Path, target: Path, settings: Path) -> None:
-    """Build all pages. Raises ValueError with every warning, for each is a fault of a page."""
+    """Build all pages. Raises ValueError with all warnings, each of which is a fault of a page."""
     from sphinx.application import Sphinx
     from sphinx.util.docutils import docutils_namespace, patch_docutils
 
     messages = StringIO()
     with warnings.catch_warnings(), patch_docutils(settings), docutils_namespace():
-        # What Sphinx and its extensions think of each other's calls is no fault of a page.
+        # Python's warnings about calls between Sphinx and its extensions are no faults of pages.
         warnings.simplefilter("ignore")
         app = Sphinx(
             srcdir=source,
@@ -94,13 +100,13 @@ def _run_sphinx(source: Path, target: Path, settings: Path) -> None:
             parallel=available_cores(),
         )
         app.build()
-    if found := messages.getvalue().replace(f"{source.resolve()}{os.sep}", ""):
-        lines = re.sub(r"\x1b\[[\d;]*m", "", found).strip().replace("\n", "; ")
+    if faults := messages.getvalue().replace(f"{source.resolve()}{os.sep}", ""):
+        lines = re.sub(r"\x1b\[[\d;]*m", "", faults).strip().replace("\n", "; ")
         raise ValueError(f"expected pages without a fault, got {lines}")
 
 
 def _content(file: Path) -> str | bytes:
-    """Return a file as it is; a page with its maker's name in front."""
+    """Return the content of a file, with the maker's name in front if it is a page."""
     if file.suffix != ".html":
         return file.read_bytes()
     text = file.read_text(encoding="utf-8")
@@ -110,7 +116,7 @@ def _content(file: Path) -> str | bytes:
 
 
 def _earlier(target: Path) -> list[Path]:
-    """Return the files of an earlier site. Raises ValueError for a folder with somebody else's."""
+    """Return the files of an earlier site. Raises ValueError for a folder with other files."""
     files = [file for file in target.rglob("*") if file.is_file()] if target.exists() else []
     if files and not ((target / FRONT).exists() and first_line(target / FRONT) == MADE_BY):
         raise ValueError(f"expected a folder that is empty or has an earlier site, got {target}")

@@ -10,20 +10,20 @@ project = "taylor-verify"
 author = "The taylor-verify authors"
 version = release = __version__
 
-# It reads notebooks in Markdown, and other Markdown as MyST's parser does.
+# This extension reads notebooks in Markdown, and other Markdown like MyST's parser.
 extensions = ["myst_nb", "sphinx_copybutton", "taylor_verify.studies.site.extension"]
 exclude_patterns = ["_build"]
-# GitHub sets a formula between dollars, and anchors every heading by its words.
+# Like GitHub: formulas between dollars, and anchors of headings made from their words.
 myst_enable_extensions = ["deflist", "dollarmath", "fieldlist"]
 myst_heading_anchors = 4
-# A notebook is executed whenever its page is made: no stored output can go stale. An error is a warning.
+# Notebooks are executed with each build, so that no stored output is outdated. An error is a warning.
 nb_execution_mode = "force"
 nb_execution_in_temp = nb_execution_show_tb = nb_merge_streams = True
 nb_execution_timeout = 300
 nb_output_stderr = "error"
-# A transcript is text: a lexer that stumbles over it says nothing about the page.
+# A transcript is plain text, and a lexer's complaint about it is no fault of the page.
 highlight_language = "text"
-# Pages are written with the quotation marks they mean.
+# The quotation marks of pages stay as written.
 smartquotes = False
 
 html_theme = "furo"
@@ -36,7 +36,7 @@ html_show_copyright = False
 html_show_sourcelink = False
 html_copy_source = False
 html_domain_indices = html_use_index = False
-# Found pages are shown without an excerpt: a page that is opened as a file cannot read another one.
+# Results of the search have no excerpts, because a page that is opened as a file cannot read other pages.
 html_show_search_summary = False
 # Names of colours in the style sheet and in the pictures. On dark paper a hue is lightened until a
 # line has the contrast of 3 that WCAG 2.1 (1.4.11) asks for.
@@ -56,6 +56,6 @@ html_theme_options = {
 }
 pygments_style = "default"
 pygments_dark_style = "monokai"
-# Prompts and what a command printed are not copied with it.
+# Only commands are copied, without prompts and output.
 copybutton_prompt_text = "$ "
 copybutton_only_copy_prompt_lines = True

@@ -1,6 +1,6 @@
-"""A Sphinx extension: MathML without a script, names of scenes and terms as links, tables apart.
+"""Sphinx extension: formulas as MathML, links of scenes and terms, search without large tables.
 
-It also gives the kernels of notebooks settings of their own.
+It also gives kernels of notebooks their own settings.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 
 SCENES: Final = "reports/scenes"
 
-# GitHub's formula within a line is a code span between dollars; MyST's has the dollars alone.
+# GitHub writes a formula within a line as a code span between dollars, MyST between dollars alone.
 _FORMULA: Final = re.compile(r"\$`([^`\n]+)`\$")
 _SCENE: Final = re.compile(r"\w+(?:/[\w-]+)+")
-# A kernel on this machine alone needs no encryption, which it would remark; nor a history of its cells.
+# A local kernel needs no encryption, whose absence it would report, and no history of cells.
 _KERNEL: Final = "c.IPKernelApp.log_level = 40\nc.HistoryManager.enabled = False\n"
-# A table of more rows in a report is a list of numbers: nobody looks for one, and the index would be mostly
-# these. The tables of docs are words, which somebody may look for.
+# Report tables with more rows are lists of numbers, which nobody searches for. They would fill the index.
+# The tables of docs are words, and stay in the index.
 _SEARCHED_ROWS: Final = 20
 _NUMBERS: Final = "reports/"
 

@@ -1,7 +1,7 @@
-"""A motion that can be turned: what Plotly draws, in plain data, as HTML within a page.
+"""A motion that can be turned: Plotly's data as HTML within a page.
 
-Colours are names with a dollar before them, which the style of the page resolves. Numbers are short:
-no eye sees the fourth digit of a point.
+Colours are names after a dollar, which the style of the page resolves. Numbers are short, because nobody
+sees the fourth digit of a point.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ Trace = dict[str, Any]
 
 @dataclass(frozen=True)
 class Figure:
-    """A picture in space by its ``name`` on the page, with a text in its stead and titles of the axes.
+    """A picture in space: its ``name`` on the page, its alternative text and the titles of its axes.
 
-    ``box`` is the least and the greatest coordinate that each axis shows: nothing drawn is outside.
+    ``box`` has the least and the greatest coordinate of each axis, and contains the whole drawing.
     """
 
     name: str
@@ -32,11 +32,11 @@ class Figure:
     box: Sequence[tuple[float, float]]
 
     def html(self) -> str:
-        """Return the figure as a block of HTML, no line of which is empty."""
+        """Return the figure as a block of HTML without empty lines."""
         box = [column(side) for side in self.box]
         document = {"traces": list(self.traces), "axes": list(self.axes), "box": box}
         text = json.dumps(document, allow_nan=False, ensure_ascii=False, separators=(",", ":"))
-        # No text of the data may end the script element.
+        # Escaped, so that no text of the data can end the script element.
         stored = text.replace("<", "\\u003c")
         alt = escape(self.alt)
         return "\n".join(
@@ -52,7 +52,7 @@ class Figure:
 
 
 def column(values: Iterable[float], digits: int = 4) -> list[float | None]:
-    """Return numbers with so many digits each; None for one that no axis has a place for."""
+    """Return numbers rounded to ``digits``; None for one that is not finite."""
     rounded = [float(f"{value:.{digits - 1}e}") for value in values]
     return [
         None if not isfinite(v) else int(v) if v == int(v) and abs(v) < 1e6 else v for v in rounded

@@ -1,6 +1,6 @@
-"""Words of the glossary as links: on every page the first use of each leads to its definition.
+"""Words of the glossary as links: their first use on every page leads to the definition.
 
-Pages stay plain Markdown. What a generated page or a docstring says is linked as a page of docs is.
+Pages stay plain Markdown. Generated pages and docstrings are linked like pages of docs.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from sphinx import addnodes
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
 
-# The headings of the glossary that are linked, and the forms in which sentences have them.
+# The linked headings of the glossary, with their forms in sentences.
 TERMS: Final = {
     "added mass": r"added mass(?:es)?",
     "attainable": r"attainable",
@@ -50,11 +50,19 @@ TERMS: Final = {
 }
 CLASS: Final = "term"
 _PAGE: Final = "glossary"
-# A word is looked for in sentences: not in headings, code, links, formulas and tables.
+# Words are linked in sentences, and not in headings, code, links, formulas and tables.
 _SENTENCES: Final = (nodes.paragraph,)
 _APART: Final = (
-    *(nodes.reference, nodes.literal, nodes.literal_block, nodes.math, nodes.title, nodes.table),
-    *(addnodes.pending_xref, addnodes.desc_signature, addnodes.download_reference, nodes.raw),
+    nodes.reference,
+    nodes.literal,
+    nodes.literal_block,
+    nodes.math,
+    nodes.title,
+    nodes.table,
+    addnodes.pending_xref,
+    addnodes.desc_signature,
+    addnodes.download_reference,
+    nodes.raw,
 )
 
 
@@ -76,7 +84,7 @@ def link_terms(app: Sphinx, doctree: nodes.document) -> None:
 
 
 def _linked_by_hand(doctree: nodes.document) -> set[str]:
-    """Return the headings of the glossary that the page itself leads to."""
+    """Return the headings of the glossary that the page links by itself."""
     links = (link for link in doctree.findall(addnodes.pending_xref) if "reftarget" in link)
     targets = (link for link in links if PurePosixPath(link["reftarget"]).stem == _PAGE)
     return {link.get("reftargetid") for link in targets}
@@ -98,7 +106,7 @@ def _parents(node: nodes.Node) -> Iterator[nodes.Node]:
 
 
 def _linked(text: str, place: str, left: dict[str, re.Pattern[str]]) -> Iterator[nodes.Node]:
-    """Yield a text in parts, of which terms are links; a term that was linked is left no more."""
+    """Yield a text in parts, with links for terms; linked terms are removed from the list."""
     while text:
         first = min(
             (

@@ -1,4 +1,4 @@
-"""Links of Markdown files that are shown in another place than the one they were written in."""
+"""Links of Markdown files that are shown in another place than their own."""
 
 from __future__ import annotations
 
@@ -7,21 +7,20 @@ import re
 from collections.abc import Callable
 from typing import Final
 
-# Text and target of a link or a picture within the tree; text may have escaped brackets.
+# Text and target of a link or a picture within the tree; the text may have escaped brackets.
 _LINK: Final = re.compile(r"!?\[((?:\\.|[^\\\[\]])*)\]\((?!\w+:|#)([^()#\s]+)(#[^()\s]*)?\)")
-# Sphinx reads no file's link in a heading.
+# Sphinx does not read links to files in headings.
 _HEADING: Final = re.compile(r"^#+ .*\]\(.*$", re.MULTILINE)
 
 
 def relinked(
     text: str, written_in: str, shown_in: str, resolve: Callable[[str], str | None]
 ) -> str:
-    """Return Markdown of the folder ``written_in`` as it has to stand in the folder ``shown_in``.
+    """Return Markdown of the folder ``written_in`` with links that work in the folder ``shown_in``.
 
-    ``resolve`` takes the place that a link leads to, from the top of the tree, and returns the
-    place that the new link leads to; it may have a prefix ``path:``, Sphinx's mark of a file that
-    is no page. A link that resolves to None is replaced by its own text. A link whose text is its
-    path shows the title of the page instead.
+    ``resolve`` takes the target of a link as a path from the top of the tree, and returns the new target.
+    That may have a prefix ``path:``, Sphinx's mark of a file that is no page. A link that resolves to None
+    is replaced by its own text. A link whose text is its path shows the title of the page instead.
     """
 
     def moved(link: re.Match[str]) -> str:
@@ -41,6 +40,6 @@ def relinked(
 
 
 def _links_below(heading: re.Match[str]) -> str:
-    """The heading in plain words, its links in a line of their own."""
+    """Return the heading in plain words, with its links in a line below."""
     links = " ".join(link[0] for link in _LINK.finditer(heading[0]))
     return f"{_LINK.sub(lambda link: link[1], heading[0])}\n\n{links}" if links else heading[0]

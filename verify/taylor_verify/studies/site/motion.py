@@ -1,7 +1,7 @@
-"""Pictures of one motion in space, to be turned: the polhode, the body's axis, the path.
+"""Pictures of one motion in space that can be turned: the polhode, the body's axis, the path.
 
-A portrait has a dense course in floats, a record the errors at fewer samples: between these the
-logarithm of the error is drawn as a straight line, for the colour alone.
+A portrait has a dense course in floats, a record the errors at fewer samples. The logarithm of the error,
+which is shown as colour, is interpolated linearly.
 """
 
 from __future__ import annotations
@@ -27,16 +27,16 @@ _COLOUR_BAR: Final = {
     "len": 0.7,
     "outlinewidth": 0,
 }
-# An ellipsoid that differs more from a sphere than that is no picture any more.
+# The smallest ratio of semi-axes of an ellipsoid that is drawn.
 _FLATTEST: Final = 1e-3
-# Of a curve's extent, a third of a pixel on the screen.
+# Tolerance as part of a curve's extent: a third of a pixel on the screen.
 _UNSEEN: Final = 0.0008
-# Of a box, in parts of its longest side.
+# Shortest side of a box, as part of its longest side.
 _MARGIN: Final = 0.03
 _LEAST_SIDE: Final = 0.3
-# What spreads by less than this part of its size is a point: a body at rest, or one that spins steadily.
+# A curve that spreads by less than this part of its size is a point: a body at rest, or a steady spin.
 _A_POINT: Final = 1e-7
-# What is constant differs in the last of the nine digits that are stored.
+# Constant quantities differ in the last of the nine stored digits.
 _ALIKE: Final = 1e-6
 
 
@@ -49,9 +49,9 @@ def motions_of(portrait: Portrait, record: Record | None) -> list[Figure]:
 
 
 def polhode(portrait: Portrait, record: Record | None) -> Figure | None:
-    """Return omega in body axes on the ellipsoid of its energy; the linear impulse on its sphere.
+    """Return omega in body axes on its energy ellipsoid, or the linear impulse on its sphere.
 
-    Where loads change energy or length, no surface holds the motion, and the curve stands alone.
+    If loads change energy or length, the motion lies on no surface, and the curve is shown alone.
     """
     euler = portrait["model"] == "euler"
     key, quantity = ("omega", "omega") if euler else ("linear_impulse", "impulse")
@@ -94,7 +94,7 @@ def axis_in_space(portrait: Portrait, record: Record | None) -> Figure | None:
 
 
 def path(portrait: Portrait, record: Record | None) -> Figure | None:
-    """Return the centre on its way through the fluid, in space axes."""
+    """Return the path of the centre through the fluid, in space axes."""
     curve = _Curve.of(portrait, portrait["course"].get("centre", []), record, "centre")
     if curve is None:
         return None
@@ -110,9 +110,9 @@ def path(portrait: Portrait, record: Record | None) -> Figure | None:
 
 
 def _box(rows: Numbers, surface: Trace | None) -> list[tuple[float, float]]:
-    """Return the sides of a box that holds a curve and its surface, with room for the line's width.
+    """Return the sides of a box around a curve and its surface, with room for the line's width.
 
-    No side is so short beside the longest that the box would be seen as a line.
+    Short sides are extended, so that the box does not look like a line.
     """
     points = rows
     if surface:
@@ -131,7 +131,7 @@ def _box(rows: Numbers, surface: Trace | None) -> list[tuple[float, float]]:
 
 @dataclass(frozen=True)
 class _Curve:
-    """A curve (n, 3) with its times, and the samples (time, logarithm of the error) that colour it."""
+    """A curve (n, 3) with its times, and the samples (time, logarithm of the error) for its colour."""
 
     times: Numbers
     rows: Numbers
@@ -143,16 +143,16 @@ class _Curve:
         cls, portrait: Portrait, rows: ArrayLike, record: Record | None, quantity: str
     ) -> _Curve | None:
         """Return the curve of these rows; None without rows, and for a point."""
-        found = np.asarray(rows, dtype=float)
-        if not found.size or not _extent(found) > _A_POINT * np.abs(found).max():
+        points = np.asarray(rows, dtype=float)
+        if not points.size or not _extent(points) > _A_POINT * np.abs(points).max():
             return None
         errors = _errors(record, quantity)
         rung = record["rung"] if record else ""
         words = f" The colour is the logarithm of the error of {quantity} there, on {rung}."
-        return cls(np.array(portrait["course"]["t"]), found, errors, words if errors else "")
+        return cls(np.array(portrait["course"]["t"]), points, errors, words if errors else "")
 
     def traces(self) -> list[Trace]:
-        """Return what Plotly draws: the curve, and a mark at its start."""
+        """Return Plotly's traces: the curve, and a mark at its start."""
         places = thinned(self.rows, _UNSEEN)
         times = self.times[places]
         line: dict[str, Any] = {"width": 5, "color": "$low"}
@@ -164,7 +164,9 @@ class _Curve:
         return [
             {
                 **_scattered("lines", "motion", self.rows[places]),
-                **{"line": line, "showlegend": False, "text": column(times, 7)},
+                "line": line,
+                "showlegend": False,
+                "text": column(times, 7),
                 "hovertemplate": "t = %{text}<br>%{x:.4g}, %{y:.4g}, %{z:.4g}<extra></extra>",
             },
             {**_scattered("markers", "start", self.rows[:1]), **start, "showlegend": False},
@@ -184,31 +186,31 @@ def _errors(record: Record | None, quantity: str) -> list[tuple[float, float]]:
     """Return time and logarithm of each error above zero, in the order of time."""
     gates = record["gates"] if record else ()
     errors = next((gate["errors"] for gate in gates if gate["quantity"] == quantity), ())
-    # At the start there is the rounding of the data, or nothing at all: no error of the motion.
+    # The error at the start is the rounding of the data, and no error of the motion.
     pairs = list(zip(record["times"], errors, strict=True))[1:] if record and errors else []
     return sorted((t, log10(error)) for t, error in pairs if error and error > 0)
 
 
 def thinned(rows: ArrayLike, tolerance: float) -> list[int]:
-    """Return the points that a curve needs: no other is farther from its chord than ``tolerance``.
+    """Return the points that a curve needs: all others lie within ``tolerance`` of the chords.
 
-    The tolerance is in parts of the curve's own extent (Ramer, Douglas and Peucker).
+    The tolerance is relative to the curve's own extent (Ramer, Douglas and Peucker).
     """
     points = np.asarray(rows, dtype=float)
     farthest = tolerance * _extent(points)
-    kept, open_ = {0, len(points) - 1}, [(0, len(points) - 1)]
+    places, open_ = {0, len(points) - 1}, [(0, len(points) - 1)]
     while open_:
         first, last = open_.pop()
         away = _from_chord(points[first : last + 1])
         if away.max() > farthest:
             at = first + int(away.argmax())
-            kept.add(at)
+            places.add(at)
             open_ += [(first, at), (at, last)]
-    return sorted(kept)
+    return sorted(places)
 
 
 def _from_chord(points: Numbers) -> Numbers:
-    """Return the distance of each point from the segment between the first and the last of them."""
+    """Return the distance of each point from the segment between the first and the last point."""
     chord, offset = points[-1] - points[0], points - points[0]
     foot = np.clip(offset @ chord / (chord @ chord or 1.0), 0, 1)
     return np.asarray(np.linalg.norm(offset - np.outer(foot, chord), axis=1))
@@ -218,7 +220,7 @@ def _from_chord(points: Numbers) -> Numbers:
 
 
 def _ellipsoid(portrait: Portrait, rows: Numbers) -> Trace | None:
-    """Return omega.I omega = 2T in body axes; None where T is not kept, and where no eye could see it."""
+    """Return the ellipsoid omega.I omega = 2T in body axes; None if T changes, or if it is too flat."""
     body = portrait.get("body")
     if not body:
         return None
@@ -230,7 +232,7 @@ def _ellipsoid(portrait: Portrait, rows: Numbers) -> Trace | None:
 
 
 def _sphere(rows: Numbers) -> Trace | None:
-    """Return the sphere that all rows lie on; None where their lengths differ, as they do under loads."""
+    """Return the sphere of all rows; None if their lengths differ, as under loads."""
     lengths = np.linalg.norm(rows, axis=1)
     return _ball([lengths[0]] * 3) if _is_constant(lengths) else None
 
@@ -243,10 +245,14 @@ def _ball(
     semi: Sequence[float] | Numbers,
     axes: Sequence[Sequence[float]] = ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
 ) -> Trace:
-    """Return an ellipsoid whose semi-axes lie along the rows of ``axes``; the script lays its net."""
+    """Return an ellipsoid with semi-axes along the rows of ``axes``; the script makes its mesh."""
     return {
-        **{"type": "surface", "ball": {"semi": column(semi), "axes": [column(a) for a in axes]}},
-        **{"opacity": 0.35, "showscale": False, "hoverinfo": "skip", "name": "surface"},
+        "type": "surface",
+        "ball": {"semi": column(semi), "axes": [column(a) for a in axes]},
+        "opacity": 0.35,
+        "showscale": False,
+        "hoverinfo": "skip",
+        "name": "surface",
         "colorscale": [[0, "$surface"], [1, "$surface"]],
         "lighting": {"ambient": 0.8, "diffuse": 0.4, "specular": 0.05, "roughness": 0.9},
         "contours": {name: {"highlight": False} for name in "xyz"},

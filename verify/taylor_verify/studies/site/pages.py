@@ -1,4 +1,4 @@
-"""Pages that the site makes itself: the front, the list of scenes, each scene, and all gates."""
+"""Pages that only the site has: the front, the list of scenes, each scene, and all gates."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from taylor_verify.studies.site.source import Document, Report
 from taylor_verify.studies.site.stage import FRONT, REPORTS, Stage, docs_beside, smaller
 
 _GATES: Final = f"{REPORTS}/tables/gates.md"
-# A process takes the time of some drawings to start.
+# Starting a process takes as long as some drawings.
 _MANY: Final = 20
-# The scene whose errors the front page shows.
+# The scene of the errors on the front page.
 _EXAMPLE: Final = "euler/generic"
 _FRONT: Final = (Path(__file__).parent / "front.md").read_text(encoding="utf-8")
 _SCENES: Final = (
@@ -32,16 +32,23 @@ _SCENES: Final = (
     "arithmetic allows. [Gates](tables/gates.md) has every quantity with its bound."
 )
 _WHAT: Final = (
-    "Every quantity that was compared, and the bound it was held against. The reason of each bound stands "
-    "on the page of its scene."
+    "Every quantity that was compared, and its bound. The reason of each bound is on the page of its "
+    "scene."
 )
 _COLUMNS: Final = (
-    *("scene", "rung", "quantity", "max:", "at t:", "bound:", "over attainable:", "verdict"),
+    "scene",
+    "rung",
+    "quantity",
+    "max:",
+    "at t:",
+    "bound:",
+    "over attainable:",
+    "verdict",
 )
 
 
 def staged(folder: Path) -> Stage:
-    """Return every page of the site, and the files that pages link to.
+    """Return the stage with every page of the site and the files that pages link to.
 
     Raises OSError for files that cannot be read, and ValueError for files that hold something else.
     """
@@ -51,7 +58,7 @@ def staged(folder: Path) -> Stage:
         for scene in report.scenes
     }
     drawings = _drawn(
-        [one for found in pictures.values() for one in found if not report.has(drawing_of(one))]
+        [one for drawn in pictures.values() for one in drawn if not report.has(drawing_of(one))]
     )
     stage.files |= {f"{SCENES}/{name}": svg for name, svg in drawings.items()}
     stage.add_pages(
@@ -59,8 +66,8 @@ def staged(folder: Path) -> Stage:
             f"{SCENES}.md": _scenes(report),
             _GATES: _gates(report),
             **{
-                f"{SCENES}/{of_scene(scene)}.md": scene_page(scene, report, found)
-                for scene, found in pictures.items()
+                f"{SCENES}/{of_scene(scene)}.md": scene_page(scene, report, drawn)
+                for scene, drawn in pictures.items()
             },
             FRONT: _front(report, stage, pictures.get(_EXAMPLE, ())),
         }
@@ -69,7 +76,7 @@ def staged(folder: Path) -> Stage:
 
 
 def _pictures_of(scene: str, portrait: Document, records: Mapping[str, Document]) -> list[Picture]:
-    """Return pictures of a scene that stand still: errors over time, and the quartic of its orbit."""
+    """Return the static pictures of a scene: errors over time, and the quartic of its orbit."""
     runs, pictures = list(records.values()), []
     if errors_over_time.panels_of(errors_over_time.series(runs)):
         pictures.append(errors_over_time.picture(scene, runs))
@@ -79,7 +86,7 @@ def _pictures_of(scene: str, portrait: Document, records: Mapping[str, Document]
 
 
 def _drawn(pictures: Sequence[Picture]) -> dict[str, str]:
-    """Return the SVG of each picture by the name of its file, drawn on all cores where there are many."""
+    """Return the SVG of each picture by the name of its file; many are drawn on all cores."""
     names = [f"{picture.stem}.svg" for picture in pictures]
     if len(pictures) < _MANY:
         return dict(zip(names, map(_svg, pictures), strict=True))
@@ -112,7 +119,7 @@ def _reading_order(page: str) -> tuple[int, str]:
 
 
 def _counts(runs: Sequence[Run]) -> str:
-    """Return the number of scenes, runs and verdicts; those other than pass where there are some."""
+    """Return the table of the numbers of scenes, runs and verdicts, without zeros but of pass and fail."""
     verdicts = [verdict for run in runs for verdict in run.verdicts]
     by_status = summary(verdicts).items()
     counts = {
@@ -125,7 +132,7 @@ def _counts(runs: Sequence[Run]) -> str:
 
 
 def _blind(report: Report) -> str:
-    """Return how many broken solvers the conserved quantities do not see."""
+    """Return the number of broken solvers that the conserved quantities do not see, in words."""
     finished = [s for s in report.sights if s.is_finished and s.seen_by]
     unseen = [s for s in finished if not any(s.is_seen_by(name) for name in s.conserved)]
     energy = [s for s in finished if s.is_missed_by("T")]
@@ -159,6 +166,6 @@ def _scene_row(report: Report, scene: str) -> list[str]:
 
 
 def _gates(report: Report) -> str:
-    """Return every verdict in one table, to be searched."""
+    """Return the page with all verdicts in one searchable table."""
     verdicts = [verdict for run in report.runs for verdict in run.verdicts]
     return f"# Gates\n\n{_WHAT}\n\n{verdict_table(_COLUMNS, verdicts)}\n"

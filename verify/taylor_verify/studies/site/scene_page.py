@@ -1,4 +1,4 @@
-"""The page of one scene as Markdown: its question, its exact motion, and each rung's answer."""
+"""Page of one scene as Markdown: its question, its exact motion, and each rung's answer."""
 
 from __future__ import annotations
 
@@ -23,13 +23,22 @@ from taylor_verify.studies.site.motion import motions_of
 from taylor_verify.studies.site.source import Document, Report
 from taylor_verify.studies.tradeoff.stored import TimedPoint, Trade
 
-# The rung whose errors colour the curves in space.
+# The rung of the errors that colour the curves in space.
 _SHOWN: Final = "f64"
-# The table of scenes leads here: hundreds of lines would be no navigation.
+# The navigation leaves scenes out, because hundreds of lines are too many; the table of scenes links them.
 _ORPHAN: Final = "---\norphan: true\n---"
 _ACCURACY: Final = (
-    *("rung", "quantity", "max:", "mean:", "max, u:", "at t:", "attainable:", "bound:"),
-    *("over attainable:", "steps:", "verdict"),
+    "rung",
+    "quantity",
+    "max:",
+    "mean:",
+    "max, u:",
+    "at t:",
+    "attainable:",
+    "bound:",
+    "over attainable:",
+    "steps:",
+    "verdict",
 )
 _ALLOWED: Final = (
     f"A gate allows {GATE_FACTOR} times what perfect rounding of every step would leave on this orbit; the "
@@ -38,7 +47,7 @@ _ALLOWED: Final = (
 
 
 def scene_page(scene: str, report: Report, pictures: Sequence[Picture]) -> str:
-    """Return the whole page of a scene, with pictures of it; a section without contents is left out."""
+    """Return the whole page of a scene with its pictures, without empty sections."""
     runs = report.runs_of(scene)
     portrait, records = report.portrait(scene) or {}, report.records(scene)
     record = next(iter(records.values()), {})
@@ -83,19 +92,19 @@ def scene_page(scene: str, report: Report, pictures: Sequence[Picture]) -> str:
 
 
 def drawing_of(picture: Picture) -> str:
-    """Return the place in the report where a picture may have been published already."""
+    """Return the path of a published picture in the report."""
     return f"{figures.FOLDER}/{picture.stem}.svg"
 
 
 def shown(report: Report, picture: Picture, top: str) -> str:
-    """Return a picture with what it shows in words; ``top`` is the way to the report's folder."""
+    """Return Markdown of a picture with its text; ``top`` is the relative path of the report's folder."""
     drawing = drawing_of(picture)
     place = drawing if report.has(drawing) else f"scenes/{picture.stem}.svg"
     return f"![{prose(picture.alt)}]({top}/{place})"
 
 
 def made_with(report: Report) -> str:
-    """Return the versions and machines that the numbers were made with, in a sentence."""
+    """Return the versions and machines behind the numbers, in a sentence."""
     machines = "; ".join(
         f"{prose(machine.get('processor', 'an unnamed processor'))}, {code(machine.get('command', ''))}"
         for machine in report.machines
@@ -112,7 +121,7 @@ def _drawings(report: Report, pictures: Sequence[Picture]) -> Iterator[str]:
 
 
 def _reference(scene: str, report: Report) -> str:
-    """Return links to the exact trajectory, as CSV and as JSON; nothing where it is not there."""
+    """Return links to the exact trajectory as CSV and as JSON, if they exist."""
     names = [f"{of_scene(scene)}{ending}" for ending in (".csv", ".json")]
     links = [f"[{n}](../reference/{n})" for n in names if report.has(f"reference/{n}")]
     if not links:
@@ -138,8 +147,8 @@ def _facts(runs: Sequence[Run], portrait: Document, record: Document) -> str:
 
 
 def _words(portrait: Document) -> Iterator[str]:
-    """Yield why there is this scene, and what it warns of."""
-    # Comment lines run together; an empty one parts two paragraphs.
+    """Yield the reason for the scene, and its warnings."""
+    # Comment lines make paragraphs, which empty lines separate.
     for is_filled, lines in groupby((line.strip() for line in portrait.get("why", ())), key=bool):
         if is_filled:
             text = " ".join(lines).removeprefix("Why: ")
@@ -170,7 +179,7 @@ def _orbit(portrait: Document) -> list[str]:
 
 
 def _solvers(trade: Trade | None) -> list[str]:
-    """Return the most accurate sound setting of each family, with its time over that of the yardstick."""
+    """Return the most accurate sound setting of each family, with its time over the yardstick's."""
     if trade is None:
         return []
     best: dict[tuple[str, str], TimedPoint] = {}
@@ -178,8 +187,12 @@ def _solvers(trade: Trade | None) -> list[str]:
         best.setdefault((row.point.family, row.point.rung), row)
     lines = [
         [
-            *(code(row.point.solver), row.point.rung, figure(row.error), f"{digits:.1f}"),
-            *(str(row.point.steps), figure(row.timing.ratio)),
+            code(row.point.solver),
+            row.point.rung,
+            figure(row.error),
+            f"{digits:.1f}",
+            str(row.point.steps),
+            figure(row.timing.ratio),
         ]
         for row in best.values()
         if (digits := row.point.achieved_digits) is not None
@@ -192,7 +205,7 @@ def _solvers(trade: Trade | None) -> list[str]:
 
 
 def _gates(verdicts: Sequence[Verdict]) -> str:
-    """Return each rung's arithmetic by quantity, and once the words behind it."""
+    """Return the arithmetic of each bound by quantity and rung, with its words once."""
     names = list(dict.fromkeys(verdict.quantity for verdict in verdicts))
     rows: list[list[str]] = []
     meanings: dict[str, dict[str, None]] = {}
@@ -206,7 +219,7 @@ def _gates(verdicts: Sequence[Verdict]) -> str:
 
 
 def _bound(verdict: Verdict) -> tuple[str, str]:
-    """Return the arithmetic of the bound, and the meaning of its terms; empty where there is none."""
+    """Return the arithmetic of the bound, and the meaning of its terms; empty without a bound."""
     floor = verdict.reason.floor
     arithmetic, meaning = floor.parts() if floor else ("", "")
     parts = (conclusion(verdict), verdict.reason.rule, arithmetic)
@@ -214,20 +227,20 @@ def _bound(verdict: Verdict) -> tuple[str, str]:
 
 
 def _block(language: str, text: str, name: str = "") -> str:
-    """Return text to be copied; ``name`` is its anchor on the page."""
+    """Return a block of text for copying; ``name`` is its anchor on the page."""
     option = f":name: {name}\n" if name else ""
-    # Longer than any in the text, which could end the block.
+    # A longer fence than any in the text, which could end the block.
     fence = "`" * max(3, 1 + max(map(len, re.findall("`+", text)), default=0))
     return f"{fence}{{code-block}} {language}\n{option}\n{text}\n{fence}"
 
 
 def _folded(summary: str, contents: str) -> str:
-    """Return Markdown behind a line that opens it."""
+    """Return Markdown folded behind a line that opens it."""
     return f"<details>\n<summary>{escape(summary)}</summary>\n\n{contents}\n\n</details>"
 
 
 def _values(document: Document) -> list[str]:
-    """Return ten instants as the columns of a trajectory file, each number with all of its digits."""
+    """Return ten instants as columns of a trajectory file, each number with all digits."""
     rows = document.get("rows")
     if not rows:
         return []
@@ -244,7 +257,7 @@ def _values(document: Document) -> list[str]:
 
 
 def _trajectory(rows: Sequence[Document]) -> str:
-    """Return exact states as a trajectory file, its columns one below the other."""
+    """Return exact states as a trajectory file, with aligned columns."""
     columns = [["t", *(str(row["t"]) for row in rows)]]
     for key in (key for key in COLUMNS if key in rows[0]):
         entries = np.array([row[key] for row in rows]).reshape(len(rows), -1).T.tolist()

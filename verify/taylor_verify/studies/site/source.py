@@ -1,7 +1,7 @@
-"""A report folder as the site reads it: verdicts, records, portraits and measurements, no physics.
+"""Data of a report folder that the site reads: verdicts, records, portraits and measurements.
 
-portrait   data/portraits/NAME.json: one scene in text, equations, exact values and a dense course;
-           a scene without one has a page all the same, with fewer sections
+    portrait   data/portraits/NAME.json: one scene in text, equations, exact values and a dense course;
+               the page of a scene without a portrait has fewer sections
 record     data/records/NAME.taylor.RUNG.json: every sample's error of one run
 """
 
@@ -28,10 +28,10 @@ _SOLVER: Final = "taylor"
 
 @dataclass(frozen=True)
 class Report:
-    """The report in ``folder``; each part is read when it is first asked for.
+    """The report in ``folder``; each part is read on its first use.
 
-    Every part raises OSError for files that cannot be read and ValueError for files that hold
-    something else; a measurement that was never published is None.
+    Every part raises OSError for files that cannot be read and ValueError for files that hold something
+    else. A measurement that was never published is None.
     """
 
     folder: Path
@@ -58,7 +58,7 @@ class Report:
 
     @cached_property
     def rungs(self) -> tuple[str, ...]:
-        """The rungs upwards."""
+        """The rungs in rising order."""
         return tuple(sorted({run.rung for run in self.runs}, key=place_of_rung))
 
     def runs_of(self, scene: str) -> list[Run]:
@@ -70,31 +70,31 @@ class Report:
         return PORTRAITS.find(self.folder, scene)
 
     def records(self, scene: str) -> dict[str, Document]:
-        """Return the records of a scene by rung, as far as there are some."""
-        found = {r: self._stored(store.record_name(scene, _SOLVER, r)) for r in self.rungs}
-        return {rung: record for rung, record in found.items() if record is not None}
+        """Return the stored records of a scene by rung."""
+        stored = {r: self._stored(store.record_name(scene, _SOLVER, r)) for r in self.rungs}
+        return {rung: record for rung, record in stored.items() if record is not None}
 
     @cached_property
     def sights(self) -> tuple[Sight, ...]:
-        """The solvers that were broken on purpose with their verdicts; none where none are stored."""
-        found = CONTROLS.find(self.folder)
-        return found.sights if found else ()
+        """The deliberately broken solvers with their verdicts; empty if none are stored."""
+        study = CONTROLS.find(self.folder)
+        return study.sights if study else ()
 
     @cached_property
     def _trades(self) -> dict[str, Trade]:
-        found = trades.load(self.folder)
-        return {trade.scene: trade for trade in found.trades} if found else {}
+        study = trades.load(self.folder)
+        return {trade.scene: trade for trade in study.trades} if study else {}
 
     def trade(self, scene: str) -> Trade | None:
         """Return speed against accuracy on one scene."""
         return self._trades.get(scene)
 
     def has(self, place: str) -> bool:
-        """Return True for the place of a published file."""
+        """Return True if a published file has this path."""
         return (self.folder / place).is_file()
 
     def read(self, place: str) -> str:
-        """Return the text of a published file; empty where there is none."""
+        """Return the text of a published file; empty without a file."""
         return (self.folder / place).read_text(encoding="utf-8") if self.has(place) else ""
 
     def _stored(self, name: str) -> Document | None:

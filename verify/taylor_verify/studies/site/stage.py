@@ -1,7 +1,7 @@
-"""Source folder that Sphinx reads: pages of docs and of the report, and the files they link to.
+"""Source folder of Sphinx: pages of docs and of the report, and the files that they link to.
 
-Places are those of a checkout: ``docs/method.md``, ``reports/tables/README.md``. So a link that holds
-there holds here.
+Paths are those of a checkout: ``docs/method.md``, ``reports/tables/README.md``. Links that work there
+work here.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ DOCS: Final = "docs"
 REPORTS: Final = "reports"
 FRONT: Final = "index.md"
 
-# Bytes. Above this only sheets and data are found, of which a packed one has a tenth.
+# In bytes. Larger files are sheets and data, which packing shortens to a tenth.
 _LARGE: Final = 30_000
 PACKED: Final = ".tar.xz"
-# Fonts and metadata of a drawing, which its page has too.
+# Fonts and metadata of a drawing, which its page does not need.
 _FONTS: Final = re.compile(r"font-family: [^;\"}]*")
 _METADATA: Final = re.compile(r"<metadata>.*?</metadata>\s*", re.DOTALL)
 _ROOMS: Final = ("figures", "tables", "reference", "upstream", "upstream/engines")
@@ -35,14 +35,14 @@ _ENTRY: Final = re.compile(r"^([a-z][\w/-]*)$", re.MULTILINE)
 
 
 def docs_beside(folder: Path) -> Path | None:
-    """Return the folder of docs in the checkout that ``folder`` is the report of; None without one."""
+    """Return the folder of docs in the checkout of the report ``folder``; None without a checkout."""
     docs = folder.resolve().parent / DOCS
     return docs if (docs / "conf.py").exists() else None
 
 
 @dataclass
 class Stage:
-    """Files for Sphinx, by place. ``folder`` has the report, ``docs`` the pages beside it."""
+    """Files for Sphinx by path. ``folder`` has the report, ``docs`` the pages beside it."""
 
     folder: Path
     docs: Path | None
@@ -51,7 +51,7 @@ class Stage:
     def __post_init__(self) -> None:
         self._pages = dict(self._markdown())
         self._places = {*self._pages}
-        # The front page takes the place of the list of docs, a page that of the file it includes.
+        # The front page replaces the list of docs, and a page replaces the file that it includes.
         self._stand_ins = {f"{DOCS}/index.md": FRONT}
         for place, file in self._pages.items():
             for included in _INCLUDED.findall(file.read_text(encoding="utf-8")):
@@ -68,7 +68,7 @@ class Stage:
 
     @property
     def report_pages(self) -> list[str]:
-        """The pages of the report as a toctree names them, without those that stand below another one."""
+        """The pages of the report for a toctree, without pages that are listed below another page."""
         pages = [
             place.removesuffix(".md") for place in self._pages if place.startswith(f"{REPORTS}/")
         ]
@@ -76,20 +76,20 @@ class Stage:
         return [page for page in pages if page not in below]
 
     def _below(self, parent: str) -> list[str]:
-        """Return the pages of the parts of a page: tables/engines-mujoco stands below tables/engines."""
+        """Return the pages below a page, such as tables/engines-mujoco below tables/engines."""
         pages = (place.removesuffix(".md") for place in self._pages)
         return [page for page in pages if page.startswith(f"{parent}-")]
 
     def toctrees(self) -> str:
-        """Return the lists of pages of docs/index.md, for the navigation; nothing without docs."""
+        """Return the lists of pages of docs/index.md, for the navigation; empty without docs."""
         if self.docs is None:
             return ""
         text = (self.docs / "index.md").read_text(encoding="utf-8")
-        lists = (_ENTRY.sub(rf"{DOCS}/\1", found[0]) for found in _TOCTREE.finditer(text))
+        lists = (_ENTRY.sub(rf"{DOCS}/\1", match[0]) for match in _TOCTREE.finditer(text))
         return "\n\n".join(lists).replace(":maxdepth: 1", ":hidden:")
 
     def add_pages(self, made: Mapping[str, str]) -> None:
-        """Add the pages that are stored and those of ``made``, with the files that they link to."""
+        """Add the stored pages and those of ``made``, with the files that they link to."""
         stored = {place: file for place, file in self._pages.items() if place not in made}
         self._places |= made.keys()
         for place, file in stored.items():
@@ -110,7 +110,7 @@ class Stage:
         self.files[place] = relinked(text, folder, folder, self._resolve)
 
     def _included(self, place: str, block: re.Match[str]) -> str:
-        """Return the file that a page includes, with links as they are on that page."""
+        """Return the file that a page includes, with links that work on that page."""
         included = _joined(place, block[1])
         file = self._origin(included)
         if file is None:
@@ -119,7 +119,7 @@ class Stage:
         return relinked(text, posixpath.dirname(included), posixpath.dirname(place), lambda at: at)
 
     def _resolve(self, place: str) -> str | None:
-        """Return the page or file that a link leads to; None for what is neither, or outside the tree."""
+        """Return the page or file that a link leads to; None for other links, and outside the tree."""
         for page in (self._stand_ins.get(place, place), f"{place}/README.md"):
             if page in self._places:
                 return page
@@ -135,24 +135,24 @@ class Stage:
         return _as_linked(place)
 
     def _origin(self, place: str) -> Path | None:
-        """Return the stored file of a place; None outside the report and the checkout around it."""
+        """Return the stored file of a path; None outside the report and its checkout."""
         if place.startswith(f"{REPORTS}/"):
             return self.folder / place.removeprefix(f"{REPORTS}/")
         return None if self.docs is None or place.startswith("..") else self.docs.parent / place
 
 
 def smaller(svg: str) -> str:
-    """Return the drawing in the font of its page and without metadata; title and text stay."""
+    """Return the drawing in the font of its page, with title and text, and without metadata."""
     return _FONTS.sub("font-family: sans-serif", _METADATA.sub("", svg))
 
 
 def _as_linked(place: str) -> str:
-    """Return a place as Sphinx wants it: Markdown that is no page is a file if the link says so."""
+    """Return the target of a link to a file; Markdown gets Sphinx's mark of a file that is no page."""
     return f"path:{place}" if place.endswith(".md") else place
 
 
 def _content(file: Path, is_packed: bool) -> str | bytes:
-    """Return a file as it is, a drawing made smaller, or an archive with the file."""
+    """Return the content of a file: drawings are made smaller, and large files packed."""
     content = file.read_bytes()
     if is_packed:
         return lzma.compress(tar({file.name: content}))

@@ -28,9 +28,9 @@ from taylor_verify.solvers.trajectory import Outcome, Trajectory
 class Accuracy:
     """Errors by tracked quantity, in the judge's units; NaN where an answer is no number.
 
-    Each is the error's size and the truth's own width together, so that the error is no larger.
-    ``drift`` is the largest of all conserved quantities, ``drifting`` its name; None under loads,
-    which leave nothing conserved.
+    Each is an upper bound: the sum of the error's size and the truth's own width.
+    ``drift`` is the largest of all conserved quantities, ``drifting`` its name; None under loads, because
+    nothing is conserved there.
     """
 
     max: Mapping[str, float] = field(default_factory=dict)
@@ -40,15 +40,15 @@ class Accuracy:
 
     @property
     def worst(self) -> float:
-        """The largest of all tracked quantities; NaN if one is, infinite where none was compared."""
+        """The largest of all tracked quantities; NaN if one is NaN, infinite if none was compared."""
         return float(largest(self.max.values())) if self.max else inf
 
 
 class Truth:
-    """The exact motion of one problem, that every answer to it is compared with.
+    """The exact motion of one problem, with which all answers are compared.
 
-    As the judge has it, it is a thousandth of a unit of roundoff wide. Raises Unsettled where its digits
-    cannot be had.
+    Its width is a thousandth of the unit roundoff, as for the judge. Raises Unsettled if its digits do not
+    settle.
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -58,7 +58,7 @@ class Truth:
         try:
             self._motion, self._start = self._evaluated(solution(self._given))
         except Unsettled:
-            # Beside a degenerate orbit Taylor series have the digits that the closed form has not.
+            # Beside a degenerate orbit Taylor series have digits that the closed form lacks.
             self._motion, self._start = self._evaluated(TaylorSolution(self._given))
 
     def _evaluated(self, exact: Solution) -> tuple[Motion, Motion]:
@@ -67,7 +67,7 @@ class Truth:
         return motion, exact.motion([Fraction(0)], self._digits + MORE_DIGITS)
 
     def accuracy(self, trajectory: Trajectory) -> Accuracy:
-        """Return the accuracy of a trajectory that finished."""
+        """Return the accuracy of a finished trajectory."""
         given = self._given
         with mp.workprec(self._bits):
             answer = trajectory.motion(self._bits)
@@ -78,7 +78,7 @@ class Truth:
             own = (self._start, self._motion, answer, trajectory.quantities, self._digits)
             conserved = drifts(given, *own) if given.body.is_conservative else ()
             drift = [(float(largest(one.values)), name.name) for name, one in conserved]
-        # NaN is larger than any.
+        # NaN counts as larger than any number.
         worst = max(drift, key=lambda one: (isnan(one[0]), one[0]), default=(None, ""))
         return Accuracy(most, final, *worst)
 
@@ -90,10 +90,10 @@ class Truths:
         self._known: dict[tuple[Scene, Rung, Body, State], Truth | None] = {}
 
     def accuracy(self, problem: Problem, trajectory: Trajectory) -> Accuracy | None:
-        """Return the accuracy; None for a run that did not finish, and where the truth cannot be had."""
+        """Return the accuracy; None for an unfinished run, and if the truth does not settle."""
         if trajectory.outcome is not Outcome.FINISHED:
             return None
-        # Solvers may take other data of one scene, rounded elsewhere.
+        # Solvers may round the data of a scene differently.
         key = problem.scene, problem.rung, problem.given.body, problem.given.initial
         if key not in self._known:
             self._known[key] = None

@@ -1,8 +1,8 @@
-"""The precisions that can reach an error at all, by what rounding alone leaves on the scene's own orbit.
+"""Precisions that can reach an error, by the errors that rounding alone leaves on the scene's orbit.
 
-The judge's floor grows with the number of steps, which is a solver's own affair. So it is taken for the
-fewest there can be, one rounding a sample: no arithmetic of that precision is asked for less. Only a
-solver that computes on another precision than it answers on may do better.
+The judge's floor grows with the number of steps, which depends on the solver. Here it is taken for the
+fewest possible steps, one rounding for each sample. Only a solver that computes in a wider precision than
+that of its answer may do better.
 """
 
 from __future__ import annotations
@@ -28,15 +28,15 @@ from taylor_verify.scenes.scene import Scene
 # Of a truth that says only how large the motion is.
 _DIGITS: Final = 15
 _MOST_BITS: Final = 1000
-# A floor is not quite in proportion to the roundoff: beside an unstable motion, rounding the data moves
-# the orbit too. Some bits more make up for it.
+# A floor is not quite proportional to the roundoff, because rounding the data beside an unstable motion
+# moves the orbit too. Some more bits make up for it.
 _MORE_BITS: Final = 8
 _ATTEMPTS: Final = 8
 
 
 @lru_cache(maxsize=64)
 def least_error(scene: Scene, rung: Rung) -> float | None:
-    """Return the largest attainable error of all tracked quantities and samples; None if not known."""
+    """Return the largest attainable error of all tracked quantities and samples; None if unknown."""
     try:
         given = pose(scene, rung).given
         truth = solution(given).motion(given.clock.elapsed, _DIGITS)
@@ -49,24 +49,25 @@ def least_error(scene: Scene, rung: Rung) -> float | None:
 
 
 def left_out(scene: Scene, rungs: Iterable[Rung], error: float) -> dict[Rung, str]:
-    """Return the rungs on which rounding alone leaves far more than an error, each with that in words.
+    """Return the rungs on which rounding alone leaves far more than an error, each with the reason.
 
-    The floor is a model of random roundings: as the judge's gates leave GATE_FACTOR above it, so it takes
-    GATE_FACTOR here before a rung is given up unmeasured.
+    The floor is a model of random roundings. As the judge's gates allow GATE_FACTOR above it, a rung is
+    left out only if its floor is GATE_FACTOR times the error.
     """
-    found = {}
+    reasons = {}
     for rung in dict.fromkeys(rungs):
         least = least_error(scene, rung)
         if least is not None and least > GATE_FACTOR * error:
             beyond = "" if least < 1 else ", more than the motion's own size"
-            found[rung] = f"on {rung.name} rounding alone leaves {least:.2g}{beyond}"
-    return found
+            reasons[rung] = f"on {rung.name} rounding alone leaves {least:.2g}{beyond}"
+    return reasons
 
 
 def narrowest(scene: Scene, error: float) -> tuple[Rung, float] | None:
-    """Return the narrowest rung on which rounding alone leaves no more than an error, and how much.
+    """Return the narrowest rung on which rounding alone leaves at most an error, and its floor.
 
-    A type of the ladder where one will do, else mpN; None where no rung does, or nothing is known.
+    It is a type of the ladder if one suffices, else mpN. The result is None if no rung suffices, or if the
+    floor is unknown.
     """
     names = [*FORMATS]
     for attempt in range(len(FORMATS) + _ATTEMPTS):

@@ -1,6 +1,6 @@
-"""Speed against accuracy: what every setting achieved on a few scenes, and apart from it the times.
+"""Documents of speed against accuracy: the errors of every setting on a few scenes, and the times.
 
-The numbers are the same on any machine, but for the rounding. The times are those of one machine.
+The errors are the same on any machine, except for rounding. The times are those of one machine.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from taylor_verify.records.standing import Standing
 
 # None stands for a number that is not finite, or does not exist.
 Number = float | None
-# Between the name of a shipped scene and the time until which it is followed beyond its own end.
+# Mark between the name of a shipped scene and the later time until which it is followed.
 UNTIL: Final = " until t = "
 
 
 def label(solver: str, setting: str, rung: str) -> str:
-    """Return solver, setting and rung in one line, as they are printed."""
+    """Return solver, setting and rung in one printed line."""
     return " ".join(filter(None, (solver, setting, rung)))
 
 
@@ -27,7 +27,7 @@ class TradePoint:
 
     ``error`` is the largest of all tracked quantities and samples, ``drift`` the largest of the conserved
     quantities, of which ``drifting`` is the name. ``max`` and ``final`` are errors by quantity.
-    ``because`` says why the point is not sound, where it is not.
+    ``because`` is the reason why a point is not sound.
     """
 
     scene: str
@@ -52,7 +52,7 @@ class TradePoint:
 
     @property
     def label(self) -> str:
-        """The setting as `tradeoff` prints it."""
+        """The name of the setting in the output of `tradeoff`."""
         return label(self.solver, self.setting, self.rung)
 
 
@@ -61,7 +61,7 @@ class TradeScene:
     """A measured scene.
 
     ``attainable`` is what rounding alone leaves on each rung; empty in measurements without it.
-    ``requests`` tell in words what was asked and achieved.
+    ``requests`` compare the requested and the achieved digits in words.
     """
 
     scene: str
@@ -73,7 +73,7 @@ class TradeScene:
 
     @property
     def is_long(self) -> bool:
-        """True for a scene that is followed beyond its own end, with the solvers of the columns alone."""
+        """True for a scene that is followed beyond its own end, with few solvers."""
         return UNTIL in self.scene
 
 
@@ -98,7 +98,7 @@ class PlainDouble:
 
 @dataclass(frozen=True)
 class TradeNumbers:
-    """All scenes and points; ``yardstick`` names the setting that times are multiples of."""
+    """All scenes and points; ``yardstick`` names the setting that is the unit of times."""
 
     versions: dict[str, str]
     yardstick: str
@@ -111,9 +111,10 @@ class TradeNumbers:
 class TradeTiming:
     """The time of one setting on one scene, a median over processes.
 
-    ``ratio`` is that to the yardstick, between ``low`` and ``high``; both are None where the processes
-    are too few for an interval. ``inner_seconds`` is the part in compiled code, where it is known.
-    ``setup_seconds`` came before the first solve of a process: compiling, the longest of all processes.
+    ``ratio`` is the ratio to the yardstick, between ``low`` and ``high``, which are None if the
+    processes are too few for an interval. ``inner_seconds`` is the part in compiled code, if known.
+    ``setup_seconds`` is the time before the first solve of a process, such as compiling, the longest of
+    all processes.
     """
 
     scene: str
@@ -129,13 +130,13 @@ class TradeTiming:
 
     @property
     def spread(self) -> float | None:
-        """The upper end of the interval over the lower, which a picture draws as a bar."""
+        """The upper end of the interval over the lower end, for the bar in a picture."""
         return self.high / self.low if self.low and self.high else None
 
 
 @dataclass(frozen=True)
 class TimingMachine:
-    """The machine and the command that the times were taken with."""
+    """The machine and the command of the times."""
 
     processor: str
     python: str
@@ -160,7 +161,7 @@ class TimingMethod:
 
 @dataclass(frozen=True)
 class TradeTimings:
-    """The times of every sound setting; ``machine`` and ``method`` say where and how they were taken."""
+    """The times of every sound setting, with the machine and the method of the measurement."""
 
     machine: TimingMachine
     method: TimingMethod

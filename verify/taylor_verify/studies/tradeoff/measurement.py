@@ -1,12 +1,11 @@
-"""The published measurement: a few scenes, every setting, several fresh processes.
+"""Published measurement: every setting on a few scenes, in several fresh processes.
 
-A process is not one more repetition. Its hash seed, the places of its arrays and code in memory and
-the frequency at which the processor happens to run are drawn once for all of its life, so that solves
-within it agree with each other better than with those of the next. So the rounds of a process are
-reduced to their median, and the processes are what is counted.
+The sample is a number of processes. The hash seed of a process, the places of its arrays and code in
+memory and the processor's frequency are random, but fixed for its life, so that solves within a process
+agree better than solves of different processes. The rounds of a process are reduced to their median.
 
-Errors are told apart from times: they are the same on the next machine but for the rounding, times are
-nobody else's.
+Errors and times are stored separately: errors are the same on other machines except for rounding, times
+are not.
 """
 
 from __future__ import annotations
@@ -60,18 +59,21 @@ from taylor_verify.studies.tradeoff.trade_off import (
     trade_off,
 )
 
-# Beyond its end the last of them is chaotic: no method has six digits there after a hundred periods.
+# The last scene is chaotic beyond its end: no method has six digits there after a hundred periods.
 SCENES: Final = (
-    *("euler/generic", "euler/with-attitude"),
-    *("kirchhoff/whole-motion", "kirchhoff/general-body"),
-    *(f"euler/generic{UNTIL}800", f"euler/with-attitude{UNTIL}800"),
+    "euler/generic",
+    "euler/with-attitude",
+    "kirchhoff/whole-motion",
+    "kirchhoff/general-body",
+    f"euler/generic{UNTIL}800",
+    f"euler/with-attitude{UNTIL}800",
     f"kirchhoff/whole-motion{UNTIL}1600",
 )
 _SAMPLES: Final = 101
-# The fewest whose two extremes hold the median with 95 %.
+# The fewest processes whose extremes enclose the median with 95 %.
 PROCESSES: Final = 6
-# Every power of ten, so that the cheapest setting for so many digits is among them. RK45 would take
-# seconds for the last one; the two that are made for stiff equations take them much earlier.
+# Every power of ten, so that the cheapest setting for each number of digits is among them. RK45 would
+# take seconds for the last one, and the two solvers for stiff equations much earlier.
 _EVERY_DIGIT: Final = tuple(f"1e-{digits}" for digits in range(3, 14))
 _SCIPY: Final = {
     "scipy:RK45": _EVERY_DIGIT[:-1],
@@ -81,16 +83,16 @@ _SCIPY: Final = {
     "scipy:BDF": ("1e-3", "1e-6"),
 }
 _ODEFUN: Final = "mpmath:odefun?tol=1e-6"
-# Integrators of other libraries that are compiled as heyoka's are: they take turns with all others. For
-# the columns they and taylor have every power of ten.
+# Integrators of other libraries that are compiled like heyoka's. They take turns with all others. They
+# and taylor have every power of ten, for the columns of the table.
 PEERS: Final = ("dop853", "cyrk-dop853", "cvode-adams", "diffrax-dopri8")
 _FOR_THE_COLUMNS: Final = tuple(f"1e-{digits}" for digits in range(5, 16))
 _OF_TAYLOR: Final = ("1e-3", *_FOR_THE_COLUMNS)
-# Each of these is compiled for seconds, in every process anew.
+# Each of these takes seconds to compile, anew in every process.
 _OF_OPTIMISED: Final = _FOR_THE_COLUMNS[::2]
 _OWN_TOLERANCE: Final = ("f32", "f80", "f128", "mp237")
 
-# A scene with the settings that are timed on it.
+# A scene with its settings.
 Asked = tuple[Scene, Sequence[Name]]
 
 
@@ -102,10 +104,10 @@ def measurement(
     seed: int = SEED,
     finished: Callable[[str], None] = lambda part: None,
 ) -> tuple[TradeNumbers, TradeTimings]:
-    """Solve the scenes with every published setting, then time what is sound in fresh processes.
+    """Solve the scenes with every published setting, then time the sound ones in fresh processes.
 
-    ``finished`` is called with the name of each part as it ends. A library whose environment cannot be made
-    is a setting that is not run.
+    ``finished`` is called with the name of each part as it ends. Settings of a library whose environment
+    cannot be made are not run.
     """
     if with_outside:
         for name in PEERS:
@@ -114,7 +116,7 @@ def measurement(
     trades = []
     for scene in map(scene_named, names):
         settings = tuple(published_settings(scene, with_outside))
-        # What is published must not hang on how busy the machine was.
+        # Without a limit of patience, so that the published settings do not depend on the machine's load.
         trades.append(trade_off(scene, settings, 0, seed, patience=inf))
         finished(f"errors of {scene.name}")
     end_sessions()
@@ -141,15 +143,15 @@ def measurement(
 
 
 def _versions() -> dict[str, str]:
-    """Return the versions of all that takes part: SciPy too, which is no part of a verdict."""
-    found = packages()
+    """Return the versions of all packages, including SciPy, which no verdict depends on."""
+    used = packages()
     with suppress(PackageNotFoundError):
-        found["scipy"] = version("scipy")
-    return found
+        used["scipy"] = version("scipy")
+    return used
 
 
 def scene_named(name: str) -> Scene:
-    """Return a shipped scene, or one that is followed until a later time, as ``SCENES`` write it."""
+    """Return a shipped scene, or one that is followed until a later time, by its name in ``SCENES``."""
     shipped, _, end = name.partition(UNTIL)
     scene = load(shipped)
     if not end:
@@ -162,7 +164,7 @@ def scene_named(name: str) -> Scene:
 def published_settings(scene: Scene, with_outside: bool = False) -> Iterator[Setting]:
     """Yield the settings family by family, the coarsest first: taylor on every rung, all else on f64.
 
-    On a scene beyond its own end there are taylor on f64 and the peers alone.
+    A scene that is followed beyond its own end has only taylor on f64 and the peers.
     """
     f64, is_long = rung_named("f64"), UNTIL in scene.name
     yield from taylor(f64, _OF_TAYLOR)
@@ -175,7 +177,7 @@ def published_settings(scene: Scene, with_outside: bool = False) -> Iterator[Set
 
 
 def _for_short_scenes(scene: Scene) -> Iterator[Setting]:
-    """Yield what takes seconds for a hundred periods, or is compared on the short scenes alone."""
+    """Yield the settings of the short scenes alone, many of which take seconds for a hundred periods."""
     f64 = rung_named("f64")
     for name in _OWN_TOLERANCE:
         yield setting(YARDSTICK[0], rung_named(name))
@@ -185,21 +187,21 @@ def _for_short_scenes(scene: Scene) -> Iterator[Setting]:
         yield from geometric(scene, f64)
         yield setting(ELLIPJ, f64)
         if not scene.track - {"omega"}:
-            # Seconds a solve: the scene with the fewest equations says enough.
+            # A solve takes seconds: the scene with the fewest equations is enough.
             yield setting(_ODEFUN, f64)
 
 
 def one_process(asked: Sequence[Asked], seed: int, rounds: int) -> dict[str, dict[Name, Measured]]:
-    """Return what one process measures, by scene; the scenes too in an order of its own.
+    """Return the measurements of one process by scene; the order of the scenes is random too.
 
     Everything is compiled there for the first time.
     """
     scenes = list(asked)
     random.Random(seed).shuffle(scenes)
     with cold_caches():
-        found = {scene.name: measured(scene, names, seed, rounds) for scene, names in scenes}
+        answers = {scene.name: measured(scene, names, seed, rounds) for scene, names in scenes}
     end_sessions()
-    return found
+    return answers
 
 
 def _timings(
@@ -217,7 +219,8 @@ def _timing(scene: str, name: Name, every: Sequence[Measured]) -> TradeTiming:
     inner = [one.inner for one in every if one.inner is not None]
     ratio = estimate(one.ratio for one in every)
     return TradeTiming(
-        *(scene, *name),
+        scene,
+        *name,
         seconds=estimate(one.seconds for one in every).median,
         inner_seconds=estimate(inner).median if len(inner) == len(every) else None,
         ratio=ratio.median,
@@ -229,7 +232,7 @@ def _timing(scene: str, name: Name, every: Sequence[Measured]) -> TradeTiming:
 
 
 def _scene(trade: TradeOff) -> TradeScene:
-    """Return the scene of a trade; the sentences of its front are made when they are printed."""
+    """Return the scene of a trade, without the sentences of its front."""
     return TradeScene(
         scene=trade.scene.name,
         title=trade.scene.title,

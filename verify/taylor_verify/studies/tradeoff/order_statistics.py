@@ -1,12 +1,12 @@
-"""The median of a few values and an interval for it that assumes nothing of how they are spread.
+"""Median of a few values, and its interval without assumptions on their distribution.
 
-Of n independent values from one distribution each is below its median with probability 1/2. So the
-median lies between the k-th smallest and the k-th largest with probability
+Each of n independent values from one distribution is below its median with probability 1/2. Therefore
+the median lies between the k-th smallest and the k-th largest value with probability
 
     1 - 2 sum_{i<k} C(n, i) / 2^n
 
-or more, whatever the distribution (H. A. David and H. N. Nagaraja, Order Statistics, 3rd ed. (2003),
-7.1). The largest k is taken that leaves the confidence asked for.
+or more, for any distribution (H. A. David and H. N. Nagaraja, Order Statistics, 3rd ed. (2003), 7.1).
+The interval has the largest k with the required confidence.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ FORMULA: Final = "1 - 2 sum_{i<k} C(n, i)/2^n"
 
 
 class Estimate(NamedTuple):
-    """The median of some values; ``low`` and ``high`` hold that of their distribution.
+    """The median of some values; ``low`` and ``high`` enclose the median of their distribution.
 
-    Both are None where the values are too few for the confidence asked for.
+    Both are None if the values are too few for the confidence.
     """
 
     median: float
@@ -32,7 +32,7 @@ class Estimate(NamedTuple):
 
 
 def estimate(values: Iterable[float]) -> Estimate:
-    """Return the median of at least one value, with its interval of CONFIDENCE."""
+    """Return the median of at least one value, with its interval at CONFIDENCE."""
     ranked = sorted(values)
     rank = place(len(ranked), CONFIDENCE)
     low, high = (ranked[rank - 1], ranked[-rank]) if rank else (None, None)
@@ -40,11 +40,11 @@ def estimate(values: Iterable[float]) -> Estimate:
 
 
 def coverage(count: int, rank: int) -> float:
-    """Return the probability that the median is between the rank-th smallest and largest of so many."""
+    """Return the probability that the median is between the rank-th smallest and largest value."""
     return 1 - 2 * sum(comb(count, i) for i in range(rank)) * 0.5**count
 
 
 def place(count: int, confidence: float) -> int:
-    """Return the largest rank whose interval has the confidence; 0 if not even the extremes have it."""
+    """Return the largest rank whose interval has the confidence; 0 if even the extremes lack it."""
     ranks = range(1, (count + 1) // 2 + 1)
     return max((rank for rank in ranks if coverage(count, rank) >= confidence), default=0)

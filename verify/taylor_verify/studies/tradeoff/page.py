@@ -1,4 +1,4 @@
-"""The page of speed against accuracy, from the stored measurement alone."""
+"""Page of speed against accuracy, made from the stored measurement alone."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from taylor_verify.records.standing import Standing
 from taylor_verify.studies import figures
 from taylor_verify.studies.tradeoff.document import PlainDouble, TradePoint
 from taylor_verify.studies.tradeoff.pareto import pareto
-from taylor_verify.studies.tradeoff.peers import DIGITS, TAYLOR, peers_told
+from taylor_verify.studies.tradeoff.peers import DIGITS, TAYLOR, peer_sections
 from taylor_verify.studies.tradeoff.pictures import time_by_rung
 from taylor_verify.studies.tradeoff.pictures import trade as of_one_scene
 from taylor_verify.studies.tradeoff.stored import TimedPoint, Trade, Trades, cheapest
@@ -31,10 +31,10 @@ _CLOSED_FORM: Final = "closed-form ellipj"
 _ASKED: Final = (1e-3, 1e-6, 1e-9, 1e-12)
 
 _WHAT: Final = (
-    "Every solver on the same four scenes, each at many settings, each answer compared with the exact "
-    "motion. A time is given as a multiple of that of the *yardstick*, the Taylor integrator of "
-    "heyoka in float64 at its own tolerance, in the same minute on the same machine; the error is "
-    "the largest of everything that the scene tracks, at all its samples."
+    "This page compares all solvers on the same four scenes, at many settings, and each answer with "
+    "the exact motion. A time is given as a multiple of that of the *yardstick*, the Taylor "
+    "integrator of heyoka in float64 at its own tolerance, in the same minute on the same machine; "
+    "the error is the largest of everything that the scene tracks, at all its samples."
 )
 _PLAIN_DOUBLES: Final = (
     "Omega of a free body is Jacobi's sn, cn and dn of time, and SciPy has them: `closed-form:ellipj` is "
@@ -42,104 +42,106 @@ _PLAIN_DOUBLES: Final = (
     "relative to the largest |omega|. Beside it the integrator, where the motion is short enough for it."
 )
 _WHY_DOUBLES_FAIL: Final = (
-    "**Long times.** The argument u = lam t + u0 is rounded to 2^-53 of itself, and so is lam: a phase "
-    "error of some 1e-16 lam |t|. No step was taken, and still the error grows in proportion to time; "
-    "at t = 1e15 u is known to a tenth, and the answer is a point somewhere on the right orbit.",
-    "**Near the separatrix.** m is a double near 1, so that 1 - m is known to 1e-16: its relative error "
-    "is 1e-16/(1 - m), the period depends on its logarithm, and where an orbit waits at the middle "
-    "axis that shows. Below 1 - m = 1e-10 SciPy's `ellipj` takes series about m = 1 that hold within "
-    "the first quarter of a period only. Beyond it they grow like an exponential, and what comes back "
-    "is larger than the motion by any factor, without a warning.",
-    "**On it** the answer hangs on the last bit of m. It is right where that happens to be 1, and where "
-    "the principal axes are themselves found in doubles it need not be.",
-    "**About the middle axis** the phase is infinite and the answer no number, where the motion is the "
-    "simplest of all.",
-    "Equal moments, a moment of force, a body at rest, an attitude, a fluid: it says beforehand that "
+    "**Long times.** The argument u = lam t + u0 is rounded to 2^-53 of itself, and so is lam: a "
+    "phase error of some 1e-16 lam |t|. The error grows in proportion to time, although no step was "
+    "taken; at t = 1e15 u is known to a tenth, and the answer is an arbitrary point of the right "
+    "orbit.",
+    "**Near the separatrix.** m is a double near 1, so that 1 - m is known to 1e-16: its relative "
+    "error is 1e-16/(1 - m), and the period depends on its logarithm. The error shows where an orbit "
+    "waits at the middle axis. Below 1 - m = 1e-10 SciPy's `ellipj` takes series about m = 1 that "
+    "hold within the first quarter of a period only. Beyond it they grow like an exponential, and the "
+    "answer may be larger than the motion by any factor, without a warning.",
+    "**On it** the answer depends on the last bit of m. It is right if m happens to be 1, which may "
+    "fail if the principal axes are computed in doubles.",
+    "**About the middle axis** the phase is infinite and the answer no number, although the motion is "
+    "the simplest of all.",
+    "Equal moments, a moment of force, a body at rest, an attitude, a fluid: it refuses them, because "
     "it is not made for them.",
     "The exact route of this suite has the same functions with 1 - m formed in rationals and as much "
     "precision as the answer needs: none of these orbits is difficult for it.",
 )
 
 
-def page(found: Trades, folder: Path) -> str:
+def page(trades: Trades, folder: Path) -> str:
     """Return the whole page, with the pictures that are in ``folder``/figures."""
     return whole(
         "Speed against accuracy",
         _WHAT,
         "## What so many digits cost",
-        "The cheapest measured setting whose error leaves at least so many digits: its time over that "
-        f"of the yardstick, the interval for it in brackets, and the tolerance. *{_NOT_REACHED}* is "
-        "said where no measured setting leaves so many. Below 1 is faster than the yardstick, which "
-        "leaves the digits that the first line of each scene says. Where the intervals of neighbouring "
-        "tolerances overlap, which of them is the cheapest is chance.",
-        _by_digits(found),
+        "The cheapest measured setting whose error leaves at least this number of digits: its time "
+        f"over that of the yardstick, the interval in brackets, and the tolerance. *{_NOT_REACHED}* "
+        "means that no measured setting leaves so many. A ratio below 1 is faster than the yardstick, "
+        "whose digits are in the first line of each scene. If the intervals of neighbouring "
+        "tolerances overlap, chance decides which one is the cheapest.",
+        _by_digits(trades),
         "## Beside compiled integrators of other libraries",
-        *peers_told(found),
+        *peer_sections(trades),
         "## What a wider number costs",
-        "Taylor at each rung's own tolerance: time over that in float64, and the digits that are left. "
-        "*attainable* are those that rounding the state once a sample, and nothing else, would leave.",
-        _by_rung(found),
-        figures.shown(folder, _of_rungs(found.short)),
+        "Taylor at each rung's own tolerance: time over that in float64, and the digits that are "
+        "left. *attainable* are the digits that would be left by rounding the state once for each "
+        "sample.",
+        _by_rung(trades),
+        figures.shown(folder, _of_rungs(trades.short)),
         "## Asked for and achieved",
-        "A tolerance bounds the error of one step, or what the solver takes for it, and promises "
-        "nothing of the answer. The digits that were left at each:",
-        _by_request(found),
+        "A tolerance bounds the solver's estimate of the error of one step, and not the error of the "
+        "answer. The table has the digits that were left at each tolerance:",
+        _by_request(trades),
         "## In pictures",
-        *(figures.shown(folder, _of_trade(one)) for one in found.short),
+        *(figures.shown(folder, _of_trade(one)) for one in trades.short),
         "## The front",
         "The settings in float64 that no other beats in both time and error, the fastest first.",
-        *(_front(trade) for trade in found.short),
+        *(_front(trade) for trade in trades.short),
         "## Geometric integrators",
-        "Fixed steps, in the scene's unit of time. They keep what they promise, to the last bits: all of "
-        "them the momentum in space, the midpoint and Moser and Veselov's the energy too, which "
-        "splitting lets swing and lie-rk4 drift. That is no accuracy. *drift* is the largest of all "
-        "conserved quantities, with its name.",
-        _geometric(found),
+        "Fixed steps, in the scene's unit of time. They conserve their quantities to the last bits: "
+        "all of them the momentum in space, the midpoint and Moser and Veselov's the energy too. With "
+        "splitting the energy oscillates, with lie-rk4 it drifts. Conservation is no accuracy. "
+        "*drift* is the largest of all conserved quantities, with its name.",
+        _geometric(trades),
         "## What failed, and what was not run",
         "None of these is on a front, and none has a number above.",
-        _failures(found),
+        _failures(trades),
         "## The closed form in plain doubles",
         _PLAIN_DOUBLES,
-        _doubles(found.numbers.plain_doubles),
+        _doubles(trades.numbers.plain_doubles),
         bullets(_WHY_DOUBLES_FAIL),
         "## What is timed",
         what_is_timed(),
         "## How it was timed, and where",
-        bullets(how_it_was_timed(found)),
+        bullets(how_it_was_timed(trades)),
         "## To remake this",
-        remake(found),
+        remake(trades),
     )
 
 
-def pictures(found: Trades) -> list[Picture]:
-    """Return the pictures of every scene, and that of all rungs."""
-    return [*(one for trade in found.short for one in _of_trade(trade)), *_of_rungs(found.short)]
+def pictures(trades: Trades) -> list[Picture]:
+    """Return the pictures of every scene, and the picture of all rungs."""
+    return [*(one for trade in trades.short for one in _of_trade(trade)), *_of_rungs(trades.short)]
 
 
-def _of_trade(found: Trade) -> list[Picture]:
-    """Return the pictures of one scene; none where no setting is sound."""
-    return of_one_scene.pictures(found.document()) if found.sound else []
+def _of_trade(trade: Trade) -> list[Picture]:
+    """Return the pictures of one scene; none if no setting is sound."""
+    return of_one_scene.pictures(trade.document()) if trade.sound else []
 
 
-def _of_rungs(found: Sequence[Trade]) -> list[Picture]:
+def _of_rungs(trades: Sequence[Trade]) -> list[Picture]:
     """Return the picture of taylor's time at each rung's own tolerance, a line for each scene."""
     rows = [
         Ratio(one.scene, row.point.rung, row.timing.ratio, row.timing.low, row.timing.high)
-        for one in found
+        for one in trades
         for row in one.sound
         if row.point.solver == "taylor"
     ]
     return [time_by_rung.picture("published", rows)] if rows else []
 
 
-# What so many digits cost.
+# The cost of digits.
 
 
-def _by_digits(found: Trades) -> str:
+def _by_digits(trades: Trades) -> str:
     columns = ["scene", "solver", *(f"{digits} digits:" for digits in DIGITS)]
     rows = []
-    for trade in found.short:
-        yardstick = _yardstick(trade, found.numbers.yardstick)
+    for trade in trades.short:
+        yardstick = _yardstick(trade, trades.numbers.yardstick)
         rows.append([code(trade.scene), yardstick, *[""] * len(DIGITS)])
         ran = {p.family for p in trade.points if p.standing is not Standing.NOT_RUN}
         for family in (TAYLOR, *_RIVALS, _CLOSED_FORM):
@@ -150,7 +152,7 @@ def _by_digits(found: Trades) -> str:
 
 
 def _yardstick(trade: Trade, name: str) -> str:
-    """Return what the yardstick leaves on this scene, and its own part in heyoka's compiled code."""
+    """Return the error of the yardstick on this scene, and its share in heyoka's compiled code."""
     row = next((row for row in trade.sound if row.point.label == name), None)
     if row is None:
         return f"*{prose(name)}*: no sound answer"
@@ -160,12 +162,12 @@ def _yardstick(trade: Trade, name: str) -> str:
 
 
 def _digits(point: TradePoint, exact: str = "exact") -> str:
-    """Return the digits that were left; the word ``exact`` where all were."""
+    """Return the digits that were left, or the word ``exact`` for all."""
     return exact if point.achieved_digits is None else f"{point.achieved_digits:.1f} digits"
 
 
 def _cheapest(rows: Iterable[TimedPoint], digits: int) -> str:
-    """Return ratio, interval and tolerance of the fastest that leaves so many digits."""
+    """Return ratio, interval and tolerance of the fastest setting that leaves these digits."""
     best = cheapest(rows, digits)
     if best is None:
         return _NOT_REACHED
@@ -182,15 +184,15 @@ def _ratio(row: TimedPoint) -> str:
 # Rungs and requests.
 
 
-def _by_rung(found: Trades) -> str:
+def _by_rung(trades: Trades) -> str:
     own = {
         trade.scene: {row.point.rung: row for row in trade.sound if _is_own_tolerance(row.point)}
-        for trade in found.short
+        for trade in trades.short
     }
-    rungs = {p.rung for p in found.numbers.points if _is_own_tolerance(p)}
+    rungs = {p.rung for p in trades.numbers.points if _is_own_tolerance(p)}
     ladder = sorted(rungs, key=place_of_rung)
     rows = []
-    for trade in found.short:
+    for trade in trades.short:
         on = own[trade.scene]
         cells = [f"{_ratio(on[r])}, {_digits(on[r].point)}" if r in on else NOTHING for r in ladder]
         rows.append([code(trade.scene), *cells])
@@ -205,10 +207,10 @@ def _is_own_tolerance(point: TradePoint) -> bool:
     return point.solver == "taylor" and not point.setting
 
 
-def _by_request(found: Trades) -> str:
+def _by_request(trades: Trades) -> str:
     columns = ["scene", "solver", *(f"{-log10(asked):.0f} asked for:" for asked in _ASKED)]
     rows = []
-    for trade in found.short:
+    for trade in trades.short:
         for family in dict.fromkeys(p.family for p in trade.points if p.asked == "tolerance"):
             own = [p for p in trade.points if p.family == family]
             cells = [_achieved(own, asked) for asked in _ASKED]
@@ -218,7 +220,7 @@ def _by_request(found: Trades) -> str:
 
 
 def _achieved(points: Iterable[TradePoint], asked: float) -> str:
-    """Return the digits that were left; a word where the answer is not sound."""
+    """Return the digits that were left, or a word for an answer that is not sound."""
     for p in points:
         if p.requested is not None and isclose(p.requested, asked):
             if p.standing is not Standing.SOUND:
@@ -231,7 +233,7 @@ def _achieved(points: Iterable[TradePoint], asked: float) -> str:
 
 
 def front(rows: Iterable[TimedPoint]) -> list[TimedPoint]:
-    """Return what no other beats in both ratio and error, the fastest first."""
+    """Return the settings that no other beats in both ratio and error, the fastest first."""
     return pareto(rows, lambda row: (row.timing.ratio, row.error))
 
 
@@ -249,7 +251,7 @@ def _front_line(row: TimedPoint) -> str:
     return f"{_digits(row.point, 'every digit')}: {name}, {_ratio(row)} times the yardstick"
 
 
-def _geometric(found: Trades) -> str:
+def _geometric(trades: Trades) -> str:
     numbers = ("step:", "time:", "largest error:", "drift:")
     columns = ["scene", "integrator", *numbers, "of"]
     rows = [
@@ -262,17 +264,17 @@ def _geometric(found: Trades) -> str:
             figure(row.point.drift),
             code(row.point.drifting),
         ]
-        for trade in found.trades
+        for trade in trades.trades
         for row in trade.sound
         if row.point.family.startswith(_GEOMETRIC)
     ]
     return table(columns, rows)
 
 
-def _failures(found: Trades) -> str:
+def _failures(trades: Trades) -> str:
     """Return the points that are not sound, or were not timed in every process."""
     rows = []
-    for trade in found.trades:
+    for trade in trades.trades:
         compared = [row.point for row in trade.sound]
         for p in trade.points:
             if p not in compared:
@@ -291,7 +293,7 @@ def _family(family: str) -> str:
 
 
 def _doubles(rows: Iterable[PlainDouble]) -> str:
-    """Return a line for each case. A false success stands out; an honest outcome has its own words."""
+    """Return a line for each case; a false success is bold, an honest outcome in its own words."""
     lines = []
     for row in rows:
         error = figure(row.error)
@@ -299,7 +301,9 @@ def _doubles(rows: Iterable[PlainDouble]) -> str:
         stands_out = row.error is not None and row.standing is not Standing.SOUND
         lines.append(
             [
-                *(prose(row.what), figure(row.end), figure(row.m_prime)),
+                prose(row.what),
+                figure(row.end),
+                figure(row.m_prime),
                 bold(error) if stands_out else error,
                 figure(row.error_beside),
                 claims.get(row.standing, prose(row.outcome)),
@@ -313,12 +317,31 @@ def _doubles(rows: Iterable[PlainDouble]) -> str:
 
 
 _FIELDS: Final = (
-    *("scene", "solver", "setting", "rung", "family", "asked", "requested", "achieved_digits"),
-    *("error", "drift", "drifting", "steps", "evaluations", "seconds", "inner_seconds"),
-    *("ratio", "low", "high", "processes", "standing", "outcome", "because"),
+    "scene",
+    "solver",
+    "setting",
+    "rung",
+    "family",
+    "asked",
+    "requested",
+    "achieved_digits",
+    "error",
+    "drift",
+    "drifting",
+    "steps",
+    "evaluations",
+    "seconds",
+    "inner_seconds",
+    "ratio",
+    "low",
+    "high",
+    "processes",
+    "standing",
+    "outcome",
+    "because",
 )
 
 
-def sheet(found: Trades) -> str:
+def sheet(trades: Trades) -> str:
     """Return a row for every scene and setting, with every digit."""
-    return csv_sheet(_FIELDS, (row for trade in found.trades for row in trade.rows))
+    return csv_sheet(_FIELDS, (row for trade in trades.trades for row in trade.rows))

@@ -1,4 +1,4 @@
-"""The Pareto front: the items that no other beats in both of two numbers."""
+"""Pareto front: the items that no other beats in both of two numbers."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ Item = TypeVar("Item")
 
 
 def pareto(items: Iterable[Item], costs: Callable[[Item], tuple[float, float]]) -> list[Item]:
-    """Return the items that none beats, by their first cost; the second falls from each to the next.
+    """Return the unbeaten items by rising first and falling second cost.
 
-    An item is beaten by one that is no larger in both costs and smaller in one. So items of equal costs
-    stand or fall together.
+    An item is beaten by another that is no larger in both costs and smaller in one. Items of equal costs do
+    not beat each other.
     """
     front: list[Item] = []
     for item in sorted(items, key=costs):

@@ -1,4 +1,4 @@
-"""The section of the page that sets taylor beside compiled integrators of other libraries."""
+"""Section of the page that compares taylor with compiled integrators of other libraries."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ _NONE: Final = (
     "Not measured: `taylor-verify publish tradeoff --outside` does, and makes their environments."
 )
 _WHAT: Final = (
-    "Integrators that are compiled as heyoka is, on the scenes above and on three of them for about a "
-    "hundred periods. Each runs in a process of its own that stays, and takes its turn with all others in "
-    "every round. All have the same equations, generated from one form, the same samples, and an error "
-    "measured by the same exact motion. A cell is the processor's time of the cheapest tolerance, of all "
-    "powers of ten from 1e-5 to 1e-15, that leaves so many digits, over that of the yardstick. *ahead* "
-    "is the fastest, with its lead: over the next peer where that is taylor, else over taylor. It is "
-    "*level* where the intervals of the two overlap."
+    "These integrators are compiled like heyoka's. They run on the scenes above, and on three of them "
+    "for about a hundred periods. Each runs in a process of its own that stays, and takes its turn "
+    "with all others in every round. All have the same equations, generated from one form, and the "
+    "same samples, and are compared with the same exact motion. A cell is the processor's time of the "
+    "cheapest tolerance, of all powers of ten from 1e-5 to 1e-15, that leaves this number of digits, "
+    "over that of the yardstick. *ahead* is the fastest, with its lead: over the next peer if the "
+    "fastest is taylor, else over taylor. They are *level* if the intervals of the two overlap."
 )
-# Families of the columns in words; any other goes by its own name.
+# Titles of families of the columns; other families have their own names.
 TITLES: Final = {
     OPTIMISED: "taylor, optimised code",
     "outside dop853": "DOP853 in numba",
@@ -42,27 +42,27 @@ _HOW: Final = (
     "CVODE (Adams, by scikit-sundae) is C, and calls equations that numba compiled by way of Python, for "
     "want of another.",
     "diffrax is compiled as a whole by XLA (`jit`).",
-    "The time of taylor has in it what its driver does in Python around heyoka's compiled steps.",
-    "Optimised code is `taylor?code=optimised`: it compiles for seconds, and is found again on disk. Every "
-    "second power of ten was measured.",
+    "The time of taylor includes its driver's work in Python around heyoka's compiled steps.",
+    "Optimised code is `taylor?code=optimised`: it compiles for seconds, and is read from disk later. "
+    "Every second power of ten was measured.",
 )
 _SET_UP: Final = (
-    "Set-up, which no time above has in it: the processor's seconds before the first solve of a process, "
-    "compiling above all, the longest of all processes. taylor compiles once for each tolerance and form, "
-    "and finds its code again on disk in later processes, which was switched off here; the others compile "
-    "once for a body, in every process anew."
+    "The times above exclude the set-up: the processor's seconds before the first solve of a process, "
+    "mainly of compiling, the longest of all processes. taylor compiles once for each tolerance and "
+    "form. Later processes would read its code from disk, which was switched off here. The others "
+    "compile once for a body, in every process anew."
 )
 
 
-def peers_told(found: Trades) -> list[str]:
-    """Return the paragraphs and tables of the section; a sentence where no peer was measured."""
-    if not any(_peers(trade) for trade in found.trades):
+def peer_sections(trades: Trades) -> list[str]:
+    """Return the paragraphs and tables of the section; a sentence if no peer was measured."""
+    if not any(_peers(trade) for trade in trades.trades):
         return [_NONE]
-    return [_WHAT, _times(found), bullets(_HOW), _SET_UP, _set_up(found)]
+    return [_WHAT, _times(trades), bullets(_HOW), _SET_UP, _set_up(trades)]
 
 
 def _peers(trade: Trade) -> list[str]:
-    """Return the families of other libraries that were asked, those that could not be had included."""
+    """Return the families of other libraries that were asked, including unavailable ones."""
     return list(dict.fromkeys(p.family for p in trade.points if p.family.startswith(OUTSIDE)))
 
 
@@ -70,9 +70,9 @@ def _is_ours(row: TimedPoint) -> bool:
     return row.point.family in (TAYLOR, OPTIMISED)
 
 
-def _families(found: Trades) -> list[str]:
-    """Return the families of the columns: taylor, those with a title in that order, and any other."""
-    points = [point for trade in found.trades for point in trade.points]
+def _families(trades: Trades) -> list[str]:
+    """Return the families of the columns: taylor, those with a title in their order, and others."""
+    points = [point for trade in trades.trades for point in trade.points]
     asked = dict.fromkeys(p.family for p in points if p.family.startswith((OUTSIDE, OPTIMISED)))
     known = [family for family in TITLES if family in asked]
     return [TAYLOR, *known, *(family for family in asked if family not in known)]
@@ -89,10 +89,10 @@ def _of_family(trade: Trade, family: str) -> list[TimedPoint]:
 # The times.
 
 
-def _times(found: Trades) -> str:
-    families = _families(found)
+def _times(trades: Trades) -> str:
+    families = _families(trades)
     rows = []
-    for trade in found.trades:
+    for trade in trades.trades:
         for digits in DIGITS:
             best = {f: cheapest(_of_family(trade, f), digits) for f in families}
             ours, *others = (_cell(best[f], bool(_of_family(trade, f))) for f in families)
@@ -111,14 +111,14 @@ def _cell(row: TimedPoint | None, is_there: bool) -> str:
 
 
 def _inner(row: TimedPoint | None) -> str:
-    """Return the part of a time that heyoka's own compiled code took, in the same unit."""
+    """Return the part of a time spent in heyoka's own compiled code, in the same unit."""
     if row is None or not row.timing.inner_seconds:
         return NOTHING
     return figure(row.timing.ratio * row.timing.inner_seconds / row.timing.seconds)
 
 
 def _ahead(reached: Sequence[TimedPoint]) -> str:
-    """Return the fastest in words, with its lead over the next peer, or over taylor."""
+    """Return the fastest family in words, with its lead over the next peer, or over taylor."""
     if not reached:
         return "nobody"
     first, *others = sorted(reached, key=lambda row: row.timing.ratio)
@@ -135,7 +135,7 @@ def _ahead(reached: Sequence[TimedPoint]) -> str:
 
 
 def _overlap(first: TimedPoint, other: TimedPoint) -> bool:
-    """Return True if the intervals of two times meet; without intervals the times are taken as they are."""
+    """Return True if the intervals of two times overlap; False without intervals."""
     high, low = first.timing.high, other.timing.low
     return high is not None and low is not None and low <= high
 
@@ -143,18 +143,18 @@ def _overlap(first: TimedPoint, other: TimedPoint) -> bool:
 # The set-up.
 
 
-def _set_up(found: Trades) -> str:
-    families = _families(found)
-    scenes = dict.fromkeys(trade.scene.partition(UNTIL)[0] for trade in found.trades)
-    rows = [[code(scene), *(_longest(found, scene, f) for f in families)] for scene in scenes]
+def _set_up(trades: Trades) -> str:
+    families = _families(trades)
+    scenes = dict.fromkeys(trade.scene.partition(UNTIL)[0] for trade in trades.trades)
+    rows = [[code(scene), *(_longest(trades, scene, f) for f in families)] for scene in scenes]
     return table(["scene", *(f"{_title(f)}:" for f in families)], rows)
 
 
-def _longest(found: Trades, scene: str, family: str) -> str:
-    """Return the longest set-up of a family on a scene: the short or the long one compiles for both."""
+def _longest(trades: Trades, scene: str, family: str) -> str:
+    """Return the longest set-up of a family on a scene, which may be part of its short or long run."""
     seconds = [
         row.timing.setup_seconds
-        for trade in found.trades
+        for trade in trades.trades
         if trade.scene.partition(UNTIL)[0] == scene
         for row in _of_family(trade, family)
         if row.timing.setup_seconds is not None

@@ -1,6 +1,6 @@
-"""The failures of the closed form in plain doubles: one solver, from an easy orbit to none.
+"""Failures of the closed form in plain doubles: one solver on orbits from easy to degenerate.
 
-1 - m of each orbit, on which it hangs, is exact; the error is that of omega, the largest of all samples.
+The parameter 1 - m of each orbit is exact; the error is the largest of omega over all samples.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from taylor_verify.studies.tradeoff.document import PlainDouble
 from taylor_verify.studies.tradeoff.setting import ELLIPJ, setting
 from taylor_verify.studies.tradeoff.trade_off import trade_off
 
-# Where a step by step solver gets in a moment, it is shown beside.
+# A solver with steps is compared on short scenes.
 _BESIDE: Final = "taylor"
 
 _EASY: Final = "euler/generic"
@@ -32,7 +32,7 @@ _SAMPLES: Final = 11
 
 @dataclass(frozen=True)
 class Case:
-    """A scene, its words, and whether it is short enough for a solver that takes steps."""
+    """A scene, its description, and True if it is short enough for a solver with steps."""
 
     scene: Scene
     what: str
@@ -44,7 +44,7 @@ def cases() -> Iterator[Case]:
     yield Case(load(_EASY), "far from every degeneracy")
     for digits in _LONG:
         end = Fraction(10) ** digits
-        # No sample falls on a multiple of another, so that none is easy by chance.
+        # No sample is a multiple of another, so that none is easy by chance.
         times = tuple(end * k / (_SAMPLES - 1) + Fraction(k, 7) for k in range(_SAMPLES))
         scene = replace(load(_EASY), clock=Clock(Fraction(0), times))
         yield Case(scene, f"{_EASY} until t = 1e{digits}", digits <= 3)
@@ -59,25 +59,25 @@ def cases() -> Iterator[Case]:
 
 
 def plain_doubles() -> Iterator[PlainDouble]:
-    """Yield a row for each case: 1 - m, error and outcome, and the error of taylor where it is short.
+    """Yield a row for each case: 1 - m, error and outcome, and the error of taylor on short scenes.
 
-    ``m_prime`` is None where the orbit has none.
+    ``m_prime`` is None for an orbit without a modulus.
     """
     f64 = rung("f64")
     for case in cases():
         solvers = (ELLIPJ, _BESIDE) if case.is_short else (ELLIPJ,)
         trade = trade_off(case.scene, [setting(name, f64) for name in solvers], 0, patience=inf)
-        found, *beside = (p.on(case.scene.name) for p in trade.points)
+        point, *beside = (p.on(case.scene.name) for p in trade.points)
         m_prime = elements(pose(case.scene, f64).given).get("m_prime")
         yield PlainDouble(
             what=case.what,
             scene=case.scene.name,
             end=float(case.scene.clock.instants[-1]),
             m_prime=None if m_prime is None else float(m_prime.value),
-            error=found.error,
-            outcome=found.outcome,
-            standing=found.standing,
-            because=found.because,
+            error=point.error,
+            outcome=point.outcome,
+            standing=point.standing,
+            because=point.because,
             beside=_BESIDE,
             error_beside=beside[0].error if beside else None,
         )

@@ -1,4 +1,4 @@
-"""A point of the trade: the accuracy of one setting on a scene, and its time."""
+"""Point of a trade: the accuracy of one setting on a scene, and its time."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from taylor_verify.studies.tradeoff.timing import Timed
 
 @dataclass(frozen=True)
 class Point:
-    """The accuracy and the time of a setting; ``because`` says why it is not sound, where it is not."""
+    """The accuracy and the time of a setting; ``because`` is the reason if it is not sound."""
 
     timed: Timed
     accuracy: Accuracy
@@ -29,7 +29,7 @@ class Point:
 
     @property
     def asked_digits(self) -> float | None:
-        """Digits of the tolerance; a step asks for none."""
+        """Digits of the requested tolerance; None for a step."""
         setting = self.timed.setting
         asks = setting.asked == "tolerance" and setting.requested is not None
         return digits(setting.requested or 0.0) if asks else None
@@ -41,12 +41,12 @@ class Point:
 
     @property
     def seconds(self) -> float:
-        """The best time of a solve, nothing compiled; of a sound point alone."""
+        """The best time of a solve without compiling; None unless the point is sound."""
         assert self.timed.best is not None
         return self.timed.best
 
     def on(self, scene: str) -> TradePoint:
-        """Return the point as it is stored, without its times."""
+        """Return the point in its stored form, without times."""
         setting, trajectory = self.timed.setting, self.timed.trajectory
         return TradePoint(
             scene=scene,
@@ -71,7 +71,7 @@ class Point:
         )
 
     def row(self) -> dict[str, Any]:
-        """Return the point with its times, as JSON has it; None is what does not exist or is not finite."""
+        """Return the point with its times as a row of JSON; None replaces missing and infinite numbers."""
         achieved = complete(self.on(""))
         del achieved["scene"]
         return {
@@ -86,7 +86,7 @@ class Point:
 
 
 def point(timed: Timed, accuracy: Accuracy | None) -> Point:
-    """Return the point of a run; ``accuracy`` is None where there is no truth to compare with."""
+    """Return the point of a run; ``accuracy`` is None if there is no truth to compare with."""
     outcome = timed.trajectory.outcome
     if outcome is not Outcome.FINISHED:
         started = outcome is not Outcome.NOT_STARTED and not outcome.is_unavailable
@@ -103,5 +103,5 @@ def point(timed: Timed, accuracy: Accuracy | None) -> Point:
 
 
 def digits(error: float) -> float | None:
-    """Return the decimal digits that an error leaves; None if it is no number or leaves them all."""
+    """Return the decimal digits that an error leaves; None for NaN and for zero."""
     return -log10(error) if error > 0 and isfinite(error) else None

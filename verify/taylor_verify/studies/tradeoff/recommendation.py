@@ -1,4 +1,4 @@
-"""The cheapest setting that reaches an error, with a margin, over an ensemble of starts."""
+"""Recommendation of the cheapest setting that reaches an error with a margin over several starts."""
 
 from __future__ import annotations
 
@@ -24,24 +24,24 @@ from taylor_verify.studies.tradeoff.starts import nearby
 from taylor_verify.studies.tradeoff.timing import SEED
 from taylor_verify.studies.tradeoff.trade_off import TradeOff, sound_points, trade_off
 
-# A start outside the ensemble may fare worse than the worst of a handful within it: a binary digit.
+# A margin of one binary digit for starts outside the ensemble.
 MARGIN: Final = 2.0
-# These may compute on a wider precision than they answer on, and so below its floor.
+# These may compute in a wider precision than that of their answer, and so below its floor.
 _OF_ANOTHER_PRECISION: Final = (PROCESS, "mpmath:")
 
 
 class OutOfReach(Exception):  # noqa: N818 (it names what the target is)
-    """No setting reaches the target; the text says what comes nearest."""
+    """No setting reaches the target; the text names the nearest one."""
 
 
 @dataclass(frozen=True)
 class Recommendation:
-    """A setting ready to run: by ``taylor_verify.run``, by ``command``, or by ``solver`` itself.
+    """A setting that is ready to run: by ``taylor_verify.run``, by ``command``, or by ``solver`` itself.
 
     ``solver.solve(solver.problem(scene, rung))`` returns a trajectory that nothing has judged.
     ``error`` is the largest over the scene's own start and ``starts`` - 1 others; ``margin`` times
-    it is not above ``target``. ``seconds`` is the best time of a solve, nothing compiled. ``left_out``
-    names the rungs that were not measured, because no arithmetic of theirs can reach the target.
+    it is not above ``target``. ``seconds`` is the best time of a solve without compiling. ``left_out``
+    names the rungs that were not measured because their arithmetic cannot reach the target.
     """
 
     scene: str
@@ -56,7 +56,7 @@ class Recommendation:
     left_out: tuple[str, ...] = ()
 
     def document(self) -> dict[str, Any]:
-        """Return what ``tradeoff --target --json`` prints."""
+        """Return the document that ``tradeoff --target --json`` prints."""
         names = ("target", "error", "margin", "starts", "seed", "seconds")
         return {
             "solver": self.solver.name,
@@ -70,13 +70,13 @@ class Recommendation:
 
     @property
     def command(self) -> str:
-        """The command line that runs and judges it."""
+        """The command line that runs and judges the setting."""
         words = ["taylor-verify", "run", self.scene, "--solver", self.solver.name]
         return shlex.join([*words, "--rung", self.rung.name])
 
     @property
     def sentence(self) -> str:
-        """The recommendation in words, with what was not measured and why."""
+        """The recommendation in words, with the rungs that were not measured and the reasons."""
         setting = label(self.solver.name, self.solver.setting, self.rung.name)
         unmeasured = f" Not measured: {'; '.join(self.left_out)}." if self.left_out else ""
         return (
@@ -99,11 +99,11 @@ def recommend(
     asked = settings(scene) if asked is None else asked
     bound = [one for one in asked if not one.solver.name.startswith(_OF_ANOTHER_PRECISION)]
     without = left_out(scene, (one.rung for one in bound), error)
-    kept = [one for one in asked if one.rung not in without or one not in bound]
+    measurable = [one for one in asked if one.rung not in without or one not in bound]
     reasons = tuple(without.values())
-    if not kept and reasons:
+    if not measurable and reasons:
         raise OutOfReach(_out_of_reach(scene, error, f": {'; '.join(reasons)}"))
-    return replace(recommended(trade_off(scene, kept, seed=seed), error), left_out=reasons)
+    return replace(recommended(trade_off(scene, measurable, seed=seed), error), left_out=reasons)
 
 
 def check_target(error: float) -> None:
@@ -112,9 +112,9 @@ def check_target(error: float) -> None:
 
 
 def recommended(trade: TradeOff, error: float) -> Recommendation:
-    """Return the fastest setting of a trade that is measured already.
+    """Return the fastest setting of a measured trade that reaches the target.
 
-    ``error`` is as in `recommend`. Raises OutOfReach where nothing reaches it.
+    ``error`` is as in `recommend`. Raises OutOfReach if no setting reaches it.
     """
     scenes, truths = nearby(trade.scene, trade.seed), Truths()
     sound = sound_points(trade.points)
@@ -124,8 +124,15 @@ def recommended(trade: TradeOff, error: float) -> Recommendation:
         if worst is not None:
             setting = p.timed.setting
             return Recommendation(
-                *(trade.scene.name, setting.solver, setting.rung, error, worst, MARGIN),
-                *(1 + len(scenes), trade.seed, p.seconds),
+                trade.scene.name,
+                setting.solver,
+                setting.rung,
+                target=error,
+                error=worst,
+                margin=MARGIN,
+                starts=1 + len(scenes),
+                seed=trade.seed,
+                seconds=p.seconds,
             )
     if not sound:
         raise OutOfReach(_out_of_reach(trade.scene, error, "; none gave a sound answer"))
@@ -135,26 +142,26 @@ def recommended(trade: TradeOff, error: float) -> Recommendation:
 
 
 def _largest(p: Point, scenes: Sequence[Scene], truths: Truths, target: float) -> float | None:
-    """Return the largest error over all starts; None if one misses the target, or has no truth."""
+    """Return the largest error over all starts; None if a start misses the target or has no truth."""
     setting, worst = p.timed.setting, p.error
     for scene in scenes:
         try:
             problem = setting.solver.problem(scene, setting.rung)
         except NotRepresentable:
             return None
-        found = truths.accuracy(problem, setting.solver.solve(problem))
-        if found is None or not MARGIN * found.worst <= target:
+        accuracy = truths.accuracy(problem, setting.solver.solve(problem))
+        if accuracy is None or not MARGIN * accuracy.worst <= target:
             return None
-        worst = max(worst, found.worst)
+        worst = max(worst, accuracy.worst)
     return worst
 
 
 def _out_of_reach(scene: Scene, error: float, reason: str) -> str:
-    """Return the reason why nothing reaches an error, with the narrowest rung that would do."""
-    found = narrowest(scene, error / MARGIN)
+    """Return the reason why no setting reaches an error, with the narrowest rung that could."""
+    narrowest_rung = narrowest(scene, error / MARGIN)
     wider = "no precision is known on which rounding alone leaves so little"
-    if found is not None:
-        rung, least = found
+    if narrowest_rung is not None:
+        rung, least = narrowest_rung
         wider = (
             "the narrowest precision on which rounding alone leaves so little is "
             f"{rung.name} ({least:.2g})"

@@ -1,9 +1,9 @@
-"""The times of one process: settings in rounds of random order, as multiples of the round's yardstick.
+"""Times of one process: settings in rounds of random order, as multiples of the round's yardstick.
 
-A time alone says as much of the machine as of the solver, so that what is kept is its ratio to the time
-of taylor on f64 in the same round, when the machine was as warm, as busy and as fast. Times are those of
-the processor: what other programs do at the time is no part of them. A peer has a process of its own,
-takes its turns with all others, and times itself in the same way.
+A time depends on the machine as much as on the solver. Therefore the ratio to the time of taylor on f64 in
+the same round is stored, when the machine was as warm, as busy and as fast. Times are processor times,
+without other programs. A peer has a process of its own, takes its turns with all others, and times itself
+in the same way.
 """
 
 from __future__ import annotations
@@ -33,13 +33,13 @@ Answer = TypeVar("Answer")
 
 YARDSTICK: Final = ("taylor", "f64")
 ROUNDS: Final = 3
-# A measurement lasts at least so many times the clock's resolution: that is then below 1 %.
+# The least duration of a measurement in units of the clock's resolution, which is then below 1 %.
 _TIMES_RESOLUTION: Final = 100
-# And so many seconds, so that an interrupt of some microseconds does not show either.
+# The least duration in seconds, so that an interrupt of some microseconds does not matter.
 _LEAST_SECONDS: Final = 2e-3
-# The yardstick enters every ratio of its round.
+# The yardstick, which all ratios of its round have in common.
 _YARDSTICK_SECONDS: Final = 1e-2
-# What is waited for longer, a program's start included, is solved once a process.
+# Slower settings, including the start of a program, are solved once in each process.
 _DEAR: Final = 0.2
 _MOST_SOLVES: Final = 1000
 
@@ -48,8 +48,9 @@ _MOST_SOLVES: Final = 1000
 class Measured:
     """The times of one setting in one process: medians of its rounds, per solve.
 
-    ``ratio`` is that of the seconds to the yardstick's of the same round, ``inner`` the seconds in
-    somebody else's compiled integrator, where known, and ``setup`` what the first solve compiled.
+    ``ratio`` is the ratio of the seconds to the yardstick's of the same round, ``inner`` the seconds in
+    another library's compiled integrator, if known, and ``setup`` the seconds of compiling in the first
+    solve.
     """
 
     seconds: float
@@ -59,9 +60,9 @@ class Measured:
 
 
 class _Taken(NamedTuple):
-    """A measurement: seconds a solve, those of them in a compiled integrator, the wait for it.
+    """A measurement: seconds of a solve, seconds in a compiled integrator, and seconds of waiting.
 
-    What compiled before the propagation, ``setup``, is not waited for again.
+    ``setup`` is the time of compiling before the propagation, which happens once.
     """
 
     seconds: float
@@ -78,9 +79,9 @@ def measured(
     resolution: float | None = None,
     clock: Callable[[], float] = thread_time,
 ) -> dict[Name, Measured]:
-    """Measure these settings on a scene; one that does not finish here is left out.
+    """Measure these settings on a scene; settings that do not finish are left out.
 
-    The yardstick is measured with them, asked for or not. ``clock`` tells the processor's seconds.
+    The yardstick is always measured with them. ``clock`` returns the processor's seconds.
     """
     least = max(_LEAST_SECONDS, _TIMES_RESOLUTION * (resolution or clock_resolution()))
     first: dict[Name, _Taken] = {}
@@ -105,11 +106,12 @@ def measured(
 
 
 def in_rounds(turns: Sequence[Callable[[], Answer]], rounds: int, seed: int) -> list[list[Answer]]:
-    """Return the answers of every turn by round; a round has every turn once, in an order drawn anew.
+    """Return the answers of every turn by round; each round has every turn once, in a random order.
 
-    Python's collector of garbage runs before and not in between, where it would hit one by chance.
+    Python's garbage collector runs once before all rounds and is off during them, so that it disturbs
+    no turn.
     """
-    found: list[list[Answer]] = [[] for _ in turns]
+    answers: list[list[Answer]] = [[] for _ in turns]
     order, draw = list(range(len(turns))), random.Random(seed)
     enabled = gc.isenabled()
     gc.collect()
@@ -118,17 +120,17 @@ def in_rounds(turns: Sequence[Callable[[], Answer]], rounds: int, seed: int) -> 
         for _ in range(rounds):
             draw.shuffle(order)
             for i in order:
-                found[i].append(turns[i]())
+                answers[i].append(turns[i]())
     finally:
         if enabled:
             gc.enable()
-    return found
+    return answers
 
 
 def _summed(
     first: _Taken, later: Sequence[_Taken | None], unit: Sequence[_Taken | None]
 ) -> Measured:
-    """Return the medians over the rounds; of a dear setting its only solve over the yardstick's median."""
+    """Return the medians over the rounds, or the only solve of a dear setting over the yardstick's."""
     rounds = [(a, b.seconds) for a, b in zip(later, unit, strict=False) if a and b]
     rounds = rounds or [(first, median(b.seconds for b in unit if b))]
     inner = [taken.inner for taken, _ in rounds if taken.inner is not None]
@@ -143,14 +145,14 @@ def _summed(
 def _solved(
     solver: Solver, problem: Problem, clock: Callable[[], float], count: int, is_first: bool = False
 ) -> _Taken | None:
-    """Solve so many times by the processor's clock; None if a solve did not finish."""
+    """Time ``count`` solves by the processor's clock; None if a solve did not finish."""
     if isinstance(solver, Peer) and not is_first:
         seconds = solver.seconds(problem, count)
         return None if seconds is None else _Taken(seconds, None, seconds)
     began, at = perf_counter(), clock()
     made = []
     for _ in range(count):
-        # The numbers of a trajectory are not wanted, and would fill the memory.
+        # The trajectories would fill the memory.
         trajectory = solver.solve(problem)
         if trajectory.outcome is not Outcome.FINISHED:
             return None
@@ -159,9 +161,9 @@ def _solved(
     stated, compiling, inner = (list(values) for values in zip(*made, strict=True))
     if isinstance(solver, Peer):
         return _Taken(stated[0], None, stated[0], compiling[0])
-    # What has compiled has stated its propagation apart.
+    # A solver that compiles states the time of its propagation separately.
     seconds = min(spent, sum(stated)) if is_first else spent
-    # heyoka's part is known of the time on the wall, of which it is as large a share.
+    # heyoka's part is known in wall time, and is scaled to processor time.
     known = [part for part in inner if part is not None]
     share = sum(known) / sum(stated) if len(known) == count and sum(stated) else None
     inside = None if share is None else share * seconds / count
@@ -169,14 +171,14 @@ def _solved(
 
 
 def _count(taken: _Taken, least: float) -> int:
-    """Return how many solves make a measurement long enough; 0 for a setting that is dear."""
+    """Return the number of solves of a measurement that lasts long enough; 0 for a dear setting."""
     if not taken.waited <= _DEAR:
         return 0
     return min(_MOST_SOLVES, max(1, ceil(least / taken.seconds))) if taken.seconds else _MOST_SOLVES
 
 
 def clock_resolution(clock: Callable[[], float] = perf_counter) -> float:
-    """Return the smallest step that the clock was seen to make."""
+    """Return the smallest observed step of the clock."""
 
     def step() -> float:
         began = clock()
@@ -188,7 +190,7 @@ def clock_resolution(clock: Callable[[], float] = perf_counter) -> float:
 
 
 def method(processes: int, rounds: int, seed: int) -> TimingMethod:
-    """Return the method of so many processes and rounds as it is stored."""
+    """Return the method with its processes and rounds in its stored form."""
     return TimingMethod(
         processes=processes,
         rounds=rounds,
@@ -197,7 +199,7 @@ def method(processes: int, rounds: int, seed: int) -> TimingMethod:
         times_resolution=_TIMES_RESOLUTION,
         clock_resolution=clock_resolution(),
         confidence=CONFIDENCE,
-        # Too few processes have that of their two extremes.
+        # Too few processes have the confidence of their extremes.
         coverage=coverage(processes, max(place(processes, CONFIDENCE), 1)),
         formula=FORMULA,
         of=WHAT_IS_TIMED,

@@ -1,4 +1,4 @@
-"""A setting: one solver, as it is set, on one rung; and the settings that a trade-off compares."""
+"""Settings: solvers with their options on a rung, and the settings of a trade-off."""
 
 from __future__ import annotations
 
@@ -21,26 +21,30 @@ from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.studies.tradeoff.document import label
 
 RUNGS: Final = tuple(FORMATS)
-# Every third power of ten that is above twice the rung's roundoff, where its own tolerance begins.
+# Every third power of ten. A rung takes those above its own tolerance, which is twice its roundoff.
 _TOLERANCES: Final = tuple(f"1e-{digits}" for digits in range(3, 75, 3))
 _SCIPY: Final = tuple(f"scipy:{name}" for name in ("RK45", "DOP853", "Radau", "BDF", "LSODA"))
-# What a solver of any other library is asked for, the coarsest first.
+# Tolerances of solvers of other libraries, the coarsest first.
 LIBRARY_TOLERANCES: Final = ("1e-3", "1e-6", "1e-9", "1e-12")
 _GEOMETRIC: Final = (
-    *("implicit-midpoint", "splitting", "moser-veselov", "preprocessed-moser-veselov", "lie-rk4"),
+    "implicit-midpoint",
+    "splitting",
+    "moser-veselov",
+    "preprocessed-moser-veselov",
+    "lie-rk4",
 )
-# Of the scene's natural unit of time, in which its rates are of size one.
+# Steps relative to the scene's natural unit of time, in which its rates are of size one.
 _STEPS: Final = (Fraction(1, 4), Fraction(1, 16), Fraction(1, 64))
 _ODEFUN: Final = ("mpmath:odefun?tol=1e-6", "mpmath:odefun")
-# odefun takes some ten milliseconds for a unit of time, so that this is a matter of ten seconds.
+# odefun takes some ten milliseconds for a unit of time, so that this limit is about ten seconds.
 _LONGEST_FOR_ODEFUN: Final = 400
 ELLIPJ: Final = "closed-form:ellipj"
 
-# A solver and a rung, by their names: what passes from process to process.
+# The names of a solver and a rung, which are sent from process to process.
 Name = tuple[str, str]
 
 TOLERANCE, STEP, NOTHING = "tolerance", "step", ""
-# By which key of its name a solver is told how accurate to be, and what that number is.
+# The key of a solver's name that sets its accuracy, and the kind of that number.
 _ASKED: Final = {"tol": TOLERANCE, "rtol": TOLERANCE, "step": STEP}
 
 
@@ -48,9 +52,9 @@ _ASKED: Final = {"tol": TOLERANCE, "rtol": TOLERANCE, "step": STEP}
 class Setting:
     """A way to solve a scene, ready to run.
 
-    ``requested`` is the tolerance or the step that was asked for, the latter in the scene's unit of
-    time, and ``asked`` says which; None and empty for a solver that takes neither. Settings of one
-    ``family`` differ in nothing else, the cheapest first. ``withheld`` says why it is not run.
+    ``requested`` is the tolerance or the step, the latter in the scene's unit of time, and ``asked`` says
+    which; they are None and empty for a solver that takes neither. Settings of one ``family`` differ in
+    nothing else, the cheapest first. ``withheld`` is the reason if the setting is not run.
     """
 
     solver: Solver
@@ -62,7 +66,7 @@ class Setting:
 
     @property
     def label(self) -> str:
-        """Solver, setting and rung in one line, as they are printed."""
+        """Solver, setting and rung in one printed line."""
         return label(self.solver.name, self.solver.setting, self.rung.name)
 
     @property
@@ -71,42 +75,42 @@ class Setting:
 
     @property
     def is_integrator(self) -> bool:
-        """True for a solver that gets to a time by way of the times before."""
+        """True for a solver that steps through the times before a sample."""
         return not self.solver.name.startswith(CLOSED_FORM)
 
 
 def settings(scene: Scene, rungs: Iterable[str] = RUNGS) -> tuple[Setting, ...]:
-    """Return what there is to solve the scene with, family by family, the coarsest first.
+    """Return all settings for a scene, family by family, the coarsest first.
 
-    A solver that is not installed, or is not made for the scene, says so when it is asked to run.
+    A solver that is not installed, or is not made for the scene, reports it when it is run.
 
     Raises ValueError for a name that is no rung.
     """
     is_rigid = isinstance(scene.body, RigidBody)
-    found: list[Setting] = []
+    all_settings: list[Setting] = []
     for rung in map(rung_named, dict.fromkeys(rungs)):
-        found += taylor(rung)
+        all_settings += taylor(rung)
         if rung.name == "f64":
-            found += library(_SCIPY, LIBRARY_TOLERANCES, rung)
-            found += geometric(scene, rung) if is_rigid else ()
-            found += odefun(scene, rung)
-            found += [setting(ELLIPJ, rung)] if is_rigid else []
-    return tuple(found)
+            all_settings += library(_SCIPY, LIBRARY_TOLERANCES, rung)
+            all_settings += geometric(scene, rung) if is_rigid else ()
+            all_settings += odefun(scene, rung)
+            all_settings += [setting(ELLIPJ, rung)] if is_rigid else []
+    return tuple(all_settings)
 
 
 def chosen(names: Iterable[str], rungs: Iterable[str] = RUNGS) -> tuple[Setting, ...]:
-    """Return the solvers of these names on every rung that they know, and taylor's as the yardstick.
+    """Return the solvers of these names on each of their rungs, and taylor's settings as yardstick.
 
-    A solver that knows none of the rungs stands on the first, to say why. Raises ValueError for a
-    name that is no solver or no rung.
+    A solver that has none of the rungs gets the first one, and reports the reason. Raises ValueError for an
+    unknown solver or rung.
     """
     ladder = [rung_named(name) for name in dict.fromkeys(rungs)]
-    found = [one for rung in ladder for one in taylor(rung)]
+    all_settings = [one for rung in ladder for one in taylor(rung)]
     for name in names:
         solver = solver_named(name)
         known = [rung for rung in ladder if not solver.unavailable(rung)]
-        found += [setting(name, rung) for rung in known or ladder[:1]]
-    return tuple(dict.fromkeys(found))
+        all_settings += [setting(name, rung) for rung in known or ladder[:1]]
+    return tuple(dict.fromkeys(all_settings))
 
 
 def outside(
@@ -116,8 +120,8 @@ def outside(
 ) -> tuple[Setting, ...]:
     """Return the integrators of other libraries, or ``only`` those named, at each of the ``tolerances``.
 
-    They are on f64, which all have: none where the ``rungs`` are without it. One that cannot be had
-    says so when it is asked to run.
+    They are on f64, which all have; there are none if the ``rungs`` lack it. A library that is not
+    available reports it when it is run.
     """
     if "f64" not in rungs:
         return ()
@@ -128,15 +132,15 @@ def outside(
 
 
 def toleranced() -> list[str]:
-    """Return the names of the engines with a tolerance to choose: one of fixed steps has none."""
+    """Return the names of the engines that have a tolerance, as those with fixed steps do not."""
     return [name for name, one in engines().items() if "rtol" in one.script.about.settings]
 
 
 def setting(name: str, rung: Rung) -> Setting:
-    """Return the setting of a solver by its name, which says how accurate it is asked to be.
+    """Return the setting of a solver by its name, which includes its tolerance or step.
 
-    A library whose script stays is a peer: it is timed as the solvers of this process are. Raises
-    ValueError for a name that is no solver.
+    A library whose script stays in memory is a peer, timed like the solvers of this process. Raises
+    ValueError for an unknown solver.
     """
     solver = solver_named(name)
     if isinstance(solver, Outside) and solver.engine.script.about.serves:
@@ -146,7 +150,7 @@ def setting(name: str, rung: Rung) -> Setting:
         code = " optimised" if solver.is_optimised else ""
         return Setting(solver, rung, float(tolerance), TOLERANCE, f"taylor {rung.name}{code}")
     if name.startswith(PROCESS):
-        # Nobody knows which of its own options a command reads as an accuracy.
+        # The options of a command that set its accuracy are unknown.
         return Setting(solver, rung, None, NOTHING, name)
     family, _, options = name.partition("?")
     for part in options.split("&"):
@@ -158,16 +162,16 @@ def setting(name: str, rung: Rung) -> Setting:
 
 
 def taylor(rung: Rung, tolerances: Iterable[str] = _TOLERANCES) -> Iterator[Setting]:
-    """Yield each tolerance that the rung can hold, and the rung's own: heyoka's is the machine epsilon."""
+    """Yield taylor at each tolerance above the rung's own, and at that one, heyoka's machine epsilon."""
     for text in tolerances:
-        # The last step down to epsilon would be another name for it.
+        # A tolerance within a factor of ten of epsilon would be nearly the same setting.
         if float(text) > 10 * float(2 * rung.unit_roundoff):
             yield setting(f"{TAYLOR}?tol={text}", rung)
     yield setting(TAYLOR, rung)
 
 
 def library(solvers: Iterable[str], tolerances: Sequence[str], rung: Rung) -> Iterator[Setting]:
-    """Yield each solver at each tolerance, absolute and relative the same."""
+    """Yield each solver at each tolerance, which is both absolute and relative."""
     for solver in solvers:
         for text in tolerances:
             yield setting(f"{solver}?rtol={text}&atol={text}", rung)
@@ -188,6 +192,6 @@ def odefun(scene: Scene, rung: Rung) -> Iterator[Setting]:
     withheld = long if span > _LONGEST_FOR_ODEFUN else ""
     for name in _ODEFUN:
         made = setting(name, rung)
-        # Its own tolerance: ten bits beyond the precision, and so the cheaper one is first.
+        # Its own tolerance is ten bits beyond the precision, so that the cheaper setting is first.
         requested = made.requested or float(rung.unit_roundoff / 2**10)
         yield replace(made, requested=requested, asked=TOLERANCE, withheld=withheld)

@@ -1,4 +1,4 @@
-"""An ensemble of starts: the scene's own, and some nearby, drawn from a stated seed."""
+"""Ensemble of starts: the scene's own, and random ones nearby from a stated seed."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Final
 from taylor_verify.scenes.scene import Scene
 
 STARTS: Final = 4
-# Each component is moved by up to so much of itself, in steps of a hundredth of that.
+# The largest relative change of each component, in steps of a hundredth of it.
 _REACH: Final = Fraction(1, 100)
 _GRAIN: Final = 100
 
@@ -18,7 +18,8 @@ _GRAIN: Final = 100
 def nearby(scene: Scene, seed: int, count: int = STARTS) -> list[Scene]:
     """Return scenes whose angular velocity or impulses differ by up to one per cent in each component.
 
-    A component that is zero stays so; attitude and centre only say from where the motion is seen.
+    Components that are zero stay zero. Attitude and centre do not change, because they only set the
+    observer.
     """
     draw, start = random.Random(seed), scene.initial
 

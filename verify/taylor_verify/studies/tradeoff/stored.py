@@ -1,7 +1,7 @@
-"""The measurement of speed against accuracy, as stored: errors in one file, times in another.
+"""Stored measurement of speed against accuracy: errors in one file, times in another.
 
-tradeoff.json           what was asked and achieved, the same on any machine but for the rounding
-tradeoff-timings.json   seconds, ratios and intervals; the machine's own, and never compared
+tradeoff.json           requested and achieved errors, the same on any machine except for rounding
+tradeoff-timings.json   seconds, ratios and intervals of one machine, which are never compared
 """
 
 from __future__ import annotations
@@ -25,28 +25,28 @@ from taylor_verify.studies.tradeoff.document import (
 NUMBERS: Final = Stored(TradeNumbers, "tradeoff")
 TIMINGS: Final = Stored(TradeTimings, "tradeoff", stem="tradeoff-timings")
 
-# What the times add to a row of the numbers.
+# Keys that the times add to a row.
 _TIMES: Final = ("seconds", "inner_seconds", "ratio", "low", "high", "processes", "spread")
 
 
 @dataclass(frozen=True)
 class TimedPoint:
-    """A sound setting on a scene: what it achieved, and the time that it took in every process."""
+    """A sound setting on a scene with its errors and its time in every process."""
 
     point: TradePoint
     timing: TradeTiming
 
     @property
     def error(self) -> float:
-        """The largest error; infinite where it is no number."""
+        """The largest error; infinite if it is no number."""
         return float("inf") if self.point.error is None else self.point.error
 
 
 @dataclass(frozen=True)
 class Trade:
-    """A scene with a point for every setting, the coarsest of a family first, and the times of some.
+    """A scene with a point for every setting, the coarsest of a family first, and their times.
 
-    ``timings`` are by solver and rung.
+    The keys of ``timings`` are solver and rung.
     """
 
     about: TradeScene
@@ -65,20 +65,20 @@ class Trade:
 
     @property
     def sound(self) -> tuple[TimedPoint, ...]:
-        """The points that may be compared: sound, and timed in every process."""
+        """The points that are sound and timed in every process."""
         timed = ((p, self._timing(p)) for p in self.points if p.standing is Standing.SOUND)
         return tuple(TimedPoint(p, timing) for p, timing in timed if timing is not None)
 
     @property
     def rows(self) -> list[dict[str, Any]]:
-        """A row of `tradeoff --json` for every setting, with the ratio to the yardstick besides."""
+        """A row of `tradeoff --json` for every setting, and the ratio to the yardstick."""
         return [
             {**complete(p), **{name: getattr(self._timing(p), name, None) for name in _TIMES}}
             for p in self.points
         ]
 
     def document(self) -> dict[str, Any]:
-        """Return what `tradeoff --json` has for one scene, as far as it is stored."""
+        """Return the stored part of the document of `tradeoff --json` for one scene."""
         return {
             "scene": self.scene,
             "track": list(self.about.track),
@@ -116,7 +116,7 @@ class Trades:
 
 
 def cheapest(rows: Iterable[TimedPoint], digits: int) -> TimedPoint | None:
-    """Return the fastest that leaves so many digits; None where none does."""
+    """Return the fastest point that leaves these digits; None if there is none."""
     reached = [row for row in rows if row.error <= 10.0**-digits]
     return min(reached, key=lambda row: row.timing.ratio, default=None)
 
@@ -127,7 +127,7 @@ def write(folder: Path, numbers: TradeNumbers, times: TradeTimings) -> list[Path
 
 
 def load(folder: Path) -> Trades | None:
-    """Return the measurement stored below ``folder``; None where there is none.
+    """Return the measurement stored below ``folder``; None if there is none.
 
     Raises OSError for files that cannot be read and ValueError for files that hold something else.
     """

@@ -1,8 +1,8 @@
-"""The times of each setting: in a fresh order each round, start-up apart, caches off for the cold.
+"""Times of each setting in rounds of random order, with the first solve timed separately.
 
-A time is the solver's own propagation, as its trajectory states it. The first solve of a setting is
-apart: it compiles, imports and fills caches. What follows is repeated in rounds, each of them in an
-order shuffled anew, so that whatever the machine does besides meets no setting always.
+A time is the solver's own propagation, as its trajectory states it. The first solve of a setting compiles,
+imports and fills caches. Later solves are repeated in rounds of random order, so that disturbances of the
+machine do not always hit the same setting.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from taylor_verify.studies.tradeoff.setting import Setting
 
 REPEATS: Final = 5
 SEED: Final = 1
-# A setting that took longer is not set finer, and one that has is not repeated more than once.
+# Seconds after which finer settings of a family are skipped, and a setting is not repeated more than once.
 PATIENCE: Final = 2.0
 _HEYOKA_CACHE: Final = "HEYOKA_CACHE_DIR"
 
-# What the times compare, said wherever they are shown.
+# Explanation beside all shown times.
 WHAT_IS_TIMED: Final = (
     "the solver's own propagation; taylor runs compiled equations and looks for its longest step in "
     "Python, scipy calls straight-line equations in Python, geometric and odefun are Python "
@@ -41,9 +41,8 @@ Clock = Callable[[], float]
 class Timed:
     """The first answer of a setting and the times of all others, in seconds.
 
-    ``first`` is the whole of the first solve as the caller waits for it. ``seconds`` is empty for a run
-    that failed. ``inner`` is what the best of them spent in somebody else's compiled integrator, where
-    known.
+    ``first`` is the whole time of the first solve. ``seconds`` is empty for a failed run. ``inner`` is the
+    part of the best time in another library's compiled integrator, if known.
     """
 
     setting: Setting
@@ -58,7 +57,7 @@ class Timed:
 
     @property
     def spread(self) -> float | None:
-        """The slowest over the fastest."""
+        """The slowest time over the fastest."""
         return max(self.seconds) / self.best if self.best else None
 
 
@@ -69,15 +68,15 @@ def timed(
     clock: Clock = perf_counter,
     patience: float = PATIENCE,
 ) -> list[Timed]:
-    """Solve every setting once, those that finished ``repeats`` times more; return them in their order.
+    """Solve every setting once, and the finished ones ``repeats`` times more; return all in their order.
 
-    A text in place of a problem is the reason why a setting cannot run. Without repeats the first time is
-    all there is, as for whoever is after the errors alone. A setting is left out where a coarser one
-    of its family took more than ``patience`` seconds; the outcome says so.
+    A text in place of a problem is the reason why a setting cannot run. Without repeats there is the
+    first time alone, which is enough to measure errors. A setting is skipped, and reported as such, if
+    a coarser one of its family took more than ``patience`` seconds.
     """
     firsts = _first_solves(problems, clock, patience)
     finished = [one for one in firsts if one.trajectory.outcome is Outcome.FINISHED]
-    # Of each solve the seconds, and those in a compiled integrator: whole answers would fill the memory.
+    # Only the seconds of each solve are stored, because whole answers would fill the memory.
     again: dict[Setting, list[tuple[float, float | None]]] = {one.setting: [] for one in finished}
     spent = {one.setting: one.trajectory.seconds for one in finished}
     posed = {setting: one for setting, one in problems.items() if not isinstance(one, str)}
@@ -101,28 +100,28 @@ def _with_times(one: Timed, again: Sequence[tuple[float, float | None]]) -> Time
 def _first_solves(
     problems: Mapping[Setting, Problem | str], clock: Clock, patience: float
 ) -> list[Timed]:
-    found: list[Timed] = []
+    solves: list[Timed] = []
     dear: set[str] = set()
     for setting, problem in problems.items():
         if isinstance(problem, str) or setting.family in dear:
             coarser = f"a coarser setting took more than {patience:g} s"
             because = problem if isinstance(problem, str) else coarser
             nothing = Trajectory(Outcome.NOT_STARTED, detail=because)
-            found.append(Timed(setting, nothing, 0.0))
+            solves.append(Timed(setting, nothing, 0.0))
             continue
         began = clock()
         trajectory = setting.solver.solve(problem)
-        found.append(Timed(setting, trajectory, clock() - began))
+        solves.append(Timed(setting, trajectory, clock() - began))
         if not trajectory.seconds <= patience:
             dear.add(setting.family)
-    return found
+    return solves
 
 
 @contextmanager
 def cold_caches() -> Iterator[None]:
-    """Give heyoka an empty cache: what compiles within does so for the first time, and is not kept.
+    """Give heyoka an empty cache, so that systems are compiled anew, and remove it afterwards.
 
-    What this process has compiled before, it still has: a cold figure asks for a process of its own.
+    Code that this process has compiled before stays in memory; a cold start needs a process of its own.
     """
     before = os.environ.get(_HEYOKA_CACHE)
     with tempfile.TemporaryDirectory() as empty:

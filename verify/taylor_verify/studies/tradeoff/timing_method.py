@@ -1,4 +1,4 @@
-"""The way the published times were taken, in words: what is timed, the method, the machine, the command."""
+"""Method of the published times in words: their scope, the rounds, the machine, the command."""
 
 from __future__ import annotations
 
@@ -42,35 +42,35 @@ _WHAT_IS_TIMED: Final = (
 
 
 def what_is_timed() -> str:
-    """Return what a time has in it and what not, solver by solver."""
+    """Return the parts that a time includes and excludes, solver by solver."""
     columns = ["solver", "in the time", "not in it"]
     return table(columns, [[code(name), inside, apart] for name, inside, apart in _WHAT_IS_TIMED])
 
 
-def how_it_was_timed(found: Trades) -> list[str]:
-    """Return the method as it was, number by number."""
-    m, machine = found.times.method, found.times.machine
+def how_it_was_timed(trades: Trades) -> list[str]:
+    """Return the method of the measurement with its numbers."""
+    m, machine = trades.times.method, trades.times.machine
     return [
         f"{m.processes} fresh processes, one after the other. Hash seeds, places in memory and the "
-        "processor's frequency vary between processes, not within one, so the processes are what is "
-        "counted, and not the solves.",
-        f"In each {m.rounds} rounds; in a round every setting once, in an order drawn anew (seed "
+        "processor's frequency vary between processes, not within one, so the sample is the number of "
+        "processes, and not of solves.",
+        f"Each process has {m.rounds} rounds. A round has every setting once, in a random order (seed "
         f"{m.seed}). One measurement is as many solves as take {figure(m.least_seconds)} s or "
         f"{m.times_resolution} times the clock's resolution ({figure(m.clock_resolution)} s), "
         "whichever is longer, so that the resolution is below 1 %. Python's collector of garbage is "
-        "off. What takes more than a fifth of a second is solved once a process.",
-        "Times are the processor's, so that what else runs on the machine is no part of them. A library "
-        "of `outside` has a process of its own that stays, and takes its turn there.",
-        f"Each time is divided by that of `{found.numbers.yardstick}` in the same round. A process "
+        "off. Settings that take more than a fifth of a second are solved once in each process.",
+        "Times are processor times, without other programs on the machine. A library of `outside` has "
+        "a process of its own that stays, and takes its turn there.",
+        f"Each time is divided by that of `{trades.numbers.yardstick}` in the same round. A process "
         "gives the median of its rounds; the table shows the median of the processes.",
-        _brackets(found),
-        f"Machine: {prose(machine.processor)}, Python {prose(machine.python)}. Ratios of "
-        "compiled code to Python, above all, are other ones elsewhere.",
+        _brackets(trades),
+        f"Machine: {prose(machine.processor)}, Python {prose(machine.python)}. Ratios of compiled code "
+        "to Python, above all, differ on other machines.",
     ]
 
 
-def _brackets(found: Trades) -> str:
-    m = found.times.method
+def _brackets(trades: Trades) -> str:
+    m = trades.times.method
     n, coverage = m.processes, f"{m.coverage:.1%}"
     formula = (
         f"the k-th smallest and the k-th largest of n do so with probability {prose(m.formula)}, "
@@ -79,19 +79,19 @@ def _brackets(found: Trades) -> str:
     if not m.coverage >= m.confidence:
         return f"No interval is given: {formula}, where the extremes have no more than {coverage}."
     return (
-        f"The brackets hold the median of what the processes are drawn from with {coverage}, however "
-        f"that is spread: {formula}. They say nothing of another machine."
+        f"The brackets enclose the median of the distribution of processes with {coverage}, for any "
+        f"distribution: {formula}. They do not apply to another machine."
     )
 
 
-def remake(found: Trades) -> str:
-    packages = ", ".join(f"{name} {version}" for name, version in found.numbers.versions.items())
+def remake(trades: Trades) -> str:
+    packages = ", ".join(f"{name} {version}" for name, version in trades.numbers.versions.items())
     return (
-        f"`make tradeoff`, which is `taylor-verify publish tradeoff`, measures anew and writes "
-        f"[tradeoff.json](../{NUMBERS.name}) (errors, the same on any machine but for the rounding) and "
-        f"[tradeoff-timings.json](../{TIMINGS.name}) (times, which are this machine's and which nothing "
-        "is ever compared with); this page and its [CSV](tradeoff.csv) are made from those alone. "
-        "`make reports` and `make check-reports` leave the times as they are. `--outside` adds "
-        "the integrators of other libraries that are compiled as heyoka is. "
-        f"Made by {code(found.times.machine.command)} with {packages or 'unknown versions'}."
+        "`make tradeoff`, which is `taylor-verify publish tradeoff`, repeats the measurement, and "
+        f"writes [tradeoff.json](../{NUMBERS.name}) (errors, the same on any machine except for "
+        f"rounding) and [tradeoff-timings.json](../{TIMINGS.name}) (times of this machine, which no "
+        "test compares); this page and its [CSV](tradeoff.csv) are made from those alone. `make "
+        "reports` and `make check-reports` leave the times as they are. `--outside` adds the "
+        "integrators of other libraries that are compiled as heyoka is. Made by "
+        f"{code(trades.times.machine.command)} with {packages or 'unknown versions'}."
     )

@@ -1,4 +1,4 @@
-"""The trade of one scene: every setting solved, timed and compared with the truth; and the front."""
+"""Trade of one scene: every setting solved, timed and compared with the truth; and the front."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from taylor_verify.studies.tradeoff.timing import (
 
 @dataclass(frozen=True)
 class TradeOff:
-    """The points of one scene, all of one run, in the order of the settings."""
+    """The points of one scene from one run, in the order of the settings."""
 
     scene: Scene
     points: tuple[Point, ...]
@@ -42,9 +42,9 @@ class TradeOff:
         return front(self.points)
 
     def document(self) -> dict[str, Any]:
-        """Return what JSON holds: ``sentences`` tell the front in words, ``integrators`` theirs alone."""
+        """Return the document; ``sentences`` describe the front, ``integrators`` that of integrators."""
         integrators = [p for p in self.points if p.timed.setting.is_integrator]
-        # What needs no steps leads the front: behind it integrators have a front of their own.
+        # Solvers without steps lead the front, so that integrators get a front of their own.
         is_led = not all(p.timed.setting.is_integrator for p in self.front)
         return {
             "scene": self.scene.name,
@@ -67,7 +67,7 @@ class TradeOff:
 
     @property
     def attainable(self) -> dict[str, float | None]:
-        """The least error that rounding leaves on each rung; None where it is not known or no number."""
+        """The least error that rounding leaves on each rung; None if it is unknown."""
         rungs = dict.fromkeys(p.timed.setting.rung for p in self.points)
         return {rung.name: finite(least_error(self.scene, rung)) for rung in rungs}
 
@@ -80,11 +80,11 @@ def trade_off(
     clock: Clock = perf_counter,
     patience: float = PATIENCE,
 ) -> TradeOff:
-    """Measure the settings ``asked``, or all there are: errors, and the best of ``repeats`` solves.
+    """Measure the errors and the best times of the settings ``asked``, or of all.
 
-    Rounds are shuffled by ``seed`` anew each time; ``clock`` tells seconds, and a setting that has had
-    ``patience`` seconds is timed no further (see `timing.timed`). A setting that cannot run is a point
-    that says why, not an error.
+    There are ``repeats`` rounds, shuffled by ``seed``; ``clock`` returns seconds, and a setting that
+    has taken ``patience`` seconds is timed no further (see `timing.timed`). A setting that cannot run
+    is a point with the reason, and no error.
     """
     asked = settings(scene) if asked is None else asked
     posed = {setting: _posed(scene, setting) for setting in asked}
@@ -97,7 +97,7 @@ def trade_off(
 
 
 def _posed(scene: Scene, setting: Setting) -> Problem | str:
-    """Return the problem of a setting; the reason for one that cannot be begun."""
+    """Return the problem of a setting, or the reason why it cannot be posed."""
     if reason := setting.withheld or setting.solver.unavailable(setting.rung):
         return reason
     try:
@@ -107,53 +107,53 @@ def _posed(scene: Scene, setting: Setting) -> Problem | str:
     return setting.solver.unsuited(problem) or problem
 
 
-# The front, and what came of each tolerance, in sentences.
+# Sentences on the front and on each tolerance.
 
 
 def front(points: Iterable[Point]) -> list[Point]:
-    """Return the sound points that none beats in both time and error, the fastest first."""
+    """Return the sound points that no other beats in both time and error, the fastest first."""
     return pareto(sound_points(points), lambda p: (p.seconds, p.error))
 
 
 def sound_points(points: Iterable[Point]) -> list[Point]:
-    """Return the points that are compared. A comparison with NaN is false, so none has that error."""
+    """Return the sound points; none has an error of NaN, because comparisons with NaN are false."""
     return [p for p in points if p.standing is Standing.SOUND and p.error < 1]
 
 
 def front_sentences(points: Sequence[Point]) -> list[str]:
-    """Return the front in words, every ratio to the fastest of this very run."""
+    """Return the front in words, with ratios to the fastest of this run."""
     best, sound = front(points), sound_points(points)
     if not best:
         return ["No setting gave an answer that is sound."]
-    said, fastest = [], best[0].seconds
+    sentences, fastest = [], best[0].seconds
     for p in best:
         left = digits(p.error)
         named = "All digits" if left is None else f"{left:.1f} digits"
         pace = f", {p.seconds / fastest:.2f} times the fastest" if p.seconds > fastest > 0 else ""
-        said.append(f"{named} (error {p.error:.2g}): {p.label} in {p.seconds:.3g} s{pace}.")
+        sentences.append(f"{named} (error {p.error:.2g}): {p.label} in {p.seconds:.3g} s{pace}.")
     beaten = len(sound) - len(best)
-    said.append(
+    sentences.append(
         f"{beaten} of {len(sound)} sound settings are beaten in both time and error by one of these."
     )
     if (widest := max(p.timed.spread or 1.0 for p in best)) > 1:
-        said.append(
-            f"A setting's slowest solve took up to {widest:.2g} times its fastest: times nearer to "
-            "each other than that are not told apart."
+        sentences.append(
+            f"A setting's slowest solve took up to {widest:.2g} times its fastest: smaller differences "
+            "of times mean nothing."
         )
-    return said
+    return sentences
 
 
 def request_sentences(points: Iterable[Point]) -> list[str]:
-    """Return, for each tolerance, the digits asked for and got. It bounds a step's error and no more."""
-    said = []
+    """Return the digits requested and achieved for each tolerance, which bounds errors of steps alone."""
+    sentences = []
     for p in sound_points(points):
         asked, got, requested = p.asked_digits, digits(p.error), p.timed.setting.requested
         if asked is None or got is None or requested is None:
             continue
         ratio = p.error / requested
         compared = f"{ratio:.2g} times" if ratio >= 1 else f"1/{1 / ratio:.2g} of"
-        said.append(
+        sentences.append(
             f"{p.label}: {asked:.1f} digits asked for, {got:.1f} got; the error is {compared} the "
             "tolerance."
         )
-    return said
+    return sentences

@@ -1,1 +1,1 @@
-"""The worst that a search has found, family by family."""
+"""The worst scene of each family, found by a search."""

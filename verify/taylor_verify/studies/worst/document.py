@@ -1,4 +1,4 @@
-"""The worst error over attainable that a search has found, family by family."""
+"""The worst error over attainable in each family, found by a search."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from taylor_verify.records.status import Status
 
 @dataclass(frozen=True)
 class WorstOfFamily:
-    """The worst of one family; ``judged`` scenes were run, ``scene`` is where the worst is kept."""
+    """The worst of one family; ``judged`` is the number of scenes, ``scene`` the name of the worst."""
 
     name: str
     what: str
@@ -24,7 +24,7 @@ class WorstOfFamily:
 
 @dataclass(frozen=True, kw_only=True)
 class WorstStudy:
-    """A search of so many ``runs`` in each family.
+    """A search with ``runs`` runs in each family.
 
     ``factor`` is the bound of a gate over what is attainable.
     """

@@ -1,8 +1,8 @@
-"""The hunt for the worst: in families of scenes, the largest error over what is attainable.
+"""Hunt for the worst: the largest error over attainable in families of scenes.
 
-A family is a cube: numbers between 0 and 1 become a scene, in exact decimals. A population of places moves
-through it by differential evolution. The driver answers every scene, and what counts is the largest error
-over attainable of all its gates that ask something. The budget is a number of runs and no time, so that
+A family is a cube: numbers between 0 and 1 become a scene, in exact decimals. A population of points moves
+through it by differential evolution. The driver answers every scene, and its score is the largest error
+over attainable of all gates that are not vacuous. The budget is a number of runs, and not a time, so that
 a hunt can be repeated.
 """
 
@@ -34,7 +34,7 @@ from taylor_verify.studies.worst.document import WorstOfFamily, WorstStudy
 Array = np.ndarray[Any, Any]
 
 RUNG: Final = "f64"
-# A generation is a part of the budget: half a dozen generations at least, and few enough places to climb.
+# The budget has at least half a dozen generations, and a population small enough to climb.
 _LEAST_POPULATION: Final = 5
 _GENERATIONS: Final = 10
 _PER_NUMBER: Final = 10
@@ -42,7 +42,7 @@ _PER_NUMBER: Final = 10
 
 @dataclass(frozen=True)
 class Quarry:
-    """A family that is hunted in, and what its scenes are, in a few words."""
+    """A family of the hunt, and its scenes in a few words."""
 
     family: Family
     what: str
@@ -54,7 +54,7 @@ class Quarry:
 
 @dataclass(frozen=True)
 class Catch:
-    """A scene of a family with the verdict on it that came nearest to failing."""
+    """A scene of a family with its verdict that is nearest to failing."""
 
     place: tuple[float, ...]
     verdict: Verdict
@@ -68,7 +68,7 @@ class Catch:
 
 @dataclass(frozen=True)
 class FamilyResult:
-    """The result of a family: the number of scenes that were judged, and the worst of them."""
+    """The result of a family: the number of judged scenes, and the worst scene."""
 
     quarry: Quarry
     judged: int
@@ -76,7 +76,7 @@ class FamilyResult:
 
     @property
     def scene_text(self) -> str:
-        """The worst as a scene file that says why it is there."""
+        """The worst scene as a file with its reason."""
         ratio = f"{self.worst.ratio:.3g}"
         return (
             f"# Why: of {self.quarry.what}, the largest error over attainable that a hunt has found,\n"
@@ -88,16 +88,16 @@ class FamilyResult:
 def hunt(
     quarries: Sequence[Quarry], runs: int, seed: int, finished: Callable[[str], None]
 ) -> list[FamilyResult]:
-    """Return the worst of each family, of so many ``runs`` in each.
+    """Return the worst of each family after ``runs`` runs in each.
 
-    ``finished`` is called with the name of each as it ends. Raises NotMeasured without SciPy, and where no
-    scene of a family could be judged.
+    ``finished`` is called with the name of each family as it ends. Raises NotMeasured without SciPy, and if
+    no scene of a family could be judged.
     """
-    found = []
+    results = []
     for quarry in quarries:
-        found.append(_hunt(quarry, runs, seed))
+        results.append(_hunt(quarry, runs, seed))
         finished(quarry.name)
-    return found
+    return results
 
 
 def _hunt(quarry: Quarry, runs: int, seed: int) -> FamilyResult:
@@ -107,15 +107,15 @@ def _hunt(quarry: Quarry, runs: int, seed: int) -> FamilyResult:
         expected = "expected SciPy (pip install 'taylor-verify[scipy]')"
         raise NotMeasured(f"{expected} for the hunt, got none") from None
     free = quarry.family.free
-    # Another seed for each family, and the same one in whatever order they come.
+    # Each family has its own seed, which does not depend on the order of families.
     own = crc32(f"{seed} {quarry.name}".encode())
     catches: list[Catch] = []
 
     def least(population: Array) -> Array:
-        """Return what is minimised, for places that are the columns of an array."""
-        found = caught(quarry.family, population.T.tolist())
-        catches.extend(catch for catch in found if catch is not None)
-        return np.array([inf if catch is None else -catch.ratio for catch in found])
+        """Return the function to minimise at points that are the columns of an array."""
+        catches_of_one = caught(quarry.family, population.T.tolist())
+        catches.extend(catch for catch in catches_of_one if catch is not None)
+        return np.array([inf if catch is None else -catch.ratio for catch in catches_of_one])
 
     population = max(_LEAST_POPULATION, min(_PER_NUMBER * free, runs // _GENERATIONS))
     differential_evolution(
@@ -123,8 +123,12 @@ def _hunt(quarry: Quarry, runs: int, seed: int) -> FamilyResult:
         [(0.0, 1.0)] * free,
         init=places(Spread.SOBOL, free, own, 0, population),
         maxiter=max(runs // population - 1, 0),
-        # It ends with its budget and not with its patience.
-        **{"tol": 0.0, "atol": -1.0, "polish": False, "vectorized": True, "updating": "deferred"},
+        # The search ends with its budget alone.
+        tol=0.0,
+        atol=-1.0,
+        polish=False,
+        vectorized=True,
+        updating="deferred",
         seed=np.random.default_rng(own),
     )
     if not catches:
@@ -133,7 +137,7 @@ def _hunt(quarry: Quarry, runs: int, seed: int) -> FamilyResult:
 
 
 def caught(family: Family, several: Sequence[Place]) -> list[Catch | None]:
-    """Return the gate nearest to failing at each place; None without a body, and if all are vacuous."""
+    """Return the gate nearest to failing at each point; None without a body or a non-vacuous gate."""
     scenes = [_scene(family, place) for place in several]
     answers = iter(judged([scene for scene in scenes if scene is not None], TAYLOR, RUNG))
     return [
@@ -156,12 +160,12 @@ def _nearest(place: Place, verdicts: Iterable[Verdict]) -> Catch | None:
 
 def _counts(verdict: Verdict) -> bool:
     is_asked = verdict.verdict in (Status.PASS, Status.FAIL)
-    # The start is the first row of a state, which counts already.
+    # The start is the first row of a state, which the error of the state includes.
     return is_asked and verdict.quantity != INITIAL
 
 
-def study(found: Iterable[FamilyResult], runs: int, seed: int) -> WorstStudy:
-    """Return the rows that the published table is made from."""
+def study(results: Iterable[FamilyResult], runs: int, seed: int) -> WorstStudy:
+    """Return the document of the published table."""
     return WorstStudy(
         factor=GATE_FACTOR,
         rung=RUNG,
@@ -179,7 +183,7 @@ def study(found: Iterable[FamilyResult], runs: int, seed: int) -> WorstStudy:
                 max=one.worst.verdict.max,
                 scene=f"extremes/worst/{one.quarry.name}",
             )
-            for one in found
+            for one in results
         ),
     )
 
@@ -198,5 +202,5 @@ _HUNTED: Final = {
 
 
 def quarries() -> tuple[Quarry, ...]:
-    """Return the shipped families that are hunted in."""
+    """Return the shipped families of the hunt."""
     return tuple(Quarry(family(name), what) for name, what in _HUNTED.items())

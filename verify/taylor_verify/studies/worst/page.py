@@ -1,4 +1,4 @@
-"""The page of the hunt for the worst, made of the stored rows; and the scenes that are kept."""
+"""Page of the hunt for the worst, made from the stored rows; and the files of its scenes."""
 
 from __future__ import annotations
 
@@ -15,15 +15,14 @@ from taylor_verify.records.replacement import replace_files
 from taylor_verify.studies.stored import Stored
 from taylor_verify.studies.worst.document import WorstOfFamily, WorstStudy
 
-# A budget that was not asked for is left out.
+# The default budget is left out.
 WORST: Final = Stored(WorstStudy, "worst", fields=plain)
 
 _WHAT: Final = (
-    "A gate stands at {factor} times what is attainable, which is what independent roundings of every "
-    "component leave. How near does a sound solver come to it? {searched}; the Taylor driver answers "
-    "every scene on {rung}, and "
-    "the largest *error over attainable* of all its gates counts. A gate that is vacuous asks nothing "
-    "and does not count."
+    "A gate allows {factor} times the attainable error, which is the error that independent roundings "
+    "of every component leave. How near does a sound solver come to this bound? {searched}. The "
+    "Taylor driver answers every scene on {rung}, and the largest *error over attainable* of all its "
+    "gates counts. Vacuous gates do not count."
 )
 _KEPT: Final = (
     "The worst scene of every family is kept in exact numbers, and runs with the extremes: "
@@ -32,7 +31,7 @@ _KEPT: Final = (
 
 
 def store_scenes(folder: Path, scenes: Mapping[str, str]) -> list[Path]:
-    """Write scene files, by their names, in place of those that are there. Raises OSError."""
+    """Write scene files by their names in place of existing ones. Raises OSError."""
     texts = {f"{name}.toml": text for name, text in scenes.items()}
     return list(replace_files(folder, texts, stale=folder.glob("*.toml")))
 
@@ -57,16 +56,16 @@ def page(study: WorstStudy) -> str:
 
 def _searched(study: WorstStudy) -> str:
     return (
-        f"In each family {study.runs} runs are spent on a population of places that moves by "
+        f"In each family {study.runs} runs are spent on a population of points that moves by "
         "differential evolution"
     )
 
 
 def _remade(study: WorstStudy) -> str:
     return (
-        f"`taylor-verify publish worst --runs {study.runs} --seed {study.seed}` hunts anew and replaces "
-        "the scenes. With the same versions it finds the same scenes: these are the fact, and not that "
-        "there are no others. "
+        f"`taylor-verify publish worst --runs {study.runs} --seed {study.seed}` repeats the hunt and "
+        "replaces the scenes. With the same versions it finds the same scenes. Other scenes may be "
+        "worse. "
     )
 
 
@@ -92,7 +91,15 @@ def _table(families: Sequence[WorstOfFamily]) -> str:
 
 
 _SHEET: Final = (
-    *("family", "what", "rung", "judged", "ratio", "quantity", "max", "verdict", "scene"),
+    "family",
+    "what",
+    "rung",
+    "judged",
+    "ratio",
+    "quantity",
+    "max",
+    "verdict",
+    "scene",
     "factor",
 )
 

@@ -11,23 +11,23 @@ from taylor_verify.studies.worst import page
 from taylor_verify.studies.worst.page import WORST
 
 RUNS: Final = 400
-# A population, and a generation after it.
+# The first population and one more generation.
 LEAST_RUNS: Final = 10
 
 
 def _measure(
     folder: Path, progress: Progress, runs: int = RUNS, seed: int = 1, seconds: None = None
 ) -> Measured:
-    """Search; the scenes that are found take the place of those that are shipped."""
+    """Search, and replace the shipped scenes by the new ones."""
     from taylor_verify.scenes.library import WORST as SCENES
     from taylor_verify.scenes.library import cases_directory
     from taylor_verify.studies.worst.measure import hunt, quarries, study
 
     hunted = quarries()
-    found = hunt(hunted, runs, seed, progress.counting(len(hunted)))
-    scenes = {one.quarry.name: one.scene_text for one in found}
+    results = hunt(hunted, runs, seed, progress.counting(len(hunted)))
+    scenes = {one.quarry.name: one.scene_text for one in results}
     shipped = page.store_scenes(cases_directory() / SCENES, scenes)
-    return Measured([*WORST.write(folder, study(found, runs, seed)), *shipped])
+    return Measured([*WORST.write(folder, study(results, runs, seed)), *shipped])
 
 
 def _runs(text: str) -> int:

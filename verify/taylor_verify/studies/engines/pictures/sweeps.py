@@ -1,4 +1,4 @@
-"""Error against version: what changed when, a line for each setting of an engine with many versions."""
+"""Picture of the error against the version, a line for each setting of an engine."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _HEIGHT: Final = 3.0
-# Fewer versions are a pair and no course.
+# The least number of versions that makes a course.
 _FEWEST: Final = 3
 
 
@@ -30,7 +30,7 @@ _FEWEST: Final = 3
 class Sweep:
     """The versions of an engine, oldest first, and the error of each setting at each of them.
 
-    ``step`` is the one that is shown, ``lines`` has None where a version was not judged.
+    ``step`` is the step of all lines; ``lines`` has None for a version that was not judged.
     """
 
     title: str
@@ -43,13 +43,13 @@ class Sweep:
 def sweeps(board: Board, entries: EntryList) -> list[Sweep]:
     """Return the sweep of every engine with several versions."""
     titles = {row.name: row.title for row in entries.entry}
-    found = []
+    results = []
     for engine, title in titles.items():
         rows = [r for r in board.study.rows if r.engine == engine and not r.shipped and r.is_judged]
         versions = sorted({row.version for row in rows}, key=_parts)
         if len(versions) >= _FEWEST and (shared := _shared(rows, versions)):
-            found.append(_sweep(title, rows, versions, shared))
-    return found
+            results.append(_sweep(title, rows, versions, shared))
+    return results
 
 
 def _shared(rows: Sequence[EngineRow], versions: Sequence[str]) -> tuple[str, str] | None:
@@ -77,20 +77,20 @@ def _sweep(
 
 
 def pictures(board: Board, entries: EntryList) -> list[Picture]:
-    """Return the picture of all sweeps; none where no engine has several versions."""
+    """Return the picture of all sweeps; none if no engine has several versions."""
     drawn = [sweep for sweep in sweeps(board, entries) if sweep.lines]
     if not drawn:
         return []
-    alt = " ".join(_said(sweep) for sweep in drawn)
+    alt = " ".join(_sentence(sweep) for sweep in drawn)
     return [Picture("engines-versions", "Error against version", alt, partial(_figure, drawn))]
 
 
-def _said(sweep: Sweep) -> str:
+def _sentence(sweep: Sweep) -> str:
     """Return the largest change of each engine in a sentence."""
     ratios = []
     for name, errors in sweep.lines.items():
-        seen = [(v, e) for v, e in zip(sweep.versions, errors, strict=True) if e is not None]
-        ratios += [(max(a, b) / min(a, b), name, v, a, b) for (_, a), (v, b) in pairwise(seen)]
+        measured = [(v, e) for v, e in zip(sweep.versions, errors, strict=True) if e is not None]
+        ratios += [(max(a, b) / min(a, b), name, v, a, b) for (_, a), (v, b) in pairwise(measured)]
     course = f"{sweep.title}, {sweep.versions[0]} to {sweep.versions[-1]}, step {sweep.step}"
     if not ratios or max(ratios)[0] < 2:
         return f"{course}: no version changed an error by a factor of two."

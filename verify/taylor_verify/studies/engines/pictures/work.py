@@ -1,4 +1,4 @@
-"""Error against time and against step: each engine's best setting, the plain solvers on the same axes."""
+"""Pictures of error against time and step: each engine's best setting beside the plain solvers."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _DOUBLE, _SINGLE = "float64", "float32"
 
 @dataclass(frozen=True)
 class Line:
-    """An engine in a picture: its points from coarse to fine, where both numbers are above zero."""
+    """An engine in a picture: its points with numbers above zero, from coarse to fine."""
 
     name: str
     look: Look
@@ -38,27 +38,27 @@ class Line:
 
 @dataclass(frozen=True)
 class Panel:
-    """The engines of one precision; the plain solvers stand in both panels."""
+    """The engines of one precision; both panels have the plain solvers."""
 
     heading: str
     lines: tuple[Line, ...]
 
 
 def pictures(board: Board, entries: EntryList) -> list[Picture]:
-    """Return error against time and error against step, of each engine of the ``board``.
+    """Return the pictures of error against time and against step for the engines of the ``board``.
 
-    ``entries`` is the list of the engines. No picture is made without a judged run above zero.
+    ``entries`` is the list of engines. A picture needs at least one judged run with an error above zero.
     """
     scene = entries.advised[0]
     time = panels(board, entries, scene, board.pace, 1e6)
     step = panels(board, entries, scene, _step, 1.0)
-    found = []
+    drawn = []
     if time:
         axis = "time for a second of the motion (µs)"
-        found.append(_picture(scene, "time", axis, time))
+        drawn.append(_picture(scene, "time", axis, time))
     if step:
-        found.append(_picture(scene, "step", "step (s)", step))
-    return found
+        drawn.append(_picture(scene, "step", "step (s)", step))
+    return drawn
 
 
 def panels(
@@ -68,7 +68,7 @@ def panels(
     work: Callable[[EngineRow], float | None],
     unit: float,
 ) -> list[Panel]:
-    """Return a panel for each precision that has an engine, with a line for each engine in it."""
+    """Return a panel for each precision of an engine, with a line for each engine of that precision."""
     titles = {row.name: row.title for row in entries.entry}
     plain_ones = {row.name for row in entries.entry if row.plain}
     lines: dict[str, list[Line]] = {_DOUBLE: [], _SINGLE: []}
@@ -80,8 +80,8 @@ def panels(
             continue
         dashes = DASHED if engine in plain_ones else ()
         look = look_of_line(number)
-        found = [(work(row), row.worst) for row in best.on(scene)]
-        points = tuple((unit * x, y) for x, y in found if x and 0 < y < inf)
+        costs = [(work(row), row.worst) for row in best.on(scene)]
+        points = tuple((unit * x, y) for x, y in costs if x and 0 < y < inf)
         line = Line(titles.get(engine, engine), Look(look.colour, look.marker, dashes), points)
         if points and engine in plain_ones:
             lines[_DOUBLE].append(line)
@@ -96,8 +96,8 @@ def panels(
 
 def _best(group: Sequence[EngineSetting], scene: str) -> EngineSetting | None:
     """Return the setting of an engine with the smallest error of the scene."""
-    found = [(row.worst, one) for one in group if (row := one.best(scene)) is not None]
-    return min(found, key=lambda pair: pair[0])[1] if found else None
+    errors = [(row.worst, one) for one in group if (row := one.best(scene)) is not None]
+    return min(errors, key=lambda pair: pair[0])[1] if errors else None
 
 
 def _step(row: EngineRow) -> float | None:

@@ -1,9 +1,9 @@
-"""The errors of every rung against time, beside the powers of time that roundings leave.
+"""Picture of the errors on every rung against time, beside the powers of time of rounding errors.
 
 Both axes are logarithmic; a line is the largest error so far. Errors are in units of the rung's own unit
-roundoff u, in which the rungs lie on each other where nothing but their roundings is at work. First a
-conserved quantity, with the power 1/2 of Brouwer's law; then the state and the attitude, with the power
-3/2 of a phase whose rate has drifted, and the centre.
+roundoff u, so that the lines of all rungs agree if roundings are the only errors. The first panel is a
+conserved quantity with the power 1/2 of Brouwer's law. The others are the state and the attitude, with the
+power 3/2 of a phase whose rate has drifted, and the centre.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 Record = Mapping[str, Any]
 Points = list[tuple[float, float]]
 
-# Heading, the quantities of which the first that a record has is drawn, the power and its name.
+# Heading, quantities (the first one in the record is drawn), the power and its name.
 PANELS: Final = (
     ("conserved", ("T", "H2", "FG", "F2"), 0.5, "\N{SQUARE ROOT}t"),
     ("state", ("omega", "impulse"), 1.5, "t\N{SQUARE ROOT}t"),
@@ -40,13 +40,13 @@ PANELS: Final = (
 _NAMES: Final = {"T": "energy T", "H2": "|H|\N{SUPERSCRIPT TWO}", "omega": "angular velocity"}
 _NOTE: Final = "The largest error up to t, in u, the rung's unit roundoff."
 _POWER: Final[Mapping[str, Any]] = {"color": QUIET, "linewidth": 0.8, "dashes": (5, 2)}
-# So many marks on a line, whose samples are crowded on the right.
+# The number of marks on a line, whose samples are crowded on the right.
 _MARKS: Final = 9
 
 
 @dataclass(frozen=True)
 class Panel:
-    """Panel of a quantity: a line for each rung, and the power of time that belongs to it."""
+    """Panel of a quantity: a line for each rung, and the power of time expected of it."""
 
     heading: str
     quantity: str
@@ -56,19 +56,19 @@ class Panel:
 
 
 def series(records: Sequence[Record], start: float | None = None) -> dict[str, dict[str, Points]]:
-    """Return by quantity and rung the time since the start, and the error in u; a zero is left out.
+    """Return the points (time since the start, error in u) by quantity and rung, without zeros.
 
-    ``start`` is the time of the initial state, the first sample where it is not given.
+    ``start`` is the time of the initial state, by default that of the first sample.
     """
-    found: dict[str, dict[str, Points]] = {}
+    curves: dict[str, dict[str, Points]] = {}
     for record in sorted(records, key=lambda one: place_of_rung(one["rung"])):
         first, u = record["times"][0] if start is None else start, record["unit_roundoff"]
         for gate in record["gates"]:
             pairs = zip(record["times"], gate["errors"], strict=True)
             points = [(abs(t - first), e / u) for t, e in pairs if _is_drawable(t - first, e)]
             if points:
-                found.setdefault(gate["quantity"], {})[record["rung"]] = points
-    return found
+                curves.setdefault(gate["quantity"], {})[record["rung"]] = points
+    return curves
 
 
 def _is_drawable(elapsed: float, error: float | None) -> bool:
@@ -93,12 +93,12 @@ def picture(scene: str, records: Sequence[Record], start: float | None = None) -
     return Picture(stem_of({"scene": scene}, "errors"), title, alt, partial(_figure, panels))
 
 
-def panels_of(found: Mapping[str, Mapping[str, Points]]) -> list[Panel]:
-    """Return a panel for a conserved quantity, where loads leave one, and for each part of the state."""
+def panels_of(curves: Mapping[str, Mapping[str, Points]]) -> list[Panel]:
+    """Return a panel for a conserved quantity, if there is one, and for each part of the state."""
     panels = []
     for heading, names, power, words in PANELS:
-        if name := next((name for name in names if name in found), ""):
-            panels.append(Panel(heading, name, found[name], power, words))
+        if name := next((name for name in names if name in curves), ""):
+            panels.append(Panel(heading, name, curves[name], power, words))
     return panels
 
 
@@ -131,24 +131,24 @@ def _draw(axes: Axes, panel: Panel) -> None:
 
 
 def _marked(points: Points) -> list[int]:
-    """Return places about as far from each other on a logarithmic axis."""
+    """Return the indices of points at about equal distances on a logarithmic axis."""
     (first, _), (last, _) = points[0], points[-1]
     apart = log(last / first) / _MARKS
-    found = [0]
+    marks = [0]
     for i, (t, _) in enumerate(points):
-        if log(t / points[found[-1]][0]) >= apart > 0:
-            found.append(i)
-    return found
+        if log(t / points[marks[-1]][0]) >= apart > 0:
+            marks.append(i)
+    return marks
 
 
 def so_far(points: Points) -> Points:
-    """Return the largest error up to each time: a single one falls to nothing as it changes its sign."""
+    """Return the largest error up to each time, because an error vanishes when it changes its sign."""
     largest = accumulate((error for _, error in points), max)
     return [(t, error) for (t, _), error in zip(points, largest, strict=True)]
 
 
 def _draw_power(axes: Axes, points: Points, power: float) -> None:
-    """Draw a power through the middle of the points (of their logarithms), across the panel."""
+    """Draw a power of time across the panel, through the mean of the points' logarithms."""
     shift = exp(sum(log(e) - power * log(t) for t, e in points) / len(points))
     (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
     first = max(left, (bottom / shift) ** (1 / power))

@@ -29,16 +29,19 @@ Document = Mapping[str, Any]
 _CURVE: Final = "#0072B2"
 _ORBIT: Final = "#A83C00"
 _POINTS: Final = 101
-# Beyond the roots that are shown, in parts of the interval's length.
+# Margin beyond the shown roots, relative to the interval's length.
 _BESIDE: Final = 0.45
 _LEAST: Final = 0.25
-# Above the hump of the orbit and below the axis, in parts of that hump.
+# Margins above the hump of the orbit and below the axis, relative to that hump.
 _ABOVE: Final = 1.35
 _BELOW: Final = 0.75
 _HEIGHT: Final = 1.75
-# How a root is drawn by how often it is one; more than three times as three.
+# Marks of roots by multiplicity; higher ones have that of three.
 _ROOT: Final = {
-    **{"linestyle": "none", "markersize": 5.5, "markeredgecolor": INK, "markeredgewidth": 0.9},
+    "linestyle": "none",
+    "markersize": 5.5,
+    "markeredgecolor": INK,
+    "markeredgewidth": 0.9,
     "gid": "root",
 }
 _ROOTS: Final[Mapping[int, Entry]] = {
@@ -52,7 +55,7 @@ _SUBSCRIPTS: Final = str.maketrans("123", "\N{SUBSCRIPT ONE}\N{SUBSCRIPT TWO}\N{
 
 @dataclass(frozen=True)
 class Series:
-    """The curve (n, 2), the interval of the motion, and the real roots with how often each is one."""
+    """The curve (n, 2), the interval of the motion, and the real roots with their multiplicities."""
 
     scene: str
     variable: str
@@ -64,24 +67,24 @@ class Series:
 
 
 def series(portrait: Document) -> Series:
-    """Return what is drawn of a scene. Raises ValueError for one without such a quartic."""
-    found = portrait["potential"]
-    if found is None:
+    """Return the curve and the roots of a scene. Raises ValueError for a scene without a quartic."""
+    potential = portrait["potential"]
+    if potential is None:
         raise ValueError(f"expected a quartic of the axial impulse, got none @ {portrait['scene']}")
-    real = [float(re) for re, im in found["roots"] if im == 0]
-    pair = next(((float(re), float(im)) for re, im in found["roots"] if im > 0), None)
+    real = [float(re) for re, im in potential["roots"] if im == 0]
+    pair = next(((float(re), float(im)) for re, im in potential["roots"] if im > 0), None)
     roots = tuple((root, real.count(root)) for root in dict.fromkeys(real))
-    low, high = map(float, found["interval"])
+    low, high = map(float, potential["interval"])
     left, right = _shown(low, high, [root for root, _ in roots])
-    # Half of the corners inside the interval: the hump is what is looked at.
+    # Half of the points are inside the interval, because the hump is the subject.
     z = np.union1d(np.linspace(left, right, _POINTS), np.linspace(low, high, _POINTS))
-    curve = np.stack([z, np.polyval(found["coefficients"], z)], axis=1)
-    variable, regime = found["variable"], portrait["regime"]
+    curve = np.stack([z, np.polyval(potential["coefficients"], z)], axis=1)
+    variable, regime = potential["variable"], portrait["regime"]
     return Series(portrait["scene"], variable, regime, curve, (low, high), roots, pair)
 
 
 def _shown(low: float, high: float, roots: Sequence[float]) -> tuple[float, float]:
-    """Return the interval with what is near it: roots within its own length on either side too."""
+    """Return the interval, extended to the roots within its own length on either side."""
     length = max(high - low, _LEAST * max(abs(low), abs(high), *map(abs, roots)))
     near = [root for root in roots if low - length <= root <= high + length]
     ends = [low, high, *near]
@@ -89,63 +92,63 @@ def _shown(low: float, high: float, roots: Sequence[float]) -> tuple[float, floa
 
 
 def picture(portraits: Sequence[Document], name: str) -> Picture:
-    """Return a panel for each scene. Raises ValueError for one that has no quartic."""
-    found = [series(portrait) for portrait in portraits]
-    sentences = " ".join(map(_sentence, found))
+    """Return the picture with a panel for each scene. Raises ValueError for a scene without a quartic."""
+    drawn = [series(portrait) for portrait in portraits]
+    sentences = " ".join(map(_sentence, drawn))
     title = "The quartic of the axial impulse"
     alt = (
         f"The polynomial X3 against the axial impulse, with the interval of the motion. {sentences}"
     )
-    return Picture(stem_of({"scene": name}, "potential"), title, alt, partial(_figure, found))
+    return Picture(stem_of({"scene": name}, "potential"), title, alt, partial(_figure, drawn))
 
 
-def _sentence(found: Series) -> str:
-    low, high = found.interval
-    roots = ", ".join(f"{root:.3g}{_MULTIPLE.get(count, '')}" for root, count in found.roots)
-    complex_pair = " and a complex pair" if found.pair else ""
+def _sentence(drawn: Series) -> str:
+    low, high = drawn.interval
+    roots = ", ".join(f"{root:.3g}{_MULTIPLE.get(count, '')}" for root, count in drawn.roots)
+    complex_pair = " and a complex pair" if drawn.pair else ""
     return (
-        f"{found.scene}: real roots {roots}{complex_pair}; {found.variable} moves from {low:.3g} to "
+        f"{drawn.scene}: real roots {roots}{complex_pair}; {drawn.variable} moves from {low:.3g} to "
         f"{high:.3g}."
     )
 
 
-def _figure(found: Sequence[Series]) -> Figure:
-    counts = {min(count, 3) for one in found for _, count in one.roots}
+def _figure(drawn: Sequence[Series]) -> Figure:
+    counts = {min(count, 3) for one in drawn for _, count in one.roots}
     entries: list[Entry] = [
         ({"color": _CURVE, "linewidth": 1.3}, "X\N{SUBSCRIPT THREE}"),
         ({"color": _ORBIT, "linewidth": 3}, "the orbit's interval"),
         *(entry for count, entry in _ROOTS.items() if count in counts),
     ]
-    figure, places = sheet(len(found), entries, height=_HEIGHT)
-    for axes, one in zip(places, found, strict=True):
+    figure, places = sheet(len(drawn), entries, height=_HEIGHT)
+    for axes, one in zip(places, drawn, strict=True):
         _draw(axes, one)
     return figure
 
 
-def _draw(axes: Axes, found: Series) -> None:
+def _draw(axes: Axes, drawn: Series) -> None:
     from matplotlib.ticker import MaxNLocator
 
-    z, X = found.curve.T  # noqa: N806 (as in 49)
-    low, high = found.interval
+    z, X = drawn.curve.T  # noqa: N806 (as in 49)
+    low, high = drawn.interval
     inside = (z >= low) & (z <= high)
     top = float(X[inside].max())
-    # A steady motion has no hump: the scale is what the curve does beside it.
+    # A steady motion has no hump: the curve beside it gives the scale.
     scale = top if high > low and top > 0 else float(np.abs(X).max()) / 3 or 1.0
     axes.set(xlim=(z[0], z[-1]), ylim=(-_BELOW * scale, _ABOVE * scale))
-    # Few numbers, of few digits: beside them there is room for no more.
+    # There is room for a few short numbers only.
     axes.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
     axes.axhline(0, color=QUIET, linewidth=0.6, zorder=1)
     axes.plot(z, X, color=_CURVE, linewidth=1.3, zorder=3, gid="curve")
     if high > low:
         axes.fill_between(z[inside], 0, X[inside], color=_CURVE, alpha=0.14, linewidth=0, zorder=2)
     axes.plot([low, high], [0, 0], color=_ORBIT, linewidth=3, zorder=4, gid="interval")
-    for root, count in found.roots:
+    for root, count in drawn.roots:
         if z[0] <= root <= z[-1]:
             axes.plot([root], [0], zorder=5, **_ROOTS[min(count, 3)][0])
-    subscript = found.variable.translate(_SUBSCRIPTS)
+    subscript = drawn.variable.translate(_SUBSCRIPTS)
     square = f"({subscript}\N{PRIME}/r)\N{SUPERSCRIPT TWO}"
     axes.set_xlabel(f"{subscript} (impulse)", labelpad=2)
     axes.set_ylabel(f"X\N{SUBSCRIPT THREE} = {square}", labelpad=2)
-    name = found.scene.partition("/")[2]
-    heading = name if name == found.regime else f"{name} ({found.regime})"
+    name = drawn.scene.partition("/")[2]
+    heading = name if name == drawn.regime else f"{name} ({drawn.regime})"
     axes.set_title(heading, pad=4, fontsize=SMALL + 0.5)

@@ -1,7 +1,7 @@
-"""The figures of a trade-off: a panel for each group of families, and a strip for what is no answer.
+"""Figures of a trade-off: a panel for each group of families, and a strip for failures.
 
 In a work-precision diagram x is the work (seconds, evaluations, steps), y the error, both logarithmic:
-further down and to the left is better. Nothing is joined but neighbouring sound settings of one family.
+further down and to the left is better. Lines join only neighbouring sound settings of one family.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-# Room beside the points for their names, in parts of the panel: left and right, below and above.
+# Margins for names, as parts of the panel: left and right, below and above.
 _MARGINS_X: Final = (0.06, 0.16)
 _MARGINS_Y: Final = (0.09, 0.09)
 _DIAGONAL: Final[Mapping[str, Any]] = {"color": QUIET, "linewidth": 0.8}
@@ -48,8 +48,8 @@ def work_precision(
 ) -> Figure:
     """Return the whole figure: the panels row by row, the meaning of the marks below.
 
-    ``floors`` are the attainable errors by rung, drawn where a panel has the rung; ``bars`` shows by
-    how much times spread; ``note`` is said with the marks.
+    ``floors`` are the attainable errors by rung, drawn in panels with the rung; ``bars`` shows the spread
+    of times; ``note`` is a text below the marks.
     """
     from taylor_verify.publish.pictures.labels import write_names
 
@@ -61,7 +61,7 @@ def work_precision(
     shared = _limits_x(p for p in panels if p.yardstick)
     for panel, strip, frame in zip(panels, strips, frames, strict=True):
         axes = add_axes(figure, frame)
-        # The ladder's times are near each other; the others are compared across their panels.
+        # The ladder's times are near each other. Other panels have one axis, so that they can be compared.
         x_limits = shared if panel.yardstick else _limits_x([panel])
         own = {rung: floors[rung] for rung in panel.ladder if rung in floors}
         y_limits = widened([*(spot.y for spot in panel.sound), *own.values()], *_MARGINS_Y)
@@ -69,7 +69,7 @@ def work_precision(
         axes.set(xlabel=x_name, ylabel=y_name)
         number_axes(axes)
         stairs = _stairs(front, axes)
-        # Thin and behind everything.
+        # Thin lines behind everything.
         axes.plot(*zip(*stairs, strict=True), color=QUIET, linewidth=0.6, zorder=1, gid="front")
         for rung, floor in own.items():
             colour = panel.ladder[rung]
@@ -86,7 +86,7 @@ def work_precision(
 
 
 def digits_achieved(panels: Sequence[Panel]) -> Figure:
-    """Return digits asked for against digits achieved: on the diagonal a tolerance means what it says."""
+    """Return the figure of digits requested against digits achieved, equal on the diagonal."""
     from matplotlib.ticker import MaxNLocator
 
     from taylor_verify.publish.pictures.labels import write_names
@@ -97,7 +97,7 @@ def digits_achieved(panels: Sequence[Panel]) -> Figure:
         axes.set(xlim=(0, most_x * 1.22), ylim=(-0.03 * most_y, max(most_y * 1.12, 4)))
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
         axes.set(xlabel="digits asked for, \N{MINUS SIGN}log₁₀ tolerance", ylabel="digits achieved")
-        axes.grid(True)
+        axes.grid(visible=True)
         axes.set_title(panel.heading, pad=4)
         most = min(axes.get_xlim()[1], axes.get_ylim()[1])
         diagonal = [(0.0, 0.0), (most, most)]
@@ -109,7 +109,7 @@ def digits_achieved(panels: Sequence[Panel]) -> Figure:
 
 
 def _draw_series(axes: Axes, series: Series, bars: bool) -> None:
-    """Draw the lines of a family, one for each run of sound neighbours, and a bar where times spread."""
+    """Draw the lines of a family, one for each run of sound neighbours, and bars of the spread."""
     look = series.look
     for piece in series.pieces:
         x, y = [spot.x for spot in piece], [spot.y for spot in piece]
@@ -123,7 +123,7 @@ def _draw_series(axes: Axes, series: Series, bars: bool) -> None:
 
 
 def _draw_exact(axes: Axes, series: Series) -> None:
-    """Mark answers without an error at the lower border, joined to nothing."""
+    """Mark answers without an error at the lower border, without lines."""
     look = {**series.look.line, "linestyle": "none", "marker": "v"}
     place = axes.get_xaxis_transform()
     for spot in series.spots:
@@ -140,10 +140,10 @@ def _names_of(panel: Panel) -> list[Named]:
 
 
 def _stairs(front: Sequence[Spot], axes: Axes) -> list[tuple[float, float]]:
-    """Return the front's corners: what is above and to the right of them is beaten."""
+    """Return the corners of the front; settings above and to the right of it are beaten."""
     level = max(axes.get_ylim()[1], front[0].y)
     corners = []
-    # The yardstick stands in several panels, and is one corner.
+    # The yardstick is in several panels, but counts once.
     for x, y in dict.fromkeys((spot.x, spot.y) for spot in front):
         corners += [(x, level), (x, y)]
         level = y
@@ -153,7 +153,7 @@ def _stairs(front: Sequence[Spot], axes: Axes) -> list[tuple[float, float]]:
 def _draw_strip(
     figure: Figure, frame: Frame, panel: Panel, strip: Sequence[Series], limits: Limits
 ) -> Axes:
-    """Draw above the panel a line for each family with what is no answer, at the work that it took."""
+    """Draw above the panel a line for each family with failures, each at its work."""
     above = Frame(frame.left, frame.low + frame.height, frame.width, STRIP * len(strip))
     axes = add_axes(figure, above)
     axes.set(xscale="log", xlim=limits, ylim=(len(strip) - 0.5, -0.5), yticks=[])
@@ -183,7 +183,7 @@ def _draw_strip(
 
 
 def _name_in_strip(axes: Axes, name: str, series: Series, line: int, limits: Limits) -> None:
-    """Write a name right of the last mark, or left of the first where that is nearer the middle."""
+    """Write a name right of the last mark, or left of the first if that is nearer the middle."""
     taken = [spot.x for spot in series.border]
     after = min(taken) < (limits[0] * limits[1]) ** 0.5
     axes.annotate(
@@ -199,7 +199,7 @@ def _name_in_strip(axes: Axes, name: str, series: Series, line: int, limits: Lim
 
 
 def _legend(panels: Sequence[Panel], bars: bool, floors: bool) -> list[Entry]:
-    """Return the meaning of the marks that occur."""
+    """Return the legend of the marks that occur."""
     spots = [spot for panel in panels for one in panel.drawn for spot in one.spots]
     standings = {spot.row["standing"] for spot in spots if spot.is_at_the_border}
     exact = any(spot.is_exact for spot in spots)
@@ -209,7 +209,8 @@ def _legend(panels: Sequence[Panel], bars: bool, floors: bool) -> list[Entry]:
         (bars, {"color": QUIET, "linewidth": 0.5, "marker": "|"}, "best to slowest repeat"),
         (floors, {"color": INK, "linewidth": 0.6, "linestyle": dotted}, "attainable"),
         (
-            *(Standing.FALSE in standings, {**mark, "marker": "o", "markerfacecolor": PAPER}),
+            Standing.FALSE in standings,
+            {**mark, "marker": "o", "markerfacecolor": PAPER},
             "false success",
         ),
         (Standing.FAILED in standings, {**mark, "marker": "x"}, "failed"),

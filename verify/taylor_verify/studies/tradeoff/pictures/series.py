@@ -1,4 +1,4 @@
-"""The points of a trade-off by family, as pictures show them, and which families share a panel."""
+"""Points of a trade-off by family for pictures, and the panels of the families."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ Row = Mapping[str, Any]
 # The standings that are marked at the border.
 AT_THE_BORDER: Final = (Standing.FALSE, Standing.FAILED)
 
-# Beyond these a panel is hard to read: all but taylor in one panel, and any in one.
+# The most lines of a legible panel: of all solvers but taylor together, and of one kind.
 _ALL_IN_ONE: Final = 6
 _MOST: Final = 7
 
 
 @dataclass(frozen=True)
 class Spot:
-    """A setting in a picture: its numbers along both axes, zero where a number is missing.
+    """A setting in a picture: its numbers along both axes, zero for a missing number.
 
     ``spread`` is the slowest time over the fastest.
     """
@@ -42,17 +42,17 @@ class Spot:
 
     @property
     def is_exact(self) -> bool:
-        """True for a sound answer without any error, which a logarithmic axis has no place for."""
+        """True for a sound answer without any error, which a logarithmic axis cannot show."""
         return self.row["standing"] == Standing.SOUND and self.x > 0 and self.row["error"] == 0
 
     @property
     def is_at_the_border(self) -> bool:
-        """True for a failure or a false success that is known to have taken some work."""
+        """True for a failure or a false success whose work is known."""
         return self.row["standing"] in AT_THE_BORDER and self.x > 0
 
     @property
     def label(self) -> str:
-        """The setting as `tradeoff` prints it."""
+        """The name of the setting in the output of `tradeoff`."""
         return label(self.row["solver"], self.row["setting"], self.row["rung"])
 
 
@@ -74,13 +74,13 @@ class Series:
 
     @property
     def label(self) -> str:
-        """The name of the family without its kind, which stands above the panel."""
+        """The name of the family without its kind, which is the heading of the panel."""
         first, _, rest = self.family.partition(" ")
         return rest if rest and first == self.kind else self.family
 
     @property
     def pieces(self) -> list[list[Spot]]:
-        """Runs of sound neighbours: what a line may join."""
+        """Runs of sound neighbours, which lines join."""
         runs = groupby(self.spots, key=lambda spot: spot.is_sound)
         return [list(spots) for is_sound, spots in runs if is_sound]
 
@@ -94,9 +94,9 @@ class Series:
 
 
 def series_of(document: Mapping[str, Any], x: str, y: str = "error") -> list[Series]:
-    """Return the families of a trade-off that ran, in the order of `style.place`.
+    """Return the families of a trade-off with runs, in the order of `style.place`.
 
-    ``x`` and ``y`` are the keys of the rows that the axes show.
+    ``x`` and ``y`` are the keys of the rows for the axes.
     """
     spots: dict[tuple[str, str], list[Spot]] = {}
     for row in document["points"]:
@@ -109,7 +109,7 @@ def series_of(document: Mapping[str, Any], x: str, y: str = "error") -> list[Ser
 
 
 def _amount(row: Row, key: str) -> float:
-    """Return a positive finite number of the row, or zero; a failed run has the time of its only solve."""
+    """Return a positive finite number of the row, or zero. A failed run has the time of its only solve."""
     value = row.get(key)
     if value is None and key == "seconds" and row["standing"] != Standing.SOUND:
         value = row.get("first_seconds")
@@ -117,7 +117,7 @@ def _amount(row: Row, key: str) -> float:
 
 
 def front_of(series: Iterable[Series]) -> list[Spot]:
-    """Return the sound spots that no other beats in both numbers, by x; y falls along them."""
+    """Return the sound spots that no other beats in both numbers, by rising x and falling y."""
     sound = [spot for one in series for spot in one.sound]
     return pareto(sound, lambda spot: (spot.x, spot.y))
 
@@ -127,14 +127,14 @@ def front_of(series: Iterable[Series]) -> list[Spot]:
 
 @dataclass(frozen=True)
 class Panel:
-    """The families of one panel under their heading; ``yardstick`` is drawn with them."""
+    """The families of one panel with its heading; ``yardstick`` is drawn with them."""
 
     heading: str
     series: tuple[Series, ...]
     yardstick: Series | None = None
 
     def label(self, series: Series) -> str:
-        """Return the name of a family: in full where the heading does not say its kind."""
+        """Return the name of a family, in full if the heading does not name its kind."""
         mixed = len({one.kind for one in self.series}) > 1 or series.kind != self.series[0].kind
         return series.family if mixed else series.label
 
@@ -153,27 +153,27 @@ class Panel:
 
 
 def panels_of(series: Sequence[Series]) -> list[Panel]:
-    """Return taylor by rung in one panel, and the others, with its f64 beside them, in one or by kind."""
+    """Return a panel of taylor by rung, and one or more panels of the others beside its f64."""
     ladder = tuple(one for one in series if one.kind == TAYLOR)
     others = [one for one in series if one.kind != TAYLOR]
-    # One rung of taylor alone is no ladder: it stands among the others.
+    # A single rung of taylor is no ladder, and belongs to the others.
     is_alone = len(ladder) == 1 and bool(others)
     f64 = next((one for one in ladder if one.rung == "f64"), ladder[0] if is_alone else None)
-    found = [] if is_alone or not ladder else [Panel(heading_of(TAYLOR), ladder)]
-    return found + [Panel(heading, group, f64) for heading, group in _groups(others)]
+    panels = [] if is_alone or not ladder else [Panel(heading_of(TAYLOR), ladder)]
+    return panels + [Panel(heading, group, f64) for heading, group in _groups(others)]
 
 
 def _groups(others: Sequence[Series]) -> list[tuple[str, tuple[Series, ...]]]:
-    """Return the families by heading: all together where they are few, else each kind by itself."""
+    """Return the families by heading: all together if they are few, else each kind by itself."""
     if 0 < len(others) <= _ALL_IN_ONE:
         kinds = list(dict.fromkeys(heading_of(one.kind) for one in others))
         return [(kinds[0] if len(kinds) == 1 else "other solvers", tuple(others))]
     kinds_apart = [tuple(group) for _, group in groupby(others, key=lambda one: one.kind)]
-    return [found for group in kinds_apart for found in _parts(group)]
+    return [part for group in kinds_apart for part in _parts(group)]
 
 
 def _parts(group: tuple[Series, ...]) -> Iterator[tuple[str, tuple[Series, ...]]]:
-    """Yield the group, or as many even parts of it as keep each legible."""
+    """Yield the group, or its even parts if it is too large to be legible."""
     heading = heading_of(group[0].kind)
     count = -(-len(group) // _MOST)
     size = -(-len(group) // count)

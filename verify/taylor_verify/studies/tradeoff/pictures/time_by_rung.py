@@ -1,6 +1,6 @@
-"""The time that a wider number takes: a line for each scene or solver, f64 being 1.
+"""Picture of the time on each rung, relative to f64: a line for each scene or solver.
 
-Ratios of one label are one line.
+Ratios with the same label make one line.
 """
 
 from __future__ import annotations
@@ -26,31 +26,31 @@ if TYPE_CHECKING:
 # In inches.
 _FRAME: Final = Frame(left=0.66, low=0.74, width=PAGE_WIDTH - 0.74, height=2.6)
 _HEIGHT: Final = 3.5
-# Rungs nearer than this, in parts of the axis, cannot both be named below it.
+# The least distance of two names of rungs below the axis, as part of the axis.
 _NEAR: Final = 0.045
 
 
-def picture(scene: str, found: Sequence[Ratio]) -> Picture:
-    """Return the picture of ratios to the time on f64; ``scene`` is what all of them have in common.
+def picture(scene: str, ratios: Sequence[Ratio]) -> Picture:
+    """Return the picture of ratios to the time on f64; ``scene`` is the common part of their names.
 
-    Raises ValueError for ratios that are none, and for a rung without a number of bits.
+    Raises ValueError for invalid ratios, and for a rung without a number of bits.
     """
-    check(found)
-    for i, one in enumerate(found):
+    check(ratios)
+    for i, one in enumerate(ratios):
         if not bits_of(one.rung) > 0:
             raise ValueError(
                 f"expected a rung, such as f64 or mp237, got {one.rung!r} @ ratios[{i}]"
             )
-    lines: dict[str, list[Ratio]] = {one.label: [] for one in found}
-    for one in sorted(found, key=lambda one: (bits_of(one.rung), place_of_rung(one.rung))):
+    lines: dict[str, list[Ratio]] = {one.label: [] for one in ratios}
+    for one in sorted(ratios, key=lambda one: (bits_of(one.rung), place_of_rung(one.rung))):
         lines[one.label].append(one)
-    said = "; ".join(
+    words = "; ".join(
         f"{label}: {', '.join(f'{one.rung} {times(one.ratio)}' for one in line)}"
         for label, line in lines.items()
     )
     alt = (
         f"Time of a solve against the bits of the rung on {scene}, both logarithmic, as "
-        f"a multiple of the time on f64. {said}."
+        f"a multiple of the time on f64. {words}."
     )
     title = f"Time by rung: {scene}"
     return Picture(stem_of({"scene": scene}, "rungs"), title, alt, partial(_figure, lines))
@@ -61,14 +61,14 @@ def _figure(lines: Mapping[str, Sequence[Ratio]]) -> Figure:
 
     figure = blank(_HEIGHT)
     axes = add_axes(figure, _FRAME)
-    found = [one for line in lines.values() for one in line]
-    ends = [end for one in found for end in (one.least, one.greatest)]
+    every = [one for line in lines.values() for one in line]
+    ends = [end for one in every for end in (one.least, one.greatest)]
     axes.set(xscale="log", yscale="log", ylim=widened([*ends, 1.0], 0.08, 0.12))
-    axes.set(xlim=widened([float(bits_of(one.rung)) for one in found], 0.05, 0.2))
+    axes.set(xlim=widened([float(bits_of(one.rung)) for one in every], 0.05, 0.2))
     axes.set(xlabel="rung, by the bits of its significand", ylabel="time over that on f64")
     axes.yaxis.set_major_formatter("{x:g}")
-    _name_rungs(axes, sorted({one.rung for one in found}, key=bits_of))
-    axes.grid(True)
+    _name_rungs(axes, sorted({one.rung for one in every}, key=bits_of))
+    axes.grid(visible=True)
     axes.axhline(1, color=QUIET, linewidth=0.8, zorder=1)
     named = []
     for i, (label, line) in enumerate(lines.items()):
@@ -77,7 +77,9 @@ def _figure(lines: Mapping[str, Sequence[Ratio]]) -> Figure:
         for x, one in zip(bits, line, strict=True):
             spread = [[one.ratio - one.least], [one.greatest - one.ratio]]
             axes.errorbar(
-                *([x], [one.ratio], spread),
+                [x],
+                [one.ratio],
+                spread,
                 fmt="none",
                 ecolor=look.colour,
                 elinewidth=0.8,
@@ -86,14 +88,14 @@ def _figure(lines: Mapping[str, Sequence[Ratio]]) -> Figure:
         axes.plot(bits, ratios, gid=label, zorder=3, **look.line)
         named.append(Named(label, look.colour, [[*zip(bits, ratios, strict=True)]]))
     write_names(axes, named)
-    if any(one.least < one.greatest for one in found):
+    if any(one.least < one.greatest for one in every):
         bar = {"color": QUIET, "linewidth": 0.6, "marker": "|", "markersize": 6}
         draw_legend(figure, [(bar, "least to greatest seen")])
     return figure
 
 
 def _name_rungs(axes: Axes, rungs: Sequence[str]) -> None:
-    """Set a tick for every rung; of two that are too near, the names stand below each other."""
+    """Set a tick for every rung; names that are too near are written below each other."""
     from matplotlib.ticker import NullLocator
 
     bits = [bits_of(rung) for rung in rungs]

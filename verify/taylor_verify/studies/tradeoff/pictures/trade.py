@@ -1,4 +1,4 @@
-"""The pictures of a trade-off: error against time, evaluations and steps; digits asked for and achieved."""
+"""Pictures of a trade-off: error against time, evaluations and steps; digits requested and achieved."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ from taylor_verify.studies.tradeoff.pictures.series import (
     series_of,
 )
 
-# The work of a solve: the key of a row, and the name that titles and files have for it. Evaluations and
-# steps are the same on every machine.
+# Kinds of work: the key of a row, and the name in titles and files. Evaluations and steps are the same on
+# every machine.
 WORKS: Final = {"seconds": "time", "evaluations": "evaluations", "steps": "steps"}
 _NOTE: Final = "An evaluation of taylor is one order of a step's series."
 
@@ -39,21 +39,21 @@ def draw(document: Mapping[str, Any], folder: Path | str) -> list[Path]:
 
 
 def pictures(document: Mapping[str, Any]) -> list[Picture]:
-    """Return every picture with its alt text; one that would be empty is left out."""
+    """Return every picture that has points."""
     if not any(row["standing"] == "sound" for row in document["points"]):
         raise ValueError(f"expected a sound point, got none @ {document['scene']}.points")
-    found = (*(_work_precision(document, key) for key in WORKS), _digits_achieved(document))
-    return [one for one in found if one is not None]
+    drawn = (*(_work_precision(document, key) for key in WORKS), _digits_achieved(document))
+    return [one for one in drawn if one is not None]
 
 
 def _work_precision(document: Mapping[str, Any], key: str) -> Picture | None:
-    """Return the picture of error against work; None where no sound setting has a number for it."""
+    """Return the picture of error against work; None if no sound setting has both numbers."""
     series = [one for one in series_of(document, key) if one.sound or one.border]
     front = front_of(series)
     if not front:
         return None
     is_time, work, scene = key == "seconds", WORKS[key], document["scene"]
-    # A published time is a median of many, and the page beside the picture tells of it.
+    # A published time is a median of many, which the page explains.
     best = f", best of {document['timing']['repeats']}" if "timing" in document else ""
     axes = {"seconds": f"time of a solve{best} (s)", "evaluations": "evaluations of the equations"}
     unit = "relative; attitude in rad" if "attitude" in document["track"] else "relative"
@@ -75,7 +75,7 @@ def _work_precision(document: Mapping[str, Any], key: str) -> Picture | None:
 
 
 def _digits_achieved(document: Mapping[str, Any]) -> Picture | None:
-    """Return digits achieved against digits asked for; None where no setting has both."""
+    """Return the picture of digits achieved against digits requested; None if no setting has both."""
     asking = [row for row in document["points"] if row["asked"] == "tolerance"]
     every = series_of({**document, "points": asking}, "requested_digits", "achieved_digits")
     series = [one for one in every if one.sound]
@@ -97,7 +97,7 @@ def _digits_achieved(document: Mapping[str, Any]) -> Picture | None:
 
 
 def _names(series: Sequence[Series]) -> str:
-    """Return the names of the families as a sentence lists them."""
+    """Return the names of the families as a list in a sentence."""
     *others, last = (one.family for one in series)
     return f"{', '.join(others)} and {last}" if others else last
 
@@ -124,12 +124,12 @@ def _ends(front: Sequence[Spot], work: str) -> str:
 
 
 def _fallen(series: Sequence[Series]) -> str:
-    """Return the number of settings at the border, after a space; empty where all are sound."""
+    """Return the number of settings at the border in words; empty if all are sound."""
     standings = Counter(spot.row["standing"] for one in series for spot in one.spots)
     plural = {Standing.FALSE: "false successes"}
-    said = [
+    names = [
         f"{standings[name]} {plural.get(name, name) if standings[name] > 1 else name}"
         for name in AT_THE_BORDER
         if standings[name]
     ]
-    return f" Marked at the border: {', '.join(said)}." if said else ""
+    return f" Marked at the border: {', '.join(names)}." if names else ""
