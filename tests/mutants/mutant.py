@@ -42,9 +42,14 @@ class Mutant:
         return "taylor_verify." + self.path.removesuffix(".py").replace("/", ".")
 
 
+def lines(source: str) -> list[int]:
+    """Return the line of each mutant of a module."""
+    return [node.lineno for node, _ in _changes(ast.parse(source))]  # type: ignore[attr-defined]
+
+
 def count(source: str) -> int:
     """Return how many mutants a module has."""
-    return sum(1 for _ in _changes(ast.parse(source)))
+    return len(lines(source))
 
 
 def mutant(path: str, source: str, place: int) -> Mutant:
