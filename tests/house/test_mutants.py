@@ -6,11 +6,11 @@ import ast
 from pathlib import Path
 
 import pytest
-from mutants.__main__ import stages
+from mutants.__main__ import within
 from mutants.copied import Copy
 from mutants.draw import drawn, equivalents, of_line
 from mutants.mutant import PACKAGE, count, mutant
-from mutants.trace import TESTS, statement
+from mutants.trace import TESTS
 
 CHANGED = [
     ("x = a + b", ["x = a - b"]),
@@ -70,31 +70,38 @@ def test_the_mutants_of_a_line_are_those_that_are_drawn_there() -> None:
 
 def test_the_lines_of_a_statement_are_its_own_and_an_import_runs_what_is_in_no_function() -> None:
     """A line in the middle of a statement has no count of its own; a default is read by the import."""
-    tree = ast.parse(
-        "a = [\n1,\n]\ndef f(\nb=2,\n):\n    if b:\n        return (\n3)\nclass C:\n    d = 4"
+    source = (
+        "a = [\n1,\n]\ndef f(\nb=2,\n):\n    if b > c:\n        return (\n3)\nclass C:\n    d = 4"
     )
-    assert statement(tree, 2) == (range(1, 4), True)
-    assert statement(tree, 5) == (range(4, 7), True)
-    assert statement(tree, 7) == (range(7, 8), False)
-    assert statement(tree, 9) == (range(8, 10), False)
-    assert statement(tree, 11) == (range(11, 12), True)
+    every = (mutant("a.py", source, place) for place in range(count(source)))
+    assert {one.line: (one.statement, one.is_imported) for one in every} == {
+        2: (range(1, 4), True),
+        5: (range(4, 7), True),
+        7: (range(7, 8), False),
+        9: (range(8, 10), False),
+        11: (range(11, 12), True),
+    }
 
 
-def test_the_first_tests_are_those_of_five_seconds_and_all_stay_within_the_budget() -> None:
+def test_the_tests_of_a_mutant_stay_within_the_budget() -> None:
     """At least one is run, how long it may take."""
-    seconds = {"a": 2.0, "b": 2.0, "c": 2.0, "d": 90.0}
-    assert [list(lot) for lot in stages(list(seconds), seconds, 10)] == [["a", "b"], ["c"]]
-    assert [list(lot) for lot in stages(["d", "a"], seconds, 10)] == [["d"]]
-    assert stages([], seconds, 10) == []
+    seconds = {"a": 2.0, "b": 2.0, "c": 90.0}
+    assert list(within(list(seconds), seconds, 10)) == ["a", "b"]
+    assert list(within(["c", "a"], seconds, 10)) == ["c"]
+    assert within([], seconds, 10) == {}
 
 
-SOUND = (
-    "def ends(n: int) -> bool:\n    while n != 0:\n        n -= 1  # to the end\n    return True\n"
-)
+SOUND = """
+LAST = 0
+def ends(n: int) -> bool:
+    while n != LAST:
+        n -= 1  # to the end
+    return True
+"""
 TESTS_OF_IT = """
 from pathlib import Path
 from taylor_verify.ending import ends
-def test_ends(): assert ends(2)
+def test_ends(): assert ends(2) and ends(0)
 def test_comment(): assert "#" in Path("verify/taylor_verify/ending.py").read_text()
 """
 
@@ -117,19 +124,19 @@ def copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Copy:
 def test_a_mutant_that_fails_or_does_not_end_is_noticed(
     copy: Copy, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """One that behaves as before is not, and neither is one on whose line no test is known."""
+    """One that behaves as before is not, and neither is one whose line no test runs."""
     monkeypatch.setattr("mutants.copied.START", 0.5)
     name = "tests/test_ending.py::test_ends"
     mutants = [mutant("ending.py", SOUND, place) for place in range(count(SOUND))]
-    noticing = {one.after: copy.noticing(one, [{name: 0.0}]) for one in mutants}
-    assert noticing == {
-        "while n == 0:": None,
-        "while n != 1:": None,
+    noticed = dict(copy.noticing({one: {name: 0.0} for one in mutants}))
+    assert {one.after: noticed[one] for one in mutants} == {
+        "LAST = 1": name,  # without end; in its file, for an import runs it
+        "while n == LAST:": None,
         "n += 1": name,  # without end
         "n -= 2": None,
         "return False": name,
     }
-    assert copy.noticing(mutants[-1], []) is None
+    assert dict(copy.noticing({mutants[0]: {}})) == {mutants[0]: None}
 
 
 @pytest.mark.slow
@@ -138,7 +145,7 @@ def test_a_test_that_fails_without_a_mutant_notices_nothing(copy: Copy) -> None:
     every = dict.fromkeys(
         ("tests/test_ending.py::test_comment", "tests/test_ending.py::test_ends"), 0.0
     )
-    assert copy.failing_without([mutant("ending.py", SOUND, 0)], every) == {next(iter(every))}
+    assert copy.failing([mutant("ending.py", SOUND, 0)], every) == {next(iter(every))}
 
 
 def test_the_sound_module_comes_back_whatever_happens(copy: Copy) -> None:
@@ -147,7 +154,7 @@ def test_the_sound_module_comes_back_whatever_happens(copy: Copy) -> None:
     before = file.stat().st_mtime_ns
 
     def stop() -> None:
-        with copy.changed({"ending.py": "pass"}):
+        with copy._changed({"ending.py": "pass"}):
             assert file.read_text(encoding="utf-8") == "pass"
             raise KeyboardInterrupt
 

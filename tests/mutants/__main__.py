@@ -8,53 +8,24 @@ import sys
 from collections.abc import Mapping, Sequence
 from typing import Final
 
-from mutants.copied import Copy, copied
+from mutants.copied import copied
 from mutants.draw import drawn, of_line
 from mutants.mutant import Mutant
-from mutants.trace import Trace, trace
+from mutants.trace import trace
 
 ROOMS: Final = ("claims", "exact", "judge")
 AIM: Final = 0.97
-# Seconds of the tests that are tried first: most mutants are noticed by them.
-FIRST: Final = 5
 
 
-def stages(
-    names: Sequence[str], seconds: Mapping[str, float], budget: float
-) -> list[dict[str, float]]:
-    """Return the first tests that take no longer than the budget together, at least one, in two lots."""
-    lots: tuple[dict[str, float], dict[str, float]] = ({}, {})
-    spent = 0.0
+def within(names: Sequence[str], seconds: Mapping[str, float], budget: float) -> dict[str, float]:
+    """Return the seconds of the first tests that stay within the budget together, of one at least."""
+    chosen, spent = {}, 0.0
     for name in names:
         spent += seconds[name]
-        if lots[0] and spent > budget:
+        if chosen and spent > budget:
             break
-        lots[bool(lots[0]) and spent > FIRST][name] = seconds[name]
-    return [lot for lot in lots if lot]
-
-
-def noticed(
-    mutants: Sequence[Mutant], measured: Trace, copy: Copy, budget: float
-) -> tuple[dict[Mutant, str], list[Mutant]]:
-    """Return who is noticed, by which test, and who lived. Both are printed as they come."""
-    by: dict[Mutant, str] = {}
-    lived = []
-    for n, mutant in enumerate(mutants, 1):
-        every = measured.tests_of(mutant)
-        lots = stages(every, measured.seconds, budget)
-        name = copy.noticing(mutant, lots)
-        if name is None:
-            lived.append(mutant)
-            tried = sum(map(len, lots))
-            print(f"lived {tried} of the {len(every)} tests that run it: {mutant}", flush=True)
-        else:
-            by[mutant] = name
-            print(
-                f"{n}/{len(mutants)} {mutant.path}:{mutant.line} {name}",
-                file=sys.stderr,
-                flush=True,
-            )
-    return by, lived
+        chosen[name] = seconds[name]
+    return chosen
 
 
 def main() -> int:
@@ -76,17 +47,26 @@ def main() -> int:
         mutants = of_line(path, int(line))
     else:
         mutants = drawn(given.rooms, given.after + given.count, given.seed)[given.after :]
+    every = {one: measured.tests_of(one) for one in mutants}
+    tests = {one: within(names, measured.seconds, given.budget) for one, names in every.items()}
+    by: dict[Mutant, str] = {}
     with copied() as copy:
-        by, lived = noticed(mutants, measured, copy, given.budget)
-        seconds = {name: measured.seconds[name] for name in by.values()}
-        failing = copy.failing_without(list(by), seconds)
-    for mutant, name in by.items():
-        if name in failing:
-            lived.append(mutant)
-            print(f"lived, for {name} fails without it: {mutant}", flush=True)
-    score = 1 - len(lived) / len(mutants)
+        for n, (one, name) in enumerate(copy.noticing(tests), 1):
+            if name:
+                by[one] = name
+                print(
+                    f"{n}/{len(mutants)} {one.path}:{one.line} {name}", file=sys.stderr, flush=True
+                )
+            else:
+                of_all = f"{len(tests[one])} of the {len(every[one])} tests that run it"
+                print(f"lived after {of_all}: {one}", flush=True)
+        failing = copy.failing(mutants, {name: measured.seconds[name] for name in by.values()})
+    for one in [one for one, name in by.items() if name in failing]:
+        print(f"lived, for {by[one]} fails without it: {one}", flush=True)
+        del by[one]
+    score = len(by) / len(mutants)
     place = f"after {given.after} of seed {given.seed}"
-    print(f"{len(mutants) - len(lived)} of {len(mutants)} mutants noticed: {score:.1%}, {place}")
+    print(f"{len(by)} of {len(mutants)} mutants noticed: {score:.1%}, {place}")
     return 0 if score >= AIM else 1
 
 

@@ -3,28 +3,26 @@
 from __future__ import annotations
 
 import ast
-import compileall
 import json
 import os
 import shutil
-import signal
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
-
-import pytest
 
 from mutants.mutant import Mutant
 from mutants.trace import ROOT
 
 # A test is ended after this many times its seconds of processor time, and what caches may have saved it.
-PATIENCE, START = 8, 20
-# One that waits takes no processor time. It is ended too, but that says nothing of a mutant.
-WAIT = 3600
+PATIENCE, START = 8, 10
+
+
+class ServerError(Exception):
+    """The error for a process of tests that ended before its jobs."""
 
 
 @dataclass(frozen=True)
@@ -33,10 +31,44 @@ class Copy:
 
     place: Path
 
+    def noticing(
+        self, mutants: Mapping[Mutant, Mapping[str, float]]
+    ) -> Iterator[tuple[Mutant, str | None]]:
+        """Yield each mutant with the first of its tests that notices it, or None.
+
+        The tests are given with their seconds. Code that an import runs is changed in its file, other
+        code in the process that has imported it.
+        """
+        tried = {mutant: limits(tests) for mutant, tests in mutants.items() if tests}
+        yield from ((mutant, None) for mutant in mutants if mutant not in tried)
+        shared = [mutant for mutant in tried if not mutant.is_imported]
+        jobs = [((one.path, one.place), tried[one]) for one in shared]
+        yield from zip(shared, self._ended(jobs), strict=True)
+        for one in (mutant for mutant in tried if mutant.is_imported):
+            with self._changed({one.path: one.text}):
+                try:
+                    yield one, next(self._ended([(None, tried[one])]))
+                except ServerError:  # the import itself
+                    yield one, next(iter(tried[one]))
+
+    def failing(self, mutants: Sequence[Mutant], seconds: Mapping[str, float]) -> set[str]:
+        """Return which of these tests fail by themselves without a mutant, or take half their limit.
+
+        The modules of the mutants are without their comments here, too.
+        """
+        texts = {one.path: (self._package / one.path).read_text("utf-8") for one in mutants}
+        with self._changed({path: ast.unparse(ast.parse(text)) for path, text in texts.items()}):
+            jobs = [(None, {name: limit / 2}) for name, limit in limits(seconds).items()]
+            return {name for name in self._ended(jobs) if name}
+
+    @property
+    def _package(self) -> Path:
+        return self.place / "verify/taylor_verify"
+
     @contextmanager
-    def changed(self, texts: Mapping[str, str]) -> Iterator[None]:
+    def _changed(self, texts: Mapping[str, str]) -> Iterator[None]:
         """Set other texts for modules, and bring the sound ones back."""
-        files = [self.place / "verify/taylor_verify" / path for path in texts]
+        files = [self._package / path for path in texts]
         for file, text in zip(files, texts.values(), strict=True):
             # Not written over: the file that comes back has the time of its compiled form.
             file.rename(file.with_suffix(".sound"))
@@ -47,71 +79,50 @@ class Copy:
             for file in files:
                 file.with_suffix(".sound").replace(file)
 
-    def failing(self, seconds: Mapping[str, float]) -> str | None:
-        """Return the first of these tests that fails or takes too long.
-
-        It is the first of all where an import fails.
-        """
-        chosen = self.place / "chosen.json"
-        chosen.write_text(json.dumps(seconds), encoding="utf-8")
-        running = chosen.with_suffix(".running")
-        running.write_text(next(iter(seconds)), encoding="utf-8")
+    def _ended(
+        self, jobs: Sequence[tuple[tuple[str, int] | None, Mapping[str, float]]]
+    ) -> Iterator[str | None]:
+        """Yield the test that ended each job, or None (``mutants.serving``)."""
+        if not jobs:
+            return
+        written = [{"mutant": mutant, "limits": tests} for mutant, tests in jobs]
+        (self.place / "jobs.json").write_text(json.dumps(written), encoding="utf-8")
+        files = sorted({name.partition("::")[0] for _, tests in jobs for name in tests})
         sources = (self.place / "verify", self.place / "tests", os.environ.get("PYTHONPATH", ""))
+        reading, writing = os.pipe()
         environment = {
             **os.environ,
             "PYTHONPATH": os.pathsep.join(map(str, sources)),
-            # Compiled once, and never of a mutant.
+            # What is compiled of a mutant would be taken for the sound module.
             "PYTHONDONTWRITEBYTECODE": "1",
-            "MUTANTS_CHOSEN": str(chosen),
+            "MUTANTS_PLACE": str(self.place),
+            "MUTANTS_PIPE": str(writing),
         }
-        files = dict.fromkeys(name.partition("::")[0] for name in seconds)
-        command = [
-            *(sys.executable, "-m", "pytest", "-x", "-q", "-p", "mutants.choosing"),
-            *("-p", "no:cacheprovider", *files),
-        ]
-        with subprocess.Popen(
-            command,
-            cwd=self.place,
-            env=environment,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-            start_new_session=True,
-        ) as process:
-            try:
-                ended = process.wait(WAIT)
-            finally:
-                if process.poll() is None:
-                    os.killpg(process.pid, signal.SIGKILL)
-        return None if ended == pytest.ExitCode.OK else running.read_text(encoding="utf-8")
+        command = (sys.executable, "-m", "pytest", "-q", "-p", "mutants.serving", *files)
+        with (
+            (self.place / "log").open("w") as log,
+            subprocess.Popen(
+                (*command, "-p", "no:cacheprovider"),
+                cwd=self.place,
+                env=environment,
+                stdout=log,
+                stderr=log,
+                pass_fds=(writing,),
+            ),
+        ):
+            os.close(writing)
+            with os.fdopen(reading, encoding="utf-8") as lines:
+                number = 0
+                for line in lines:
+                    number += 1
+                    yield json.loads(line)
+        if number < len(jobs):
+            raise ServerError((self.place / "log").read_text(encoding="utf-8"))
 
-    def noticing(self, mutant: Mutant, stages: Sequence[Mapping[str, float]]) -> str | None:
-        """Return the test that notices a mutant, of some lots of tests with their seconds."""
-        with self.changed({mutant.path: mutant.text}), suppress(subprocess.TimeoutExpired):
-            for seconds in stages:
-                limits = {name: START + PATIENCE * took for name, took in seconds.items()}
-                if name := self.failing(limits):
-                    return name
-        return None
 
-    def failing_without(self, mutants: Sequence[Mutant], seconds: Mapping[str, float]) -> set[str]:
-        """Return which of these tests fail without a mutant, or take more than half their limit.
-
-        The modules of the mutants are without their comments here, too.
-        """
-        paths = {mutant.path for mutant in mutants}
-        files = {path: (self.place / "verify/taylor_verify" / path) for path in paths}
-        sound = {
-            path: ast.unparse(ast.parse(file.read_text("utf-8"))) for path, file in files.items()
-        }
-        left, failing = dict(seconds), set[str]()
-        with self.changed(sound):
-            while left:
-                name = self.failing({test: (START + PATIENCE * left[test]) / 2 for test in left})
-                if name is None:
-                    return failing
-                failing.add(name)
-                del left[name]
-        return failing
+def limits(seconds: Mapping[str, float]) -> dict[str, float]:
+    """Return the seconds of processor time after which each test is ended."""
+    return {name: START + PATIENCE * took for name, took in seconds.items()}
 
 
 @contextmanager
@@ -124,5 +135,4 @@ def copied() -> Iterator[Copy]:
                 shutil.copytree(entry, place / entry.name)
             elif not entry.name.startswith("."):
                 (place / entry.name).symlink_to(entry)
-        compileall.compile_dir(place / "verify", quiet=2)
         yield Copy(place)

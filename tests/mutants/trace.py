@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import hashlib
 import json
 import os
@@ -18,7 +17,7 @@ from typing import Final
 import coverage
 import pytest
 
-from mutants.mutant import PACKAGE, VERIFY, Mutant
+from mutants.mutant import PACKAGE, VERIFY, Mutant, module_name
 
 ROOT: Final = VERIFY.parent
 TESTS: Final = ROOT / "tests"
@@ -82,7 +81,7 @@ class Trace:
         Those of files about its module come first, the quick ones before the others. Of a test with
         parameters the quickest comes in the first round, and one more in each round.
         """
-        about = {file for file in self._files if _imports(ROOT / file, mutant.module)}
+        about = {file for file in self._files if _imports(ROOT / file, module_name(mutant.path))}
         rank: Counter[str] = Counter()
         order = []
         for name in sorted(self._running(mutant, about), key=self.seconds.__getitem__):
@@ -97,12 +96,10 @@ class Trace:
 
     def _running(self, mutant: Mutant, about: set[str]) -> set[str]:
         """Return the tests that run a line; of one that is run by an import, those of all who import it."""
-        source = (PACKAGE / mutant.path).read_text(encoding="utf-8")
-        lines, imported = statement(ast.parse(source), mutant.line)
         here = self._lines[mutant.path]
-        if not imported:
-            return here[mutant.line] or {name for line in lines for name in here[line]}
-        users = (path for path in self._lines if _imports(PACKAGE / path, mutant.module))
+        if not mutant.is_imported:
+            return here[mutant.line] or {name for line in mutant.statement for name in here[line]}
+        users = (path for path in self._lines if _imports(PACKAGE / path, module_name(mutant.path)))
         modules = (self._lines[path] for path in (mutant.path, *users))
         running = {name for tests in modules for names in tests.values() for name in names}
         return running | {name for name in self.seconds if name.partition("::")[0] in about}
@@ -110,18 +107,6 @@ class Trace:
 
 def _imports(file: Path, module: str) -> bool:
     return f"{module} import" in file.read_text(encoding="utf-8")
-
-
-def statement(tree: ast.AST, line: int) -> tuple[range, bool]:
-    """Return the lines of the statement of a line, without its body; and whether an import runs it."""
-    lines, imported = range(line, line + 1), True
-    for node in ast.walk(tree):
-        if isinstance(node, ast.stmt) and node.lineno <= line <= (node.end_lineno or node.lineno):
-            body = getattr(node, "body", None)
-            end = body[0].lineno if body else (node.end_lineno or node.lineno) + 1
-            lines = range(node.lineno, end)
-            imported &= not (isinstance(node, ast.FunctionDef) and line >= end)
-    return lines, imported
 
 
 def trace(rooms: Sequence[str], tests: Sequence[str]) -> Trace:
