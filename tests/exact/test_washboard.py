@@ -27,8 +27,8 @@ from taylor_verify.exact.euler.moments.washboard import balls, chebyshev
 from taylor_verify.exact.euler.moments.washboard.balls import Turn
 from taylor_verify.exact.euler.moments.washboard.board import Washboard
 from taylor_verify.exact.euler.moments.washboard.panels import Panels
-from taylor_verify.exact.euler.moments.washboard.speed import speed
-from taylor_verify.exact.euler.moments.washboard.turnings import regime, turnings
+from taylor_verify.exact.euler.moments.washboard.speed import Growing, speed
+from taylor_verify.exact.euler.moments.washboard.turnings import _summit, regime, turnings
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
 from taylor_verify.exact.taylor import TaylorSolution
@@ -227,6 +227,19 @@ def test_the_ends_are_where_the_spin_is_zero_and_nowhere_between(name: str) -> N
             else:
                 down = (top - ends.lower) - z
                 assert from_above(acb(-down)).real < 0
+
+
+@pytest.mark.parametrize("moment", ["1/1000", "1/10", "1"])
+def test_from_rest_the_ends_are_sought_from_where_the_spin_is_greatest(moment: str) -> None:
+    """There F is positive and its slope is zero, however near it lies to the start."""
+    washboard = board(axial(1, moment, vector("1/9", 0, "1/10")))
+    assert not washboard.never_climbs
+    with ctx.workprec(160):
+        F = speed(washboard)
+        assert isinstance(F, Growing)
+        summit = _summit(F)
+        assert F.squared(summit) > 0
+        assert abs(F.derivative(summit)) <= F.slope * arb(2) ** -100
 
 
 # Between a swing and a run.
