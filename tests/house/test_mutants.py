@@ -9,7 +9,7 @@ import pytest
 from mutants.__main__ import within
 from mutants.copied import Copy
 from mutants.draw import drawn, equivalents, of_line
-from mutants.mutant import PACKAGE, count, lines, mutant
+from mutants.mutant import PACKAGE, changed, count, lines, mutant
 from mutants.trace import TESTS
 
 CHANGED = [
@@ -171,8 +171,7 @@ def test_who_is_called_equivalent_is_a_mutant_still() -> None:
         # As it is printed, every statement is a line.
         printed = ast.unparse(ast.parse(source))
         rows = [row.strip() for row in printed.splitlines()]
-        of_row = (
-            mutant(path, source, n) for n, at in enumerate(lines(printed)) if rows[at - 1] == before
-        )
-        assert after in {one.after for one in of_row}, f"{path}: {before}"
+        changes = [(n, at - 1) for n, at in enumerate(lines(printed)) if rows[at - 1] == before]
+        mutants = [(ast.unparse(changed(source, n)), at) for n, at in changes]
+        assert after in {text.splitlines()[at].strip() for text, at in mutants}, f"{path}: {before}"
         assert why.endswith(".")
