@@ -64,9 +64,10 @@ dist: $(INSTALLED)  ## Build wheel and sdist into dist, and check what is in the
 	@$(BIN)/uvx --quiet check-wheel-contents@0.6.3 dist/taylor_verify-*.whl
 	@$(BIN)/uvx --quiet pyroma@5.0.1 --min 8 dist/taylor_verify-*.tar.gz
 
-# At the lowest priority, for an hour or more: first which tests run which line, then COUNT mutants.
+# At the lowest priority, for an hour or more: first which tests run which line (a stop loses one file of
+# tests), then COUNT mutants of SEED, or those of a LINE.
 mutants: $(INSTALLED)  ## Change single signs and constants of exact, judge and claims: do the tests notice?
-	@PYTHONPATH=tests $(BIN)/python -m mutants $(if $(COUNT),--count $(COUNT)) $(if $(SEED),--seed $(SEED))
+	@PYTHONPATH=tests $(BIN)/python -m mutants $(if $(COUNT),--count $(COUNT)) $(if $(SEED),--seed $(SEED)) $(if $(LINE),--line $(LINE))
 
 reports: $(INSTALLED)  ## Rewrite what is published: reports/data, what is made from it, reports/reference and reports/claims.md
 	@$(BIN)/taylor-verify publish controls extremes > /dev/null

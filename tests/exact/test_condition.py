@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,7 @@ from builders.scenes import (
 )
 from mpmath import mp, mpf
 
-from taylor_verify.exact.conditioning.condition import Path, transition
+from taylor_verify.exact.conditioning.condition import Path, many, transition
 from taylor_verify.exact.conditioning.differences import Derivatives, derivatives
 from taylor_verify.exact.conditioning.flow import Flow
 from taylor_verify.exact.conditioning.variation import integrated
@@ -324,3 +325,18 @@ def test_where_float64_cannot_follow_there_are_no_variational_norms() -> None:
     near = vector("1e-40", 1, "1e-40")
     saddle = sample_scene(RigidBody(turned), start=Spin(apply(turn, near)))
     assert integrated(saddle, Flow.of(saddle), times(0, 400)) is None
+
+
+# The choice of times.
+
+
+@pytest.mark.parametrize("end", [40, -40])
+def test_points_lie_a_radian_apart_up_to_the_last_sample(end: int) -> None:
+    """Also where most of the time lies between the last two samples, and backward in time."""
+    times = many([Fraction(0), Fraction(end, 40), Fraction(end)], rate=2.0)
+    assert (times[0], times[-1]) == (0, end)
+    # A 64th part of the time is longer than a radian after 32 units.
+    for a, b in pairwise(times):
+        assert abs(b) > abs(a)
+        # A sum is rounded once.
+        assert abs(b - a) <= max(Fraction(1, 2), abs(a) / 64) + abs(b) / 2**53

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations
+from math import comb
 from random import Random
 from typing import Any
 
@@ -398,6 +399,29 @@ def test_nutations_of_small_tilt_are_counted_whole() -> None:
     # A hundred times less for a tenth of the tilt, but for the next order, tilt^2.
     assert abs(misses[0] / misses[1] - 100) <= 1
     assert abs(misses[1]) <= mpf("1e-4")
+
+
+@pytest.mark.parametrize("name", ["falling-away", "onto-the-axis", "half-turn", "half-turn-path"])
+def test_an_end_that_is_approached_is_a_root_of_both_f_and_its_slope(name: str) -> None:
+    """At it f'' is twice the square of the rate: from one side, or from both where it turns over."""
+    scene = load(f"kirchhoff/{name}")
+    orbit, f = elements(scene, DIGITS), nutation(scene).f
+    with mp.workdps(DIGITS):
+        curvatures = []
+        for end in (orbit["x3_low"].value, orbit["x3_high"].value):
+            slope, half = (
+                sum(
+                    comb(k, n) * mp.convert(c) * end ** (k - n)
+                    for k, c in enumerate(f[::-1])
+                    if k >= n
+                )
+                for n in (1, 2)
+            )
+            if abs(slope) <= CLOSE:
+                curvatures.append(half)
+        assert curvatures
+        for half in curvatures:
+            assert abs(half - orbit["approach_rate"].value ** 2) <= CLOSE
 
 
 def test_the_homoclinic_axis_is_left_at_twice_the_growth_of_its_tilt() -> None:

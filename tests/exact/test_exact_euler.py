@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -21,6 +22,7 @@ from taylor_verify.exact.euler.closed import closed_form
 from taylor_verify.exact.euler.jacobi import free_rotation
 from taylor_verify.exact.euler.orbit import Orbit, principal_frame
 from taylor_verify.exact.euler.regime import FreeSpin, Regime
+from taylor_verify.exact.euler.rotations import decades
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Clock, Spin
@@ -647,3 +649,11 @@ def test_separatrix_has_no_period() -> None:
     orbit = elements(load("euler/separatrix"), 30)
     assert "period" not in orbit
     assert orbit["m_prime"].value == 0
+
+
+@given(st.fractions(min_value=Fraction(1, 10**9), max_value=10**9))
+def test_the_decades_of_a_ratio_are_a_close_upper_bound(ratio: Fraction) -> None:
+    """Never too few, and at most those of one factor of two too many."""
+    excess = decades(ratio) - math.log10(ratio)
+    # Ten roundings of numbers below ten.
+    assert -1e-13 <= excess <= math.log10(2) + 1e-13

@@ -143,6 +143,15 @@ def test_p_has_its_period(name: str) -> None:
             assert cell.p(acb(period * k / 8))[0].real > least.real
 
 
+@pytest.mark.parametrize("name", ["large roots close", "small roots close"])
+def test_a_period_loses_no_bits_to_roots_that_are_close(name: str) -> None:
+    """Also where the roots share half of the bits and more."""
+    with ctx.workprec(BITS):
+        period = lattice(*CASES[name]).period
+        assert period is not None
+        assert period.rel_accuracy_bits() >= BITS - 16
+
+
 @pytest.mark.parametrize("name", ["double root, positive", "triple root"])
 def test_without_a_period_there_is_none(name: str) -> None:
     """A double root e > 0 or a triple one leaves p without a real period."""

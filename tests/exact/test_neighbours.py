@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from types import SimpleNamespace
+from typing import Any
 
+import gmpy2
 import numpy as np
 import pytest
 from mpmath import mp, mpf
 
 from taylor_verify.exact.conditioning import neighbours as module
-from taylor_verify.exact.conditioning.neighbours import neighbours
+from taylor_verify.exact.conditioning.neighbours import _Arcs, neighbours
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.taylor import arcs
 from taylor_verify.scenes.motion import Motion, State
@@ -143,3 +146,15 @@ def test_too_low_an_order_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
         assert asked(scene, states, 16) is not None
         monkeypatch.setattr(module, "_PARTS", (2, 4))
         assert asked(scene, states, 16) is None
+
+
+def test_an_error_of_one_block_is_held_to_that_block() -> None:
+    """An error that a large impulse does not notice is too large for a small one beside it."""
+    blocks = np.array([[1e-9] * 3 + [1.0] * 3])
+    counted: Any = SimpleNamespace(
+        momentum=lambda _: blocks, counted=lambda z: z, _has_turn=False, _has_centre=False
+    )
+    exact = Motion({}, np.zeros(1))
+    for first, is_negligible in ((True, False), (False, True)):
+        errors = np.array([[1e-12] * 3 + [0.0] * 3 if first else [0.0] * 3 + [1e-12] * 3])
+        assert _Arcs.is_negligible(counted, errors, gmpy2.mpfr(1), exact, 6) == is_negligible

@@ -20,13 +20,15 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
+from taylor_verify.exact.balls import Undecidable
 from taylor_verify.exact.conditioning import condition, differences
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.euler.moments.washboard import balls, chebyshev
 from taylor_verify.exact.euler.moments.washboard.balls import Turn
+from taylor_verify.exact.euler.moments.washboard.board import Washboard
 from taylor_verify.exact.euler.moments.washboard.panels import Panels
-from taylor_verify.exact.euler.moments.washboard.speed import speed
-from taylor_verify.exact.euler.moments.washboard.turnings import regime, turnings
+from taylor_verify.exact.euler.moments.washboard.speed import Growing, speed
+from taylor_verify.exact.euler.moments.washboard.turnings import _summit, regime, turnings
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
 from taylor_verify.exact.taylor import TaylorSolution
@@ -227,7 +229,38 @@ def test_the_ends_are_where_the_spin_is_zero_and_nowhere_between(name: str) -> N
                 assert from_above(acb(-down)).real < 0
 
 
+@pytest.mark.parametrize("moment", ["1/1000", "1/10", "1"])
+def test_from_rest_the_ends_are_sought_from_where_the_spin_is_greatest(moment: str) -> None:
+    """There F is positive and its slope is zero, however near it lies to the start."""
+    washboard = board(axial(1, moment, vector("1/9", 0, "1/10")))
+    assert not washboard.never_climbs
+    with ctx.workprec(160):
+        F = speed(washboard)
+        assert isinstance(F, Growing)
+        summit = _summit(F)
+        assert F.squared(summit) > 0
+        assert abs(F.derivative(summit)) <= F.slope * arb(2) ** -100
+
+
 # Between a swing and a run.
+
+
+def test_a_precision_that_tells_no_swing_from_a_run_says_so() -> None:
+    """Halved until both differ by 2^-20, which 24 bits do not tell and 40 bits do."""
+    low, high = Fraction(-1, 5), Fraction(-1, 2)
+
+    def washboard(spin: Fraction) -> Washboard:
+        return board(axial(2, "1/20", (Fraction(1, 2), Fraction(3, 5), spin)))
+
+    for _ in range(20):
+        middle = (low + high) / 2
+        is_swing = regime(washboard(middle)) == "washboard-swing"
+        low, high = (middle, high) if is_swing else (low, middle)
+    for spin, is_swing in ((low, True), (high, False)):
+        with ctx.workprec(40):
+            assert (turnings(washboard(spin)).upper is not None) == is_swing
+        with ctx.workprec(24), pytest.raises(Undecidable):
+            turnings(washboard(spin))
 
 
 def test_a_swing_and_a_run_a_part_in_ten_to_the_twelve_apart_are_told() -> None:

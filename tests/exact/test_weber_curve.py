@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from fractions import Fraction
 from itertools import pairwise
+from types import SimpleNamespace
+from typing import cast
 
 import pytest
 from builders.webers import BODIES, built, case, curve_of, second
@@ -20,9 +22,9 @@ from taylor_verify.exact.kirchhoff.weber.characteristics import (
     is_odd,
     of_pair,
 )
-from taylor_verify.exact.kirchhoff.weber.curve import curve
+from taylor_verify.exact.kirchhoff.weber.curve import Curve, curve
 from taylor_verify.exact.kirchhoff.weber.integrals import branch_points, jacobian
-from taylor_verify.exact.kirchhoff.weber.quadrature import real_jacobian
+from taylor_verify.exact.kirchhoff.weber.quadrature import narrowness, real_jacobian
 from taylor_verify.exact.kirchhoff.weber.riemann import Thetas
 from taylor_verify.exact.solution import NoClosedForm
 from taylor_verify.scenes import tensors
@@ -142,3 +144,11 @@ def test_the_periods_of_both_routes_are_one_matrix(body: str) -> None:
         assert other.Y[0] * other.Y[2] > other.Y[1] ** 2
         for a, b in zip(one.rate + one.neumann, other.rate + other.neumann, strict=True):
             assert abs(midpoint(a) - b) <= mpf(10) ** -45
+
+
+@given(st.integers(1, 60))
+def test_the_digits_that_two_branch_points_share_are_counted(shared: int) -> None:
+    """As many are lost by a difference, and one more: the gap is a share of 2/10^n of all."""
+    points = [Fraction(1), 1 + Fraction(6, 10**shared), *map(Fraction, (2, 3, 4))]
+    branches = SimpleNamespace(branches=[surds.Surd(e) for e in points])
+    assert narrowness(cast(Curve, branches)) == shared + 1

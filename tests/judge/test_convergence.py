@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from taylor_verify.judge.series.convergence import Sweep, sweep
 from taylor_verify.models.problem import Problem
-from taylor_verify.records.convergence import convergence
+from taylor_verify.records.convergence import Convergence, convergence
 from taylor_verify.scenes.scene import Scene
 
 HALVED = [2.0**-k for k in range(1, 11)]
@@ -190,6 +190,24 @@ def test_only_the_vector_in_space_sees_it(averaged: Sweep) -> None:
     assert orders["H_space"] == pytest.approx(2, abs=0.25)
     # Of energy and momentum RK4 loses one order less than of the state.
     assert min(orders["T"], orders["H2"]) >= 3.75
+
+
+@pytest.mark.parametrize(
+    ("order", "word"),
+    [
+        (1.02, "1st"),
+        (2, "2nd"),
+        (3, "3rd"),
+        (4, "4th"),
+        (11, "11th"),
+        (21, "21st"),
+        (1.5, "1.50th"),
+    ],
+)
+def test_an_order_near_a_whole_number_is_that_ordinal(order: float, word: str) -> None:
+    """Any other order is shown with its digits."""
+    fit = Convergence(order=order, spread=0.0, steps=(), level=None, reason="")
+    assert Sweep({"omega": fit}, ()).reason == f"omega is {word} order"
 
 
 def test_explicit_euler_is_first_order() -> None:

@@ -241,6 +241,12 @@ def test_a_power_of_time_is_read_from_the_errors(power: float, scale: float) -> 
     assert power_of_time(elapsed, scale * np.where(elapsed < 100, 1.0, 1e4)) is None
 
 
+def test_a_constant_error_never_falls_below_nine_tenths_of_its_largest() -> None:
+    """An error that reaches nine tenths is constant, one that falls below them is not."""
+    assert is_constant(np.array([1.0, 0.9, 1.0, 0.95, 1.0]))
+    assert not is_constant(np.array([1.0, 0.9 - 2**-52, 1.0, 0.95, 1.0]))
+
+
 def test_few_samples_show_no_course() -> None:
     """Three rows are no power of time, no constant and no bound."""
     elapsed, errors = np.array([0.0, 1.0, 2.0]), np.array([1.0, 1.0, 1.0])

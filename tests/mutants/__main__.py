@@ -4,71 +4,27 @@ from __future__ import annotations
 
 import argparse
 import os
-import shutil
-import signal
-import subprocess
 import sys
-from collections.abc import Sequence
-from pathlib import Path
-from tempfile import TemporaryDirectory
+from collections.abc import Mapping, Sequence
 from typing import Final
 
-from mutants.draw import drawn
-from mutants.mutant import VERIFY, Mutant
-from mutants.trace import ROOT, TESTS, Trace, trace
+from mutants.copied import copied
+from mutants.draw import drawn, of_line
+from mutants.mutant import Mutant
+from mutants.trace import trace
 
 ROOMS: Final = ("claims", "exact", "judge")
 AIM: Final = 0.97
-# A mutant that runs on and on is noticed: what takes this many times as long, and a start of Python.
-PATIENCE, START = 10, 60
 
 
-def is_noticed(mutant: Mutant, tests: Sequence[str], seconds: float) -> bool:
-    """Return True if one of the tests fails or does not end, in a copy of the sources with the mutant."""
-    with TemporaryDirectory(prefix="mutant-") as place:
-        sources = Path(place) / "verify"
-        shutil.copytree(VERIFY, sources, ignore=shutil.ignore_patterns("__pycache__"))
-        (Path(place) / "cases").symlink_to(ROOT / "cases")
-        (sources / "taylor_verify" / mutant.path).write_text(mutant.text, encoding="utf-8")
-        chosen = Path(place) / "chosen"
-        chosen.write_text("\n".join(tests), encoding="utf-8")
-        files = dict.fromkeys(name.partition("::")[0] for name in tests)
-        environment = {
-            **os.environ,
-            "PYTHONPATH": os.pathsep.join(
-                (str(sources), str(TESTS), os.environ.get("PYTHONPATH", ""))
-            ),
-            # A copy of the same size and second would be taken for the one before.
-            "PYTHONDONTWRITEBYTECODE": "1",
-            "MUTANTS_CHOSEN": str(chosen),
-        }
-        command = [
-            *(sys.executable, "-m", "pytest", "-x", "-q", "-p", "mutants.choosing"),
-            *("-p", "no:cacheprovider", *files),
-        ]
-        with subprocess.Popen(
-            command,
-            cwd=ROOT,
-            env=environment,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-            start_new_session=True,
-        ) as running:
-            try:
-                return running.wait(START + PATIENCE * seconds) != 0
-            except subprocess.TimeoutExpired:
-                os.killpg(running.pid, signal.SIGKILL)
-                return True
-
-
-def within(tests: Sequence[str], trace: Trace, budget: float) -> list[str]:
-    """Return the first tests that take no longer than the budget together, at least one of them."""
-    chosen, spent = [], 0.0
-    for name in tests:
-        spent += trace.seconds[name]
+def within(names: Sequence[str], seconds: Mapping[str, float], budget: float) -> dict[str, float]:
+    """Return the seconds of the first tests that stay within the budget together, of one at least."""
+    chosen, spent = {}, 0.0
+    for name in names:
+        spent += seconds[name]
         if chosen and spent > budget:
             break
-        chosen.append(name)
+        chosen[name] = seconds[name]
     return chosen
 
 
@@ -78,21 +34,39 @@ def main() -> int:
     parser.add_argument("rooms", nargs="*", default=ROOMS, help="default: %(default)s")
     parser.add_argument("--count", type=int, default=60)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument(
+        "--after", type=int, default=0, help="leave out so many that are drawn first"
+    )
+    parser.add_argument("--line", help="PATH:NUMBER: all mutants of a line, instead of a draw")
     parser.add_argument("--budget", type=float, default=120, help="seconds of tests for a mutant")
     given = parser.parse_args()
     os.nice(19)
     measured = trace(ROOMS, [f"tests/{room}" for room in ROOMS])
-    chosen, lived = drawn(given.rooms, given.count, given.seed), 0
-    for n, one in enumerate(chosen, 1):
-        every = measured.tests_of(one)
-        tests = within(every, measured, given.budget)
-        if tests and is_noticed(one, tests, sum(measured.seconds[name] for name in tests)):
-            print(f"{n}/{len(chosen)} noticed {one.path}:{one.line}", file=sys.stderr)
-            continue
-        lived += 1
-        print(f"lived after {len(tests)} of the {len(every)} tests that run it: {one}", flush=True)
-    score = 1 - lived / len(chosen)
-    print(f"{len(chosen) - lived} of {len(chosen)} mutants noticed: {score:.1%}, seed {given.seed}")
+    if given.line:
+        path, _, line = given.line.rpartition(":")
+        mutants = of_line(path, int(line))
+    else:
+        mutants = drawn(given.rooms, given.after + given.count, given.seed)[given.after :]
+    every = {one: measured.tests_of(one) for one in mutants}
+    tests = {one: within(names, measured.seconds, given.budget) for one, names in every.items()}
+    by: dict[Mutant, str] = {}
+    with copied() as copy:
+        for n, (one, name) in enumerate(copy.noticing(tests), 1):
+            if name:
+                by[one] = name
+                print(
+                    f"{n}/{len(mutants)} {one.path}:{one.line} {name}", file=sys.stderr, flush=True
+                )
+            else:
+                of_all = f"{len(tests[one])} of the {len(every[one])} tests that run it"
+                print(f"lived after {of_all}: {one}", flush=True)
+        failing = copy.failing(mutants, {name: measured.seconds[name] for name in by.values()})
+    for one in [one for one, name in by.items() if name in failing]:
+        print(f"lived, for {by[one]} fails without it: {one}", flush=True)
+        del by[one]
+    score = len(by) / len(mutants)
+    place = f"after {given.after} of seed {given.seed}"
+    print(f"{len(by)} of {len(mutants)} mutants noticed: {score:.1%}, {place}")
     return 0 if score >= AIM else 1
 
 

@@ -9,7 +9,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Final
 
-from mutants.mutant import PACKAGE, Mutant, mutant, places
+from mutants.mutant import PACKAGE, Mutant, lines, mutant, places
 
 EQUIVALENT: Final = Path(__file__).with_name("equivalent.toml")
 
@@ -18,6 +18,12 @@ def equivalents() -> dict[tuple[str, str, str], str]:
     """Return why some mutants behave like the code, by path, line before and line after."""
     table = tomllib.loads(EQUIVALENT.read_text(encoding="utf-8"))
     return {(one["path"], one["before"], one["after"]): one["why"] for one in table["mutant"]}
+
+
+def of_line(path: str, line: int) -> list[Mutant]:
+    """Return every mutant of a line, also those that are equivalent."""
+    source = (PACKAGE / path).read_text(encoding="utf-8")
+    return [mutant(path, source, place) for place, at in enumerate(lines(source)) if at == line]
 
 
 def drawn(rooms: Sequence[str], number: int, seed: int) -> list[Mutant]:

@@ -29,7 +29,10 @@ class Mutant:
     """One change of one module, told by the lines of the code that it makes differ."""
 
     path: str  # from the package on, with slashes
+    place: int  # among all mutants of the module
     line: int
+    statement: range  # the lines around it, without those of a body
+    is_imported: bool  # run when the module is imported, and in no function
     before: str
     after: str
     text: str
@@ -37,25 +40,50 @@ class Mutant:
     def __str__(self) -> str:
         return f"{self.path}:{self.line}\n  - {self.before}\n  + {self.after}"
 
-    @property
-    def module(self) -> str:
-        return "taylor_verify." + self.path.removesuffix(".py").replace("/", ".")
+
+def module_name(path: str) -> str:
+    """Return the full name of the module at a path."""
+    return "taylor_verify." + path.removesuffix(".py").replace("/", ".")
+
+
+def lines(source: str) -> list[int]:
+    """Return the line of each mutant of a module."""
+    return [node.lineno for node, _ in _changes(ast.parse(source))]  # type: ignore[attr-defined]
 
 
 def count(source: str) -> int:
     """Return how many mutants a module has."""
-    return sum(1 for _ in _changes(ast.parse(source)))
+    return len(lines(source))
+
+
+def changed(source: str, place: int) -> ast.Module:
+    """Return the code of one mutant, with the lines that the source has."""
+    tree = ast.parse(source)
+    node, fields = next(islice(_changes(tree), place, None))
+    node.__dict__.update(fields)
+    return tree
 
 
 def mutant(path: str, source: str, place: int) -> Mutant:
     """Return one mutant of a module, counted from 0 in the order of its code."""
-    tree = ast.parse(source)
-    sound = ast.unparse(tree).splitlines()
-    node, changed = next(islice(_changes(tree), place, None))
-    node.__dict__.update(changed)
-    text = ast.unparse(tree)
+    sound = ast.unparse(ast.parse(source)).splitlines()
+    text = ast.unparse(changed(source, place))
     ((before, after),) = ((a, b) for a, b in zip(sound, text.splitlines(), strict=True) if a != b)
-    return Mutant(path, node.lineno, before.strip(), after.strip(), text)  # type: ignore[attr-defined]
+    line = lines(source)[place]
+    statement, is_imported = _statement(ast.parse(source), line)
+    return Mutant(path, place, line, statement, is_imported, before.strip(), after.strip(), text)
+
+
+def _statement(tree: ast.AST, line: int) -> tuple[range, bool]:
+    """Return the lines of the statement of a line, without its body; and whether an import runs it."""
+    lines, is_imported = range(line, line + 1), True
+    for node in ast.walk(tree):
+        if isinstance(node, ast.stmt) and node.lineno <= line <= (node.end_lineno or node.lineno):
+            body = getattr(node, "body", None)
+            end = body[0].lineno if body else (node.end_lineno or node.lineno) + 1
+            lines = range(node.lineno, end)
+            is_imported &= not (isinstance(node, ast.FunctionDef) and line >= end)
+    return lines, is_imported
 
 
 def _changes(node: ast.AST) -> Iterator[tuple[ast.AST, dict[str, object]]]:
