@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.records import file_names
+from taylor_verify.records.doubles import Doubles
 from taylor_verify.records.error_kind import ErrorKind
 from taylor_verify.records.json_text import complete, read
 from taylor_verify.records.record import Record
@@ -40,6 +41,8 @@ _SHIFT = ("time_shift", "residual", "shift", "trend", "remains")
 _RUN = ("scene", "solver", "setting", "rung")
 
 _ENCODER: Final = json.JSONEncoder(allow_nan=False, ensure_ascii=False)
+# A number of Python takes some hundred bytes with its text.
+_PIECE: Final = 2**14
 # A row is for programs, and a large file has thousands of them.
 _ROW_ENCODER: Final = json.JSONEncoder(allow_nan=False, ensure_ascii=False, separators=(",", ":"))
 
@@ -166,7 +169,9 @@ def _record_texts(records: Iterable[Record]) -> dict[str, str]:
     texts: dict[str, str] = {}
     for record in records:
         name = record_name(record.scene, record.solver, record.rung)
-        text = laid_out({**_MADE_BY, **record.document()})
+        # The numbers of a record stay packed until they are text.
+        gates = [vars(gate) for gate in record.gates]
+        text = laid_out({**_MADE_BY, **vars(record), "gates": gates})
         if texts.setdefault(name, text) != text:
             raise ValueError(f"expected one record a run, got two unlike ones @ {name}")
     return texts
@@ -197,6 +202,17 @@ def _value(value: Any) -> str:
 
 
 def _json(value: Any, encoder: json.JSONEncoder = _ENCODER) -> str:
+    """Return a value as JSON; packed numbers become text a piece at a time."""
+    if isinstance(value, Doubles):
+        pieces = (value[k : k + _PIECE] for k in range(0, len(value), _PIECE))
+        texts = (_json(list(piece), encoder)[1:-1] for piece in pieces)
+        return f"[{encoder.item_separator.join(texts)}]"
+    if isinstance(value, dict) and any(isinstance(each, Doubles) for each in value.values()):
+        members = (
+            f"{_json(key)}{encoder.key_separator}{_json(each, encoder)}"
+            for key, each in value.items()
+        )
+        return f"{{{encoder.item_separator.join(members)}}}"
     try:
         return encoder.encode(value)
     except ValueError:

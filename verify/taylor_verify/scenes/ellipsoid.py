@@ -21,7 +21,7 @@ a_j = a_k, where it is 1/4: two bits, of the forty of guard, is all that it lose
 from __future__ import annotations
 
 from fractions import Fraction
-from functools import cache
+from functools import lru_cache
 from typing import Any, Final
 
 from taylor_verify.scenes.precision import exact_value, rounded
@@ -30,9 +30,11 @@ from taylor_verify.scenes.tensors import Vector
 # Each of some bits/4 duplications rounds a few dozen times, and sums of positive terms do not magnify
 # that: 2^13 units in the last place at a thousand bits, 2^19 at ten thousand digits.
 _GUARD_BITS: Final = 40
+# A body is asked for at a dozen precisions, and a sweep has any number of bodies.
+_MOST_CACHED: Final = 256
 
 
-@cache
+@lru_cache(maxsize=_MOST_CACHED)
 def inverse_inertias(
     semi_axes: Vector, density: Fraction, fluid_density: Fraction, bits: int
 ) -> tuple[Vector, Vector]:

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from itertools import pairwise
+from itertools import accumulate, pairwise
+from operator import mul
 
 import flint
 
@@ -85,6 +86,9 @@ def blocks(a: Matrix, b: Matrix, c: Matrix) -> Matrix:
 
 def leading_minors(matrix: Matrix) -> Iterator[Fraction]:
     """Yield the determinant of the first entry, of the first two rows and columns, and so on."""
+    if is_diagonal(matrix):
+        yield from accumulate((row[i] for i, row in enumerate(matrix)), mul)
+        return
     for size in range(1, len(matrix) + 1):
         yield _fraction(_flint(tuple(row[:size] for row in matrix[:size])).det())
 

@@ -35,12 +35,11 @@ class Sizes:
 
     def add(self, sizes: Array) -> None:
         """Count some sizes, none of them negative."""
-        sizes = np.where(np.isnan(sizes), inf, np.abs(sizes)).astype(float)
+        sizes = np.sort(np.where(np.isnan(sizes), inf, np.abs(sizes)).astype(float))
         bins = sizes.view(np.uint64) >> np.uint64(_BELOW_A_BIN)
-        order = np.argsort(sizes, kind="stable")
-        unique_bins, starts, counts = np.unique(bins[order], return_index=True, return_counts=True)
-        for which, start, count in zip(unique_bins.tolist(), starts, counts.tolist(), strict=True):
-            largest = float(sizes[order][start + count - 1])
+        unique_bins, starts, counts = np.unique(bins, return_index=True, return_counts=True)
+        of_bins = (unique_bins, counts, sizes[starts + counts - 1])
+        for which, count, largest in zip(*(row.tolist() for row in of_bins), strict=True):
             self._counts[which] = self._counts.get(which, 0) + count
             self._largest[which] = max(self._largest.get(which, 0.0), largest)
         self.count += len(sizes)

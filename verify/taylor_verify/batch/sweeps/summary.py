@@ -40,6 +40,7 @@ _REASONED: Final = (Status.UNAVAILABLE, Status.REFUSED)
 _MOST_REASONS: Final = 3
 # Scenes with these statuses come before all that passed, the worst first.
 _LOOKED_AT: Final = (Status.FAIL, Status.UNDECIDED)
+_GRAVITY_OF_WORDS: Final = {status.value: place for place, status in enumerate(GRAVITY)}
 
 
 def summary(
@@ -180,7 +181,7 @@ class _Rows:
         self.point = self._numbers("point").astype(np.int64)
         self.starts = np.flatnonzero(np.diff(self.point, prepend=-1))
         self.gravity = np.array(
-            [GRAVITY.index(Status(word)) for word in self.words("verdict").tolist()]
+            [_GRAVITY_OF_WORDS[word] for word in self.words("verdict").tolist()]
         )
         self.is_asked = self.is_status(Status.PASS) | self.is_status(Status.FAIL)
         # A gate that failed without a number is beyond every number; one that passed has no error.

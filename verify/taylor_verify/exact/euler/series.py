@@ -6,8 +6,8 @@ Theta functions are divided by what they are at zero, so that no root of the nom
     t = cos w + q^2 cos 3w + q^6 cos 5w + ...        cn v = (s_0 t)/(t_0 s)
     r, s = 1 +- 2 q cos 2w + 2 q^4 cos 4w +- ...     dn v = (s_0 r)/(r_0 s)
 
-The square of q comes by a step of Landen, k_1' = 2 k'^(1/2)/(1 + k'), from the series
-q^2 = e + 2 e^5 + 15 e^9 + ... with 2 e = (1 - k_1'^(1/2))/(1 + k_1'^(1/2)) (DLMF 20.9.5).
+Steps of Landen, k_1 = (1 - k')/(1 + k') and k_1' = 2 k'^(1/2)/(1 + k'), square the nome. After two of them,
+q^4 = e + 2 e^5 + 15 e^9 + ... with 2 e = (1 - k_2'^(1/2))/(1 + k_2'^(1/2)) (DLMF 20.9.5).
 """
 
 from __future__ import annotations
@@ -22,11 +22,15 @@ from taylor_verify.scenes.pairs import Floats, Pairs
 
 # With 2^-(4n + 1) for their factors these sum up to 1: no one exceeds 2 16^n.
 _NOME: Final = (1.0, 2.0, 15.0, 150.0, 1707.0, 20910.0, 268616.0, 3567400.0)
+# After two steps of Landen e is below 0.03 for every nome below 0.5. After one it is 0.2, where eight terms
+# of the series are too few.
+_STEPS: Final = 2
 _MEANS: Final = 8
 # Angles are counted from multiples of pi over this.
 _PARTS: Final = 32
-# The terms of theta functions beyond those that are balls. Beyond the largest nome m' is below 10^-4.
-_TAIL: Final = range(3, 8)
+# The terms k of theta functions in doubles: of p and t all of these, of r and s without the first.
+# Those before are balls. Beyond the largest nome m' is below 10^-4.
+_TAIL: Final = range(4, 8)
 _UNIT: Final = 2.0**-53
 # Sums of small terms in doubles, and what is left out of them: for an angle below pi/64.
 _OF_COSINE: Final = 2.0**-71
@@ -51,29 +55,35 @@ def mean(k_prime: Pairs) -> Pairs:
 
 def nome_of(m: Pairs, k_prime: Pairs) -> Pairs:
     """Return the nome of the parameter m and the complementary modulus k'."""
-    whole = k_prime + 1.0
-    next_prime = k_prime.sqrt().scaled(2.0) / whole
-    next_k = m / (whole * whole)
-    root = next_prime.sqrt() + 1.0
-    e = (next_k * next_k / ((next_prime + 1.0) * (root * root))).scaled(0.5)
+    for _ in range(_STEPS):
+        whole = k_prime + 1.0
+        k = m / (whole * whole)
+        m, k_prime = k * k, k_prime.sqrt().scaled(2.0) / whole
+    root = k_prime.sqrt() + 1.0
+    e = (m / ((k_prime + 1.0) * (root * root))).scaled(0.5)
     fourth = (e * e) * (e * e)
     total = fourth * _NOME[-1]
     for factor in _NOME[-2:0:-1]:
         total = fourth * (total + factor)
     ratio = 16 * fourth.hi * (1 + 2.0**-20)
     rest = np.where(ratio < 0.5, 4 * e.hi * ratio ** len(_NOME), np.inf)
-    return (e * (total + 1.0)).widened(rest).sqrt()
+    nome = (e * (total + 1.0)).widened(rest)
+    for _ in range(_STEPS):
+        nome = nome.sqrt()
+    return nome
 
 
 class Powers(NamedTuple):
-    """q, 2 q^4, q^9, 1 - q^2, q^6, q^2 - q^6: the factors of the first terms, and q in doubles."""
+    """Factors of the first terms, made of powers of the nome q, and q in doubles.
 
-    first: Pairs
-    fourth: Pairs
-    ninth: Pairs
-    rest: Pairs
-    sixth: Pairs
-    change: Pairs
+    ``even`` are 1 - 2 q^16, q^4 and q^16; ``odd`` q and q^9; ``whole`` 1 - q^2 and q^6 - q^12;
+    ``change`` q^2 - q^6 + q^12 and q^12.
+    """
+
+    even: tuple[Pairs, Pairs, Pairs]
+    odd: tuple[Pairs, Pairs]
+    whole: tuple[Pairs, Pairs]
+    change: tuple[Pairs, Pairs]
     nome: Floats
 
 
@@ -83,7 +93,15 @@ def powers(q: Pairs) -> Powers:
     fourth = second * second
     sixth = fourth * second
     eighth = fourth * fourth
-    return Powers(q, fourth.scaled(2.0), eighth * q, 1.0 - second, sixth, second - sixth, q.hi)
+    twelfth, sixteenth = eighth * fourth, eighth * eighth
+    short = sixth - twelfth
+    return Powers(
+        even=(1.0 - sixteenth.scaled(2.0), fourth, sixteenth),
+        odd=(q, eighth * q),
+        whole=(1.0 - second, short),
+        change=(second - short, twelfth),
+        nome=q.hi,
+    )
 
 
 class Thetas(NamedTuple):
@@ -97,26 +115,32 @@ class Thetas(NamedTuple):
 
 def thetas(factors: Powers, sine: Pairs, cosine: Pairs) -> Thetas:
     """Return the four functions, by the sine and the cosine of w."""
-    twice = (1.0 - (sine * sine).scaled(2.0)).scaled(2.0)  # 2 cos 2w
-    fourfold = twice * twice - 1.0  # 1 + 2 cos 4w
-    even = factors.fourth * (fourfold - 1.0).scaled(0.5) + 1.0
-    odd = twice * (factors.first + factors.ninth * (fourfold - 2.0))
-    whole = factors.sixth * fourfold + factors.rest
-    change = factors.change * twice
+    # With c_k = 2 cos kw: sin 5w / sin w = 1 + c_4 + c_2, sin 7w / sin w = 1 + c_4 + c_2 + c_6, and of
+    # the cosines with c_2 and c_6 turned, cos 5w / cos w = 1 + c_4 - c_2.
+    c_2 = (1.0 - (sine * sine).scaled(2.0)).scaled(2.0)
+    square = c_2 * c_2
+    c_4, c_6, fourfold = square - 2.0, c_2 * (square - 3.0), square - 1.0
+    zeroth, first, second = factors.even
+    even = c_4 * (second * c_4 + first) + zeroth
+    odd = c_2 * factors.odd[0] + c_6 * factors.odd[1]
+    whole = fourfold * factors.whole[1] + factors.whole[0]
+    change = c_2 * factors.change[0] + c_6 * factors.change[1]
     # The rest in doubles: 2 cos 2kw, and sin (2k + 1)w / sin w, cos (2k + 1)w / cos w.
-    q, u = factors.nome, twice.hi
-    cosines, sines, others = [u * u - 2, u], [u + u * u - 1, u + 1], [u * u - u - 1, u - 1]
+    q, u = factors.nome, c_2.hi
+    cosines, sines, others = [c_6.hi, c_4.hi], [0.0, fourfold.hi + u], [0.0, fourfold.hi - u]
+    sines[0], others[0] = sines[1] + c_6.hi, c_6.hi - others[1]
     more: list[Any] = [0.0, 0.0, 0.0, 0.0]
     error = np.zeros_like(q)
     for k in _TAIL:
         for rows in (cosines, sines, others):
             rows[:] = [u * rows[0] - rows[1], rows[0]]
         sign, square, oblong = (-1) ** k, q ** (k * k), q ** (k * (k + 1))
-        if k > 3:
+        if k > _TAIL[0]:
             more[k % 2] = more[k % 2] + square * cosines[0]
         more[2] = more[2] + sign * oblong * sines[0]
         more[3] = more[3] + oblong * others[0]
-        # By the recurrence, of which each step adds some roundings, and by the power.
+        # By the recurrence, of which each step adds some roundings, and by the power. With it comes the
+        # error of the next term of r and s, which has a higher power.
         error = error + oblong * ((8 * (k + 1) ** 3 + 4 * k * (k + 1)) * _UNIT)
     last = _TAIL[-1] + 1
     error = error + 4 * (2 * last + 1) * q ** (last * last)

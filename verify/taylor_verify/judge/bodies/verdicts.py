@@ -11,8 +11,9 @@ every body that fails, is left to the judge of one body.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
+from itertools import zip_longest
 from typing import Any, Final
 
 import numpy as np
@@ -127,14 +128,16 @@ def verdicts(
             "provenance": {**known, "scene": scene.digest},
         }
         instants = _Instants(scene.clock.start, run.times[k])
-        rows = [_row(column, k, instants, shared) for column in columns]
-        for place, shifts in enumerate(measured.shifts):
-            late = shifts.numbers(k, float(run.unit[k]))
-            rows[place] = replace(rows[place], **late)
+        unit, none = float(run.unit[k]), dict[str, Any]()
+        late = [shifts.numbers(k, unit) for shifts in measured.shifts]
+        rows = [
+            _row(column, k, instants, shared | numbers)
+            for column, numbers in zip_longest(columns, late, fillvalue=none)
+        ]
         if not run.times[k, 0]:
             states = columns[: len(measured.states)]
-            starts = [_start(column, k, instants, shared) for column in states]
-            rows.insert(0, max(starts, key=lambda start: start.ratio or 0.0))
+            start = max(states, key=lambda column: column.start_ratio(k))
+            rows.insert(0, _start(start, k, instants, shared))
         by_place[k] = rows
     return by_place
 
@@ -165,6 +168,16 @@ class _Columns:
     steps: list[float]
     growth: list[float]
     change: list[float | None]
+
+    def start(self, k: int) -> tuple[float, float]:
+        """Return the error of a body at its first sample and the floor there, in four digits each."""
+        error, value = self.gate.quantity.errors[k, 0], self.gate.attainable[k, 0]
+        return shown(float(error)), shown(float(value))
+
+    def start_ratio(self, k: int) -> float:
+        """Return the error of a body at its first sample over the floor there."""
+        error, value = self.start(k)
+        return error / value
 
 
 def _columns(run: Run, gate: Gate, floors: Floors) -> _Columns:
@@ -217,8 +230,7 @@ def _row(column: _Columns, k: int, instants: _Instants, shared: dict[str, Any]) 
 def _start(column: _Columns, k: int, instants: _Instants, shared: dict[str, Any]) -> Verdict:
     """Return the verdict on the row at the start, from the four digits that a record stores."""
     quantity, at = column.gate.quantity, instants[0]
-    error = shown(float(quantity.errors[k, 0]))
-    value = shown(float(column.gate.attainable[k, 0]))
+    error, value = column.start(k)
     reason = Reason(floor=RoundoffFloor(Carried.START, value), factor=float(GATE_FACTOR))
     return Verdict(
         quantity=INITIAL,

@@ -192,6 +192,9 @@ def obeys_triangle_inequality(inertia: Matrix) -> bool:
     The eigenvalues of S = (tr I / 2) 1 - I are (J2 + J3 - J1)/2 and so on. Any two of them add to a
     principal moment, so at most one is negative, and exactly then is det S negative.
     """
+    if tensors.is_diagonal(inertia):
+        moments = [row[i] for i, row in enumerate(inertia)]
+        return 2 * max(moments) <= sum(moments)
     half_trace = sum((inertia[i][i] for i in range(3)), Fraction(0)) / 2
     s1, s2, s3 = (
         tuple((half_trace if i == j else Fraction(0)) - inertia[i][j] for j in range(3))
