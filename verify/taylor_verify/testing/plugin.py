@@ -1,4 +1,4 @@
-"""A pytest plugin: anybody's simulator held to the exact motion in anybody's tests.
+"""A pytest plugin: compares a simulator with the exact motion, in the tests of that simulator.
 
     def test_my_simulator(verify_solver):
         verify_solver("euler/generic", solve)
@@ -223,8 +223,8 @@ def _cases(mark: pytest.Mark) -> Iterator[Case]:
         names = [name for pattern in mark.args for name in _scenes(pattern)]
         for rung in [rungs] if isinstance(rungs, str) else rungs:
             for name in names:
-                found = rung_named(rung).name
-                yield Case(name, found, options.get("tolerance"), options.get("only"))
+                rung_name = rung_named(rung).name
+                yield Case(name, rung_name, options.get("tolerance"), options.get("only"))
     except (Refused, ValueError) as fault:
         _wrong_mark(str(fault))
 
@@ -236,10 +236,10 @@ def _scenes(pattern: str | Path) -> list[str]:
     if not is_pattern(text):
         find(text)
         return [text]
-    found = list(fitting(text, names()))
-    if not found:
+    scenes = list(fitting(text, names()))
+    if not scenes:
         raise ValueError(f"expected a pattern that some shipped scene fits, got {text!r}")
-    return found
+    return scenes
 
 
 def _wrong_mark(why: str) -> None:
