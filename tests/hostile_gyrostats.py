@@ -49,8 +49,8 @@ def judged(kind: str, numbers: Iterable[int], seed: int) -> int:
                 words.append(f"  {kind} {number}: {' '.join(mp.nstr(part, 3) for part in parts)}")
             worst = [max(pair) for pair in zip(worst, parts, strict=True)]
         slowest = max(slowest, time.process_time() - began)
-    parts = " ".join(f"{mp.nstr(part, 3):>10}" for part in worst)
-    print(f"{kind:52} {parts} {slowest:8.2f} s", *words, sep="\n", flush=True)
+    sizes = " ".join(f"{mp.nstr(part, 3):>10}" for part in worst)
+    print(f"{kind:52} {sizes} {slowest:8.2f} s", *words, sep="\n", flush=True)
     return len(words)
 
 

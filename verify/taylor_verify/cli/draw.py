@@ -112,7 +112,9 @@ def _pictures(
             document, {file.name: record(file) for file in files}
         )
     elif ERRORS in names:
-        raise WrongCall(f"expected trajectory files behind the scene, got none @ --only {ERRORS}")
+        raise WrongCall(
+            f"expected trajectory files behind the scene (draw SCENE mine.csv), got none @ --only {ERRORS}"
+        )
     return drawings
 
 

@@ -21,7 +21,9 @@ from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
 def answer(options: argparse.Namespace) -> Answer:
     """Print the exact motion at the times asked for."""
     if not 1 <= options.digits <= MOST_DIGITS:
-        raise WrongCall(f"expected --digits from 1 to {MOST_DIGITS}, got {options.digits}")
+        raise WrongCall(
+            f"expected a number from 1 to {MOST_DIGITS}, got {options.digits} @ --digits"
+        )
     times = [(text.strip(), read_number(text, "--at")) for text in options.at.split(",")]
     scene = read_scene(options.scene)
     try:

@@ -15,7 +15,9 @@ from taylor_verify.scenes.reading.reader import read
 def answer(options: argparse.Namespace) -> Answer:
     """Write a scene from a URDF, SDF or MJCF file, to be read and edited."""
     if options.source != "from":
-        raise WrongCall(f"expected the word `from`, got {options.source!r} @ scene")
+        raise WrongCall(
+            f"expected the word `from` (scene from robot.urdf), got {options.source!r} @ scene"
+        )
     imported = import_scene(Path(options.file), options.link)
     warnings = read(imported.text, options.file).warnings
     document = {

@@ -48,9 +48,9 @@ _HEADINGS = {
 def answer(options: argparse.Namespace) -> Answer:
     """Measure each scene, and with a target find the cheapest setting that reaches it."""
     if not options.scenes:
-        raise WrongCall("expected a scene, such as euler/generic, got none")
+        raise WrongCall("expected a scene, such as euler/generic, got none @ tradeoff")
     if not options.repeats >= 1:
-        raise WrongCall(f"expected --repeats of at least 1, got {options.repeats}")
+        raise WrongCall(f"expected a number of at least 1, got {options.repeats} @ --repeats")
     target = _target(options.target)
     place = None
     if options.out is not None:
@@ -127,7 +127,9 @@ def _target(text: str | None) -> float | None:
         target = float(read_number(text, "--target"))
         check_target(target)
     except (WrongCall, OverflowError, ValueError) as error:
-        raise WrongCall(f"expected a positive error, got {text!r} @ --target") from error
+        raise WrongCall(
+            f"expected a positive error, such as 1e-9, got {text!r} @ --target"
+        ) from error
     return target
 
 

@@ -58,7 +58,8 @@ def series(document: Document) -> Series:
     """
     course = document["course"]
     if document["body"] is None or not document["is_free"]:
-        raise NotDrawn(f"expected a free rigid body, got another scene @ {document['scene']}")
+        got = "a solid in a fluid" if document["body"] is None else "a torque"
+        raise NotDrawn(f"expected a free rigid body, got {got} @ {document['scene']}")
     if document["rotor"] and document["damping"]:
         raise NotDrawn(f"expected H at rest in space, got damped wheels @ {document['scene']}")
     attitudes = np.array(course["attitude"]).reshape(-1, 3, 3)

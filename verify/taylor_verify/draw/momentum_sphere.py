@@ -85,8 +85,15 @@ def series(document: Document) -> Series:
     """
     body, course = document["body"], document["course"]
     if body is None or not document["is_free"] or document["damping"]:
+        got = (
+            "a solid in a fluid"
+            if body is None
+            else "damping"
+            if document["damping"]
+            else "a torque"
+        )
         raise NotDrawn(
-            f"expected a free rigid body without damping, got another scene @ {document['scene']}"
+            f"expected a free rigid body without damping, got {got} @ {document['scene']}"
         )
     axes, moments = np.array(body["axes"]), np.array(body["principal_moments"])
     wheels = Wheels.of(moments, axes @ np.array(document["rotor"] or [0.0] * 3))

@@ -51,7 +51,8 @@ def pictures(document: Document, names: Sequence[str] = ()) -> dict[str, Picture
         except NotDrawn as fault:
             faults.append(str(fault))
     if faults:
-        raise NotDrawn("\n".join(faults))
+        possible = ", ".join(name for name, _ in _all(document))
+        raise NotDrawn("\n".join([*faults, f"{document['scene']} has these pictures: {possible}"]))
     return pictures_by_name
 
 

@@ -85,7 +85,8 @@ def series(
     body, course = portrait["body"], portrait["course"]
     is_free = any(row["name"] == "T" for row in portrait["analytic"])
     if body is None or "omega" not in course or not is_free:
-        raise NotDrawn(f"expected a free rigid body, got another scene @ {portrait['scene']}")
+        got = "a solid in a fluid" if body is None else "a motion without a constant energy"
+        raise NotDrawn(f"expected a free rigid body, got {got} @ {portrait['scene']}")
     if portrait.get("rotor"):
         raise NotDrawn(f"expected a body without wheels, got a rotor @ {portrait['scene']}")
     gates = record["gates"] if record else ()

@@ -179,7 +179,9 @@ def _judgement(
         elif callable(solve):
             solver = Callback(answer, getattr(solve, "__qualname__", type(solve).__name__))
         else:
-            raise ValueError(f"expected a callable, a Solver or a name of one, got {solve!r}")
+            raise ValueError(
+                f"expected a callable, a Solver or the name of a solver, got {solve!r} @ solve"
+            )
         exact_rung, asked = rung_named(rung), tolerances(tolerance, [scene])
     except (Refused, ValueError) as fault:
         raise pytest.fail.Exception(str(fault)) from None
@@ -217,7 +219,7 @@ def _cases(mark: pytest.Mark) -> Iterator[Case]:
     if unknown := sorted(options.keys() - {"rung", "tolerance", "only"}):
         _wrong_mark(f"expected rung, tolerance or only, got {', '.join(unknown)}")
     if not mark.args:
-        _wrong_mark("expected scenes, got none")
+        _wrong_mark("expected scenes, such as 'euler/generic', got none")
     rungs = options.get("rung", "f64")
     try:
         names = [name for pattern in mark.args for name in _scenes(pattern)]
@@ -238,7 +240,10 @@ def _scenes(pattern: str | Path) -> list[str]:
         return [text]
     scenes = list(fitting(text, names()))
     if not scenes:
-        raise ValueError(f"expected a pattern that some shipped scene fits, got {text!r}")
+        raise ValueError(
+            f"expected a pattern that some shipped scene fits, got {text!r}; "
+            "`taylor-verify list` names them"
+        )
     return scenes
 
 
