@@ -41,16 +41,16 @@ def judged(kind: str, numbers: Iterable[int], seed: int) -> int:
     for number in numbers:
         began = time.process_time()
         try:
-            found = disagreements(hostile(kind, number, seed))
+            parts = disagreements(hostile(kind, number, seed))
         except Exception as error:  # a fault is a row, whatever it is
             words.append(f"  {kind} {number}: {type(error).__name__}: {error}")
         else:
-            if not all(part <= ALLOWED for part in found):
-                words.append(f"  {kind} {number}: {' '.join(mp.nstr(part, 3) for part in found)}")
-            worst = [max(pair) for pair in zip(worst, found, strict=True)]
+            if not all(part <= ALLOWED for part in parts):
+                words.append(f"  {kind} {number}: {' '.join(mp.nstr(part, 3) for part in parts)}")
+            worst = [max(pair) for pair in zip(worst, parts, strict=True)]
         slowest = max(slowest, time.process_time() - began)
-    parts = " ".join(f"{mp.nstr(part, 3):>10}" for part in worst)
-    print(f"{kind:52} {parts} {slowest:8.2f} s", *words, sep="\n", flush=True)
+    sizes = " ".join(f"{mp.nstr(part, 3):>10}" for part in worst)
+    print(f"{kind:52} {sizes} {slowest:8.2f} s", *words, sep="\n", flush=True)
     return len(words)
 
 

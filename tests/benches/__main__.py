@@ -44,8 +44,8 @@ def main(words: Sequence[str] | None = None) -> int:
     for line in remarks(measured, last):
         page.print(line)
     if asked.keep:
-        kept = [one for one in measured if one.ratio in RATIOS]
-        history.keep(kept, history.FILE, history.processor(), history.commit())
+        shipped = [one for one in measured if one.ratio in RATIOS]
+        history.keep(shipped, history.FILE, history.processor(), history.commit())
     return int(asked.strict and any(one.misses for one in measured))
 
 

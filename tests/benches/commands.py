@@ -61,9 +61,9 @@ class Verification:
                     command, cwd=place, env=environment, check=False, capture_output=True, text=True
                 )
                 if done.returncode:
-                    said = done.stderr or done.stdout
+                    message = done.stderr or done.stdout
                     got = f"{done.returncode} of `{' '.join(words)}` @ {self.checkout}"
-                    raise ChildProcessError(f"expected status 0, got {got}: {said}")
+                    raise ChildProcessError(f"expected status 0, got {got}: {message}")
 
 
 def ratios(other: Path, caches: Path) -> Iterator[Ratio]:

@@ -99,7 +99,7 @@ def processor() -> str:
 def commit() -> str:
     """Return the commit that is checked out, with a plus where files differ from it; empty without git."""
     asked = ["git", "describe", "--always", "--exclude", "*", "--dirty=+"]
-    found = subprocess.run(
+    done = subprocess.run(
         asked, cwd=Path(__file__).parent, capture_output=True, text=True, check=False
     )
-    return found.stdout.strip()
+    return done.stdout.strip()

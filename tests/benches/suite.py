@@ -90,14 +90,14 @@ def add(ratio: Ratio, costs: Costs, file: Path) -> None:
 def summary(ratios: Sequence[Ratio], file: Path) -> list[Measured]:
     """Return what a file of pyperf holds of the ratios."""
     suite = pyperf.BenchmarkSuite.load(str(file))
-    found = []
+    measured = []
     for ratio in ratios:
         action = suite.get_benchmark(ratio.name)
         yardstick = suite.get_benchmark(_YARDSTICK + ratio.name)
         quotients = pyperf.Benchmark(list(_quotients(action, yardstick)))
         spread = quotients.median_abs_dev()
-        found.append(Measured(ratio, quotients.median(), spread, action.median()))
-    return found
+        measured.append(Measured(ratio, quotients.median(), spread, action.median()))
+    return measured
 
 
 def _quotients(action: pyperf.Benchmark, yardstick: pyperf.Benchmark) -> Iterator[pyperf.Run]:

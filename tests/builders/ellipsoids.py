@@ -20,11 +20,11 @@ def quadrature(axes: tuple[Fraction, ...], of: tuple[int, ...]) -> arb:
 
     def integrand(u: acb, analytic: bool) -> acb:
         terms = [ball(s) + ball(q - s) * u * u for q in squares]
-        found = 2 * ball(s) * u**power
+        value = 2 * ball(s) * u**power
         for i in of:
-            found /= terms[i]
+            value /= terms[i]
         for term in terms:
-            found /= term.sqrt(analytic=analytic)
-        return found
+            value /= term.sqrt(analytic=analytic)
+        return value
 
     return ball(axes[0] * axes[1] * axes[2]) * acb.integral(integrand, 0, 1).real

@@ -50,13 +50,13 @@ def engine(scene: str, kick: Kick, h: float, rows: int, every: int = 1) -> Colum
     w = np.array(given.initial.omega, dtype=float)
     q = np.array(given.initial.attitude, dtype=float)
     q /= np.linalg.norm(q)
-    start, found = float(given.clock.start), []
+    start, states = float(given.clock.start), []
     for step in range((rows - 1) * every + 1):
         if step % every == 0:
-            found.append([start + step * h, *w, *q])
+            states.append([start + step * h, *w, *q])
         w = kick(inertia, rotor, w, moment, h)
         q = _turned(q, h * w)
-    table = np.array(found)
+    table = np.array(states)
     columns = named(("t",), table[:, :1])
     return columns | named(VECTORS["omega"], table[:, 1:4]) | named(QUATERNION, table[:, 4:])
 

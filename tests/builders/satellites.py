@@ -19,11 +19,11 @@ _CLOCK: Final = Clock(Fraction(0), EquallySpaced(Fraction(0), Fraction(1), 41))
 def satellites(count: int, seed: int, tracks_attitude: bool = False) -> list[Scene]:
     """Return satellites whose moments obey the triangle inequality, turning by some dozens of radians."""
     draw = np.random.default_rng(seed)
-    found = []
+    scenes = []
     for k in range(count):
         a, b, c = draw.uniform(0.2, 2, 3)
         end = _short(draw.uniform(20, 60))
-        found.append(
+        scenes.append(
             satellite(
                 f"satellite{k}",
                 (_short(b + c), _short(c + a), _short(a + b)),
@@ -32,7 +32,7 @@ def satellites(count: int, seed: int, tracks_attitude: bool = False) -> list[Sce
                 Clock(Fraction(0), EquallySpaced(Fraction(0), end / 40, 41)),
             )
         )
-    return found
+    return scenes
 
 
 def satellite(

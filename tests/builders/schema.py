@@ -17,5 +17,5 @@ SCHEMA = json.loads(SCHEMA_FILE.read_text(encoding="utf-8"))
 
 def violations(document: Any) -> list[str]:
     """The places where a document is not of the published schema."""
-    found = Draft202012Validator(SCHEMA).iter_errors(document)
-    return [f"{error.message} @ {error.json_path}" for error in found]
+    errors = Draft202012Validator(SCHEMA).iter_errors(document)
+    return [f"{error.message} @ {error.json_path}" for error in errors]

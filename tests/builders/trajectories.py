@@ -95,9 +95,9 @@ def write_csv(
 
 def file_judgement(file: str, scene: str | Scene, **options: Any) -> FileJudgement:
     """The judgement of one file."""
-    found = taylor_verify.check(scene, file, **options)
-    assert isinstance(found, FileJudgement)
-    return found
+    judged = taylor_verify.check(scene, file, **options)
+    assert isinstance(judged, FileJudgement)
+    return judged
 
 
 # Sound columns, and what a file of another convention would have.

@@ -127,6 +127,6 @@ RECORD = Record(
 )
 
 
-def by_quantity(found: Any) -> dict[str, Verdict]:
+def by_quantity(judged: Any) -> dict[str, Verdict]:
     """The verdicts of a judgement by their quantities."""
-    return {verdict.quantity: verdict for verdict in found.verdicts}
+    return {verdict.quantity: verdict for verdict in judged.verdicts}

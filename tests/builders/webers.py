@@ -62,9 +62,9 @@ def case(start: str, body: str) -> Scene:
 
 
 def curve_of(scene: Scene) -> Curve:
-    found = curve(scene)
-    assert found is not None
-    return found
+    weber_curve = curve(scene)
+    assert weber_curve is not None
+    return weber_curve
 
 
 def by_turns(first: int) -> list[Any]:

@@ -65,13 +65,13 @@ class Numbers(Enum):
     ROUNDING_CLASS = "in their rounding class"
     MEASURED = "measured"
 
-    def agree(self, shown: str, found: str) -> bool:
-        if self is Numbers.MEASURED or shown == found:
+    def agree(self, shown: str, printed: str) -> bool:
+        if self is Numbers.MEASURED or shown == printed:
             return True
-        a, b = float(shown), float(found)
+        a, b = float(shown), float(printed)
         if self is Numbers.ROUNDING_CLASS:
             return abs(b) <= 10 * abs(a) and abs(a) <= 10 * abs(b)
-        both_whole = all(re.fullmatch(r"[-+]?\d+", text) for text in (shown, found))
+        both_whole = all(re.fullmatch(r"[-+]?\d+", text) for text in (shown, printed))
         return not both_whole and abs(a - b) <= abs(a) / 50
 
 
@@ -101,11 +101,11 @@ def blocks(page: str) -> Iterator[Block]:
         end = fence.end()
 
 
-def compare(shown: str, found: str, numbers: Numbers = Numbers.AS_PRINTED) -> None:
+def compare(shown: str, printed: str, numbers: Numbers = Numbers.AS_PRINTED) -> None:
     """Raise Untrue where what was printed is not what is shown."""
-    expected, got = _TOKEN.findall(shown), _TOKEN.findall(found)
+    expected, got = _TOKEN.findall(shown), _TOKEN.findall(printed)
     if not _matches(expected, got, numbers):
-        raise Untrue(f"the page shows\n{shown}\nand what is printed is\n{found}")
+        raise Untrue(f"the page shows\n{shown}\nand what is printed is\n{printed}")
 
 
 def _matches(expected: Sequence[str], got: Sequence[str], numbers: Numbers) -> bool:
@@ -126,10 +126,10 @@ def _matches(expected: Sequence[str], got: Sequence[str], numbers: Numbers) -> b
     return all(token == "..." for token in expected[i:])
 
 
-def _same(shown: str, found: str, numbers: Numbers) -> bool:
-    if _NUMBER.fullmatch(shown) and _NUMBER.fullmatch(found):
-        return numbers.agree(shown, found)
-    return shown == found
+def _same(shown: str, printed: str, numbers: Numbers) -> bool:
+    if _NUMBER.fullmatch(shown) and _NUMBER.fullmatch(printed):
+        return numbers.agree(shown, printed)
+    return shown == printed
 
 
 @dataclass
@@ -211,8 +211,8 @@ class Desk:
         return done.stdout
 
     def _names(self, word: str) -> list[str]:
-        found = sorted(self.folder.glob(word)) if "*" in word else []
-        return [path.name for path in found] or [word]
+        paths = sorted(self.folder.glob(word)) if "*" in word else []
+        return [path.name for path in paths] or [word]
 
     def _own(self, command: str) -> str:
         """taylor-verify and pytest in this process, where everything is imported already."""
@@ -244,12 +244,12 @@ class Desk:
 
 def work(page: Path, folder: Path) -> int:
     """Do all that a page says, in that folder; how many blocks there were. Raises Untrue."""
-    desk, found = Desk(folder), list(blocks(page.read_text(encoding="utf-8")))
+    desk, blocks_of_page = Desk(folder), list(blocks(page.read_text(encoding="utf-8")))
     before = Path.cwd()
     os.chdir(folder)
     sys.path.insert(0, str(folder))
     try:
-        for block in found:
+        for block in blocks_of_page:
             try:
                 desk.work(block)
             except Untrue as error:
@@ -260,7 +260,7 @@ def work(page: Path, folder: Path) -> int:
         _forget_modules(folder)
     if desk.printed:
         raise Untrue(f"something is printed that the page does not show:\n{desk.printed}")
-    return len(found)
+    return len(blocks_of_page)
 
 
 def _forget_modules(folder: Path) -> None:

@@ -139,7 +139,7 @@ def test_run_is_decided_by_the_baseline_in_both_directions(scene: str, capsys: C
     assert main(["run", scene, "--solver", COARSE.format("1e-6"), "--json"]) == 1
     document = json.loads(capsys.readouterr().out)
     gate = ["--baseline", "base.json", "--gate", "baseline", "--junit", "r.xml"]
-    for name, status, said in (("1e-6", 0, "no regression"), ("1e-2", 1, "regressions")):
+    for name, status, words in (("1e-6", 0, "no regression"), ("1e-2", 1, "regressions")):
         # The name of the solver holds its tolerance: the baseline is that of another setting.
         rows = [{**each, "solver": COARSE.format(name)} for each in document["verdicts"]]
         Path("base.json").write_text(json.dumps({"verdicts": rows}), encoding="utf-8")
@@ -147,7 +147,7 @@ def test_run_is_decided_by_the_baseline_in_both_directions(scene: str, capsys: C
         assert main(call) == status
         out, error = capsys.readouterr()
         assert out.splitlines()[-1].startswith("decided by the baseline base.json alone: ")
-        assert said in out.splitlines()[-1]
+        assert words in out.splitlines()[-1]
         assert ("regression: expected at most" in error) is bool(status)
         text = Path("r.xml").read_text(encoding="utf-8")
         assert ("failure" in elements(text)) is bool(status)
@@ -178,7 +178,7 @@ def test_nothing_compared_is_undecided_and_red_for_a_ci(scene: str, capsys: Capt
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "message"),
     [
         ([], "expected --baseline FILE beside --gate baseline, got none @ --gate"),
         (
@@ -188,12 +188,12 @@ def test_nothing_compared_is_undecided_and_red_for_a_ci(scene: str, capsys: Capt
     ],
 )
 def test_a_gate_without_its_one_baseline_is_a_wrong_call(
-    options: list[str], said: str, scene: str, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+    options: list[str], message: str, scene: str, capsys: Captured, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Exit status 2 before anything runs."""
     monkeypatch.setattr("taylor_verify.cli.run._published", lambda folder: None)
     assert main(["run", scene, "--gate", "baseline", *options]) == 2
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
 
 
 # Files of other names.
@@ -214,8 +214,8 @@ def test_a_file_is_compared_with_the_one_file_of_a_baseline(scene: str, capsys: 
     Path("base.json").write_text(capsys.readouterr().out, encoding="utf-8")
     call = ["check", "tuesday.csv", "--scene", scene, "--baseline", "base.json"]
     assert main([*call, "--gate", "baseline"]) == 0
-    said = "the baseline is of the file monday.csv, and this is tuesday.csv"
-    assert said in capsys.readouterr().err
+    message = "the baseline is of the file monday.csv, and this is tuesday.csv"
+    assert message in capsys.readouterr().err
     comparison = compare_with_baseline(check(scene, "tuesday.csv"), "base.json", decides=True)
     assert comparison.passed
     assert {verdict.setting for verdict in comparison.before} == {"tuesday.csv"}

@@ -62,8 +62,8 @@ def environment(**changed: str) -> dict[str, str]:
 def test_list_names_what_there_is(capsys: Captured) -> None:
     """The shipped scenes, the solvers and the rungs, as JSON and as text."""
     assert main(["list", "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert found == {
+    document = json.loads(capsys.readouterr().out)
+    assert document == {
         "scenes": list(library.names()),
         "extremes": list(library.names(library.EXTREMES, library.WORST)),
         "engines": list(library.names(library.ENGINES)),
@@ -75,7 +75,7 @@ def test_list_names_what_there_is(capsys: Captured) -> None:
     }
     assert main(["list"]) == 0
     text = capsys.readouterr().out
-    assert all(name in text for names in found.values() for name in names)
+    assert all(name in text for names in document.values() for name in names)
 
 
 def test_the_guide_is_short_and_names_scenes_that_are_there(capsys: Captured) -> None:
@@ -135,23 +135,23 @@ def test_run_prints_one_document_with_every_key_of_the_contract(
 ) -> None:
     """stdout holds {"verdicts", "summary"} and nothing else; the counts add up."""
     assert main(["run", str(short), "--rung", "f32", "f64", "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert set(found) == {"verdicts", "summary"}
+    document = json.loads(capsys.readouterr().out)
+    assert set(document) == {"verdicts", "summary"}
     names = {
         *("scene", "solver", "rung", "setting", "quantity", "max", "mean", "final", "at", "unit"),
         *("bound", "because", "attainable", "exponent", "verdict", "outcome", "steps"),
         *("evaluations", "seconds", "provenance"),
     }
-    for row in found["verdicts"]:
+    for row in document["verdicts"]:
         assert names <= set(row)
         assert row["scene"] == str(short)
         assert row["max"] <= row["bound"]
         assert {"versions", "processor", "command", "scene"} <= set(row["provenance"])
-    assert {row["quantity"] for row in found["verdicts"]} == {"omega", "T", "H2"}
-    assert [row["rung"] for row in found["verdicts"]] == ["f32"] * 3 + ["f64"] * 3
+    assert {row["quantity"] for row in document["verdicts"]} == {"omega", "T", "H2"}
+    assert [row["rung"] for row in document["verdicts"]] == ["f32"] * 3 + ["f64"] * 3
     words = {"pass", "fail", "undecided", "vacuous", "refused", "unavailable"}
-    assert set(found["summary"]) == words
-    assert found["summary"]["pass"] == len(found["verdicts"]) == 6
+    assert set(document["summary"]) == words
+    assert document["summary"]["pass"] == len(document["verdicts"]) == 6
 
 
 @pytest.mark.parametrize(
@@ -241,9 +241,9 @@ def test_the_exit_status_is_that_of_the_gravest_verdict(
     """A single grave verdict among passes decides."""
     from dataclasses import replace
 
-    found = taylor_verify.run(str(short))
-    marred = replace(found.verdicts[0], verdict=Status(status))
-    judgement = replace(found, verdicts=(*found.verdicts, marred))
+    judged = taylor_verify.run(str(short))
+    marred = replace(judged.verdicts[0], verdict=Status(status))
+    judgement = replace(judged, verdicts=(*judged.verdicts, marred))
     monkeypatch.setattr("taylor_verify.batch.judging.judge_all", lambda *_: [judgement])
     assert main(["run", str(short)]) == code
     assert status in capsys.readouterr().out
@@ -411,17 +411,17 @@ def test_publish_without_data_says_what_it_needs(capsys: Captured, tmp_path: Pat
 def test_explain_shows_the_equations_the_orbit_and_every_gate(capsys: Captured, scene: str) -> None:
     """The text and the document tell the same; each bound comes with its reason."""
     assert main(["explain", scene, "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
+    document = json.loads(capsys.readouterr().out)
     assert main(["explain", scene]) == 0
     text = capsys.readouterr().out
-    assert all(line in text for line in found["equations"])
-    assert found["regime"] in text
-    for gate in found["gates"]:
+    assert all(line in text for line in document["equations"])
+    assert document["regime"] in text
+    for gate in document["gates"]:
         assert gate["max"] <= gate["bound"]
         assert gate["because"].split(";")[-1].strip() in text
-    assert {gate["verdict"] for gate in found["gates"]} == {"pass"}
-    cost = found["cost"]
-    assert cost["states"] == len(found["equations"])
+    assert {gate["verdict"] for gate in document["gates"]} == {"pass"}
+    cost = document["cost"]
+    assert cost["states"] == len(document["equations"])
     assert cost["evaluations"] >= cost["steps"] > 0
 
 
@@ -551,7 +551,7 @@ def test_a_full_disk_under_stdout_is_one_message() -> None:
 
 def children(pid: int) -> list[int]:
     """The worker processes of a process, by Linux's own account."""
-    found = []
+    workers = []
     for status in Path("/proc").glob("[0-9]*/stat"):
         try:
             parent = int(status.read_text().rpartition(")")[2].split()[1])
@@ -559,8 +559,8 @@ def children(pid: int) -> list[int]:
         except OSError:
             continue
         if parent == pid and b"spawn_main" in words:
-            found.append(int(status.parent.name))
-    return found
+            workers.append(int(status.parent.name))
+    return workers
 
 
 @pytest.fixture
@@ -687,7 +687,7 @@ def test_a_solver_of_ones_own_is_judged_by_its_numbers(short: Path) -> None:
 )
 def test_a_solver_that_fails_has_a_verdict(short: Path, solve: Any, outcome: str) -> None:
     """Whatever a stranger's code does, the judgement is `fail` and its outcome says how."""
-    found = taylor_verify.check(str(short), solve)
-    assert {v.verdict for v in found.verdicts} == {Status.FAIL}
-    assert outcome in found.verdicts[0].outcome
-    json.dumps([v.row() for v in found.verdicts], allow_nan=False)
+    judged = taylor_verify.check(str(short), solve)
+    assert {v.verdict for v in judged.verdicts} == {Status.FAIL}
+    assert outcome in judged.verdicts[0].outcome
+    json.dumps([v.row() for v in judged.verdicts], allow_nan=False)

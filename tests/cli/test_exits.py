@@ -54,8 +54,8 @@ def test_sys_exit_is_a_failed_solver(way: Any, code: Any) -> None:
     (verdict,) = way(lambda problem: sys.exit(code)).verdicts
     assert verdict.verdict is Status.FAIL
     assert verdict.outcome == Outcome.RAISED.value
-    said = "SystemExit" if code is None else f"SystemExit: {code}"
-    assert f"({said})" in verdict.because
+    sentence = "SystemExit" if code is None else f"SystemExit: {code}"
+    assert f"({sentence})" in verdict.because
 
 
 @pytest.mark.parametrize("code", CODES)

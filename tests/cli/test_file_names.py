@@ -32,9 +32,9 @@ def test_no_two_scenes_share_a_name(one: str, other: str) -> None:
 
 def test_hyphens_and_strokes_are_told_apart() -> None:
     """Scenes whose names are alike but for strokes have a name each, and none has a folder."""
-    found = sorted(of_scene(name) for name in NEAR)
-    assert all(one != other for one, other in pairwise(found))
-    assert all(PurePath(name).name == name for name in found)
+    stems = sorted(of_scene(name) for name in NEAR)
+    assert all(one != other for one, other in pairwise(stems))
+    assert all(PurePath(name).name == name for name in stems)
 
 
 @given(NAMES, NAMES, NAMES, NAMES)

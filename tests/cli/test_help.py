@@ -69,7 +69,7 @@ def test_a_verb_like_none_is_told_where_they_are(capsys: Captured) -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
         (["run", "euler/rest", "--jbos", "3"], "got --jbos (did you mean --jobs"),
         (
@@ -85,12 +85,12 @@ def test_a_verb_like_none_is_told_where_they_are(capsys: Captured) -> None:
     ],
 )
 def test_an_error_of_an_option_shows_the_usage_of_its_verb(
-    capsys: Captured, arguments: list[str], said: str
+    capsys: Captured, arguments: list[str], message: str
 ) -> None:
     """The usage is that of the verb, with its options, and the message names the fault."""
     error = refusal(capsys, *arguments)
     assert error.startswith(f"usage: taylor-verify {arguments[0]} [-h]")
-    assert said in error
+    assert message in error
 
 
 # Patterns.

@@ -31,8 +31,8 @@ Captured = pytest.CaptureFixture[str]
 
 
 def printed(capsys: Captured) -> str:
-    found = capsys.readouterr()
-    return found.out + found.err
+    streams = capsys.readouterr()
+    return streams.out + streams.err
 
 
 @pytest.fixture

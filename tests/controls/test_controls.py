@@ -35,8 +35,8 @@ COMPARED = [pytest.param(d, id=d.name) for d in DEFECTS if not d.honest]
 @lru_cache
 def sight_of(name: str) -> Sight:
     """One run of a defect and its twin, shared by the tests."""
-    (found,) = sights([NAMED[name]], twins=TWINS)
-    return found
+    (sight,) = sights([NAMED[name]], twins=TWINS)
+    return sight
 
 
 @lru_cache
@@ -85,10 +85,10 @@ def test_defect_is_off_by_more_than_any_rounding(defect: Defect) -> None:
 @pytest.mark.parametrize("defect", COMPARED)
 def test_sound_twin_passes_every_gate(defect: Defect) -> None:
     """What fails is the defect, not the scene and not the step: the twin passes all gates there."""
-    found = sight_of(defect.name)
-    assert {v.verdict for v in found.sound.values()} == {Status.PASS}
+    sight = sight_of(defect.name)
+    assert {v.verdict for v in sight.sound.values()} == {Status.PASS}
     # A quaternion has a row of its own only where it is no unit quaternion.
-    assert set(found.sound) == set(found.verdicts) - {UNIT_QUATERNION}
+    assert set(sight.sound) == set(sight.verdicts) - {UNIT_QUATERNION}
 
 
 def test_honest_failure_is_scored_as_its_outcome() -> None:
@@ -142,8 +142,8 @@ def test_shift_is_found_with_its_size_and_sign() -> None:
 
 def test_one_ulp_decides() -> None:
     """The least double above the bound fails and the greatest below it passes, at one sample."""
-    found = sight_of("one-ulp-over")
-    over, within = found.verdicts["omega"], found.sound["omega"]
+    sight = sight_of("one-ulp-over")
+    over, within = sight.verdicts["omega"], sight.sound["omega"]
     assert over.bound == within.bound
     assert over.bound is not None
     assert (over.verdict, within.verdict) == (Status.FAIL, Status.PASS)
@@ -176,9 +176,9 @@ def test_energy_alone_misses_what_it_is_said_to_miss() -> None:
 def test_conservation_altogether_misses_a_wrong_motion() -> None:
     """Late, early and frozen bodies pass every conserved quantity, and fail the state."""
     expected = {d.name for d in DEFECTS if not d.honest and set(d.passes) >= conserved_by(d)}
-    found = {row.defect.name for row in proof.conserving(rows())}
-    assert found == expected
-    assert found >= {"half-a-millisecond-early", "success-after-failure", "one-sample-late"}
+    missed = {row.defect.name for row in proof.conserving(rows())}
+    assert missed == expected
+    assert missed >= {"half-a-millisecond-early", "success-after-failure", "one-sample-late"}
 
 
 def conserved_by(defect: Defect) -> set[str]:
@@ -285,17 +285,17 @@ def test_a_row_without_a_reason_has_its_sentence(tmp_path: Path) -> None:
     for row in content["verdicts"]:
         del row["reason"]
     file.write_text(json.dumps(content), encoding="utf-8")
-    found = CONTROLS.load(tmp_path).verdicts
-    assert [verdict.reason.conclusion for verdict in found] == sentences
+    verdicts = CONTROLS.load(tmp_path).verdicts
+    assert [verdict.reason.conclusion for verdict in verdicts] == sentences
 
 
 def test_a_page_whose_table_has_no_rows_keeps_it(tmp_path: Path) -> None:
     """Where no controls are stored, the table between the marks stays as it is."""
-    kept = f"{controls.BEGIN}\n\na table\n\n{controls.END}\n"
-    (tmp_path / "README.md").write_text(kept, encoding="utf-8")
+    page = f"{controls.BEGIN}\n\na table\n\n{controls.END}\n"
+    (tmp_path / "README.md").write_text(page, encoding="utf-8")
     report.write(tmp_path / "reports", sight_of("one-ulp-over").sound.values(), [])
     report.publish(tmp_path / "reports")
-    assert (tmp_path / "README.md").read_text(encoding="utf-8") == kept
+    assert (tmp_path / "README.md").read_text(encoding="utf-8") == page
 
 
 def test_every_cell_says_what_the_verdict_says() -> None:
@@ -303,9 +303,9 @@ def test_every_cell_says_what_the_verdict_says() -> None:
     text = controls.page(read_back())
     for row in rows():
         (line,) = table_lines(text, proof.title(row))
-        seen = sum(cell.startswith("**") for cell in line)
+        count = sum(cell.startswith("**") for cell in line)
         shift, stopped = proof.constant_shift(row) is not None, not row.is_finished
-        assert seen == len(row.seen_by) + shift + stopped
+        assert count == len(row.seen_by) + shift + stopped
 
 
 def table_lines(text: str, title: str) -> list[list[str]]:
@@ -332,4 +332,4 @@ def test_short_table_tells_the_defects_that_are_made_most() -> None:
         *("no-added-mass-acceleration", "munk-moment-sign", "half-a-millisecond-early"),
         *("last-point-interpolated", "success-after-failure"),
     }
-    assert met <= {defect.name for defect in DEFECTS if defect.told}
+    assert met <= {defect.name for defect in DEFECTS if defect.is_common}

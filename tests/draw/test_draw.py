@@ -66,9 +66,9 @@ def test_every_frame_holds_its_motion(scene: str) -> None:
             for axes in figure.axes:
                 box = axes.get_window_extent()
                 for points in shapes(axes):
-                    seen = axes.transData.transform(points)
-                    assert (seen >= [box.x0 - EPS, box.y0 - EPS]).all(), name
-                    assert (seen <= [box.x1 + EPS, box.y1 + EPS]).all(), name
+                    places = axes.transData.transform(points)
+                    assert (places >= [box.x0 - EPS, box.y0 - EPS]).all(), name
+                    assert (places <= [box.x1 + EPS, box.y1 + EPS]).all(), name
             page_box = figure.bbox
             for text in figure.findobj(match=lambda a: getattr(a, "get_gid", str)() == "name"):
                 assert page_box.x0 <= text.get_window_extent().x0, name
@@ -159,10 +159,15 @@ def test_a_page_needs_no_network() -> None:
     text = page(moving(document("euler/tennis-racket")))
     assert not re.search(r"https?://|src=|<link|@import", text)
     (data,) = re.findall(r'<script type="application/json" id="motion">(.*?)</script>', text)
-    held = json.loads(data)
-    rows = len(held["times"])
-    assert rows == len(held["quaternions"]) == len(held["rows"]) == len(held["inset"]["course"])
-    assert "exact, by closed form" in held["caption"]
+    data_of_page = json.loads(data)
+    rows = len(data_of_page["times"])
+    assert (
+        rows
+        == len(data_of_page["quaternions"])
+        == len(data_of_page["rows"])
+        == len(data_of_page["inset"]["course"])
+    )
+    assert "exact, by closed form" in data_of_page["caption"]
 
 
 def test_a_film_has_its_pictures(tmp_path: Path) -> None:
@@ -179,12 +184,12 @@ def test_a_film_has_its_pictures(tmp_path: Path) -> None:
 def test_draw_writes_what_it_says(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Every file named is there, whole, with what it shows; one picture alone has the name given."""
     assert main(["draw", "euler/axisymmetric", "--out", str(tmp_path / "g.svg"), "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert [Path(one["file"]).name for one in told["files"]] == [
+    document_printed = json.loads(capsys.readouterr().out)
+    assert [Path(one["file"]).name for one in document_printed["files"]] == [
         f"g-{name}.svg" for name in KINDS if name in HAS["euler/separatrix"]
     ]
-    assert told["evidence"] == "proven"
-    for one in told["files"]:
+    assert document_printed["evidence"] == "proven"
+    for one in document_printed["files"]:
         assert one["shows"] in Path(one["file"]).read_text(encoding="utf-8").replace("&gt;", ">")
     alone = ["draw", "euler/generic", "--only", "time", "--out", str(tmp_path / "a.svg")]
     assert main(alone) == 0
@@ -205,9 +210,9 @@ def test_errors_of_a_file_are_drawn(tmp_path: Path, capsys: pytest.CaptureFixtur
     asked = ["draw", "euler/axisymmetric", str(file), "--only", "errors", "--out", str(out)]
     assert main(asked) == 0
     # Nine digits were written.
-    found = re.search(r"omega of \S+ at most (\S+?)[;.]\s", capsys.readouterr().out + " ")
-    assert found is not None
-    assert 1e-11 <= float(found[1]) <= 2e-9
+    error = re.search(r"omega of \S+ at most (\S+?)[;.]\s", capsys.readouterr().out + " ")
+    assert error is not None
+    assert 1e-11 <= float(error[1]) <= 2e-9
     assert "roundoff floor" in out.read_text(encoding="utf-8")
 
 

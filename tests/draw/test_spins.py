@@ -39,7 +39,7 @@ def test_regions_have_as_many_spins_as_there_are(rotor: tuple[float, ...], size:
 def test_branches_are_the_exact_spins() -> None:
     """Each curve has the energy and the stability of a steady spin where |H| is 2, and of no other."""
     spins = exact((Fraction(3, 10), Fraction(-1, 5), Fraction(1, 2)), Fraction(2))
-    found = []
+    branches = []
     for branch in PLAIN.branches(3.0):
         order = np.argsort(branch.sizes)
         if branch.sizes.min() <= 2 <= branch.sizes.max():
@@ -47,9 +47,9 @@ def test_branches_are_the_exact_spins() -> None:
                 [np.interp(2.0, branch.sizes[order], c) for c in branch.momenta[order].T]
             )
             omega = (momentum - PLAIN.rotor) / PLAIN.moments
-            found.append((float(omega @ momentum) / 2, branch.stable))
-    assert [stable for _, stable in sorted(found)] == [square < 0 for _, square in spins]
-    assert np.array(sorted(found))[:, 0] == pytest.approx([rate for rate, _ in spins], abs=2e-3)
+            branches.append((float(omega @ momentum) / 2, branch.stable))
+    assert [stable for _, stable in sorted(branches)] == [square < 0 for _, square in spins]
+    assert np.array(sorted(branches))[:, 0] == pytest.approx([rate for rate, _ in spins], abs=2e-3)
 
 
 def test_a_pair_is_born_at_each_cusp() -> None:

@@ -68,10 +68,10 @@ def measured(ratio: Ratio, folder: Path) -> Measured:
     return one
 
 
-def printed(found: list[Measured], before: dict[str, Row]) -> str:
+def printed(measured: list[Measured], before: dict[str, Row]) -> str:
     page = Console(file=StringIO(), width=200)
-    page.print(table(found, before))
-    for line in remarks(found, before):
+    page.print(table(measured, before))
+    for line in remarks(measured, before):
         page.print(line)
     return page.file.getvalue()  # type: ignore[attr-defined]
 
@@ -140,10 +140,10 @@ def test_a_slower_twin_is_named(tmp_path: Path) -> None:
     assert before["invented/twice"].ratio == 2.0
     assert not sound.misses
     assert "worse" not in printed([sound], before)
-    said = printed([slower], before)
+    page = printed([slower], before)
     assert slower.misses
-    assert f"missed ({ENOUGH.because}): invented/twice" in said
-    assert f"worse: invented/twice is 3 ±0, was 2 ±0 at {COMMIT}" in said
+    assert f"missed ({ENOUGH.because}): invented/twice" in page
+    assert f"worse: invented/twice is 3 ±0, was 2 ±0 at {COMMIT}" in page
     assert "better: " in printed(
         [sound], {"invented/twice": replace(before["invented/twice"], ratio=3)}
     )
@@ -254,7 +254,7 @@ def test_a_missed_target_fails_only_where_that_is_asked_for(
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (["nonsense"], "expected the beginning of a ratio's name (invented), got nonsense"),
         (["--against", "/nowhere"], "expected a checkout of this project, got /nowhere"),
@@ -263,12 +263,12 @@ def test_a_missed_target_fails_only_where_that_is_asked_for(
     ],
 )
 def test_a_wrong_call_is_refused(
-    shipped: Path, capsys: pytest.CaptureFixture[str], words: list[str], said: str
+    shipped: Path, capsys: pytest.CaptureFixture[str], words: list[str], message: str
 ) -> None:
     """In one sentence, before anything is measured."""
     with pytest.raises(SystemExit, match="2"):
         bench.main(words)
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
     assert not shipped.exists()
 
 
@@ -276,7 +276,7 @@ def test_another_checkout_has_caches_of_its_own(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A cold run begins with an empty folder and leaves it to the warm one."""
-    seen: list[tuple[str, bool]] = []
+    caches: list[tuple[str, bool]] = []
 
     @dataclass
     class Done:
@@ -285,7 +285,7 @@ def test_another_checkout_has_caches_of_its_own(
     def run(command: list[str], env: dict[str, str], **_: object) -> Done:
         cache = Path(env["HEYOKA_CACHE_DIR"])
         assert env["XDG_CACHE_HOME"] == str(cache)
-        seen.append((cache.name, cache.exists()))
+        caches.append((cache.name, cache.exists()))
         cache.mkdir(exist_ok=True)
         return Done()
 
@@ -293,10 +293,10 @@ def test_another_checkout_has_caches_of_its_own(
     cold, warm = commands.ratios(tmp_path, tmp_path / "caches")
     (tmp_path / "caches").mkdir()
     in_turns(replace(cold, rounds=1))
-    assert seen == [("here", False), ("here", True), ("other", False), ("other", True)]
-    seen.clear()
+    assert caches == [("here", False), ("here", True), ("other", False), ("other", True)]
+    caches.clear()
     in_turns(replace(warm, rounds=1))
-    assert seen == [("here", True)] * 2 + [("other", True)] * 2
+    assert caches == [("here", True)] * 2 + [("other", True)] * 2
 
 
 def test_a_verification_that_fails_is_not_timed(tmp_path: Path) -> None:

@@ -199,9 +199,9 @@ def test_a_table_is_refused_for_the_order_of_its_columns() -> None:
 @pytest.mark.parametrize("size", [1e200, 1e308, 10**5000, mp.mpf(10) ** 5000], ids=range(4))
 def test_answers_whose_square_is_no_double_are_judged(size: Any) -> None:
     """An answer may be as large as it likes: it fails, and nothing breaks."""
-    found = taylor_verify.check(SCENE, lambda p: [[size] * 3] * len(p.times))
-    assert found.verdicts[0].verdict is Status.FAIL
-    assert not found.verdicts[0].max < 1e200
+    judged = taylor_verify.check(SCENE, lambda p: [[size] * 3] * len(p.times))
+    assert judged.verdicts[0].verdict is Status.FAIL
+    assert not judged.verdicts[0].max < 1e200
 
 
 # Tolerances, targets, steps and settings.
@@ -304,9 +304,9 @@ def test_the_machines_faults_are_not_called_ours(
 
     monkeypatch.setattr("taylor_verify.solvers.solver.pose", break_down)
     assert main(["run", SCENE]) == 2
-    told = capsys.readouterr().err
-    assert expected in told
-    assert "a fault of taylor-verify" not in told
+    messages = capsys.readouterr().err
+    assert expected in messages
+    assert "a fault of taylor-verify" not in messages
     monkeypatch.setattr("taylor_verify.solvers.solver.pose", lambda *_: 1 / 0)
     assert main(["run", SCENE]) == 2
     assert "a fault of taylor-verify" in capsys.readouterr().err
@@ -330,7 +330,7 @@ def test_the_truth_value_of_a_judgement_is_whether_it_passed(judgement: Judgemen
 
 def test_a_failed_judgement_raises_its_reasons(judgement: Judgement) -> None:
     """Every verdict that is no pass is a line of the AssertionError."""
-    said = r"fail  euler/generic f64 omega: 3 digits are right up to t = 100 \(largest error "
-    with pytest.raises(NotPassed, match=said) as raised:
+    pattern = r"fail  euler/generic f64 omega: 3 digits are right up to t = 100 \(largest error "
+    with pytest.raises(NotPassed, match=pattern) as raised:
         judgement.raise_for_failure()
     assert isinstance(raised.value, AssertionError)

@@ -74,11 +74,11 @@ def test_the_pages_are_built_without_a_warning(tmp_path: Path) -> None:
 
 def test_every_page_is_found_from_the_first() -> None:
     """index.md names all pages, and none that is not there."""
-    told = re.findall(
+    names = re.findall(
         r"^(?:tutorials/|gallery/|reference/)?[a-z-]+$", text_of("index.md"), re.MULTILINE
     )
     pages = {page.relative_to(DOCS).with_suffix("").as_posix() for page in PAGES}
-    assert set(told) == pages - {"index"}
+    assert set(names) == pages - {"index"}
 
 
 @pytest.mark.parametrize(
@@ -128,15 +128,15 @@ def test_the_table_of_results_has_both_models_and_every_state() -> None:
 
 def regimes() -> set[str]:
     """Every word that a module of taylor_verify.exact has for a regime: in an enumeration, or alone."""
-    found: set[str] = set()
+    regimes_of_exact: set[str] = set()
     room = importlib.import_module("taylor_verify.exact")
     for module in pkgutil.walk_packages(room.__path__, "taylor_verify.exact."):
         for name, value in vars(importlib.import_module(module.name)).items():
             if inspect.isclass(value) and issubclass(value, StrEnum) and name.endswith("Regime"):
-                found |= {regime.value for regime in value}
+                regimes_of_exact |= {regime.value for regime in value}
             elif name == "REGIME":
-                found.add(value)
-    return found
+                regimes_of_exact.add(value)
+    return regimes_of_exact
 
 
 def test_every_regime_is_documented() -> None:
@@ -148,14 +148,14 @@ def test_every_regime_is_documented() -> None:
     )
     euler = regimes()
     assert {"max-axis", "separatrix", "oblique-moment"} <= euler
-    told = set(re.findall(r"`([\w -]+)`", text_of("regimes.md")))
-    assert {*euler, *kirchhoff, "manufactured", NO_CLOSED_FORM} <= told
+    documented = set(re.findall(r"`([\w -]+)`", text_of("regimes.md")))
+    assert {*euler, *kirchhoff, "manufactured", NO_CLOSED_FORM} <= documented
 
 
 def test_every_verdict_is_documented() -> None:
     """The table of verdicts has each status, in its order, and no other."""
-    told = [row[0] for row in table_rows("verdicts.md")]
-    assert told[1 : 1 + len(Status)] == [status.value for status in Status]
+    statuses = [row[0] for row in table_rows("verdicts.md")]
+    assert statuses[1 : 1 + len(Status)] == [status.value for status in Status]
 
 
 def test_every_field_of_a_row_is_documented() -> None:
@@ -174,22 +174,22 @@ def test_every_field_of_an_order_is_documented() -> None:
 
 def test_every_outcome_is_documented() -> None:
     """The sentences of errors.md are those of Outcome, in its order."""
-    told = re.findall(r"^- (.*)$", text_of("errors.md"), re.MULTILINE)
-    assert told == [outcome.value for outcome in Outcome]
+    sentences = re.findall(r"^- (.*)$", text_of("errors.md"), re.MULTILINE)
+    assert sentences == [outcome.value for outcome in Outcome]
 
 
 def test_every_exit_status_is_documented() -> None:
     """The table of exit statuses has each that a verb can end with."""
-    told = [int(row[0]) for row in table_rows("errors.md") if row[0].isdigit()]
+    numbers = [int(row[0]) for row in table_rows("errors.md") if row[0].isdigit()]
     statuses = {answer.PASS, answer.FAIL, answer.WRONG_CALL, answer.UNDECIDED, answer.INTERRUPTED}
-    assert told == sorted(statuses)
+    assert numbers == sorted(statuses)
 
 
 def test_every_exception_told_of_exists() -> None:
     """The exceptions that errors.md names are classes of exceptions."""
-    told = re.findall(r"^\| `(taylor_verify[\w.]+)`", text_of("errors.md"), re.MULTILINE)
-    assert len(told) >= 5
-    for name in told:
+    names = re.findall(r"^\| `(taylor_verify[\w.]+)`", text_of("errors.md"), re.MULTILINE)
+    assert len(names) >= 5
+    for name in names:
         module, _, kind = name.rpartition(".")
         assert issubclass(getattr(importlib.import_module(module), kind), BaseException)
 
@@ -245,9 +245,9 @@ def named(name: str) -> Any:
 @pytest.mark.parametrize(("kind", "name"), PUBLIC)
 def test_what_the_reference_names_has_a_docstring(kind: str, name: str) -> None:
     """The object is there, is of the kind that is told, and says what it is in words of its own."""
-    found = named(name)
-    assert inspect.isclass(found) == (kind in {"class", "exception"})
-    docstring = inspect.getdoc(found) or ""
+    public = named(name)
+    assert inspect.isclass(public) == (kind in {"class", "exception"})
+    docstring = inspect.getdoc(public) or ""
     # A dataclass without one is given its signature.
     assert " " in docstring.removeprefix(f"{name.rpartition('.')[2]}(")
     assert docstring.partition("\n")[0].rstrip().endswith((".", ",", ":", ";"))
@@ -285,5 +285,5 @@ def test_marks_of_a_docstring_are_text_and_literals_literal() -> None:
 
 def test_an_indented_block_of_a_docstring_is_verbatim() -> None:
     """A formula on lines of its own stays on them, and the text goes on behind it."""
-    told = list(configuration().plain(["With", "", "    |x|  y", "", "    z", "", "and |x|."]))
-    assert told == ["With", "", "::", "", "    |x|  y", "", "    z", "", r"and \|x\|."]
+    lines = list(configuration().plain(["With", "", "    |x|  y", "", "    z", "", "and |x|."]))
+    assert lines == ["With", "", "::", "", "    |x|  y", "", "    z", "", r"and \|x\|."]

@@ -352,13 +352,13 @@ def detours(sources: Sources) -> Iterator[str]:
 
 
 def _reachable(module: str, graph: Mapping[str, set[str]]) -> set[str]:
-    seen: set[str] = set()
+    reached: set[str] = set()
     waiting = [module]
     while waiting:
-        found = graph[waiting.pop()] - seen
-        seen |= found
-        waiting.extend(found)
-    return seen
+        imported = graph[waiting.pop()] - reached
+        reached |= imported
+        waiting.extend(imported)
+    return reached
 
 
 # The tree itself
@@ -624,10 +624,10 @@ def test_a_circle_is_found_through_a_function() -> None:
         "taylor_verify.b": "def f():\n from taylor_verify.c import y",
         "taylor_verify.c": "import taylor_verify.a",
     }
-    found = circle(sources)
-    assert set(found) == set(sources)
+    modules = circle(sources)
+    assert set(modules) == set(sources)
     graph = import_graph(sources)
-    assert all(target in graph[module] for module, target in itertools.pairwise(found))
+    assert all(target in graph[module] for module, target in itertools.pairwise(modules))
 
 
 def test_a_type_hint_closes_no_circle() -> None:

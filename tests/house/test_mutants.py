@@ -40,9 +40,9 @@ def test_an_operator_a_sign_or_a_small_constant_is_changed(
     source: str, expected: list[str]
 ) -> None:
     """Each by itself, and told by the line that differs."""
-    found = [mutant("a.py", source, place) for place in range(count(source))]
-    assert [one.after for one in found] == expected
-    assert {one.before for one in found} == {source.partition("\n")[0]}
+    mutants = [mutant("a.py", source, place) for place in range(count(source))]
+    assert [one.after for one in mutants] == expected
+    assert {one.before for one in mutants} == {source.partition("\n")[0]}
 
 
 @pytest.mark.parametrize("source", LEFT_ALONE)
@@ -53,11 +53,11 @@ def test_types_decorators_and_words_are_left_alone(source: str) -> None:
 
 def test_a_seed_draws_the_same_mutants() -> None:
     """Each is a module that can be compiled, and another seed draws others."""
-    found = drawn(["judge/floor"], 12, seed=1)
-    assert found == drawn(["judge/floor"], 12, seed=1)
-    assert found != drawn(["judge/floor"], 12, seed=2)
-    assert len(set(found)) == 12
-    for one in found:
+    mutants = drawn(["judge/floor"], 12, seed=1)
+    assert mutants == drawn(["judge/floor"], 12, seed=1)
+    assert mutants != drawn(["judge/floor"], 12, seed=2)
+    assert len(set(mutants)) == 12
+    for one in mutants:
         assert ast.unparse(ast.parse(one.text)) == one.text
         assert one.before != one.after
 

@@ -140,12 +140,12 @@ class Lost(Solver):
 
 def test_solve_returns_what_run_judges() -> None:
     """The states of `solve` are those of the solver, one row for each time."""
-    found = taylor_verify.solve("euler/generic", "taylor", "f64")
-    assert found.outcome is Outcome.FINISHED
+    trajectory = taylor_verify.solve("euler/generic", "taylor", "f64")
+    assert trajectory.outcome is Outcome.FINISHED
     times = taylor_verify.load("euler/generic").clock.elapsed
-    assert found.quantities["omega"].shape == (len(times), 3)
+    assert trajectory.quantities["omega"].shape == (len(times), 3)
     (_, omega, *_) = taylor_verify.run("euler/generic", "taylor", "f64").verdicts
-    assert (omega.steps, omega.outcome) == (found.steps, found.outcome.value)
+    assert (omega.steps, omega.outcome) == (trajectory.steps, trajectory.outcome.value)
 
 
 @pytest.mark.parametrize(
@@ -160,10 +160,10 @@ def test_a_run_that_cannot_begin_is_an_outcome(
     scene: str, solver: Solver | str, outcome: Outcome, detail: str
 ) -> None:
     """`solve` raises nothing for it and has no states; `run` has a verdict with the same outcome."""
-    found = taylor_verify.solve(scene, solver, "f32")
-    assert found.outcome is outcome
-    assert detail in found.detail
-    assert found.quantities == {}
+    trajectory = taylor_verify.solve(scene, solver, "f32")
+    assert trajectory.outcome is outcome
+    assert detail in trajectory.detail
+    assert trajectory.quantities == {}
     first, *_ = taylor_verify.run(scene, solver, "f32").verdicts
     assert first.outcome == outcome.value
     assert first.verdict is not Status.PASS
@@ -171,11 +171,11 @@ def test_a_run_that_cannot_begin_is_an_outcome(
 
 def test_many_runs_are_in_the_order_asked_for() -> None:
     """A judgement for each scene and, within it, each rung, equal to those of `run`."""
-    found = taylor_verify.run_many(SCENES, rungs=["f64", "f32"], jobs=2)
+    judgements = taylor_verify.run_many(SCENES, rungs=["f64", "f32"], jobs=2)
     asked = [(scene, rung) for scene in SCENES for rung in ("f64", "f32")]
-    assert [(j.verdicts[0].scene, j.verdicts[0].rung) for j in found] == asked
+    assert [(j.verdicts[0].scene, j.verdicts[0].rung) for j in judgements] == asked
     one = taylor_verify.run(SCENES[0], "taylor", "f32")
-    rows = [[(v.quantity, v.verdict, v.max) for v in j.verdicts] for j in (found[1], one)]
+    rows = [[(v.quantity, v.verdict, v.max) for v in j.verdicts] for j in (judgements[1], one)]
     assert rows[0] == rows[1]
     assert taylor_verify.run_many([]) == []
 
@@ -201,9 +201,9 @@ def test_many_runs_refuse_a_wrong_call(
 
 def test_explain_returns_the_document_of_the_verb() -> None:
     """The rung is a name or a Rung; the numbers are those of `explain --json`."""
-    found = taylor_verify.explain("euler/spherical", rung("f64"))
-    assert found["rung"] == "f64"
-    assert set(found) == set(explanation("euler/spherical", "f64"))
+    document = taylor_verify.explain("euler/spherical", rung("f64"))
+    assert document["rung"] == "f64"
+    assert set(document) == set(explanation("euler/spherical", "f64"))
     with pytest.raises(ValueError, match="f65"):
         taylor_verify.explain("euler/spherical", "f65")
 
@@ -211,9 +211,9 @@ def test_explain_returns_the_document_of_the_verb() -> None:
 def test_a_trade_off_measures_what_was_asked_for() -> None:
     """The points are those of the settings; a number of repeats below one is refused."""
     asked = [setting("taylor", rung("f32")), setting("taylor", rung("f64"))]
-    found = taylor_verify.tradeoff("euler/rest", asked, repeats=1)
-    assert [p.timed.setting for p in found.points] == asked
-    assert found.repeats == 1
+    trade_off = taylor_verify.tradeoff("euler/rest", asked, repeats=1)
+    assert [p.timed.setting for p in trade_off.points] == asked
+    assert trade_off.repeats == 1
     with pytest.raises(ValueError, match="expected repeats of at least 1, got 0"):
         taylor_verify.tradeoff("euler/rest", asked, repeats=0)
 
@@ -227,8 +227,8 @@ def test_a_recommendation_has_the_arguments_of_its_room() -> None:
 
 def test_claims_returns_findings() -> None:
     """An id, or a part that ends one, gives the finding with its verdict; another one is refused."""
-    (found,) = taylor_verify.claims("hydromechanics 49 (11)")
-    assert isinstance(found, Finding)
-    assert found.is_as_recorded
+    (finding,) = taylor_verify.claims("hydromechanics 49 (11)")
+    assert isinstance(finding, Finding)
+    assert finding.is_as_recorded
     with pytest.raises(ValueError, match="expected the id of a claim"):
         taylor_verify.claims("hydromechanics 99")

@@ -83,8 +83,8 @@ def test_the_picture_is_the_published_one() -> None:
 def test_what_the_set_up_costs_is_said() -> None:
     """The sizes that the page names are those that the set-up says on the terminal."""
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
-    said = " ".join(re.findall(r"@echo '(.*)' >&2", makefile))
-    sizes = re.findall(r"\d+(?:\.\d+)? [MG]B", said)
+    message = " ".join(re.findall(r"@echo '(.*)' >&2", makefile))
+    sizes = re.findall(r"\d+(?:\.\d+)? [MG]B", message)
     assert len(sizes) == 4
     assert [size for size in sizes if size not in README] == []
 
@@ -113,8 +113,8 @@ def test_every_target_of_make_exists() -> None:
     rules = {
         name for line in re.findall(r"^([a-z][a-z -]*):", makefile, re.M) for name in line.split()
     }
-    told = set(re.findall(r"`?make ([a-z-]+)[` ]", README))
-    assert {"verify", "test", "site"} <= told <= rules
+    targets = set(re.findall(r"`?make ([a-z-]+)[` ]", README))
+    assert {"verify", "test", "site"} <= targets <= rules
 
 
 def test_the_python_shown_is_python() -> None:

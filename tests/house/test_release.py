@@ -145,20 +145,20 @@ def test_a_release_is_published_without_a_password() -> None:
 
 def test_dependabot_watches_actions_and_libraries() -> None:
     """Both places that use actions, and the pinned versions."""
-    found = read(ROOT / ".github" / "dependabot.yml")
-    assert found["version"] == 2
-    kinds = {update["package-ecosystem"]: update for update in found["updates"]}
+    settings = read(ROOT / ".github" / "dependabot.yml")
+    assert settings["version"] == 2
+    kinds = {update["package-ecosystem"]: update for update in settings["updates"]}
     assert set(kinds) == {"github-actions", "pip"}
     assert kinds["github-actions"]["directories"] == ["/", "/.github/actions/verify"]
-    assert all("interval" in update["schedule"] for update in found["updates"])
+    assert all("interval" in update["schedule"] for update in settings["updates"])
 
 
 def test_the_docs_are_built_of_what_is_there() -> None:
     """Configuration and requirements are files of the repository, and a warning is an error."""
-    found = read(ROOT / ".readthedocs.yaml")
-    assert (found["version"], found["sphinx"]["fail_on_warning"]) == (2, True)
-    first, second = found["python"]["install"]
-    files = [found["sphinx"]["configuration"], first["requirements"], second["path"]]
+    settings = read(ROOT / ".readthedocs.yaml")
+    assert (settings["version"], settings["sphinx"]["fail_on_warning"]) == (2, True)
+    first, second = settings["python"]["install"]
+    files = [settings["sphinx"]["configuration"], first["requirements"], second["path"]]
     assert all((ROOT / file).exists() for file in files)
 
 

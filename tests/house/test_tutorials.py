@@ -58,7 +58,7 @@ def test_every_command_of_a_tutorial_is_run() -> None:
 
 
 @pytest.mark.parametrize(
-    ("shown", "found"),
+    ("shown", "printed"),
     [
         ("pass", "fail"),
         ("late by 0.005, constant", "late by -0.005, constant"),
@@ -70,14 +70,14 @@ def test_every_command_of_a_tutorial_is_run() -> None:
         ("", "a warning"),
     ],
 )
-def test_another_output_is_found_out(shown: str, found: str) -> None:
+def test_another_output_is_found_out(shown: str, printed: str) -> None:
     """A word, a sign, a digit that counts, a line more or less: each makes the page untrue."""
     with pytest.raises(Untrue):
-        compare(shown, found)
+        compare(shown, printed)
 
 
 @pytest.mark.parametrize(
-    ("shown", "found", "numbers"),
+    ("shown", "printed", "numbers"),
     [
         ("omega   fail\n1.04", "omega fail 1.0423", Numbers.AS_PRINTED),
         ("first ... last", "first 1 2 last but not last", Numbers.AS_PRINTED),
@@ -86,16 +86,18 @@ def test_another_output_is_found_out(shown: str, found: str) -> None:
         ("0.0026 s", "1.7 s", Numbers.MEASURED),
     ],
 )
-def test_the_same_output_is_let_pass(shown: str, found: str, numbers: Numbers) -> None:
+def test_the_same_output_is_let_pass(shown: str, printed: str, numbers: Numbers) -> None:
     """Blanks are free, `...` stands for anything, a number may differ by what it is."""
-    compare(shown, found, numbers)
+    compare(shown, printed, numbers)
 
 
-@pytest.mark.parametrize("found", ["error 7.6e-16", "error 0", "error nan", "an error of 7.6e-14"])
-def test_a_rounding_class_is_left_by_a_factor_of_ten(found: str) -> None:
+@pytest.mark.parametrize(
+    "printed", ["error 7.6e-16", "error 0", "error nan", "an error of 7.6e-14"]
+)
+def test_a_rounding_class_is_left_by_a_factor_of_ten(printed: str) -> None:
     """Another size of error is another result, and so are a NaN and other words."""
     with pytest.raises(Untrue):
-        compare("error 7.6e-14", found, Numbers.ROUNDING_CLASS)
+        compare("error 7.6e-14", printed, Numbers.ROUNDING_CLASS)
 
 
 @pytest.mark.parametrize(

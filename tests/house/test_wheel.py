@@ -214,12 +214,14 @@ def asked_for(requirements: Iterable[str], extra: str = "") -> set[str]:
 
 def closure(names: Iterable[str]) -> set[str]:
     """The distributions of these names, and all that they require themselves."""
-    seen: set[str] = set()
+    distributions: set[str] = set()
     waiting = set(names)
     while waiting:
-        seen |= waiting
-        waiting = {each for name in waiting for each in asked_for(requires(name) or ())} - seen
-    return seen
+        distributions |= waiting
+        waiting = {
+            each for name in waiting for each in asked_for(requires(name) or ())
+        } - distributions
+    return distributions
 
 
 @pytest.fixture(scope="module")

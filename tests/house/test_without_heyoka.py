@@ -176,8 +176,8 @@ def test_a_verb_that_needs_heyoka_says_so(tmp_path: Path) -> None:
     )
     done = lacking(tmp_path, HEYOKA, "-c", script)
     assert done.returncode == 2
-    told = done.stderr.splitlines()[-1]
-    assert told == f"taylor-verify: expected heyoka, got no such package: {INSTALL}"
+    message = done.stderr.splitlines()[-1]
+    assert message == f"taylor-verify: expected heyoka, got no such package: {INSTALL}"
 
 
 # Tests of this project where heyoka is not installed. It is hidden here, not blocked.
@@ -257,14 +257,14 @@ def test_explain_shows_all_but_the_cost_of_a_run(scene: str, tmp_path: Path) -> 
     """Equations, orbit, truth and bounds are those of the exact motion, and a warning says so."""
     status, out, err = command(tmp_path, "explain", scene, "--json")
     assert status == 0, err
-    found = json.loads(out)
-    (warning,) = found["warnings"]
+    document = json.loads(out)
+    (warning,) = document["warnings"]
     assert warning.startswith(f"expected heyoka, got no such package: {INSTALL}; the gates are")
     with_heyoka = json.loads(json.dumps(taylor_verify.explain(scene)))
     same = {"equations", "parameters", "units", "regime", "route", "truth_digits", "orbit"}
-    assert {name: found[name] for name in same} == {name: with_heyoka[name] for name in same}
-    assert (found["cost"]["steps"], found["cost"]["products"] > 0) == (None, True)
-    gates = {gate["quantity"]: gate for gate in found["gates"]}
+    assert {name: document[name] for name in same} == {name: with_heyoka[name] for name in same}
+    assert (document["cost"]["steps"], document["cost"]["products"] > 0) == (None, True)
+    gates = {gate["quantity"]: gate for gate in document["gates"]}
     assert set(gates) == {gate["quantity"] for gate in with_heyoka["gates"]}
     for gate in gates.values():
         assert gate["verdict"] == "pass"

@@ -75,7 +75,7 @@ def test_a_view_keeps_lengths_across_it(azimuth: float, elevation: float, p: lis
     assert np.abs(view.frame @ view.frame.T - np.eye(3)).max() <= 1e-12
     assert np.linalg.det(view.frame) == pytest.approx(1)
     point = np.array(p)
-    across, depth = view.seen(point)[0], float(view.towards @ point)
+    across, depth = view.project(point)[0], float(view.towards @ point)
     assert across @ across + depth**2 == pytest.approx(point @ point)
 
 
@@ -104,10 +104,10 @@ def test_the_outline_is_on_the_surface_and_nothing_is_seen_beyond_it(
     normal = rim / np.square(semi_axes)
     across = np.abs(normal @ view.towards) / np.linalg.norm(normal, axis=1)
     assert across.max() <= 1e-9
-    widest = np.abs(view.seen(rim)).max(axis=0)
+    widest = np.abs(view.project(rim)).max(axis=0)
     for pole in np.eye(3):
         # The rim has a corner every two degrees.
-        assert (np.abs(view.seen(surface.circle(pole))).max(axis=0) <= 1.001 * widest).all()
+        assert (np.abs(view.project(surface.circle(pole))).max(axis=0) <= 1.001 * widest).all()
 
 
 @given(st.lists(st.booleans(), min_size=2, max_size=30))

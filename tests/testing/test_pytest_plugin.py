@@ -199,8 +199,8 @@ def test_state(verify_solver):
     # pytest's own short summary follows, and repeats a whole message where the variable CI is set.
     noted = result.stdout.str().partition("= taylor-verify =")[2].partition("= short test summary")
     summary = noted[0].splitlines()
-    told = [line.partition(": ")[0].rpartition("::")[2] for line in summary if words in line]
-    assert told == ["test_blind", "test_one"]
+    names = [line.partition(": ")[0].rpartition("::")[2] for line in summary if words in line]
+    assert names == ["test_blind", "test_one"]
 
 
 def test_the_note_of_a_worker_reaches_the_summary(pytester: pytest.Pytester) -> None:
@@ -252,8 +252,8 @@ def test_only_a_pass_meets_a_demand(status: Status) -> None:
 def test_a_run_that_is_unavailable_says_what_would_mend_it(outcome: Outcome, words: str) -> None:
     """A missing package is installed; another rung is advised only where the rung is the reason."""
     row = verdict(Status.UNAVAILABLE, outcome=outcome.value)
-    told = report(Judgement((row,), None), [row])
-    mend = next(line for line in told.splitlines() if line.startswith("    mend "))
+    text = report(Judgement((row,), None), [row])
+    mend = next(line for line in text.splitlines() if line.startswith("    mend "))
     assert words in mend
 
 
@@ -273,19 +273,19 @@ end = 60
 samples = 61
 """
     judgement = run(read(text, "too long"), "taylor", "f32")
-    found = {v.quantity: v.verdict for v in judgement.verdicts}
-    assert found["omega"] is Status.VACUOUS
-    told = report(judgement, demanded_rows(judgement))
-    assert "omega: vacuous" in told
-    assert "    mend     rounding alone reaches the size of the motion" in told
+    verdicts = {v.quantity: v.verdict for v in judgement.verdicts}
+    assert verdicts["omega"] is Status.VACUOUS
+    text = report(judgement, demanded_rows(judgement))
+    assert "omega: vacuous" in text
+    assert "    mend     rounding alone reaches the size of the motion" in text
     assert all(is_met(row) for row in demanded_rows(judgement, only="conserved"))
 
 
 def test_a_tolerance_below_the_floor_is_said_to_be_so() -> None:
     """Where perfect rounding would leave more than is allowed, the message does not blame the step."""
     judgement = run("euler/tennis-racket", "taylor", "f64", tolerance=1e-17)
-    told = report(judgement, demanded_rows(judgement))
-    assert "the tolerance is finer than the roundings of this precision" in told
+    text = report(judgement, demanded_rows(judgement))
+    assert "the tolerance is finer than the roundings of this precision" in text
 
 
 def test_a_time_shift_is_told_beside_a_tolerance() -> None:
@@ -295,10 +295,10 @@ def test_a_time_shift_is_told_beside_a_tolerance() -> None:
     judgement = check(
         scene, lambda problem: [[float(w) for w in row] for row in late], tolerance=1e-9
     )
-    told = report(judgement, demanded_rows(judgement))
-    assert "a time shift: the answer is late by 0.0005, and" in told
-    assert "above the tolerance of 1e-09 (roundoff of f64 alone would need" in told
-    assert "x growth" not in told
+    text = report(judgement, demanded_rows(judgement))
+    assert "a time shift: the answer is late by 0.0005, and" in text
+    assert "above the tolerance of 1e-09 (roundoff of f64 alone would need" in text
+    assert "x growth" not in text
 
 
 # The marker.

@@ -1,4 +1,4 @@
-"""Judge a solver of one's own, or a trajectory that is already in a file or in memory."""
+"""Judge your own solver, or a trajectory that is already in a file or in memory."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def check(
     *,
     steps: Sequence[float] | None = None,
 ) -> Judgement:
-    """Judge a solver of one's own, a trajectory file, or a trajectory in memory, on a scene.
+    """Judge your own solver, a trajectory file, or a trajectory in memory, on a scene.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def check(
     rung
         The precision of the arithmetic that made the answer.
     accept_conventions
-        Correct what was found out about the conventions of a file before it is judged.
+        Correct the conventions that were detected in a file before it is judged.
     partial
         Accept a file that lacks tracked columns or covers a part of the span: its row `complete` is vacuous
         and counts for nothing. Without it this row is undecided. An answer of a callable is always whole.

@@ -80,10 +80,10 @@ def run(
     with costs.of(SOLVING):
         trajectory = _answer(solver, problem)
     seconds = perf_counter() - began
-    found = judgement(problem, solver, trajectory, seconds, asked)
-    found = with_initial(found, float(problem.given.clock.start))
-    found = with_causes(found, problem, trajectory)
-    return replace(found, costs=total([costs.seconds, found.costs]))
+    judged = judgement(problem, solver, trajectory, seconds, asked)
+    judged = with_initial(judged, float(problem.given.clock.start))
+    judged = with_causes(judged, problem, trajectory)
+    return replace(judged, costs=total([costs.seconds, judged.costs]))
 
 
 def solve(

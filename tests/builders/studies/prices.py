@@ -20,14 +20,14 @@ def named(name: str) -> Variant:
 def study() -> PricesStudy:
     """A short measurement of a few variants."""
     patch = pytest.MonkeyPatch()
-    kept = tuple(named(n) for n in ("omega", "literals", "attitude", "impulse", "whole"))
-    patch.setattr(prices, "variants", lambda: kept)
+    few = tuple(named(n) for n in ("omega", "literals", "attitude", "impulse", "whole"))
+    patch.setattr(prices, "variants", lambda: few)
     patch.setattr(prices, "RUNGS", {"f64": 6})
     patch.setattr(prices, "_LEAST_SECONDS", 1e-4)
-    told: list[str] = []
+    messages: list[str] = []
     try:
-        found = prices.study(told.append)
+        measured = prices.study(messages.append)
     finally:
         patch.undo()
-    assert told == ["f64"]
-    return found
+    assert messages == ["f64"]
+    return measured

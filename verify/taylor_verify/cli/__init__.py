@@ -17,7 +17,7 @@ from taylor_verify.cli.streams import have_streams, print_out, say, stdout_reser
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one verb and return the exit status."""
     try:
-        # Here already, so that an interrupt finds it as it finds the rest.
+        # Imported inside the try, so that an interrupt during the import is reported too.
         from taylor_verify.cli.arguments import parse
 
         have_streams()
@@ -26,19 +26,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
             answer = options.act(options)
         return _print(answer, options.json)
     except KeyboardInterrupt as interrupt:
-        say(_told_of(interrupt))
+        say(_interruption(interrupt))
         return INTERRUPTED
     except Exception as error:
         if sys.flags.dev_mode:
             raise
-        say(_told(error))
+        say(_message(error))
         return WRONG_CALL
     finally:
         print_out()
 
 
 def _print(answer: Answer, as_json: bool) -> int:
-    said = ""
+    shown = ""
     if as_json:
         import json
 
@@ -49,15 +49,15 @@ def _print(answer: Answer, as_json: bool) -> int:
         text = answer.text()
         print_out(text)
         # On a terminal both streams are read together, the text folded to its width.
-        said = "".join(text.split()) if sys.stdout.isatty() else ""
+        shown = "".join(text.split()) if sys.stdout.isatty() else ""
     for message in answer.messages:
-        if "".join(message.split()) not in said:
+        if "".join(message.split()) not in shown:
             say(message)
     return answer.status
 
 
-def _told_of(interrupt: KeyboardInterrupt) -> str:
-    """Return one line: nothing was written, and how to go on if there is something to go on from."""
+def _interruption(interrupt: KeyboardInterrupt) -> str:
+    """Return one line: how many scenes are finished, and how to go on."""
     finished, jobs = getattr(interrupt, "finished", 0), getattr(interrupt, "jobs", 0)
     if not finished:
         return "interrupted"
@@ -67,7 +67,7 @@ def _told_of(interrupt: KeyboardInterrupt) -> str:
     )
 
 
-def _told(error: Exception) -> str:
+def _message(error: Exception) -> str:
     """Return a message without a traceback; `python -X dev -m taylor_verify` shows the traceback."""
     from taylor_verify.scenes.reading.faults import Refused
 

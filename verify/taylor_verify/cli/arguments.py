@@ -27,7 +27,7 @@ from taylor_verify.records.version import __version__
 from taylor_verify.scenes.names import escaped
 
 _VERB: Final = "VERB"
-# What may be meant as a rung, misspelt or not: a scene of such a name is written ./f64.
+# Words that count as rungs, even if misspelt: a scene with such a name is written ./f64.
 _RUNG = re.compile(r"(f|mp)\d*", re.IGNORECASE)
 _NEGATIVE_TIME = re.compile(r"-[\d.]")
 # Name, sign, value, default and help of an argument.
@@ -254,7 +254,7 @@ def _complete(shell: str, options: argparse.Namespace) -> Answer:
     from taylor_verify.cli.completion import completion
 
     del options
-    return completion(_parser(True), shell)
+    return completion(_parser(is_publishing=True), shell)
 
 
 def _with_times_attached(arguments: Sequence[str]) -> list[str]:
@@ -269,7 +269,7 @@ def _with_times_attached(arguments: Sequence[str]) -> list[str]:
 
 
 def _split(groups: Iterable[Sequence[str]] | None) -> tuple[list[str], list[str]]:
-    """Tell rungs from scenes in all that stood behind ``--rung``, whose first word is a rung."""
+    """Return the rungs and the scenes among the words behind each ``--rung``; its first word is a rung."""
     rungs: list[str] = []
     scenes: list[str] = []
     for first, *others in groups or ():
@@ -299,7 +299,7 @@ def _parser(is_publishing: bool) -> argparse.ArgumentParser:
         "Exit status: 0 pass, 1 a gate failed, 2 the input or the call was wrong, 3 undecided. "
         "`taylor-verify VERB --help` has an example.",
         allow_abbrev=False,
-        # A wrong verb is told by `parse`, beside the verbs that are near to it.
+        # `parse` reports a wrong verb, with the verbs that are near to it.
         exit_on_error=False,
     )
     parser.add_argument("--version", action="version", version=f"taylor-verify {__version__}")
@@ -310,9 +310,9 @@ def _parser(is_publishing: bool) -> argparse.ArgumentParser:
         help=f"print the script that makes a shell complete words: {', '.join(SHELLS)} (shtab)",
     )
     parser.set_defaults(act=_greet, verb=parser, json=False)
-    found = parser.add_subparsers(title="verbs", metavar=_VERB)
+    verbs = parser.add_subparsers(title="verbs", metavar=_VERB)
     for name, (what, example, arguments) in _VERBS.items():
-        verb = found.add_parser(
+        verb = verbs.add_parser(
             name,
             help=what,
             description=what[0].upper() + what[1:] + ".",
@@ -332,20 +332,20 @@ def _parser(is_publishing: bool) -> argparse.ArgumentParser:
 
 def _act(name: str, options: argparse.Namespace) -> Answer:
     """Import the module of a verb and let it answer."""
-    found: Answer = import_module(f"taylor_verify.cli.{name}").answer(options)
-    return found
+    answer: Answer = import_module(f"taylor_verify.cli.{name}").answer(options)
+    return answer
 
 
 def _add(verb: argparse.ArgumentParser, line: str) -> None:
-    """Add the argument that a line of the text is."""
+    """Add the argument that a line of the text describes."""
     match = _ARGUMENT.fullmatch(line)
     assert match is not None, line
-    name, sign, value, default, said = match.groups()
+    name, sign, value, default, meaning = match.groups()
     if value is None:
-        verb.add_argument(name, action="store_true", help=said)
+        verb.add_argument(name, action="store_true", help=meaning)
         return
     first, *others = value.split("|")
-    given: dict[str, Any] = {"help": said, "metavar": None if others else first}
+    given: dict[str, Any] = {"help": meaning, "metavar": None if others else first}
     if others:
         given["choices"] = [first, *others]
     if value == "N":

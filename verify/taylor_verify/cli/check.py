@@ -49,7 +49,14 @@ from taylor_verify.solvers.files.columns.request import request
 from taylor_verify.solvers.files.file import TrajectoryFile, read
 
 _NUMBERS: Final = (
-    *("quantity", "verdict", ">error", ">at t", ">allowed", ">/floor", ">since t", "unit"),
+    "quantity",
+    "verdict",
+    ">error",
+    ">at t",
+    ">allowed",
+    ">/floor",
+    ">since t",
+    "unit",
 )
 
 

@@ -23,15 +23,15 @@ from taylor_verify.records.json_text import complete
 from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.scenes.reading.faults import Refused
 
-# Where GitHub's runner wants the summary of a step.
+# The variable that names the file for the summary of a step, set by GitHub's runner.
 _SUMMARY: Final = "GITHUB_STEP_SUMMARY"
-# What fails nothing must not bury what does.
+# The most changes that are named: more would hide the regressions.
 _MOST_CHANGES: Final = 10
 
 
 @dataclass(frozen=True)
 class Outputs:
-    """The files and comparisons asked for, known to be possible before the work begins."""
+    """Files and comparisons that were asked for, checked before the work begins."""
 
     junit: Path | None
     github: bool
@@ -40,7 +40,10 @@ class Outputs:
 
 
 def outputs(options: argparse.Namespace) -> Outputs:
-    """Return what was asked for. Raises WrongCall for a file that cannot be written, or is no baseline."""
+    """Return the outputs that were asked for.
+
+    Raises WrongCall for a file that cannot be written, and for one that is no baseline.
+    """
     junit = None if options.junit is None else writable_file(options.junit, "--junit")
     by_baseline = options.gate == "baseline"
     if by_baseline and options.baseline is None:
@@ -60,10 +63,10 @@ def concluded(
 ) -> Answer:
     """Return the answer behind a comparison with the baseline, and write what was asked for.
 
-    ``status`` is that of the results. ``text`` is given the status that follows from the rows; None where
-    the baseline alone has decided it, which a last line then says.
+    ``status`` is that of the results. ``text`` is called with the status that follows from the rows. If the
+    baseline alone decides, it is called with None, and a last line says so.
     """
-    found, messages = dict(document), list[str]()
+    content, messages = dict(document), list[str]()
     comparison, decision = None, ""
     if asked.baseline is not None:
         source = asked.baseline.source
@@ -72,7 +75,7 @@ def concluded(
         regressions, undecided, changes = (tuple(map(str, kind)) for kind in departures)
         rows = (comparison.compared, regressions, undecided, changes, comparison.notes)
         gate = "baseline" if comparison.decides else "bound"
-        found["baseline"] = complete(AgainstBaseline(source, *rows, gate))
+        content["baseline"] = complete(AgainstBaseline(source, *rows, gate))
         messages += _messages(source, comparison)
         if not comparison.compared:
             messages.append(_nothing_shared(asked.baseline.verdicts, results.verdicts))
@@ -89,22 +92,20 @@ def concluded(
             status = WRONG_CALL
     last = f"\n{decision}" if decision else ""
     stated = None if decision else status
-    return Answer(status, found, lambda: f"{text(stated)}{last}", messages)
+    return Answer(status, content, lambda: f"{text(stated)}{last}", messages)
 
 
 def _decision(file: str, comparison: Comparison, verdicts: Iterable[Verdict]) -> str:
     """Return the last line of a text whose exit status is that of the comparison alone."""
     others = sum(exit_status([verdict]) != 0 for verdict in verdicts)
     if comparison.failures:
-        found = f"{len(comparison.failures)} regressions"
+        outcome = f"{len(comparison.failures)} regressions"
     elif not comparison.compared:
-        found = "no row was compared"
+        outcome = "no row was compared"
     else:
         undecided = len(comparison.undecided)
-        found = f"{undecided} not comparable" if undecided else "no regression"
-    return (
-        f"decided by the baseline {file} alone: {found}; no pass by their own bounds: {others} rows"
-    )
+        outcome = f"{undecided} not comparable" if undecided else "no regression"
+    return f"decided by the baseline {file} alone: {outcome}; no pass by their own bounds: {others} rows"
 
 
 def _write_junit(
@@ -163,7 +164,7 @@ def _messages(file: str, comparison: Comparison) -> list[str]:
 
 
 def _nothing_shared(before: Iterable[Verdict], now: Iterable[Verdict]) -> str:
-    """Return why the baseline shows nothing; a program under another command line is another solver."""
+    """Return why the baseline shows nothing. A program with another command line is another solver."""
     solvers = [sorted({f"`{v.solver}`" for v in rows}) for rows in (before, now)]
     was, made = (", ".join(names) or "none" for names in solvers)
     why = "" if was == made else f": its solver is {was}, and this run's is {made}"

@@ -23,7 +23,7 @@ _COLOURS = {
     Verdict.ONLY_IF: "yellow",
     Verdict.FALSE: "bold red",
 }
-# Parts of an entry that stand below the table in any case, and with others around them in full.
+# Parts of an entry that always stand below the table; an entry in full has more.
 _BRIEF = {
     "correction": "correct",
     "condition": "only if",
@@ -52,7 +52,7 @@ def answer(options: argparse.Namespace) -> Answer:
 def _text(rows: Sequence[ClaimRow], in_full: bool) -> str:
     """Return a line for each entry, then the reason of each that is not plainly true, then the counts.
 
-    Entries that were asked for are told in full.
+    Entries that were asked for by id are shown in full.
     """
     page = Page()
     table = Table(box=None, padding=(0, 2, 0, 0), pad_edge=False)
@@ -73,11 +73,11 @@ def _text(rows: Sequence[ClaimRow], in_full: bool) -> str:
     )
     for row in rows:
         labels = _FULL if in_full else _BRIEF
-        told = {label: getattr(row, key) for key, label in labels.items() if getattr(row, key)}
-        if told:
+        parts = {label: getattr(row, key) for key, label in labels.items() if getattr(row, key)}
+        if parts:
             page.line()
             page.line(bold(row.id), "  ", _verdict(row.verdict))
-        for label, text in told.items():
+        for label, text in parts.items():
             page.indented(f"  {label:11}", text)
     counts = Counter(row.verdict.value for row in rows)
     page.line(f"\n{', '.join(f'{count} {verdict}' for verdict, count in counts.items())}")

@@ -44,9 +44,9 @@ def completion(parser: argparse.ArgumentParser, shell: str) -> Answer:
 
 def _actions(parser: argparse.ArgumentParser) -> list[argparse.Action]:
     """Return the arguments of a parser and of its verbs."""
-    found: list[argparse.Action] = []
+    actions: list[argparse.Action] = []
     for action in parser._actions:  # no public way to them; shtab reads the same
-        found.append(action)
+        actions.append(action)
         if isinstance(action, argparse._SubParsersAction):
-            found += [each for verb in action.choices.values() for each in _actions(verb)]
-    return found
+            actions += [each for verb in action.choices.values() for each in _actions(verb)]
+    return actions

@@ -43,7 +43,7 @@ def bold(text: str, colour: str = "") -> Text:
 
 
 class Page:
-    """A text that is kept until it is asked for, in the width and colours of stdout.
+    """A text that grows line by line, in the width and colours of stdout.
 
     It takes no markup: a name may hold brackets or colons.
     """

@@ -52,11 +52,11 @@ def answer(options: argparse.Namespace) -> Answer:
         if options.animate:
             shown = [_animate(moving(document), place)]
         else:
-            found = _pictures(document, names, files, partial(_record, options, scene))
-            shown = _write(found, place, is_alone=len(names) == 1)
+            drawings = _pictures(document, names, files, partial(_record, options, scene))
+            shown = _write(drawings, place, is_alone=len(names) == 1)
     facts = {name: document[name] for name in ("scene", "regime", "route", "evidence")}
-    told = {**facts, "files": shown}
-    return Answer(PASS, told, partial(_text, told))
+    content = {**facts, "files": shown}
+    return Answer(PASS, content, partial(_text, content))
 
 
 def _animate(motion: Moving, place: Path) -> dict[str, str]:
@@ -93,7 +93,7 @@ def _asked(options: argparse.Namespace) -> tuple[Scene, list[TrajectoryFile]]:
 
 
 def _document(scene: Scene) -> dict[str, Any]:
-    """Return what is drawn. Raises WrongCall where the exact motion cannot be had."""
+    """Return the motion to be drawn. Raises WrongCall if it cannot be computed."""
     with wrong_calls(f" @ {scene.name}", Unsettled):
         return motion(scene)
 
@@ -106,36 +106,40 @@ def _pictures(
 ) -> dict[str, Picture]:
     """Return the pictures of the motion, and that of the errors if files are given, by their names."""
     others = [name for name in names if name != ERRORS]
-    found = pictures(document, others) if others or not names else {}
+    drawings = pictures(document, others) if others or not names else {}
     if files and (not names or ERRORS in names):
-        found[ERRORS] = file_errors.picture(document, {file.name: record(file) for file in files})
+        drawings[ERRORS] = file_errors.picture(
+            document, {file.name: record(file) for file in files}
+        )
     elif ERRORS in names:
-        raise WrongCall(f"expected trajectory files behind the scene, got none @ --only {ERRORS}")
-    return found
+        raise WrongCall(
+            f"expected trajectory files behind the scene (draw SCENE mine.csv), got none @ --only {ERRORS}"
+        )
+    return drawings
 
 
 def _record(options: argparse.Namespace, scene: Scene, file: TrajectoryFile) -> Record:
-    """Return the errors of a file. Raises WrongCall where it could not be compared."""
-    judged = judge_file(file, scene, rung(options.rung), options.accept_conventions, True)
+    """Return the errors of a file. Raises WrongCall if it cannot be compared."""
+    judged = judge_file(file, scene, rung(options.rung), options.accept_conventions, partial=True)
     if judged.record is None:
         raise WrongCall(f"{judged.verdicts[0].because} @ {file.name}")
     return judged.record
 
 
-def _write(found: Mapping[str, Picture], place: Path, is_alone: bool) -> list[dict[str, str]]:
-    """Draw all, then write all; a picture that was asked for alone has the name of --out itself."""
+def _write(drawings: Mapping[str, Picture], place: Path, is_alone: bool) -> list[dict[str, str]]:
+    """Draw all pictures, then write them; a single picture has the name of --out itself."""
     ending = place.suffix
     contents = {
         f"{place.stem if is_alone else f'{place.stem}-{name}'}{ending}": content(
             picture, ending[1:].lower()
         )
-        for name, picture in found.items()
+        for name, picture in drawings.items()
     }
     with unwritable("a file that can be written", str(place), "--out"):
         written = replace_files(place.parent, contents)
     return [
         {"file": str(path), "picture": name, "title": picture.title, "shows": picture.alt}
-        for path, (name, picture) in zip(written, found.items(), strict=True)
+        for path, (name, picture) in zip(written, drawings.items(), strict=True)
     ]
 
 

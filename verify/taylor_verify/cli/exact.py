@@ -21,15 +21,17 @@ from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
 def answer(options: argparse.Namespace) -> Answer:
     """Print the exact motion at the times asked for."""
     if not 1 <= options.digits <= MOST_DIGITS:
-        raise WrongCall(f"expected --digits from 1 to {MOST_DIGITS}, got {options.digits}")
+        raise WrongCall(
+            f"expected a number from 1 to {MOST_DIGITS}, got {options.digits} @ --digits"
+        )
     times = [(text.strip(), read_number(text, "--at")) for text in options.at.split(",")]
     scene = read_scene(options.scene)
     try:
         with working(f"exact {scene.name}"):
             scene = formed_to(scene, options.digits)
-            found = document(scene, solution(scene, options.route), times, options.digits)
+            content = document(scene, solution(scene, options.route), times, options.digits)
     except NoClosedForm as reason:
-        found = {
+        content = {
             "scene": scene.name,
             "route": options.route,
             "digits": options.digits,
@@ -38,17 +40,17 @@ def answer(options: argparse.Namespace) -> Answer:
             "because": f"no closed form: {reason}; leave out --route, or use --route taylor "
             f"@ {scene.name}",
         }
-    doubts = [found["because"]] if "because" in found else []
-    # Without rows the message has said it.
-    text = partial(_text, found) if found["rows"] else str
-    return Answer(UNDECIDED if doubts else PASS, found, text, doubts)
+    doubts = [content["because"]] if "because" in content else []
+    # Without rows the message says all.
+    text = partial(_text, content) if content["rows"] else str
+    return Answer(UNDECIDED if doubts else PASS, content, text, doubts)
 
 
-def _text(found: Mapping[str, Any]) -> str:
+def _text(content: Mapping[str, Any]) -> str:
     page = Page()
-    how = f"(route {found['route']}, {found['evidence']})"
-    page.line(bold(found["scene"]), f": {found['regime']} {how}")
-    for row in found["rows"]:
+    how = f"(route {content['route']}, {content['evidence']})"
+    page.line(bold(content["scene"]), f": {content['regime']} {how}")
+    for row in content["rows"]:
         page.line(f"\nt = {row['t']}   (relative radius {row['radius']})")
         for name, value in row.items():
             if name not in ("t", "radius", "absolute"):

@@ -32,46 +32,46 @@ def answer(options: argparse.Namespace) -> Answer:
     (rung,) = known_rungs([options.rung])
     scene = read_scene(options.scene, warn=False)
     with working(f"explain {options.scene}"):
-        found = explanation(scene, rung)
-    return Answer(PASS, found, partial(_text, found))
+        content = explanation(scene, rung)
+    return Answer(PASS, content, partial(_text, content))
 
 
-def _text(found: Mapping[str, Any]) -> str:
+def _text(content: Mapping[str, Any]) -> str:
     page = Page()
-    page.line(bold(found["scene"]), f": {found['title']}")
-    if found["source"]:
-        page.line(f"source: {found['source']}")
-    for warning in found["warnings"]:
+    page.line(bold(content["scene"]), f": {content['title']}")
+    if content["source"]:
+        page.line(f"source: {content['source']}")
+    for warning in content["warnings"]:
         page.line(Text("warning", "yellow"), f": {warning}")
-    for sentence in found["body"]:
+    for sentence in content["body"]:
         page.indented("body: ", sentence)
-    page.line(f"tracked: {', '.join(found['track'])}")
-    if found["equations"] is not None:
-        _print_problem(page, found)
+    page.line(f"tracked: {', '.join(content['track'])}")
+    if content["equations"] is not None:
+        _print_problem(page, content)
     page.line()
-    page.line(bold(f"gates on {found['rung']}"), f", u = 2^-{found['bits']}")
-    for gate in found["gates"]:
+    page.line(bold(f"gates on {content['rung']}"), f", u = 2^-{content['bits']}")
+    for gate in content["gates"]:
         _print_gate(page, gate)
     return page.text()
 
 
-def _print_problem(page: Page, found: Mapping[str, Any]) -> None:
-    cost, units = found["cost"], found["units"]
+def _print_problem(page: Page, content: Mapping[str, Any]) -> None:
+    cost, units = content["cost"], content["units"]
     page.line()
     page.line(bold("equations as built"))
-    for line in found["equations"]:
+    for line in content["equations"]:
         page.line(f"  {line}")
-    if found["parameters"]:
-        rounded = " and ".join(found["rounded"])
-        words = f", the {rounded} rounded to {found['rung']}" if rounded else ""
+    if content["parameters"]:
+        rounded = " and ".join(content["rounded"])
+        words = f", the {rounded} rounded to {content['rung']}" if rounded else ""
         page.line(f"with, shown as doubles{words},")
-        for name, value in found["parameters"].items():
+        for name, value in content["parameters"].items():
             page.line(f"  {name:4} {float.fromhex(value)!r}")
     page.line("in units (exact powers of two)")
     page.line("  " + ", ".join(f"{name} {value}" for name, value in units.items()))
     page.line()
-    _print_orbit(page, found)
-    page.line(bold("truth"), f"  route {found['route']}, {found['truth_digits']} digits")
+    _print_orbit(page, content)
+    page.line(bold("truth"), f"  route {content['route']}, {content['truth_digits']} digits")
     page.indented("chosen   ", *cost["because"])
     page.line(
         bold("cost"),
@@ -95,25 +95,25 @@ def _counted(cost: Mapping[str, Any]) -> str:
     )
 
 
-def _print_orbit(page: Page, found: Mapping[str, Any]) -> None:
+def _print_orbit(page: Page, content: Mapping[str, Any]) -> None:
     """Print the regime of the orbit, its numbers, and how it carries an error on."""
-    page.line(bold("orbit"), f"  {found['regime']}")
-    if found["rung_regime"] != found["regime"]:
-        rounded = f"numbers rounded to {found['rung']}"
-        page.indented("  ", f"Judged is the motion of the {rounded}: {found['rung_regime']}.")
-    page.indented("  ", *found["sentences"])
+    page.line(bold("orbit"), f"  {content['regime']}")
+    if content["rung_regime"] != content["regime"]:
+        rounded = f"numbers rounded to {content['rung']}"
+        page.indented("  ", f"Judged is the motion of the {rounded}: {content['rung_regime']}.")
+    page.indented("  ", *content["sentences"])
     numbers = [
         (n["name"], f"{n['value']} {_UNITS.get(n['unit'], n['unit'])}".rstrip(), n["meaning"])
-        for n in found["elements"]
+        for n in content["elements"]
     ]
     if numbers:
         page.line("numbers in the scene's own units")
     names, values = (max((len(n[k]) for n in numbers), default=0) for k in (0, 1))
     for name, value, meaning in numbers:
         page.indented(f"  {name:{names}}  {value:{values}}  ", meaning)
-    if found["condition"] is not None:
+    if content["condition"] is not None:
         page.line(bold("conditioning"))
-        page.indented("  ", *found["condition"]["sentences"])
+        page.indented("  ", *content["condition"]["sentences"])
 
 
 def _print_gate(page: Page, gate: Mapping[str, Any]) -> None:

@@ -1,4 +1,4 @@
-"""The folders that a call names: one run at a time in each, and what belongs to a checkout alone."""
+"""The folders that a call names: locked by one run at a time, tried out before the work."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def _is_checkout(path: Path) -> bool:
 
 
 def writable(folder: str, option: str = "--out") -> Path:
-    """Return the folder, tried out before hours of work end in a refusal to write, and not yet made."""
+    """Return the folder if it can be written, tried out before hours of work; it is not made yet."""
     with unwritable(_FOLDER, folder, option):
         if not folder:
             raise NotADirectoryError(0, "an empty name")
@@ -73,7 +73,7 @@ def writable(folder: str, option: str = "--out") -> Path:
 
 
 def writable_file(name: str, option: str) -> Path:
-    """Return the file, its folder tried out before hours of work end in a refusal to write."""
+    """Return the file if it can be written, its folder tried out before hours of work."""
     path = Path(name)
     with unwritable("a file that can be written", name, option):
         if not name or path.is_dir():
@@ -83,7 +83,7 @@ def writable_file(name: str, option: str) -> Path:
 
 @contextmanager
 def unwritable(expected: str, name: str, option: str) -> Iterator[None]:
-    """Report whatever keeps a file from being written as a wrong call."""
+    """Report an error of writing as a wrong call."""
     try:
         yield
     except (OSError, ValueError) as error:

@@ -18,7 +18,7 @@ from taylor_verify.scenes.scene import Scene
 if TYPE_CHECKING:
     from taylor_verify.judge.tolerances import Tolerances
 
-# Of the scenes that a word stands for, a message names so many.
+# The most scenes that a message names.
 _SHOWN: Final = 3
 
 
@@ -81,18 +81,18 @@ def read_tolerances(text: str | None, scenes: Iterable[Scene]) -> Tolerances:
 
 
 def _by_name(text: str) -> dict[str, Any]:
-    found: dict[str, Any] = {}
+    tolerances: dict[str, Any] = {}
     for part in text.split(","):
         name, equals, value = (word.strip() for word in part.partition("="))
-        if not equals or name in found:
+        if not equals or name in tolerances:
             got = f"{name} twice" if equals else repr(part)
             raise ValueError(f"expected NAME=E,NAME=E with each name once, got {got} @ --tolerance")
-        found[name] = _tolerance(value)
-    return found
+        tolerances[name] = _tolerance(value)
+    return tolerances
 
 
 def _tolerance(text: str) -> float | str:
-    """Return the number in a text as a double; the text itself, to be refused as it is, for any other."""
+    """Return the number in a text as a double; any other text as it is, for `tolerances` to refuse."""
     try:
         return float(exact_number(text)) or text
     except (OverflowError, ValueError):

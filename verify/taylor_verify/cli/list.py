@@ -27,28 +27,28 @@ def answer(options: argparse.Namespace) -> Answer:
     titles = {name: load(name).title for group in scenes.values() for name in group}
     families = {name: family(name).title for name in family_names()}
     formats = {suffix: form.sentence for suffix, form in FORMATS.items()}
-    found = {
+    names_by_group = {
         **scenes,
         "families": list(families),
         "solvers": list(solver_names()),
         "rungs": list(LADDER),
         "formats": list(formats),
     }
-    text = partial(_text, found, {**titles, **families, **remarks(), **formats}, GUIDE)
-    return Answer(PASS, {**found, "guide": dict(GUIDE)}, text)
+    text = partial(_text, names_by_group, {**titles, **families, **remarks(), **formats}, GUIDE)
+    return Answer(PASS, {**names_by_group, "guide": dict(GUIDE)}, text)
 
 
 def _text(
-    found: Mapping[str, Sequence[str]], titles: Mapping[str, str], guide: Mapping[str, str]
+    names_by_group: Mapping[str, Sequence[str]], titles: Mapping[str, str], guide: Mapping[str, str]
 ) -> str:
-    """Return everything that has a name, and first which scene tells what."""
+    """Return everything that has a name; a guide to the scenes comes first."""
     page = Page()
     page.line(bold("which scene tells what"))
     guide_width = max(map(len, guide), default=0)
     for name, purpose in guide.items():
         page.line(f"  {name:{guide_width}}  {purpose}")
     width = max(map(len, titles), default=0)
-    for heading, entries in found.items():
+    for heading, entries in names_by_group.items():
         page.line(bold(heading))
         for entry in entries:
             page.line(f"  {entry:{width}}  {titles.get(entry, '')}".rstrip())

@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from taylor_verify.batch.job import Job
     from taylor_verify.batch.judging import Progress
 
-# Nobody needs to be told that something takes less than this, in seconds.
+# Work that takes less than this, in seconds, shows no progress.
 _PATIENCE = 1.0
 # The length of a bar, in characters.
 _BAR: Final = 30
-# To it every room says how far long work has come.
+# Every room reports the progress of long work to this logger.
 PROGRESS: Final = logging.getLogger("taylor_verify.progress")
 
 
@@ -38,7 +38,9 @@ def advancing() -> Iterator[Progress]:
 
     columns = (
         bars.TextColumn("{task.description}", markup=False),
-        *(bars.BarColumn(), bars.MofNCompleteColumn(), bars.TimeElapsedColumn()),
+        bars.BarColumn(),
+        bars.MofNCompleteColumn(),
+        bars.TimeElapsedColumn(),
     )
     with bars.Progress(*columns, console=EscapingConsole(stderr=True), transient=True) as bar:
         task = bar.add_task("compiling and solving")

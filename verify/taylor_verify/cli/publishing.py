@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 _TIME: Final = "one to three minutes for all of them on two cores"
 _ARCHIVE: Final = "taylor-verify-data"
-# The options that do something else than measure a study.
+# The options that do not measure a study.
 _OTHERS: Final = ("list", "pages", "paper", "missing", "archive", "site")
 
 
@@ -141,7 +141,7 @@ def _options_of(study: Study[Any], options: argparse.Namespace, is_asked: bool) 
 
 
 def _require_heyoka(study: Study[Any]) -> None:
-    """Raise WrongCall without heyoka: what is published must not be replaced by rows of nothing."""
+    """Raise WrongCall without heyoka: published rows must not be replaced by empty ones."""
     from taylor_verify.solvers.taylor.package import lack
 
     if study.needs_heyoka and (missing := lack()) is not None:
@@ -170,7 +170,7 @@ def _listed(studies: Sequence[Study[Any]]) -> Answer:
 def _measured(
     studies: Sequence[Study[Any]], folder: Path, given: dict[str, dict[str, Any]]
 ) -> Answer:
-    """Measure, draw and tell each study, then make the index anew where there is one."""
+    """Measure each study and make its pages and pictures, then the index if there is one."""
     from taylor_verify.records import store
     from taylor_verify.studies.report import publish_index
     from taylor_verify.studies.study import NotMeasured
@@ -181,13 +181,13 @@ def _measured(
         if len(studies) > 1:
             say(f"{study.name}: {study.title} ({study.duration})")
         try:
-            found = study.measure(folder, _progress(), **given[study.name])
+            measured = study.measure(folder, _progress(), **given[study.name])
         except NotMeasured as error:
             raise WrongCall(f"{error} @ publish {study.name}") from error
         made = study.publish(folder)
-        written += [*found.written, *made.written]
-        messages = [*answer.messages, *found.messages, *made.messages]
-        answer = answer._replace(status=graver(answer.status, found.status), messages=messages)
+        written += [*measured.written, *made.written]
+        messages = [*answer.messages, *measured.messages, *made.messages]
+        answer = answer._replace(status=graver(answer.status, measured.status), messages=messages)
     if (folder / store.FOLDER / store.VERDICTS).exists():
         written += publish_index(folder)
     return files_written(written)._replace(status=answer.status, messages=answer.messages)
@@ -201,7 +201,7 @@ def _progress() -> Progress:
 
 @contextmanager
 def _wrong_calls(folder: Path, option: str) -> Iterator[None]:
-    """Tell what a report folder lacks or has wrong, and a package that is missing, as a wrong call."""
+    """Report faults of a report folder, and a missing package, as wrong calls."""
     from taylor_verify.records import store
 
     try:
@@ -238,15 +238,15 @@ def _site(folder: Path, target: Path) -> Answer:
 
         made = files_written(build(folder, target))
     lacking = _missing(folder).data
-    said = (
+    message = (
         f"pages of the site are without {lacking}: `taylor-verify publish --missing` makes what "
         f"{folder} lacks ({_TIME})"
     )
-    return made._replace(messages=[said] if lacking else [])
+    return made._replace(messages=[message] if lacking else [])
 
 
 def make_missing(folder: Path) -> Answer:
-    """Make what no clone has: of every study the files that the repository leaves out."""
+    """Make the files of every study that the repository leaves out."""
     lacking = _missing(folder)
     if lacking.data:
         say(f"making what is not in {folder}: {lacking.data} ({_TIME})")

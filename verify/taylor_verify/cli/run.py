@@ -39,11 +39,20 @@ from taylor_verify.records.verdict import Verdict
 from taylor_verify.run_many import run_many
 from taylor_verify.solvers.registry import solver_named
 
-# The sentences of so many runs come before the lines of the overview.
+# Up to so many runs, their sentences come before the lines of the overview.
 _FEW: Final = 2
 _OVERVIEW: Final = (
-    *("scene", "rung", "verdict", "state", ">error/u", ">at t", "drift", ">error/u"),
-    *(">/floor", ">steps", ">seconds"),
+    "scene",
+    "rung",
+    "verdict",
+    "state",
+    ">error/u",
+    ">at t",
+    "drift",
+    ">error/u",
+    ">/floor",
+    ">steps",
+    ">seconds",
 )
 
 
@@ -127,17 +136,17 @@ def _answer(
 def _text(results: Judgements, explained: bool, status: int | None) -> str:
     """Return the sentences of a run or two and then a line for each; of many runs the lines come first.
 
-    Of many runs only rows that are no pass have a sentence. Where no row was judged, and all for one
-    reason, the counts and the reason are enough. With ``explained`` the arithmetic of the bounds is there.
+    Of many runs only rows that are no pass have a sentence. If no row was judged, and all for one reason,
+    the text is the counts and the reason. With ``explained`` the arithmetic of the bounds is shown too.
     """
-    verdicts, held = results.verdicts, results.agreement
+    verdicts, agreement = results.verdicts, results.agreement
     # A path of any length keeps its row in one line of a pipe; on a terminal it is folded.
     page = Page(PIPED_WIDTH + max((len(v.scene) for v in verdicts), default=0))
-    why = held.unjudged(verdicts)
+    why = agreement.unjudged(verdicts)
     if not why or len({verdict.because for verdict in verdicts}) > 1:
         _print_rows(page, results, explained)
-    total = f"{counts(verdicts)}{_as_expected(verdicts, held)}"
-    unexpected = [verdict for verdict in verdicts if held.met(verdict) is None]
+    total = f"{counts(verdicts)}{_as_expected(verdicts, agreement)}"
+    unexpected = [verdict for verdict in verdicts if agreement.met(verdict) is None]
     print_end(page, unexpected, total, status, explained)
     if why:
         page.line(f"nothing was judged: {why}")
@@ -145,13 +154,13 @@ def _text(results: Judgements, explained: bool, status: int | None) -> str:
 
 
 def _print_rows(page: Page, results: Judgements, explained: bool) -> None:
-    verdicts, held, causes = results.verdicts, results.agreement, results.causes
+    verdicts, agreement, causes = results.verdicts, results.agreement, results.causes
     runs = [(run, list(rows)) for run, rows in groupby(verdicts, key=lambda v: (v.scene, v.rung))]
     is_few = len(runs) <= _FEW
     for (scene, rung), rows in runs if is_few else ():
         page.line(bold(scene), f" in {rung} arithmetic")
         for verdict in rows:
-            print_sentence(page, verdict, why=_expected(verdict, held))
+            print_sentence(page, verdict, why=_expected(verdict, agreement))
         for cause in causes:
             if (cause.scene, cause.rung) == (scene, rung):
                 print_cause(page, cause)
@@ -171,32 +180,32 @@ def _print_rows(page: Page, results: Judgements, explained: bool) -> None:
     others = [verdict for verdict in verdicts if verdict.verdict.value != "pass"]
     for verdict in () if is_few else others:
         place = f"{verdict.scene} {verdict.rung}"
-        print_sentence(page, verdict, place, _expected(verdict, held))
+        print_sentence(page, verdict, place, _expected(verdict, agreement))
     for cause in () if is_few else causes:
         print_cause(page, cause, f"{cause.scene} {cause.rung}")
-    for mismatch in held.mismatches:
+    for mismatch in agreement.mismatches:
         page.line(bold("not as expected", "red"), f"  {mismatch}")
     if explained:
         for (scene, rung), rows in runs:
             page.line(bold(scene), f" in {rung} arithmetic")
             print_arithmetic(page, rows)
-    if explained or held.mismatches or (others and not is_few):
+    if explained or agreement.mismatches or (others and not is_few):
         page.line()
 
 
-def _expected(verdict: Verdict, held: Agreement) -> str:
-    expected = held.met(verdict)
+def _expected(verdict: Verdict, agreement: Agreement) -> str:
+    expected = agreement.met(verdict)
     return "" if expected is None else expected.why
 
 
-def _as_expected(verdicts: Sequence[Verdict], held: Agreement) -> str:
+def _as_expected(verdicts: Sequence[Verdict], agreement: Agreement) -> str:
     """Return how many of the rows that are no pass are what the extremes are expected to answer."""
-    met = sum(held.met(verdict) is not None for verdict in verdicts)
-    said = {
+    met = sum(agreement.met(verdict) is not None for verdict in verdicts)
+    words_and_counts = {
         f"{met} of them as expected": met,
-        f"{len(held.mismatches)} not as expected": held.mismatches,
+        f"{len(agreement.mismatches)} not as expected": agreement.mismatches,
     }
-    return "".join(f"; {words}" for words, count in said.items() if count)
+    return "".join(f"; {words}" for words, count in words_and_counts.items() if count)
 
 
 def _run_cells(group: list[Verdict]) -> tuple[Cell, ...]:
@@ -208,7 +217,9 @@ def _run_cells(group: list[Verdict]) -> tuple[Cell, ...]:
     drift = max((v for v in compared if v.is_conserved), key=_units, default=None)
     return (
         status,
-        *(state.quantity, f"{_units(state):.3g}", f"{state.at:.6g}"),
+        state.quantity,
+        f"{_units(state):.3g}",
+        f"{state.at:.6g}",
         *((drift.quantity, f"{_units(drift):.3g}") if drift else ("", "")),
         f"{max(map(_ratio, compared)):.2g}",
         str(state.steps or ""),

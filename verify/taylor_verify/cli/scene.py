@@ -15,19 +15,21 @@ from taylor_verify.scenes.reading.reader import read
 def answer(options: argparse.Namespace) -> Answer:
     """Write a scene from a URDF, SDF or MJCF file, to be read and edited."""
     if options.source != "from":
-        raise WrongCall(f"expected the word `from`, got {options.source!r} @ scene")
-    found = import_scene(Path(options.file), options.link)
-    warnings = read(found.text, options.file).warnings
+        raise WrongCall(
+            f"expected the word `from` (scene from robot.urdf), got {options.source!r} @ scene"
+        )
+    imported = import_scene(Path(options.file), options.link)
+    warnings = read(imported.text, options.file).warnings
     document = {
-        "text": found.text,
-        "link": found.link,
-        "format": found.form,
+        "text": imported.text,
+        "link": imported.link,
+        "format": imported.form,
         "warnings": [*warnings],
     }
     messages = [f"warning: {warning} @ {options.file}" for warning in warnings]
     if options.out is None:
-        return Answer(PASS, document, lambda: found.text.rstrip("\n"), messages)
-    _write(found.text, options.out)
+        return Answer(PASS, document, lambda: imported.text.rstrip("\n"), messages)
+    _write(imported.text, options.out)
     return Answer(PASS, {**document, "written": [options.out]}, lambda: options.out, messages)
 
 

@@ -23,7 +23,10 @@ _MEANINGS = {PASS: "passed", FAIL: "failed", UNDECIDED: "undecided", WRONG_CALL:
 _INDENT = "    "
 # Errors of these kinds are no matter of accuracy: a wider tolerance would hide them.
 _NO_ACCURACY = (
-    *(None, ErrorKind.CONVENTION, ErrorKind.OFFSET, ErrorKind.TIME_SHIFT),
+    None,
+    ErrorKind.CONVENTION,
+    ErrorKind.OFFSET,
+    ErrorKind.TIME_SHIFT,
     ErrorKind.NOT_FINITE,
 )
 # A tolerance beyond this judges nothing.
@@ -41,8 +44,8 @@ def print_sentence(page: Page, verdict: Verdict, place: str = "", why: str = "")
     of its sentence.
     """
     status = verdict.verdict.value
-    said = f"{verdict.quantity}: as expected: {why}" if why else verdict.sentence
-    text = f"{status}  {place} {said}" if place else said
+    sentence = f"{verdict.quantity}: as expected: {why}" if why else verdict.sentence
+    text = f"{status}  {place} {sentence}" if place else sentence
     width = max(page.console.width, 20) if sys.stdout.isatty() else sys.maxsize
     first, *others = textwrap.wrap(text, width, subsequent_indent=_INDENT, break_on_hyphens=False)
     head = Text(first)
@@ -76,7 +79,7 @@ def print_end(
 ) -> None:
     """Print the counts, the meaning of the exit status, and what to do next.
 
-    ``status`` is None where something else than the rows decides it.
+    ``status`` is None if something other than the rows decides it.
     """
     meaning = f"{_MEANINGS.get(status, '')} (exit status {status})" if status is not None else ""
     page.line(f"{counts}: {meaning or 'by their own bounds'}")
@@ -93,7 +96,10 @@ def _next_steps(verdicts: Sequence[Verdict], explained: bool) -> Iterator[str]:
 
 
 def coarser_tolerance(verdicts: Sequence[Verdict]) -> float | None:
-    """Return the power of ten that all failed rows are within; None where accuracy is not the fault."""
+    """Return the least power of ten above the errors of all failed rows.
+
+    None if no row failed, or if the fault is not one of accuracy.
+    """
     failed = [v for v in verdicts if v.verdict.value == "fail"]
     errors = [v.max for v in failed if v.max is not None and v.error_kind not in _NO_ACCURACY]
     has_one = any(v.tolerance is not None for v in verdicts)

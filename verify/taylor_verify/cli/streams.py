@@ -24,7 +24,7 @@ def tell_runner(line: str) -> None:
 
 
 def print_out(text: str = "") -> None:
-    """Print the answer, if any is left, and mind it not if its reader went away (`| head`)."""
+    """Print the answer, if there is one; a reader that went away (`| head`) is no error."""
     try:
         if text:
             print(text)
@@ -32,7 +32,7 @@ def print_out(text: str = "") -> None:
     except BrokenPipeError:
         _abandon(sys.stdout)
     except OSError:
-        # A full disk, for one. What is left in the buffer must not be tried again at the exit.
+        # Such as a full disk. The rest of the buffer must not be written again at the exit.
         _abandon(sys.stdout)
         raise
 
@@ -42,7 +42,7 @@ def _abandon(stream: TextIO) -> None:
 
 
 def have_streams() -> None:
-    """Give a closed stream something to print to, and stdout an escape for what it cannot encode."""
+    """Open a closed stream to nowhere, and let stdout escape characters that it cannot encode."""
     if sys.stdout is None:
         sys.stdout = open(os.devnull, "w")  # noqa: SIM115 (it is the stream of the process)
     if sys.stderr is None:
@@ -56,11 +56,11 @@ def have_streams() -> None:
 def stdout_reserved() -> Iterator[None]:
     """Send to stderr whatever a library prints on stdout while a verb works, in workers too.
 
-    heyoka, for one, has warnings of its own, written below Python.
+    heyoka has warnings of its own, which it writes below Python.
     """
     sys.stdout.flush()
     try:
-        kept = os.dup(1)
+        stdout = os.dup(1)
         os.dup2(2, 1)
     except OSError:  # one of them is closed: there is nothing to keep clean
         yield
@@ -69,5 +69,5 @@ def stdout_reserved() -> Iterator[None]:
         with redirect_stdout(sys.stderr):
             yield
     finally:
-        os.dup2(kept, 1)
-        os.close(kept)
+        os.dup2(stdout, 1)
+        os.close(stdout)

@@ -30,12 +30,12 @@ _HEADINGS: Final = (
     ">largest",
     ">fail",
 )
-# Of the worst cases the text has as many; the folder has all.
+# The most worst cases in the text; the folder has all.
 _SHOWN: Final = 5
 
 
 def answer(options: argparse.Namespace) -> Answer:
-    """Sweep, and show how the errors are spread."""
+    """Judge all bodies of a sweep, and show how the errors are spread."""
     (rung,) = known_rungs([options.rung])
     folder = writable(options.out) if options.out is not None else None
     if options.jobs is not None and options.executor != "local":
@@ -50,7 +50,7 @@ def answer(options: argparse.Namespace) -> Answer:
         working(f"sweep {options.what}"),
         executor_named(options.executor) as placed,
     ):
-        found = sweep(
+        summary = sweep(
             options.what,
             count=options.count,
             seed=options.seed,
@@ -64,33 +64,33 @@ def answer(options: argparse.Namespace) -> Answer:
             worst=options.worst,
             ahead=placed.ahead,
         )
-    messages = [f"{found.total} bodies in {monotonic() - began:.1f} s"]
-    messages += [f"nothing was judged: {lack}" for lack in found.lacks]
-    messages += [f"refused, for one: {refusal}" for refusal in found.refusals]
+    messages = [f"{summary.total} bodies in {monotonic() - began:.1f} s"]
+    messages += [f"nothing was judged: {lack}" for lack in summary.lacks]
+    messages += [f"refused, for one: {refusal}" for refusal in summary.refusals]
     messages += [f"wrote {folder}"] if folder is not None else []
-    return Answer(found.exit_status, document(found), partial(_text, found), messages)
+    return Answer(summary.exit_status, document(summary), partial(_text, summary), messages)
 
 
 # The text.
 
 
-def _text(found: SweepSummary) -> str:
+def _text(summary: SweepSummary) -> str:
     page = Page()
-    page.line(bold(found.name), f": {found.total} bodies by {found.solver} on {found.rung}")
+    page.line(bold(summary.name), f": {summary.total} bodies by {summary.solver} on {summary.rung}")
     page.line()
-    print_table(page.console, _HEADINGS, [_cells(each) for each in found.quantities], keys=1)
+    print_table(page.console, _HEADINGS, [_cells(each) for each in summary.quantities], keys=1)
     page.line()
-    page.line(f"Error over attainable; a gate stands at {found.factor}.")
+    page.line(f"Error over attainable; a gate stands at {summary.factor}.")
     page.line()
-    if found.worst:
+    if summary.worst:
         page.line(bold("the worst cases"))
-    for case in found.worst[:_SHOWN]:
+    for case in summary.worst[:_SHOWN]:
         # The arithmetic of a bound is long; `run --explain` on the scene shows it.
         size = case.because if case.ratio is None else f"{case.ratio:.3g}"
-        said = f"  {case.scene}  {case.quantity} {size}"
-        page.line(status_text(case.verdict.value), f"{said}  {case.file}".rstrip())
+        words = f"  {case.scene}  {case.quantity} {size}"
+        page.line(status_text(case.verdict.value), f"{words}  {case.file}".rstrip())
     page.line()
-    print_end(page, [], f"bodies: {counts(found)}", found.exit_status, explained=True)
+    print_end(page, [], f"bodies: {counts(summary)}", summary.exit_status, explained=True)
     return page.text()
 
 

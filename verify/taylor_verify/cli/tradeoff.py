@@ -48,9 +48,9 @@ _HEADINGS = {
 def answer(options: argparse.Namespace) -> Answer:
     """Measure each scene, and with a target find the cheapest setting that reaches it."""
     if not options.scenes:
-        raise WrongCall("expected a scene, such as euler/generic, got none")
+        raise WrongCall("expected a scene, such as euler/generic, got none @ tradeoff")
     if not options.repeats >= 1:
-        raise WrongCall(f"expected --repeats of at least 1, got {options.repeats}")
+        raise WrongCall(f"expected a number of at least 1, got {options.repeats} @ --repeats")
     target = _target(options.target)
     place = None
     if options.out is not None:
@@ -60,7 +60,7 @@ def answer(options: argparse.Namespace) -> Answer:
     asked = _asked(options, rungs)
     if options.outside:
         _make_environments()
-    found: list[dict[str, Any]] = []
+    documents: list[dict[str, Any]] = []
     missed: list[str] = []
     with alone_in(place), cold_caches():
         for scene in read_scenes(options.scenes):
@@ -75,20 +75,20 @@ def answer(options: argparse.Namespace) -> Answer:
                         document["recommendation"] = recommended(trade, target).document()
                     except OutOfReach as reason:
                         missed.append(str(reason))
-                found.append(document)
-        drawn = [] if place is None else [f"wrote {path}" for path in _draw(found, place)]
+                documents.append(document)
+        drawn = [] if place is None else [f"wrote {path}" for path in _draw(documents, place)]
     status = UNDECIDED if missed else PASS
-    text = partial(tradeoff_text, found)
-    return Answer(status, {"scenes": found}, text, [*missed, *drawn])
+    text = partial(tradeoff_text, documents)
+    return Answer(status, {"scenes": documents}, text, [*missed, *drawn])
 
 
-def _draw(found: Sequence[Mapping[str, Any]], place: Path) -> list[Path]:
+def _draw(documents: Sequence[Mapping[str, Any]], place: Path) -> list[Path]:
     """Write the pictures of each scene and the document itself, whole or not at all."""
     from taylor_verify.studies.tradeoff.pictures import trade
 
-    sound = [one for one in found if any(row["standing"] == "sound" for row in one["points"])]
+    sound = [one for one in documents if any(row["standing"] == "sound" for row in one["points"])]
     drawn = [path for one in sound for path in trade.draw(one, place)]
-    text = json.dumps({"scenes": found}, indent=1, allow_nan=False) + "\n"
+    text = json.dumps({"scenes": documents}, indent=1, allow_nan=False) + "\n"
     return [*replace_files(place, {"tradeoff.json": text}), *drawn]
 
 
@@ -127,17 +127,19 @@ def _target(text: str | None) -> float | None:
         target = float(read_number(text, "--target"))
         check_target(target)
     except (WrongCall, OverflowError, ValueError) as error:
-        raise WrongCall(f"expected a positive error, got {text!r} @ --target") from error
+        raise WrongCall(
+            f"expected a positive error, such as 1e-9, got {text!r} @ --target"
+        ) from error
     return target
 
 
 # The text.
 
 
-def tradeoff_text(found: Sequence[Mapping[str, Any]]) -> str:
+def tradeoff_text(documents: Sequence[Mapping[str, Any]]) -> str:
     """Return for each scene a line for each setting, the front in words, the errors asked and achieved."""
     page = Page()
-    for trade in found:
+    for trade in documents:
         _print_trade(page, trade)
     return page.text()
 
@@ -150,8 +152,8 @@ def _print_trade(page: Page, trade: Mapping[str, Any]) -> None:
         page.line(f"not run: {', '.join(names)} ({reason})")
     for row in trade["points"]:
         if row["standing"] not in ("sound", _NOT_RUN):
-            told = f"  {_label(row)}: {row['because']}"
-            page.line(bold(row["standing"], "red"), told)
+            words = f"  {_label(row)}: {row['because']}"
+            page.line(bold(row["standing"], "red"), words)
     page.line(
         f"Best of up to {timing['repeats']} solves, {timing['order']} (seed {timing['seed']}); "
         "* is on the front. first: the whole first solve, with compiling and start-up.",
@@ -159,10 +161,10 @@ def _print_trade(page: Page, trade: Mapping[str, Any]) -> None:
     page.line(f"seconds: {timing['of']}.")
     floors = [f"{rung} {least:.2g}" for rung, least in trade.get("attainable", {}).items() if least]
     if floors:
-        told = (
+        words = (
             f"Attainable, one rounding of the state a sample and nothing else: {', '.join(floors)}."
         )
-        page.line(told)
+        page.line(words)
     if any("cold" in row for row in trade["points"]):
         page.line()
         page.line(bold("In a process of its own, nothing compiled"))
@@ -203,9 +205,12 @@ def _points_table(trade: Mapping[str, Any]) -> Table:
         mark = "*" if _label(row) in trade["front"] else "" if row["standing"] == "sound" else "!"
         cells = [row[part].get(name) for name in quantities for part in ("max", "final")]
         table.add_row(
-            *(mark, Text(f"{row['solver']} {row['setting']}".rstrip()), row["rung"]),
+            mark,
+            Text(f"{row['solver']} {row['setting']}".rstrip()),
+            row["rung"],
             *(_short(value) for value in (*cells, row["drift"])),
-            *(str(row["steps"]), str(row["evaluations"])),
+            str(row["steps"]),
+            str(row["evaluations"]),
             *(_short(row[key]) for key in ("seconds", "spread", "first_seconds")),
             _short(row["compile_seconds"]),
         )
@@ -226,13 +231,13 @@ def _cold_table(points: Sequence[Mapping[str, Any]]) -> Table:
 def _not_run(points: Sequence[Mapping[str, Any]]) -> dict[str, list[str]]:
     """Return the settings that were not run, by the reason; a whole family by its name."""
     ran = {row["family"] for row in points if row["standing"] != _NOT_RUN}
-    found: dict[str, dict[str, None]] = {}
+    names_by_reason: dict[str, dict[str, None]] = {}
     for row in points:
         if row["standing"] == _NOT_RUN:
             name = f"{row['solver']} {row['setting']}".rstrip()
             name = f"{name} {row['rung']}" if row["family"] in ran else row["family"]
-            found.setdefault(row["because"], {})[name] = None
-    return {reason: list(names) for reason, names in found.items()}
+            names_by_reason.setdefault(row["because"], {})[name] = None
+    return {reason: list(names) for reason, names in names_by_reason.items()}
 
 
 def _short(value: float | None) -> str:

@@ -1,4 +1,4 @@
-"""Defects of the answer: a sound trajectory that is stamped, stored or reported wrongly."""
+"""Defects of the answer: a sound trajectory with wrong times, wrong rows or a wrong report."""
 
 from __future__ import annotations
 
@@ -27,19 +27,19 @@ Rows = Any
 
 
 def _early(problem: Problem) -> Problem:
-    """The answer with all states taken half a millisecond later."""
+    """Return the problem with all times half a millisecond later, whose answer has the old stamps."""
     ahead = _EARLY / problem.units.time
     times = tuple(problem.rung.round(t + ahead) for t in problem.times)
     return replace(problem, times=times)
 
 
 def _one_sample_late(_: Problem, sound: Trajectory) -> Trajectory:
-    """Row k holds the state of row k - 1."""
+    """Put the state of row k - 1 into row k."""
     return _mapped(sound, lambda rows: np.concatenate([rows[:1], rows[:-1]]))
 
 
 def _last_interpolated(problem: Problem, sound: Trajectory) -> Trajectory:
-    """The last row is the mean of the states half a step before and half a step after it."""
+    """Replace the last row by the mean of the states half a step before and half a step after it."""
     half = _STEP / problem.units.time / 2
     end, rounded = problem.times[-1], problem.rung.round
     around = replace(problem, times=(rounded(end - half), rounded(end + half)))
@@ -51,19 +51,19 @@ def _last_interpolated(problem: Problem, sound: Trajectory) -> Trajectory:
 
 
 def _padded(problem: Problem, sound: Trajectory) -> Trajectory:
-    """The state that was reached at half the time stands in every row from then on."""
+    """Repeat the state at half the time in every later row."""
     half = len(problem.times) // 2
     reached = np.minimum(np.arange(len(problem.times)), half)
     return _mapped(sound, lambda rows: rows[reached])
 
 
 def _stopped(_: Problem, sound: Trajectory) -> Trajectory:
-    """The trajectory ends there and says so."""
+    """Return a trajectory that was interrupted and says so."""
     return replace(sound, outcome=Outcome.INTERRUPTED, quantities={})
 
 
 def _one_nan(_: Problem, sound: Trajectory) -> Trajectory:
-    """The first number of the sample in the middle is not a number, in every quantity."""
+    """Replace the first number of the middle sample by NaN, in every quantity."""
 
     def spoil(rows: Rows) -> Rows:
         spoiled = rows.copy()
@@ -74,13 +74,13 @@ def _one_nan(_: Problem, sound: Trajectory) -> Trajectory:
 
 
 def _conjugated(_: Problem, sound: Trajectory) -> Trajectory:
-    """q0, -q1, -q2, -q3: the rotation from space to body."""
+    """Return the answer with q0, -q1, -q2, -q3: the rotation from space to body."""
     signs = np.array([1, -1, -1, -1], dtype=object)
     return _with_quaternion(sound, sound.quantities["quaternion"] * signs)
 
 
 def _scalar_rebuilt(problem: Problem, sound: Trajectory) -> Trajectory:
-    """q0 = +sqrt(1 - q1^2 - q2^2 - q3^2)."""
+    """Return the answer with q0 = +sqrt(1 - q1^2 - q2^2 - q3^2)."""
     rows = sound.quantities["quaternion"].copy()
     with mp.workprec(problem.rung.bits):
         for row in rows:
@@ -108,7 +108,7 @@ ANSWERS: Final = (
         "the last digit, and all of its error is a shift of time",
         recast=_early,
         wrong_start=True,
-        told=True,
+        is_common=True,
     ),
     Defect(
         "one-sample-late",
@@ -136,7 +136,7 @@ ANSWERS: Final = (
         what="stopped half way, padded with the last state, success reported",
         why="a body that is frozen loses nothing",
         spoil=_padded,
-        told=True,
+        is_common=True,
     ),
     Defect(
         "stopped-and-said-so",
@@ -155,7 +155,7 @@ ANSWERS: Final = (
         why="a chord runs inside the arc by h^2/8 of its curvature: one sample in a hundred is "
         "wrong, in everything",
         spoil=_last_interpolated,
-        told=True,
+        is_common=True,
     ),
     Defect(
         "conjugate-quaternion",

@@ -1,4 +1,4 @@
-"""A defect: a sound solver with one thing broken, and what of it the physics lets through."""
+"""A defect: a sound solver with one thing broken, and the quantities that pass all the same."""
 
 from __future__ import annotations
 
@@ -22,13 +22,14 @@ SCREW: Final = "kirchhoff/whole-motion"
 class Defect(Solver):
     """A solver with one thing broken, beside its sound ``twin``.
 
-    ``scene`` is a shipped scene on which it shows and ``gate`` the quantity named for it, which must
-    fail there. ``passes`` are the quantities of that scene that pass all the same, by the physics
-    that ``why`` gives; every other one fails. The start passes too, unless the answer is wrong from the
-    start (``wrong_start``). ``honest`` tells a solver that says it failed.
+    ``scene`` is a shipped scene on which the defect shows. ``gate`` is the quantity that must fail there.
+    ``passes`` are the quantities of that scene that pass all the same; ``why`` gives the physics of it.
+    Every other quantity fails. The start passes too, unless the answer is wrong from the start
+    (``wrong_start``). ``honest`` is True for a solver that says that it failed. ``is_common`` is True for a
+    defect that published simulators or textbooks have: it stands in the short table.
 
-    What is broken is any of: ``recast``, the problem that is solved in place of the one asked;
-    ``equations``, its right-hand sides; ``solver``, who answers; ``spoil``, the answer.
+    Any of these is broken: ``recast``, which changes the problem that is solved; ``equations``, its
+    right-hand sides; ``solver``, which answers; ``spoil``, which changes the answer.
     """
 
     name: str
@@ -44,7 +45,7 @@ class Defect(Solver):
     twin: Solver = field(default_factory=Taylor)
     honest: bool = False
     wrong_start: bool = False
-    told: bool = False
+    is_common: bool = False
     setting: str = "control"
 
     def solve(self, problem: Problem) -> Trajectory:

@@ -4,9 +4,9 @@ H, K    angular momentum (body axes), inverse tensor         x, y      impulses,
 A, B, C energy T = x.A x/2 + x.B y + y.C y/2                 U, Omega  velocities dT/dx and dT/dy
 J       (x, y) = J (U, Omega), the inverse of [[A, B], [B^T, C]]
 
-Whatever Omega and U are put into x' = x x Omega, y' = y x Omega + x x U, and into the motion of the
-frame, |x|^2, x.y and the impulses in space stay what they are: a body of other coefficients conserves
-its own energy and nobody's but its own.
+Any Omega and U in x' = x x Omega, y' = y x Omega + x x U, and in the motion of the frame, leave |x|^2,
+x.y and the impulses in space constant. A body with other coefficients conserves these, and an energy of
+its own.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from taylor_verify.solvers.trajectory import Trajectory
 
 # Per unit of time: a thousandth of the damping that game engines give a body by default.
 _DAMPING: Final = Fraction(1, 10**6)
-# Relative: what a coefficient read from a drawing, or stored in single precision, may be off by.
+# Relative error of a coefficient that is read from a drawing, or stored in single precision.
 _UNEVENNESS: Final = 1e-6
 
 # The body of SCREW alone may have any mass and moments that leave the fluid a positive energy: all
@@ -56,7 +56,7 @@ def _no_gyroscopic_term(n: Named) -> Mapping[str, Any]:
 
 
 def _diagonal_tensor(n: Named) -> Mapping[str, Any]:
-    """Euler's equations of K without its products of inertia."""
+    """Return the rates of Euler's equations, with K cut to its diagonal."""
     absent = {f"K{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3) if i != j}
     return euler_equations(Named({k: v for k, v in n.items() if k not in absent}))
 
@@ -73,7 +73,7 @@ def _damped(problem: Problem) -> Problem:
 
 
 def _without_damping(problem: Problem) -> Problem:
-    """The equations of a damped body without its damping."""
+    """Return the problem of a damped body without its damping."""
     equations = problem.form.equations
     assert isinstance(equations, WithDamping)
     return problem.with_equations(equations.body)
@@ -176,7 +176,7 @@ EQUATIONS: Final = (
         why="H x omega is perpendicular to H and to omega, whatever its sign: |H| and T stay, while "
         "the body runs backwards on its own polhode",
         equations=_gyroscopic_sign,
-        told=True,
+        is_common=True,
     ),
     Defect(
         "no-gyroscopic-term",
@@ -187,7 +187,7 @@ EQUATIONS: Final = (
         why="nothing changes in body axes, so that nothing can drift there; in space the momentum "
         "turns with the body",
         equations=_no_gyroscopic_term,
-        told=True,
+        is_common=True,
     ),
     Defect(
         "diagonal-tensor",
@@ -198,7 +198,7 @@ EQUATIONS: Final = (
         why="the motion of another body: it keeps its momentum, and its own energy instead of this "
         "one's",
         equations=_diagonal_tensor,
-        told=True,
+        is_common=True,
     ),
     Defect(
         "angular-damping",
@@ -207,7 +207,7 @@ EQUATIONS: Final = (
         what="angular damping of 1e-6 per second",
         why="H shrinks by exp(-1e-6 t), and everything made of it shrinks likewise",
         recast=_damped,
-        told=True,
+        is_common=True,
     ),
     Defect(
         "damping-left-out",
@@ -216,7 +216,7 @@ EQUATIONS: Final = (
         what="the damping of the scene left out",
         why="T, H and everything made of them stay, where they are to shrink by e^{-2ct} and e^{-ct}",
         recast=_without_damping,
-        told=True,
+        is_common=True,
     ),
     Defect(
         "damping-of-omega",
@@ -225,7 +225,7 @@ EQUATIONS: Final = (
         what="a moment -c omega, where it is -c I omega",
         why="each component of H shrinks at a rate of its own, and H turns in space",
         recast=_with_damping_of_omega,
-        told=True,
+        is_common=True,
     ),
     Defect(
         "damping-of-one-impulse",
@@ -247,7 +247,7 @@ EQUATIONS: Final = (
         recast=in_21_coefficients,
         equations=_munk_moment_sign,
         twin=InGeneralForm(),
-        told=True,
+        is_common=True,
     ),
     Defect(
         "no-added-mass-acceleration",
@@ -258,7 +258,7 @@ EQUATIONS: Final = (
         "that; the impulse, which has the fluid in it, is no longer a momentum",
         recast=_without_added_acceleration,
         twin=InGeneralForm(),
-        told=True,
+        is_common=True,
     ),
     Defect(
         "uneven-coefficient",
@@ -283,6 +283,6 @@ EQUATIONS: Final = (
         recast=in_21_coefficients,
         equations=_unturned_path,
         twin=InGeneralForm(),
-        told=True,
+        is_common=True,
     ),
 )

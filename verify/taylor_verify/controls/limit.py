@@ -23,8 +23,7 @@ from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Trajectory
 
-# What the judge works with (see judge.judgement): the truth must be the same number there as here.
-# An error of this size makes its sample the worst, so that the verdict tells the bound there.
+# An error of this size makes its sample the worst, so that the verdict has the bound of that sample.
 _CONSPICUOUS = 1e-6
 
 
@@ -46,14 +45,14 @@ class JustWithin(Solver):
 
 
 def _bound(problem: Problem, sound: Trajectory) -> float:
-    """The bound at the middle sample, from the verdict on an answer that is conspicuously off there."""
+    """Return the bound at the middle sample, from the verdict on an answer that is plainly wrong there."""
     (omega, *_) = judgement(problem, Taylor(), _moved(problem, sound, _CONSPICUOUS)).verdicts
     assert omega.bound is not None
     return omega.bound
 
 
 def _moved(problem: Problem, sound: Trajectory, error: float) -> Trajectory:
-    """The middle sample's omega put at the truth plus this much, relative to max |omega|."""
+    """Return the answer with this error in omega at the middle sample, relative to max |omega|."""
     given, bits = problem.given, problem.rung.bits
     middle = len(problem.times) // 2
     truth = solution(given).motion(given.clock.elapsed, truth_digits(bits))

@@ -4,9 +4,9 @@ H  angular momentum, body axes        h      the step
 k  principal values of I^-1           omega  k H
 q  attitude quaternion, body to space
 
-The sound twin is the classical Runge-Kutta method of fourth order at the very same step, so small
-that it passes every gate: what fails here is the defect and not the step. Last comes a step of
-heyoka's own choice, whose twin is the driver.
+The sound twin is the classical Runge-Kutta method of fourth order at the same step, which is so small
+that the twin passes every gate: the defect fails, not the step. The last defect is a step that heyoka
+chooses; its twin is the driver.
 """
 
 from __future__ import annotations
@@ -93,7 +93,7 @@ class FixedStep(Solver):
 
 
 def runge_kutta(body: Body, state: Vector, h: float) -> Vector:
-    """The classical method of fourth order, momentum and attitude together."""
+    """Step momentum and attitude together by the classical method of fourth order."""
     return state + h / 6 * _weighted(*_stages(body.rate, state, h))
 
 
@@ -109,7 +109,7 @@ def _weighted(a: Vector, b: Vector, c: Vector, d: Vector) -> Vector:
 
 
 def _averaged_exponential(body: Body, state: Vector, h: float) -> Vector:
-    """H as above; the attitude by one rotation, about the mean of the four stages' velocities."""
+    """Step H as `runge_kutta` does, the attitude by one rotation about the mean velocity of the stages."""
     H = state[:3]
     first, second, third, fourth = _stages(body.momentum_rate, H, h)
     points = (H, H + h / 2 * first, H + h / 2 * second, H + h * third)
@@ -119,7 +119,7 @@ def _averaged_exponential(body: Body, state: Vector, h: float) -> Vector:
 
 
 def _explicit(body: Body, state: Vector, h: float, iterations: int = 1) -> Vector:
-    """H + h (H x omega), all of it at the old state; then the frame by the new velocity."""
+    """Return H + h (H x omega), with H x omega at the old state; then turn the frame by the new omega."""
     H = state[:3]
     for _ in range(iterations):
         H = state[:3] + h * body.momentum_rate(H)
@@ -127,7 +127,7 @@ def _explicit(body: Body, state: Vector, h: float, iterations: int = 1) -> Vecto
 
 
 def _energy_restored(body: Body, state: Vector, h: float) -> Vector:
-    """The explicit step, and H scaled back to the energy that it had."""
+    """Return the explicit step with H scaled back to its old energy."""
     after = _explicit(body, state, h)
     before, scaled = state[:3], after[:3]
     scaled *= sqrt(sum(before * body.omega(before)) / sum(scaled * body.omega(scaled)))
@@ -135,12 +135,12 @@ def _energy_restored(body: Body, state: Vector, h: float) -> Vector:
 
 
 def _in_single_precision(body: Body, state: Vector, h: float) -> Vector:
-    """A sound step whose result is kept in float32 until the next."""
+    """Return a sound step, its result rounded to float32."""
     return runge_kutta(body, state, h).astype(np.float32).astype(np.float64)
 
 
 def _turned(q: Vector, omega: Vector, h: float) -> Vector:
-    """q times the rotation by h omega, exact for a constant velocity; no velocity here is zero."""
+    """Return q times the rotation by h omega, exact for a constant omega, which is not zero here."""
     speed = sqrt(sum(omega * omega))
     c, s = cos(h * speed / 2), sin(h * speed / 2) / speed
     # attitude_rate(q, omega) is q (0, omega)/2.
@@ -160,7 +160,7 @@ STEPPING: Final = (
         "|H| and T rise in every step",
         solver=FixedStep(_explicit, "explicit-gyroscopic-update"),
         twin=_TWIN,
-        told=True,
+        is_common=True,
     ),
     Defect(
         "implicit-gyroscopic-update",
@@ -170,7 +170,7 @@ STEPPING: Final = (
         why="the mirror image: every step ends inside the sphere, |H| and T fall",
         solver=FixedStep(partial(_explicit, iterations=_ITERATIONS), "implicit-gyroscopic-update"),
         twin=_TWIN,
-        told=True,
+        is_common=True,
     ),
     Defect(
         "energy-restored",
@@ -181,7 +181,7 @@ STEPPING: Final = (
         why="the energy is what is put there; the error is where it was",
         solver=FixedStep(_energy_restored, "energy-restored"),
         twin=_TWIN,
-        told=True,
+        is_common=True,
     ),
     Defect(
         "averaged-exponential",
@@ -193,7 +193,7 @@ STEPPING: Final = (
         "second, and no quantity in body axes knows the attitude",
         solver=FixedStep(_averaged_exponential, "averaged-exponential"),
         twin=_TWIN,
-        told=True,
+        is_common=True,
     ),
     Defect(
         "float32-state",
@@ -203,7 +203,7 @@ STEPPING: Final = (
         why="each step rounds to 24 bits, half a billion times as coarsely as to 53",
         solver=FixedStep(_in_single_precision, "float32-state"),
         twin=_TWIN,
-        told=True,
+        is_common=True,
     ),
     Defect(
         "unbounded-step",

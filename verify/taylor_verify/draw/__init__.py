@@ -1,1 +1,1 @@
-"""Pictures of one motion: drawn from its exact course, not moving and moving."""
+"""Pictures and animations of one motion, drawn from its exact course."""

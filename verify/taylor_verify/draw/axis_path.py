@@ -1,8 +1,8 @@
 """The path of the body's axis on the unit sphere in space, darker as time goes on.
 
-The axis is that of symmetry, or for a rigid body the one that its angular velocity goes round. The column
-of R that belongs to it is its direction in space. Where no load acts, the angular momentum or the linear
-impulse keeps its direction in space, and that is marked.
+The axis is the axis of symmetry, or for a rigid body the principal axis that its angular velocity goes
+round. Its direction in space is its column of R. Where no load acts, the angular momentum or the linear
+impulse keeps its direction in space, and the picture marks that direction.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ Document = Mapping[str, Any]
 _HEIGHT: Final = 3.4
 _STAGE: Final = 4.2
 _SPHERE: Final = Ellipsoid((1.0, 1.0, 1.0))
-# The digits of a course are nine; what turns by less than this stands still.
+# A course has nine digits: a direction that changes by less than this stands still.
 _AT_REST: Final = 1e-6
 _WIDTH: Final = 1.3
 _FIXED: Final[Look] = {
@@ -42,7 +42,8 @@ _FIXED: Final[Look] = {
 class Series:
     """The axis in space, one unit vector a time, and its number in the body.
 
-    ``fixed`` is a direction that keeps still, ``fixed_name`` what has it; None where nothing does.
+    ``fixed`` is a direction that does not change in space, None where there is none. ``fixed_name`` is the
+    vector that has this direction.
     """
 
     times: Numbers
@@ -70,7 +71,7 @@ def series(portrait: Document) -> Series:
 
 
 def axis_of(portrait: Document) -> int:
-    """Return 1, 2 or 3: the axis of symmetry, or that which the polhode goes round; else the third."""
+    """Return 1, 2 or 3: the axis of symmetry, or the axis that the polhode goes round; else the third."""
     if portrait["potential"]:
         return int(portrait["potential"]["variable"][1:])
     if portrait.get("axis"):
@@ -84,48 +85,51 @@ def axis_of(portrait: Document) -> int:
 
 
 def momentum_of(portrait: Document) -> tuple[Numbers, str]:
-    """Return H = I omega + h in body axes, the tensor put together of moments and axes; or x as it is."""
+    """Return a vector in body axes and its name: H = I omega + h of a rigid body, x of a solid in a fluid.
+
+    The tensor I is computed from the principal moments and axes.
+    """
     course, body = portrait["course"], portrait["body"]
     if body is None:
         return np.array(course["linear_impulse"]), "linear impulse"
     axes = np.array(body["axes"])
     tensor = axes.T @ np.diag(body["principal_moments"]) @ axes
     wheels = np.array(portrait.get("rotor") or [0.0] * 3)
-    found: Numbers = np.array(course["omega"]) @ tensor + wheels
-    return found, "angular momentum"
+    momenta: Numbers = np.array(course["omega"]) @ tensor + wheels
+    return momenta, "angular momentum"
 
 
 def picture(portrait: Document) -> Picture:
-    """The path of one scene's axis. Raises NotDrawn as `series` does."""
-    found = series(portrait)
-    still = "" if found.fixed is None else f" The direction of the {found.fixed_name} is marked."
+    """Return the path of one scene's axis. Raises NotDrawn as `series` does."""
+    track = series(portrait)
+    still = "" if track.fixed is None else f" The direction of the {track.fixed_name} is marked."
     alt = (
-        f"Body axis {found.axis} of {portrait['scene']} on the unit sphere in space, from "
-        f"t = {found.times[0]:g} to t = {found.times[-1]:g}, darker as time goes on.{still}"
+        f"Body axis {track.axis} of {portrait['scene']} on the unit sphere in space, from "
+        f"t = {track.times[0]:g} to t = {track.times[-1]:g}, darker as time goes on.{still}"
     )
     title = f"Axis in space: {portrait['scene']}"
     return Picture(
-        stem_of(portrait, "axis"), title, alt, partial(_figure, found, caption(portrait))
+        stem_of(portrait, "axis"), title, alt, partial(_figure, track, caption(portrait))
     )
 
 
-def _figure(found: Series, words: str) -> Figure:
-    stage = Stage.around(_SPHERE, View.facing(_middle(found.path)), _STAGE, _HEIGHT)
-    stage.course(found.path, _WIDTH, 3)
-    marks = [(found.path[0], START, "start"), (found.path[-1], END, "end")]
-    if found.fixed is not None:
-        marks.append((found.fixed, _FIXED, found.fixed_name))
+def _figure(track: Series, words: str) -> Figure:
+    stage = Stage.around(_SPHERE, View.facing(_middle(track.path)), _STAGE, _HEIGHT)
+    stage.course(track.path, _WIDTH, 3)
+    marks = [(track.path[0], START, "start"), (track.path[-1], END, "end")]
+    if track.fixed is not None:
+        marks.append((track.fixed, _FIXED, track.fixed_name))
     for point, look, name in marks:
         stage.mark(point, look, clip_on=False, gid=name)
     stage.name_axes(_SPHERE.semi_axes, ("x", "y", "z (space)"))
     path = {"color": scale()(0.6), "linewidth": _WIDTH}
-    entries = [(path, f"body axis {found.axis}"), *((look, name) for _, look, name in marks)]
+    entries = [(path, f"body axis {track.axis}"), *((look, name) for _, look, name in marks)]
     stage.legend(entries, f"Faint: on the far side. {words}".rstrip(), 2.8)
-    stage.time_bar(found.times, 0.85)
+    stage.time_bar(track.times, 0.85)
     return stage.figure
 
 
 def _middle(path: Numbers) -> list[float]:
     mean = path.mean(axis=0)
-    # A path all round the sphere has no side.
+    # A path all round the sphere has no side: it is seen from any.
     return mean.tolist() if float(np.linalg.norm(mean)) > 0.05 else [1.0, 0.7, 0.5]

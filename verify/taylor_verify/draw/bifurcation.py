@@ -46,7 +46,7 @@ _HERE: Final[Look] = {
     **{"linestyle": "none", "marker": "*", "markersize": 11, "markerfacecolor": "#F2B705"},
     **{"markeredgecolor": INK, "markeredgewidth": 0.8, "gid": "scene"},
 }
-# By the pairs of spins beyond the two that are always there.
+# Colours by the number of pairs of spins, beyond the two spins that are always there.
 _REGIONS: Final = ("#FFFFFF", "#DCE9F2", "#A9C8DF")
 _PATCH: Final[Look] = {
     **{"linestyle": "none", "marker": "s", "markersize": 8},
@@ -54,9 +54,11 @@ _PATCH: Final[Look] = {
 }
 _BORDER: Final[Look] = {"color": "#35607F", "linewidth": 0.9, "gid": "border"}
 _EVOLUTE: Final[Look] = {"colors": [_BORDER["color"]], "linewidths": _BORDER["linewidth"]}
-# Of the panels, beyond what they have to show; and the largest ratio on an even axis.
+# A panel shows so many times what it has to show.
 _ROOM: Final = 1.3
+# Sizes of a larger ratio have a logarithmic axis.
 _UNLIKE: Final = 15.0
+# Points on each side of the grid that is drawn, and of the one that finds the extent of the border.
 _GRID: Final = 181
 _COARSE: Final = 61
 
@@ -105,22 +107,26 @@ def series(document: Document) -> Series:
 
 def picture(document: Document) -> Picture:
     """Return the bifurcations of one scene. Raises NotDrawn as `series` does."""
-    found = series(document)
-    births = " and ".join(plain(birth) for birth in found.births) or "no value"
+    bifurcations = series(document)
+    births = " and ".join(plain(birth) for birth in bifurcations.births) or "no value"
     alt = (
         f"Steady spins of {document['scene']}. With its wheels, more of them appear at |H| = {births}; "
-        f"the scene has |H| = {plain(found.size)} and {found.spins}. Beside it the same for wheels that "
-        f"vary in a plane: {', '.join(found.regions)}, with the border between."
+        f"the scene has |H| = {plain(bifurcations.size)} and {bifurcations.spins}. "
+        f"Beside it the same for wheels that vary in a plane: {', '.join(bifurcations.regions)}, "
+        "with the border between."
     )
     title = f"Bifurcations of the steady spins: {document['scene']}"
     return Picture(
-        stem_of(document, "bifurcation"), title, alt, partial(_figure, found, caption(document))
+        stem_of(document, "bifurcation"),
+        title,
+        alt,
+        partial(_figure, bifurcations, caption(document)),
     )
 
 
-def _figure(found: Series, caption: str) -> Figure:
+def _figure(bifurcations: Series, caption: str) -> Figure:
     # Beyond the panel, so that no curve ends in it.
-    branches = found.wheels.branches(found.limits[1] * _ROOM)
+    branches = bifurcations.wheels.branches(bifurcations.limits[1] * _ROOM)
     is_mixed = any(not branch.stable for branch in branches)
     entries: list[Entry] = [
         (_STABLE, "stable spin"),
@@ -128,36 +134,36 @@ def _figure(found: Series, caption: str) -> Figure:
         (_HERE, "this scene"),
         *(
             ({**_PATCH, "markerfacecolor": colour}, words)
-            for colour, words in zip(_REGIONS, found.regions, strict=False)
+            for colour, words in zip(_REGIONS, bifurcations.regions, strict=False)
         ),
     ]
     figure, (left, right) = sheet(2, entries, caption, _HEIGHT)
-    _draw_energies(left, found, branches)
-    _draw_wheels(right, found)
+    _draw_energies(left, bifurcations, branches)
+    _draw_wheels(right, bifurcations)
     return figure
 
 
 # The wheels of the scene, any momentum.
 
 
-def _draw_energies(axes: Axes, found: Series, branches: Sequence[Branch]) -> None:
-    low, high = found.limits
-    if found.is_long:
+def _draw_energies(axes: Axes, bifurcations: Series, branches: Sequence[Branch]) -> None:
+    low, high = bifurcations.limits
+    if bifurcations.is_long:
         axes.set_xscale("log")
-    bounds = [low, *found.births, high]
+    bounds = [low, *bifurcations.births, high]
     for pairs, (left, right) in enumerate(itertools.pairwise(bounds)):
         axes.axvspan(left, right, facecolor=_REGIONS[pairs], linewidth=0, zorder=0)
-    for birth in found.births:
+    for birth in bifurcations.births:
         axes.axvline(birth, zorder=1, **_BORDER)
     for branch in branches:
         look = {"zorder": 3, **_STABLE} if branch.stable else {"zorder": 2, **_UNSTABLE}
-        axes.plot(branch.sizes, _parts(found.wheels, branch.sizes, branch.momenta), **look)
-    (part,) = _parts(found.wheels, np.array([found.size]), found.start)
-    axes.plot([found.size], [part], clip_on=False, zorder=5, **_HERE)
+        axes.plot(branch.sizes, _parts(bifurcations.wheels, branch.sizes, branch.momenta), **look)
+    (part,) = _parts(bifurcations.wheels, np.array([bifurcations.size]), bifurcations.start)
+    axes.plot([bifurcations.size], [part], clip_on=False, zorder=5, **_HERE)
     axes.set(xlim=(low, high), ylim=(-0.04, 1.04), xlabel="|H|, the whole momentum")
     axes.set_ylabel("T, from least to greatest", labelpad=2)
     axes.set_title("the wheels of the scene", pad=4)
-    if not found.is_long:
+    if not bifurcations.is_long:
         _number_few(axes.xaxis)
 
 
@@ -177,12 +183,12 @@ def _number_few(axis: Axis) -> None:
 # Any wheels, the momentum of the scene.
 
 
-def _draw_wheels(axes: Axes, found: Series) -> None:
-    plane, names = _plane(found.wheels)
-    here = plane @ found.wheels.rotor
-    half = _half(found, plane, here, *axes.get_window_extent().size)
+def _draw_wheels(axes: Axes, bifurcations: Series) -> None:
+    plane, names = _plane(bifurcations.wheels)
+    here = plane @ bifurcations.wheels.rotor
+    half = _half(bifurcations, plane, here, *axes.get_window_extent().size)
     across, upwards = (np.linspace(-side, side, _GRID) for side in half)
-    first, second = _pairs(found, plane, across, upwards)
+    first, second = _pairs(bifurcations, plane, across, upwards)
     for values, colour in (
         (np.maximum(first, second), _REGIONS[1]),
         (np.minimum(first, second), _REGIONS[2]),
@@ -198,25 +204,25 @@ def _draw_wheels(axes: Axes, found: Series) -> None:
     axes.set_ylabel(names[1], labelpad=0)
     _number_few(axes.xaxis)
     _number_few(axes.yaxis)
-    axes.set_title(f"any wheels, |H| = {found.size:.4g}", pad=4)
+    axes.set_title(f"any wheels, |H| = {bifurcations.size:.4g}", pad=4)
 
 
 def _pairs(
-    found: Series, plane: Numbers, across: Numbers, upwards: Numbers
+    bifurcations: Series, plane: Numbers, across: Numbers, upwards: Numbers
 ) -> tuple[Numbers, Numbers]:
-    """Return on a grid of the plane the two numbers that are positive where a pair of spins is there."""
+    """Return two numbers at each point of a grid; each is positive where its pair of spins exists."""
     rotors = np.stack(np.meshgrid(across, upwards), axis=-1) @ plane
-    return number(found.wheels.moments, rotors, found.size)
+    return number(bifurcations.wheels.moments, rotors, bifurcations.size)
 
 
 def _half(
-    found: Series, plane: Numbers, here: Numbers, width: float, height: float
+    bifurcations: Series, plane: Numbers, here: Numbers, width: float, height: float
 ) -> tuple[float, float]:
-    """Return half the sides of the panel at one scale: the whole border and the scene are in it."""
-    moments = found.wheels.moments
-    reach = 1.1 * float(np.abs(1 - np.divide.outer(moments, moments)).max()) * found.size
+    """Return half the sides of the panel, at one scale: it shows the whole border and the scene."""
+    moments = bifurcations.wheels.moments
+    reach = 1.1 * float(np.abs(1 - np.divide.outer(moments, moments)).max()) * bifurcations.size
     coarse = np.linspace(-reach, reach, _COARSE) if reach > 0 else np.zeros(_COARSE)
-    inside = np.maximum(*_pairs(found, plane, coarse, coarse)) > 0
+    inside = np.maximum(*_pairs(bifurcations, plane, coarse, coarse)) > 0
     sides = [
         max([abs(float(side)), *np.abs(coarse[inside.any(axis=axis)])])
         for axis, side in enumerate(here)
@@ -228,7 +234,7 @@ def _half(
 def _plane(wheels: Wheels) -> tuple[Numbers, tuple[str, str]]:
     """Return two unit vectors of the plane through h and the middle axis, as rows, with their names.
 
-    Of wheels along the middle axis, the plane is that of the middle and the greatest moment.
+    For wheels along the middle axis, the plane is that of the middle and the greatest moment.
     """
     order = np.argsort(wheels.moments)
     middle = np.eye(3)[order[1]]

@@ -34,24 +34,27 @@ Document = Mapping[str, Any]
 _HEIGHT: Final = 4.3
 _STAGE: Final = 4.6
 _GLYPHS: Final = 24
-# A glyph is so long, and the box so much wider than the path, in parts of the longest side.
+# The length of a glyph, and the room beside the path, in parts of the longest side of the box.
 _GLYPH: Final = 0.07
 _MARGIN: Final = 0.08
 # No side of the box is shorter than this part of the longest one.
 _LEAST_SIDE: Final = 0.35
-# Solids on a path at most, and how far from each other in parts of their size; axes of a frame are longer.
+# The most solids on a path, and their distance from each other in parts of their size.
 _FRAMES: Final = 10
 _APART: Final = 1.25
+# The axes of a frame are so many times as long as a glyph.
 _LONGER: Final = 1.1
 _WIDTH: Final = 1.8
 _AXIS: Final[Look] = {"color": "#A83C00", "linewidth": 0.9, "gid": "axis"}
 _SHADOW: Final[Look] = {"color": "#A9B2BA", "linewidth": 0.8, "gid": "projection"}
 _SIDES: Final = ("x", "y", "z")
-# Degrees; and from an edge to the middle of a number and of the side's letter, in points.
+# The sides from which a path may be seen, in degrees.
 _AZIMUTHS: Final = (-62, -50, -40, -28, 28, 40, 50, 62)
 _ELEVATION: Final = 22.0
+# The distance from an edge to the middle of a number, and of the side's letter, in points.
 _NUMBER: Final = 11.0
 _LETTER: Final = 27.0
+# The room above and below the box, in inches.
 _BELOW: Final = 0.42
 
 
@@ -76,7 +79,7 @@ class Series:
 
     @property
     def instants(self) -> list[int]:
-        """The rows at which the body is drawn: as many as have room beside each other."""
+        """The rows at which the body is drawn: as many as fit beside each other."""
         arc = float(np.linalg.norm(np.diff(self.path, axis=0), axis=1).sum())
         size = 2 * max(self.semi_axes) if self.semi_axes else arc / _FRAMES
         count = int(min(max(arc / (_APART * size or 1.0), 1), _FRAMES))
@@ -84,7 +87,7 @@ class Series:
 
     @property
     def extent(self) -> Numbers:
-        """Points that the box has to hold: the path, and the solids on it."""
+        """Points that the box has to contain: the path, and the solids on it."""
         if not self.is_solid or self.semi_axes is None:
             return self.path
         places = self.instants
@@ -140,66 +143,66 @@ def series(portrait: Document) -> Series:
 
 
 def picture(portrait: Document) -> Picture:
-    """The path of one scene. Raises NotDrawn as `series` does."""
-    found = series(portrait)
-    first, last = (f"({', '.join(f'{v:.3g}' for v in found.path[k])})" for k in (0, -1))
+    """Return the path of one scene. Raises NotDrawn as `series` does."""
+    track = series(portrait)
+    first, last = (f"({', '.join(f'{v:.3g}' for v in track.path[k])})" for k in (0, -1))
     alt = (
         f"The origin of the body of {portrait['scene']} in space, from {first} at t = "
-        f"{found.times[0]:g} to {last} at t = {found.times[-1]:g}, with its projections on three walls "
-        f"and {_name(found)} along the way."
+        f"{track.times[0]:g} to {last} at t = {track.times[-1]:g}, with its projections on three walls "
+        f"and {_name(track)} along the way."
     )
     title = f"Path through the fluid: {portrait['scene']}"
     return Picture(
-        stem_of(portrait, "centre"), title, alt, partial(_figure, found, caption(portrait))
+        stem_of(portrait, "centre"), title, alt, partial(_figure, track, caption(portrait))
     )
 
 
-def _name(found: Series) -> str:
-    if not found.is_solid:
-        return f"the direction of body axis {found.axis}"
-    return "the ellipsoid itself" if found.semi_axes else "the axes of the body"
+def _name(track: Series) -> str:
+    if not track.is_solid:
+        return f"the direction of body axis {track.axis}"
+    return "the ellipsoid itself" if track.semi_axes else "the axes of the body"
 
 
-def _figure(found: Series, words: str) -> Figure:
-    view = _view(found.extent)
-    box = _Box.of(found.extent, view)
-    stage = Stage.showing(view.seen(box.corners), view, _STAGE, _HEIGHT, _BELOW)
+def _figure(track: Series, words: str) -> Figure:
+    view = _view(track.extent)
+    box = _Box.of(track.extent, view)
+    stage = Stage.showing(view.project(box.corners), view, _STAGE, _HEIGHT, _BELOW)
     _draw_walls(stage, box)
     for i in range(3):
-        shadow = found.path.copy()
+        shadow = track.path.copy()
         shadow[:, i] = box.walls[i]
-        stage.axes.plot(*view.seen(shadow).T, zorder=1, **_SHADOW)
-    stage.course(found.path, _WIDTH, 4)
-    draw_body = _draw_solids if found.is_solid else _draw_glyphs
-    draw_body(stage, found, _GLYPH * box.longest)
-    stage.mark(found.path[0], START, gid="start")
-    stage.mark(found.path[-1], END, gid="end")
+        stage.axes.plot(*view.project(shadow).T, zorder=1, **_SHADOW)
+    stage.course(track.path, _WIDTH, 4)
+    draw_body = _draw_solids if track.is_solid else _draw_glyphs
+    draw_body(stage, track, _GLYPH * box.longest)
+    stage.mark(track.path[0], START, gid="start")
+    stage.mark(track.path[-1], END, gid="end")
     entries: list[Entry] = [
         ({"color": scale()(0.6), "linewidth": _WIDTH}, "origin of the body"),
-        *_body_entries(found),
+        *_body_entries(track),
         (_SHADOW, "projections"),
         (START, "start"),
         ({**END, "markerfacecolor": QUIET}, "end"),
     ]
     note = f"One scale in all directions, the scene's own unit of length. {words}".rstrip()
-    stage.legend(entries, note, 4.1 if found.is_solid else 3.4, indent=0.05)
-    stage.time_bar(found.times, 0.5 if found.is_solid else 1.3)
+    stage.legend(entries, note, 4.1 if track.is_solid else 3.4, indent=0.05)
+    stage.time_bar(track.times, 0.5 if track.is_solid else 1.3)
     return stage.figure
 
 
-def _body_entries(found: Series) -> list[Entry]:
-    if not found.is_solid:
-        return [(_AXIS, f"body axis {found.axis}")]
-    if found.semi_axes:
+def _body_entries(track: Series) -> list[Entry]:
+    if not track.is_solid:
+        return [(_AXIS, f"body axis {track.axis}")]
+    if track.semi_axes:
         look = {"marker": "o", "markersize": 8, "markerfacecolor": "#E8EEF2", "linestyle": "none"}
         return [({**look, "markeredgecolor": "#43525C"}, "the solid, in its own size")]
     return [({"color": colour}, f"body axis {k}") for k, colour in enumerate(AXES, start=1)]
 
 
 def _view(path: Numbers) -> View:
-    """Return the view, of some from which no wall is seen edge on, that shows most of the path's way."""
+    """Return the view that shows the path at its widest, among some that see no wall edge on."""
     views = [View(float(azimuth), _ELEVATION) for azimuth in _AZIMUTHS]
-    return max(views, key=lambda view: round(float(np.ptp(view.seen(path)[:, 0])), 6))
+    return max(views, key=lambda view: round(float(np.ptp(view.project(path)[:, 0])), 6))
 
 
 def _draw_walls(stage: Stage, box: _Box) -> None:
@@ -212,7 +215,7 @@ def _draw_walls(stage: Stage, box: _Box) -> None:
         wall[:, j] = np.array([box.low[j], box.high[j], box.high[j], box.low[j], box.low[j]])
         wall[:, k] = np.array([box.low[k], box.low[k], box.high[k], box.high[k], box.low[k]])
         look: Look = {"facecolor": "#FAFAFA", "edgecolor": FAINT, "linewidth": 0.6}
-        stage.axes.fill(*stage.view.seen(wall).T, **look, zorder=0)
+        stage.axes.fill(*stage.view.project(wall).T, **look, zorder=0)
     for i in range(3):
         low, high = float(box.low[i]), float(box.high[i])
         count = max(2, round(5 * (high - low) / box.longest))
@@ -229,7 +232,7 @@ def _draw_ticks(stage: Stage, box: _Box, i: int, ticks: list[float]) -> None:
             line[:, i] = value
             line[:, n] = (box.low[n], box.high[n])
             line[:, m] = box.walls[m]
-            stage.axes.plot(*stage.view.seen(line).T, color=FAINT, linewidth=0.5, zorder=0.1)
+            stage.axes.plot(*stage.view.project(line).T, color=FAINT, linewidth=0.5, zorder=0.1)
     edge, outward = _edge(stage.view, box, i)
     middle = (box.low[i] + box.high[i]) / 2
     texts = [(v, _NUMBER, f"{v:g}".replace("-", "\N{MINUS SIGN}")) for v in ticks]
@@ -237,7 +240,7 @@ def _draw_ticks(stage: Stage, box: _Box, i: int, ticks: list[float]) -> None:
         edge[i] = value
         stage.axes.annotate(
             words,
-            stage.view.seen(edge)[0],
+            stage.view.project(edge)[0],
             (float(outward[0]) * away, float(outward[1]) * away),
             textcoords="offset points",
             size=SMALL,
@@ -250,36 +253,36 @@ def _draw_ticks(stage: Stage, box: _Box, i: int, ticks: list[float]) -> None:
 
 
 def _edge(view: View, box: _Box, i: int) -> tuple[Numbers, Numbers]:
-    """Return a point of the edge along side i where its numbers stand, and the way outwards on the paper.
+    """Return a point of the edge where the numbers of side i stand, and the way outwards on the paper.
 
-    On the ground that is the edge before the wall; of the upright ones the leftmost.
+    On the ground it is the edge opposite the wall, for the upright side the leftmost edge.
     """
     ground = (0, 1) if i == 2 else (1 - i,)
     edges = []
     for n in ground:
         point = box.walls.copy()
         point[n] = box.high[n] if box.walls[n] == box.low[n] else box.low[n]
-        edges.append((point, view.seen(np.sign(point - box.walls))[0]))
-    point, way = min(edges, key=lambda edge: float(view.seen(edge[0])[0, 0]))
+        edges.append((point, view.project(np.sign(point - box.walls))[0]))
+    point, way = min(edges, key=lambda edge: float(view.project(edge[0])[0, 0]))
     outward = np.array([-1.0, 0.0]) if i == 2 else way / np.linalg.norm(way)
     return point, outward
 
 
-def _draw_solids(stage: Stage, found: Series, length: float) -> None:
+def _draw_solids(stage: Stage, track: Series, length: float) -> None:
     """Draw the body at a few instants, the nearest last."""
-    rows = found.instants
-    for layer, k in enumerate(by_depth(found.path[rows], stage.view)):
+    rows = track.instants
+    for layer, k in enumerate(by_depth(track.path[rows], stage.view)):
         row, at = rows[k], 4.5 + layer / 10
-        if found.semi_axes:
-            draw_ellipsoid(stage, found.semi_axes, found.attitudes[row], found.path[row], at)
+        if track.semi_axes:
+            draw_ellipsoid(stage, track.semi_axes, track.attitudes[row], track.path[row], at)
         else:
-            draw_frame(stage, _LONGER * length, found.attitudes[row], found.path[row], at)
+            draw_frame(stage, _LONGER * length, track.attitudes[row], track.path[row], at)
 
 
-def _draw_glyphs(stage: Stage, found: Series, length: float) -> None:
+def _draw_glyphs(stage: Stage, track: Series, length: float) -> None:
     """Draw the body's axis at equal intervals of time, a dot where it begins."""
-    for row in np.linspace(0, len(found.path) - 1, _GLYPHS).round().astype(int):
-        start = found.path[row]
-        ends = stage.view.seen(np.array([start, start + length * found.directions[row]]))
+    for row in np.linspace(0, len(track.path) - 1, _GLYPHS).round().astype(int):
+        start = track.path[row]
+        ends = stage.view.project(np.array([start, start + length * track.directions[row]]))
         stage.axes.plot(*ends.T, zorder=3.5, **_AXIS)
         stage.axes.plot(*ends[:1].T, marker="o", markersize=1.8, color=_AXIS["color"], zorder=5)

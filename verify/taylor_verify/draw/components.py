@@ -29,7 +29,7 @@ Document = Mapping[str, Any]
 
 # In inches.
 _HEIGHT: Final = 2.7
-# A component is told by its dashes too.
+# Dashes tell the components apart as well as colours do.
 LINES: Final[tuple[dict[str, Any], ...]] = (
     {"color": "#0B5FA5", "linewidth": 1.5},
     {"color": "#A83C00", "linewidth": 1.5, "dashes": (5, 1.6)},
@@ -37,9 +37,10 @@ LINES: Final[tuple[dict[str, Any], ...]] = (
 )
 SUBSCRIPTS: Final = "\N{SUBSCRIPT ONE}\N{SUBSCRIPT TWO}\N{SUBSCRIPT THREE}"
 _FLIP: Final[dict[str, Any]] = {"color": QUIET, "linewidth": 0.8, "gid": "flip"}
-# Beyond the largest value, in parts of the extent; above it there is the flip time.
+# Room beyond the values, in parts of their extent; the flip time above them takes more.
 _ROOM: Final = 0.06
 _HEADROOM: Final = 0.2
+# Room at the end of the times, for half a number.
 _ASIDE: Final = 0.03
 
 
@@ -65,13 +66,14 @@ class Series:
 def series(document: Document) -> Series:
     """Return the components of omega in principal axes, or of both impulses in the axes of the scene.
 
-    Raises NotDrawn where no double tells the start from the end.
+    Raises NotDrawn if the start and the end are the same double.
     """
     course, body = document["course"], document["body"]
     times = np.array(course["t"])
     if times[0] == times[-1]:
         raise NotDrawn(
-            f"expected times that doubles tell apart, got {times[0]!r} @ {document['scene']}"
+            f"expected a span of time that double precision resolves, got {times[0]!r} as start and as "
+            f"end @ {document['scene']}"
         )
     if body is None:
         panels = (
@@ -83,7 +85,7 @@ def series(document: Document) -> Series:
     panel = Panel("\N{GREEK SMALL LETTER OMEGA}", "angular velocity, principal axes", rows)
     numbers = {row["name"]: float(row["value"]) for row in document["analytic"]}
     flips: tuple[float, ...] = ()
-    # In the time of the scene, that is: with damping the orbit's own is another one.
+    # Flips are given in the time of the scene. With damping the orbit has a time of its own.
     if document["is_free"] and not document["rotor"] and "saddle_rate" in numbers:
         flips = _zeros(times, rows[:, int(np.argsort(body["principal_moments"])[1])])
     same = None if document["damping"] else numbers.get("flip_time")
@@ -91,59 +93,58 @@ def series(document: Document) -> Series:
 
 
 def _zeros(times: Numbers, values: Numbers) -> tuple[float, ...]:
-    """Return the times of a change of sign, by the straight line between two rows."""
+    """Return the times at which the values change sign, interpolated linearly between two rows."""
     places = np.flatnonzero(values[:-1] * values[1:] < 0)
     first, last = values[places], values[places + 1]
-    found = times[places] + (times[places + 1] - times[places]) * first / (first - last)
-    return tuple(float(t) for t in found)
+    zeros = times[places] + (times[places + 1] - times[places]) * first / (first - last)
+    return tuple(float(t) for t in zeros)
 
 
 def picture(document: Document) -> Picture:
     """Return the components of one scene against time. Raises NotDrawn as `series` does."""
-    found = series(document)
-    names = " and ".join(panel.name for panel in found.panels)
+    components = series(document)
+    names = " and ".join(panel.name for panel in components.panels)
     alt = (
         f"{names[0].upper()}{names[1:]} of {document['scene']}, each component against time, from t = "
-        f"{found.times[0]:g} to t = {found.times[-1]:g}."
+        f"{components.times[0]:g} to t = {components.times[-1]:g}."
     )
-    if found.flips:
-        flips = ", ".join(f"{t:.4g}" for t in found.flips)
+    if components.flips:
+        flips = ", ".join(f"{t:.4g}" for t in components.flips)
         alt += f" The middle component is zero, a flip, at t = {flips}."
-    if found.flip_time is not None:
-        alt += f" The flip time is {found.flip_time:.9g}."
+    if components.flip_time is not None:
+        alt += f" The flip time is {components.flip_time:.9g}."
     title = f"Motion in time: {document['scene']}"
     return Picture(
-        stem_of(document, "time"), title, alt, partial(_figure, found, caption(document))
+        stem_of(document, "time"), title, alt, partial(_figure, components, caption(document))
     )
 
 
-def _figure(found: Series, words: str) -> Figure:
-    names = [panel.letter for panel in found.panels]
+def _figure(components: Series, words: str) -> Figure:
+    names = [panel.letter for panel in components.panels]
     entries: list[Entry] = [
         (dict(look), ", ".join(f"{name}{subscript}" for name in names))
         for look, subscript in zip(LINES, SUBSCRIPTS, strict=True)
     ]
-    entries += [(_FLIP, "flip: the middle component is 0")] if found.flips else []
-    figure, places = sheet(len(found.panels), entries, words, _HEIGHT)
-    for axes, panel in zip(places, found.panels, strict=True):
-        _draw(axes, found, panel)
-        if len(found.flips) > 1 and found.flip_time is not None:
-            _write_flip_time(axes, found.flips, found.flip_time)
+    entries += [(_FLIP, "flip: the middle component is 0")] if components.flips else []
+    figure, places = sheet(len(components.panels), entries, words, _HEIGHT)
+    for axes, panel in zip(places, components.panels, strict=True):
+        _draw(axes, components, panel)
+        if len(components.flips) > 1 and components.flip_time is not None:
+            _write_flip_time(axes, components.flips, components.flip_time)
     return figure
 
 
-def _draw(axes: Axes, found: Series, panel: Panel) -> None:
+def _draw(axes: Axes, components: Series, panel: Panel) -> None:
     from matplotlib.ticker import MaxNLocator
 
     for look, values in zip(LINES, panel.rows.T, strict=True):
-        axes.plot(found.times, values, gid="course", zorder=3, **look)
-    for flip in found.flips:
+        axes.plot(components.times, values, gid="course", zorder=3, **look)
+    for flip in components.flips:
         axes.axvline(flip, zorder=1, **_FLIP)
     low, high = float(panel.rows.min()), float(panel.rows.max())
     extent = (high - low) or abs(high) or 1.0
-    above = _HEADROOM if len(found.flips) > 1 and found.flip_time is not None else _ROOM
-    first, last = sorted((float(found.times[0]), float(found.times[-1])))
-    # Room for half a number at the end.
+    above = _HEADROOM if len(components.flips) > 1 and components.flip_time is not None else _ROOM
+    first, last = sorted((float(components.times[0]), float(components.times[-1])))
     axes.set(xlim=(first, last + _ASIDE * (last - first)), xlabel="time t")
     axes.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
     axes.set(ylim=(low - _ROOM * extent, high + above * extent))

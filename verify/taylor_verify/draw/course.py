@@ -1,4 +1,4 @@
-"""The course of a motion in plain floats, dense enough to be drawn: rows of the exact solution.
+"""Course of a motion: rows of the exact solution as floats, dense enough to be drawn.
 
     document["course"]["omega"]      the motion at dense times
     document["body"]                 principal moments and axes, and the momentum of wheels
@@ -31,30 +31,32 @@ from taylor_verify.scenes.tensors import Matrix
 
 Document = dict[str, Any]
 
-# Of the numbers of the orbit.
+# Digits of the numbers of the orbit.
 DIGITS: Final = 30
-# Intervals of the dense course; over more periods than these a curve covers itself.
+# Intervals of the dense course.
 INTERVALS: Final = 360
+# A curve over more periods would cover itself.
 PERIODS: Final = 3
-# Radians that a body may turn between two rows, and into how many parts an interval is cut at most.
+# Radians that a body may turn between two rows.
 _TURN: Final = 0.1
+# An interval is cut into so many parts at most.
 _MOST: Final = 8
-# Of a number in the course; the motion behind it is known to one digit more, and what is smaller
-# beside its vector than that is a zero that was not proven to be one.
+# Digits of a number in the course. The motion is computed to one digit more: a component that is smaller
+# than this digit of its vector counts as zero, although it is not proven to be zero.
 FIGURES: Final = 9
 
 
 def motion(scene: Scene, intervals: int = INTERVALS) -> Document:
     """Return the document that every picture of a motion is drawn from, attitude and centre included.
 
-    It has so many ``intervals`` of time, or more where the body turns fast. Raises Unsettled where the
-    motion cannot be had to the figures of a picture.
+    ``intervals`` is the number of intervals of time; a body that turns fast gets more. Raises Unsettled if
+    the motion cannot be computed to the digits of a picture.
     """
     whole = replace(scene, track=frozenset(TRACKED[scene.model]))
     exact, orbit = solution(formed_to(whole, DIGITS)), orbit_of(scene)
     body = scene.body
     shape, rotor = getattr(body, "ellipsoid", None), body.parts().get("rotor")
-    # One of these answers last, and says how it was had.
+    # The route and the evidence below are those of the last call of `exact`.
     extent = length(scene, orbit)
     course = course_of(scene, exact, extent, intervals)
     if (more := _enough(course)) > 1:
@@ -79,7 +81,7 @@ def motion(scene: Scene, intervals: int = INTERVALS) -> Document:
 
 
 def orbit_of(scene: Scene) -> Elements:
-    """Return the orbit's own numbers; none where the digits cannot be had."""
+    """Return the numbers of the orbit; none if their digits cannot be computed."""
     try:
         return elements(scene, DIGITS)
     except Unsettled as doubt:
@@ -130,21 +132,21 @@ def course_of(
 
 
 def _enough(course: Document) -> int:
-    """Return into how many parts intervals must be cut, so that the body turns little in each."""
+    """Return the number of parts to cut an interval into, so that the body turns little in each."""
     turned = np.array(course["attitude"]).reshape(-1, 3, 3)
     cosines = (np.einsum("nij,nij->n", turned[1:], turned[:-1]) - 1) / 2
-    # The largest angle is below a half turn, whatever a fast body did: more than so many are no use.
+    # Rows show angles below half a turn only, however fast the body is: more parts than these do not help.
     return min(ceil(float(np.arccos(np.clip(cosines.min(), -1, 1))) / _TURN), _MOST)
 
 
 def _rounded(entries: Sequence[mpf]) -> list[float]:
-    """Return the entries to ``FIGURES`` digits; 0 for what is below the last of the largest one's."""
+    """Return the entries to ``FIGURES`` digits; 0 for an entry below the last digit of the largest."""
     least = max(map(abs, entries)) / mpf(10) ** (FIGURES + 1)
     return [float(mp.nstr(v, FIGURES)) if abs(v) > least else 0.0 for v in entries]
 
 
 def inertia_ellipsoid(scene: Scene) -> Document | None:
-    """Return principal moments, each with its axis in body components; None for a body in a fluid."""
+    """Return the principal moments, each with its axis in body axes; None for a body in a fluid."""
     inertia = scene.body.parts().get("inertia")
     if inertia is None:
         return None
@@ -155,17 +157,17 @@ def inertia_ellipsoid(scene: Scene) -> Document | None:
 def principal_frame(inertia: Matrix) -> tuple[list[mpf], list[list[mpf]]]:
     """Return the principal moments, and to each a unit vector; the three vectors are right-handed.
 
-    A body whose axes are its principal axes keeps their order and signs, any other has its moments
-    in ascending order and the largest component of its first two axes positive.
+    A body whose axes are its principal axes keeps their order and signs. Any other body has its moments in
+    ascending order, and the largest component of its first two axes is positive.
     """
     with mp.workdps(DIGITS):
         if tensors.is_diagonal(inertia):
             unit = [[mpf(int(i == k)) for k in range(3)] for i in range(3)]
             return [mp.convert(inertia[i][i]) for i in range(3)], unit
-        found, vectors = mp.eigsy(mp.matrix([[mp.convert(v) for v in row] for row in inertia]))
+        moments, vectors = mp.eigsy(mp.matrix([[mp.convert(v) for v in row] for row in inertia]))
         first, second = (_upward([vectors[i, k] for i in range(3)]) for k in (0, 1))
         third = [first[i] * second[k] - first[k] * second[i] for i, k in ((1, 2), (2, 0), (0, 1))]
-        return list(found), [first, second, third]
+        return list(moments), [first, second, third]
 
 
 def _upward(axis: list[mpf]) -> list[mpf]:

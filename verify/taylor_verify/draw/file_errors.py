@@ -2,7 +2,7 @@
 
 The errors are those that `check` judges: against the exact motion of the same start, relative to the
 largest value of the motion, and in radians for an attitude. The floor is what perfect rounding would leave.
-The row at the start is left out, which has the rounding of the data and no error of a motion.
+The row at the start is left out: it has the rounding of the data, and no error of the motion.
 """
 
 from __future__ import annotations
@@ -35,16 +35,16 @@ Document = Mapping[str, Any]
 # In inches.
 _HEIGHT: Final = 2.2
 _FLOOR: Final[dict[str, Any]] = {"linewidth": 0.9, "dashes": (1.2, 1.6), "gid": "floor"}
-# Marks on a line at most.
+# The most marks on a line.
 _MARKS: Final = 12
 _TITLES: Final = {"omega": "angular velocity", "impulse": "impulses", "T": "energy T"}
-# Of the conserved quantities, one is shown: the energy, or the first that the scene conserves.
+# A longer name of a file is cut at its beginning, in characters.
 _LONGEST_NAME: Final = 28
 
 
 @dataclass(frozen=True)
 class Line:
-    """Errors of one file, and what rounding would leave, at its times; what is zero is no number here."""
+    """Errors of one file at its times, and the roundoff floor; zeros are NaN, for a logarithmic axis."""
 
     name: str
     times: Numbers
@@ -56,8 +56,11 @@ Panels = Mapping[str, Sequence[Line]]
 
 
 def panels_of(records: Mapping[str, Record], start: float) -> Panels:
-    """Return the lines of each quantity, by the names of the files: the states, then one conserved."""
-    found: dict[str, list[Line]] = {}
+    """Return the lines of each quantity: the states, then one conserved quantity, the energy if it is.
+
+    ``records`` are those of the files, by name. The row at ``start`` is left out.
+    """
+    lines_of: dict[str, list[Line]] = {}
     for name, record in records.items():
         for gate in record.gates:
             times = np.array(record.times)
@@ -67,9 +70,9 @@ def panels_of(records: Mapping[str, Record], start: float) -> Panels:
             )
             if np.isfinite(errors).any():
                 line = Line(name, times, errors, floor)
-                found.setdefault(gate.quantity, []).append(line)
-    conserved = [name for name in found if is_conserved(name)][:1]
-    return {name: found[name] for name in (*STATES, *conserved) if name in found}
+                lines_of.setdefault(gate.quantity, []).append(line)
+    conserved = [name for name in lines_of if is_conserved(name)][:1]
+    return {name: lines_of[name] for name in (*STATES, *conserved) if name in lines_of}
 
 
 def _above_zero(values: Sequence[float]) -> Numbers:
@@ -80,18 +83,21 @@ def _above_zero(values: Sequence[float]) -> Numbers:
 def picture(document: Document, records: Mapping[str, Record]) -> Picture:
     """Return the errors of all files in one picture, beside the roundoff floor.
 
-    ``document`` is the motion that they answer, ``records`` those of their judgements by the names that the
-    picture shows. Raises NotDrawn where no error is above zero.
+    ``document`` is the exact motion, ``records`` those of the judged files, by the names that the picture
+    shows. Raises NotDrawn if no error is above zero.
     """
     panels = panels_of(records, document["course"]["t"][0])
     if not panels:
-        raise NotDrawn(f"expected an error above zero, got none @ {', '.join(records)}")
-    said = "; ".join(
+        raise NotDrawn(
+            f"expected an error above zero to draw, got none (every row is exact, or not compared) "
+            f"@ {', '.join(records)}"
+        )
+    largest = "; ".join(
         f"{quantity} of {line.name} at most {plain(float(np.nanmax(line.errors)))}"
         for quantity, lines in panels.items()
         for line in lines
     )
-    alt = f"Errors of files against time on {document['scene']}, logarithmic: {said}."
+    alt = f"Errors of files against time on {document['scene']}, logarithmic: {largest}."
     title = f"Errors in time: {document['scene']}"
     return Picture(
         stem_of(document, "errors"), title, alt, partial(_figure, panels, caption(document))
@@ -100,12 +106,12 @@ def picture(document: Document, records: Mapping[str, Record]) -> Picture:
 
 def _figure(panels: Panels, words: str) -> Figure:
     names = list(dict.fromkeys(line.name for lines in panels.values() for line in lines))
-    looks = {name: look_of_line(k).line for k, name in enumerate(names)}
-    entries: list[Entry] = [(looks[name], _short(name)) for name in names]
+    styles = {name: look_of_line(k).line for k, name in enumerate(names)}
+    entries: list[Entry] = [(styles[name], _short(name)) for name in names]
     entries.append(({"color": QUIET, **_FLOOR}, "roundoff floor"))
     figure, places = sheet(len(panels), entries, words, _HEIGHT)
     for axes, (quantity, lines) in zip(places, panels.items(), strict=True):
-        _draw(axes, quantity, lines, looks)
+        _draw(axes, quantity, lines, styles)
     return figure
 
 
@@ -114,11 +120,11 @@ def _short(name: str) -> str:
     return name if len(name) <= _LONGEST_NAME else f"…{name[1 - _LONGEST_NAME :]}"
 
 
-def _draw(axes: Axes, quantity: str, lines: Sequence[Line], looks: Mapping[str, Any]) -> None:
+def _draw(axes: Axes, quantity: str, lines: Sequence[Line], styles: Mapping[str, Any]) -> None:
     from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
     for line in lines:
-        look = {**looks[line.name], "markevery": max(1, len(line.times) // _MARKS)}
+        look = {**styles[line.name], "markevery": max(1, len(line.times) // _MARKS)}
         axes.plot(line.times, line.errors, gid="course", zorder=3, **look)
         axes.plot(line.times, line.floor, color=look["color"], zorder=2, **_FLOOR)
     values = np.concatenate([part for line in lines for part in (line.errors, line.floor)])
@@ -134,5 +140,5 @@ def _draw(axes: Axes, quantity: str, lines: Sequence[Line], looks: Mapping[str, 
     axes.yaxis.set_minor_formatter(NullFormatter())
     if powers_within(*axes.get_ylim()) >= 1:
         axes.yaxis.set_major_formatter(lambda value, _: power_of_ten(value))
-    axes.grid(True, which="major")
+    axes.grid(visible=True, which="major")
     axes.set_title(_TITLES.get(quantity, quantity), pad=4)

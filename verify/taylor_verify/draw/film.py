@@ -30,7 +30,7 @@ ENDINGS: Final = (".gif", ".mp4")
 # In inches and pixels to the inch.
 _SIZE: Final = (8.0, 4.6)
 _RESOLUTION: Final = 100
-# Pictures a second, and in all: a GIF of more would be too large for a page.
+# Pictures a second, and the most in all: a GIF of more would be too large for a page.
 _RATE: Final = {".gif": 12, ".mp4": 30}
 _MOST: Final = {".gif": 180, ".mp4": 1200}
 _VIEW: Final = View(28.0, 14.0)
@@ -51,19 +51,20 @@ _POINT: Final[dict[str, Any]] = {
     "markeredgecolor": PAPER,
     "color": "#D9541E",
 }
-# The part of a film's tail that is drawn behind the point, in rows.
+# The length of the tail behind the point, in rows.
 _TAIL: Final = 60
 
 
 def film(motion: Moving, ending: str, frames: int | None = None) -> bytes:
-    """Return the file of a film of a motion, of which a long one shows the beginning.
+    """Return the content of a film of a motion; of a long motion it shows the beginning.
 
-    ``ending`` is ``.gif`` or ``.mp4``; ``frames`` is their number, by its length unless given. Raises
-    NotDrawn where the machine cannot make an MP4.
+    ``ending`` is ``.gif`` or ``.mp4``. ``frames`` is the number of pictures; by default the length of the
+    motion decides. Raises NotDrawn for an MP4 on a machine without ffmpeg.
     """
     if ending == ".mp4" and shutil.which("ffmpeg") is None:
         raise NotDrawn(
-            "expected ffmpeg for .mp4, got none on this machine; .gif and .html need none"
+            "expected ffmpeg to make a .mp4, got none on this machine: install it, or ask for .gif or "
+            ".html @ --out"
         )
     rate = _RATE[ending]
     # The whole motion at its own pace, or the beginning of a long one.
@@ -85,7 +86,7 @@ def film(motion: Moving, ending: str, frames: int | None = None) -> bytes:
 
 
 def _figure(motion: Moving) -> tuple[Figure, Callable[[int], list[Artist]]]:
-    """Return the figure, and what moves it to a row of the motion."""
+    """Return the figure, and the function that moves it to a row of the motion."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -116,7 +117,7 @@ def _figure(motion: Moving) -> tuple[Figure, Callable[[int], list[Artist]]]:
 
 
 def _bare(axes: Axes, reach: float) -> None:
-    """Show so far in every direction, at one scale and without lines."""
+    """Show the axes to this distance in every direction, at one scale and without lines."""
     axes.axis("off")
     axes.set_aspect("equal")
     axes.set(xlim=(-reach, reach), ylim=(-reach, reach))
@@ -126,9 +127,9 @@ def _body(axes: Axes, motion: Moving) -> Callable[[int], None]:
     from matplotlib.collections import PolyCollection
 
     _bare(axes, motion.reach * (1.2 if motion.arrow else 1.05))
-    seen = _VIEW.seen
+    project = _VIEW.project
     if motion.arrow:
-        stem = seen(
+        stem = project(
             np.array([[0, 0, -1.05], [0, 0, 1.02], [0, 0, 0.95], [0, 0, 1.14]]) * motion.reach
         )
         axes.plot(*stem[:2].T, color=QUIET, linewidth=0.8, dashes=(1.5, 4), zorder=1)
@@ -139,7 +140,7 @@ def _body(axes: Axes, motion: Moving) -> Callable[[int], None]:
         axes.annotate("H", stem[3], (7, -6), textcoords="offset points")
     path = None
     if motion.centres is not None:
-        places = seen(motion.centres - motion.middle)
+        places = project(motion.centres - motion.middle)
         axes.plot(*places.T, color="#C3CCD3", linewidth=0.9, zorder=1)
         (path,) = axes.plot([], [], color="#7A5AA6", linewidth=1.8, zorder=2)
     faces = PolyCollection([], zorder=3, linewidths=0.4)
@@ -157,7 +158,7 @@ def _body(axes: Axes, motion: Moving) -> Callable[[int], None]:
 def _turn(
     drawn: PolyCollection, faces: tuple[Face, ...], attitude: Numbers, centre: Numbers
 ) -> None:
-    """Put the faces in their place: those that look at the viewer, the farthest first."""
+    """Move the faces to their places: only those that face the viewer, the farthest first."""
     shown = []
     for face in faces:
         corners = face.corners @ attitude.T + centre
@@ -168,8 +169,8 @@ def _turn(
             if normal[2] <= 0:
                 continue
             colour = shaded(colour, min(0.66 + 0.5 * max(0.0, float(normal @ _LIGHT)), 1.12))
-        shown.append((depth, _VIEW.seen(corners), colour))
-    shown.sort(key=lambda one: one[0])
+        shown.append((depth, _VIEW.project(corners), colour))
+    shown.sort(key=lambda item: item[0])
     drawn.set_verts([points for _, points, _ in shown])
     colours = [colour for _, _, colour in shown]
     drawn.set_facecolor(colours)
@@ -177,7 +178,7 @@ def _turn(
 
 
 def shaded(colour: str, light: float) -> str:
-    """Return a colour nearer to black for a light below 1, and to white above."""
+    """Return the colour, darker for a light below 1 and paler for a light above 1."""
     target, part = (255, light - 1) if light > 1 else (0, 1 - light)
     parts = (int(colour[k : k + 2], 16) for k in (1, 3, 5))
     return "#" + "".join(f"{round(v + (target - v) * part):02X}" for v in parts)
@@ -190,7 +191,7 @@ def _inset(axes: Axes, motion: Moving) -> Callable[[int], None]:
     _bare(axes, 1.34 * max(inset.semi_axes))
     axes.set_title(inset.name, size=SMALL, color=QUIET, weight="normal", pad=2)
     axes.fill(
-        *view.seen(surface.outline(view)).T, facecolor="#EEF2F5", edgecolor=QUIET, linewidth=0.7
+        *view.project(surface.outline(view)).T, facecolor="#EEF2F5", edgecolor=QUIET, linewidth=0.7
     )
     lines: list[tuple[Numbers, dict[str, Any]]] = [
         *((surface.circle(pole), {"color": "#C3CCD3", "linewidth": 0.6}) for pole in np.eye(3)),
@@ -199,20 +200,20 @@ def _inset(axes: Axes, motion: Moving) -> Callable[[int], None]:
     ]
     for points, look in lines:
         is_inside = inset.sinks and points is inset.course
-        near = np.full(len(points), True) if is_inside else surface.faces(points, view)
-        for is_near, piece in pieces(view.seen(points), near):
+        near = np.ones(len(points), dtype=bool) if is_inside else surface.faces(points, view)
+        for is_near, piece in pieces(view.project(points), near):
             axes.plot(*piece.T, alpha=1.0 if is_near else 0.3, **look)
     for k, axis in enumerate(np.diag(inset.semi_axes)):
         size = 0.2 * max(inset.semi_axes) / inset.semi_axes[k]
         words = f"{inset.letter}{SUBSCRIPTS[k]}"
-        x, y = map(float, view.seen(axis * (1 + size))[0])
+        x, y = map(float, view.project(axis * (1 + size))[0])
         axes.text(x, y, words, size=SMALL, ha="center", va="center")
     (tail,) = axes.plot([], [], color="#D9541E", linewidth=2.2, zorder=4)
     (point,) = axes.plot([], [], zorder=5, **_POINT)
 
     def move(row: int) -> None:
-        tail.set_data(*view.seen(inset.course[max(0, row - _TAIL) : row + 1]).T)
-        point.set_data(*view.seen(inset.course[row]).T)
+        tail.set_data(*view.project(inset.course[max(0, row - _TAIL) : row + 1]).T)
+        point.set_data(*view.project(inset.course[row]).T)
 
     return move
 

@@ -1,4 +1,4 @@
-"""The herpolhode: the tip of omega in space, seen along the angular momentum H that stays where it is.
+"""The herpolhode: the tip of omega in space, seen along the angular momentum H, which does not move.
 
 Without wheels and loads the tip stays in a plane across H, between two circles.
 """
@@ -38,13 +38,13 @@ _H: Final[Look] = {
     **{"linestyle": "none", "marker": "x", "markersize": 7, "gid": "H"},
     **{"markeredgecolor": "#A83C00", "markeredgewidth": 1.6},
 }
-# In parts of omega, what has no extent across H is a point.
+# A curve of less extent across H, in parts of omega, is a point.
 _A_POINT: Final = 1e-7
 
 
 @dataclass(frozen=True)
 class Series:
-    """The tip of omega across H, shape (n, 2), at these times; the circles it stays between, if it does."""
+    """The tip of omega across H, shape (n, 2), at these times; the radii that it stays between, if any."""
 
     times: Numbers
     tips: Numbers
@@ -58,7 +58,8 @@ def series(document: Document) -> Series:
     """
     course = document["course"]
     if document["body"] is None or not document["is_free"]:
-        raise NotDrawn(f"expected a free rigid body, got another scene @ {document['scene']}")
+        got = "a solid in a fluid" if document["body"] is None else "a torque"
+        raise NotDrawn(f"expected a free rigid body, got {got} @ {document['scene']}")
     if document["rotor"] and document["damping"]:
         raise NotDrawn(f"expected H at rest in space, got damped wheels @ {document['scene']}")
     attitudes = np.array(course["attitude"]).reshape(-1, 3, 3)
@@ -80,21 +81,21 @@ def series(document: Document) -> Series:
 
 def picture(document: Document) -> Picture:
     """Return the herpolhode of one scene. Raises NotDrawn as `series` does."""
-    found = series(document)
-    radii = np.linalg.norm(found.tips, axis=1)
+    curve = series(document)
+    radii = np.linalg.norm(curve.tips, axis=1)
     alt = (
         f"The tip of the angular velocity of {document['scene']} in space, seen along the angular "
         f"momentum: between {plain(float(radii.min()))} and {plain(float(radii.max()))} from its axis."
     )
     title = f"Herpolhode: {document['scene']}"
     stem = stem_of(document, "herpolhode")
-    return Picture(stem, title, alt, partial(_figure, found, caption(document)))
+    return Picture(stem, title, alt, partial(_figure, curve, caption(document)))
 
 
-def _figure(found: Series, words: str) -> Figure:
-    rings = [_ring(radius) for radius in found.circles or ()]
-    flat = np.column_stack([found.tips, np.zeros(len(found.tips))])
-    spots = np.concatenate([found.tips, np.zeros((1, 2)), *(ring[:, :2] for ring in rings)])
+def _figure(curve: Series, words: str) -> Figure:
+    rings = [_ring(radius) for radius in curve.circles or ()]
+    flat = np.column_stack([curve.tips, np.zeros(len(curve.tips))])
+    spots = np.concatenate([curve.tips, np.zeros((1, 2)), *(ring[:, :2] for ring in rings)])
     stage = Stage.showing(spots, _ABOVE, _STAGE, _HEIGHT)
     for ring in rings:
         stage.line(ring, 1, _CIRCLE)
@@ -107,11 +108,13 @@ def _figure(found: Series, words: str) -> Figure:
             {"color": scale()(0.6), "linewidth": _WIDTH},
             "tip of \N{GREEK SMALL LETTER OMEGA} in space",
         ),
-        *((START, "start"), (END, "end"), (_H, "axis along H")),
+        (START, "start"),
+        (END, "end"),
+        (_H, "axis along H"),
         *([(_CIRCLE, "least and greatest distance")] if rings else []),
     ]
     stage.legend(entries, f"Seen along H. {words}", 3.2)
-    stage.time_bar(found.times, 0.85)
+    stage.time_bar(curve.times, 0.85)
     return stage.figure
 
 

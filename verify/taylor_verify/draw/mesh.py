@@ -1,7 +1,8 @@
 """Bodies as faces that can be turned: a brick, a racket, an ellipsoid, or a frame without a shape.
 
 A face is a convex polygon in body axes with the name of its colour. ``plus`` and ``minus`` are the two
-ends of the axis that turns over, ``side`` and ``edge`` the rest, ``axis1`` to ``axis3`` a frame.
+ends of the axis that turns over, ``side`` and ``edge`` the rest of a body. ``axis1`` to ``axis3`` are the
+rods of a frame.
 """
 
 from __future__ import annotations
@@ -15,9 +16,9 @@ import numpy as np
 
 from taylor_verify.draw.view import Numbers
 
-# A flat body is as thick as this part of its length, or it could not be seen edge on.
+# The least thickness of a body, in parts of its length: a thinner one could not be seen edge on.
 _THINNEST: Final = 0.05
-# A body whose greatest moment is within this part the sum of the others is drawn flat, as a racket.
+# A body whose greatest moment is, within this part, the sum of the others is flat: it is drawn as a racket.
 _FLAT: Final = 0.06
 _RING: Final = 40
 _STRINGS: Final = 6
@@ -61,9 +62,10 @@ class Mesh:
 
 
 def rigid(moments: Numbers, axes: Numbers) -> Mesh:
-    """Return a body with these principal moments, its farthest corner at 1; ``axes`` has them as rows.
+    """Return a brick or a racket with these principal moments, its farthest corner at distance 1.
 
-    A brick has the moments that are asked for, as near as a real body can; a flat one is a racket.
+    The rows of ``axes`` are the principal axes. A flat body is a racket. The moments of the brick are as
+    near to ``moments`` as those of a real body can be.
     """
     low, middle, high = np.argsort(moments, kind="stable")
     if abs(moments[high] - moments[middle] - moments[low]) < _FLAT * moments[high]:
@@ -80,12 +82,12 @@ def rigid(moments: Numbers, axes: Numbers) -> Mesh:
     return _fitted(list(box(sides[order], _BRICK)), turned, "a brick with these moments")
 
 
-# In the axes of least, middle and greatest moment, the face that looks along each and that against it.
+# Colours of the faces at both ends of the axes of least, middle and greatest moment.
 _BRICK: Final = (("side", "edge"), ("plus", "minus"), ("side", "edge"))
 
 
 def box(half: Sequence[float] | Numbers, colours: Sequence[tuple[str, str]]) -> Iterator[Face]:
-    """Yield the faces of a box about the origin, each a half of its sides away."""
+    """Yield the faces of a box about the origin; ``half`` are half its sides."""
     for i, names in enumerate(colours):
         j, k = (i + 1) % 3, (i + 2) % 3
         for sign, colour in zip((1.0, -1.0), names, strict=True):
@@ -97,7 +99,7 @@ def box(half: Sequence[float] | Numbers, colours: Sequence[tuple[str, str]]) -> 
 
 
 def _fitted(faces: Sequence[Face], axes: Numbers, name: str) -> Mesh:
-    """Return the faces turned to these axes, the farthest corner at 1."""
+    """Return the faces turned to these axes, with the farthest corner at distance 1."""
     far = max(float(np.linalg.norm(face.corners, axis=1).max()) for face in faces)
     return Mesh(tuple(Face(face.corners @ axes / far, face.colour) for face in faces), name)
 
@@ -125,7 +127,7 @@ def _racket() -> list[Face]:
 
 
 def _slab(corners: Sequence[Numbers] | Numbers, half: float, colour: str) -> list[Face]:
-    """Return a prism over a convex polygon of the plane, so thick on either side of it."""
+    """Return a prism over a convex polygon of the plane; ``half`` is its thickness on either side."""
     flat = np.asarray(corners, dtype=float)
     turn = sum(
         float(p[0] * q[1] - p[1] * q[0])
@@ -153,7 +155,7 @@ def _strings(head: Numbers, half: Numbers) -> Iterator[Face]:
 
 
 def ellipsoid(semi_axes: Sequence[float]) -> Mesh:
-    """Return an ellipsoid in its own size, its eight octants in turn of two colours."""
+    """Return an ellipsoid in its own size; the colours of its octants alternate."""
     faces = []
     polar, azimuth = (
         np.linspace(0, np.pi, _PARALLELS + 1),
@@ -178,5 +180,5 @@ def frame(length: float) -> Mesh:
         half[i] = length / 2
         shift = np.eye(3)[i] * length / 2
         name = f"axis{i + 1}"
-        faces += [Face(one.corners + shift, name) for one in box(half, [(name, name)] * 3)]
+        faces += [Face(side.corners + shift, name) for side in box(half, [(name, name)] * 3)]
     return Mesh(tuple(faces), "the axes of the body")

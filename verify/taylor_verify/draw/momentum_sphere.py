@@ -41,12 +41,12 @@ UNSTABLE: Final[Look] = {**_SPIN, "marker": "X", "markersize": 7, "markerfacecol
 _ROTOR: Final[Look] = {**_SPIN, "marker": "D", "markersize": 8, "markerfacecolor": PAPER}
 # Curves between neighbouring energies of steady spins.
 _LEVELS: Final = 5
-# Within the rim by this part of |H| nothing is foreshortened to nothing.
+# A point counts as in front if it is nearer to the viewer than the rim by this part of |H|.
 _INSIDE: Final = 0.25
 # Points of the grid on which curves of equal energy are sought, from pole to pole.
 _ROWS: Final = 120
 _STEPS: Final = 4
-# A separatrix is drawn apart from a level that differs by more than this part of all energies.
+# Levels are drawn between two energies that differ by more than this part of the whole range.
 _SAME: Final = 1e-6
 
 
@@ -85,8 +85,15 @@ def series(document: Document) -> Series:
     """
     body, course = document["body"], document["course"]
     if body is None or not document["is_free"] or document["damping"]:
+        got = (
+            "a solid in a fluid"
+            if body is None
+            else "damping"
+            if document["damping"]
+            else "a torque"
+        )
         raise NotDrawn(
-            f"expected a free rigid body without damping, got another scene @ {document['scene']}"
+            f"expected a free rigid body without damping, got {got} @ {document['scene']}"
         )
     axes, moments = np.array(body["axes"]), np.array(body["principal_moments"])
     wheels = Wheels.of(moments, axes @ np.array(document["rotor"] or [0.0] * 3))
@@ -98,78 +105,78 @@ def series(document: Document) -> Series:
 
 
 def _spins(document: Document, wheels: Wheels, size: float) -> list[Spin]:
-    """Return the steady spins whose rate and stability the elements of the orbit have."""
+    """Return the steady spins; their rates and stability are those of the elements of the orbit."""
     numbers = {row["name"]: float(row["value"]) for row in document["analytic"]}
-    found: list[Spin] = []
+    spins: list[Spin] = []
     pending: list[Numbers] = []
     k = 1
     while (rate := numbers.get(f"spin_{k}")) is not None:
         # Two spins beside an axis without h have one rate, and stand side by side.
         pending = pending or wheels.at(rate / size, size)
-        found.append(Spin(pending.pop(0), f"spin_{k}_growth" not in numbers))
+        spins.append(Spin(pending.pop(0), f"spin_{k}_growth" not in numbers))
         k += 1
-    return found
+    return spins
 
 
 def picture(document: Document) -> Picture:
     """Return the momentum sphere of one scene. Raises NotDrawn as `series` does."""
-    found = series(document)
-    unstable = sum(not spin.stable for spin in found.spins)
+    sphere = series(document)
+    unstable = sum(not spin.stable for spin in sphere.spins)
     alt = (
-        f"The momentum of {document['scene']} on the sphere |H| = {plain(found.size)} in the body, with "
-        f"curves of equal energy. {len(found.spins)} steady spins are marked, {unstable} of them unstable."
+        f"The momentum of {document['scene']} on the sphere |H| = {plain(sphere.size)} in the body, with "
+        f"curves of equal energy. {len(sphere.spins)} steady spins are marked, {unstable} of them unstable."
     )
     title = f"Momentum sphere: {document['scene']}"
     return Picture(
-        stem_of(document, "momentum"), title, alt, partial(_figure, found, caption(document))
+        stem_of(document, "momentum"), title, alt, partial(_figure, sphere, caption(document))
     )
 
 
-def _figure(found: Series, caption: str) -> Figure:
-    sphere = Ellipsoid((found.size,) * 3)
-    stage = Stage.around(sphere, _view(found), _STAGE, _HEIGHT)
-    for levels, zorder, look in ((_levels(found), 1.5, _LEVEL), (found.saddles, 2, SEPARATRIX)):
-        for lines in level_lines(found.wheels, found.size, levels):
+def _figure(sphere: Series, caption: str) -> Figure:
+    surface = Ellipsoid((sphere.size,) * 3)
+    stage = Stage.around(surface, _view(sphere), _STAGE, _HEIGHT)
+    for levels, zorder, look in ((_levels(sphere), 1.5, _LEVEL), (sphere.saddles, 2, SEPARATRIX)):
+        for lines in level_lines(sphere.wheels, sphere.size, levels):
             for line in lines:
                 stage.line(line, zorder, look)
-    stage.line(found.course, 3, _COURSE)
-    for spin in found.spins:
+    stage.line(sphere.course, 3, _COURSE)
+    for spin in sphere.spins:
         stage.mark(spin.momentum, STABLE if spin.stable else UNSTABLE, gid="spin")
     entries: list[Entry] = [(_COURSE, "H of this motion"), (START, "start")]
     entries += [(_LEVEL, "equal energy T")]
-    entries += [(SEPARATRIX, "separatrices")] if found.saddles else []
-    entries += [(STABLE, "stable steady spin")] if any(s.stable for s in found.spins) else []
-    entries += [(UNSTABLE, "unstable steady spin")] if found.saddles else []
-    if found.wheels.rotor.any():
-        direction = found.wheels.rotor / np.linalg.norm(found.wheels.rotor)
-        stage.mark(direction * found.size, _ROTOR, gid="wheels")
+    entries += [(SEPARATRIX, "separatrices")] if sphere.saddles else []
+    entries += [(STABLE, "stable steady spin")] if any(s.stable for s in sphere.spins) else []
+    entries += [(UNSTABLE, "unstable steady spin")] if sphere.saddles else []
+    if sphere.wheels.rotor.any():
+        direction = sphere.wheels.rotor / np.linalg.norm(sphere.wheels.rotor)
+        stage.mark(direction * sphere.size, _ROTOR, gid="wheels")
         entries += [(_ROTOR, "direction of the wheels' h")]
-    stage.mark(found.course[0], START, gid="start")
+    stage.mark(sphere.course[0], START, gid="start")
     subscripts = "\N{SUBSCRIPT ONE}\N{SUBSCRIPT TWO}\N{SUBSCRIPT THREE}"
-    stage.name_axes((found.size,) * 3, [f"H{subscript}" for subscript in subscripts])
+    stage.name_axes((sphere.size,) * 3, [f"H{subscript}" for subscript in subscripts])
     stage.legend(entries, f"Principal axes of the body. Faint: on the far side. {caption}", 3.4)
     return stage.figure
 
 
-def _view(found: Series) -> View:
-    """Return the side from which most of the course and of the steady spins is in front, saddles first."""
-    unstable = np.array([s.momentum for s in found.spins if not s.stable] or np.empty((0, 3)))
-    stable = np.array([s.momentum for s in found.spins if s.stable] or np.empty((0, 3)))
+def _view(sphere: Series) -> View:
+    """Return the view that has most of the course and of the steady spins in front, saddles first."""
+    unstable = np.array([s.momentum for s in sphere.spins if not s.stable] or np.empty((0, 3)))
+    stable = np.array([s.momentum for s in sphere.spins if s.stable] or np.empty((0, 3)))
 
     def in_front(view: View) -> float:
         saddles, centres, course = (
-            np.asarray(points @ view.towards > _INSIDE * found.size)
-            for points in (unstable, stable, found.course)
+            np.asarray(points @ view.towards > _INSIDE * sphere.size)
+            for points in (unstable, stable, sphere.course)
         )
         return float(2 * saddles.sum() + 0.8 * centres.sum() + 3 * course.mean())
 
     return max((View(a, e) for e in (24.0, -24.0) for a in range(20, 380, 15)), key=in_front)
 
 
-def _levels(found: Series) -> list[float]:
-    """Return energies between those of the steady spins, evenly in the distance along the sphere."""
-    low, high = (float(v[0]) for v in found.wheels.extremes(np.array([found.size])))
-    ends = [low, *found.saddles, high]
+def _levels(sphere: Series) -> list[float]:
+    """Return energies between those of the steady spins, evenly spaced along the sphere."""
+    low, high = (float(v[0]) for v in sphere.wheels.extremes(np.array([sphere.size])))
+    ends = [low, *sphere.saddles, high]
     turns = (1 - np.cos(np.pi * np.arange(1, _LEVELS) / _LEVELS)) / 2
     return [
         a + (b - a) * float(part)
@@ -203,7 +210,7 @@ def _points(polar: Numbers, azimuth: Numbers) -> Numbers:
 
 
 def _on_level(wheels: Wheels, size: float, level: float, directions: Numbers) -> Numbers:
-    """Return the points moved across the curve until their energy is right; near a saddle they stay."""
+    """Move points across the curve until their energy is that of the level; near a saddle they stay."""
     points = directions * size
     scale = size**2 / float(wheels.moments.min())
     for _ in range(_STEPS):

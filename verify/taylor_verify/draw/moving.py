@@ -1,7 +1,7 @@
-"""A motion as it is shown moving: the body in space, a curve in the body, and components against time.
+"""A motion to be animated: the body in space, a curve in the body, and components against time.
 
-Space is turned so that an H that stays where it is points upwards. The course is as dense as in the other
-pictures, and exact: what moves is read off between two rows that differ by a tenth of a radian.
+Space is turned so that a constant H points upwards. The course is exact and as dense as in the other
+pictures: between two rows the body turns by a tenth of a radian at most.
 """
 
 from __future__ import annotations
@@ -22,13 +22,14 @@ from taylor_verify.draw.view import Numbers
 
 Document = Mapping[str, Any]
 
-# Seconds that a turn takes to be followed by eye, and limits of the whole.
+# Seconds for a turn, so that the eye can follow; and for the whole animation.
 _TURN: Final = 2.4
 _SHORTEST, _LONGEST = 6.0, 40.0
 # The frame of a body without a shape, in parts of its path.
 _FRAME: Final = 0.09
+# A direction or an attitude that changes by less stands still.
 _STILL: Final = 1e-6
-# In the squared distance from the surface, in units of its semi-axes.
+# A course is off the surface beyond this squared distance, in units of its semi-axes.
 _OFF: Final = 1e-6
 OMEGA: Final = "\N{GREEK SMALL LETTER OMEGA}"
 
@@ -52,9 +53,9 @@ class Inset:
 
 @dataclass(frozen=True)
 class Moving:
-    """All that is shown, at these times: (n,), attitudes (n, 3, 3), centres (n, 3) or none.
+    """Data of an animation at its times (n,): attitudes (n, 3, 3), centres (n, 3) or none.
 
-    ``seconds`` is how long it plays. ``arrow`` says that H points upwards.
+    ``seconds`` is how long it plays. ``arrow`` is True if H points upwards.
     """
 
     title: str
@@ -74,21 +75,21 @@ class Moving:
 
     @property
     def middle(self) -> Numbers:
-        """The point round which the body and its path are looked at."""
+        """The point in the middle of the picture."""
         if self.centres is None:
             return np.zeros(3)
         return np.asarray((self.centres.min(axis=0) + self.centres.max(axis=0)) / 2)
 
     @property
     def reach(self) -> float:
-        """The distance from there beyond which nothing is, at any time."""
+        """The largest distance of anything from the middle, at any time."""
         if self.centres is None:
             return max(self.body.reach, 1.0)
         away = np.linalg.norm(self.centres - self.middle, axis=1)
         return float(away.max()) + self.body.reach
 
     def until(self, part: float) -> Moving:
-        """Return the beginning of the motion, so much of it."""
+        """Return the beginning of the motion: this part of it, from 0 to 1."""
         last = max(2, round(part * (len(self.times) - 1)) + 1)
         inset = self.inset and replace(self.inset, course=self.inset.course[:last])
         elapsed = abs(self.times[last - 1] - self.times[0])
@@ -105,7 +106,7 @@ class Moving:
 
 
 def moving(document: Document) -> Moving:
-    """Return what is shown of the motion in a document of draw.course.motion, from instant to instant.
+    """Return the animation of a motion; ``document`` is that of draw.course.motion.
 
     Raises NotDrawn for a body that does not move.
     """
@@ -141,7 +142,7 @@ def moving(document: Document) -> Moving:
 
 
 def _upright(document: Document, attitudes: Numbers) -> Numbers | None:
-    """Return the turn of space that lets H point upwards; None where H has no constant direction."""
+    """Return the rotation of space that makes H point upwards; None if H has no constant direction."""
     if document["body"] is None:
         return None
     momentum, _ = momentum_of(document)
@@ -170,10 +171,10 @@ def _inset(document: Document) -> Inset | None:
     """Return the curve in the body: the polhode, H of a body with wheels, or the linear impulse."""
     if document["body"] is None:
         try:
-            found = spheres.series(document).directions
+            directions = spheres.series(document).directions
         except NotDrawn:
             return None
-        letter, rows = next(iter(found.items()))
+        letter, rows = next(iter(directions.items()))
         return Inset((1.0, 1.0, 1.0), rows, (), letter, f"direction of {letter} in the body")
     try:
         curve = polhode.series(document)
@@ -191,7 +192,7 @@ def _inset(document: Document) -> Inset | None:
 
 
 def _seconds(attitudes: Numbers) -> float:
-    """Return how long the motion plays, so that a turn can be followed."""
+    """Return how long the motion plays, so that the eye can follow each turn."""
     cosines = (np.einsum("nij,nij->n", attitudes[1:], attitudes[:-1]) - 1) / 2
     turns = float(np.arccos(np.clip(cosines, -1, 1)).sum()) / (2 * np.pi)
     return min(max(_TURN * turns, _SHORTEST), _LONGEST)

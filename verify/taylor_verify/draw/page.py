@@ -23,7 +23,7 @@ _DIGITS: Final = 4
 def page(motion: Moving) -> str:
     """Return the page of a motion: one HTML file, which plays and turns and needs no network."""
     text = json.dumps(document(motion), allow_nan=False, ensure_ascii=False, separators=(",", ":"))
-    # No text of the data may end the script element.
+    # The data stand in a script element, which no text of theirs may end.
     template = _TEMPLATE.read_text(encoding="utf-8").replace("TITLE", escape(motion.title), 1)
     return template.replace("DATA", text.replace("<", "\\u003c"), 1)
 
@@ -52,8 +52,8 @@ def document(motion: Moving) -> dict[str, Any]:
 
 
 def _face(face: Face) -> dict[str, Any]:
-    found = {"p": _rounded(face.corners), "c": face.colour}
-    return found if face.is_line else {**found, "n": _rounded(face.normal)}
+    line = {"p": _rounded(face.corners), "c": face.colour}
+    return line if face.is_line else {**line, "n": _rounded(face.normal)}
 
 
 def _inset(inset: Inset) -> dict[str, Any]:
@@ -73,7 +73,7 @@ def quaternions(attitudes: Numbers) -> Numbers:
     """Return unit quaternions (n, 4), scalar first; the sign of each is that of its neighbour."""
     traces = np.einsum("nii->ni", attitudes)
     total = traces.sum(axis=1)
-    # Of the four squares the largest is at least a quarter: its root loses nothing.
+    # The largest of the four squares is at least a quarter: its root loses no digits.
     squares = np.stack([1 + total, *(1 + 2 * traces[:, i] - total for i in range(3))], axis=1)
     skew = np.stack(
         [
@@ -83,22 +83,22 @@ def quaternions(attitudes: Numbers) -> Numbers:
         axis=1,
     )
     products = attitudes + np.swapaxes(attitudes, 1, 2)
-    found = np.empty((len(attitudes), 4))
+    rows = np.empty((len(attitudes), 4))
     for k, largest in enumerate(squares.argmax(axis=1)):
         if largest == 0:
-            found[k] = [squares[k, 0], *skew[k]]
+            rows[k] = [squares[k, 0], *skew[k]]
         else:
             i = largest - 1
-            found[k] = [skew[k, i], *products[k, i]]
-            found[k, 1 + i] = squares[k, largest]
-    found /= np.linalg.norm(found, axis=1, keepdims=True)
-    signs = np.where((found[1:] * found[:-1]).sum(axis=1) < 0, -1.0, 1.0)
-    found[1:] *= np.cumprod(signs)[:, None]
-    return found
+            rows[k] = [skew[k, i], *products[k, i]]
+            rows[k, 1 + i] = squares[k, largest]
+    rows /= np.linalg.norm(rows, axis=1, keepdims=True)
+    signs = np.where((rows[1:] * rows[:-1]).sum(axis=1) < 0, -1.0, 1.0)
+    rows[1:] *= np.cumprod(signs)[:, None]
+    return rows
 
 
 def _rounded(values: Numbers | Iterable[float], digits: int = _DIGITS) -> Any:
-    """Return numbers as JSON holds them, to so many digits of the largest."""
+    """Return numbers for JSON, rounded to this many digits of the largest."""
     numbers = np.asarray(values, dtype=float)
     if not numbers.size:
         return []

@@ -1,4 +1,4 @@
-"""The pictures that there are of a motion, by name: which of them a scene has, and what each shows."""
+"""The kinds of pictures of a motion, by name, and those of them that a scene has."""
 
 from __future__ import annotations
 
@@ -38,21 +38,22 @@ def pictures(document: Document, names: Sequence[str] = ()) -> dict[str, Picture
     """Return the pictures of these names, or all that the scene has.
 
     ``document`` is the motion (draw.course.motion); ``names`` are those of `draw --only`. Raises NotDrawn
-    for a name that is none, and for one that the scene has not, all of them at once.
+    for unknown names and for pictures that the scene does not have, with all faults at once.
     """
     if not names:
         return dict(_all(document))
-    found, faults = {}, []
+    pictures_by_name, faults = {}, []
     for name in names:
         try:
             if name not in KINDS:
                 raise NotDrawn(f"expected a picture ({', '.join(KINDS)}), got {name!r} @ --only")
-            found[name] = KINDS[name](document)
+            pictures_by_name[name] = KINDS[name](document)
         except NotDrawn as fault:
             faults.append(str(fault))
     if faults:
-        raise NotDrawn("\n".join(faults))
-    return found
+        possible = ", ".join(name for name, _ in _all(document))
+        raise NotDrawn("\n".join([*faults, f"{document['scene']} has these pictures: {possible}"]))
+    return pictures_by_name
 
 
 def _all(document: Document) -> Iterator[tuple[str, Picture]]:

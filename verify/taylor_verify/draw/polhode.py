@@ -1,9 +1,9 @@
 """The polhode: the angular velocity on the ellipsoid of inertia, alone or coloured by the error of a run.
 
 T is conserved, so omega stays on the surface omega.I omega = 2T, whose semi-axes along the principal axes
-are sqrt(2T/J_i). The line is the exact course. With a run, the marks are its samples: their place is the
-exact one (an error of a few u is far below the width of a line), their colour the size of the error.
-Damping lets omega sink below the surface of the start.
+are sqrt(2T/J_i). The line is the exact course. With a run, the marks are its samples: each stands at the
+exact place (an error of a few u is far below the width of a line), and its colour shows the error. With
+damping omega sinks below the surface of the start.
 """
 
 from __future__ import annotations
@@ -42,13 +42,13 @@ _SAMPLE: Final[Look] = {
     **{"linestyle": "none", "marker": "o", "markersize": 4.5},
     **{"markerfacecolor": QUIET, "markeredgecolor": INK, "markeredgewidth": 0.4},
 }
-# Of the squared distance, which has the rounding of nine digits.
+# A course is off the surface beyond this squared distance, which has the rounding of nine digits.
 _OFF: Final = 1e-6
 _WIDTH: Final = 2.0
 _OMEGA: Final = "\N{GREEK SMALL LETTER OMEGA}"
-# The width of a mark, in points.
+# The widths of marks in front and behind, in points.
 _NEAR, _FAR = 4.2, 3.0
-# The encircled axis faces the reader, and the two others are seen from the side.
+# The axis that the curve goes round faces the reader; the two others are seen from the side.
 _FACING: Final = (1.0, 0.55, 0.45)
 
 
@@ -67,7 +67,7 @@ class Series:
 
     @property
     def sinks(self) -> bool:
-        """True if the course leaves the surface: damping takes energy from the body, or gives it some."""
+        """True if the course leaves the surface: damping takes energy from the body, or adds some."""
         q = np.square(self.course / np.array(self.semi_axes)).sum(axis=1)
         return bool(np.abs(q - 1).max() > _OFF)
 
@@ -77,14 +77,16 @@ def series(
     samples: Sequence[Sequence[float]] = (),
     record: Document | None = None,
 ) -> Series:
-    """Return the curve and the samples of a run, whose exact omega at the record's times is ``samples``.
+    """Return the curve, and the samples of a run with its errors.
 
-    Raises NotDrawn for a scene without such a surface: a fluid, a moment of force, wheels, a body at rest.
+    ``samples`` is the exact omega at the times of the ``record``. Raises NotDrawn for a scene without such
+    a surface: a solid in a fluid, a torque, wheels, a body at rest.
     """
     body, course = portrait["body"], portrait["course"]
     is_free = any(row["name"] == "T" for row in portrait["analytic"])
     if body is None or "omega" not in course or not is_free:
-        raise NotDrawn(f"expected a free rigid body, got another scene @ {portrait['scene']}")
+        got = "a solid in a fluid" if body is None else "a motion without a constant energy"
+        raise NotDrawn(f"expected a free rigid body, got {got} @ {portrait['scene']}")
     if portrait.get("rotor"):
         raise NotDrawn(f"expected a body without wheels, got a rotor @ {portrait['scene']}")
     gates = record["gates"] if record else ()
@@ -110,33 +112,36 @@ def picture(
     samples: Sequence[Sequence[float]] = (),
     record: Document | None = None,
 ) -> Picture:
-    """The polhode of one scene, with the errors of a run if given. Raises NotDrawn as `series` does."""
-    found = series(portrait, samples, record)
+    """Return the polhode of one scene, with the errors of a run if given.
+
+    Raises NotDrawn as `series` does.
+    """
+    curve = series(portrait, samples, record)
     alt = (
         f"The angular velocity of {portrait['scene']} on its ellipsoid of inertia, whose semi-axes are "
-        f"{', '.join(plain(a) for a in found.semi_axes)}: "
+        f"{', '.join(plain(a) for a in curve.semi_axes)}: "
     )
     title, stem = f"Polhode: {portrait['scene']}", stem_of(portrait, "polhode")
     if record is None:
         words = {0: "the exact course.", 1: "it sinks below it.", -1: "it rises above it."}
         alt += words[int(np.sign(portrait["damping"]))]
-        return Picture(stem, title, alt, partial(_alone, found, caption(portrait)))
+        return Picture(stem, title, alt, partial(_alone, curve, caption(portrait)))
     rung = record["rung"]
     most, at = max(
-        (e, t) for e, t in zip(found.errors, record["times"], strict=True) if isfinite(e)
+        (e, t) for e, t in zip(curve.errors, record["times"], strict=True) if isfinite(e)
     )
     alt += (
-        f"a closed curve or part of one, with the {len(found.errors)} samples of the run on {rung} "
+        f"a closed curve or part of one, with the {len(curve.errors)} samples of the run on {rung} "
         f"marked. Their errors are at most {plain(most)} u, at t = {at:g}."
     )
-    return Picture(stem, title, alt, partial(_figure, found, rung))
+    return Picture(stem, title, alt, partial(_figure, curve, rung))
 
 
 def _separatrices(surface: Ellipsoid, moments: Numbers) -> list[Numbers]:
     """Return the two plane sections through the middle axis on which H^2 = 2T J2.
 
-    J1 > J2 > J3 the moments: J1 (J1 - J2) omega_1^2 = J3 (J2 - J3) omega_3^2, so in units of the semi-axes
-    (J1 - J2) q_1^2 = (J2 - J3) q_3^2.
+    With the moments J1 > J2 > J3 there J1 (J1 - J2) omega_1^2 = J3 (J2 - J3) omega_3^2. In units of the
+    semi-axes this is (J1 - J2) q_1^2 = (J2 - J3) q_3^2.
     """
     low, middle, high = np.argsort(moments)
     lower, upper = moments[middle] - moments[low], moments[high] - moments[middle]
@@ -148,67 +153,67 @@ def _separatrices(surface: Ellipsoid, moments: Numbers) -> list[Numbers]:
 
 
 def facing(course: Numbers, semi_axes: Sequence[float]) -> View:
-    """The side to which the curve turns; of the axes, the one that it goes round faces the reader."""
+    """Return the view in which the curve, and the axis that it goes round, face the reader."""
     q = course / np.array(semi_axes)
     mean = q.mean(axis=0)
     order = np.argsort(-np.abs(mean))
     direction = np.zeros(3)
     for weight, i in zip(_FACING, order, strict=True):
         direction[i] = weight if mean[i] >= 0 else -weight
-    # From above rather than from below where the curve does not say which.
+    # Where the curve has no upper side, the view is from above.
     if order[0] != 2:
         direction[2] = abs(direction[2])
     return View.facing([float(v) for v in direction])
 
 
-def _alone(found: Series, words: str) -> Figure:
+def _alone(curve: Series, words: str) -> Figure:
     """Draw the exact course by itself, darker as time goes on, with its start and its end."""
-    stage = _stage(found)
-    # What has sunk below the surface is not hidden by it.
-    over = replace(stage, surface=None) if found.sinks else stage
-    over.course(found.course, _WIDTH, 3)
-    for point, look, name in ((found.course[0], START, "start"), (found.course[-1], END, "end")):
+    stage = _stage(curve)
+    # The surface does not hide a curve that has sunk below it.
+    over = replace(stage, surface=None) if curve.sinks else stage
+    over.course(curve.course, _WIDTH, 3)
+    for point, look, name in ((curve.course[0], START, "start"), (curve.course[-1], END, "end")):
         over.mark(point, look, gid=name)
     entries: list[Entry] = [
         ({"color": scale()(0.6), "linewidth": _WIDTH}, f"{_OMEGA}, darker with time")
     ]
     entries += [(START, "start"), (END, "end")]
-    entries += [(_BORDER, "separatrices")] if found.separatrices else []
+    entries += [(_BORDER, "separatrices")] if curve.separatrices else []
     stage.legend(entries, f"Faint: on the far side. {words}", 3.2)
     return stage.figure
 
 
-def _stage(found: Series) -> Stage:
+def _stage(curve: Series) -> Stage:
     """Return the ellipsoid with its separatrices and the names of its axes."""
-    view = facing(found.course, found.semi_axes)
-    stage = Stage.around(Ellipsoid(found.semi_axes), view, _STAGE, _HEIGHT, found.course)
-    for curve in found.separatrices:
-        stage.line(curve, 2, _BORDER)
+    view = facing(curve.course, curve.semi_axes)
+    stage = Stage.around(Ellipsoid(curve.semi_axes), view, _STAGE, _HEIGHT, curve.course)
+    for separatrix in curve.separatrices:
+        stage.line(separatrix, 2, _BORDER)
     axes = zip(
-        "\N{SUBSCRIPT ONE}\N{SUBSCRIPT TWO}\N{SUBSCRIPT THREE}", found.semi_axes, strict=True
+        "\N{SUBSCRIPT ONE}\N{SUBSCRIPT TWO}\N{SUBSCRIPT THREE}", curve.semi_axes, strict=True
     )
     names = [f"{_OMEGA}{subscript} = {semi_axis:.3g}" for subscript, semi_axis in axes]
-    stage.name_axes(found.semi_axes, names)
+    stage.name_axes(curve.semi_axes, names)
     return stage
 
 
-def _figure(found: Series, rung: str) -> Figure:
-    stage = _stage(found)
-    stage.line(found.course, 3, _COURSE)
-    norm = norm_of(found.errors)
-    _draw_samples(stage, found, norm)
+def _figure(curve: Series, rung: str) -> Figure:
+    stage = _stage(curve)
+    stage.line(curve.course, 3, _COURSE)
+    norm = norm_of(curve.errors)
+    _draw_samples(stage, curve, norm)
     entries: list[Entry] = [(_COURSE, "exact course"), (_SAMPLE, f"samples of taylor {rung}")]
-    entries += [(_BORDER, "separatrices")] if found.separatrices else []
+    entries += [(_BORDER, "separatrices")] if curve.separatrices else []
     stage.legend(entries, "Faint: on the far side.", 2.8)
     stage.bar(norm, f"error on {rung}, in u of max|{_OMEGA}|", 1.0)
     return stage.figure
 
 
-def _draw_samples(stage: Stage, found: Series, norm: Normalize) -> None:
-    """Draw later samples above earlier ones, and those behind the body smaller, hollow and faint."""
-    errors = np.array(found.errors)
-    known, faces = np.isfinite(errors), stage.faces(found.samples)
-    x, y = stage.view.seen(found.samples).T
+def _draw_samples(stage: Stage, curve: Series, norm: Normalize) -> None:
+    """Draw later samples above earlier ones; those behind the body are smaller, hollow and faint."""
+    errors = np.array(curve.errors)
+    known, faces = np.isfinite(errors), stage.faces(curve.samples)
+    x, y = stage.view.project(curve.samples).T
     colours = scale()(norm(np.where(known, errors, 0.0)))
     near, far = known & faces, known & ~faces
     hollow = {"facecolor": PAPER, "edgecolors": colours[far], "linewidths": 0.7, "alpha": 0.5}

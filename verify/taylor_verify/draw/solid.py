@@ -1,4 +1,4 @@
-"""A solid on its way: an ellipsoid as it is seen from far away, or the frame of a body without a shape."""
+"""Drawings of a solid on its path: an ellipsoid seen from afar, or the axes of a body without a shape."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ AXES: Final = ("#A83C00", "#1C8578", "#0B5FA5")
 _BODY: Final[Look] = {"facecolor": "#E8EEF2", "edgecolor": "#43525C", "linewidth": 0.8}
 _SEAM: Final[Look] = {"color": "#8596A1", "linewidth": 0.6}
 _FRAME_WIDTH: Final = 1.3
-# The part of a solid that lies behind a line is seen through it.
+# A solid lets the line behind it show through.
 _OPACITY: Final = 0.82
 
 
@@ -29,16 +29,16 @@ def draw_ellipsoid(
     centre: Numbers,
     at: float,
 ) -> None:
-    """Draw the ellipsoid, its three sections on the near side; ``at`` is its place among the layers."""
+    """Draw the ellipsoid, with its three sections on the near side; ``at`` is its layer."""
     surface = Ellipsoid(semi_axes)
     towards = attitude.T @ stage.view.towards
     rim = surface.circle(towards / np.array(semi_axes)) @ attitude.T + centre
-    outline = stage.view.seen(rim)
+    outline = stage.view.project(rim)
     stage.axes.fill(*outline.T, zorder=at, alpha=_OPACITY, gid="solid", **_BODY)
     for pole in np.eye(3):
         line = surface.circle(pole)
         near = np.asarray(line / np.square(semi_axes) @ towards > 0)
-        for is_near, piece in pieces(stage.view.seen(line @ attitude.T + centre), near):
+        for is_near, piece in pieces(stage.view.project(line @ attitude.T + centre), near):
             if is_near:
                 stage.axes.plot(*piece.T, zorder=at + 0.01, gid="solid", **_SEAM)
 
@@ -46,7 +46,7 @@ def draw_ellipsoid(
 def draw_frame(stage: Stage, length: float, attitude: Numbers, centre: Numbers, at: float) -> None:
     """Draw the three axes of the body from its origin, each in its colour."""
     for axis, colour in zip(attitude.T, AXES, strict=True):
-        ends = stage.view.seen(np.array([centre, centre + length * axis]))
+        ends = stage.view.project(np.array([centre, centre + length * axis]))
         look: Look = {"color": colour, "linewidth": _FRAME_WIDTH, "solid_capstyle": "round"}
         stage.axes.plot(*ends.T, zorder=at, gid="solid", **look)
 

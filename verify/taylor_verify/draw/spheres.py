@@ -30,7 +30,7 @@ _LINES: Final[Mapping[str, Look]] = {
     "y": {"color": "#A83C00", "linewidth": 1.5, "dashes": (4, 1.4), "gid": "course"},
 }
 _NAMES: Final = {"x": "linear_impulse", "y": "angular_impulse"}
-# In parts of the largest, an impulse without a direction.
+# An impulse below this part of its largest value has no direction.
 _ZERO: Final = 1e-9
 
 
@@ -45,33 +45,33 @@ def series(document: Document) -> Series:
     """Return the directions. Raises NotDrawn for a rigid body, and for a body without impulses."""
     if document["body"] is not None:
         raise NotDrawn(f"expected a solid in a fluid, got a rigid body @ {document['scene']}")
-    found = {}
+    directions = {}
     for letter, name in _NAMES.items():
         rows = np.array(document["course"][name])
         sizes = np.linalg.norm(rows, axis=1, keepdims=True)
         if sizes.min() > _ZERO * sizes.max():
-            found[letter] = rows / sizes
-    if not found:
+            directions[letter] = rows / sizes
+    if not directions:
         raise NotDrawn(f"expected impulses with a direction, got zero @ {document['scene']}")
-    return Series(found)
+    return Series(directions)
 
 
 def picture(document: Document) -> Picture:
     """Return the spheres of one scene. Raises NotDrawn as `series` does."""
-    found = series(document)
-    letters = " and ".join(found.directions)
+    spheres = series(document)
+    letters = " and ".join(spheres.directions)
     alt = f"Directions of the impulses {letters} of {document['scene']} in the body, on the unit sphere."
     title = f"Impulses on the sphere: {document['scene']}"
     stem = stem_of(document, "spheres")
-    return Picture(stem, title, alt, partial(_figure, found, caption(document)))
+    return Picture(stem, title, alt, partial(_figure, spheres, caption(document)))
 
 
-def _figure(found: Series, words: str) -> Figure:
-    mean = np.concatenate(list(found.directions.values())).mean(axis=0)
+def _figure(spheres: Series, words: str) -> Figure:
+    mean = np.concatenate(list(spheres.directions.values())).mean(axis=0)
     side = mean if float(np.linalg.norm(mean)) > 0.05 else np.array([1.0, 0.7, 0.5])
     stage = Stage.around(_SPHERE, View.facing([float(v) for v in side]), _STAGE, _HEIGHT)
     entries: list[Entry] = []
-    for letter, rows in found.directions.items():
+    for letter, rows in spheres.directions.items():
         stage.line(rows, 3, _LINES[letter])
         stage.mark(rows[0], START, gid="start")
         entries.append((_LINES[letter], f"{letter}/|{letter}|, {_NAMES[letter].replace('_', ' ')}"))

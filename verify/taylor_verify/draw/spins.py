@@ -16,26 +16,27 @@ import numpy as np
 
 from taylor_verify.draw.view import Numbers
 
-# Bisections leave an interval of the size of its roundings.
+# After so many bisections an interval is as small as its roundings.
 _BISECTIONS: Final = 44
-# Distances from a pole, in parts of an interval: spins of weak wheels are near to it.
+# The least and the greatest distance from a pole, in parts of an interval; weak wheels have spins near it.
 _NEAREST: Final = 1e-9
-_DENSE: Final = 150
 _FAR: Final = 1e6
-# In parts of the size of h, a component that is zero but for its rounding to nine digits.
+# Points on a branch.
+_DENSE: Final = 150
+# A component of h below this part of its size is zero: h is rounded to nine digits.
 _ZERO: Final = 1e-8
 
 
 @dataclass(frozen=True)
 class Branch:
-    """Curve of steady spins: the momentum of each (n, 3), and whether it is stable."""
+    """Curve of steady spins: the momentum of each (n, 3), and True if they are stable."""
 
     momenta: Numbers
     stable: bool
 
     @property
     def sizes(self) -> Numbers:
-        """N of each."""
+        """N of each spin."""
         return np.asarray(np.linalg.norm(self.momenta, axis=1))
 
 
@@ -54,7 +55,7 @@ class Wheels:
 
     @property
     def poles(self) -> Numbers:
-        """a = 1/J, upwards."""
+        """Rates a = 1/J, in ascending order."""
         return np.sort(1 / self.moments)
 
     def energy(self, momenta: Numbers) -> Numbers:
@@ -75,9 +76,9 @@ class Wheels:
         return np.asarray(-(np.square(momenta) * np.stack([y * z, z * x, x * y], -1)).sum(axis=1))
 
     def at(self, rate: float, size: float) -> list[Numbers]:
-        """Return the momenta of this size that spin steadily at mu: one, or two beside an axis without h.
+        """Return the momenta of this size with a steady spin at this mu.
 
-        At a pole G is free along the axis of that pole.
+        There is one; beside an axis without h there are two, because G is free along the axis of a pole.
         """
         momentum = self.momentum(np.array([rate]))[0]
         axis = int(np.abs(1 - rate * self.moments).argmin())
@@ -88,7 +89,10 @@ class Wheels:
         return [momentum + along, momentum - along]
 
     def births(self) -> list[float]:
-        """Return N where two steady spins more appear, upwards; fewer than two with equal moments."""
+        """Return each N where two more steady spins appear, in ascending order.
+
+        There are two of them, and fewer with equal moments.
+        """
         low, middle, high = self.poles
         pairs = [
             pair for pair in ((low, middle), (middle, high)) if pair[1] > (1 + _ZERO) * pair[0]
@@ -96,8 +100,8 @@ class Wheels:
         return sorted(float(np.sqrt(least(self.moments, self.rotor, *pair))) for pair in pairs)
 
     def branches(self, largest: float) -> list[Branch]:
-        """Return all steady spins up to this N, cut where their stability changes."""
-        found = []
+        """Return all steady spins up to this N, as curves that end where stability changes."""
+        branches = []
         low, middle, high = self.poles
         outer = np.geomspace(_NEAREST, _FAR, 4 * _DENSE) * high
         for rates in (
@@ -106,13 +110,13 @@ class Wheels:
             _between(middle, high),
             high + outer,
         ):
-            found += self._pieces(rates, self.momentum(rates), largest)
+            branches += self._pieces(rates, self.momentum(rates), largest)
         for axis in np.flatnonzero(self.rotor == 0):
-            found += self._axial(int(axis), largest)
-        return found
+            branches += self._axial(int(axis), largest)
+        return branches
 
     def _axial(self, axis: int, largest: float) -> list[Branch]:
-        """Return the spins at the pole of an axis without h, one of each pair: they have one energy."""
+        """Return the spins at the pole of an axis without h: one of each pair, which has one energy."""
         rate = float(1 / self.moments[axis])
         base = self.momentum(np.array([rate]))[0]
         # Where another axis has the same moment, wheels along it leave no spin there.
@@ -121,13 +125,13 @@ class Wheels:
         along = np.sqrt(np.linspace(0, largest**2 - base @ base, _DENSE))
         momenta = base + np.multiply.outer(along, np.eye(3)[axis])
         if np.count_nonzero(np.abs(1 - rate * self.moments) < _ZERO) > 1:
-            # A circle of spins, at the border of stability each, and stable as a whole.
-            return [Branch(momenta, True)]
+            # A circle of spins: each is at the border of stability, and the circle as a whole is stable.
+            return [Branch(momenta, stable=True)]
         return self._pieces(np.full(_DENSE, rate), momenta, largest)
 
     def _pieces(self, rates: Numbers, momenta: Numbers, largest: float) -> list[Branch]:
         """Return runs of neighbours below this N that are all stable, or all not."""
-        # What is infinite, at a pole, is within no size.
+        # At a pole a momentum is infinite, and not within.
         within = np.asarray(np.linalg.norm(momenta, axis=1) <= largest)
         if not within.any():
             return []
@@ -181,9 +185,9 @@ def least(moments: Numbers, rotors: Numbers, low: float, high: float) -> Numbers
 
 
 def number(moments: Numbers, rotors: Numbers, size: float) -> tuple[Numbers, Numbers]:
-    """Return by wheels h (..., 3) the logarithm of N^2 over f's least value, one for each pair of poles.
+    """Return log(N^2/min f) for wheels h (..., 3), one number for each pair of neighbouring poles.
 
-    A pair of steady spins is there where it is positive.
+    A pair of steady spins exists where it is positive.
     """
     low, middle, high = np.sort(1 / moments)
     with np.errstate(divide="ignore"):

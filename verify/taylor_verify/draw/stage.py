@@ -1,6 +1,6 @@
-"""A stage: axes without lines on which a body, and curves on it or in space, are seen from one side.
+"""A stage: axes without lines that show a body, and curves on it or in space, from one side.
 
-What faces the reader is drawn in full, what does not faintly. Colours of a scale run from light to dark.
+What faces the reader is drawn in full, the rest faintly. Colours of a scale run from light to dark.
 """
 
 from __future__ import annotations
@@ -26,24 +26,25 @@ Look = dict[str, Any]
 
 _SURFACE: Final = "#F3F5F7"
 _WIRE: Final = "#BFC6CC"
-# Of what is behind, lines and marks.
+# The opacity of lines and of marks on the far side.
 _FAINT: Final = 0.28
 _FAINT_MARK: Final = 0.4
 
 # Room for a name beside the outermost spots, and above and below them, in inches.
 _ASIDE: Final = 0.62
 _ABOVE: Final = 0.12
-# Beyond the surface, in parts of the semi-axis.
+# The ends of an axis and of its name beyond the surface, in parts of the semi-axis.
 _STUB: Final = 0.24
 _NAME: Final = 0.36
 
-# Light to dark, told apart in grey and with any colour vision; the light end keeps off the paper.
+# Light to dark: distinct in grey and to any colour vision. The lightest part is left out: paper is white.
 _SCALE: Final = "cividis_r"
 _FROM: Final = 0.06
-# Largest over median, beyond which colours go by decades, and how many of these are told apart.
+# Beyond this ratio of the largest to the median, the scale of colours is logarithmic.
 _UNLIKE: Final = 30.0
+# The decades of a logarithmic scale.
 _DECADES: Final = 4
-# Of a course, each of one colour.
+# A course is drawn in so many pieces, each of one colour.
 _STRETCHES: Final = 40
 
 _EDGE: Final[Look] = {"linestyle": "none", "markeredgecolor": INK, "markeredgewidth": 0.9}
@@ -55,7 +56,7 @@ END: Final[Look] = {**_EDGE, "marker": "s", "markersize": 5, "markerfacecolor": 
 class Stage:
     """Axes on the left ``width`` inches of a figure; on the right there is room for the legend.
 
-    ``surface`` hides what is behind it; where there is none, everything is seen.
+    ``surface`` hides what is behind it. Without one, nothing is hidden.
     """
 
     figure: Figure
@@ -68,7 +69,7 @@ class Stage:
     def showing(
         cls, spots: Numbers, view: View, width: float, height: float, above: float = _ABOVE
     ) -> Stage:
-        """Return a stage of so many inches that shows all the spots, both directions at one scale."""
+        """Return a stage of this size in inches that shows all the spots, both directions at one scale."""
         figure = blank(height)
         axes = add_axes(figure, Frame(0.0, 0.0, width, height))
         axes.axis("off")
@@ -90,13 +91,13 @@ class Stage:
         height: float,
         also: Numbers | None = None,
     ) -> Stage:
-        """Return a stage with a surface: its rim, filled, and the three sections across the axes.
+        """Return a stage with a surface: its filled rim, and the three sections across its axes.
 
-        It has room for the points of ``also``, which may lie beyond the surface.
+        The points of ``also`` are within the stage, even if they lie beyond the surface.
         """
-        rim = view.seen(surface.outline(view))
-        names = view.seen(np.diag(surface.semi_axes) * (1 + _NAME))
-        beyond = [] if also is None else [view.seen(also)]
+        rim = view.project(surface.outline(view))
+        names = view.project(np.diag(surface.semi_axes) * (1 + _NAME))
+        beyond = [] if also is None else [view.project(also)]
         bare = cls.showing(np.concatenate([rim, names, *beyond]), view, width, height)
         bare.axes.fill(*rim.T, facecolor=_SURFACE, edgecolor=QUIET, linewidth=0.7, zorder=0)
         stage = cls(bare.figure, bare.axes, view, width, surface)
@@ -107,13 +108,13 @@ class Stage:
     def faces(self, points: Numbers) -> Any:
         """Return True for each point that no surface hides."""
         if self.surface is None:
-            return np.full(len(np.atleast_2d(points)), True)
+            return np.ones(len(np.atleast_2d(points)), dtype=bool)
         return self.surface.faces(points, self.view)
 
     def line(self, points: Numbers, zorder: float, look: Look) -> None:
         """Draw a line, on the surface where there is one."""
-        for is_seen, piece in pieces(self.view.seen(points), self.faces(points)):
-            # Round ends of what is faint would lie on each other and show as dots.
+        for is_seen, piece in pieces(self.view.project(points), self.faces(points)):
+            # Round ends of faint lines would overlap and show as dots.
             side: Look = {"solid_capstyle": "round", "zorder": zorder}
             if not is_seen:
                 side = {"solid_capstyle": "butt", "zorder": 0.5, "alpha": _FAINT}
@@ -131,12 +132,12 @@ class Stage:
     def mark(self, point: Numbers, look: Look, **other: Any) -> None:
         """Draw a mark above all lines."""
         alpha = 1.0 if self.faces(point)[0] else _FAINT_MARK
-        self.axes.plot(*self.view.seen(point).T, alpha=alpha, zorder=6, **look, **other)
+        self.axes.plot(*self.view.project(point).T, alpha=alpha, zorder=6, **look, **other)
 
     def name_axes(self, semi_axes: Sequence[float], names: Sequence[str]) -> None:
         """Draw the axes where they leave the surface, each with its name."""
         for direction, name in zip(np.diag(semi_axes), names, strict=True):
-            tail, head = self.view.seen(np.array([direction, direction * (1 + _STUB)]))
+            tail, head = self.view.project(np.array([direction, direction * (1 + _STUB)]))
             arrow = {"arrowstyle": "-|>", "color": QUIET, "linewidth": 0.8, "mutation_scale": 6}
             self.axes.annotate(
                 "",
@@ -146,7 +147,7 @@ class Stage:
                 zorder=3 if self.faces(direction)[0] else 0.2,
             )
             right, up = head - tail
-            x, y = map(float, self.view.seen(direction * (1 + _NAME))[0])
+            x, y = map(float, self.view.project(direction * (1 + _NAME))[0])
             side = "left" if right > 0 else "right"
             self.axes.text(
                 x,
@@ -162,12 +163,12 @@ class Stage:
             )
 
     def legend(self, entries: Sequence[Entry], note: str, top: float, indent: float = 0.0) -> None:
-        """Write the legend beside the stage, from so many inches above the foot downwards."""
+        """Write the legend beside the stage; its top is this many inches above the foot."""
         left = self.width - indent
         draw_legend(self.figure, entries, note, Frame(left, 0.0, PAGE_WIDTH - left, top))
 
     def bar(self, norm: Normalize, name: str, low: float, is_reversed: bool = False) -> None:
-        """Draw what the colours mean; reversed where the dark end is the least value."""
+        """Draw the scale of colours; ``is_reversed`` if the dark end is the least value."""
         from matplotlib.cm import ScalarMappable
         from matplotlib.colors import LogNorm
         from matplotlib.ticker import MaxNLocator
@@ -183,7 +184,7 @@ class Stage:
         axes.tick_params(labelsize=SMALL)
 
     def time_bar(self, times: Numbers, low: float) -> None:
-        """Draw the colours of a course from its start to its end, unless no double tells these apart."""
+        """Draw the colours of a course from start to end, unless these are the same double."""
         from matplotlib.colors import Normalize
 
         if times[0] == times[-1]:
@@ -201,9 +202,9 @@ def scale() -> Colormap:
 
 
 def norm_of(values: Sequence[float]) -> Normalize:
-    """Return the place of each size on the scale: in proportion, or by decades where sizes are so unlike.
+    """Return the scale of the sizes: linear, or logarithmic if they are of very different size.
 
-    What is zero, or below the last decade, has the lightest colour.
+    Zero, and sizes below the last decade, have the lightest colour.
     """
     from matplotlib.colors import LogNorm, Normalize
 

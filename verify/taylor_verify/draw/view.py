@@ -1,8 +1,8 @@
-"""Solid things seen from far away: an orthographic view, and which side of an ellipsoid faces it.
+"""Solid things seen from far away: an orthographic view, and the side of an ellipsoid that faces it.
 
-A view keeps lengths across the line of sight, so that a picture has one scale. Of a convex surface a
-point is seen if and only if the outward normal there points to the viewer: what is hidden is known
-exactly, and no picture depends on the order in which things are painted.
+A view keeps lengths across the line of sight, so that a picture has one scale. A point of a convex surface
+is visible if and only if the outward normal there points to the viewer. So it is known exactly what is
+hidden, and no picture depends on the order in which things are painted.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 Numbers = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-# Of a closed curve on a surface.
+# Points of a closed curve on a surface.
 _CORNERS: Final = 181
-# No view is from a height that would hide how things stand, in degrees.
+# Limits of the height of a view in degrees: a level or a steep one hides how things stand.
 _LOWEST: Final = 12
 _HIGHEST: Final = 28
 
@@ -52,7 +52,7 @@ class View:
         """The direction to the viewer."""
         return np.asarray(self.frame[2])
 
-    def seen(self, points: Numbers) -> Numbers:
+    def project(self, points: Numbers) -> Numbers:
         """Return the places of points (n, 3) on the paper: to the right and upwards, shape (n, 2)."""
         return np.asarray(np.atleast_2d(points) @ self.frame[:2].T)
 
@@ -69,12 +69,12 @@ class Ellipsoid:
         return np.asarray(normal @ view.towards > 0)
 
     def outline(self, view: View) -> Numbers:
-        """Return the rim as it is seen: the points whose normal is across the line of sight."""
-        # In units of the semi-axes it is the great circle perpendicular to the line of sight there.
+        """Return the visible rim: the points whose normal is across the line of sight."""
+        # In units of the semi-axes the rim is a great circle, perpendicular to the line of sight.
         return self.circle(view.towards * np.array(self.semi_axes) ** -1)
 
     def circle(self, pole: Numbers) -> Numbers:
-        """Return the plane section through the centre which, in units of the semi-axes, has this pole."""
+        """Return a plane section through the centre; ``pole`` is its normal in units of the semi-axes."""
         unit = pole / np.linalg.norm(pole)
         other = np.eye(3)[int(np.argmin(np.abs(unit)))]
         first = np.cross(unit, other)
@@ -85,7 +85,7 @@ class Ellipsoid:
 
 
 def pieces(points: Numbers, mask: Mask) -> Iterator[tuple[bool, Numbers]]:
-    """Yield a line in runs that are seen or hidden throughout; neighbours share the point between them."""
+    """Yield a line in pieces that are wholly visible or wholly hidden; neighbours share a point."""
     first = 0
     for last in range(1, len(points)):
         if last == len(points) - 1 or mask[last] != mask[first]:

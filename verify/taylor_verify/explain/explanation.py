@@ -38,13 +38,13 @@ if TYPE_CHECKING:
     from taylor_verify.judge.judgement import Judgement
 
 _DIGITS = 15
-# Beyond the digits of a rung, so that what is rounded to it is the exact number.
+# Digits beyond those of a rung, so that the exact number is rounded, and rounded once.
 _SPARE_DIGITS = 6
-_FROM_RECORD = (*("equations", "parameters", "units", "route", "truth_digits", "unit_roundoff"),)
+_FROM_RECORD = ("equations", "parameters", "units", "route", "truth_digits", "unit_roundoff")
 
 
 def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]:
-    """Run the scene on that rung and return the document of ``explain``; no number is an estimate.
+    """Run the scene on a rung and return the document of ``explain``; no number is an estimate.
 
     Without heyoka the exact motion, rounded to the rung, is judged in place of an answer, and a warning
     says so.
@@ -52,9 +52,9 @@ def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]
     scene = as_scene(scene)
     body = scene.body
     shape = ellipsoid.sentences(body) if isinstance(body, ImmersedBody) else []
-    found, lacking = _judged(scene, rung_named(rung))
-    record = found.record.document() if found.record is not None else {}
-    first = found.verdicts[0]
+    judgement, lacking = _judged(scene, rung_named(rung))
+    record = judgement.record.document() if judgement.record is not None else {}
+    first = judgement.verdicts[0]
     effort = ("steps", "evaluations", "seconds")
     orbit = _orbit(scene)
     period = float(orbit["orbit"]["period"]) if "period" in orbit["orbit"] else None
@@ -78,20 +78,20 @@ def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]
         },
         **orbit,
         "screws": [_screw(screw) for screw in screws_beside(scene)],
-        "condition": _condition(scene, rung_named(rung), period) if found.record else None,
+        "condition": _condition(scene, rung_named(rung), period) if judgement.record else None,
         "outcome": first.outcome,
-        "gates": [_gate(verdict) for verdict in found.verdicts],
+        "gates": [_gate(verdict) for verdict in judgement.verdicts],
     }
 
 
 def _judged(scene: Scene, rung: Rung) -> tuple[Judgement, list[str]]:
     """Return the judgement of heyoka's answer, or, without heyoka, of the exact motion and a warning."""
-    found = run(scene, "taylor", rung)
-    first = found.verdicts[0]
+    judgement = run(scene, "taylor", rung)
+    first = judgement.verdicts[0]
     lacks_heyoka = first.outcome == Outcome.NO_PACKAGE.value
     exact = _judged_exact_motion(scene, rung) if lacks_heyoka else None
     if exact is None:
-        return found, []
+        return judgement, []
     instead = f"those of the exact motion rounded to {rung.name}, a step for each sample"
     return exact, [f"{first.because}; the gates are {instead}"]
 
@@ -104,14 +104,14 @@ def _judged_exact_motion(scene: Scene, rung: Rung) -> Judgement | None:
         exact = solution(problem.given).motion(problem.given.clock.elapsed, digits)
         with mp.workprec(rung.bits):
             rounded = {name: +values for name, values in exact.quantities.items()}
-        found = partial_judgement(problem, Recorded(rounded, name="exact"))
+        judgement = partial_judgement(problem, Recorded(rounded, name="exact"))
     except (NotRepresentable, Unsettled):
         return None
-    return with_initial(found, float(problem.given.clock.start))
+    return with_initial(judgement, float(problem.given.clock.start))
 
 
 def _rounded(scene: Scene, rung: Rung) -> list[str]:
-    """Name what the rung rounds; solver and truth then start from other numbers than the scene's."""
+    """Name the data that the rung rounds: solver and truth then start from rounded numbers."""
     try:
         given = pose(scene, rung).given
     except NotRepresentable:
@@ -121,20 +121,20 @@ def _rounded(scene: Scene, rung: Rung) -> list[str]:
 
 
 def _orbit(scene: Scene) -> dict[str, Any]:
-    """The numbers of the orbit by name, what each of them is, and what they say in words.
+    """Return the numbers of the orbit by name, the meaning of each, and sentences about them.
 
-    They belong to the scene's own numbers and to omega or the impulses; attitude and centre do not
-    change them. All empty where the digits cannot be had.
+    They follow from the scene's own numbers and from omega or the impulses; attitude and centre do not
+    change them. All are empty if the digits cannot be computed.
     """
     try:
-        found = elements(scene, _DIGITS)
+        orbit = elements(scene, _DIGITS)
     except Unsettled as doubt:
-        found = Elements("", (), (str(doubt),))
-    numbers = [_element(element) for element in found.numbers]
+        orbit = Elements("", (), (str(doubt),))
+    numbers = [_element(element) for element in orbit.numbers]
     return {
         "orbit": {number["name"]: number["value"] for number in numbers},
         "elements": numbers,
-        "sentences": list(found.sentences),
+        "sentences": list(orbit.sentences),
     }
 
 
@@ -144,7 +144,7 @@ def _element(element: Element) -> dict[str, str]:
 
 
 def _screw(screw: Screw) -> dict[str, Any]:
-    """A steady screw with the F and the turning of the start, as numbers that are written out.
+    """Return a steady screw with the F and the turning of the start, its numbers as text.
 
     ``axis`` (body axes, unit length), ``velocity`` of the origin along it, ``turning`` Omega about it in
     radians/time, ``pitch`` the advance in one turn, velocity 2 pi/turning (null of a translation);
@@ -182,39 +182,39 @@ def _written(value: Any) -> str:
 
 
 def _condition(scene: Scene, rung: Rung, period: float | None) -> dict[str, Any] | None:
-    """Growth of an error at the first sample along the orbit; None where that is not known."""
-    found = None
+    """Return the growth of an error at the first sample along the orbit; None if it is not known."""
+    carried = None
     with suppress(Unsettled):
-        found = carrying(scene)
-    if found is None:
+        carried = carrying(scene)
+    if carried is None:
         return None
-    worst, pace = found.worst, found.pace
+    worst, pace = carried.worst, carried.pace
     per_period = None if pace is None or period is None else _finite(pace * period)
-    sentences = list(_condition_sentences(found, rung, per_period))
+    sentences = list(_condition_sentences(carried, rung, per_period))
     return {
-        "from": found.times[0],
-        "worst": _finite(found.factors[worst]),
-        "worst_at": found.times[worst],
-        "end": _finite(found.factors[-1]),
-        "end_at": found.times[-1],
+        "from": carried.times[0],
+        "worst": _finite(carried.factors[worst]),
+        "worst_at": carried.times[worst],
+        "end": _finite(carried.factors[-1]),
+        "end_at": carried.times[-1],
         "per_period": per_period,
         "sentence": " ".join(sentences),
         "sentences": sentences,
     }
 
 
-def _condition_sentences(found: Carrying, rung: Rung, per_period: float | None) -> Iterator[str]:
+def _condition_sentences(carried: Carrying, rung: Rung, per_period: float | None) -> Iterator[str]:
     """Yield the factors in words, and the size that one rounding of this rung grows to."""
-    worst, u = found.worst, float(rung.unit_roundoff)
-    becomes = u * found.factors[worst]
+    worst, u = carried.worst, float(rung.unit_roundoff)
+    becomes = u * carried.factors[worst]
     later = ""
-    if worst < len(found.times) - 1:
-        later = f", and by {found.factors[-1]:.3g} at the end (t = {found.times[-1]:g})"
+    if worst < len(carried.times) - 1:
+        later = f", and by {carried.factors[-1]:.3g} at the end (t = {carried.times[-1]:g})"
     yield (
-        f"An error in the state at t = {found.times[0]:g} is multiplied, each time relative to the "
-        f"state, by {found.factors[worst]:.3g} at worst (t = {found.times[worst]:g}){later}."
+        f"An error in the state at t = {carried.times[0]:g} is multiplied, each time relative to the "
+        f"state, by {carried.factors[worst]:.3g} at worst (t = {carried.times[worst]:g}){later}."
     )
-    pace, unit = (found.pace, "time unit") if per_period is None else (per_period, "period")
+    pace, unit = (carried.pace, "time unit") if per_period is None else (per_period, "period")
     if pace is not None:
         yield f"It grows in proportion to time, by about {pace:.2g} per {unit}."
     lost = "; nothing of the state is left then" if not becomes < 1 else ""
@@ -229,8 +229,18 @@ def _finite(factor: float) -> float | None:
 
 def _gate(verdict: Verdict) -> dict[str, Any]:
     names = (
-        *("quantity", "max", "mean", "final", "at", "unit", "attainable", "bound", "ratio"),
-        *("ratio_at", "because", "reason"),
+        "quantity",
+        "max",
+        "mean",
+        "final",
+        "at",
+        "unit",
+        "attainable",
+        "bound",
+        "ratio",
+        "ratio_at",
+        "because",
+        "reason",
     )
     row = verdict.row()
     return {"verdict": verdict.verdict.value} | {name: row[name] for name in names}
@@ -240,7 +250,7 @@ _COUNTED = ("states", "parameters", "sums", "products", "quotients")
 
 
 def _cost(scene: Scene, rung: str) -> dict[str, Any]:
-    """Cost of an evaluation of the equations beside that of others, and why they are these.
+    """Return the cost of an evaluation, that of other equations, and why these were chosen.
 
     ``general`` counts the general equations of all that the model has, ``same`` those of the same
     body for the same quantities, as far as their coefficients are not zero.
@@ -268,9 +278,9 @@ def _counts(form: Form) -> dict[str, Any]:
 
 
 def _left_out(scene: Scene) -> list[str]:
-    """Sentences on what the scene does not ask for."""
+    """Return sentences on the quantities and loads that the scene does not have."""
     possible = TRACKED[scene.model]
-    found = [f"no {name}: it is not tracked" for name in possible if name not in scene.track]
+    sentences = [f"no {name}: it is not tracked" for name in possible if name not in scene.track]
     if scene.body.is_free:
-        found.append(" and ".join(f"no {load}" for load in scene.body.load_names()))
-    return found
+        sentences.append(" and ".join(f"no {load}" for load in scene.body.load_names()))
+    return sentences

@@ -30,11 +30,11 @@ _MEND_UNAVAILABLE: Final = {
 
 
 def demanded_rows(judgement: Judgement, only: Only = None) -> list[Verdict]:
-    """Return the verdicts that a test asks for; never none.
+    """Return the verdicts that a test asks for, at least one.
 
-    ``only`` are the quantities asked for, or ``conserved`` for all that are. A judgement of a run that came
-    to no truth is demanded whole: nothing of it can be left out. Raises ValueError for a quantity that
-    is not there.
+    ``only`` are the quantities asked for, or ``conserved`` for all conserved ones. If the run was not
+    compared with the exact motion, all its verdicts are returned. Raises ValueError for a quantity that
+    the scene does not have.
     """
     verdicts = list(judgement.verdicts)
     if judgement.record is None or only is None:
@@ -87,7 +87,7 @@ def report(judgement: Judgement, demanded: Sequence[Verdict]) -> str:
 
 
 def _reasons(verdict: Verdict, against: str) -> Iterator[tuple[str, str]]:
-    """Yield the rest of what a person needs to act: each a word and its text."""
+    """Yield further lines for the reader, each a word and its text."""
     if against:
         yield "against", f"its value on {against}" if verdict.is_conserved else against
     if verdict.bound is not None:

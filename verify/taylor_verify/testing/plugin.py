@@ -1,4 +1,4 @@
-"""A pytest plugin: anybody's simulator held to the exact motion in anybody's tests.
+"""A pytest plugin: compares a simulator with the exact motion, in the tests of that simulator.
 
     def test_my_simulator(verify_solver):
         verify_solver("euler/generic", solve)
@@ -179,7 +179,9 @@ def _judgement(
         elif callable(solve):
             solver = Callback(answer, getattr(solve, "__qualname__", type(solve).__name__))
         else:
-            raise ValueError(f"expected a callable, a Solver or a name of one, got {solve!r}")
+            raise ValueError(
+                f"expected a callable, a Solver or the name of a solver, got {solve!r} @ solve"
+            )
         exact_rung, asked = rung_named(rung), tolerances(tolerance, [scene])
     except (Refused, ValueError) as fault:
         raise pytest.fail.Exception(str(fault)) from None
@@ -217,14 +219,14 @@ def _cases(mark: pytest.Mark) -> Iterator[Case]:
     if unknown := sorted(options.keys() - {"rung", "tolerance", "only"}):
         _wrong_mark(f"expected rung, tolerance or only, got {', '.join(unknown)}")
     if not mark.args:
-        _wrong_mark("expected scenes, got none")
+        _wrong_mark("expected scenes, such as 'euler/generic', got none")
     rungs = options.get("rung", "f64")
     try:
         names = [name for pattern in mark.args for name in _scenes(pattern)]
         for rung in [rungs] if isinstance(rungs, str) else rungs:
             for name in names:
-                found = rung_named(rung).name
-                yield Case(name, found, options.get("tolerance"), options.get("only"))
+                rung_name = rung_named(rung).name
+                yield Case(name, rung_name, options.get("tolerance"), options.get("only"))
     except (Refused, ValueError) as fault:
         _wrong_mark(str(fault))
 
@@ -236,10 +238,13 @@ def _scenes(pattern: str | Path) -> list[str]:
     if not is_pattern(text):
         find(text)
         return [text]
-    found = list(fitting(text, names()))
-    if not found:
-        raise ValueError(f"expected a pattern that some shipped scene fits, got {text!r}")
-    return found
+    scenes = list(fitting(text, names()))
+    if not scenes:
+        raise ValueError(
+            f"expected a pattern that some shipped scene fits, got {text!r}; "
+            "`taylor-verify list` names them"
+        )
+    return scenes
 
 
 def _wrong_mark(why: str) -> None:

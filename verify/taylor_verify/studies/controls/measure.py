@@ -62,9 +62,10 @@ def study(measured: Iterable[Sight]) -> ControlsStudy:
 
 
 def _row(defect: Defect) -> DefectRow:
-    names = ("name", "setting", "scene", "gate", "what", "why", "told")
+    names = ("name", "setting", "scene", "gate", "what", "why")
     own = {name: getattr(defect, name) for name in names}
-    return DefectRow(**own, twin=defect.twin.name, twin_setting=defect.twin.setting)
+    twin = {"twin": defect.twin.name, "twin_setting": defect.twin.setting}
+    return DefectRow(**own, **twin, told=defect.is_common)
 
 
 def _verdicts(scene: str, solver: Solver) -> Verdicts:
