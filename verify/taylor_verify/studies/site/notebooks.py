@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import posixpath
 import re
 from pathlib import Path
@@ -26,7 +27,6 @@ def is_notebook(text: str) -> bool:
 
 def notebook(text: str) -> str:
     """Return a notebook in Markdown as the JSON that Jupyter opens; no output is stored in it."""
-    import nbformat
     from myst_nb.core.read import read_myst_markdown_notebook
 
     made = read_myst_markdown_notebook(text)
@@ -35,7 +35,7 @@ def notebook(text: str) -> str:
         cell["id"] = f"cell-{i}"
         if cell.cell_type == "markdown":
             cell.source = _LINK_WITHIN.sub(r"\1", cell.source)
-    return str(nbformat.writes(made))
+    return json.dumps(made, ensure_ascii=False, indent=1)
 
 
 def add_link(app: Sphinx, doctree: nodes.document) -> None:
