@@ -32,6 +32,7 @@ maximum_signature_line_length = 88
 os.environ["TAYLOR_VERIFY_CLONE"] = str(HERE.parent)
 
 LITERAL = re.compile(r"(``.+?``)")
+ANNOTATED = re.compile(r"~?\b(?:typing\.)?Annotated\[")
 MARKUP = re.compile(r"([\\*|`]|_(?!\w))")
 
 
@@ -56,6 +57,38 @@ def told(_app: Any, _what: str, _name: str, _thing: Any, _options: Any, lines: l
     lines[:] = plain(lines)
 
 
+def bare(text: str) -> str:
+    """A signature whose types have no remarks: Annotated[str, Meta(...)] is str to a reader."""
+    mark = ANNOTATED.search(text)
+    if mark is None:
+        return text
+    depth, quote, comma, end = 1, "", 0, mark.end()
+    while depth:
+        sign = text[end]
+        if quote:
+            quote = "" if sign == quote and text[end - 1] != "\\" else quote
+        elif sign in "'\"":
+            quote = sign
+        elif sign == "," and depth == 1:
+            comma = comma or end
+        else:
+            depth += (sign in "[(") - (sign in "])")
+        end += 1
+    return bare(text[: mark.start()] + text[mark.end() : comma] + text[end:])
+
+
+def without_remarks(
+    _app: Any,
+    _what: str,
+    _name: str,
+    _thing: Any,
+    _options: Any,
+    given: str | None,
+    back: str | None,
+) -> tuple[str | None, str | None]:
+    return given and bare(given), back and bare(back)
+
+
 def beyond(place: str) -> str:
     """Where a link leads: what lies beyond these pages comes along as a file, a picture is shown."""
     target = (HERE / place).resolve()
@@ -75,6 +108,7 @@ def linked_from_included(_app: Any, path: Path, _page: str, content: list[str]) 
 
 def setup(app: Any) -> None:
     app.connect("autodoc-process-docstring", told)
+    app.connect("autodoc-process-signature", without_remarks)
     # The pages of the whole site lie elsewhere, with their links as they have to be.
     if Path(app.srcdir) == HERE:
         app.connect("source-read", linked_from_page)

@@ -7,9 +7,12 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
+import nbformat
 import pytest
 from builders.notebooks import NOTEBOOKS, Output, cells, execute
 from builders.worked import ROOT
+
+from taylor_verify.studies.site.notebooks import notebook
 
 # One for each use that a newcomer asks for.
 NAMES = ("dzhanibekov", "engine", "falling-solid", "precision", "proof", "simulator")
@@ -83,3 +86,17 @@ def test_cells_are_read_with_their_places() -> None:
     page = "```{code-cell}\nx = 2\nprint(x)\n```\n\n```{code-cell}\n:tags: [remove-cell]\n\nx + 1\n```\n"
     assert [cell.is_shown for cell in cells(page)] == [True, False]
     assert execute(page, "page.md") == [Output("2\n", ""), Output("", "3")]
+
+
+@pytest.mark.parametrize("page", NOTEBOOKS, ids=lambda page: page.stem)
+def test_a_notebook_can_be_downloaded(page: Path) -> None:
+    """The file for Jupyter has the cells of the page, no output, and no link that needs the site."""
+    text = page.read_text(encoding="utf-8")
+    made = nbformat.reads(notebook(text), as_version=4)
+    nbformat.validate(made)
+    codes = [cell for cell in made.cells if cell.cell_type == "code"]
+    assert [cell.source.strip() for cell in codes] == [cell.code.strip() for cell in cells(text)]
+    assert not any(cell.outputs for cell in codes)
+    words = "".join(cell.source for cell in made.cells if cell.cell_type == "markdown")
+    assert not re.search(r"\]\((?!https?:)", words)
+    assert notebook(text) == notebook(text)

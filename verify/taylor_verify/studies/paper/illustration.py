@@ -40,7 +40,7 @@ def _engines(sources: Sources) -> Illustration:
         "second of the motion: each engine at the best of its settings, a point for every step."
     )
     machine = sources.board.timings.machine.processor
-    picture = _first(engines_page.pictures(sources.board), "engines")
+    picture = _named("engines-time", engines_page.pictures(sources.board), "engines")
     return Illustration("engines", picture, Caption(words, ENGINES, machine))
 
 
@@ -57,9 +57,17 @@ def _reach(sources: Sources) -> Illustration:
 def _trade(sources: Sources) -> Illustration:
     picture = _first(tradeoff_page.pictures(sources.trades), "tradeoff")
     scene = code(sources.trades.short[0].scene)
-    words = f"Error against time of a solve on {scene}, every solver at every setting."
+    words = (
+        f"Error against time of a solve on {scene}, every solver at every setting. A *rung* is a number "
+        "format."
+    )
     machine = sources.trades.times.machine.processor
     return Illustration("tradeoff", picture, Caption(words, TRADEOFF, machine), width=90)
+
+
+def _named(stem: str, pictures: Sequence[Picture], study: str) -> Picture:
+    """Return the picture that a caption is written for, wherever it stands among its study's."""
+    return _first([picture for picture in pictures if picture.stem == stem], study)
 
 
 def _first(pictures: Sequence[Picture], study: str) -> Picture:

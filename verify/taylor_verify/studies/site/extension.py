@@ -1,6 +1,6 @@
 """Sphinx extension: formulas as MathML, links of scenes and terms, search without large tables.
 
-It also gives kernels of notebooks their own settings.
+It also gives kernels of notebooks their own settings, and each notebook as a file to download.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from sphinx import addnodes
 from taylor_verify.publish.mathml import inline, mathml
 from taylor_verify.records.file_names import of_scene
 from taylor_verify.studies.site.glossary import link_terms
+from taylor_verify.studies.site.notebooks import add_link, write_notebooks
 
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
@@ -39,7 +40,9 @@ def setup(app: Sphinx) -> dict[str, Any]:
     app.connect("source-read", _read_formulas)
     app.connect("doctree-read", _link_scenes)
     app.connect("doctree-read", link_terms)
+    app.connect("doctree-read", add_link)
     app.connect("doctree-read", _leave_out_of_search)
+    app.connect("build-finished", write_notebooks)
     app.add_html_math_renderer("mathml", (_write_inline, None), (_write_block, None))
     return {"parallel_read_safe": True, "parallel_write_safe": True}
 

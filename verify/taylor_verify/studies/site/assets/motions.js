@@ -51,9 +51,9 @@
   }
 
   // One scale for all axes, and a diagonal as long as that of the unit cube: whatever the sides, all of the
-  // box is in the frame, from wherever it is seen.
+  // box is in the frame, from wherever it is seen. Beside a narrow one titles and numbers need more of the room.
   function layout(titles, box, narrow) {
-    const far = narrow ? 1.3 : 1.15;
+    const far = narrow ? 1.65 : 1.15, ticks = narrow ? 3 : 5;
     const sides = box.map(function (ends) { return ends[1] - ends[0]; }), longest = Math.max.apply(null, sides);
     const unit = Math.hypot.apply(null, sides) / Math.sqrt(3);
     const scene = {
@@ -63,7 +63,7 @@
     };
     titles.forEach(function (title, i) {
       scene["xyz"[i] + "axis"] = {
-        title: { text: title }, range: box[i], nticks: Math.max(2, Math.round(5 * sides[i] / longest)), color: "$ink", gridcolor: "$faint", linecolor: "$quiet",
+        title: { text: title }, range: box[i], nticks: Math.max(2, Math.round(ticks * sides[i] / longest)), color: "$ink", gridcolor: "$faint", linecolor: "$quiet",
         zeroline: false, exponentformat: "power", showspikes: false, showbackground: false,
       };
     });

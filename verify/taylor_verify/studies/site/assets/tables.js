@@ -7,6 +7,8 @@
   const NOTHING = /^(?:–|-|—|)$/;
   // A table of fewer lines is seen at a glance, one of more is looked through with a filter.
   const SORTABLE = 6, FILTERABLE = 40;
+  // A cell with more letters is read as a sentence, and needs the room of one.
+  const SENTENCE = 40;
 
   function value(cell) {
     const text = cell.textContent.trim();
@@ -107,10 +109,17 @@
     });
   }
 
+  function markSentences(table) {
+    table.querySelectorAll("td:not(.text-right)").forEach(function (cell) {
+      cell.classList.toggle("sentence", cell.textContent.length > SENTENCE);
+    });
+  }
+
   document.addEventListener("DOMContentLoaded", function () {
     document.querySelectorAll("article table").forEach(function (table, number) {
       const rows = table.tHead && table.tBodies.length ? table.tBodies[0].rows.length : 0;
       table.id = table.id || "table-" + (number + 1);
+      markSentences(table);
       if (rows >= SORTABLE && !hasGroups(table)) addSorting(table);
       if (rows >= FILTERABLE) addFilter(table, number + 1);
     });
