@@ -134,9 +134,9 @@ def thetas(factors: Powers, sine: Pairs, cosine: Pairs) -> Thetas:
     for k in _TAIL:
         for rows in (cosines, sines, others):
             rows[:] = [u * rows[0] - rows[1], rows[0]]
-        sign, square, oblong = (-1) ** k, q ** (k * k), q ** (k * (k + 1))
+        sign, power, oblong = (-1) ** k, q ** (k * k), q ** (k * (k + 1))
         if k > _TAIL[0]:
-            more[k % 2] = more[k % 2] + square * cosines[0]
+            more[k % 2] = more[k % 2] + power * cosines[0]
         more[2] = more[2] + sign * oblong * sines[0]
         more[3] = more[3] + oblong * others[0]
         # By the recurrence, of which each step adds some roundings, and by the power. With it comes the

@@ -177,7 +177,7 @@ class _Columns:
     def start_ratio(self, k: int) -> float:
         """Return the error of a body at its first sample over the floor there."""
         error, value = self.start(k)
-        return error / value
+        return error / value if value else 0.0
 
 
 def _columns(run: Run, gate: Gate, floors: Floors) -> _Columns:
