@@ -11,19 +11,16 @@ import pytest
 
 from taylor_verify.batch import bodies as batch
 from taylor_verify.batch.bodies import judged
-from taylor_verify.exact.euler.tops import Tops
-from taylor_verify.exact.route import solution
-from taylor_verify.models.bodies import Bodies, numbers
+from taylor_verify.models.bodies import Bodies
 from taylor_verify.models.problem import pose
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
-from taylor_verify.scenes.pairs import Pairs
-from taylor_verify.scenes.precision import exact_value, rung
+from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.taylor import lanes
 from taylor_verify.solvers.taylor.lanes import propagate
 from taylor_verify.solvers.trajectory import Outcome
-from tests.builders.satellites import satellite, satellites
+from tests.builders.satellites import bodies_of, near_the_separatrix, satellite, satellites
 
 pytest.importorskip("heyoka")
 
@@ -66,20 +63,9 @@ def test_verdicts_are_those_of_one_body_at_a_time(one_by_one: list[str]) -> None
     assert len(one_by_one) <= 2
 
 
-def _near_the_separatrix() -> list[Scene]:
-    """Bodies on both sides of their separatrices, with nomes from 0.3 to 0.43."""
-    spins = ("0.576", "0.577", "0.5773", "0.5774", "0.5775", "0.578")
-    attitude = tuple(map(Fraction, ("0.3", "-0.7", "0.45", "1.1")))
-    moments = Fraction(1), Fraction(2), Fraction(3)
-    return [
-        satellite(spin, moments, (Fraction(1), Fraction("0.3"), Fraction(spin)), attitude)
-        for spin in spins
-    ]
-
-
 def test_bodies_near_their_separatrices_are_judged_together(one_by_one: list[str]) -> None:
     """Near their separatrices the truth stays sharp: no body goes through the chain for its width."""
-    _agree(_near_the_separatrix())
+    _agree(near_the_separatrix())
     assert one_by_one == []
 
 
@@ -125,17 +111,10 @@ def test_a_lane_that_is_wrong_is_caught(monkeypatch: pytest.MonkeyPatch) -> None
     assert names == ["satellite2"]
 
 
-def _bodies(scenes: Sequence[Scene]) -> Bodies:
-    rows = [numbers(scene) for scene in scenes]
-    times = np.array([[float(t) for t in scene.clock.elapsed] for scene in scenes])
-    K, H, q = (np.array(values).T for values in zip(*rows, strict=True))
-    return Bodies(K, H, times, q)
-
-
 def test_numbers_are_those_of_pose() -> None:
     """K, H, the unit quaternion and the times are those that `pose` has for each body."""
     scenes = satellites(12, 6, tracks_attitude=True)
-    bodies = _bodies(scenes)
+    bodies = bodies_of(scenes)
     for k, scene in enumerate(scenes):
         problem = pose(scene, rung("f64"))
         parameter, unit = problem.parameter, problem.units
@@ -150,7 +129,7 @@ def test_numbers_are_those_of_pose() -> None:
 
 def test_broken_lanes_spoil_no_other() -> None:
     """A lane that is not finite ends as such, and the lanes beside it reach their ends."""
-    bodies = _bodies(satellites(9, 7))
+    bodies = bodies_of(satellites(9, 7))
     whole = propagate(bodies)
     bodies.momentum[0, 4] = np.nan
     broken = propagate(Bodies(bodies.inverse, bodies.momentum, bodies.times, bodies.attitude))
@@ -162,52 +141,10 @@ def test_broken_lanes_spoil_no_other() -> None:
 
 def test_lanes_whose_rate_grew_go_again(monkeypatch: pytest.MonkeyPatch) -> None:
     """A lane that meets a faster rate than its steps were made for goes again at that rate."""
-    bodies = _bodies(satellites(5, 8))
+    bodies = bodies_of(satellites(5, 8))
     slow = bodies.rates.copy()
     slow[3] /= 8
     monkeypatch.setattr(Bodies, "rates", property(lambda _: slow))
     states = propagate(bodies)
     assert states.ways.tolist() == [1, 1, 1, 2, 1]
     assert all(outcome is Outcome.FINISHED for outcome in states.outcomes)
-
-
-@pytest.mark.parametrize(
-    "scenes",
-    [
-        satellites(6, 9, tracks_attitude=True),
-        satellites(6, 10, tracks_attitude=True),
-        _near_the_separatrix(),
-    ],
-    ids=["some", "others", "near the separatrix"],
-)
-def test_exact_motions_lie_in_their_balls(scenes: list[Scene]) -> None:
-    """The exact motions of many bodies are those of one body, to within the radii."""
-    bodies = _bodies(scenes)
-    assert bodies.quaternion is not None
-    states = Tops(bodies.inverse, Pairs(bodies.momentum), bodies.quaternion).states(bodies.times)
-    assert states.quaternion is not None
-    places = [0, 1, 20, 40]
-    for k, scene in enumerate(scenes):
-        given = pose(scene, rung("f64")).given
-        times = [given.clock.elapsed[place] for place in places]
-        # The grid holds the elapsed times as doubles, as the problem does.
-        assert [float(t) for t in times] == bodies.times[k, places].tolist()
-        omega = solution(given).motion(times, 40)["omega"]
-        q = solution(given).quaternion(times, 40).quantities["quaternion"]  # type: ignore[attr-defined]
-        for row, place in enumerate(places):
-            for i in range(3):
-                exact = exact_value(omega[row][i]) / Fraction(bodies.inverse[i, k])
-                assert _distance(states.momentum, (i, k, place), exact) <= 0
-            same = q[row][0] * states.quaternion.hi[0, k, place] > 0
-            for i in range(4):
-                exact = exact_value(q[row][i]) * (1 if same else -1)
-                assert _distance(states.quaternion, (i, k, place), exact) <= 0
-
-
-def _distance(balls: Pairs, place: tuple[int, int, int], exact: Fraction) -> Fraction:
-    """How far a number is outside of its ball, which has to be a small one."""
-    assert balls.radius()[place] <= 1e-17
-    middle = Fraction(float(balls.hi[place])) + Fraction(float(balls.lo[place]))
-    # The other number has 40 digits.
-    room = Fraction(float(balls.radius()[place])) + Fraction(1, 10**38)
-    return abs(middle - exact) - room
