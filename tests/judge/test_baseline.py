@@ -16,7 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from taylor_verify.cli import main
-from taylor_verify.judge.baseline import hold, load
+from taylor_verify.judge.baseline import decided_alone, hold, load
 from taylor_verify.judge.rounding_class import FACTOR, LEVEL, compare
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status
@@ -45,6 +45,24 @@ def test_a_quaternion_that_has_its_length_again_is_no_regression() -> None:
     assert (comparison.regressions, comparison.status) == ((), 0)
     (change,) = comparison.changes
     assert "got none: it is mended" in str(change)
+
+
+def test_a_row_that_is_named_already_is_not_named_again() -> None:
+    """Without the gates a row is lost once, or shows nothing; a row that passes is neither."""
+    failed = row(errors=50.0, verdict=Status.FAIL)
+    lost = row(verdict=Status.FAIL, max=math.nan)
+    empty = row(verdict=Status.VACUOUS)
+    for was, now, lost_more, undecided_more in (
+        (row(), row(), 0, 0),
+        (row(), failed, 0, 0),
+        (failed, failed, 0, 0),
+        (lost, lost, 1, 0),
+        (empty, empty, 0, 1),
+    ):
+        gated = hold([was], [now])
+        alone = decided_alone(gated, [was], [now])
+        assert len(alone.regressions) - len(gated.regressions) == lost_more
+        assert len(alone.undecided) - len(gated.undecided) == undecided_more
 
 
 # Errors.

@@ -167,6 +167,15 @@ def test_only_omega_of_a_solid_in_a_fluid(tmp_path: Path) -> None:
     assert (omega.verdict, omega.at) == (Status.FAIL, columns["t"][3])
 
 
+def test_the_floor_of_a_velocity_has_that_of_the_states(tmp_path: Path) -> None:
+    """Omega = B^T x + C y carries the roundings of x and y on the way, not its own alone."""
+    columns = exact_columns("kirchhoff/screw")
+    both = by_quantity(checked(tmp_path, "kirchhoff/screw", columns))["impulse"]
+    alone = {name: columns[name] for name in ("t", *OMEGA)}
+    omega = by_quantity(checked(tmp_path, "kirchhoff/screw", alone))["omega"]
+    assert omega.attainable > both.attainable > 4 * 2**-53
+
+
 def test_shift_of_an_angular_velocity_alone(tmp_path: Path) -> None:
     """w1 w2 w3 of a solid in a fluid tell how late they are, and what is left."""
     sound = exact_columns("kirchhoff/screw")

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from taylor_verify.judge.series.order import Sample, orders
 from taylor_verify.records.answers import Order, Stall
+from taylor_verify.records.convergence import SAME
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 
@@ -104,6 +105,18 @@ def test_a_wrong_step_at_any_inner_place_is_found(place: int) -> None:
     errors = power(2)
     errors[place] *= 2
     assert read(errors, floor=1e-30).suspect == f"{HALVED[place]:.4g}.csv"
+
+
+@pytest.mark.parametrize("ratios", [(2, 64), (64, 2)], ids=["below", "above"])
+def test_a_wrong_step_departs_clearly_to_both_sides(ratios: tuple[int, int]) -> None:
+    """Where one of the two local orders is too near to the others, no file is named."""
+    steps = [1.0]
+    for ratio in (2, 2, *ratios, 2, 2):
+        steps.append(steps[-1] / ratio)
+    errors = [h**2 for h in steps]
+    errors[3] *= 2 ** (2 * SAME)
+    measured = read(errors, steps, floor=1e-30)
+    assert measured.suspect is None
 
 
 def test_steps_that_are_not_asymptotic_are_no_wrong_steps() -> None:

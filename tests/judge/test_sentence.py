@@ -241,6 +241,21 @@ def test_a_power_of_time_is_read_from_the_errors(power: float, scale: float) -> 
     assert power_of_time(elapsed, scale * np.where(elapsed < 100, 1.0, 1e4)) is None
 
 
+def test_an_error_that_vanishes_for_a_while_has_no_power() -> None:
+    """Zeros have no logarithm: a part of the time without an error shows no power."""
+    elapsed = np.linspace(0, 200, 401)
+    assert power_of_time(elapsed, np.where(elapsed < 50, 0.0, elapsed)) is None
+
+
+@pytest.mark.parametrize(("spread", "expected"), [(1.05, 1.0), (1.25, None)])
+def test_a_power_is_told_where_its_interval_is_narrow(spread: float, expected: float | None) -> None:
+    """Five sizes that lie alternately above and below a line leave 95 % of the slope within 0.2, or not."""
+    elapsed = np.geomspace(1 / 32, 1, 101)
+    part = np.minimum(np.arange(101) // 20, 4)
+    power = power_of_time(elapsed, elapsed * spread ** ((-1.0) ** part))
+    assert power == (expected if expected is None else pytest.approx(expected, abs=0.1))
+
+
 def test_a_constant_error_never_falls_below_nine_tenths_of_its_largest() -> None:
     """An error that reaches nine tenths is constant, one that falls below them is not."""
     assert is_constant(np.array([1.0, 0.9, 1.0, 0.95, 1.0]))

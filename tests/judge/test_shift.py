@@ -22,7 +22,7 @@ from taylor_verify.check import check
 from taylor_verify.exact.rates import rates
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution
-from taylor_verify.judge.errors.shift import Shift, time_shifts
+from taylor_verify.judge.errors.shift import LEAVES, Shift, time_shifts
 from taylor_verify.judge.errors.state import state_errors
 from taylor_verify.judge.judgement import judgement
 from taylor_verify.models.problem import Problem, pose
@@ -467,6 +467,13 @@ def test_the_angular_velocity_of_a_solid_in_a_fluid_is_late_by_one_constant(
     assert omega.residual is not None
     # Rounding to doubles is left, of Omega and of the times.
     assert omega.residual == omega.remains <= 1e-13
+
+
+@pytest.mark.parametrize(("first", "begins"), [(LEAVES, None), (1.01 * LEAVES, 1.01 * LEAVES)])
+def test_a_drift_that_begins_near_zero_begins_right(first: float, begins: float | None) -> None:
+    """Up to a tenth of the largest shift, the first one is not told."""
+    shift = Shift(1.0, 0.0, Kind.DRIFTING, 0.0, 1.0, (0.0, 1.0), (first, 1.0), (first, 1.0))
+    assert shift.terms().begins == begins
 
 
 @pytest.mark.parametrize("with_first", [True, False], ids=["first row given", "all rows shifted"])
