@@ -248,7 +248,9 @@ def test_an_error_that_vanishes_for_a_while_has_no_power() -> None:
 
 
 @pytest.mark.parametrize(("spread", "expected"), [(1.05, 1.0), (1.25, None)])
-def test_a_power_is_told_where_its_interval_is_narrow(spread: float, expected: float | None) -> None:
+def test_a_power_is_told_where_its_interval_is_narrow(
+    spread: float, expected: float | None
+) -> None:
     """Five sizes that lie alternately above and below a line leave 95 % of the slope within 0.2, or not."""
     elapsed = np.geomspace(1 / 32, 1, 101)
     part = np.minimum(np.arange(101) // 20, 4)

@@ -31,10 +31,10 @@ class Equations:
 
     tensor: Floats
     load: Floats
+    damping: float
     gyroscopic: float = 1.0
     munk: float = 1.0
     turning: float = 1.0
-    damping: float = 0.0
     drag: float = 0.0
     rotor: tuple[float, ...] = (0.0, 0.0, 0.0)
 
@@ -48,9 +48,9 @@ class Equations:
         """Return the correct equations of a body whose loads are constant."""
         values = body.parts()
         loads = [entry for name in body.load_names() for entry in values[name]]
-        plain = cls(np.array(body.energy_matrix, dtype=float), np.array(loads, dtype=float))
-        rotor = tuple(map(float, values.get("rotor", plain.rotor)))
-        return replace(plain, rotor=rotor, damping=float(body.damping))
+        tensor = np.array(body.energy_matrix, dtype=float)
+        plain = cls(tensor, np.array(loads, dtype=float), damping=float(body.damping))
+        return replace(plain, rotor=tuple(map(float, values.get("rotor", plain.rotor))))
 
     def slowed(self, factor: float) -> Equations:
         """Return the equations with all terms that are quadratic in the state multiplied by a factor."""
