@@ -13,7 +13,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import zip_longest
 from typing import Any, Final
 
 import numpy as np
@@ -128,11 +127,13 @@ def verdicts(
             "provenance": {**known, "scene": scene.digest},
         }
         instants = _Instants(scene.clock.start, run.times[k])
-        unit, none = float(run.unit[k]), dict[str, Any]()
+        # Shifts belong to the states, which come first.
+        unit = float(run.unit[k])
         late = [shifts.numbers(k, unit) for shifts in measured.shifts]
+        late += [{}] * (len(columns) - len(late))
         rows = [
             _row(column, k, instants, shared | numbers)
-            for column, numbers in zip_longest(columns, late, fillvalue=none)
+            for column, numbers in zip(columns, late, strict=True)
         ]
         if not run.times[k, 0]:
             states = columns[: len(measured.states)]
