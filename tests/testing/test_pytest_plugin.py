@@ -30,6 +30,17 @@ LIGHT = {
 }
 HEAVY = {"flint", "gmpy2", "heyoka", "mpmath", "numpy", "rich"}
 
+
+@pytest.fixture(autouse=True, scope="module")
+def _loaded() -> None:
+    """Load what judges a wrong answer, with its diagnosis, before any session inside this one.
+
+    pytester forgets what such a session is the first to import. The next one would load it a second time
+    beside the first, with classes and a working precision of its own.
+    """
+    check("euler/generic", lambda problem: [problem.given.initial.omega] * len(problem.times))
+
+
 # A body of three equal moments keeps its omega: on euler/spherical `still` is exact, elsewhere wrong.
 SOLVERS = """
 import pytest

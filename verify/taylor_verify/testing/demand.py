@@ -32,7 +32,7 @@ _MEND_UNAVAILABLE: Final = {
 def demanded_rows(judgement: Judgement, only: Only = None) -> list[Verdict]:
     """Return the verdicts that a test asks for, at least one.
 
-    ``only`` are the quantities asked for, or ``conserved`` for all conserved ones. If the run was not
+    ``only`` are the quantities asked for, or ``conserved`` for all conserved ones. If the judgement was not
     compared with the exact motion, all its verdicts are returned. Raises ValueError for a quantity that
     the scene does not have.
     """

@@ -118,8 +118,8 @@ def thetas(factors: Powers, sine: Pairs, cosine: Pairs) -> Thetas:
     # With c_k = 2 cos kw: sin 5w / sin w = 1 + c_4 + c_2, sin 7w / sin w = 1 + c_4 + c_2 + c_6, and of
     # the cosines with c_2 and c_6 turned, cos 5w / cos w = 1 + c_4 - c_2.
     c_2 = (1.0 - (sine * sine).scaled(2.0)).scaled(2.0)
-    square = c_2 * c_2
-    c_4, c_6, fourfold = square - 2.0, c_2 * (square - 3.0), square - 1.0
+    squared = c_2 * c_2
+    c_4, c_6, fourfold = squared - 2.0, c_2 * (squared - 3.0), squared - 1.0
     zeroth, first, second = factors.even
     even = c_4 * (second * c_4 + first) + zeroth
     odd = c_2 * factors.odd[0] + c_6 * factors.odd[1]

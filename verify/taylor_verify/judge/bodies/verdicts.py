@@ -127,9 +127,10 @@ def verdicts(
             "provenance": {**known, "scene": scene.digest},
         }
         instants = _Instants(scene.clock.start, run.times[k])
-        unit, none = float(run.unit[k]), dict[str, Any]()
+        # Shifts belong to the states, which come first.
+        unit = float(run.unit[k])
         late = [shifts.numbers(k, unit) for shifts in measured.shifts]
-        late += [none] * (len(columns) - len(late))
+        late += [{}] * (len(columns) - len(late))
         rows = [
             _row(column, k, instants, shared | numbers)
             for column, numbers in zip(columns, late, strict=True)
