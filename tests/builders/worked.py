@@ -197,7 +197,11 @@ class Desk:
             return str(self.status)
         if _OWN_COMMAND.fullmatch(command):
             return self._own(command)
-        environment = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
+        environment = {
+            **os.environ,
+            "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}",
+            "PYTHONDONTWRITEBYTECODE": "1",
+        }
         done = subprocess.run(
             ["bash", "-c", command],
             cwd=self.folder,
@@ -245,9 +249,12 @@ class Desk:
 def work(page: Path, folder: Path) -> int:
     """Do all that a page says, in that folder; how many blocks there were. Raises Untrue."""
     desk, blocks_of_page = Desk(folder), list(blocks(page.read_text(encoding="utf-8")))
-    before = Path.cwd()
+    before, wrote_none = Path.cwd(), sys.dont_write_bytecode
     os.chdir(folder)
     sys.path.insert(0, str(folder))
+    # Python takes compiled code of the same size and second for that of the source: a page that turns
+    # one sign and turns it back would run the wrong one on a fast machine.
+    sys.dont_write_bytecode = True
     try:
         for block in blocks_of_page:
             try:
@@ -255,6 +262,7 @@ def work(page: Path, folder: Path) -> int:
             except Untrue as error:
                 raise Untrue(f"{page.name}, line {block.line}: {error}") from None
     finally:
+        sys.dont_write_bytecode = wrote_none
         os.chdir(before)
         sys.path.remove(str(folder))
         _forget_modules(folder)

@@ -116,3 +116,51 @@ def test_an_untrue_page_fails(page: str, tmp_path: Path) -> None:
     file.write_text(page, encoding="utf-8")
     with pytest.raises(Untrue, match=r"page\.md|not show"):
         work(file, tmp_path)
+
+
+def test_a_change_within_one_second_is_seen(tmp_path: Path) -> None:
+    """A file changed to one of the same size and time is read anew, by pytest and by Python."""
+    page = """
+```python
+# sign.py
+sign = +1
+```
+
+```python
+# test_sign.py
+import sign
+
+
+def test_sign():
+    assert sign.sign == 1
+```
+
+```console
+$ touch -d @1 sign.py
+$ pytest -q
+...
+1 passed in ...
+$ python -c "import sign; print(sign.sign)"
+1
+```
+
+```diff
+--- sign.py
++++ sign.py
+@@
+-sign = +1
++sign = -1
+```
+
+```console
+$ touch -d @1 sign.py
+$ pytest -q
+...
+1 failed in ...
+$ python -c "import sign; print(sign.sign)"
+-1
+```
+"""
+    file = tmp_path / "page.md"
+    file.write_text(page, encoding="utf-8")
+    assert work(file, tmp_path) == 5
