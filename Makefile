@@ -125,6 +125,6 @@ $(SOLVING): requirements-verify.txt pyproject.toml verify/taylor_verify/records/
 	@touch $@
 
 $(INSTALLED): $(SOLVING) requirements.txt
-	@echo 'adding the libraries of the tests, the docs and the site to .venv (once): 310 MB more to download, 1.6 GB on disk in all, one to three minutes' >&2
+	@echo 'adding the libraries of the tests, the docs and the site to .venv (once): 310 MB more to download, 1.8 GB on disk in all, one to three minutes' >&2
 	@$(PIP) install --require-hashes -r requirements.txt >&2
 	@touch $@
