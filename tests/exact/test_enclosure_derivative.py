@@ -116,7 +116,7 @@ def test_differences_of_the_motion_lie_in_the_enclosed_derivative(name: str) -> 
 
 @pytest.mark.parametrize("name", BY_STEPS)
 def test_norms_of_variational_steps_are_those_of_the_enclosed_derivative(name: str) -> None:
-    """What float64 makes of the variational equations agrees to the four digits that it is asked for."""
+    """The norms that float64 makes of the variational equations agree to three digits."""
     scene = replace(load(name), track=frozenset())
     last = scene.clock.elapsed[-1] / 4
     times = [last / 2, last]
