@@ -179,12 +179,12 @@ def test_two_unlike_records_of_one_run_are_refused(tmp_path: Path) -> None:
 def test_a_failure_half_way_leaves_the_old_files(report: Path, broken: str) -> None:
     """A disk that is full in the middle of writing leaves every old byte and nothing new."""
     before = contents(report)
-    whole = store._encoded if broken.endswith("_encoded") else Path.open
-    calls = 0
+    is_text = broken.endswith("_encoded")
+    whole, calls = store._encoded if is_text else Path.open, 0
 
     def full(*arguments: Any, **named: Any) -> Any:
         nonlocal calls
-        calls += whole is store._encoded or "w" in arguments
+        calls += is_text or "w" in arguments
         if calls == 3:
             raise OSError(28, "No space left on device")
         return whole(*arguments, **named)
