@@ -154,13 +154,14 @@ def test_the_start_is_the_scenes_own() -> None:
 def test_panels_are_kept_for_later_times() -> None:
     """What lies between the start and a time is integrated once at each precision."""
     scene = whole("plain", "r alike")
-    motion_in_balls = WeberBalls(curve_of(scene), solid(scene)[0], WHOLE)
+    curve, body = curve_of(scene), solid(scene)[0]
+    motion_in_balls = WeberBalls(curve, body, WHOLE)
     motion_in_balls.motion([Fraction(3)], 20)
-    panels = list(motion_in_balls._sides[1].until(Fraction(3)))
+    panels = list(course._panels(curve, body, 1).until(Fraction(3)))
     (frames,) = motion_in_balls._frames.values()
     integrals = dict(frames._integrals)
     motion_in_balls.motion([Fraction(2), Fraction(3)], 20)
-    assert motion_in_balls._sides[1].until(Fraction(3)) == panels
+    assert course._panels(curve, body, 1).until(Fraction(3)) == panels
     assert set(frames._integrals) - set(integrals) <= {
         (panel.start, Fraction(2)) for panel in panels
     }
@@ -171,7 +172,7 @@ def test_a_time_that_is_a_ball_is_answered_for_all_of_it() -> None:
     scene = whole("plain", "theta > 0")
     body, _ = solid(scene)
     with ctx.workprec(150):
-        frames = course.Frames(curve_of(scene), body, {}, 150)
+        frames = course.Frames(curve_of(scene), body, 150)
         little = ball(Fraction(1, 10**20))
         around = frames.at(arb(2, little), WHOLE)
         for end in (arb(2) - little, arb(2) + little):
@@ -212,8 +213,8 @@ def test_the_rule_is_wrong_by_less_than_is_said(bits: int) -> None:
     scene = whole("plain", "theta > 0")
     body, _ = solid(scene)
     with ctx.workprec(160):
-        rough = course.Frames(curve_of(scene), body, {}, bits)
-        fine = course.Frames(curve_of(scene), body, {}, 150)
+        rough = course.Frames(curve_of(scene), body, bits)
+        fine = course.Frames(curve_of(scene), body, 150)
         panels = Panels(curve_of(scene), body, 1).until(Fraction(2))
         for panel in panels:
             for end in (panel.end, (2 * panel.start + panel.end) / 3):

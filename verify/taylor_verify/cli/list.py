@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Mapping, Sequence
 from functools import partial
+from typing import Final
 
 from taylor_verify.cli.answer import PASS, Answer
 from taylor_verify.cli.console import Page, bold
@@ -14,6 +15,9 @@ from taylor_verify.scenes.library import ENGINES, EXTREMES, GUIDE, WORST, names
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.files.formats.reading import FORMATS
 from taylor_verify.solvers.registry import remarks, solver_names
+
+# The widest name that has its sentence beside it.
+_WIDEST: Final = 40
 
 
 def answer(options: argparse.Namespace) -> Answer:
@@ -47,9 +51,11 @@ def _text(
     guide_width = max(map(len, guide), default=0)
     for name, purpose in guide.items():
         page.line(f"  {name:{guide_width}}  {purpose}")
-    width = max(map(len, titles), default=0)
     for heading, entries in names_by_group.items():
         page.line(bold(heading))
+        width = max((len(entry) for entry in entries if len(entry) <= _WIDEST), default=_WIDEST)
         for entry in entries:
-            page.line(f"  {entry:{width}}  {titles.get(entry, '')}".rstrip())
+            # A long name, as those of solvers with options, has its sentence below.
+            gap = "  " if len(entry) <= width else "\n" + " " * (width + 4)
+            page.line(f"  {entry:{width}}{gap}{titles.get(entry, '')}".rstrip())
     return page.text()

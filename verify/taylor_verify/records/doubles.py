@@ -11,6 +11,8 @@ if TYPE_CHECKING:
 
 # Decimal digits of a number that a picture needs.
 _DIGITS: Final = 4
+# As many numbers are changed at once: what that takes beside them stays small.
+_PIECE: Final = 2**17
 
 
 @final
@@ -20,8 +22,9 @@ class Doubles(Sequence[float]):
     __slots__ = ("_values",)
 
     def __init__(self, values: Iterable[float] = ()) -> None:
-        # An array of NumPy is faster as a list.
-        self._values = array("d", getattr(values, "tolist", lambda: values)())
+        # An array of NumPy is read as it lies, without a number of Python for each of its own.
+        astype = getattr(values, "astype", None)
+        self._values = array("d", values if astype is None else astype("d").tobytes())
 
     def __len__(self) -> int:
         return len(self._values)
@@ -62,7 +65,16 @@ def four_digits(values: Iterable[float]) -> Doubles:
     """
     import numpy as np
 
-    exact = np.asarray(values if isinstance(values, np.ndarray) else list(values), float)
+    exact = np.array(values if isinstance(values, np.ndarray | Doubles) else list(values), float)
+    for first in range(0, len(exact), _PIECE):
+        piece = exact[first : first + _PIECE]
+        piece[:] = _in_four_digits(piece)
+    return Doubles(exact)
+
+
+def _in_four_digits(exact: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    import numpy as np
+
     rounded = exact.copy()
     with np.errstate(all="ignore"):
         power = np.floor(np.log10(np.abs(exact))) - (_DIGITS - 1)
@@ -76,4 +88,4 @@ def four_digits(values: Iterable[float]) -> Doubles:
     rounded[is_clear] = np.array(texts, dtype=float)[places]
     others = np.flatnonzero(~is_clear)
     rounded[others] = [float(f"{value:.{_DIGITS}g}") for value in exact[others].tolist()]
-    return Doubles(rounded)
+    return rounded

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 
 def replace_files(
-    folder: Path, contents: Mapping[str, str | bytes], stale: Iterable[Path] = ()
+    folder: Path, contents: Mapping[str, str | bytes | Iterator[str]], stale: Iterable[Path] = ()
 ) -> tuple[Path, ...]:
     """Put the contents, by their paths below ``folder``, in place of what is there; remove ``stale``.
 
-    All are first written apart, so that what fails in writing leaves the old files as they were,
-    and none is ever half written. Raises OSError; returns the paths in the order given.
+    A long text may come in pieces. All are first written apart, so that what fails in writing leaves
+    the old files as they were, and none is ever half written. Raises OSError; returns the paths in the
+    order given.
     """
     folder.mkdir(parents=True, exist_ok=True)
     places = {name: folder / name for name in contents}
@@ -23,7 +24,12 @@ def replace_files(
         for name, content in contents.items():
             place = Path(staging, name)
             place.parent.mkdir(parents=True, exist_ok=True)
-            place.write_bytes(content if isinstance(content, bytes) else content.encode())
+            if isinstance(content, bytes):
+                place.write_bytes(content)
+            else:
+                pieces = [content] if isinstance(content, str) else content
+                with place.open("w", encoding="utf-8", newline="") as staged:
+                    staged.writelines(pieces)
         for name, place in places.items():
             place.parent.mkdir(parents=True, exist_ok=True)
             os.replace(Path(staging, name), place)

@@ -59,7 +59,7 @@ def write(folder: Path, verdicts: Iterable[Verdict], records: Iterable[Record]) 
     rows = [row(verdict) for verdict in ordered]
     text = laid_out({**_MADE_BY, "versions": versions(ordered), "verdicts": rows})
     # The verdicts are written last, so that the files they refer to are already there.
-    texts = {
+    texts: dict[str, str | Iterator[str]] = {
         **_record_texts(records),
         TIMINGS: laid_out({**_MADE_BY, **_timings(ordered_runs)}),
         STAMP: _stamp(text.encode()),
@@ -165,16 +165,21 @@ def machine(verdict: Verdict) -> dict[str, Any]:
     return {name: given[name] for name in ("python", *_MACHINE) if name in given}
 
 
-def _record_texts(records: Iterable[Record]) -> dict[str, str]:
-    texts: dict[str, str] = {}
+def _record_texts(records: Iterable[Record]) -> dict[str, Iterator[str]]:
+    """Return the text of each record in pieces: a long one is text only while it is written."""
+    by_name: dict[str, Record] = {}
     for record in records:
         name = record_name(record.scene, record.solver, record.rung)
-        # The numbers of a record stay packed until they are text.
-        gates = [vars(gate) for gate in record.gates]
-        text = laid_out({**_MADE_BY, **vars(record), "gates": gates})
-        if texts.setdefault(name, text) != text:
+        first = by_name.setdefault(name, record)
+        if first is not record and "".join(_pieces_of(first)) != "".join(_pieces_of(record)):
             raise ValueError(f"expected one record a run, got two unlike ones @ {name}")
-    return texts
+    return {name: _pieces_of(record) for name, record in by_name.items()}
+
+
+def _pieces_of(record: Record) -> Iterator[str]:
+    # The numbers of a record stay packed until they are text.
+    gates = [vars(gate) for gate in record.gates]
+    return _pieces({**_MADE_BY, **vars(record), "gates": gates})
 
 
 def _stamp(verdicts: bytes) -> str:
@@ -190,29 +195,62 @@ def _own_records(data: Path) -> list[Path]:
 
 def laid_out(document: Mapping[str, Any]) -> str:
     """Return JSON with a line for every key and for every row of a list of rows."""
-    keys = (f"{_json(key)}: {_value(value)}" for key, value in document.items())
-    return "{" + ",\n ".join(keys) + "}\n"
+    return "".join(_pieces(document))
 
 
-def _value(value: Any) -> str:
+def _pieces(document: Mapping[str, Any]) -> Iterator[str]:
+    """Yield the same in pieces, which are short however many numbers there are."""
+    yield "{"
+    yield from _joined(
+        ",\n ", (_member(key, _value(value), ": ") for key, value in document.items())
+    )
+    yield "}\n"
+
+
+def _value(value: Any) -> Iterator[str]:
     rows = value if isinstance(value, (list, tuple)) else ()
     if rows and all(isinstance(row, dict) for row in rows):
-        return "[\n  " + ",\n  ".join(_json(row, _ROW_ENCODER) for row in rows) + "\n ]"
-    return _json(value)
+        yield "[\n  "
+        yield from _joined(",\n  ", (_json(row, _ROW_ENCODER) for row in rows))
+        yield "\n ]"
+    else:
+        yield from _json(value)
 
 
-def _json(value: Any, encoder: json.JSONEncoder = _ENCODER) -> str:
-    """Return a value as JSON; packed numbers become text a piece at a time."""
+def _json(value: Any, encoder: json.JSONEncoder = _ENCODER) -> Iterator[str]:
+    """Yield a value as JSON; packed numbers become text a piece at a time."""
+    separator = encoder.item_separator
     if isinstance(value, Doubles):
-        pieces = (value[k : k + _PIECE] for k in range(0, len(value), _PIECE))
-        texts = (_json(list(piece), encoder)[1:-1] for piece in pieces)
-        return f"[{encoder.item_separator.join(texts)}]"
-    if isinstance(value, dict) and any(isinstance(each, Doubles) for each in value.values()):
-        members = (
-            f"{_json(key)}{encoder.key_separator}{_json(each, encoder)}"
-            for key, each in value.items()
+        parts = (value[k : k + _PIECE] for k in range(0, len(value), _PIECE))
+        yield "["
+        yield from _joined(separator, ([_encoded(list(part), encoder)[1:-1]] for part in parts))
+        yield "]"
+    elif isinstance(value, dict) and any(isinstance(each, Doubles) for each in value.values()):
+        colon = encoder.key_separator
+        yield "{"
+        yield from _joined(
+            separator,
+            (_member(key, _json(each, encoder), colon) for key, each in value.items()),
         )
-        return f"{{{encoder.item_separator.join(members)}}}"
+        yield "}"
+    else:
+        yield _encoded(value, encoder)
+
+
+def _member(key: str, value: Iterable[str], colon: str) -> Iterator[str]:
+    yield _ENCODER.encode(key) + colon
+    yield from value
+
+
+def _joined(separator: str, texts: Iterable[Iterable[str]]) -> Iterator[str]:
+    """Yield the pieces of all texts, with a separator between two texts."""
+    for number, text in enumerate(texts):
+        if number:
+            yield separator
+        yield from text
+
+
+def _encoded(value: Any, encoder: json.JSONEncoder) -> str:
     try:
         return encoder.encode(value)
     except ValueError:

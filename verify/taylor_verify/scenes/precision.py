@@ -6,6 +6,7 @@ import itertools
 from dataclasses import dataclass
 from decimal import MAX_EMAX, MIN_EMIN, Context, Decimal
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any
 
 from taylor_verify.records.precisions import FORMATS, bits_of
@@ -131,15 +132,19 @@ def dyadic(significand: int, exponent: int) -> Fraction:
     )
 
 
+@lru_cache(maxsize=4096)
 def power_of_two(exponent: int) -> Fraction:
-    return Fraction(2**exponent) if exponent >= 0 else Fraction(1, 2**-exponent)
+    # What is kept is made of Python's integers, whoever asks first.
+    places = int(exponent)
+    return Fraction(1 << places) if places >= 0 else Fraction(1, 1 << -places)
 
 
 def floor_log2(value: Fraction) -> int:
     """Return the largest e with 2^e <= |value|, for a value that is not zero."""
-    size = abs(value)
-    estimate = size.numerator.bit_length() - size.denominator.bit_length()
-    return estimate if power_of_two(estimate) <= size else estimate - 1
+    numerator, denominator = abs(value.numerator), value.denominator
+    estimate = numerator.bit_length() - denominator.bit_length()
+    is_reached = denominator << max(estimate, 0) <= numerator << max(-estimate, 0)
+    return estimate if is_reached else estimate - 1
 
 
 def hexadecimal(value: Fraction) -> str:

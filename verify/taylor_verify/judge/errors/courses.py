@@ -64,9 +64,8 @@ def fitted(compared: Compared, fit: Shifted, course: Course) -> Shifted:
     """Return the least-squares fit along a course, starting from ``fit``."""
     for _ in range(_EVALUATIONS):
         step = course(fit, compared.run.times)
-        better = fit.with_first_order(step)
-        left = max(float(np.max(np.abs(better.error))), compared.doubt / fit.size)
-        if fit.neglects(fit.more + step) <= NEGLIGIBLE * left:
+        better = _by_first_order(compared, fit, step)
+        if better is not None:
             return better
         closer = _closer(compared, fit, fit.more + step)
         if closer is None:
@@ -75,6 +74,22 @@ def fitted(compared: Compared, fit: Shifted, course: Course) -> Shifted:
             return closer
         fit = closer
     return fit
+
+
+def at(compared: Compared, fit: Shifted, shift: Floats) -> Shifted | None:
+    """Return the comparison after this shift of each sample; None if it cannot be computed.
+
+    ``fit`` is the one without a shift.
+    """
+    first_order = _by_first_order(compared, fit, shift / (float(fit.unit) * fit.size))
+    return first_order or compared.evaluated(tuple(map(Fraction, shift.tolist())))
+
+
+def _by_first_order(compared: Compared, fit: Shifted, step: Floats) -> Shifted | None:
+    """Return the fit after a further shift, or None where first order neglects too much of it."""
+    better = fit.with_first_order(step)
+    left = max(float(np.max(np.abs(better.error))), compared.doubt / fit.size)
+    return better if fit.neglects(fit.more + step) <= NEGLIGIBLE * left else None
 
 
 def _closer(compared: Compared, fit: Shifted, step: Floats) -> Shifted | None:

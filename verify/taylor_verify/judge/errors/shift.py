@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from functools import cached_property
 from typing import Any, Final
 
@@ -212,9 +211,9 @@ def _without_strays(compared: Compared, single: Shifted) -> Iterator[_Fits]:
             continue
         shared = compared.without(strays)
         run, shared_course = shared.run, np.delete(course, strays)
-        line = shared.evaluated(tuple(Fraction(c) for c in shared_course.tolist()))
+        start = shared.fit(run.truth, run.rates, run.unshifted)
+        line = courses.at(shared, start, shared_course)
         if line is not None:
-            start = shared.fit(run.truth, run.rates, run.unshifted)
             yield _Fits.of(shared, start, line, strays)
 
 

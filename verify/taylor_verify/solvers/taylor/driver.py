@@ -73,7 +73,7 @@ class Taylor(Solver):
     def solve(self, problem: Problem) -> Trajectory:
         began = perf_counter()
         numbers = arithmetic(problem.rung)
-        is_optimised = self.is_optimised or pays(problem.form, problem.rung, _is_long(problem))
+        is_optimised = self.is_optimised or pays(problem.form, problem.rung, problem)
         integrator = compiled(problem.form, problem.rung, self.tolerance, is_optimised)
         compile_seconds = perf_counter() - began
         way = (_way if len(problem.times) <= _MOST_INSTANTS else Way)(integrator, problem)
@@ -176,12 +176,15 @@ def equations(form: Form, coefficients: Sequence[Any]) -> list[tuple[Any, Any]]:
     ]
 
 
-def pays(form: Form, rung: Rung, is_long: bool = True) -> bool:
-    """Return True where one way costs less with optimised code, its optimising included."""
+def pays(form: Form, rung: Rung, problem: Problem | None = None) -> bool:
+    """Return True where a way costs less with optimised code, its optimising included.
+
+    The way is that of a problem of this form, or a long one.
+    """
     if arithmetic(rung).is_quick_plain:
         # One code for short and long ways, so that a longer one begins as a shorter one does.
         return len(form.states) <= _LARGEST_STRAIGHT_LINE
-    return is_long
+    return problem is None or _is_long(problem)
 
 
 def _foreseen(problem: Problem) -> float:

@@ -143,7 +143,7 @@ class Way:
             steps += int(taken)
             rows.append(reached[1:] if rows else reached)
             outcome = outcome_of(status)
-            if outcome is Outcome.FINISHED and not np.isfinite(reached).all():
+            if outcome is Outcome.FINISHED and not _is_finite(reached):
                 outcome = Outcome.NON_FINITE
             if outcome is not Outcome.FINISHED:
                 break
@@ -203,6 +203,16 @@ def _outcomes() -> dict[Any, Outcome]:
         hy.taylor_outcome.err_nf_state: Outcome.NON_FINITE,
         hy.taylor_outcome.step_limit: Outcome.STEP_LIMIT,
     }
+
+
+def _is_finite(rows: Rows) -> bool:
+    """Return True if all numbers of the rows are finite."""
+    if rows.dtype == float:
+        # A finite sum of squares has no other terms, and a sum that is not may have overflowed.
+        numbers = rows.ravel()
+        if isfinite(numbers.dot(numbers)):
+            return True
+    return bool(np.isfinite(rows).all())
 
 
 def _look_count(radians: float) -> int:

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from functools import cache
+from functools import cache, lru_cache
 from math import ceil, log2
 from typing import Any, NamedTuple, final
 
@@ -42,12 +42,11 @@ class WeberBalls(Enclosed):
     def __init__(self, curve: Curve, body: ImmersedBody, track: frozenset[str]) -> None:
         self._curve, self._body, self._track = curve, body, track
         self.by_quadrature = bool(track)
-        self._sides: dict[int, Panels] = {}
         self._frames: dict[int, Frames] = {}
 
     def enclose(self, elapsed: Sequence[Time], bits: int) -> Enclosure:
         if bits not in self._frames:
-            self._frames[bits] = Frames(self._curve, self._body, self._sides, bits)
+            self._frames[bits] = Frames(self._curve, self._body, bits)
         frames, start = self._frames[bits], self._curve.start
         # The start as given: a zero of the start must be exactly zero.
         given_start = {
@@ -72,10 +71,8 @@ class _End(NamedTuple):
 class Frames:
     """The motion at one precision, to be used at that precision."""
 
-    def __init__(
-        self, curve: Curve, body: ImmersedBody, sides: dict[int, Panels], bits: int
-    ) -> None:
-        self._curve, self._body, self._sides, self._bits = curve, body, sides, bits
+    def __init__(self, curve: Curve, body: ImmersedBody, bits: int) -> None:
+        self._curve, self._body, self._bits = curve, body, bits
         self._motion = Quotients(curve)
         self._integrands = Integrands.of(body, self._motion.F, ball)
         self._ends: dict[int, list[_End]] = {}
@@ -98,9 +95,7 @@ class Frames:
         """The axes at the start and at a time, and phi and Z then."""
         middle = exactly(t.mid())
         side = 1 if middle > 0 else -1
-        if side not in self._sides:
-            self._sides[side] = Panels(self._curve, self._body, side)
-        panels = self._sides[side].until(middle)
+        panels = _panels(self._curve, self._body, side).until(middle)
         number = next(k for k, panel in enumerate(panels) if abs(panel.end) >= abs(middle))
         panel, begin = panels[number], self._begins(side, panels, number)
         azimuth, rise = self._integral(panel, middle)
@@ -153,6 +148,12 @@ class Frames:
             half * (azimuth + arb(0, 1) * part * panel.azimuth),
             half * (rise + arb(0, 1) * part * panel.rise),
         )
+
+
+# No panel depends on the precision of the motion: one body's rungs may share them.
+@lru_cache(maxsize=8)
+def _panels(curve: Curve, body: ImmersedBody, side: int) -> Panels:
+    return Panels(curve, body, side)
 
 
 @cache
