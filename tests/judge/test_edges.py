@@ -10,17 +10,21 @@ from typing import Any
 import numpy as np
 import pytest
 from builders.verdicts import row
+from mpmath import mpf
 from scipy.spatial.transform import Rotation
 
-from taylor_verify.judge.causes import tensor
+from taylor_verify.judge.causes import kinematics, tensor
 from taylor_verify.judge.causes.equations import Equations
+from taylor_verify.judge.conventions.readings import rotations
 from taylor_verify.judge.conventions.search import conventions
 from taylor_verify.judge.conventions.worlds import worlds
-from taylor_verify.judge.errors.shift import Shift
+from taylor_verify.judge.errors.compared import Compared, Shifted
+from taylor_verify.judge.errors.shift import LEAVES, Shift, strays_from
 from taylor_verify.judge.files.coverage import Extent, span_notes
 from taylor_verify.judge.floor.carrying import Carrying, carrying
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.judge.series import files
+from taylor_verify.judge.velocities import momenta, velocities
 from taylor_verify.records.reason import Kind
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import rung
@@ -88,3 +92,74 @@ def test_a_lower_order_is_lower_by_a_half(order: float, count: int) -> None:
     ]
     notes = list(files._notes([], [], [], [], orders))
     assert sum("a method of its own" in note for note in notes) == count
+
+
+def test_the_reach_of_an_answer_is_a_distance() -> None:
+    """An answer that goes as far as (3, 4, 0) from its first row reaches 5, over the scale of 2."""
+    rows = np.array([[mpf(x) for x in row] for row in ([1, 1, 1], [4, 5, 1], [0, 1, 1])])
+    run: Any = SimpleNamespace(answer={"omega": rows}, elapsed=range(3))
+    errors: Any = SimpleNamespace(quantity="omega", parts={"omega": mpf(2)})
+    assert Compared(run, errors).reach == 5 / 2
+
+
+@pytest.mark.parametrize(("rate", "is_finite"), [(1e120, True), (1e160, False)])
+def test_a_comparison_is_finite_while_its_squares_are(rate: float, is_finite: bool) -> None:
+    """The squares of all rates are summed in float64."""
+    one = np.ones((1, 3))
+    for moving in ((one, rate * one), (rate * one, one)):
+        fit = Shifted((Fraction(0),), one, *moving, 1.0, Fraction(1), np.zeros(1))
+        assert fit.is_finite == is_finite
+
+
+@pytest.mark.parametrize(("off", "strays"), [(5.0, ()), (20.0, (7,))])
+def test_a_stray_lies_off_by_a_part_of_the_shift(off: float, strays: tuple[int, ...]) -> None:
+    """A shift of 10 at the speed 10 makes 100: a tenth of that is not off, however quiet the others."""
+    course, speed = np.full(40, 10.0), np.full(40, 10.0)
+    assert 5.0 < LEAVES * 100 < 20.0
+    shifts = course + np.where(np.arange(40) == 7, off / 10, 0.0)
+    assert strays_from(course, shifts, speed, np.full(40, 1e-9)) == strays
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_turn_keeps_the_length_of_a_quaternion(sign: int) -> None:
+    """Its rate is perpendicular to it, with omega in space axes and in those of the body."""
+    omega, q = np.array([[1.0, 2.0, 3.0]]), np.array([[0.5, -0.5, 0.25, 1.0]])
+    assert np.sum(q * kinematics._times(omega, q, sign)) == 0
+
+
+@pytest.mark.parametrize("angle", [1e-3, 0.5, 3.0])
+def test_attitudes_are_apart_by_their_angle(angle: float) -> None:
+    """The angle is read from quaternions of any length and sign."""
+    q = Rotation.from_rotvec([[0.1, -0.2, 0.3]] * 2)
+    other = q * Rotation.from_rotvec([[0, 0, 0], [0, 0, angle]])
+    rows = (one.as_quat(scalar_first=True) for one in (q, other))
+    first, second = rows
+    assert kinematics._angle(first, -2 * second) == pytest.approx(angle, rel=1e-12)
+
+
+@pytest.mark.parametrize("zero", [0.0, mpf(0)])
+def test_a_quaternion_of_no_length_is_no_rotation(zero: Any) -> None:
+    """Its matrix is not a number, and nothing is divided by zero."""
+    (R,) = rotations(np.array([[zero] * 4]))
+    assert all(entry != entry for entry in R.flat)
+
+
+def test_velocities_stand_for_momenta() -> None:
+    """The momenta of the velocities are those that the velocities were made of."""
+    body = load("kirchhoff/general-body").body
+    own = {
+        name: np.array([[mpf(k + i) for i in range(3)] for k in (1, 5)])
+        for name in body.STATE.MOVING
+    }
+    back = momenta(body, velocities(body, own))
+    assert all(np.max(abs(back[name] - own[name])) <= 1e-12 for name in own)
+
+
+def test_the_slack_of_a_clock_grows_with_its_start() -> None:
+    """A late clock is rounded as its own size is."""
+    slacks = []
+    for start in map(Fraction, (0, 990)):
+        times = tuple(start + k for k in range(11))
+        scene = replace(load("euler/generic"), clock=Clock(start, times))
+        slacks.append(Extent.of(scene, times, rung("f64")).slack)
+    assert slacks[1] == 100 * slacks[0] > 0
