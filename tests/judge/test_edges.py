@@ -9,23 +9,26 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.verdicts import row
+from builders.verdicts import ATTAINABLE, row
 from mpmath import mpf
 from scipy.spatial.transform import Rotation
 
-from taylor_verify.judge.causes import kinematics, tensor
+from taylor_verify.judge.causes import answers, kinematics, tensor
 from taylor_verify.judge.causes.equations import Equations
+from taylor_verify.judge.causes.search import likely_causes
 from taylor_verify.judge.conventions.readings import rotations
 from taylor_verify.judge.conventions.search import conventions
 from taylor_verify.judge.conventions.worlds import worlds
 from taylor_verify.judge.errors.compared import Compared, Shifted
 from taylor_verify.judge.errors.shift import LEAVES, Shift, strays_from
 from taylor_verify.judge.files.coverage import Extent, span_notes
+from taylor_verify.judge.files.stored import storing
 from taylor_verify.judge.floor.carrying import Carrying, carrying
 from taylor_verify.judge.judgement import Judgement
-from taylor_verify.judge.series import files
+from taylor_verify.judge.series import files, order
 from taylor_verify.judge.velocities import momenta, velocities
 from taylor_verify.records.reason import Kind
+from taylor_verify.records.status import Status
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
@@ -53,11 +56,15 @@ def test_the_growth_of_an_error_is_known_until_the_end() -> None:
     assert Carrying((0.0, 0.25, 0.5, 1.0), (1.0, 10.0, 20.0, 40.0)).pace == 40
 
 
-def test_a_file_is_late_against_the_start_of_its_scene() -> None:
-    """A first row at 7 is late by 2 where the scene starts at 5."""
+@pytest.mark.parametrize("order", [1, -1])
+@pytest.mark.parametrize(("instants", "rows"), [((5, 6, 7), (7, 8, 9)), ((5, 3, 1), (7, 6, 4))])
+def test_a_file_is_late_against_the_start_of_its_scene(
+    instants: tuple[int, ...], rows: tuple[int, ...], order: int
+) -> None:
+    """A row at 7 is late by 2 where the scene starts at 5, forwards or back, first or last in the file."""
     plain = load("euler/generic")
-    scene = replace(plain, clock=Clock(Fraction(5), tuple(map(Fraction, (5, 6, 7)))))
-    words = [world.words for world in worlds(scene, tuple(map(Fraction, (7, 8, 9))))]
+    scene = replace(plain, clock=Clock(Fraction(5), tuple(map(Fraction, instants))))
+    words = [world.words for world in worlds(scene, tuple(map(Fraction, rows[::order])))]
     assert "t is late by 2" in words
 
 
@@ -163,3 +170,42 @@ def test_the_slack_of_a_clock_grows_with_its_start() -> None:
         scene = replace(load("euler/generic"), clock=Clock(start, times))
         slacks.append(Extent.of(scene, times, rung("f64")).slack)
     assert slacks[1] == 100 * slacks[0] > 0
+
+
+def test_a_printed_number_is_known_to_half_its_last_digit() -> None:
+    """Six significant digits of a number between 1 and 10 leave 5e-6."""
+    file: Any = SimpleNamespace(is_single_precision=False, digits=6)
+    stored = storing(file, rung("f64"))
+    assert stored is not None
+    assert stored.u == pytest.approx(5e-6)
+
+
+def sampled(step: float, **changed: Any) -> Any:
+    """A file of a series, with one row of which nothing else is asked."""
+    judged = SimpleNamespace(file=SimpleNamespace(name="mine.csv", digits=None))
+    verdict = row(**changed)
+    return SimpleNamespace(roundings=4.0, step=step, judged=judged, row=lambda quantity: verdict)
+
+
+def test_more_steps_than_rows_raise_the_floor() -> None:
+    """A row is judged as one step; an integrator that makes sixteen has four times its floor."""
+    sample = sampled(0.25)
+    (point,) = order._points([sample], [sample.row("omega")])
+    assert point.attainable == 4 * ATTAINABLE
+
+
+def test_an_order_needs_no_floor() -> None:
+    """Where no floor is known, all errors count."""
+    steps = (0.1, 0.05, 0.025, 0.0125)
+    samples = [sampled(step, max=step**4, attainable=None) for step in steps]
+    assert order._order("omega", samples).order == pytest.approx(4)
+
+
+def test_a_file_of_one_impulse_has_no_cause_in_the_motion() -> None:
+    """Without y no row is a state of the motion, the row at the start included."""
+    scene = load("kirchhoff/general-body")
+    x = np.ones((len(scene.clock.instants), 3))
+    failed = row(quantity="impulse", verdict=Status.FAIL)
+    material = answers._material(scene, {"x": x}, None, rung("f64"), [failed])
+    assert "impulse" in material.failed
+    assert likely_causes(material, scene) == ()
