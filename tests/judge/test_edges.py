@@ -15,21 +15,24 @@ from scipy.spatial.transform import Rotation
 
 from taylor_verify.judge.causes import answers, kinematics, tensor
 from taylor_verify.judge.causes.equations import Equations
+from taylor_verify.judge.causes.material import Pairs
 from taylor_verify.judge.causes.search import likely_causes
 from taylor_verify.judge.conventions.readings import rotations
 from taylor_verify.judge.conventions.search import conventions
 from taylor_verify.judge.conventions.worlds import worlds
+from taylor_verify.judge.errors import state
 from taylor_verify.judge.errors.compared import Compared, Shifted
 from taylor_verify.judge.errors.shift import LEAVES, Shift, strays_from
 from taylor_verify.judge.files.coverage import Extent, span_notes
 from taylor_verify.judge.files.stored import storing
 from taylor_verify.judge.floor.carrying import Carrying, carrying
 from taylor_verify.judge.judgement import Judgement
+from taylor_verify.judge.rounding_class import has_grown
 from taylor_verify.judge.series import files, order
 from taylor_verify.judge.velocities import momenta, velocities
 from taylor_verify.records.reason import Kind
 from taylor_verify.records.status import Status
-from taylor_verify.scenes.motion import Clock
+from taylor_verify.scenes.motion import Clock, Motion
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 
@@ -209,3 +212,26 @@ def test_a_file_of_one_impulse_has_no_cause_in_the_motion() -> None:
     material = answers._material(scene, {"x": x}, None, rung("f64"), [failed])
     assert "impulse" in material.failed
     assert likely_causes(material, scene) == ()
+
+
+def test_sizes_are_those_of_the_largest_vectors() -> None:
+    """A defect is relative to the motion, however small that is; to 1 where nothing moves."""
+    right = Equations.of(load("kirchhoff/general-body").body)
+    states = np.array([[3e-3, 4e-3, 0, 0, 0, 0], [1e-3, 0, 0, 0, 0, 0]])
+    sizes = Pairs(right, states[:1], states[1:], np.ones(1)).sizes
+    assert sizes == pytest.approx([5e-3] * 3 + [1] * 3)
+
+
+def test_the_width_of_a_truth_is_relative_to_its_vector() -> None:
+    """A vector of length 5 that is known to 1e-10 is known to 5e-10."""
+    truth = Motion({"omega": np.array([[mpf(3), mpf(4), mpf(0)]])}, np.array([mpf(1e-10)]))
+    asked: Any = SimpleNamespace(name="omega", unit="1", groups=("omega",))
+    distances = state._vectors(asked, truth, truth, None)
+    assert float(distances.widths["omega"][0]) == pytest.approx(5e-10)
+
+
+@pytest.mark.parametrize(("error", "level"), [(1.0, 0.0), (0.0, 1.0)])
+def test_ten_times_an_error_is_in_its_class(error: float, level: float) -> None:
+    """An error has grown when it is above ten times the former one and the level."""
+    assert not has_grown(error, 10.0, level)
+    assert has_grown(error, 10.000001, level)
