@@ -90,7 +90,9 @@ def _agree(scenes: list[Scene], shifts: Any, noise: float) -> set[str]:
             kinds |= {verdict.shift or ""}
             for name in NUMBERS + SHIFTS:
                 expected = getattr(other, name)
-                assert getattr(verdict, name) == (expected and pytest.approx(expected, rel=CLOSE))
+                assert getattr(verdict, name) == (
+                    expected and pytest.approx(expected, rel=CLOSE, abs=0)
+                )
             floor, expected = verdict.reason.floor, other.reason.floor
             assert floor is not None
             assert expected is not None
@@ -123,7 +125,7 @@ def test_a_quaternion_is_a_unit_quaternion_to_its_roundings() -> None:
     assert excess is not None
     q = rows[3:, 2, -1]
     square = sum(Fraction(entry) ** 2 for entry in q.tolist())
-    assert excess[2, -1] == pytest.approx(float(square - 1) / 2, rel=CLOSE)
+    assert excess[2, -1] == pytest.approx(float(square - 1) / 2, rel=CLOSE, abs=0)
     assert are_unit(excess, base, ROUNDOFF).tolist() == [True, True, False]
 
 

@@ -17,10 +17,12 @@ from taylor_verify.judge.causes import answers, kinematics, tensor
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.material import Pairs
 from taylor_verify.judge.causes.search import likely_causes
+from taylor_verify.judge.conventions.fits import EXPLAINS
 from taylor_verify.judge.conventions.readings import rotations
-from taylor_verify.judge.conventions.search import conventions
+from taylor_verify.judge.conventions.search import _Search, conventions
 from taylor_verify.judge.conventions.worlds import worlds
 from taylor_verify.judge.errors import state
+from taylor_verify.judge.errors.balances import ClockWork
 from taylor_verify.judge.errors.compared import Compared, Shifted
 from taylor_verify.judge.errors.shift import LEAVES, Shift, strays_from
 from taylor_verify.judge.files.coverage import Extent, span_notes
@@ -180,7 +182,7 @@ def test_a_printed_number_is_known_to_half_its_last_digit() -> None:
     file: Any = SimpleNamespace(is_single_precision=False, digits=6)
     stored = storing(file, rung("f64"))
     assert stored is not None
-    assert stored.u == pytest.approx(5e-6)
+    assert stored.u == pytest.approx(5e-6, abs=0)
 
 
 def sampled(step: float, **changed: Any) -> Any:
@@ -227,7 +229,7 @@ def test_the_width_of_a_truth_is_relative_to_its_vector() -> None:
     truth = Motion({"omega": np.array([[mpf(3), mpf(4), mpf(0)]])}, np.array([mpf(1e-10)]))
     asked: Any = SimpleNamespace(name="omega", unit="1", groups=("omega",))
     distances = state._vectors(asked, truth, truth, None)
-    assert float(distances.widths["omega"][0]) == pytest.approx(5e-10)
+    assert float(distances.widths["omega"][0]) == pytest.approx(5e-10, abs=0)
 
 
 @pytest.mark.parametrize(("error", "level"), [(1.0, 0.0), (0.0, 1.0)])
@@ -235,3 +237,34 @@ def test_ten_times_an_error_is_in_its_class(error: float, level: float) -> None:
     """An error has grown when it is above ten times the former one and the level."""
     assert not has_grown(error, 10.0, level)
     assert has_grown(error, 10.000001, level)
+
+
+@pytest.mark.parametrize("name", ["euler/gyrostat-moment", "kirchhoff/constant-loads"])
+def test_rates_are_quadratic(name: str) -> None:
+    """With the 1 in their last column, rates of twice the rows are four times as large, loads included."""
+    right = replace(Equations.of(load(name).body), damping=0.5, drag=0.25)
+    z = np.append(np.arange(1.0, right.moving + 1), 1.0)[None]
+    assert np.any(right.load)
+    assert right.rates(2 * z) == pytest.approx(4 * right.rates(z))
+
+
+@pytest.mark.parametrize(("turns", "square"), [(0.0, 1 / 2), (400.0, 2.0)])
+def test_a_drift_of_the_clock_is_its_integral(turns: float, square: float) -> None:
+    """Where the work is in proportion to time, P = t, N steps leave u r (N/3)^(1/2) by t = 1.
+
+    The square of r is 1/2 for short steps, and 2 for steps of a radian.
+    """
+    P = np.linspace(0.0, 1.0, 1001)[:, None]
+    work = ClockWork(1.0, mpf(1), np.array([turns]), P)
+    (drift,) = work.drift(Fraction(1, 2**53), 400, np.ones(1), mpf(1))
+    assert drift * 2**53 == pytest.approx((square * 400 / 3) ** 0.5, rel=1e-3)
+
+
+@pytest.mark.parametrize(("part", "is_explained"), [(0.9, True), (1.1, False)])
+def test_an_error_near_roundoff_needs_no_convention(part: float, is_explained: bool) -> None:
+    """Another convention has to leave a hundredth, which it could not below a hundred times the noise."""
+    nothing: Any = None
+    search = _Search(nothing, nothing, rung("f64"), ())
+    search.__dict__["plain"] = SimpleNamespace(worst=part * search.noise / EXPLAINS)
+    assert EXPLAINS == 1 / 100
+    assert search.is_explained == is_explained
