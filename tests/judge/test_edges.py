@@ -15,10 +15,10 @@ from scipy.spatial.transform import Rotation
 
 from taylor_verify.judge.causes import answers, kinematics, tensor
 from taylor_verify.judge.causes.equations import Equations
-from taylor_verify.judge.causes.material import Pairs
+from taylor_verify.judge.causes.material import Material, Pairs
 from taylor_verify.judge.causes.search import likely_causes
 from taylor_verify.judge.conventions.fits import EXPLAINS
-from taylor_verify.judge.conventions.readings import rotations
+from taylor_verify.judge.conventions.readings import readings, rotations
 from taylor_verify.judge.conventions.search import _Search, conventions
 from taylor_verify.judge.conventions.worlds import worlds
 from taylor_verify.judge.errors import state
@@ -268,3 +268,31 @@ def test_an_error_near_roundoff_needs_no_convention(part: float, is_explained: b
     search.__dict__["plain"] = SimpleNamespace(worst=part * search.noise / EXPLAINS)
     assert EXPLAINS == 1 / 100
     assert search.is_explained == is_explained
+
+
+@pytest.mark.parametrize(("elapsed", "error"), [((0.0, 1.0), 0.5), ((1.0, 2.0), None)])
+def test_the_error_at_the_start_is_that_of_its_row(
+    elapsed: tuple[float, float], error: float | None
+) -> None:
+    """It is relative to the start of the scene; a file without a row there has none."""
+    right, start = Equations.of(load("euler/generic").body), np.array([1.0, 2.0, 3.0])
+    states = np.array([1.5 * start, start])
+    material = Material(right, start, np.array([1.0, 0, 0, 0]), np.array(elapsed), states)
+    assert material.start_error == error
+
+
+@pytest.mark.parametrize("number", [float, mpf])
+def test_units_of_angular_velocity(number: Any) -> None:
+    """A turn is 2 pi, a degree its 360th part; a turn in a minute is a 60th of it in a second."""
+    parts = {
+        "": 1 / (2 * np.pi),
+        "in degrees per unit of time": 1 / 360,
+        "in turns per unit of time": 1,
+        "in turns per minute, the unit of time being the second": 1 / 60,
+    }
+    rows, R = np.array([[number(0), number(3), number(0)]]), np.eye(3)[None]
+    plain = [reading for reading in readings("omega") if "space" not in "".join(reading.words)]
+    assert len(plain) == len(parts)
+    for reading, (unit, part) in zip(plain, parts.items(), strict=True):
+        assert "".join(reading.words) == f"w1 w2 w3 are {unit}" * bool(unit)
+        assert float(reading.read(rows, R)[0, 1]) == pytest.approx(3 * 2 * np.pi * part)
