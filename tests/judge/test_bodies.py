@@ -13,7 +13,6 @@ from taylor_verify.judge.bodies.floor import floors
 from taylor_verify.judge.bodies.measured import measured
 from taylor_verify.judge.bodies.shifts import Errors
 from taylor_verify.judge.bodies.verdicts import Run, are_unit, gates, verdicts
-from taylor_verify.judge.errors.courses import NEGLIGIBLE
 from taylor_verify.judge.initial import with_initial
 from taylor_verify.judge.judgement import judgement
 from taylor_verify.models.bodies import Bodies
@@ -133,6 +132,6 @@ def test_a_quaternion_is_a_unit_quaternion_to_its_roundings() -> None:
 def test_first_order_suffices_where_it_neglects_little(part: float, suffices: bool) -> None:
     """It neglects c^2 a/2, at most a sixteenth of what remains in a component; nothing where c is 0."""
     one, zero = np.ones((1, 2)), np.zeros((3, 1, 2))
-    course = np.array([[0.0, (2 * part * NEGLIGIBLE / 3**0.5) ** 0.5]])
+    course = np.array([[0.0, (2 * part / 16 / 3**0.5) ** 0.5]])
     errors = Errors(zero, zero, one, one, one)
     assert errors.is_first_order(course, one if part else 0 * one, True).tolist() == [suffices]

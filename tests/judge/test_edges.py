@@ -13,15 +13,17 @@ from builders.verdicts import ATTAINABLE, row
 from mpmath import mpf
 from scipy.spatial.transform import Rotation
 
-from taylor_verify.judge.causes import answers, kinematics, tensor
+from taylor_verify.judge.causes import answers, gyroscopic, kinematics, tensor
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.material import Material, Pairs
+from taylor_verify.judge.causes.readings import omega_reading
 from taylor_verify.judge.causes.search import likely_causes
+from taylor_verify.judge.causes.single_precision import single_precision
 from taylor_verify.judge.conventions.fits import EXPLAINS
 from taylor_verify.judge.conventions.readings import readings, rotations
 from taylor_verify.judge.conventions.search import _Search, conventions
 from taylor_verify.judge.conventions.worlds import worlds
-from taylor_verify.judge.errors import state
+from taylor_verify.judge.errors import courses, state
 from taylor_verify.judge.errors.balances import ClockWork
 from taylor_verify.judge.errors.compared import Compared, Shifted
 from taylor_verify.judge.errors.shift import LEAVES, Shift, strays_from
@@ -296,3 +298,75 @@ def test_units_of_angular_velocity(number: Any) -> None:
     for reading, (unit, part) in zip(plain, parts.items(), strict=True):
         assert "".join(reading.words) == f"w1 w2 w3 are {unit}" * bool(unit)
         assert float(reading.read(rows, R)[0, 1]) == pytest.approx(3 * 2 * np.pi * part)
+
+
+@pytest.mark.parametrize(("size", "count"), [(4.0, 1), (100.0, 0)])
+def test_roundings_of_float32_are_of_its_size(size: float, count: int) -> None:
+    """A ball keeps its omega: float32 rows that walk by some roundings show float32, by a hundred not."""
+    right = Equations(np.eye(3), np.zeros(3), damping=0.0)
+    steps = np.random.default_rng(1).standard_normal((200, 3)) * size * 2.0**-24
+    states = (np.array([1.0, 0.7, 0.3]) + np.cumsum(steps, axis=0)).astype(np.float32)
+    failed = {"omega": row(max=1e-3)}
+    times, still = np.arange(200.0), np.array([1.0, 0, 0, 0])
+    material = Material(right, states[0], still, times, states.astype(float), failed=failed)
+    with np.errstate(all="ignore"):  # as everywhere in a search for causes
+        assert len(list(single_precision(material))) == count
+
+
+def test_what_space_axes_leave_is_a_part_of_the_error() -> None:
+    """At the start they leave one error over the other: here 1e-7 of the size of omega, over its own."""
+    start, turn = np.array([1.0, 2.0, 3.0]), Rotation.from_rotvec([0.1, 0.2, -0.3])
+    q = turn.as_quat(scalar_first=True)
+    in_space = turn.apply(start) * (1 + 1e-7)
+    right = Equations.of(load("euler/generic").body)
+    material = Material(
+        *(right, start, q, np.zeros(1), in_space[None], q[None]), failed={"omega": row()}
+    )
+    ((cause,), read, _) = omega_reading(material, lambda _: [])
+    before = np.linalg.norm(in_space - start) / np.linalg.norm(start)
+    assert read.start_error == pytest.approx(1e-7, abs=0, rel=1e-6)
+    assert cause.leaves == pytest.approx(1e-7 / before, abs=0, rel=1e-6)
+
+
+def test_units_of_time_are_as_long_as_their_names() -> None:
+    """A file may count time in any of these units, for a scene in seconds."""
+    scene = load("euler/generic")
+    lengths = {
+        world.time_words[0].partition("(")[2].partition(" for")[0]: world.scale
+        for world in worlds(scene, scene.clock.instants)
+        if world.scale != 1 and not world.shift
+    }
+    names = ("milli", "micro", "nano")
+    parts = {f"{name}seconds": Fraction(1, 1000**k) for k, name in enumerate(names, 1)}
+    assert lengths == parts | {"minutes": 60, "hours": 3600, "days": 86400}
+
+
+def test_an_implicit_step_is_one_of_newton() -> None:
+    """It solves the linear part of backward Euler: the rest is h d x I d, with d the change of omega."""
+    right, h = Equations.of(load("euler/gyrostat-moment").body), np.array([[0.25]])
+    omega = np.array([[1.0, -2.0, 0.5]])
+    after = gyroscopic._implicit(right, omega, h)
+    change = after - omega
+    rest = change @ right.tensor - h * gyroscopic._torque(right, after)
+    assert rest == pytest.approx(h * np.cross(change, change @ right.tensor))
+
+
+def test_a_search_for_a_shift_leaves_no_gap() -> None:
+    """Every shift up to eight radians of turn is within a quarter of a radian of one that is tried."""
+    tried: list[float] = []
+    fit: Any = SimpleNamespace(
+        **{"error": np.ones((3, 1)), "size": 1.0, "rate": 2.0, "unit": Fraction(1), "left": 1.0},
+        weight=np.ones(3),
+    )
+
+    def left_by(shifts: Any) -> list[float]:
+        tried.extend(float(shift[-1]) * fit.rate for shift in shifts)
+        return [1.0] * len(shifts)
+
+    compared: Any = SimpleNamespace(
+        run=SimpleNamespace(times=np.linspace(0, 1, 3)), left_by=left_by, evaluated=lambda _: None
+    )
+    assert courses.best_start(compared, fit, courses.constant) is fit
+    tried.sort()
+    assert tried[0] <= -8 < 8 <= tried[-1]
+    assert np.max(np.diff(tried)) <= 1 / 2
