@@ -13,7 +13,7 @@ from builders.verdicts import ATTAINABLE, row
 from mpmath import mpf
 from scipy.spatial.transform import Rotation
 
-from taylor_verify.judge.causes import answers, gyroscopic, kinematics, tensor
+from taylor_verify.judge.causes import answers, gyroscopic, kinematics, tensor, terms
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.material import Material, Pairs
 from taylor_verify.judge.causes.readings import omega_reading
@@ -370,3 +370,30 @@ def test_a_search_for_a_shift_leaves_no_gap() -> None:
     tried.sort()
     assert tried[0] <= -8 < 8 <= tried[-1]
     assert np.max(np.diff(tried)) <= 1 / 2
+
+
+def test_what_is_along_the_motion_is_not_across() -> None:
+    """Of a defect, the part in the direction of the exact motion is taken out, and that alone."""
+    right = Equations.of(load("euler/generic").body)
+    begin = np.array([[1.0, -2.0, 0.5], [0.3, 0.7, -1.0]])
+    pairs = Pairs(right, begin, begin, np.full(2, 0.1))
+    along = right.rates(np.column_stack([pairs.flow, np.ones(2)]))[:, :3]
+    beside = np.cross(along, [1.0, 2.0, 3.0])
+    assert tensor._across(pairs, 3 * along) == pytest.approx(0 * along, abs=1e-12)
+    assert tensor._across(pairs, 3 * along + beside) == pytest.approx(beside)
+
+
+@pytest.mark.parametrize("known", [terms._RIGID, terms._FLUID])
+def test_a_term_of_the_other_sign_is_as_far_off_as_none(known: Any) -> None:
+    """Rates with a term of the other sign and sound ones have those without the term in their middle."""
+    name = "euler/full-tensor" if known is terms._RIGID else "kirchhoff/general-body"
+    sound = Equations.of(load(name).body)
+    z = np.append(np.arange(1.0, sound.moving + 1), 1.0)[None]
+    rates = {words: replace(sound, **weights).rates(z) for words, _, weights in known}
+    expected = sound.rates(z)
+    back = rates.pop("motion back in time", -expected)
+    assert back == pytest.approx(-expected)
+    each = list(rates.values())
+    for lacking, turned in zip(each[::2], each[1::2], strict=True):
+        assert turned + expected == pytest.approx(2 * lacking)
+        assert np.any(lacking != expected)
