@@ -150,7 +150,15 @@ def test_a_term_of_the_other_sign_is_as_far_off_as_none(known: Any) -> None:
 
 @pytest.mark.parametrize(
     ("weights", "name"),
-    [((0.0, 1.0), None), *((weights, name) for name, _, weights in kinematics._WRONG)],
+    [
+        ((0.0, 1.0), None),
+        ((1.0, 0.0), "attitude kinematics in the wrong axes"),
+        ((0.0, -1.0), "attitude turned backwards"),
+        ((-1.0, 0.0), "transposed attitude"),
+        ((0.0, 0.0), "attitude stands still"),
+        ((0.0, 2.0), "attitude turns twice as fast"),
+        ((0.0, 0.5), "attitude turns half as fast"),
+    ],
 )
 def test_wrong_kinematics_explain_themselves_alone(
     weights: tuple[float, float], name: str | None
