@@ -62,6 +62,14 @@ def test_a_seed_draws_the_same_mutants() -> None:
         assert one.before != one.after
 
 
+def test_mutants_of_other_modules_change_no_draw() -> None:
+    """Of a draw of two rooms, those of one room are the first that are drawn of it alone."""
+    both = drawn(["judge/floor", "judge/series"], 12, seed=1)
+    of_floor = [one for one in both if one.path.startswith("judge/floor")]
+    assert 0 < len(of_floor) < 12
+    assert of_floor == drawn(["judge/floor"], len(of_floor), seed=1)
+
+
 def test_the_mutants_of_a_line_are_those_that_are_drawn_there() -> None:
     """A line can be tried again by its number."""
     (one,) = drawn(["judge/floor"], 1, seed=1)

@@ -94,6 +94,8 @@ def test_a_wrong_step_is_named_and_no_order_is_stated() -> None:
     assert measured.order is None
     assert measured.suspect == f"{HALVED[3]:.4g}.csv"
     assert measured.suspect_step == pytest.approx(1.3 * HALVED[3], rel=0.01)
+    words = f"the others agree without {measured.suspect}, whose error is that of h = "
+    assert f"{words}{measured.suspect_step:g} and not of {HALVED[3]:g}" in measured.sentence
     assert measured.sentence.startswith(
         "omega: no one order fits: from step to step it is 4.0, 4.0, 2.5"
     )

@@ -264,6 +264,19 @@ def test_a_constant_error_never_falls_below_nine_tenths_of_its_largest() -> None
     assert not is_constant(np.array([1.0, 0.9 - 2**-52, 1.0, 0.95, 1.0]))
 
 
+def test_five_samples_in_each_quarter_show_a_bound() -> None:
+    """Twenty equal errors are bounded; of nineteen, a quarter has four."""
+    assert is_bounded(np.linspace(0, 1, 20), np.ones(20))
+    assert not is_bounded(np.linspace(0, 1, 19), np.ones(19))
+
+
+def test_a_power_of_time_has_three_decimals() -> None:
+    """More of them would be noise."""
+    elapsed = np.geomspace(1 / 32, 1, 101)
+    power = power_of_time(elapsed, elapsed**1.23456)
+    assert power == round(float(power or 0.0), 3) > 1
+
+
 def test_few_samples_show_no_course() -> None:
     """Three rows are no power of time, no constant and no bound."""
     elapsed, errors = np.array([0.0, 1.0, 2.0]), np.array([1.0, 1.0, 1.0])

@@ -99,10 +99,12 @@ class Copy:
             "MUTANTS_PIPE": str(writing),
         }
         command = (sys.executable, "-m", "pytest", "-q", "-p", "mutants.serving", *files)
+        # pytest would rewrite the asserts of the package, which has a plugin: no code would be that of
+        # the file, and none be swapped.
         with (
             (self.place / "log").open("w") as log,
             subprocess.Popen(
-                (*command, "-p", "no:cacheprovider"),
+                (*command, "-p", "no:cacheprovider", "--assert=plain"),
                 cwd=self.place,
                 env=environment,
                 stdout=log,

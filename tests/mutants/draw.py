@@ -27,9 +27,12 @@ def of_line(path: str, line: int) -> list[Mutant]:
 
 
 def drawn(rooms: Sequence[str], number: int, seed: int) -> list[Mutant]:
-    """Return so many mutants, each as likely as any other, without those that are equivalent."""
-    known, every = equivalents(), places(*rooms)
-    random.Random(seed).shuffle(every)
+    """Return so many mutants, each as likely as any other, without those that are equivalent.
+
+    Each mutant has a number of its own by which they are ordered: a change of one module moves no other.
+    """
+    known = equivalents()
+    every = sorted(places(*rooms), key=lambda place: random.Random(f"{seed} {place}").random())
     sources = {path: (PACKAGE / path).read_text(encoding="utf-8") for path, _ in every}
     made = (mutant(path, sources[path], place) for path, place in every)
     return list(islice((m for m in made if (m.path, m.before, m.after) not in known), number))

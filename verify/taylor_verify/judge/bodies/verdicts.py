@@ -178,13 +178,13 @@ class _Columns:
     def start_ratio(self, k: int) -> float:
         """Return the error of a body at its first sample over the floor there."""
         error, value = self.start(k)
-        return error / value if value else 0.0
+        return error / value
 
 
 def _columns(run: Run, gate: Gate, floors: Floors) -> _Columns:
     errors, attainable, every = gate.quantity.errors, gate.attainable, np.arange(len(run.times))
     worst = np.argmax(errors, axis=1)
-    ratios = np.divide(errors, attainable, out=np.zeros_like(errors), where=errors > 0)
+    ratios = errors / attainable
     ratio_at = np.argmax(ratios, axis=1)
     value = attainable[every, worst]
     steps = np.maximum(1, np.rint(floors.reached[every, worst]))

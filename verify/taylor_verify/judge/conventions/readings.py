@@ -48,12 +48,12 @@ class Reading:
         return "; ".join(self.words)
 
 
-# Words, the rational part of the factor, and its power of pi.
+# Words, and the factor as a multiple of pi; the scene's own unit has none.
 _UNITS: Final = (
-    ("", Fraction(1), 0),
-    ("in degrees per unit of time", Fraction(1, 180), 1),
-    ("in turns per unit of time", Fraction(2), 1),
-    ("in turns per minute, the unit of time being the second", Fraction(1, 30), 1),
+    ("", None),
+    ("in degrees per unit of time", Fraction(1, 180)),
+    ("in turns per unit of time", Fraction(2)),
+    ("in turns per minute, the unit of time being the second", Fraction(1, 30)),
 )
 
 
@@ -69,22 +69,19 @@ def _vectors(group: str, frames: Frames) -> Iterator[Reading]:
     about = GROUPS[group]
     together, is_placed = " ".join(about.columns), about.moves_with == "space"
     units = _UNITS if about.dimension == "rate" else _UNITS[:1]
-    for unit, rational, power in units:
+    for unit, pis in units:
         for in_space in (False,) if is_placed else (False, True):
             words = [f"{together} are {unit}"] * bool(unit)
             words += [f"{together} are in space axes"] * in_space
             axes = frames.space if in_space or is_placed else frames.body
-            yield Reading(tuple(words), partial(_read_vectors, axes, rational, power, in_space))
+            yield Reading(tuple(words), partial(_read_vectors, axes, pis, in_space))
 
 
-def _read_vectors(
-    axes: Axes, rational: Fraction, power: int, in_space: bool, rows: Array, R: Array
-) -> Array:
+def _read_vectors(axes: Axes, pis: Fraction | None, in_space: bool, rows: Array, R: Array) -> Array:
     vectors = axes.vectors(rows)
-    if rational != 1 and rows.dtype == object:
-        vectors = vectors * (mp.convert(rational) * mp.pi**power)
-    elif rational != 1:
-        vectors = vectors * (float(rational) * np.pi**power)
+    if pis is not None:
+        is_exact = rows.dtype == object
+        vectors = vectors * (mp.convert(pis) * mp.pi if is_exact else float(pis) * np.pi)
     # Space axes are converted by the exact attitude. R^T is a rotation, so the error has the same size.
     return np.matmul(R.transpose(0, 2, 1), vectors[:, :, None])[:, :, 0] if in_space else vectors
 
