@@ -162,7 +162,7 @@ def test_both_routes_agree_at_the_borders(name: str) -> None:
 
 
 @given(gyrostats())
-@settings(max_examples=25)
+@settings(max_examples=15)
 def test_both_routes_agree_for_any_gyrostat(free: FreeGyrostat) -> None:
     """Whatever the body, the wheels and the start, the two closed forms differ by no more than asked."""
     agree(free, paced(free, (Fraction(3, 2), Fraction(-40))), 20)
@@ -267,7 +267,7 @@ def is_eulers_top(spin: FreeSpin) -> None:
 
 
 @given(tops())
-@settings(max_examples=20)
+@settings(max_examples=12)
 def test_without_wheels_it_is_eulers_top(spin: FreeSpin) -> None:
     """Weierstrass's formula, without regimes, is a third route of Euler's top."""
     is_eulers_top(spin)

@@ -132,6 +132,7 @@ def test_a_ratio_is_the_median_of_quotients_of_single_rounds(tmp_path: Path) -> 
 # What is named
 
 
+@pytest.mark.slow
 def test_a_slower_twin_is_named(tmp_path: Path) -> None:
     """Half as slow again misses its target and is worse than what was kept; the sound one is neither."""
     sound, slower = (measured(invented(factor), tmp_path) for factor in (1, 1.5))
@@ -272,6 +273,7 @@ def test_a_wrong_call_is_refused(
     assert not shipped.exists()
 
 
+@pytest.mark.slow
 def test_another_checkout_has_caches_of_its_own(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

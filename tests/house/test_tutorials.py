@@ -23,8 +23,8 @@ def _as_a_reader(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.delenv(name, raising=False)
 
 
-# They judge a dozen files, and look for the cause of each error.
-LONG = ("check-my-satellite", "check-my-vehicle", "judge-my-engine")
+# They judge a dozen files and look for the cause of each error, or start many programs.
+LONG = ("check-my-satellite", "check-my-vehicle", "gate-my-ci", "gate-my-cpp", "judge-my-engine")
 PAGES = [
     pytest.param(page, id=page.stem, marks=[pytest.mark.slow] if page.stem in LONG else [])
     for page in TUTORIALS
