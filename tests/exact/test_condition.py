@@ -22,14 +22,15 @@ from builders.scenes import (
 )
 from mpmath import mp, mpf
 
-from taylor_verify.exact.conditioning.condition import Path, many, transition
+from taylor_verify.exact.conditioning.condition import Path, many, path, transition
 from taylor_verify.exact.conditioning.differences import Derivatives, derivatives
 from taylor_verify.exact.conditioning.flow import Flow
 from taylor_verify.exact.conditioning.variation import integrated
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
-from taylor_verify.scenes.motion import Impulse, Motion, Quaternion, Spin
+from taylor_verify.scenes.motion import Clock, Impulse, Motion, Quaternion, Spin
+from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import (
     Matrix,
@@ -325,6 +326,19 @@ def test_where_float64_cannot_follow_there_are_no_variational_norms() -> None:
     near = vector("1e-40", 1, "1e-40")
     saddle = sample_scene(RigidBody(turned), start=Spin(apply(turn, near)))
     assert integrated(saddle, Flow.of(saddle), times(0, 400)) is None
+
+
+@pytest.mark.slow
+def test_a_long_tumble_is_followed_in_steps() -> None:
+    """Without a closed form, steps of float64 serve however long the way is.
+
+    Each difference would be an enclosure with a hundred digits more, thirteen of them for a solid.
+    """
+    tumble = load("kirchhoff/auv-turn")
+    orbit = path(replace(tumble, clock=Clock(Fraction(0), times(0, 14, 28))))
+    assert orbit.rate * 28 > 2000
+    assert not orbit.is_regular
+    assert orbit.exponent == 0
 
 
 # The choice of times.

@@ -209,7 +209,8 @@ def path(scene: Scene) -> Path:
     rate, growth = coarse.rate, coarse.growth.max()
     points = many(elapsed, rate)
     is_solid_in_fluid = coarse.momentum.shape[1] == 6
-    if is_solid_in_fluid and rate * abs(elapsed[-1]) <= _MOST_RADIANS and growth < inf:
+    takes_few_steps = is_solid_in_fluid and rate * abs(elapsed[-1]) <= _MOST_RADIANS
+    if growth < inf and (takes_few_steps or differs_dearly(scene)):
         # The growth may magnify the last digit of the truth, so the truth gets as many more digits.
         steps = integrated(scene, flow, points, ceil(log10(growth)))
         if steps is not None:
