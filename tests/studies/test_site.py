@@ -61,6 +61,8 @@ for `euler/with-attitude`. The [data](../reports/data/verdicts.json), [the sourc
 """
 MORE = "See [the list](docs/index.md) and [tables/README.md](reports/tables/README.md).\n"
 
+# Building a site takes many seconds: `make test-site` runs these tests.
+building = pytest.mark.slow
 
 # What a clone of the repository lacks.
 BULK = ("records", "portraits", "*.pdf", "gates.*")
@@ -129,6 +131,7 @@ class Page(HTMLParser):
         return self.text.partition('<div class="sidebar-tree">')[2].partition("</aside>")[0]
 
 
+@building
 def test_every_page_names_its_maker(pages: dict[str, Page]) -> None:
     """Line one of each page says what made it, and a scene's page the digest of its scene."""
     assert {page.text.partition("\n")[0] for page in pages.values()} == {MADE_BY}
@@ -140,6 +143,7 @@ def place_of(scene: str) -> str:
     return f"reports/scenes/{scene.replace('/', '-')}.html"
 
 
+@building
 def test_links_resolve(site: dict[str, str | bytes], pages: dict[str, Page]) -> None:
     """All links within the site lead to its files and to existing anchors."""
     links_resolve(pages, site)
@@ -164,6 +168,7 @@ def resolved(page: str, link: str) -> str:
     return "/".join(parts)
 
 
+@building
 def test_nothing_comes_from_a_network(site: dict[str, str | bytes], pages: dict[str, Page]) -> None:
     """No page loads a script, a style, a picture or a font from an address, and no style asks for one."""
     for name, page in pages.items():
@@ -183,6 +188,7 @@ def text_of(content: str | bytes) -> str:
     return content.decode() if isinstance(content, bytes) else content
 
 
+@building
 def test_docs_and_report_have_one_navigation(pages: dict[str, Page]) -> None:
     """Pages of docs, of the report and of scenes have the same navigation."""
     listed = {
@@ -196,6 +202,7 @@ def test_docs_and_report_have_one_navigation(pages: dict[str, Page]) -> None:
     assert {"docs/method.html", "reports/tables/controls.html", place_of(SCENES[0])} <= set(pages)
 
 
+@building
 def test_a_page_of_docs_reaches_the_rest(
     site: dict[str, str | bytes], pages: dict[str, Page]
 ) -> None:
@@ -209,6 +216,7 @@ def test_a_page_of_docs_reaches_the_rest(
     assert "none.txt" not in page.text
 
 
+@building
 def test_names_become_links(pages: dict[str, Page]) -> None:
     """The name of a scene leads to its page, and a link that is a path shows the page's title."""
     text = pages["docs/method.html"].text
@@ -217,6 +225,7 @@ def test_names_become_links(pages: dict[str, Page]) -> None:
     assert "reports/tables/README.md" not in text
 
 
+@building
 def test_formulas_need_no_script(pages: dict[str, Page]) -> None:
     """A formula in a line and one of a scene are MathML in the page itself."""
     assert re.search(r"<math[^>]*>.*<msup>", pages["docs/method.html"].text)
@@ -224,12 +233,14 @@ def test_formulas_need_no_script(pages: dict[str, Page]) -> None:
     assert not [load for page in pages.values() for load in page.loads if "mathjax" in load.lower()]
 
 
+@building
 def test_anchors_are_one_of_a_kind(pages: dict[str, Page]) -> None:
     """No page has an id twice: links and labels would go to the first."""
     for name, page in pages.items():
         assert len(page.anchors) == len(set(page.anchors)), name
 
 
+@building
 def test_motions_name_what_is_there(pages: dict[str, Page]) -> None:
     """Both themes have all colours that a motion names."""
     themes = conf.html_theme_options
@@ -253,6 +264,7 @@ def texts(value: Any) -> Iterator[str]:
             yield from texts(one)
 
 
+@building
 def test_a_scene_has_everything(site: dict[str, str | bytes], pages: dict[str, Page]) -> None:
     """Equations, orbit, data, accuracy, pictures, gates, values and commands stand on a scene's page."""
     page = pages[place_of("kirchhoff/whole-motion")]
@@ -270,6 +282,7 @@ def test_a_scene_has_everything(site: dict[str, str | bytes], pages: dict[str, P
     assert "_images/kirchhoff-whole-motion-potential.svg" in site
 
 
+@building
 def test_exact_values_are_a_trajectory(
     report: Path, pages: dict[str, Page], tmp_path: Path
 ) -> None:
@@ -418,6 +431,7 @@ def test_lines_stand_out_in_both_themes() -> None:
             assert contrast(colours[f"motion-{name}"], paper) >= LINE_CONTRAST, name
 
 
+@building
 def test_a_fault_of_a_page_is_an_error(report: Path, tmp_path: Path) -> None:
     """A page that Sphinx warns of ends in an error that names it, and nothing is written."""
     # Portraits and records are most of the work, and of no page that is broken here.
@@ -438,7 +452,7 @@ def test_what_is_not_installed_is_named(report: Path, monkeypatch: pytest.Monkey
     assert raised.value.name == "no-such-package"
 
 
-@pytest.mark.slow
+@building
 def test_the_site_is_the_same_every_time(checkout: Path, site: dict[str, str | bytes]) -> None:
     """Made again from the same folder, no byte differs."""
     assert contents(checkout / "reports") == site
@@ -463,6 +477,7 @@ def test_the_command_says_what_is_missing(
     assert not (tmp_path / "site").exists()
 
 
+@building
 def test_a_site_of_committed_files_alone_is_whole(
     report: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
