@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from itertools import groupby
 from math import inf
+from textwrap import fill
 from typing import TYPE_CHECKING, Final
 
 from taylor_verify.publish.pictures.log_axes import number_axes, widened
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _HEIGHT: Final = 3.9
+# In characters: a longer name crosses its neighbours' lines, and stands in two rows.
+_WIDEST: Final = 22
 _ERROR: Final = "largest error of omega and attitude"
 _DOUBLE, _SINGLE = "float64", "float32"
 
@@ -139,7 +142,8 @@ def _figure(axis: str, drawn: Sequence[Panel]) -> Figure:
         number_axes(axes)
         for line in panel.lines:
             axes.plot(*zip(*line.points, strict=True), gid=line.name, zorder=3, **line.look.line)
-        write_names(
-            axes, [Named(line.name, line.look.colour, [line.points]) for line in panel.lines]
-        )
+        named = [
+            Named(fill(line.name, _WIDEST), line.look.colour, [line.points]) for line in panel.lines
+        ]
+        write_names(axes, named)
     return figure
