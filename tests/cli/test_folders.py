@@ -149,6 +149,35 @@ def test_of_two_runs_at_once_one_is_refused(tmp_path: Path) -> None:
     assert "euler/rest" not in stored
 
 
+# --junit
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such files")
+def test_a_pipe_is_not_replaced_by_a_report(
+    capsys: Captured, short: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Exit status 2 and one line, before anything is run; the same holds for a device."""
+    monkeypatch.chdir(tmp_path)
+    os.mkfifo("pipe")
+    assert main(["run", str(short), "--junit", "pipe"]) == 2
+    out, error = capsys.readouterr()
+    expected = "expected a file that can be written, got 'pipe' (a device or a pipe) @ --junit"
+    assert (out, error) == ("", f"taylor-verify: {expected}\n")
+    assert Path("pipe").is_fifo()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows makes links for some users alone")
+def test_a_link_leads_to_the_report(short: Path, tmp_path: Path) -> None:
+    """The file behind a link is written, and the link stays."""
+    file, link = tmp_path / "results.xml", tmp_path / "latest.xml"
+    link.symlink_to(file)
+    for _ in range(2):
+        assert main(["run", str(short), "--junit", str(link)]) == 0
+        assert link.is_symlink()
+        assert "<testsuites" in file.read_text()
+        file.write_text("old")
+
+
 # publish
 
 

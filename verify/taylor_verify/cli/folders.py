@@ -73,12 +73,18 @@ def writable(folder: str, option: str = "--out") -> Path:
 
 
 def writable_file(name: str, option: str) -> Path:
-    """Return the file if it can be written, its folder tried out before hours of work."""
+    """Return the file if it can be written, its folder tried out before hours of work.
+
+    A link stands for the file that it leads to. A device and a pipe are refused: the new file would take
+    their place.
+    """
     path = Path(name)
     with unwritable("a file that can be written", name, option):
         if not name or path.is_dir():
             raise IsADirectoryError(0, "a folder" if name else "an empty name")
-        return _tried(path)
+        if path.exists() and not path.is_file():
+            raise OSError(0, "a device or a pipe")
+        return _tried(path.resolve() if path.is_symlink() else path)
 
 
 @contextmanager
