@@ -15,6 +15,7 @@ from builders.scenes import scene_file
 
 from taylor_verify.batch.lock import LOCK, Occupied, alone_in
 from taylor_verify.cli import main
+from taylor_verify.records.replacement import replace_files
 from taylor_verify.studies.registry import STUDIES
 
 Captured = pytest.CaptureFixture[str]
@@ -178,6 +179,32 @@ def test_a_link_leads_to_the_report(short: Path, tmp_path: Path) -> None:
         file.write_text("old")
 
 
+# A full disk
+
+
+def test_a_full_disk_is_told_with_its_folder_and_leaves_nothing(tmp_path: Path) -> None:
+    """Neither file is there where the second one is too long, nor the folders that were made for them."""
+    pytest.importorskip("resource")
+    script = (
+        "import resource\nfrom pathlib import Path\n"
+        "from taylor_verify.records.replacement import replace_files\n"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (10, 10))\n"
+        "try:\n    replace_files(Path('new/below'), {'a': 'short', 'b': 'long ' * 10})\n"
+        "except OSError as error:\n    print(error.strerror, error.filename)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, cwd=tmp_path, check=True
+    )
+    assert done.stdout == "File too large new/below\n"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_name_that_is_no_utf_8_is_written_with_escapes(tmp_path: Path) -> None:
+    """A file name of other bytes does not cost the report that mentions it."""
+    (file,) = replace_files(tmp_path, {"a.md": "# mine\udcff.toml\n"})
+    assert file.read_text() == "# mine\\udcff.toml\n"
+
+
 # publish
 
 
@@ -252,6 +279,19 @@ def test_the_reports_of_the_checkout_are_meant_below_it_too(
     assert reports_folder(None, measures=True) == "../reports"
     (tmp_path / "pyproject.toml").write_text('[project]\nname = "mine"\n')
     assert main(["publish"]) == 2
+
+
+@pytest.mark.parametrize("call", ["run {short} --against {file}", "publish --from {file}"])
+def test_a_file_in_place_of_a_folder_of_reports_is_refused(
+    capsys: Captured, short: Path, tmp_path: Path, call: str
+) -> None:
+    """The message says what the folder should be, as for one that is not there."""
+    file = tmp_path / "plain"
+    file.write_text("mine")
+    assert main(call.format(short=short, file=file).split()) == 2
+    error = capsys.readouterr().err
+    assert "`run --out" in error
+    assert f"{file}/data/verdicts.json" in error
 
 
 def test_against_outside_a_checkout_says_what_to_do(

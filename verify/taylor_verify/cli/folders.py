@@ -13,6 +13,8 @@ from taylor_verify.cli.answer import WrongCall, wrong_calls
 _PROJECT: Final = 'name = "taylor-verify"'
 _REPORTS: Final = "reports"
 _FOLDER: Final = "a folder that can be written"
+# Folders of names that stand for a device or a stream of the process.
+_DEVICES: Final = tuple(map(Path, ("/dev", "/dev/fd", "/proc/self/fd")))
 IN_A_CHECKOUT: Final = (
     "what is published belongs to a checkout of the project, and no package has it: go to one, or "
     "name a folder that `run --out` has written"
@@ -82,7 +84,7 @@ def writable_file(name: str, option: str) -> Path:
     with unwritable("a file that can be written", name, option):
         if not name or path.is_dir():
             raise IsADirectoryError(0, "a folder" if name else "an empty name")
-        if path.exists() and not path.is_file():
+        if (path.exists() and not path.is_file()) or path.absolute().parent in _DEVICES:
             raise OSError(0, "a device or a pipe")
         return _tried(path.resolve() if path.is_symlink() else path)
 

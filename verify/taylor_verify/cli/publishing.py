@@ -211,7 +211,7 @@ def _wrong_calls(folder: Path, option: str) -> Iterator[None]:
 
     try:
         yield
-    except FileNotFoundError as error:
+    except (FileNotFoundError, NotADirectoryError) as error:
         raise WrongCall(
             f"expected what `run --out {folder}` writes ({store.FOLDER}/{store.VERDICTS} first of all), "
             f"got no such file @ {error.filename}"

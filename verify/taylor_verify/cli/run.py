@@ -94,7 +94,7 @@ def _published(folder: str) -> Earlier:
     try:
         with wrong_calls(" (--against)"):
             return read_report(folder)
-    except FileNotFoundError as error:
+    except (FileNotFoundError, NotADirectoryError) as error:
         raise WrongCall(
             f"expected a folder of `run --out`, got no such file @ --against {error.filename}; "
             f"{IN_A_CHECKOUT}"
