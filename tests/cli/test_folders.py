@@ -15,7 +15,6 @@ from builders.scenes import scene_file
 
 from taylor_verify.batch.lock import LOCK, Occupied, alone_in
 from taylor_verify.cli import main
-from taylor_verify.records.replacement import replace_files
 from taylor_verify.studies.registry import STUDIES
 
 Captured = pytest.CaptureFixture[str]
@@ -199,10 +198,41 @@ def test_a_full_disk_is_told_with_its_folder_and_leaves_nothing(tmp_path: Path) 
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_name_that_is_no_utf_8_is_written_with_escapes(tmp_path: Path) -> None:
-    """A file name of other bytes does not cost the report that mentions it."""
-    (file,) = replace_files(tmp_path, {"a.md": "# mine\udcff.toml\n"})
-    assert file.read_text() == "# mine\\udcff.toml\n"
+def test_a_picture_that_cannot_be_written_costs_no_judgement(
+    short: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    """The disk that is full at the end is one message, behind the answer; the exit status is 2."""
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device", "order.svg")
+
+    pytest.importorskip("matplotlib")
+    monkeypatch.chdir(tmp_path)
+    rows = "t,w1,w2,w3\n0,1,0.4,0.3\n1,1,0.4,0.3\n"
+    for h in ("0.1", "0.2"):
+        Path(f"run_h{h}.csv").write_text(f"# h = {h}\n{rows}")
+    monkeypatch.setattr("taylor_verify.publish.pictures.picture.save_as", full)
+    call = ["check", "run_h0.1.csv", "run_h0.2.csv", "--scene", str(short), "--partial"]
+    assert main([*call, "--picture", "order.svg"]) == 2
+    out, error = capsys.readouterr()
+    assert "run_h0.2.csv" in out
+    assert "expected to write, got No space left on device @ order.svg (--picture)" in error
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems have no such names")
+def test_a_name_that_is_no_utf_8_is_refused_before_the_work(
+    short: Path, tmp_path: Path, capsys: Captured
+) -> None:
+    """A report cannot mention such a scene, and no report lies in such a folder."""
+    scene, folder = (str(tmp_path / f"mine\udcff{ending}") for ending in (".toml", ""))
+    Path(scene).write_bytes(short.read_bytes())
+    for call in (
+        ["run", scene, "--out", str(tmp_path / "out")],
+        ["run", str(short), "--out", folder],
+    ):
+        assert main(call) == 2
+        assert r"mine\udcff" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
 
 
 # publish

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -12,6 +13,8 @@ from taylor_verify.cli.answer import WrongCall, wrong_calls
 
 _PROJECT: Final = 'name = "taylor-verify"'
 _REPORTS: Final = "reports"
+# Bytes of a file name that are not UTF-8, as Python has them.
+_FOREIGN: Final = re.compile("[\ud800-\udfff]")
 _FOLDER: Final = "a folder that can be written"
 # Folders of names that stand for a device or a stream of the process.
 _DEVICES: Final = tuple(map(Path, ("/dev", "/dev/fd", "/proc/self/fd")))
@@ -66,11 +69,17 @@ def _is_checkout(path: Path) -> bool:
     return _PROJECT in project.splitlines() and (path / "cases").is_dir()
 
 
-def writable(folder: str, option: str = "--out") -> Path:
-    """Return the folder if it can be written, tried out before hours of work; it is not made yet."""
+def writable(folder: str, option: str = "--out", names: Iterable[str] = ()) -> Path:
+    """Return the folder if it can be written, tried out before hours of work; it is not made yet.
+
+    ``names`` are those that its files will mention. Like that of the folder, they must be UTF-8.
+    """
     with unwritable(_FOLDER, folder, option):
         if not folder:
             raise NotADirectoryError(0, "an empty name")
+        for name in (folder, *names):
+            if _FOREIGN.search(name):
+                raise OSError(0, f"the name {name!r} is not UTF-8")
         return _tried(Path(folder), [Path(folder)])
 
 
@@ -97,6 +106,12 @@ def unwritable(expected: str, name: str, option: str) -> Iterator[None]:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise WrongCall(f"expected {expected}, got {name!r} ({reason}) @ {option}") from error
+
+
+def not_written(error: OSError, option: str) -> str:
+    """Return the message for a file that could not be written at the end of the work."""
+    place = f" @ {error.filename}" if error.filename else ""
+    return f"expected to write, got {error.strerror or error}{place} ({option})"
 
 
 def _tried(path: Path, within: Iterable[Path] = ()) -> Path:

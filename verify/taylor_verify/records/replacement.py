@@ -15,8 +15,8 @@ def replace_files(
     """Put the contents, by their paths below ``folder``, in place of what is there; remove ``stale``.
 
     A long text may come in pieces. All are first written apart, so that what fails in writing leaves
-    the old files as they were, and none is ever half written. A name that is no UTF-8 is written with
-    escapes. Raises OSError, which names the folder; returns the paths in the order given.
+    the old files as they were, and none is ever half written. Raises OSError, which names the folder;
+    returns the paths in the order given.
     """
     places = {name: folder / name for name in contents}
     # A directory inside the folder is on the same file system, where a move is one step.
@@ -28,9 +28,7 @@ def replace_files(
                 place.write_bytes(content)
             else:
                 pieces = [content] if isinstance(content, str) else content
-                with place.open(
-                    "w", encoding="utf-8", errors="backslashreplace", newline=""
-                ) as staged:
+                with place.open("w", encoding="utf-8", newline="") as staged:
                     staged.writelines(pieces)
         for name, place in places.items():
             place.parent.mkdir(parents=True, exist_ok=True)
