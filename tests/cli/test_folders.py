@@ -219,6 +219,23 @@ def test_a_picture_that_cannot_be_written_costs_no_judgement(
     assert "expected to write, got No space left on device @ order.svg (--picture)" in error
 
 
+def test_a_trade_off_that_cannot_be_written_is_shown(
+    short: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    """What was measured is printed, with one message and exit status 2."""
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device", "out")
+
+    pytest.importorskip("matplotlib")
+    monkeypatch.setattr("taylor_verify.cli.tradeoff._draw", full)
+    call = ["tradeoff", str(short), "--rung", "f64", "--solver", "closed-form:ellipj"]
+    assert main([*call, "--repeats", "1", "--out", str(tmp_path / "out")]) == 2
+    out, error = capsys.readouterr()
+    assert "closed-form:ellipj" in out
+    assert "expected to write, got No space left on device @ out (--out)" in error
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems have no such names")
 def test_a_name_that_is_no_utf_8_is_refused_before_the_work(
     short: Path, tmp_path: Path, capsys: Captured
