@@ -276,7 +276,7 @@ def test_rows_of_other_code_are_refused(
         (["--resume", "--out", "gone"], "expected a folder with a sweep to go on with"),
         (["--executor", "slurm"], "expected local or dask:ADDRESS, got 'slurm' @ executor"),
         (["--executor", "dask:x:1", "--jobs", "2"], "expected --jobs or --executor"),
-        (["--solver", "nobody"], "expected a solver"),
+        (["--solver", "nobody"], "got 'nobody' @ solver\n"),
         (["--rung", "f65"], "@ --rung"),
     ],
 )

@@ -546,7 +546,7 @@ def test_a_full_disk_under_stdout_is_one_message() -> None:
         )
     assert done.returncode == 2
     assert done.stderr.count(b"\n") == 1
-    assert b"No space left" in done.stderr
+    assert b"No space left on device' @ stdout\n" in done.stderr
 
 
 def children(pid: int) -> list[int]:

@@ -155,6 +155,109 @@ def _holder(lock: Path) -> str:
     return lock.read_text() if lock.exists() else ""
 
 
+# --junit
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such files")
+def test_a_pipe_is_not_replaced_by_a_report(
+    capsys: Captured, short: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Exit status 2 and one line, before anything is run; the same holds for a device."""
+    monkeypatch.chdir(tmp_path)
+    os.mkfifo("pipe")
+    assert main(["run", str(short), "--junit", "pipe"]) == 2
+    out, error = capsys.readouterr()
+    expected = "expected a file that can be written, got 'pipe' (a device or a pipe) @ --junit"
+    assert (out, error) == ("", f"taylor-verify: {expected}\n")
+    assert Path("pipe").is_fifo()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows makes links for some users alone")
+def test_a_link_leads_to_the_report(short: Path, tmp_path: Path) -> None:
+    """The file behind a link is written, and the link stays."""
+    file, link = tmp_path / "results.xml", tmp_path / "latest.xml"
+    link.symlink_to(file)
+    for _ in range(2):
+        assert main(["run", str(short), "--junit", str(link)]) == 0
+        assert link.is_symlink()
+        assert "<testsuites" in file.read_text()
+        file.write_text("old")
+
+
+# A full disk
+
+
+def test_a_full_disk_is_told_with_its_folder_and_leaves_nothing(tmp_path: Path) -> None:
+    """Neither file is there where the second one is too long, nor the folders that were made for them."""
+    pytest.importorskip("resource")
+    script = (
+        "import resource\nfrom pathlib import Path\n"
+        "from taylor_verify.records.replacement import replace_files\n"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (10, 10))\n"
+        "try:\n    replace_files(Path('new/below'), {'a': 'short', 'b': 'long ' * 10})\n"
+        "except OSError as error:\n    print(error.strerror, error.filename)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, cwd=tmp_path, check=True
+    )
+    assert done.stdout == "File too large new/below\n"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_picture_that_cannot_be_written_costs_no_judgement(
+    short: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    """The disk that is full at the end is one message, behind the answer; the exit status is 2."""
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device", "order.svg")
+
+    pytest.importorskip("matplotlib")
+    monkeypatch.chdir(tmp_path)
+    rows = "t,w1,w2,w3\n0,1,0.4,0.3\n1,1,0.4,0.3\n"
+    for h in ("0.1", "0.2"):
+        Path(f"run_h{h}.csv").write_text(f"# h = {h}\n{rows}")
+    monkeypatch.setattr("taylor_verify.publish.pictures.picture.save_as", full)
+    call = ["check", "run_h0.1.csv", "run_h0.2.csv", "--scene", str(short), "--partial"]
+    assert main([*call, "--picture", "order.svg"]) == 2
+    out, error = capsys.readouterr()
+    assert "run_h0.2.csv" in out
+    assert "expected to write, got No space left on device @ order.svg (--picture)" in error
+
+
+def test_a_trade_off_that_cannot_be_written_is_shown(
+    short: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    """What was measured is printed, with one message and exit status 2."""
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device", "out")
+
+    pytest.importorskip("matplotlib")
+    monkeypatch.setattr("taylor_verify.cli.tradeoff._draw", full)
+    call = ["tradeoff", str(short), "--rung", "f64", "--solver", "closed-form:ellipj"]
+    assert main([*call, "--repeats", "1", "--out", str(tmp_path / "out")]) == 2
+    out, error = capsys.readouterr()
+    assert "closed-form:ellipj" in out
+    assert "expected to write, got No space left on device @ out (--out)" in error
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems have no such names")
+def test_a_name_that_is_no_utf_8_is_refused_before_the_work(
+    short: Path, tmp_path: Path, capsys: Captured
+) -> None:
+    """A report cannot mention such a scene, and no report lies in such a folder."""
+    scene, folder = (str(tmp_path / f"mine\udcff{ending}") for ending in (".toml", ""))
+    Path(scene).write_bytes(short.read_bytes())
+    for call in (
+        ["run", scene, "--out", str(tmp_path / "out")],
+        ["run", str(short), "--out", folder],
+    ):
+        assert main(call) == 2
+        assert r"mine\udcff" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
 # publish
 
 
@@ -229,6 +332,19 @@ def test_the_reports_of_the_checkout_are_meant_below_it_too(
     assert reports_folder(None, measures=True) == "../reports"
     (tmp_path / "pyproject.toml").write_text('[project]\nname = "mine"\n')
     assert main(["publish"]) == 2
+
+
+@pytest.mark.parametrize("call", ["run {short} --against {file}", "publish --from {file}"])
+def test_a_file_in_place_of_a_folder_of_reports_is_refused(
+    capsys: Captured, short: Path, tmp_path: Path, call: str
+) -> None:
+    """The message says what the folder should be, as for one that is not there."""
+    file = tmp_path / "plain"
+    file.write_text("mine")
+    assert main(call.format(short=short, file=file).split()) == 2
+    error = capsys.readouterr().err
+    assert "`run --out" in error
+    assert f"{file}/data/verdicts.json" in error
 
 
 def test_against_outside_a_checkout_says_what_to_do(

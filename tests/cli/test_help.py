@@ -157,6 +157,19 @@ def test_a_pattern_that_nothing_fits_is_refused(capsys: Captured) -> None:
         assert "got euler/zz* (no scene fits the pattern" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("call", ["run {}", "exact {} --at 0", "draw {}"])
+def test_a_folder_of_one_s_own_is_no_scene(
+    call: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    """It is refused with the pattern of the scenes in it."""
+    monkeypatch.chdir(tmp_path)
+    Path("mine").mkdir()
+    assert main(call.format("mine").split()) == 2
+    assert "got mine (it is a folder: name the scenes in it, 'mine/*.toml')" in (
+        capsys.readouterr().err
+    )
+
+
 def test_the_hint_of_a_question_names_the_scene(capsys: Captured) -> None:
     """Not the pattern, which a shell might expand."""
     assert main(["question", "euler/spherical*", "--csv"]) == 0

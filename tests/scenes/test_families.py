@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
@@ -220,6 +221,15 @@ def test_a_plain_scene_is_no_template() -> None:
         Refused, match=r"expected a number that is drawn, got none @ drawn \(\{ uniform"
     ):
         template("inertia = [1, 2, 3]")
+
+
+@pytest.mark.parametrize("text", ["title =", 'title = "nothing is drawn"'])
+def test_a_fault_of_the_whole_text_names_the_file(text: str, tmp_path: Path) -> None:
+    """A fault without a place of its own stands beside the path of the template."""
+    file = tmp_path / "mine.toml"
+    file.write_text(text)
+    with pytest.raises(Refused, match=rf"@ {re.escape(str(file))}"):
+        load_family(file)
 
 
 def test_a_missing_template_is_named(tmp_path: Path) -> None:

@@ -132,6 +132,8 @@ def test_a_template_answers(language: Callable[[Path], str], tmp_path: Path) -> 
     assert verdicts["omega"].steps == 2000
     assert verdicts["omega"].verdict is Status.FAIL
     assert {"explicit gyroscopic step"} <= {cause.name for cause in judged.causes}
+    in_a_fluid = run("engines/ellipsoid", f"process:{language(tmp_path)} 0.01")
+    assert {verdict.verdict for verdict in in_a_fluid.verdicts} == {Status.UNAVAILABLE}
 
 
 def test_a_template_is_short() -> None:

@@ -117,7 +117,8 @@ def run_many(
             try:
                 write_report(folder, results)
             except (OSError, ValueError) as error:
-                message = f"expected to write the reports, got {error} @ {folder}"
+                reason = getattr(error, "strerror", None) or error
+                message = f"expected to write the reports, got {reason} @ {folder}"
                 raise ReportNotWritten(message, results) from error
     return results
 

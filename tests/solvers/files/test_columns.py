@@ -473,6 +473,26 @@ def test_a_file_in_utf_16_is_refused_by_that_name(encoding: str, mark: str, tmp_
         read(tmp_path / "mine.csv")
 
 
+@pytest.mark.parametrize(
+    ("cell", "expected"),
+    [
+        ("0,4", "a number with a decimal point"),
+        ("2 deg/s", "a number alone (a unit belongs to the name of the column: `wx [deg/s]`)"),
+        ("", 'a number (an integer, a decimal or "a/b")'),
+    ],
+)
+def test_a_cell_that_is_no_number_is_told_how_to_be_one(
+    cell: str, expected: str, tmp_path: Path
+) -> None:
+    """A decimal comma and a unit in the cell are named as such."""
+    file = tmp_path / "mine.csv"
+    file.write_text(f"t;w1;w2;w3\n0;1;{cell};3\n")
+    with pytest.raises(Refused) as refused:
+        read(file)
+    (fault,) = refused.value.faults
+    assert fault == f"expected {expected}, got {cell!r} @ {file}, row 1, column w2"
+
+
 def test_a_byte_order_mark_is_no_part_of_the_first_name(tmp_path: Path) -> None:
     """UTF-8 with a mark is read as UTF-8."""
     (tmp_path / "mine.csv").write_bytes("\ufefft,wx,wy,wz\n0,1,2,3\n".encode())

@@ -87,6 +87,15 @@ def test_velocities_stand_for_the_impulses(scene: str, tmp_path: Path) -> None:
     assert "its place, because the file has velocities" in by_quantity(judgement)["impulse"].because
 
 
+def test_velocities_have_a_tolerance_of_their_own(tmp_path: Path) -> None:
+    """It is asked for by the name of the row, and no other row has it."""
+    scene = "kirchhoff/auv-turn"
+    columns = velocity_columns(load(scene), load(scene).clock.instants[:3])
+    judgement = judged(tmp_path, columns, scene, tolerance={"velocity": 1e-3})
+    asked = {v.quantity: v.tolerance for v in judgement.verdicts if v.tolerance is not None}
+    assert asked == {"velocity": 1e-3}
+
+
 def test_impulses_are_made_exactly() -> None:
     """(x, y) = M (U, Omega) with the inverse of the scene's own matrix gives the impulses back."""
     scene = load("kirchhoff/swimmer-vehicle")

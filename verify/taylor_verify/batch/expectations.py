@@ -38,7 +38,10 @@ class Mismatch:
 
 @dataclass(frozen=True)
 class Agreement:
-    """``expected`` has every row that the file speaks of, ``mismatches`` those that differ from it."""
+    """Verdicts beside the expected ones.
+
+    ``expected`` has every row that the file names; ``mismatches`` are the rows that differ from it.
+    """
 
     expected: Mapping[Row, Expectation] = field(default_factory=dict)
     mismatches: tuple[Mismatch, ...] = ()

@@ -114,7 +114,7 @@ def run_job(job: Job) -> list[Judgement]:
 
 
 def _expense(job: Job) -> float:
-    """Return a rank by cost, the dearest job first, so that no core is left with one at the end.
+    """Return a rank by cost: the longest jobs begin first, so that no core waits for one at the end.
 
     It counts the tracked states, and ten times as much where the truth, or the flow between two samples of
     a loaded body, is no closed form; of long runs the radians.

@@ -150,7 +150,7 @@ def available_cores() -> int:
 
 
 def _serve(pipe: Connection) -> None:
-    """Do what comes down the pipe until the pipe ends."""
+    """Run the tasks that come through the pipe, until it is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
     _load_numpy_with_one_thread()
@@ -160,7 +160,7 @@ def _serve(pipe: Connection) -> None:
 
 
 def _load_numpy_with_one_thread() -> None:
-    """Have numpy's library start no threads; the environment is left as it was, for programs of solvers."""
+    """Import numpy so that its library starts no threads; the environment stays as it was for programs."""
     added = [name for name in _ONE_THREAD if name not in os.environ]
     os.environ.update(dict.fromkeys(added, "1"))
     import_module("numpy")
@@ -169,7 +169,7 @@ def _load_numpy_with_one_thread() -> None:
 
 
 def _answer(request: bytes) -> bytes:
-    """Do what is asked, and return the pickled pair of its value and its error."""
+    """Run a task; return the pickled pair of its value and its error."""
     try:
         function, args, kwargs = pickle.loads(request)
         return pickle.dumps((function(*args, **kwargs), None))

@@ -38,16 +38,16 @@ def run_all(
     ended: Callable[[Asked, Result], None] | None = None,
     raises: type[Exception] = Exception,
 ) -> list[Result]:
-    """Return ``work(one)`` for each one asked, in the order asked for.
+    """Call ``work`` for each item ``asked``, and return the results in the order of the items.
 
     ``executor`` is any `concurrent.futures.Executor`; only its ``submit`` is called, and it is left
-    open. Without one, ``workers`` processes of this machine are used (as many as cores, unless given), and
-    whatever ends this early, an interrupt too, ends them first. Work begins in the order of
-    ``expense``, and ``ended(one, result)`` is called in this thread as each ends. An error, or an
-    interrupt, cancels what has not begun.
+    open. Without one, ``workers`` processes of this machine are used (as many as cores, unless given); an
+    error or an interrupt ends them. Work begins in the order of ``expense``, and ``ended(item, result)``
+    is called in this thread as each piece of work ends. An error, or an interrupt, cancels the work that
+    has not begun.
 
-    Raises Failed where a process was lost, and whatever the work or ``ended`` raises. Work that ``raises``
-    errors of one type alone has any other error told as Failed: the executor made it.
+    Raises Failed if a process was lost, and whatever the work or ``ended`` raises. If the work ``raises``
+    errors of one type only, any other error becomes Failed: the executor made it.
     """
     if not asked:
         return []
@@ -72,10 +72,11 @@ def run_stream(
     ahead: int = 256,
     raises: type[Exception] = Exception,
 ) -> Generator[Result]:
-    """Yield ``work(one)`` for each one asked, as each ends, with no more than ``ahead`` of them under way.
+    """Call ``work`` for each item ``asked``, and yield each result when its work ends.
 
-    Any number can be asked for in bounded memory. ``executor``, ``workers`` and ``raises`` are those of
-    `run_all`, and so are the errors. Whoever does not take all results closes the generator.
+    No more than ``ahead`` items are under way at a time, so that memory is bounded for any number of items.
+    ``executor``, ``workers`` and ``raises`` are those of `run_all`, and so are the errors. Whoever does not
+    take all results closes the generator.
     """
     numbered = enumerate(asked)
     for _, result in _ended(work, numbered, executor, workers or available_cores(), ahead, raises):

@@ -81,7 +81,7 @@ def _message(error: Exception) -> str:
 
         if error.name == package.NAME:
             return package.sentence(error)
-        return f"expected the package {error.name} (`make verify` sets all up), got none"
+        return f"expected the package {error.name} (pip install {error.name}), got none"
     from taylor_verify.batch.failure import Failed, fault
 
     return str(error) if isinstance(error, Failed) else fault(error)

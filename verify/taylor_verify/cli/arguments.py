@@ -28,150 +28,168 @@ from taylor_verify.scenes.names import escaped
 
 _VERB: Final = "VERB"
 # Words that count as rungs, even if misspelt: a scene with such a name is written ./f64.
-_RUNG = re.compile(r"(f|mp)\d*", re.IGNORECASE)
+_RUNG_NAME = re.compile(r"(f|mp)\d*", re.IGNORECASE)
 _NEGATIVE_TIME = re.compile(r"-[\d.]")
 # Name, sign, value, default and help of an argument.
 _ARGUMENT: Final = re.compile(r"([-\w]+)([!*+]?)(?: ([^ ]+))?(?: \[(.+?)\])?(?:  (.*))?")
 
+_SCENE: Final = "SCENE  a scene file, or the name of a shipped scene (`taylor-verify list`)"
+_RUNG: Final = (
+    "--rung R [f64]  the precision: f32, f64, f80, f128, or mpN with N bits; default: f64"
+)
+_RUNG_OF_FILES: Final = (
+    "--rung R [f64]  the precision in which the files were computed; default: f64"
+)
+_SOLVER: Final = "--solver S [taylor]  the solver to judge (`taylor-verify list`); default: taylor"
 _TOLERANCE: Final = """
---tolerance E  allow this error in place of what rounding leaves: relative, and radians for the attitude;
-  1e-8 for all quantities, or omega=1e-8,T=1e-10 for some
+--tolerance E  allow this error in place of the error that rounding explains; it is relative, and in
+  radians for the attitude: 1e-8 for all quantities, or omega=1e-8,T=1e-10 for some
 """
 _CI: Final = """
---explain  show the arithmetic of every bound as well
---junit FILE  write the verdicts there as JUnit XML
---github  annotations for GitHub on stderr, and a summary to the file $GITHUB_STEP_SUMMARY
---baseline FILE  fail if a row is worse than in that document of --json (or verdicts.json of --out) by
-  more than rounding explains
+--explain  also show how each bound was computed
+--junit FILE  write the verdicts to FILE as JUnit XML
+--github  print annotations for GitHub on stderr, and write a summary to the file $GITHUB_STEP_SUMMARY
+--baseline FILE  fail if a row is worse than in FILE, by more than rounding explains; FILE is the output of
+  an earlier --json, or verdicts.json of an earlier `run --out`
 --gate bound|baseline [bound]  what decides the exit status: the bounds (and --baseline besides), or the
-  baseline alone, so that an answer beyond its bounds is kept from getting worse; default: bound
+  baseline alone, for an answer that is beyond its bounds and must not get worse; default: bound
 """
 _VERBS: Final = {
-    "list": ("list the shipped scenes, solvers and rungs", "list --json", ""),
+    "list": (
+        "list the shipped scenes, families, solvers, precisions and file formats",
+        "list --json",
+        "",
+    ),
     "scene": (
         "write a scene from a URDF, SDF or MJCF file",
         "scene from robot.urdf --link base",
         """
 source from  the word `from`
 file FILE  a URDF, SDF or MJCF file
---link NAME  the link or body; without it, the only one with an inertia
---out FILE  write the scene there, to a file that is not there yet
+--link NAME  the link or body to take; default: the only one that has an inertia
+--out FILE  write the scene to FILE, which must not exist yet; default: print it
 """,
     ),
     "question": (
-        "print a scene as any solver gets it, in exact text and hexadecimal floats",
+        "print a scene as a solver gets it: JSON with exact text and hexadecimal floats",
         "question euler/generic --csv",
-        """
-scene SCENE
---rung R [f64]  default: f64
---csv  print the header and the times of a trajectory file, for a program to fill in
+        f"""
+scene {_SCENE}
+{_RUNG}
+--csv  print a trajectory file to fill in: its header and its times
 """,
     ),
     "run": (
-        "solve scenes, compare with the exact motion, judge",
+        "solve scenes, compare the answers with the exact motion, and judge them",
         "run euler/generic --rung f32 f64",
         f"""
-scenes* SCENE  a folder of shipped scenes (extremes) is all of them; default: the standard set
---solver S [taylor]  default: taylor
---rung+ R  f32 f64 f80 f128 mpN; default: f64 for named scenes, all five for the standard set
---jobs N  processes for several scenes; default: one a core
---out DIR  write verdicts, records and tables there
---resume  go on where the last run of several scenes was interrupted
---against DIR  fail if a number has left the rounding class of the one published there
+scenes* SCENE  scene files, names of shipped scenes, patterns ('euler/*') or folders of shipped scenes
+  (extremes); default: the standard set
+{_SOLVER}
+--rung+ R  the precisions: f32, f64, f80, f128, or mpN with N bits; default: f64 for named scenes, five
+  precisions for the standard set
+--jobs N  the number of processes for several scenes; default: one for each core
+--out DIR  write verdicts, records and tables to DIR
+--resume  go on where the same run of several scenes was interrupted
+--against DIR  fail if an error differs by more than a factor of ten from that in DIR, a folder of an
+  earlier `run --out`
 {_TOLERANCE}{_CI}""",
     ),
     "exact": (
         "print the exact motion of a scene at the times given",
         "exact euler/generic --at 0,10,1e9 --digits 40",
-        """
-scene SCENE
---at! T,T,...  decimals or a/b, absolute
---digits N [30]  default: 30
---route arb|mpmath|taylor  arb, the closed form in balls (default where there is one); mpmath, the same
-  by other formulas; taylor, Taylor series in balls (default elsewhere)
+        f"""
+scene {_SCENE}
+--at! T,T,...  the times: decimals or a/b, in any order, on the clock of the scene
+--digits N [30]  the number of significant digits; default: 30
+--route arb|mpmath|taylor  how to compute: arb, the closed form with proven error bounds (default where
+  there is one); mpmath, the same by other formulas; taylor, Taylor series with proven error bounds
+  (default elsewhere)
 """,
     ),
     "check": (
-        "judge somebody's trajectory: CSV, NPZ, Parquet or JSON; of several files the order too",
+        "judge a trajectory file (CSV, JSON, NPZ, Parquet, HDF5, ...), or several of one solver",
         "check mine.csv --scene euler/generic --rung f64",
         f"""
-files+ FILE  columns t and any of w1 w2 w3 (angular velocity, body axes); u1 u2 u3 (velocity of the
-  body's origin, body axes; with w it stands for the impulses); x1 x2 x3 y1 y2 y3 (impulses, body axes);
-  q0 q1 q2 q3 (scalar first, body to space) or r11 ... r33; c1 c2 c3 (centre, space axes). Usual other
-  names (time, wx, omega_x, qw, p q r) and units such as [ms] or [deg/s] are taken and said; all other
-  columns are ignored, and named; several are of one solver at several steps
---columns* NAME=THEIRS,...  the file's column for a name above, or for a group (omega=gyro); a comma
-  belongs to THEIRS unless NAME= follows it; may be repeated: --columns 't=Time [ms],w1=rate, axis 1'
---scene! SCENE  what the file is an answer to
---rung R [f64]  precision of the arithmetic that made the file; default: f64
---accept-conventions  correct what was found out (order of the quaternion, axes, units, time, ...) and
-  judge the rest; without it the file is judged as it stands
---partial  judge what the file has, without undecided for tracked columns or a part of the span that it
-  lacks
+files+ FILE  a trajectory with a column t and any of: w1 w2 w3 (angular velocity, body axes); u1 u2 u3
+  (velocity of the body's origin, body axes; with w1 w2 w3 in place of the impulses); x1 x2 x3 y1 y2 y3
+  (impulses, body axes); q0 q1 q2 q3 (scalar first, body to space) or r11 ... r33; c1 c2 c3 (centre, space
+  axes). Usual other names (time, wx, omega_x, qw, p q r) and units such as [ms] or [deg/s] are recognised,
+  and a note says so. All other columns are ignored, and a note names them. Several files are the answers
+  of one solver at several steps: their order of convergence is shown too
+--columns* NAME=THEIRS,...  THEIRS is the file's column for NAME, a name above or a group (omega=gyro); a
+  comma belongs to THEIRS unless NAME= follows it; may be repeated: --columns 't=Time [ms],w1=rate, axis 1'
+--scene! SCENE  the scene that the file answers: a scene file, or the name of a shipped scene
+{_RUNG_OF_FILES}
+--accept-conventions  correct the conventions that the file does not share with the scene (order of the
+  quaternion, axes, units, time, ...), then judge; without this option the file is judged as it stands
+--partial  accept a file that lacks tracked columns or a part of the time; without this option the answer
+  to such a file is undecided
 {_TOLERANCE}
---steps H,H,...  the step of each of several files, for the order of convergence; default: what the
-  files or their names say (run_h0.05.csv)
---picture FILE  draw the errors of several files against their steps (svg, pdf, png; matplotlib)
+--steps H,H,...  the steps of several files, in their order; default: what the files or their names say
+  (run_h0.05.csv)
+--picture FILE  draw the errors of several files against their steps (svg, pdf, png; needs matplotlib)
 {_CI}""",
     ),
     "explain": (
-        "show the equations as built, the regime of the orbit and the arithmetic of each gate",
+        "show the equations of a scene, its orbit in numbers, and how each bound is computed",
         "explain kirchhoff/screw --rung f80",
-        """
-scene SCENE
---rung R [f64]  default: f64
+        f"""
+scene {_SCENE}
+{_RUNG}
 """,
     ),
     "tradeoff": (
         "measure the time and the error of every setting of every solver",
         "tradeoff euler/generic --rung f64 --target 1e-9",
         """
-scenes* SCENE
+scenes* SCENE  scene files, names of shipped scenes, patterns or folders of shipped scenes
 --target E  also find the fastest setting whose error stays below E on the scene and on starts nearby;
-  exit status 3 where there is none
---rung+ R  default: f32 f64 f80 f128
---solver* S  measure this setting of a solver and no others but taylor's, which are the yardstick; may
-  be repeated: --solver "process:./mine" --solver "geometric:splitting?step=0.01"
---outside  measure the integrators of other libraries too, each in an environment of its own, which is
-  made the first time (a download)
---cold  also start each setting in a new process with nothing compiled, and tell importing, compiling
-  and solving apart
---repeats N [5]  timed solves of a setting; default: 5
---seed N [1]  of the order and the starts; default: 1
---out DIR  write the numbers and the work-precision pictures there
+  exit status 3 if there is none
+--rung+ R  the precisions: f32, f64, f80, f128, or mpN with N bits; default: f32 f64 f80 f128
+--solver* S  measure this solver, and beside it only taylor, the yardstick; may be repeated:
+  --solver "process:./mine" --solver "geometric:splitting?step=0.01"
+--outside  also measure the integrators of other libraries, each in an environment of its own, which is
+  downloaded the first time
+--cold  also start each setting in a new process with nothing compiled, and show the times of importing,
+  compiling and solving
+--repeats N [5]  how often each setting is timed; default: 5
+--seed N [1]  the seed of the order and of the starts; default: 1
+--out DIR  write the numbers and the pictures to DIR (needs matplotlib)
 """,
     ),
     "sweep": (
         "solve and judge many bodies and starts, drawn from a family",
         "sweep satellites --count 1000 --seed 1 --out swept",
-        """
-what FAMILY  a shipped family (`list` names them), a template (a scene file in which numbers are drawn), or
-  a folder of scenes
---count N  points that are drawn; default: what the template says, else 100
---seed N  default: what the template says, else 1; point k of a seed is always the same
+        f"""
+what FAMILY  a shipped family (`taylor-verify list`), a template (a scene file in which numbers are drawn),
+  or a folder of scenes
+--count N  how many points are drawn; default: what the template says, else 100
+--seed N  the seed of the points; default: what the template says, else 1; point k of a seed is always the
+  same
 --points random|sobol  how the points are spread; default: what the template says, else random
---solver S [taylor]  default: taylor
---rung R [f64]  default: f64
---executor E [local]  local, or dask:ADDRESS of a scheduler; default: local
---jobs N  processes on this machine; default: one a core
---out DIR  write the rows (Parquet), a summary, a picture and the worst cases there
---resume  go on with the sweep in --out, which was ended before its end
---worst N [10]  the worst cases that are written as scenes; default: 10
+{_SOLVER}
+{_RUNG}
+--executor E [local]  local, or dask:ADDRESS of a dask scheduler; default: local
+--jobs N  the number of processes on this machine; default: one for each core
+--out DIR  write the rows (Parquet), a summary, a picture and the worst cases to DIR
+--resume  go on with an interrupted sweep in the folder of --out
+--worst N [10]  how many of the worst cases are written as scenes; default: 10
 """,
     ),
     "draw": (
         "draw the exact motion of a scene, and the errors of trajectory files",
         "draw euler/tennis-racket --animate --out racket.html",
-        """
-scene SCENE
-files* FILE  trajectories, read as `check` reads them: their errors in time are drawn too
+        f"""
+scene {_SCENE}
+files* FILE  trajectory files, read as `check` reads them: their errors are drawn against time
 --out NAME  write NAME-polhode.svg and so on; the ending of NAME says the format: .svg (default), .pdf, .png
---only NAME,...  draw these and no others: polhode, momentum, bifurcation, time, herpolhode, axis, spheres,
-  path, errors; a single one has the name of --out itself
---animate  draw one moving picture: a page that turns, with no network (--out NAME.html, the default), or a
-  film (.gif; .mp4 needs ffmpeg)
---rung R [f64]  precision of the arithmetic that made the files; default: f64
---columns* NAME=THEIRS,...  the file's column for a name of ours, as in `check`
+--only NAME,...  draw only these: polhode, momentum, bifurcation, time, herpolhode, axis, spheres, path,
+  errors; a single picture is written to the file of --out itself
+--animate  draw one moving picture: a page that turns and needs no network (--out NAME.html, the default),
+  or a film (.gif; .mp4 needs ffmpeg)
+{_RUNG_OF_FILES}
+--columns* NAME=THEIRS,...  THEIRS is the file's column for NAME, as in `check`
 --accept-conventions  correct the conventions of the files before their errors are drawn, as in `check`
 """,
     ),
@@ -179,12 +197,13 @@ files* FILE  trajectories, read as `check` reads them: their errors in time are 
         "check every numbered equation and every claim of the two source texts",
         'claims "hydromechanics 49 (17)"',
         """
-ids* ID  "heinbockel (2.2.70)", its number "(2.2.70)", or a whole text: "hydromechanics 48"; default: all
+ids* ID  "heinbockel (2.2.70)", the number "(2.2.70)" alone, or a whole text, "hydromechanics 48"; default:
+  all statements
 """,
     ),
     # Its arguments are those of the studies.
     "publish": (
-        "measure and write what is published, or make its pages of what is stored",
+        "write what the project publishes: measure studies, or make pages of what is stored",
         "publish growth --periods 1e4",
         "",
     ),
@@ -276,7 +295,7 @@ def _split(groups: Iterable[Sequence[str]] | None) -> tuple[list[str], list[str]
         rungs += first.split(",")
         for word in others:
             names = word.split(",")
-            if all(_RUNG.fullmatch(name) for name in names):
+            if all(_RUNG_NAME.fullmatch(name) for name in names):
                 rungs += names
             else:
                 scenes.append(word)
@@ -293,11 +312,11 @@ class _Parser(argparse.ArgumentParser):
 def _parser(is_publishing: bool) -> argparse.ArgumentParser:
     parser = _Parser(
         prog="taylor-verify",
-        description="The reference that rigid-body and ideal-fluid simulations are measured "
-        "against.",
+        description="Find out how wrong a simulation is: of a rigid body, or of a solid in an ideal "
+        "fluid. Its numbers are compared with the exact motion.",
         epilog="SCENE is a file or the name of a shipped scene, such as euler/generic. "
-        "Exit status: 0 pass, 1 a gate failed, 2 the input or the call was wrong, 3 undecided. "
-        "`taylor-verify VERB --help` has an example.",
+        "Exit status: 0 all is right, 1 something is wrong, 2 the input or the call was wrong, "
+        "3 undecided. `taylor-verify VERB --help` has an example.",
         allow_abbrev=False,
         # `parse` reports a wrong verb, with the verbs that are near to it.
         exit_on_error=False,
@@ -307,7 +326,7 @@ def _parser(is_publishing: bool) -> argparse.ArgumentParser:
         "--completion",
         metavar="SHELL",
         choices=SHELLS,
-        help=f"print the script that makes a shell complete words: {', '.join(SHELLS)} (shtab)",
+        help=f"print the script by which a shell completes words: {', '.join(SHELLS)} (needs shtab)",
     )
     parser.set_defaults(act=_greet, verb=parser, json=False)
     verbs = parser.add_subparsers(title="verbs", metavar=_VERB)

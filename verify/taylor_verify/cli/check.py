@@ -10,10 +10,10 @@ from typing import Any, Final
 
 from rich.text import Text
 
-from taylor_verify.cli.answer import Answer, WrongCall, wrong_calls
+from taylor_verify.cli.answer import WRONG_CALL, Answer, WrongCall, wrong_calls
 from taylor_verify.cli.ci import concluded, outputs
 from taylor_verify.cli.console import Page, bold, print_table
-from taylor_verify.cli.folders import writable_file
+from taylor_verify.cli.folders import not_written, writable_file
 from taylor_verify.cli.inputs import (
     known_rungs,
     read_number,
@@ -76,7 +76,13 @@ def answer(options: argparse.Namespace) -> Answer:
     status = exit_status(several.verdicts)
     text = partial(_text_of_several, several, scene.name, options.rung)
     answered = concluded(asked, several, status, several.document(), text)
-    return answered._replace(messages=[*answered.messages, *_drawn(several, picture)])
+    try:
+        messages = [*answered.messages, *_drawn(several, picture)]
+    except OSError as error:
+        # The judgement of long files is shown in any case.
+        messages = [*answered.messages, not_written(error, "--picture")]
+        answered = answered._replace(status=WRONG_CALL)
+    return answered._replace(messages=messages)
 
 
 def _judged(options: argparse.Namespace, scene: Scene, file: TrajectoryFile) -> FileJudgement:

@@ -13,7 +13,7 @@ from taylor_verify.batch.comparison import Comparison, Earlier, read_baseline, s
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.batch.report import remarks, write_junit
 from taylor_verify.cli.answer import WRONG_CALL, Answer, WrongCall, graver, wrong_calls
-from taylor_verify.cli.folders import writable_file
+from taylor_verify.cli.folders import not_written, writable_file
 from taylor_verify.cli.streams import tell_runner
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.publish.ci.annotations import annotation_lines
@@ -83,12 +83,12 @@ def concluded(
             status = comparison.exit_status
             decision = _decision(source, comparison, results.verdicts)
         status = graver(status, comparison.exit_status)
-    for write in (_write_junit, _write_github):
+    for write, option in ((_write_junit, "--junit"), (_write_github, "--github")):
         try:
             messages += write(asked, results, comparison, decision)
         except OSError as error:
             # A run that took hours is shown in any case.
-            messages.append(f"expected to write, got {error.strerror} @ {error.filename}")
+            messages.append(not_written(error, option))
             status = WRONG_CALL
     last = f"\n{decision}" if decision else ""
     stated = None if decision else status

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -12,7 +13,11 @@ from taylor_verify.cli.answer import WrongCall, wrong_calls
 
 _PROJECT: Final = 'name = "taylor-verify"'
 _REPORTS: Final = "reports"
+# Bytes of a file name that are not UTF-8, as Python has them.
+_FOREIGN: Final = re.compile("[\ud800-\udfff]")
 _FOLDER: Final = "a folder that can be written"
+# Folders of names that stand for a device or a stream of the process.
+_DEVICES: Final = tuple(map(Path, ("/dev", "/dev/fd", "/proc/self/fd")))
 IN_A_CHECKOUT: Final = (
     "what is published belongs to a checkout of the project, and no package has it: go to one, or "
     "name a folder that `run --out` has written"
@@ -64,21 +69,33 @@ def _is_checkout(path: Path) -> bool:
     return _PROJECT in project.splitlines() and (path / "cases").is_dir()
 
 
-def writable(folder: str, option: str = "--out") -> Path:
-    """Return the folder if it can be written, tried out before hours of work; it is not made yet."""
+def writable(folder: str, option: str = "--out", names: Iterable[str] = ()) -> Path:
+    """Return the folder if it can be written, tried out before hours of work; it is not made yet.
+
+    ``names`` are those that its files will mention. Like that of the folder, they must be UTF-8.
+    """
     with unwritable(_FOLDER, folder, option):
         if not folder:
             raise NotADirectoryError(0, "an empty name")
+        for name in (folder, *names):
+            if _FOREIGN.search(name):
+                raise OSError(0, f"the name {name!r} is not UTF-8")
         return _tried(Path(folder), [Path(folder)])
 
 
 def writable_file(name: str, option: str) -> Path:
-    """Return the file if it can be written, its folder tried out before hours of work."""
+    """Return the file if it can be written, its folder tried out before hours of work.
+
+    A link stands for the file that it leads to. A device and a pipe are refused: the new file would take
+    their place.
+    """
     path = Path(name)
     with unwritable("a file that can be written", name, option):
         if not name or path.is_dir():
             raise IsADirectoryError(0, "a folder" if name else "an empty name")
-        return _tried(path)
+        if (path.exists() and not path.is_file()) or path.absolute().parent in _DEVICES:
+            raise OSError(0, "a device or a pipe")
+        return _tried(path.resolve() if path.is_symlink() else path)
 
 
 @contextmanager
@@ -89,6 +106,12 @@ def unwritable(expected: str, name: str, option: str) -> Iterator[None]:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise WrongCall(f"expected {expected}, got {name!r} ({reason}) @ {option}") from error
+
+
+def not_written(error: OSError, option: str) -> str:
+    """Return the message for a file that could not be written at the end of the work."""
+    place = f" @ {error.filename}" if error.filename else ""
+    return f"expected to write, got {error.strerror or error}{place} ({option})"
 
 
 def _tried(path: Path, within: Iterable[Path] = ()) -> Path:

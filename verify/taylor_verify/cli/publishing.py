@@ -29,34 +29,39 @@ def add_options(verb: argparse.ArgumentParser, in_full: bool) -> None:
         "studies",
         nargs="*",
         metavar="STUDY",
-        help="measure and write these; `publish --list` names them; default: make all pages of what is "
-        "stored",
+        help="measure these studies and write what is measured (`publish --list`); default: make all "
+        "pages of what is stored",
     )
     verb.add_argument(
-        "--from", dest="folder", metavar="DIR", help="default: reports of the checkout around"
+        "--from",
+        dest="folder",
+        metavar="DIR",
+        help="the folder of what is published; default: `reports` of the checkout you are in",
     )
     made = verb.add_mutually_exclusive_group()
-    made.add_argument("--list", action="store_true", help="instead list the studies")
+    made.add_argument("--list", action="store_true", help="list the studies, and do nothing else")
     made.add_argument(
-        "--pages", action="store_true", help="make all pages of what is stored, the default"
+        "--pages", action="store_true", help="make all pages of what is stored (the default)"
     )
     made.add_argument(
         "--paper",
         action="store_true",
-        help="instead make the paper of what is stored, as PDF and LaTeX with its tables and pictures, "
-        "into DIR/paper, and draw the pictures of DIR as PDF (pypandoc-binary, typst)",
+        help="make the paper of what is stored, as PDF and LaTeX with its tables and pictures, in "
+        "DIR/paper, and draw the pictures of DIR as PDF (needs pypandoc-binary, typst)",
     )
     made.add_argument(
         "--missing",
         action="store_true",
-        help="instead make what a clone of the repository lacks in DIR (minutes, all cores)",
+        help="make the files of DIR that a clone of the repository lacks (minutes, all cores)",
     )
-    made.add_argument("--archive", metavar="DIST", help="instead pack DIR into the folder DIST")
+    made.add_argument(
+        "--archive", metavar="DIST", help="pack DIR into an archive in the folder DIST"
+    )
     made.add_argument(
         "--site",
         metavar="SITE",
-        help="instead make static pages of docs and of what DIR holds, into the folder SITE (sphinx, "
-        "myst-nb, furo, sphinx-copybutton, latex2mathml, plotly)",
+        help="make one site of the docs and of DIR, in the folder SITE (needs sphinx, myst-nb, furo, "
+        "sphinx-copybutton, latex2mathml, plotly)",
     )
     if in_full:
         _add_options_of_studies(verb)
@@ -206,7 +211,7 @@ def _wrong_calls(folder: Path, option: str) -> Iterator[None]:
 
     try:
         yield
-    except FileNotFoundError as error:
+    except (FileNotFoundError, NotADirectoryError) as error:
         raise WrongCall(
             f"expected what `run --out {folder}` writes ({store.FOLDER}/{store.VERDICTS} first of all), "
             f"got no such file @ {error.filename}"

@@ -66,7 +66,8 @@ def answer(options: argparse.Namespace) -> Answer:
         say(f"warning: {warning}")
     if options.jobs is not None and not options.jobs >= 1:
         raise WrongCall(f"expected a number of at least 1, got {options.jobs} @ --jobs")
-    folder = writable(options.out) if options.out is not None else None
+    names = [scene.name for scene in selection.scenes]
+    folder = writable(options.out, names=names) if options.out is not None else None
     published = _published(options.against) if options.against is not None else None
     asked = outputs(options)
     tolerances = read_tolerances(options.tolerance, selection.scenes)
@@ -94,7 +95,7 @@ def _published(folder: str) -> Earlier:
     try:
         with wrong_calls(" (--against)"):
             return read_report(folder)
-    except FileNotFoundError as error:
+    except (FileNotFoundError, NotADirectoryError) as error:
         raise WrongCall(
             f"expected a folder of `run --out`, got no such file @ --against {error.filename}; "
             f"{IN_A_CHECKOUT}"

@@ -31,10 +31,10 @@ def print_out(text: str = "") -> None:
         sys.stdout.flush()
     except BrokenPipeError:
         _abandon(sys.stdout)
-    except OSError:
+    except OSError as error:
         # Such as a full disk. The rest of the buffer must not be written again at the exit.
         _abandon(sys.stdout)
-        raise
+        raise OSError(error.errno, error.strerror, "stdout") from error
 
 
 def _abandon(stream: TextIO) -> None:

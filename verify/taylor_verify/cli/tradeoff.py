@@ -13,9 +13,16 @@ from typing import Any
 from rich.table import Table
 from rich.text import Text
 
-from taylor_verify.cli.answer import PASS, UNDECIDED, Answer, WrongCall, wrong_calls
+from taylor_verify.cli.answer import (
+    PASS,
+    UNDECIDED,
+    WRONG_CALL,
+    Answer,
+    WrongCall,
+    wrong_calls,
+)
 from taylor_verify.cli.console import Page, bold
-from taylor_verify.cli.folders import alone_in, writable
+from taylor_verify.cli.folders import alone_in, not_written, writable
 from taylor_verify.cli.inputs import known_rungs, read_number, read_scenes, require_matplotlib
 from taylor_verify.cli.progress import working
 from taylor_verify.cli.streams import say
@@ -76,8 +83,12 @@ def answer(options: argparse.Namespace) -> Answer:
                     except OutOfReach as reason:
                         missed.append(str(reason))
                 documents.append(document)
-        drawn = [] if place is None else [f"wrote {path}" for path in _draw(documents, place)]
-    status = UNDECIDED if missed else PASS
+        status = UNDECIDED if missed else PASS
+        try:
+            drawn = [] if place is None else [f"wrote {path}" for path in _draw(documents, place)]
+        except OSError as error:
+            # What was measured for minutes is shown in any case.
+            drawn, status = [not_written(error, "--out")], WRONG_CALL
     text = partial(tradeoff_text, documents)
     return Answer(status, {"scenes": documents}, text, [*missed, *drawn])
 

@@ -87,7 +87,9 @@ def _quantities(scenes: Iterable[Scene]) -> list[str]:
     from taylor_verify.exact.invariants import invariants
 
     asked = list(scenes)
-    # A file may also have the angular velocity of a solid in a fluid.
-    states = {name for scene in asked for name in ("omega", MAIN[scene.model], *scene.track)}
+    states = {name for scene in asked for name in (MAIN[scene.model], *scene.track)}
+    if "impulse" in states:
+        # A file about a solid in a fluid may have its velocities.
+        states |= {"velocity", "omega"}
     conserved = dict.fromkeys(invariant.name for scene in asked for invariant in invariants(scene))
     return [*(name for name in STATES if name in states), *conserved]

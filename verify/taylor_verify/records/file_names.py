@@ -29,5 +29,5 @@ def of_scene(scene: str) -> str:
 
 
 def of_solver(solver: str) -> str:
-    """Return a solver's name with escapes for what a file's name cannot hold, and for its dots."""
+    """Return a solver's name for a file, its dots and all that no file name may have escaped."""
     return quote(solver, safe=_SAFE).replace(".", "%2E")

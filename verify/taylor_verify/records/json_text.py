@@ -69,7 +69,7 @@ def finite(value: Any) -> Any:
 
 
 def parsed(content: bytes, kind: type[Document]) -> Document:
-    """Return the document of a type that JSON text holds; keys that the type has not are left out.
+    """Read JSON text as a document of a type; keys that the type does not have are left out.
 
     Raises ValueError with what was expected, what came, and the place in the document.
     """
@@ -85,7 +85,7 @@ def parsed(content: bytes, kind: type[Document]) -> Document:
 
 
 def converted(value: Any, kind: type[Document]) -> Document:
-    """Return the document of a type that dicts and lists hold; raises as ``parsed`` does."""
+    """Make a document of a type from dicts and lists. Raises ValueError as ``parsed`` does."""
     try:
         return msgspec.convert(value, kind)
     except msgspec.ValidationError as error:
@@ -93,7 +93,7 @@ def converted(value: Any, kind: type[Document]) -> Document:
 
 
 def read(file: Path, kind: type[Document]) -> Document:
-    """Return the document of a type in a file; ValueError names the file, OSError is left as it is."""
+    """Read a file as a document of a type. Raises OSError, and ValueError that names the file."""
     try:
         return parsed(file.read_bytes(), kind)
     except ValueError as error:
@@ -101,7 +101,7 @@ def read(file: Path, kind: type[Document]) -> Document:
 
 
 def _fault(error: msgspec.ValidationError, document: Any) -> str:
-    """Return what was expected and what came, with the place in this project's way."""
+    """Return the fault in the form of this project: expected ..., got ... @ place."""
     text = str(error).replace("Number out of range", "Expected a finite number")
     text = re.sub("Invalid enum value '.*?'", "Expected a word that is known here", text)
     match = _PLACE.search(text)
@@ -119,7 +119,7 @@ def _in_words(match: re.Match[str]) -> str:
 
 
 def _at(document: Any, place: str) -> str:
-    """Return what stands at a place of a document; of a dictionary msgspec does not tell the key."""
+    """Return the value at a place of a document; msgspec does not name the key of a dictionary."""
     for index, name in _STEP.findall(place):
         if name == "...":
             return "another value"

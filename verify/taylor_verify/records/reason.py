@@ -213,7 +213,7 @@ class TimeShift:
         """Return the shift in words that a person can act on."""
         if self.kind is Kind.NONE:
             return "no shift of time explains it"
-        left = f"{self.remains:.2g} remains{self.rows_of_it()}"
+        left = f"{self.remains:.2g} remains{self.rows_in_words()}"
         if self.at is None:
             return f"{late(self.late)}, {self.kind}; {left}"
         at_worst = f"{late(self.late)} at t = {self.at:g}"
@@ -224,7 +224,7 @@ class TimeShift:
             first = f" and is {late(self.begins)} at t = {self.begins_at:g}"
         return f"{at_worst}, drifting: its clock runs {pace(self.trend)}{first}; {left}"
 
-    def rows_of_it(self) -> str:
+    def rows_in_words(self) -> str:
         """Return the number of rows that share the shift, and the times of those that do not."""
         if not self.strays:
             return ""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -14,13 +15,12 @@ def replace_files(
     """Put the contents, by their paths below ``folder``, in place of what is there; remove ``stale``.
 
     A long text may come in pieces. All are first written apart, so that what fails in writing leaves
-    the old files as they were, and none is ever half written. Raises OSError; returns the paths in the
-    order given.
+    the old files as they were, and none is ever half written. Raises OSError, which names the folder;
+    returns the paths in the order given.
     """
-    folder.mkdir(parents=True, exist_ok=True)
     places = {name: folder / name for name in contents}
     # A directory inside the folder is on the same file system, where a move is one step.
-    with TemporaryDirectory(dir=folder, prefix=".unfinished-") as staging:
+    with _made(folder), TemporaryDirectory(dir=folder, prefix=".unfinished-") as staging:
         for name, content in contents.items():
             place = Path(staging, name)
             place.parent.mkdir(parents=True, exist_ok=True)
@@ -36,6 +36,25 @@ def replace_files(
     for file in set(stale) - set(places.values()):
         file.unlink(missing_ok=True)
     return tuple(places.values())
+
+
+@contextmanager
+def _made(folder: Path) -> Iterator[None]:
+    """Make a folder, and remove what was made of it if the block fails and left it empty.
+
+    An error of the system that names no file, such as a full disk, names the folder then.
+    """
+    new = [path for path in (folder, *folder.absolute().parents) if not path.exists()]
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        yield
+    except BaseException as error:
+        for path in new:
+            with suppress(OSError):
+                path.rmdir()
+        if isinstance(error, OSError) and error.errno and error.filename is None:
+            raise OSError(error.errno, error.strerror, str(folder)) from error
+        raise
 
 
 def first_line(file: Path) -> str:

@@ -74,7 +74,7 @@ def _left(verdict: Verdict) -> Iterator[str]:
         return
     shift, remains = verdict.reason.shift, ""
     if verdict.remains is not None:
-        remains = f", and {verdict.remains:.2g} remains{shift.rows_of_it() if shift else ''}"
+        remains = f", and {verdict.remains:.2g} remains{shift.rows_in_words() if shift else ''}"
     if kind is ErrorKind.ROUNDOFF:
         yield "what is left is roundoff"
     elif kind in _STORED:

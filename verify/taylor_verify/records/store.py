@@ -199,7 +199,7 @@ def laid_out(document: Mapping[str, Any]) -> str:
 
 
 def _pieces(document: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the same in pieces, which are short however many numbers there are."""
+    """Yield the JSON of ``laid_out`` in short pieces, however many numbers there are."""
     yield "{"
     yield from _joined(
         ",\n ", (_member(key, _value(value), ": ") for key, value in document.items())

@@ -128,6 +128,8 @@ def _all_names() -> tuple[str, ...]:
 def _near(scene: str) -> str:
     if is_pattern(scene):
         return "no scene fits the pattern; `list` names them all"
+    if os.path.isdir(scene):
+        return f"it is a folder: name the scenes in it, '{os.path.join(scene, f'*{_ENDING}')}'"
     known = _all_names()
     close = difflib.get_close_matches(scene, known, n=_MOST_SUGGESTED, cutoff=0.5)
     # The part after the slash is often all that somebody remembers.

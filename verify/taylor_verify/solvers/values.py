@@ -19,7 +19,7 @@ from mpmath import libmp, mp
 
 from taylor_verify.scenes.precision import held_exactly
 from taylor_verify.scenes.reading.faults import cut
-from taylor_verify.scenes.reading.table import LARGEST_EXPONENT, exact_number
+from taylor_verify.scenes.reading.table import LARGEST_EXPONENT, exact_number, quantity
 
 # A rational, or the NaN or infinity that the file has in its place.
 Value = Fraction | float
@@ -28,6 +28,7 @@ _HEXADECIMAL = re.compile(
     r"([+-]?)0x(?=[0-9a-f.])([0-9a-f]*)\.?([0-9a-f]*)(?:p([+-]?[0-9]{1,6}))?", re.IGNORECASE
 )
 _NOT_FINITE = re.compile(r"[+-]?(nan|inf|infinity)", re.IGNORECASE)
+_DECIMAL_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+(?:e[+-]?[0-9]+)?", re.IGNORECASE)
 _EXPONENT_BITS: Final = int(LARGEST_EXPONENT * math.log2(10))
 
 
@@ -66,7 +67,16 @@ def _from_text(text: str) -> Value:
             raise ValueError(f"a number with powers of ten up to {LARGEST_EXPONENT}")
         value = int(whole + part, 16) * Fraction(2) ** exponent
         return -value if sign == "-" else value
-    return exact_number(text)
+    try:
+        return exact_number(text)
+    except ValueError:
+        # Sound numbers are many, and are not asked this.
+        if _DECIMAL_COMMA.fullmatch(text):
+            raise ValueError("a number with a decimal point") from None
+        if quantity(text):
+            expected = "a number alone (a unit belongs to the name of the column: `wx [deg/s]`)"
+            raise ValueError(expected) from None
+        raise
 
 
 def is_number(text: str) -> bool:

@@ -37,7 +37,7 @@ class Question(NamedTuple):
 
 @dataclass(frozen=True)
 class Drawn:
-    """Points of a family. A grid is gone through once for every point that is drawn."""
+    """Points of a family; every drawn point is combined with every point of the grid."""
 
     family: Family
     count: int
@@ -112,7 +112,7 @@ class Drawn:
 
 @dataclass(frozen=True)
 class Listed:
-    """Scenes that are files, in the order of their names. Of a part the scenes are read already."""
+    """Scenes in files, in the order of their names; a part of them has its scenes already read."""
 
     name: str
     files: tuple[str, ...]

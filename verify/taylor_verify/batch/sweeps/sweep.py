@@ -142,7 +142,10 @@ def _faults(
 
 
 def _manifest(asked: Questions, solver: str, rung: Rung) -> Manifest:
-    missing = solver_named(solver).unavailable(rung)
+    try:
+        missing = solver_named(solver).unavailable(rung)
+    except ValueError as error:
+        raise ValueError(f"{error} @ solver") from None
     if isinstance(missing, Lack) and missing.outcome is Outcome.NO_PACKAGE:
         raise ValueError(missing)
     length = min(max(asked.total // _CHUNKS, _LEAST_CHUNK), _LONGEST_CHUNK)

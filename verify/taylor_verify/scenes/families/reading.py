@@ -47,12 +47,15 @@ def load_family(file: Path) -> Family:
         raise Refused(
             [f"expected a readable template, got bytes that are not UTF-8 @ {file}"]
         ) from None
-    return read_family(text, file.stem)
+    return read_family(text, file.stem, str(file))
 
 
-def read_family(text: str, name: str) -> Family:
-    """Return the family that this text describes; raises Refused with every fault of it."""
-    return _Reading(text, name).family()
+def read_family(text: str, name: str, place: str = "") -> Family:
+    """Return the family that this text describes; raises Refused with every fault of it.
+
+    ``place`` is the file that faults of the whole text name; the name of the family unless given.
+    """
+    return _Reading(text, name, place or name).family()
 
 
 class _Slot(int):
@@ -62,9 +65,9 @@ class _Slot(int):
 class _Reading:
     """The reading of one template: its variables in the order in which they are drawn."""
 
-    def __init__(self, text: str, name: str) -> None:
-        self._text, self._name = text, name
-        self._document = parsed(text, name)
+    def __init__(self, text: str, name: str, place: str) -> None:
+        self._text, self._name, self._place = text, name, place
+        self._document = parsed(text, place)
         self._faults = Faults()
         self._variables: list[Variable] = []
         # Paths of variables that are not known, because of a fault.
@@ -82,7 +85,7 @@ class _Reading:
                 self._faults.add("a number that the scene uses", "one that is not", place)
         if not self._variables and not self._faulty:
             mend = "{ uniform = [1, 3] } in place of a number"
-            self._faults.add("a number that is drawn", "none", self._name, mend)
+            self._faults.add("a number that is drawn", "none", self._place, mend)
         pieces = tuple(_pieces(toml(scene, _number)))
         title = scene.get("title")
         family = Family(

@@ -77,9 +77,9 @@ STUDY: Final[Study[Board]] = Study(
     parts=lambda board: pages(board, entry_list()),
     draw=page.pictures,
     options=(
-        Option("only", "run these engines of the list alone, separated by commas", _names, "NAMES"),
-        Option("anew", "run again what is stored too"),
-        Option("rejudge", "run nothing; judge the stored trajectories again"),
-        Option("workers", "run so many at a time; default: as many as there are cores", _count),
+        Option("only", "run only these engines, separated by commas", _names, "NAMES"),
+        Option("anew", "also run again the engines that are stored"),
+        Option("rejudge", "judge the stored trajectories again, and run nothing"),
+        Option("workers", "run N engines at a time; default: one for each core", _count),
     ),
 )

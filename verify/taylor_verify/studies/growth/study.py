@@ -71,7 +71,7 @@ STUDY: Final = Study(
     sheet=page.sheet,
     draw=page.pictures,
     options=(
-        Option("periods", "follow none for more than so many periods", _periods),
-        Option("long", "follow the one ensemble of 100 million periods instead"),
+        Option("periods", "follow no ensemble for more than N periods", _periods),
+        Option("long", "follow only the ensemble of 100 million periods"),
     ),
 )

@@ -29,8 +29,8 @@ STUDY: Final = Study(
     options=(
         Option(
             "outside",
-            "measure compiled integrators of other libraries too, in turns with all others; their "
-            "environments are made first, a download",
+            "also measure compiled integrators of other libraries, in turns with all others; each is "
+            "downloaded first",
         ),
     ),
 )

@@ -58,8 +58,13 @@ STUDY: Final = Study(
     page=lambda study, folder: page.page(study),
     sheet=page.sheet,
     options=(
-        Option("runs", f"the runs of the search in each family; default: {RUNS}", _runs),
-        Option("seconds", "refused: the budget is --runs", _seconds, "S"),
+        Option("runs", f"the number of runs of the search in each family; default: {RUNS}", _runs),
+        Option(
+            "seconds",
+            "refused: with a limit by time each machine would find other scenes; use --runs",
+            _seconds,
+            "S",
+        ),
         Option("seed", "the seed of the search; default: 1", _seed),
     ),
 )
