@@ -46,6 +46,8 @@ STATE_ALONE = {
     "kirchhoff/weber",
 }
 IN_PROPORTION_TO_TIME = {"kirchhoff/weber-path"}
+# The second route alone takes seconds for its many teeth.
+LONG = IN_PROPORTION_TO_TIME | {"euler/washboard-run"}
 
 
 def disagreement(scene: Scene, times: list[Fraction]) -> str:
@@ -76,10 +78,7 @@ def closed_forms() -> list[str]:
 
 @pytest.mark.parametrize(
     "name",
-    [
-        pytest.param(name, marks=pytest.mark.slow if name in IN_PROPORTION_TO_TIME else ())
-        for name in closed_forms()
-    ],
+    [pytest.param(name, marks=pytest.mark.slow if name in LONG else ()) for name in closed_forms()],
 )
 def test_on_every_shipped_scene(name: str) -> None:
     """Attitude and centre included, within the span of the scene, before it and after it."""
