@@ -261,7 +261,7 @@ def test_extremes_agree_with_mpmath(name: str) -> None:
 
 
 @given(spins(), TIMES)
-@settings(max_examples=25)
+@settings(max_examples=10)
 def test_any_body_agrees_with_mpmath(spin: FreeSpin, t: Fraction) -> None:
     """Whatever the body, the start and the time, the two closed forms differ by no more than proven."""
     agrees_with_mpmath(spin, [t])
