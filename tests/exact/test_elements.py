@@ -73,7 +73,7 @@ def distance(a: Any, b: Any) -> mpf:
 
 
 @pytest.mark.parametrize(
-    "name", by_turns(n for n in names() if n.startswith(("euler/", "kirchhoff/")))
+    "name", by_turns((n for n in names() if n.startswith(("euler/", "kirchhoff/"))), 6)
 )
 def test_the_digits_asked_for_are_right(name: str) -> None:
     """Fifteen digits agree with forty, name by name, and every number says what it is."""

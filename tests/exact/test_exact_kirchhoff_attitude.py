@@ -254,7 +254,9 @@ def test_obeys_the_equations_of_motion(name: str) -> None:
 GOING_ON = ("four real roots", "two real roots", "cubic, third root above", "through the pole")
 
 
-@pytest.mark.parametrize("name", [*GOING_ON, "falling from elsewhere", "beside a double root"])
+@pytest.mark.parametrize(
+    "name", by_turns([*GOING_ON, "falling from elsewhere", "beside a double root"])
+)
 def test_a_new_start_goes_on(name: str) -> None:
     """R(s + t) = R(s) R*(t) and c(s + t) = c(s) + R(s) c*(t), where * starts anew at s."""
     asked, first, second = scene(name), Fraction(37, 3), Fraction(-251, 9)

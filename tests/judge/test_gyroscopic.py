@@ -40,11 +40,19 @@ def causes(path: Path, scene: str, columns: Columns) -> list[str]:
     return [cause.sentence for cause in judgement.causes]
 
 
-@pytest.mark.parametrize("kick", WORDS)
 @pytest.mark.parametrize(
-    ("scene", "h", "every"),
-    by_turns([(FREE, 0.01, 1), (FREE, 0.002, 50)], 2)
-    + by_turns([(FULL, 0.002, 50), (FULL, 0.01, 1)], 2),
+    ("kick", "scene", "h", "every"),
+    by_turns(
+        [
+            (kick, *rows)
+            for kick in WORDS
+            for rows in (
+                *((FREE, 0.01, 1), (FULL, 0.002, 50)),
+                *((FREE, 0.002, 50), (FULL, 0.01, 1)),
+            )
+        ],
+        5,
+    ),
 )
 def test_each_treatment_is_named(
     kick: Kick, scene: str, h: float, every: int, tmp_path: Path
