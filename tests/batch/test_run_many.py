@@ -66,7 +66,7 @@ def results(alone: list[Judgement]) -> Judgements:
         lambda: ThreadPoolExecutor(3),
         lambda: ProcessPoolExecutor(2, get_context("spawn")),
         lambda: Backwards(len(SCENES)),
-        lambda: None,
+        pytest.param(lambda: None, marks=pytest.mark.slow),
     ],
     ids=["threads", "processes", "backwards", "this machine"],
 )

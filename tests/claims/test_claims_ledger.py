@@ -6,6 +6,7 @@ import re
 from itertools import pairwise
 
 import pytest
+from builders.turns import by_turns
 
 from taylor_verify.claims.check import measured
 from taylor_verify.claims.claim import Claim, Verdict, examine
@@ -14,6 +15,8 @@ from taylor_verify.claims.numbers import CITED, IN_ORDER, NUMBERED, SENTENCES
 
 LEDGER = claims()
 MUTATIONS = [(claim, name) for claim in LEDGER for name in claim.mutants]
+# Integrals over many periods, and a motion that falls away for ever: seconds each.
+LONG = ("heinbockel constant moments", "hydromechanics 49 falls away ultimately")
 
 
 def test_every_number_of_the_texts_has_an_entry_and_no_other() -> None:
@@ -47,14 +50,23 @@ def test_the_order_is_that_of_the_texts() -> None:
     assert [claim.id for claim in LEDGER] == list(IN_ORDER)
 
 
-@pytest.mark.parametrize("claim", LEDGER, ids=lambda claim: claim.id)
+@pytest.mark.parametrize(
+    "claim",
+    [pytest.param(c, marks=pytest.mark.slow if c.id in LONG else (), id=c.id) for c in LEDGER],
+)
 def test_an_entry_gets_its_recorded_verdict(claim: Claim) -> None:
     """The checks lead to the verdict that is published."""
     finding = examine(claim)
     assert finding.verdict is claim.verdict, (finding.statement, finding.transcribed)
 
 
-@pytest.mark.parametrize(("claim", "name"), MUTATIONS, ids=lambda part: getattr(part, "id", part))
+# One of each other entry, and some more.
+@pytest.mark.parametrize(
+    ("claim", "name"),
+    by_turns([m for m in MUTATIONS if m[0].id not in LONG], 4, lambda claim, name: claim.id)
+    + [pytest.param(*m, marks=pytest.mark.slow) for m in MUTATIONS if m[0].id in LONG],
+    ids=lambda part: getattr(part, "id", part),
+)
 def test_a_mutation_is_rejected(claim: Claim, name: str) -> None:
     """A statement with one thing changed misses its bound by a factor that no carelessness explains."""
     outcome = measured(claim.changed(claim.mutants[name]))

@@ -309,7 +309,10 @@ def test_a_library_that_writes_on_stdout_does_not_spoil_the_document(
     assert "noise from Python" in error
 
 
-@pytest.mark.parametrize("state", ["corrupt", "not a folder", "no home"])
+@pytest.mark.parametrize(
+    "state",
+    ["corrupt", *(pytest.param(s, marks=pytest.mark.slow) for s in ("not a folder", "no home"))],
+)
 def test_a_broken_cache_neither_stops_a_run_nor_spoils_the_document(
     short: Path, tmp_path: Path, state: str
 ) -> None:

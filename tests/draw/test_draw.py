@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.turns import by_turns
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from PIL import Image
@@ -54,7 +55,7 @@ def test_a_scene_has_its_pictures(scene: str) -> None:
     assert set(pictures(document(scene))) == HAS[scene]
 
 
-@pytest.mark.parametrize("scene", HAS)
+@pytest.mark.parametrize("scene", by_turns(HAS, len(HAS), lambda scene: frozenset(HAS[scene])))
 def test_every_frame_holds_its_motion(scene: str) -> None:
     """No line of a motion and no solid on it leaves its axes, and no text leaves the page."""
     with plotting():

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from functools import cache
 from itertools import product
 from typing import Any
 
 import pytest
+from builders.turns import by_turns
 from flint import arb, ctx
 from mpmath import mp
 
@@ -26,13 +28,10 @@ PLACE = (Fraction(1), Fraction(-2), Fraction(1, 3))
 
 
 # A path of Weber's kind costs as much as all the others together.
-LONG = [
-    ("kirchhoff/weber", "arb"),
-    ("kirchhoff/weber", "mpmath"),
-    ("kirchhoff/weber-path", "mpmath"),
-]
+LONG = ("kirchhoff/weber", "kirchhoff/weber-path")
 
 
+@cache
 def free_forms() -> list[str]:
     """The shipped scenes without loads and wheels that have a closed form."""
     forms = []
@@ -73,10 +72,9 @@ def at_numbers(inner: Solution) -> Solution:
 
 @pytest.mark.parametrize(
     ("name", "route"),
-    [
-        pytest.param(*case, marks=pytest.mark.slow if case in LONG else ())
-        for case in product(free_forms(), ["arb", "mpmath"])
-    ],
+    # By turns a form has one route, the other, and none.
+    by_turns(product((name for name in free_forms() if name not in LONG), ["arb", "mpmath"]))
+    + [pytest.param(*case, marks=pytest.mark.slow) for case in product(LONG, ["arb", "mpmath"])],
 )
 def test_a_ball_of_a_rational_gives_the_motion_at_the_rational(name: str, route: str) -> None:
     """They agree within both radii before the start, at it and beyond the end, with attitude and centre."""

@@ -73,7 +73,7 @@ def distance(a: Any, b: Any) -> mpf:
 
 
 @pytest.mark.parametrize(
-    "name", by_turns(n for n in names() if n.startswith(("euler/", "kirchhoff/")))
+    "name", by_turns((n for n in names() if n.startswith(("euler/", "kirchhoff/"))), 6)
 )
 def test_the_digits_asked_for_are_right(name: str) -> None:
     """Fifteen digits agree with forty, name by name, and every number says what it is."""
@@ -102,10 +102,12 @@ def test_omega_recurs_after_the_period_and_not_after_half(name: str) -> None:
 
 @pytest.mark.parametrize(
     "name",
-    [
-        *("four-real-roots", "two-real-roots", "cubic", "trigonometric", "through-the-pole"),
-        *("beside-a-stable-spin", "planar-turn"),
-    ],
+    by_turns(
+        [
+            *("four-real-roots", "two-real-roots", "cubic", "trigonometric", "through-the-pole"),
+            *("beside-a-stable-spin", "planar-turn"),
+        ]
+    ),
 )
 def test_x3_recurs_after_the_period_of_nutation_and_not_after_half(name: str) -> None:
     """The shape recurs: x3 and dx3/dt = r (x1 y2 - x2 y1) are those of the start."""
@@ -280,10 +282,12 @@ def test_an_axis_of_symmetry_precesses_about_H() -> None:
 
 @pytest.mark.parametrize(
     "name",
-    [
-        *("four-real-roots", "two-real-roots", "cubic", "trigonometric", "through-the-pole"),
-        *("beside-a-stable-spin", "onto-the-axis", "algebraic", "half-turn"),
-    ],
+    by_turns(
+        [
+            *("four-real-roots", "two-real-roots", "cubic", "trigonometric", "through-the-pole"),
+            *("beside-a-stable-spin", "onto-the-axis", "algebraic", "half-turn"),
+        ]
+    ),
 )
 def test_x3_stays_between_two_roots_and_reaches_them(name: str) -> None:
     """f vanishes at both ends and is positive between, and the Taylor motion keeps inside."""

@@ -99,7 +99,7 @@ axis = st.builds(
 densities = st.fractions(0, 1000, max_denominator=1000)
 
 
-@settings(max_examples=40)
+@settings(max_examples=15)
 @given(st.tuples(axis, axis, axis), densities.filter(bool), densities)
 def test_coefficients_of_any_ellipsoid(
     axes: tuple[Fraction, ...], density: Fraction, fluid: Fraction
@@ -109,7 +109,7 @@ def test_coefficients_of_any_ellipsoid(
     assert deviation(body, BITS + 40) <= ROUNDING
 
 
-@settings(max_examples=40)
+@settings(max_examples=15)
 @given(st.tuples(axis, axis, axis), st.permutations(range(3)))
 def test_axes_in_another_order_are_the_same_body(
     axes: tuple[Fraction, ...], order: list[int]

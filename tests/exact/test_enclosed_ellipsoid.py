@@ -8,6 +8,7 @@ from fractions import Fraction
 import pytest
 from builders.ellipsoids import quadrature
 from builders.scenes import one_instant, vector
+from builders.turns import by_turns
 from flint import arb, ctx
 from mpmath import mp, mpf
 
@@ -65,7 +66,7 @@ def test_the_balls_contain_lambs_coefficients(name: str) -> None:
             assert balls.velocity[i, i].rel_accuracy_bits() > 90
 
 
-@pytest.mark.parametrize("bits", [60, 100, 700])
+@pytest.mark.parametrize("bits", by_turns([100, 60, 700]))
 @pytest.mark.parametrize("name", SHAPES)
 def test_every_equation_contains_that_of_a_sharper_body(name: str, bits: int) -> None:
     """Each entry holds the one of the body formed to far more bits; what is zero is zero exactly."""
@@ -99,7 +100,7 @@ def test_in_a_vacuum_no_mass_is_added() -> None:
         assert _distance(motion[name][0], free[name][0]) <= mpf(10) ** -19
 
 
-@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize("name", by_turns(SHAPES))
 def test_the_motion_is_that_of_the_ellipsoid_at_any_digits(name: str) -> None:
     """At 150 digits the body that a scene is read with is another one; the enclosure is not of it."""
     asked, later = shaped(name), [LATER[name]]

@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from builders.boxes import CASES, TRUTHS, WIDE, corners, enclosed, is_contained
 from builders.scenes import QUATERNION, one_instant, vector
+from builders.turns import by_turns
 from flint import arb, arb_mat, ctx
 from mpmath import mp, mpf
 
@@ -77,14 +78,17 @@ def test_the_norm_of_a_sum_is_no_bound_of_the_integral() -> None:
 
 @pytest.mark.parametrize(
     ("broken", "name"),
-    [
-        ("truncation", "euler"),
-        ("truncation", "kirchhoff"),
-        ("radius", "euler"),
-        ("radius", "loaded"),
-        ("turn", "euler"),
-        ("turn", "kirchhoff"),
-    ],
+    by_turns(
+        [
+            ("truncation", "euler"),
+            ("truncation", "kirchhoff"),
+            ("radius", "euler"),
+            ("radius", "loaded"),
+            ("turn", "euler"),
+            ("turn", "kirchhoff"),
+        ],
+        2,
+    ),
 )
 def test_a_bound_left_out_is_seen(broken: str, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each bound counts: without one of them a motion leaves its balls, with it none does."""

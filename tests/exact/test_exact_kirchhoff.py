@@ -9,6 +9,7 @@ from fractions import Fraction
 import pytest
 from builders.clebsch import GENERIC, PLAIN, Six, State, around, body, derivative, slope, velocities
 from builders.scenes import one_instant, vector
+from builders.turns import by_turns
 from mpmath import mp, mpf
 
 from taylor_verify.exact.kirchhoff.closed import closed_form
@@ -165,6 +166,11 @@ CASES = {
 by_case = pytest.mark.parametrize(
     ("solid", "start", "regime"), list(CASES.values()), ids=list(CASES)
 )
+of_each_regime = pytest.mark.parametrize(
+    ("solid", "start", "regime"),
+    by_turns(CASES.values(), 3, lambda solid, start, regime: regime),
+    ids=list(CASES),
+)
 
 
 @by_case
@@ -175,7 +181,7 @@ def test_starts_where_it_is_told_to(solid: Clebsch, start: State, regime: str) -
     assert distance(state(solid, start, Fraction(0)), start, DIGITS) <= AGREEMENT
 
 
-@by_case
+@of_each_regime
 def test_obeys_the_equations_of_motion(solid: Clebsch, start: State, regime: str) -> None:
     """x' = x x Omega and y' = y x Omega + x x U, at a time beyond several periods."""
     # No rate here is above 10 per unit of time: differences err by less than 1e-48 * 1e9 / 630.
@@ -239,7 +245,7 @@ def _energy(solid: Clebsch, s: Sequence[mpf]) -> mpf:
     return (mp.fdot(s[:3], U) + mp.fdot(s[3:], Omega)) / 2
 
 
-@seeds
+@pytest.mark.parametrize("seed", by_turns(range(4)))
 @pytest.mark.parametrize("pattern", ["", "p' = p", "q' = q"])
 def test_is_a_flow(seed: int, pattern: str) -> None:
     """Going on from a state on the way leads to the same end as going through."""
@@ -257,7 +263,7 @@ def _rational(number: mpf) -> Fraction:
     return -size if sign else size
 
 
-@by_case
+@of_each_regime
 def test_runs_backwards_as_forwards(solid: Clebsch, start: State, regime: str) -> None:
     """The motion from (-x, -y) is the motion from (x, y) in reverse, with both signs changed."""
     time = Fraction(77, 10)

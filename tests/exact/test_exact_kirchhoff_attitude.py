@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.turns import by_turns
 from mpmath import mp, mpf
 
 from taylor_verify.exact.elliptic import Landen
@@ -115,6 +116,9 @@ MOTIONS = {
     "rest": (SHARP, "0 0 0 0 0 0", "rest"),
 }
 by_motion = pytest.mark.parametrize("name", MOTIONS)
+of_each_regime = pytest.mark.parametrize(
+    "name", by_turns(MOTIONS, 4, lambda name: MOTIONS[name][2])
+)
 
 
 def scene(name: str) -> Scene:
@@ -196,7 +200,7 @@ def test_the_pole_is_passed(name: str) -> None:
     assert points.at_bottom == ("lower" in name or "both" in name)
 
 
-@by_motion
+@of_each_regime
 def test_starts_where_it_is_told_to(name: str) -> None:
     """At time zero R is the matrix of the quaternion, whose length does not matter; c its start."""
     asked = scene(name)
@@ -209,7 +213,7 @@ def test_starts_where_it_is_told_to(name: str) -> None:
     assert off(motion["attitude"], again["attitude"]) <= AGREEMENT
 
 
-@by_motion
+@of_each_regime
 def test_impulse_and_moment_are_fixed_in_space(name: str) -> None:
     """R x and R y + c x R x stay as they were, for ever, and R stays a rotation."""
     asked = scene(name)
@@ -224,7 +228,7 @@ def test_impulse_and_moment_are_fixed_in_space(name: str) -> None:
             assert mp.det(mp.matrix(R.tolist())) > 0
 
 
-@by_motion
+@of_each_regime
 def test_obeys_the_equations_of_motion(name: str) -> None:
     """R' = R [Omega]x and c' = R U, by differences of the closed form."""
     # Eighth-order differences at h: the error is h^8 D^9/630. No rate here is above 10 per unit of
@@ -250,7 +254,9 @@ def test_obeys_the_equations_of_motion(name: str) -> None:
 GOING_ON = ("four real roots", "two real roots", "cubic, third root above", "through the pole")
 
 
-@pytest.mark.parametrize("name", [*GOING_ON, "falling from elsewhere", "beside a double root"])
+@pytest.mark.parametrize(
+    "name", by_turns([*GOING_ON, "falling from elsewhere", "beside a double root"])
+)
 def test_a_new_start_goes_on(name: str) -> None:
     """R(s + t) = R(s) R*(t) and c(s + t) = c(s) + R(s) c*(t), where * starts anew at s."""
     asked, first, second = scene(name), Fraction(37, 3), Fraction(-251, 9)

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
+from itertools import product
 
 import pytest
 from builders.numbers import apart
 from builders.scenes import vector
+from builders.turns import by_turns
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
@@ -60,8 +62,7 @@ def is_solved(scene: Scene, kind: str, times: list[Fraction]) -> None:
             assert apart(truth, exact.motion(times, DIGITS)) <= 2 * mpf(10) ** -DIGITS
 
 
-@pytest.mark.parametrize("n", DIRECTIONS)
-@pytest.mark.parametrize("kind", SIX)
+@pytest.mark.parametrize(("kind", "n"), by_turns(product(SIX, DIRECTIONS), 4, lambda kind, n: kind))
 def test_generic_motions_are_those_of_the_taylor_recursion(kind: str, n: Vector) -> None:
     """Impulses, attitude and path about rational and irrational directions, forward and backward."""
     is_solved(about(n, SIX[kind], *GENERIC), kind, TIMES)

@@ -406,7 +406,7 @@ def test_power_series_are_kummers_functions(t: str) -> None:
 
 
 @given(vectors, vectors.filter(any), st.integers(-8, 3))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=8, deadline=None)
 def test_the_tail_of_a_power_series_is_in_its_balls(a: Vector, b: Vector, exponent: int) -> None:
     """Series of 30 bits contain the ones of 300, however many terms of them are left out."""
     line, span = Line(a, b), Fraction(2) ** exponent

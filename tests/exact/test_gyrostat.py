@@ -23,6 +23,7 @@ from builders.gyrostats import (
 )
 from builders.numbers import apart
 from builders.scenes import MOMENT, vector
+from builders.turns import by_turns
 from flint import arb, arb_mat, ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -94,6 +95,8 @@ EXTREMES = {
     "slow body": FreeGyrostat(TRIAXIAL, ROTOR, tensors.scaled(TINY, OMEGA)),
 }
 
+of_each_regime = pytest.mark.parametrize("name", by_turns(MOTIONS, 4, REGIMES.get))
+
 SMALL = st.integers(-20, 20)
 KINDS = ("plain", "separatrix", "circle", "steady spin")
 
@@ -149,20 +152,20 @@ def test_the_kind_of_motion_is_decided_in_rationals(name: str) -> None:
     assert turned(MOTIONS[name], rotation(2, 1, -3, 5)).regime is REGIMES[name]
 
 
-@pytest.mark.parametrize("name", MOTIONS)
+@of_each_regime
 def test_both_routes_agree(name: str) -> None:
     """Sigma quotients in balls, and Jacobi's functions with Carlson's integrals, are one motion."""
     agree(MOTIONS[name], INSTANTS)
 
 
-@pytest.mark.parametrize("name", EXTREMES)
+@pytest.mark.parametrize("name", by_turns(EXTREMES, 4))
 def test_both_routes_agree_at_the_borders(name: str) -> None:
     """So they are 1e-30 beside a separatrix, a cusp and a steady spin, and for h of any size."""
     agree(EXTREMES[name], paced(EXTREMES[name], INSTANTS))
 
 
 @given(gyrostats())
-@settings(max_examples=15)
+@settings(max_examples=5)
 def test_both_routes_agree_for_any_gyrostat(free: FreeGyrostat) -> None:
     """Whatever the body, the wheels and the start, the two closed forms differ by no more than asked."""
     agree(free, paced(free, (Fraction(3, 2), Fraction(-40))), 20)
@@ -197,7 +200,7 @@ def test_an_endless_approach_is_followed(name: str) -> None:
     agree(MOTIONS[name], [Fraction(10**4), Fraction(-(10**5))])
 
 
-@pytest.mark.parametrize("name", MOTIONS)
+@of_each_regime
 def test_taylor_series_agree(name: str) -> None:
     """Enclosed Taylor series, which know no elliptic function, find the same motion."""
     agrees_with_series(MOTIONS[name], INSTANTS[:3])
@@ -267,7 +270,7 @@ def is_eulers_top(spin: FreeSpin) -> None:
 
 
 @given(tops())
-@settings(max_examples=12)
+@settings(max_examples=5)
 def test_without_wheels_it_is_eulers_top(spin: FreeSpin) -> None:
     """Weierstrass's formula, without regimes, is a third route of Euler's top."""
     is_eulers_top(spin)

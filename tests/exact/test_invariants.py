@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -39,14 +40,18 @@ def sampled(scene: Scene, times: Sequence[Fraction], digits: int = 40) -> Motion
     return TaylorSolution(scene).motion(times, digits)
 
 
+# What is tracked beside the state adds to what is conserved: the longest lists are the quick ones.
+slow = partial(pytest.param, marks=pytest.mark.slow)
+
+
 @pytest.mark.parametrize(
     ("scene", "names"),
     [
-        (sample_scene(RigidBody(TENSOR)), "T H2"),
+        slow(sample_scene(RigidBody(TENSOR)), "T H2"),
         (sample_scene(RigidBody(TENSOR), "attitude"), "T H2 H_space"),
-        (sample_scene(GENERAL), "T F2 FG"),
-        (sample_scene(CLEBSCH), "T F2 FG y3"),
-        (sample_scene(GENERAL, "attitude"), "T F2 FG x_space"),
+        slow(sample_scene(GENERAL), "T F2 FG"),
+        slow(sample_scene(CLEBSCH), "T F2 FG y3"),
+        slow(sample_scene(GENERAL, "attitude"), "T F2 FG x_space"),
         (sample_scene(GENERAL, "attitude", "centre"), "T F2 FG x_space y_space"),
         (sample_scene(CLEBSCH, "attitude", "centre"), "T F2 FG y3 x_space y_space"),
     ],

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.turns import by_turns
 from mpmath import mp, mpf
 
 from taylor_verify.exact.elements import elements
@@ -77,7 +78,7 @@ def missed(scene: Scene, span: Fraction) -> mpf:
 RETURNS = 4 * mpf(10) ** -DIGITS
 
 
-@pytest.mark.parametrize("name", closed_scenes())
+@pytest.mark.parametrize("name", by_turns(closed_scenes()))
 def test_a_billion_periods_keep_forty_digits(name: str) -> None:
     """Every shipped closed form, all that it tracks; 1e9 units of time where there is no period."""
     scene = load(name)

@@ -9,6 +9,7 @@ from typing import Any
 import gmpy2
 import numpy as np
 import pytest
+from builders.turns import by_turns
 from mpmath import mp, mpf
 
 from taylor_verify.exact.conditioning import neighbours as module
@@ -83,7 +84,7 @@ def distance(one: Motion, other: Motion) -> mpf:
 
 
 @pytest.mark.parametrize("name", SCENES)
-@pytest.mark.parametrize(("size", "digits"), [("1e-4", 6), ("1e-14", 16), ("1e-70", 71)])
+@pytest.mark.parametrize(("size", "digits"), by_turns([("1e-14", 16), ("1e-4", 6), ("1e-70", 71)]))
 def test_they_are_the_enclosed_arcs(name: str, size: str, digits: int) -> None:
     """States a little off come to where their own enclosed arcs come to, squares included."""
     with mp.workdps(DIGITS + 20):

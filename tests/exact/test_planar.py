@@ -85,11 +85,13 @@ def fitting(name: str, k: int, swapped: bool) -> tuple[Scene, str]:
     return built(k, p, (first, second, across)), word
 
 
-# Every start, the one order of p and the other by turns.
+# Every other start, the one order of p and the other by turns.
 @pytest.mark.parametrize(
     ("name", "swapped"),
     [
-        pytest.param(name, swapped, marks=() if n % 2 == swapped else pytest.mark.slow)
+        pytest.param(
+            name, swapped, marks=() if n % 4 in (0, 3) and n % 2 == swapped else pytest.mark.slow
+        )
         for n, name in enumerate(STARTS)
         for swapped in (False, True)
     ],

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import product
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from builders.turns import by_turns
 from flint import arb, ctx
 from mpmath import mp, mpf
 
@@ -54,8 +56,7 @@ def errors(row: dict[str, Any], truth: dict[str, Any]) -> dict[str, Fraction]:
     }
 
 
-@pytest.mark.parametrize("scene", SCENES)
-@pytest.mark.parametrize("digits", [3, 16])
+@pytest.mark.parametrize(("digits", "scene"), by_turns(product([3, 16], SCENES)))
 def test_printed_digits_are_within_the_radius_on_every_route(scene: str, digits: int) -> None:
     """Against forty digits of the other routes; and printing is most of it, on all three alike."""
     sharp = {route: printed(scene, route, 40) for route in ROUTES}

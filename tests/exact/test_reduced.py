@@ -415,7 +415,7 @@ def inertias(draw: st.DrawFn) -> Matrix:
 
 
 @given(inertias(), starts, places, entries)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=12, deadline=None)
 def test_the_routes_overlap_on_tops(C: Matrix, start: Impulse, d: Vector, b: Fraction) -> None:
     """Isotropic linear parts of every size about every origin, in every regime."""
     body = ImmersedBody(multiple("9"), tensors.diagonal((b / 20,) * 3), C)
@@ -426,7 +426,7 @@ def test_the_routes_overlap_on_tops(C: Matrix, start: Impulse, d: Vector, b: Fra
 
 
 @given(starts, places, entries, st.sampled_from([0, 1, 2]), entries)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=12, deadline=None)
 def test_the_routes_overlap_on_pendulums(
     start: Impulse, d: Vector, b: Fraction, k: int, gap: Fraction
 ) -> None:

@@ -160,9 +160,9 @@ def ellipsoids(draw: Draw) -> Scene:
     return one_instant(body, draw(impulses(diagonal((Fraction(4),) * 3))), "attitude", "centre")
 
 
-# So many of each kind are drawn by `make test`, and twenty times as many with the slow tests.
-COUNTS = {"rigid": 25, "solid": 6, "revolved": 10, "ellipsoid": 15}
-MANY = 20
+# So many of each kind are drawn by `make test`, and sixty times as many with the slow tests.
+COUNTS = {"rigid": 8, "solid": 2, "revolved": 3, "ellipsoid": 5}
+MANY = 60
 KINDS = {"rigid": rigid(), "solid": solids(), "revolved": revolved(), "ellipsoid": ellipsoids()}
 
 

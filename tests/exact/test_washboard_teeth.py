@@ -82,10 +82,19 @@ def test_the_closed_form_is_the_taylor_motion(teeth: int, route: str) -> None:
     assert gap(exact.motion(times, digits), expected) <= 2 * mpf(10) ** -digits
 
 
-def test_it_turns_back_as_the_taylor_motion_does() -> None:
-    """Through the turning point, 87 teeth after the start, and as many beyond it."""
-    scene, digits = SCENES[87], 15
-    times = [Fraction(200), Fraction(500)]
+# Sixteen teeth before the turning point, and 87.
+SLOWER = axial(2, "1/50", vector(1, 1, -1))
+
+
+@pytest.mark.parametrize(
+    ("scene", "before", "beyond"),
+    [(SLOWER, 40, 120), pytest.param(SCENES[87], 200, 500, marks=pytest.mark.slow)],
+    ids=["16", "87"],
+)
+def test_it_turns_back_as_the_taylor_motion_does(scene: Scene, before: int, beyond: int) -> None:
+    """Through the turning point, many teeth after the start, and as many beyond it."""
+    digits = 15
+    times = [Fraction(before), Fraction(beyond)]
     expected = TaylorSolution(scene).motion(times, digits)
     assert expected["omega"][0][2] < 0 < expected["omega"][1][2]
     assert gap(solution(scene, "arb").motion(times, digits), expected) <= 2 * mpf(10) ** -digits

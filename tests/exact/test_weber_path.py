@@ -48,7 +48,7 @@ def whole(start: str, body: str) -> Scene:
     return placed(case(start, body))
 
 
-PAIRS = by_turns(1)
+PAIRS = by_turns(1, 6)
 
 
 @pytest.mark.parametrize(("body", "start"), PAIRS)

@@ -17,8 +17,9 @@ from taylor_verify.studies.site.notebooks import notebook
 # One for each use that a newcomer asks for.
 NAMES = ("dzhanibekov", "engine", "falling-solid", "precision", "proof", "simulator")
 
-# An ellipsoid in a fluid, whose border between two kinds of motion is sought by halving.
-LONG = ("falling-solid",)
+# An ellipsoid in a fluid, whose border between two kinds of motion is sought by halving, and two that
+# take seconds each.
+LONG = ("falling-solid", "simulator", "precision")
 
 
 @pytest.fixture(autouse=True)

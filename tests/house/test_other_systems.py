@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from builders.lacking import WITHOUT_UNIX, lacking
+from builders.turns import by_turns
 
 USES = {
     "load and exact": """
@@ -46,7 +47,7 @@ def without_unix(folder: Path, use: str) -> None:
     assert done.returncode == 0, done.stderr
 
 
-@pytest.mark.parametrize("use", USES.values(), ids=USES)
+@pytest.mark.parametrize("use", by_turns(USES.values(), 2), ids=USES)
 def test_what_works_on_any_system(use: str, tmp_path: Path) -> None:
     """Scenes, truths, checks, explanations and solvers in Python need nothing that Unix alone has."""
     without_unix(tmp_path, use)

@@ -12,6 +12,7 @@ from types import FunctionType
 from typing import Any
 
 import pytest
+from builders.turns import by_turns
 
 import taylor_verify
 from taylor_verify.batch.failure import Failed
@@ -68,7 +69,8 @@ def test_no_module_takes_the_name_of_a_function() -> None:
 
 
 @pytest.mark.parametrize(
-    "first", ["exact.route", "judge.judgement", "run", "check", "cli", "claims.ledger", "explain"]
+    "first",
+    by_turns(["exact.route", "judge.judgement", "run", "check", "cli", "claims.ledger", "explain"]),
 )
 def test_a_function_is_one_whatever_module_was_imported_first(first: str) -> None:
     """The functions can be called after an import of any module, in either form of import."""

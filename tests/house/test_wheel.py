@@ -162,7 +162,7 @@ def a_distribution(folder: Path) -> Path:
     return site
 
 
-@pytest.mark.parametrize("other", [a_file, a_distribution])
+@pytest.mark.parametrize("other", [a_distribution, pytest.param(a_file, marks=pytest.mark.slow)])
 def test_a_verify_of_somebody_else_breaks_nothing(
     other: Callable[[Path], Path], installed: Path, tmp_path: Path
 ) -> None:

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from builders.lacking import lacking
+from builders.turns import by_turns
 
 import taylor_verify
 from taylor_verify.solvers.taylor.package import INSTALL
@@ -103,9 +104,27 @@ def test_what_works_without_heyoka(tmp_path: Path) -> None:
 def test_an_import_at_the_top_of_a_module_is_seen(tmp_path: Path) -> None:
     """The process above lacks heyoka indeed: a module that begins with its import does not load."""
     (tmp_path / "twin.py").write_text("import heyoka as hy\n")
-    done = lacking(tmp_path, HEYOKA, "-c", EVERY_MODULE + "import twin")
+    done = lacking(tmp_path, HEYOKA, "-c", "import twin")
     assert done.returncode == 1
     assert "ModuleNotFoundError: import of heyoka halted" in done.stderr
+
+
+# A program by itself, and verbs that one process goes through: to start takes longer than most of them.
+IN_ONE_PROCESS = """
+import contextlib, io, json
+from taylor_verify.cli import main
+for call in {calls!r}:
+    with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as err:
+        status = main(call)
+    print(json.dumps([status, out.getvalue(), err.getvalue()]))
+"""
+
+
+def commands(folder: Path, *calls: list[str]) -> list[tuple[int, str, str]]:
+    """The exit status of each verb without heyoka, and its two streams."""
+    done = lacking(folder, HEYOKA, "-c", IN_ONE_PROCESS.format(calls=calls))
+    assert done.returncode == 0, done.stderr
+    return [tuple(json.loads(line)) for line in done.stdout.splitlines()]
 
 
 def command(folder: Path, *words: str) -> tuple[int, str, str]:
@@ -114,7 +133,14 @@ def command(folder: Path, *words: str) -> tuple[int, str, str]:
     return done.returncode, done.stdout, done.stderr
 
 
-@pytest.mark.parametrize("scenes", [["euler/generic"], ["euler"]])
+@pytest.mark.parametrize(
+    "scenes",
+    [
+        ["euler/generic"],
+        pytest.param(["euler/generic", "euler/rest"], marks=pytest.mark.slow),
+        pytest.param(["euler"], marks=pytest.mark.slow),
+    ],
+)
 def test_run_names_the_command_that_installs_it(scenes: list[str], tmp_path: Path) -> None:
     """The exit status is 2, and one sentence says what is missing, however many scenes were asked for."""
     status, out, err = command(tmp_path, "run", *scenes, "--rung", "f64")
@@ -233,15 +259,21 @@ def test_tests_that_need_it_are_skipped_with_one_reason(tmp_path: Path) -> None:
 
 def test_the_verbs_that_judge_no_solver_of_ours_work(tmp_path: Path) -> None:
     """`list`, `question`, `exact` and `check` have exit status 0."""
-    assert command(tmp_path, "list")[0] == 0
-    status, question, _ = command(tmp_path, "question", "euler/spherical", "--csv")
-    assert status == 0
-    header, *rows = question.splitlines()
-    omega = [str(float(w)) for w in taylor_verify.load("euler/spherical").initial.omega]
-    rows = [",".join([row.split(",")[0], *omega]) for row in rows]
-    (tmp_path / "mine.csv").write_text("\n".join([header, *rows]))
-    assert command(tmp_path, "check", "mine.csv", "--scene", "euler/spherical")[0] == 0
-    assert command(tmp_path, "exact", "euler/generic", "--at", "1")[0] == 0
+    scene = taylor_verify.load("euler/spherical")
+    numbers = [[t, *scene.initial.omega] for t in scene.clock.instants]
+    rows = [",".join(str(float(number)) for number in row) for row in numbers]
+    (tmp_path / "mine.csv").write_text("\n".join(["t,w1,w2,w3", *rows]))
+    calls = [
+        ["list"],
+        ["question", "euler/spherical", "--csv"],
+        ["check", "mine.csv", "--scene", "euler/spherical"],
+        ["exact", "euler/generic", "--at", "1"],
+    ]
+    answers = commands(tmp_path, *calls)
+    assert [status for status, *_ in answers] == [0] * len(calls)
+    header, *lines = answers[1][1].splitlines()
+    assert header == "t,w1,w2,w3"
+    assert len(lines) == len(rows)
 
 
 def test_a_program_of_a_user_is_judged(tmp_path: Path) -> None:
@@ -252,10 +284,12 @@ def test_a_program_of_a_user_is_judged(tmp_path: Path) -> None:
     assert status == 0, out
 
 
-@pytest.mark.parametrize("scene", ["euler/with-attitude", "kirchhoff/constant-loads"])
+@pytest.mark.parametrize("scene", by_turns(["euler/with-attitude", "kirchhoff/constant-loads"], 2))
 def test_explain_shows_all_but_the_cost_of_a_run(scene: str, tmp_path: Path) -> None:
-    """Equations, orbit, truth and bounds are those of the exact motion, and a warning says so."""
-    status, out, err = command(tmp_path, "explain", scene, "--json")
+    """Equations, orbit, truth and bounds are those of the exact motion, and a warning names the mend."""
+    (status, out, err), (_, text, _) = commands(
+        tmp_path, ["explain", scene, "--json"], ["explain", scene]
+    )
     assert status == 0, err
     document = json.loads(out)
     (warning,) = document["warnings"]
@@ -271,11 +305,7 @@ def test_explain_shows_all_but_the_cost_of_a_run(scene: str, tmp_path: Path) -> 
         # A row that is right is a rounding off, and a rounding is part of every bound.
         assert 0 <= gate["max"] <= gate["attainable"]
         assert gate["bound"] == pytest.approx(10 * gate["attainable"])
-
-
-def test_the_text_of_explain_names_the_command_that_installs_it(tmp_path: Path) -> None:
-    """The warning stands in the text too, and no cost of a run."""
-    text = command(tmp_path, "explain", "euler/with-attitude")[1]
+    # The warning stands in the text too, and no cost of a run.
     assert INSTALL in " ".join(text.split())
     assert "steps of order" not in text
 

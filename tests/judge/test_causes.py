@@ -23,6 +23,7 @@ from builders.trajectories import (
     scalar_last,
     write_csv,
 )
+from builders.turns import by_turns
 from builders.wrong_dynamics import (
     Array,
     Numbers,
@@ -113,23 +114,27 @@ def uncoupled(n: Numbers) -> None:
 
 @pytest.mark.parametrize(
     ("scene", "change", "name"),
-    [
-        (FULL, cut, "inertia tensor cut to its diagonal"),
-        (FULL, cut_inverse, "inertia tensor cut to its diagonal"),
-        (FULL, eigenvalues_alone, "principal axes dropped"),
-        (FULL, axes_backwards, "principal axes turned the wrong way"),
-        (FREE, reordered, "principal moments in another order"),
-        (FULL, narrowed, "inertia in float32"),
-        (FULL, slightly_other, "another inertia tensor"),
-        (FREE, slightly_other, "another inertia tensor"),
-        (FORCED, unloaded, "moment left out"),
-        (FORCED, otherwise_loaded, "moment with the other sign"),
-        (FLUID, cut, "energy cut to its diagonal"),
-        (FLUID, uncoupled, "coupling left out"),
-        (FLUID, slightly_other, "other coefficients of the energy"),
-        (LOADED, unloaded, "loads left out"),
-        (LOADED, otherwise_loaded, "loads with the other sign"),
-    ],
+    by_turns(
+        [
+            (FULL, cut, "inertia tensor cut to its diagonal"),
+            (FULL, cut_inverse, "inertia tensor cut to its diagonal"),
+            (FULL, eigenvalues_alone, "principal axes dropped"),
+            (FULL, axes_backwards, "principal axes turned the wrong way"),
+            (FREE, reordered, "principal moments in another order"),
+            (FULL, narrowed, "inertia in float32"),
+            (FULL, slightly_other, "another inertia tensor"),
+            (FREE, slightly_other, "another inertia tensor"),
+            (FORCED, unloaded, "moment left out"),
+            (FORCED, otherwise_loaded, "moment with the other sign"),
+            (FLUID, cut, "energy cut to its diagonal"),
+            (FLUID, uncoupled, "coupling left out"),
+            (FLUID, slightly_other, "other coefficients of the energy"),
+            (LOADED, unloaded, "loads left out"),
+            (LOADED, otherwise_loaded, "loads with the other sign"),
+        ],
+        2,
+        lambda scene, change, name: scene,
+    ),
 )
 def test_another_body_or_load_is_named(
     scene: str, change: Callable[[Numbers], None], name: str
@@ -178,19 +183,22 @@ def damped_alone(w: Array, q: Array, n: Numbers) -> Array:
 
 @pytest.mark.parametrize(
     ("scene", "rate", "name"),
-    [
-        (FREE, back, "gyroscopic term with the other sign"),
-        (FREE, damped, "damping left on"),
-        (FREE, dragged, "damping left on"),
-        (FREE, damped_alone, "no gyroscopic term and damping left on"),
-        (WHEELS, without_wheels, "wheels left out"),
-        (WHEELS, wheels_turned_round, "wheels with the other sign"),
-        (FLUID, weighted(munk=0), "no Munk moment"),
-        (FLUID, weighted(munk=-1), "Munk moment with the other sign"),
-        (FLUID, weighted(gyroscopic=0), "no gyroscopic term"),
-        (FLUID, weighted(-1, -1, -1), "motion back in time"),
-        (FLUID, weighted(damping=0.02), "damping left on"),
-    ],
+    by_turns(
+        [
+            (FREE, back, "gyroscopic term with the other sign"),
+            (FREE, damped, "damping left on"),
+            (FREE, dragged, "damping left on"),
+            (FREE, damped_alone, "no gyroscopic term and damping left on"),
+            (WHEELS, without_wheels, "wheels left out"),
+            (WHEELS, wheels_turned_round, "wheels with the other sign"),
+            (FLUID, weighted(munk=0), "no Munk moment"),
+            (FLUID, weighted(munk=-1), "Munk moment with the other sign"),
+            (FLUID, weighted(gyroscopic=0), "no gyroscopic term"),
+            (FLUID, weighted(-1, -1, -1), "motion back in time"),
+            (FLUID, weighted(damping=0.02), "damping left on"),
+        ],
+        2,
+    ),
 )
 def test_a_wrong_term_is_named(scene: str, rate: Rate, name: str) -> None:
     """A term left out, of the other sign, or one too many has its name, and no other."""
@@ -236,7 +244,7 @@ def test_a_moment_in_space_axes_is_named() -> None:
         (lambda q, w: 0.5 * turned(q, w), "attitude turns half as fast"),
     ],
 )
-@pytest.mark.parametrize("rate", [euler, damped])
+@pytest.mark.parametrize("rate", by_turns([euler, damped], 2))
 def test_wrong_kinematics_are_named(turn: Turn, name: str, rate: Rate) -> None:
     """A wrong turn of the attitude has its name, beside whatever is wrong with omega."""
     causes = set(sentences(load(FREE), simulated(load(FREE), rate, turn)))
@@ -245,13 +253,15 @@ def test_wrong_kinematics_are_named(turn: Turn, name: str, rate: Rate) -> None:
 
 @pytest.mark.parametrize(
     ("spoil", "expected"),
-    [
-        (in_space_axes, {"omega in space axes"}),
-        (conjugate, {"transposed attitude"}),
-        (scalar_last, {"scalar last"}),
-        (lambda c: conjugate(in_space_axes(c)), {"omega in space axes", "transposed attitude"}),
-        (lambda c: scalar_last(conjugate(c)), {"scalar last and transposed attitude"}),
-    ],
+    by_turns(
+        [
+            (in_space_axes, {"omega in space axes"}),
+            (conjugate, {"transposed attitude"}),
+            (scalar_last, {"scalar last"}),
+            (lambda c: conjugate(in_space_axes(c)), {"omega in space axes", "transposed attitude"}),
+            (lambda c: scalar_last(conjugate(c)), {"scalar last and transposed attitude"}),
+        ]
+    ),
 )
 def test_conventions_are_named_beside_wrong_dynamics(
     spoil: Callable[[Columns], Columns], expected: set[str], tmp_path: Path
@@ -322,7 +332,7 @@ def test_a_state_in_float32_is_named(every: int, tmp_path: Path) -> None:
     assert names(tmp_path, FREE, stored) == set()
 
 
-@pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8])
+@pytest.mark.parametrize("tolerance", by_turns([1e-4, 1e-6, 1e-8]))
 def test_a_coarse_method_stored_in_float32_is_not_float32_inside(
     tolerance: float, tmp_path: Path
 ) -> None:
@@ -382,7 +392,7 @@ def test_a_sound_method_has_no_cause(scene: str, spread: float) -> None:
 
 
 @pytest.mark.parametrize("scene", [FLUID, LOADED, "kirchhoff/whole-motion"])
-@pytest.mark.parametrize(("method", "tolerance"), SOUND)
+@pytest.mark.parametrize(("method", "tolerance"), by_turns(SOUND, 2))
 def test_a_sound_method_has_no_cause_in_a_fluid(scene: str, method: str, tolerance: float) -> None:
     """Coarse answers by Kirchhoff's equations are given no cause either."""
     columns = simulated(load(scene), method=method, tolerance=tolerance)
@@ -411,7 +421,7 @@ def test_two_rows_name_nothing() -> None:
     assert sentences(load(FREE), columns) == {}
 
 
-@pytest.mark.parametrize("value", [np.nan, 1e200])
+@pytest.mark.parametrize("value", by_turns([np.nan, 1e200], 2))
 def test_an_answer_that_runs_away_has_no_cause(value: float, tmp_path: Path) -> None:
     """Rows that are no numbers, or beyond float64's squares, end in no error and no cause."""
     columns = simulated(load(FREE))

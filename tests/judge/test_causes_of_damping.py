@@ -61,7 +61,7 @@ def of_velocity(n: Numbers) -> Rate:
     ("scene", "change", "name"),
     [
         (RIGID, left_out, "damping left out"),
-        (RIGID, turned_round, "damping with the other sign"),
+        pytest.param(RIGID, turned_round, "damping with the other sign", marks=pytest.mark.slow),
         (RIGID, doubled, "another damping"),
         (FLUID, left_out, "damping left out"),
         pytest.param(FLUID, turned_round, "damping with the other sign", marks=pytest.mark.slow),
@@ -73,7 +73,7 @@ def test_a_wrong_damping_is_named(scene: str, change: Callable[[Numbers], None],
     assert set(sentences(load(scene), simulated(load(scene), change=change))) == {name}
 
 
-@pytest.mark.parametrize("scene", [RIGID, FLUID])
+@pytest.mark.parametrize("scene", by_turns([RIGID, FLUID], 2))
 def test_damping_of_the_velocity_is_named(scene: str) -> None:
     """A moment -c omega in place of -c I omega, or -c U and -c W in a fluid, has its name, and no other."""
     causes = sentences(load(scene), simulated(load(scene), of_velocity(Numbers(load(scene)))))
@@ -106,7 +106,7 @@ def test_the_factor_of_a_step_is_named(
     assert f"by {words} {place} the motion, with h = {h:g};" in causes[name]
 
 
-@pytest.mark.parametrize("scene", [RIGID, FLUID])
+@pytest.mark.parametrize("scene", by_turns([RIGID, FLUID], 2))
 def test_a_sound_integrator_has_no_cause(scene: str) -> None:
     """The classical method with damping in its rates, and a fine one, are named for nothing."""
     assert sentences(load(scene), simulated(load(scene))) == {}

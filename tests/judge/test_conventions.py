@@ -28,6 +28,7 @@ from builders.trajectories import (
     scalar_last,
     write_csv,
 )
+from builders.turns import by_turns
 from mpmath import mp, mpf
 
 from taylor_verify.judge.conventions.axes import AXES, Frames
@@ -91,22 +92,27 @@ def permuted(sound: Sound) -> Columns:
 
 @pytest.mark.parametrize(
     ("spoil", "subject", "words"),
-    [
-        (scalar_last, "quaternion", "the quaternion is scalar last"),
-        (conjugate, "quaternion", "are the conjugate"),
-        (scalar_last_and_conjugate, "quaternion", "scalar last; q0 q1 q2 q3 are the conjugate"),
-        (transposed, "attitude", "are transposed"),
-        (in_degrees, "omega", "in degrees"),
-        (in_space_axes, "omega", "in space axes"),
-        (in_milliseconds, "time", "thousandths"),
-        (late, "time", "late by 0.0005"),
-        (of_another_epoch, "time", "late by 1024"),
-        (
-            permuted,
-            "axes",
-            "the body has other axes: axis 1 is the file's 3, axis 2 is the file's 1",
-        ),
-    ],
+    # One of each subject; the others are told from the first rows of an engine below.
+    by_turns(
+        [
+            (scalar_last, "quaternion", "the quaternion is scalar last"),
+            (conjugate, "quaternion", "are the conjugate"),
+            (scalar_last_and_conjugate, "quaternion", "scalar last; q0 q1 q2 q3 are the conjugate"),
+            (transposed, "attitude", "are transposed"),
+            (in_degrees, "omega", "in degrees"),
+            (in_space_axes, "omega", "in space axes"),
+            (in_milliseconds, "time", "thousandths"),
+            (late, "time", "late by 0.0005"),
+            (of_another_epoch, "time", "late by 1024"),
+            (
+                permuted,
+                "axes",
+                "the body has other axes: axis 1 is the file's 3, axis 2 is the file's 1",
+            ),
+        ],
+        10,
+        lambda spoil, subject, words: subject,
+    ),
 )
 def test_each_convention_is_found_and_mended_only_when_asked(
     spoil: Callable[[Sound], Columns], subject: str, words: str, tmp_path: Path
@@ -255,8 +261,9 @@ SYMMETRIC = (
 )
 
 
-@pytest.mark.parametrize("with_attitude", [False, True])
-@pytest.mark.parametrize("angle", [0.3, -0.3])
+@pytest.mark.parametrize(
+    ("with_attitude", "angle"), by_turns([(False, 0.3), (False, -0.3), (True, 0.3), (True, -0.3)])
+)
 def test_a_turned_start_is_no_late_clock(with_attitude: bool, angle: float, tmp_path: Path) -> None:
     """A symmetric body that starts turned about its axis looks late; its initial state fails."""
     name = tmp_path / "symmetric.toml"
@@ -295,24 +302,27 @@ def all_at_once(columns: Columns) -> Columns:
     return scalar_last(in_degrees(in_space_axes(columns)))
 
 
+SPOILT: list[tuple[Callable[[Sound], Columns], list[str]]] = [
+    (identical, []),
+    (scalar_last, ["quaternion"]),
+    (conjugate, ["quaternion"]),
+    (in_space_axes, ["omega"]),
+    (in_degrees, ["omega"]),
+    (permuted, ["axes"]),
+    (all_at_once, ["omega", "quaternion"]),
+]
+
+
 # A start in line with the axes of space shows space axes only after a while.
 @pytest.mark.parametrize(
-    ("scene", "rows"),
+    ("scene", "rows", "spoil", "subjects"),
     [
-        *(("euler/with-attitude", 5), ("euler/nesc-brick", 1001)),
-        pytest.param("euler/with-attitude", 1001, marks=pytest.mark.slow),
-    ],
-)
-@pytest.mark.parametrize(
-    ("spoil", "subjects"),
-    [
-        (identical, []),
-        (scalar_last, ["quaternion"]),
-        (conjugate, ["quaternion"]),
-        (in_space_axes, ["omega"]),
-        (in_degrees, ["omega"]),
-        (permuted, ["axes"]),
-        (all_at_once, ["omega", "quaternion"]),
+        *[("euler/with-attitude", 5, *spoilt) for spoilt in SPOILT],
+        *by_turns([("euler/nesc-brick", 1001, *spoilt) for spoilt in SPOILT]),
+        *[
+            pytest.param("euler/with-attitude", 1001, *spoilt, marks=pytest.mark.slow)
+            for spoilt in SPOILT
+        ],
     ],
 )
 def test_the_first_rows_of_an_engine_decide(

@@ -40,11 +40,19 @@ def causes(path: Path, scene: str, columns: Columns) -> list[str]:
     return [cause.sentence for cause in judgement.causes]
 
 
-@pytest.mark.parametrize("kick", WORDS)
 @pytest.mark.parametrize(
-    ("scene", "h", "every"),
-    by_turns([(FREE, 0.01, 1), (FREE, 0.002, 50)], 2)
-    + by_turns([(FULL, 0.002, 50), (FULL, 0.01, 1)], 2),
+    ("kick", "scene", "h", "every"),
+    by_turns(
+        [
+            (kick, *rows)
+            for kick in WORDS
+            for rows in (
+                *((FREE, 0.01, 1), (FULL, 0.002, 50)),
+                *((FREE, 0.002, 50), (FULL, 0.01, 1)),
+            )
+        ],
+        5,
+    ),
 )
 def test_each_treatment_is_named(
     kick: Kick, scene: str, h: float, every: int, tmp_path: Path
@@ -57,8 +65,8 @@ def test_each_treatment_is_named(
     assert "this explains 100 % of the error of omega" in cause
 
 
-@pytest.mark.parametrize("kick", [explicit, implicit])
-@pytest.mark.parametrize("scene", ["euler/gyrostat", "euler/gyrostat-moment"])
+@pytest.mark.parametrize("kick", by_turns([explicit, implicit], 2))
+@pytest.mark.parametrize("scene", by_turns(["euler/gyrostat", "euler/gyrostat-moment"], 2))
 def test_a_step_for_a_body_with_wheels_is_named(scene: str, kick: Kick, tmp_path: Path) -> None:
     """The torque of the wheels is a part of the term: with it a first-order step explains everything."""
     (cause,) = causes(tmp_path, scene, engine(scene, kick, 0.01, 41))
@@ -106,14 +114,17 @@ def noisy(sound: Columns) -> Columns:
     return sound | {"w1": [float(w + 1e-6 * e) for w, e in zip(sound["w1"], noise, strict=True)]}
 
 
-@pytest.mark.parametrize("spoil", [late, scaled, noisy])
+def sound_as_it_is(sound: Columns) -> Columns:
+    return sound
+
+
+@pytest.mark.parametrize("spoil", [late, scaled, noisy, sound_as_it_is])
 def test_another_error_is_not_called_a_gyroscopic_one(
     spoil: Callable[[Columns], Columns], tmp_path: Path
 ) -> None:
     """A late clock, a wrong scale and noise have no such cause, nor has a sound file."""
     sound = {name: list(values) for name, values in exact_columns("euler/with-attitude").items()}
     assert causes(tmp_path, "euler/with-attitude", spoil(sound)) == []
-    assert causes(tmp_path, "euler/with-attitude", sound) == []
 
 
 def test_the_other_sign_is_named(tmp_path: Path) -> None:

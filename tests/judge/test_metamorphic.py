@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp
 
@@ -745,6 +745,7 @@ def test_axis_of_revolution_may_have_any_number(name: str, axis: int, loaded: bo
 
 
 @LOADED
+@settings(max_examples=30)
 @given(st.lists(st.fractions(-9, 9, max_denominator=99), min_size=13, max_size=13))
 def test_clebsch_rates_are_the_general_rates_exactly(loaded: bool, entries: list[Fraction]) -> None:
     """In rationals both right-hand sides are equal at any x, y, q and c, and y3' is L3."""
@@ -758,6 +759,7 @@ def test_clebsch_rates_are_the_general_rates_exactly(loaded: bool, entries: list
 
 
 @pytest.mark.parametrize("axis", AXIS_3_CALLED)
+@settings(max_examples=30)
 @given(st.lists(st.fractions(-9, 9, max_denominator=99), min_size=6, max_size=6))
 def test_clebsch_rates_are_the_permuted_rates_exactly(axis: int, entries: list[Fraction]) -> None:
     """In rationals x' and y' of the body whose axis is called 1 or 2 are Clebsch's, permuted."""

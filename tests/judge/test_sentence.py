@@ -5,15 +5,19 @@ from __future__ import annotations
 import json
 import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 import pytest
+from builders.numbers import cross
 from builders.trajectories import Columns, columns_at, write_csv
+from builders.turns import by_turns
 from builders.verdicts import far_off as row
 
 import taylor_verify
@@ -38,10 +42,14 @@ SEED = 20
 # Synthetic files, each with one kind of error.
 
 
-def exact(times: list[Fraction] | None = None) -> Columns:
+@cache
+def motion(times: tuple[Fraction, ...]) -> Columns:
+    return columns_at(load(SCENE), times)
+
+
+def exact(times: Iterable[Fraction] = TIMES) -> Columns:
     """The exact motion at given times, under the time stamps 0, 1, ..., 100."""
-    columns = columns_at(load(SCENE), times or TIMES)
-    return {**columns, "t": [float(t) for t in TIMES]}
+    return {**motion(tuple(times)), "t": [float(t) for t in TIMES]}
 
 
 def changed(change: Callable[[Any, Any], Any]) -> Columns:
@@ -59,12 +67,13 @@ def noisy(omega: Any, t: Any) -> Any:
     return omega + 1e-7 * np.random.default_rng(SEED).normal(size=omega.shape)
 
 
+@cache
 def runge_kutta_4() -> Columns:
     """The classical Runge-Kutta method with a step of 1/200."""
     inertia = np.array([1.0, 2.0, 3.0])
 
     def rate(w: Any) -> Any:
-        return -np.cross(w, inertia * w) / inertia
+        return -cross(w, inertia * w) / inertia
 
     w, h, rows = np.array([float(v) for v in load(SCENE).initial.omega]), 1 / 200, []
     for _ in TIMES:
@@ -130,36 +139,30 @@ FILES: dict[str, tuple[Callable[[], Columns], Callable[[float], str], ErrorKind,
 }  # fmt: skip
 
 
-@pytest.fixture(scope="module")
-def judged(tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str, Verdict]]:
-    """The verdicts on every file, by quantity."""
-    folder = tmp_path_factory.mktemp("files")
-    by_file = {}
-    for name, (columns, form, *_) in FILES.items():
-        file = write_csv(folder / f"{name}.csv", columns(), form)
+@cache
+def judged(name: str) -> dict[str, Verdict]:
+    """The verdicts on a file, by quantity."""
+    columns, form, *_ = FILES[name]
+    with TemporaryDirectory() as folder:
+        file = write_csv(Path(folder) / f"{name}.csv", columns(), form)
         verdicts = taylor_verify.check(SCENE, file).verdicts
-        by_file[name] = {verdict.quantity: verdict for verdict in verdicts}
-    return by_file
+    return {verdict.quantity: verdict for verdict in verdicts}
 
 
-@pytest.mark.parametrize("name", FILES)
-def test_each_file_says_its_kind_and_no_other(
-    judged: dict[str, dict[str, Verdict]], name: str
-) -> None:
+@pytest.mark.parametrize("name", by_turns(FILES, len(FILES), lambda name: FILES[name][2]))
+def test_each_file_says_its_kind_and_no_other(name: str) -> None:
     """The kind of the error of omega is that which was made, and the sentence says it in words."""
     _, _, kind, words = FILES[name]
-    omega = judged[name]["omega"]
+    omega = judged(name)["omega"]
     assert omega.error_kind is kind
     assert words in omega.sentence
     others = {phrase for _, _, other, phrase in FILES.values() if other is not kind}
     assert not any(phrase in omega.sentence for phrase in others)
 
 
-def test_a_loss_of_energy_is_told_from_a_gain(
-    judged: dict[str, dict[str, Verdict]], tmp_path: Path
-) -> None:
+def test_a_loss_of_energy_is_told_from_a_gain(tmp_path: Path) -> None:
     """T of an omega that shrinks in proportion to t is lost steadily; of one that grows it is gained."""
-    lost = judged["loss"]["T"]
+    lost = judged("loss")["T"]
     assert lost.sentence.startswith("T: 6 digits are kept up to t = 100 (largest error 2e-07); ")
     assert "it grows in proportion to t: a steady loss; above what f64 arithmetic" in lost.sentence
     assert lost.change == pytest.approx(-2e-7, rel=0.01)
@@ -169,20 +172,20 @@ def test_a_loss_of_energy_is_told_from_a_gain(
     assert "a steady gain" in gained.sentence
 
 
-def test_a_file_that_conserves_is_told_so(judged: dict[str, dict[str, Verdict]]) -> None:
+def test_a_file_that_conserves_is_told_so() -> None:
     """The conserved quantities of a late file are right, and the sentence counts their digits."""
     assert re.fullmatch(
         r"T: 15 digits are kept up to t = 100 \(largest error \S+\); what is left is roundoff",
-        judged["delayed"]["T"].sentence,
+        judged("delayed")["T"].sentence,
     )
 
 
-def test_a_printed_start_is_no_wrong_start(judged: dict[str, dict[str, Verdict]]) -> None:
+def test_a_printed_start_is_no_wrong_start() -> None:
     """A first row that is wrong by the digits of the file alone is no wrong start."""
-    start = judged["float32"][INITIAL]
+    start = judged("float32")[INITIAL]
     assert start.error_kind is ErrorKind.SINGLE
     assert "is not the scene's initial state" not in start.sentence
-    assert "is not the scene's initial state" in judged["offset"][INITIAL].sentence
+    assert "is not the scene's initial state" in judged("offset")[INITIAL].sentence
 
 
 # Since when.
@@ -352,7 +355,7 @@ def sentences_of(text: str) -> list[str]:
     return [line for line in text.splitlines() if re.match(r"(initial state|omega|T|H2): ", line)]
 
 
-@pytest.mark.parametrize("verb", ["check", "run"])
+@pytest.mark.parametrize("verb", by_turns(["check", "run"], 2))
 def test_the_answer_comes_first_and_the_arithmetic_on_request(
     verb: str, tmp_path: Path, capsys: Captured
 ) -> None:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builders.trajectories import exact_columns, write_csv
+from builders.turns import by_turns
 from builders.verdicts import by_quantity
 from mpmath import mpf
 
@@ -83,7 +84,7 @@ def test_a_gate_passes_at_its_tolerance_and_fails_just_above(scene: str) -> None
     at_the_border(scene, lambda problem: states)
 
 
-@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("scene", by_turns(SCENES, 2))
 def test_a_gate_of_a_file_has_the_same_border(scene: str, tmp_path: Path) -> None:
     """All digits of the largest error decide, of a file too."""
     at_the_border(scene, write_csv(tmp_path / "mine.csv", dict(coarse_file(scene))))
@@ -259,7 +260,7 @@ print(json.dumps({{name: list(map(float, values)) for name, values in columns.it
 """
 
 
-@pytest.mark.parametrize("factor", [0.999, 1.001])
+@pytest.mark.parametrize("factor", by_turns([0.999, 1.001], 2))
 def test_four_ways_agree(factor: float, coarse: str, tmp_path: Path, capsys: Captured) -> None:
     """check and run, of the command line and of Python, and the fixture of pytest, on one answer."""
     columns = dict(coarse_file(SCENE))
@@ -339,7 +340,11 @@ def test_what_is_stored_of_an_ordinary_row_names_no_tolerance() -> None:
     ("scene", "states"),
     [
         ("kirchhoff/falling-away", {"omega", "impulse", "attitude", "centre"}),
-        ("manufactured/kirchhoff-path", {"impulse", "attitude", "centre"}),
+        pytest.param(
+            "manufactured/kirchhoff-path",
+            {"impulse", "attitude", "centre"},
+            marks=pytest.mark.slow,
+        ),
     ],
 )
 def test_states_that_are_compared_apart_take_a_tolerance(

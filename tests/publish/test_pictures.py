@@ -405,7 +405,11 @@ def test_names_keep_apart_wherever_the_points_are(places: list[tuple[float, floa
 
 @pytest.mark.parametrize(
     ("kinds", "panels"),
-    [(["scipy"], 1), (["taylor", "scipy"], 2), (["taylor", "scipy", "geometric"], 3)],
+    [
+        (["scipy"], 1),
+        pytest.param(["taylor", "scipy"], 2, marks=pytest.mark.slow),
+        (["taylor", "scipy", "geometric"], 3),
+    ],
 )
 def test_nothing_is_cut_off(kinds: list[str], panels: int) -> None:
     """Headings, numbers, axis names and the legend are on the page, and headings do not touch.

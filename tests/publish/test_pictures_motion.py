@@ -347,6 +347,7 @@ def test_no_text_is_cut(end: str) -> None:
     fits(next(one.picture for one in shown() if one.picture.stem.endswith(end)))
 
 
+@pytest.mark.slow
 def test_no_text_is_cut_in_the_whole_gallery() -> None:
     """No picture that is published cuts a text."""
     for one in shown():

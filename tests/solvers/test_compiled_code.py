@@ -13,6 +13,7 @@ from typing import Any
 
 import heyoka as hy
 import pytest
+from builders.turns import by_turns
 
 from taylor_verify.models.problem import pose
 from taylor_verify.scenes.precision import rung
@@ -120,7 +121,7 @@ def _random(file: Path) -> None:
 DAMAGES = [_truncated, _emptied, _beheaded, _one_bit, _random]
 
 
-@pytest.mark.parametrize("damage", DAMAGES, ids=lambda damage: damage.__name__)
+@pytest.mark.parametrize("damage", by_turns(DAMAGES), ids=lambda damage: damage.__name__)
 def test_damaged_code_is_set_aside_with_one_warning(
     folder: Path, damage: Callable[[Path], None], caplog: pytest.LogCaptureFixture
 ) -> None:

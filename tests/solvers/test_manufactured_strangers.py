@@ -195,7 +195,7 @@ def test_a_file_that_drifts_in_one_row_fails_by_its_balances(tmp_path: Path) -> 
 def test_a_late_file_is_said_to_be_late(tmp_path: Path) -> None:
     """Loads have a time of their own: a file whose clock is late by 1e-6 is told so, and does not pass."""
     scene = load(EULER)
-    columns = columns_at(scene, scene.clock.instants)
+    columns = columns_at(scene, [*scene.clock.instants[:-1:4], scene.clock.instants[-1]])
     late = taylor_verify.check(
         scene,
         write_csv(tmp_path / "file.csv", {**columns, "t": [t + 1e-6 for t in columns["t"]]}),

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 from builders.scenes import asked_at
+from builders.turns import by_turns
 
 from taylor_verify.models.problem import pose
 from taylor_verify.records.status import Status
@@ -35,7 +36,7 @@ def scipy() -> Any:
 
 @pytest.mark.usefixtures("scipy")
 @pytest.mark.parametrize("method", solver.METHODS)
-@pytest.mark.parametrize("name", ["euler/with-attitude", "kirchhoff/whole-motion"])
+@pytest.mark.parametrize("name", by_turns(["euler/with-attitude", "kirchhoff/whole-motion"], 2))
 def test_the_answer_approaches_the_exact_motion(method: str, name: str) -> None:
     """Each method, for both models, every quantity: with a tolerance 10^4 smaller it is far closer."""
     scene = short(name)

@@ -115,7 +115,7 @@ def key(verdict: Verdict) -> tuple[str, ...]:
 
 
 @given(st.lists(one_run(), unique_by=lambda run: key(run[0])))
-@settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=12, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_verdicts_read_back_as_they_were(tmp_path: Path, runs: list[list[Verdict]]) -> None:
     """Every field of every verdict reads back to the last bit, what is not finite as None."""
     same = [run for run in runs if bool(run[0].provenance) == bool(runs[0][0].provenance)]

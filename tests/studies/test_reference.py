@@ -9,13 +9,13 @@ import re
 import shutil
 import subprocess
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 import pytest
-from builders.reports import every_reference
+from builders.reports import SOME_REFERENCES, every_reference, some_references
 
 import taylor_verify
 from taylor_verify.batch.documents import document as document_of
@@ -52,12 +52,29 @@ Rows = list[dict[str, str]]
 Vector = Sequence[Fraction]
 
 
-def folder() -> Path:
-    return every_reference() / reference_files.FOLDER
+def by_scene(scenes: Iterable[str]) -> pytest.MarkDecorator:
+    """The scenes as parameters of a test: the others than some are slow."""
+    slow = pytest.mark.slow
+    parameters = [pytest.param(n, marks=() if n in SOME_REFERENCES else slow) for n in scenes]
+    return pytest.mark.parametrize("scene", parameters)
+
+
+# Sets of scenes whose files stand in one folder.
+by_set = pytest.mark.parametrize(
+    "scenes",
+    [SOME_REFERENCES, pytest.param(names(), marks=pytest.mark.slow)],
+    ids=["some", "every"],
+)
+
+
+def folder(scenes: Iterable[str] = SOME_REFERENCES) -> Path:
+    """The folder that has the files of these scenes."""
+    made = some_references if set(scenes) <= set(SOME_REFERENCES) else every_reference
+    return made() / reference_files.FOLDER
 
 
 def file(scene: str, suffix: str) -> Path:
-    return folder() / f"{scene.replace('/', '-')}.{suffix}"
+    return folder([scene]) / f"{scene.replace('/', '-')}.{suffix}"
 
 
 def sheet(scene: str) -> Rows:
@@ -104,7 +121,7 @@ def size(v: Vector) -> float:
 # Complete.
 
 
-@pytest.mark.parametrize("scene", names())
+@by_scene(names())
 def test_every_shipped_scene_has_its_files(scene: str) -> None:
     """CSV and JSON hold the same columns, a row for every instant, of the scene as it is now."""
     published, asked = question(scene), load(scene)
@@ -119,7 +136,7 @@ def test_every_shipped_scene_has_its_files(scene: str) -> None:
     assert list(rows[0]) == ["t", *expected, "radius"]
 
 
-@pytest.mark.parametrize("scene", names())
+@by_scene(names())
 def test_the_question_is_that_of_the_scene(scene: str) -> None:
     """Body and initial state read back exactly, and every time is the instant to 32 digits."""
     published, asked = question(scene), load(scene)
@@ -136,16 +153,17 @@ def test_the_question_is_that_of_the_scene(scene: str) -> None:
         assert abs(Fraction(text) - instant) <= abs(instant) * Fraction(1, 2 * 10**31)
 
 
-def test_no_file_of_a_scene_that_is_gone() -> None:
+@by_set
+def test_no_file_of_a_scene_that_is_gone(scenes: Sequence[str]) -> None:
     """The folder holds two files for each shipped scene, the page and the examples."""
-    expected = {file(scene, suffix).name for scene in names() for suffix in ("csv", "json")}
-    assert {path.name for path in folder().iterdir()} == expected | {
+    expected = {file(scene, suffix).name for scene in scenes for suffix in ("csv", "json")}
+    assert {path.name for path in folder(scenes).iterdir()} == expected | {
         "README.md",
         *reference_files.EXAMPLES,
     }
 
 
-@pytest.mark.parametrize("scene", names())
+@by_scene(names())
 def test_at_least_thirty_digits(scene: str) -> None:
     """Every number but zero shows 32 significant digits, and no row is off by more than 10^-30."""
     for row in sheet(scene):
@@ -248,7 +266,7 @@ FREE = [name for name in names() if load(name).body.is_free and not load(name).b
 THIRTY_DIGITS = 1e-30
 
 
-@pytest.mark.parametrize("scene", FREE)
+@by_scene(FREE)
 def test_what_is_conserved_is_constant_to_thirty_digits(scene: str) -> None:
     """T and |H|^2, or T, F^2 and FG, and the impulse in space, from the printed digits alone."""
     assert drift(scene, sheet(scene)) <= THIRTY_DIGITS
@@ -262,7 +280,7 @@ def test_one_wrong_digit_is_no_longer_constant(column: str) -> None:
     assert not drift("euler/nesc-brick", rows) <= THIRTY_DIGITS
 
 
-@pytest.mark.parametrize("scene", [name for name in names() if load(name).track])
+@by_scene(name for name in names() if load(name).track)
 def test_attitudes_are_rotations(scene: str) -> None:
     """R R^T = 1 and det R = 1 to thirty digits, in every row."""
     for row in sheet(scene):
@@ -418,9 +436,10 @@ def test_the_example_sees_a_wrong_number(
     assert compared(example, exact, mine, "1e-8") == status
 
 
-def test_the_example_accepts_every_reference(example: Path) -> None:
+@by_set
+def test_the_example_accepts_every_reference(scenes: Sequence[str], example: Path) -> None:
     """Each file read twice agrees with itself exactly, and no other scene passes for it."""
-    for scene in names():
+    for scene in scenes:
         assert compared(example, file(scene, "csv"), file(scene, "csv"), "0") == 0
     others = (file("euler/tennis-racket", "csv"), file("euler/generic", "csv"))
     assert compared(example, *others, "1e-3") == 1

@@ -208,8 +208,9 @@ def test_too_few_processes_give_no_interval(tmp_path: Path) -> None:
     method = replace(TIMES_MADE.method, processes=2, coverage=0.5)
     bare = tuple(replace(timing, low=None, high=None) for timing in TIMES_MADE.timings)
     write(tmp_path, NUMBERS_MADE, replace(TIMES_MADE, method=method, timings=bare))
-    STUDY.publish(tmp_path)
-    text = text_of(tmp_path)
+    loaded = load(tmp_path)
+    assert loaded is not None
+    text = page(loaded, tmp_path)
     assert "No interval is given" in text
     assert "**12.0** @ 1e-09" in text
 

@@ -8,6 +8,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+from builders.turns import by_turns
 from traps.table import TRAPS
 
 FOLDER = Path(__file__).resolve().parents[2] / "reports" / "upstream"
@@ -23,7 +24,7 @@ def test_every_script_belongs_to_a_trap_and_to_a_paragraph() -> None:
     assert keys == {trap.script: trap.key for trap in TRAPS if trap.script}
 
 
-@pytest.mark.parametrize("script", [pytest.param(path, id=path.stem) for path in SCRIPTS])
+@pytest.mark.parametrize("script", by_turns(SCRIPTS), ids=lambda path: path.stem)
 def test_script_shows_its_behaviour_with_the_heyoka_that_is_installed(
     script: Path, tmp_path: Path
 ) -> None:

@@ -11,6 +11,7 @@ from time import perf_counter
 
 import pytest
 from builders.trajectories import MATRIX, Columns, exact_columns, file_judgement, write_csv
+from builders.turns import by_turns
 from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import mp
@@ -207,12 +208,14 @@ def degrees(values: Sequence[float]) -> list[str]:
 
 @pytest.mark.parametrize(
     ("names", "quantity"),
-    [
-        ({"w1": "wx [deg/s]", "w2": "wy [deg/s]", "w3": "wz [deg/s]"}, "omega"),
-        ({"t": "t [ms]"}, "omega"),
-        ({"w1": "w2", "w2": "w1"}, "omega"),
-        ({"q0": "qx", "q1": "qw", "q2": "qy", "q3": "qz"}, "attitude"),
-    ],
+    by_turns(
+        [
+            ({"w1": "wx [deg/s]", "w2": "wy [deg/s]", "w3": "wz [deg/s]"}, "omega"),
+            ({"t": "t [ms]"}, "omega"),
+            ({"w1": "w2", "w2": "w1"}, "omega"),
+            ({"q0": "qx", "q1": "qw", "q2": "qy", "q3": "qz"}, "attitude"),
+        ]
+    ),
 )
 def test_a_wrong_name_or_unit_is_caught(
     names: Mapping[str, str], quantity: str, tmp_path: Path

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Mapping
 from fractions import Fraction
 from pathlib import Path
@@ -66,7 +67,7 @@ def test_verdicts_are_those_of_the_csv(name: str, columns: Columns, tmp_path: Pa
     assert {row["verdict"] for row in rows if row["quantity"] != "complete"} == {"pass"}
 
 
-@pytest.mark.parametrize("name", by_turns(WRITERS))
+@pytest.mark.parametrize("name", by_turns(WRITERS, 5))
 def test_a_spoiled_row_is_seen_in_every_format(name: str, columns: Columns, tmp_path: Path) -> None:
     """A twin with one number changed by 1e-9 fails, at the time of that number."""
     spoiled = {key: list(values) for key, values in columns.items()}
@@ -82,7 +83,7 @@ ROWS = st.lists(st.tuples(*[DOUBLES] * 7), min_size=1, max_size=5)
 
 
 @pytest.mark.parametrize("name", WRITERS)
-@settings(max_examples=10, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=5, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(rows=ROWS, step=st.integers(1, 2**20))
 def test_every_double_survives_its_format(
     name: str, rows: list[tuple[float, ...]], step: int, tmp_path: Path
@@ -253,7 +254,7 @@ LACKED: Mapping[str, tuple[str, str]] = {
 }
 
 
-@pytest.mark.parametrize("name", LACKED)
+@pytest.mark.parametrize("name", by_turns(LACKED, len(LACKED)))
 def test_a_missing_package_is_named_with_its_extra(
     name: str, columns: Columns, tmp_path: Path
 ) -> None:
@@ -265,6 +266,20 @@ def test_a_missing_package_is_named_with_its_extra(
     assert done.returncode == 2, done.stderr
     assert f"pip install 'taylor-verify[{extra}]'" in done.stderr
     assert len(done.stderr.splitlines()) == 1
+
+
+@pytest.mark.parametrize("name", LACKED)
+def test_a_missing_package_is_named_in_the_message(
+    name: str, columns: Columns, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Every format that cannot be read has the command that installs its package in its message."""
+    package, extra = LACKED[name]
+    WRITERS[name.replace("ros2", "run")](tmp_path / name, columns)
+    for module in [m for m in sys.modules if m.partition(".")[0] == package]:
+        monkeypatch.delitem(sys.modules, module)
+    monkeypatch.setitem(sys.modules, package, None)
+    with pytest.raises(Exception, match=rf"pip install 'taylor-verify\[{extra}\]'"):
+        read(tmp_path / name)
 
 
 def test_csv_needs_none_of_the_packages(columns: Columns, tmp_path: Path) -> None:
