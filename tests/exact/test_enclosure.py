@@ -117,6 +117,30 @@ def test_a_bound_left_out_is_seen(broken: str, name: str, monkeypatch: pytest.Mo
     assert not is_contained(name, size=size)
 
 
+def test_a_step_whose_bounds_do_not_close_is_halved(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The motion is enclosed as sharply by steps of half the length, at the same precision."""
+    asked, end = CASES["kirchhoff"]
+    usual = enclosed(asked, Fraction(end), Fraction(0), 120)
+    closes, lengths = course.tube, list[arb]()
+
+    def tube_but_twice(bounds: Any, sizes: Any, h: arb, apart: arb_mat) -> tube.Tube:
+        lengths.append(h)
+        if len(lengths) in (1, 3):
+            raise tube.StepTooLong
+        return closes(bounds, sizes, h, apart)
+
+    monkeypatch.setattr(course, "tube", tube_but_twice)
+    halved = enclosed(asked, Fraction(end), Fraction(0), 120)
+    first, half, third, half_of_third, *_ = lengths
+    assert (half, half_of_third) == (first / 2, third / 2)
+    assert usual.centre is not None
+    assert halved.centre is not None
+    rows = ([*row.state, *row.turn, *row.centre] for row in (usual, halved))
+    for one, other in zip(*rows, strict=True):
+        assert one.overlaps(other)
+        assert float(other.rad()) <= 4 * float(one.rad()) <= 1e-30
+
+
 def test_a_centre_whose_bound_is_left_out_leaves_its_balls(monkeypatch: pytest.MonkeyPatch) -> None:
     """A sphere that drifts without spin: the width of its speed, and nothing else, moves the centre."""
     sphere = ImmersedBody(diagonal(vector(1, 1, 1)), ZERO_MATRIX, diagonal(vector(1, 1, 1)))
