@@ -26,6 +26,7 @@ from taylor_verify.exact.conditioning.condition import Path, many, path, transit
 from taylor_verify.exact.conditioning.differences import Derivatives, derivatives
 from taylor_verify.exact.conditioning.flow import Flow
 from taylor_verify.exact.conditioning.variation import integrated
+from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
@@ -33,6 +34,7 @@ from taylor_verify.scenes.motion import Clock, Impulse, Motion, Quaternion, Spin
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import (
+    ZERO_MATRIX,
     Matrix,
     apply,
     diagonal,
@@ -326,6 +328,28 @@ def test_where_float64_cannot_follow_there_are_no_variational_norms() -> None:
     near = vector("1e-40", 1, "1e-40")
     saddle = sample_scene(RigidBody(turned), start=Spin(apply(turn, near)))
     assert integrated(saddle, Flow.of(saddle), times(0, 400)) is None
+
+
+def test_velocities_are_counted_in_lengths_and_times() -> None:
+    """In the units of a flow U and Omega of a state are the same, times the time, over the length."""
+    body = sample_scene(CLEBSCH).body
+    equations, units = kind_of(body).equations(body), vector(2, 2, 2, 8, 8, 8)
+    state = np.array(vector(1, -2, 3, 5, 7, -4), dtype=object)
+    time, length = Fraction(4), Fraction(32)
+    scaled = equations.scaled(units, time, length)
+    counted = (state / np.array(units, dtype=object)).astype(float)
+    U, Omega = (form @ state for form in (equations.velocity, equations.spin))
+    assert np.allclose(scaled.velocity @ counted, (U * time / length).astype(float))
+    assert np.allclose(scaled.spin @ counted, (Omega * time).astype(float))
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_a_couple_about_any_axis_sets_the_unit_of_time(axis: int) -> None:
+    """A body at rest that is alike in all directions has one unit of time, wherever its load points."""
+    alike = diagonal(vector(1, 1, 1))
+    couple = tuple(Fraction(1024 * (k == axis)) for k in range(3))
+    body = ImmersedBody(alike, ZERO_MATRIX, alike, vector(0, 0, 0), couple)
+    assert kind_of(body).units(body, vector(0, 0, 0, 0, 0, 0)).time < -4
 
 
 @pytest.mark.slow

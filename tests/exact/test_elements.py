@@ -89,6 +89,16 @@ def test_the_digits_asked_for_are_right(name: str) -> None:
     assert few.sentences
 
 
+def test_a_steady_precession_nutates_with_the_period_of_a_motion_beside_it() -> None:
+    """Moved by 1e-8 it nutates, and the period is that of small nutations but for as much."""
+    steady = load("kirchhoff/steady-precession")
+    assert isinstance(steady.initial, Impulse)
+    x1, x2, x3 = steady.initial.linear
+    start = replace(steady.initial, linear=(x1, x2, x3 + Fraction(1, 10**8)))
+    beside = replace(steady, initial=start)
+    assert abs(number(steady, "nutation_period") / number(beside, "period") - 1) <= 1e-8
+
+
 @pytest.mark.parametrize("name", ["generic", "full-tensor", "axisymmetric", "backward"])
 def test_omega_recurs_after_the_period_and_not_after_half(name: str) -> None:
     """The period of omega in body axes is its least one."""

@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 from flint import arb, ctx
+from hypothesis import given
+from hypothesis import strategies as st
 from mpmath import mp, mpf
 
 from taylor_verify.exact.balls import ball, midpoint
@@ -17,6 +19,7 @@ from taylor_verify.exact.elements import elements
 from taylor_verify.exact.kirchhoff.screws import (
     Screw,
     Stability,
+    _stability,
     is_steady,
     screws,
     screws_beside,
@@ -247,3 +250,17 @@ def test_explain_says_which_screws_are_stable() -> None:
     assert len(lines) == 3
     assert all(word in line for word, line in zip(words, lines, strict=True))
     assert not any("itself" in line for line in elements(load("kirchhoff/general-body")).sentences)
+
+
+@given(st.integers(-9, 9), st.integers(-9, 9))
+def test_two_roots_say_whether_a_screw_is_stable(a: int, b: int) -> None:
+    """s^2 = a or b: stable to first order if both are negative, and open if they coincide or vanish."""
+    expected = Stability.TO_FIRST_ORDER
+    if a == b or not a * b:
+        expected = Stability.UNDECIDED
+    if max(a, b) > 0:
+        expected = Stability.UNSTABLE
+    assert _stability(arb(-a - b), arb(a * b)) is expected
+    # a +- b i
+    if b:
+        assert _stability(arb(-2 * a), arb(a * a + b * b)) is Stability.UNSTABLE
