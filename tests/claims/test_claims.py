@@ -28,6 +28,7 @@ from taylor_verify.claims.hydromechanics.fourth import (
 )
 from taylor_verify.claims.hydromechanics.poles import leading_coefficients
 from taylor_verify.claims.hydromechanics.solid import loaded
+from taylor_verify.claims.hydromechanics.spins import tilted
 from taylor_verify.claims.setting import Exact, Numeric
 from taylor_verify.claims.trajectory import scene_of, trajectory
 from taylor_verify.exact.invariants import invariants
@@ -35,7 +36,7 @@ from taylor_verify.models.euler import heinbockel_moment
 from taylor_verify.models.kirchhoff import clebsch_rates, impulse_rates
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
-from taylor_verify.scenes.tensors import is_positive_definite
+from taylor_verify.scenes.tensors import dot, is_positive_definite
 
 
 def triangle() -> Field:
@@ -373,3 +374,11 @@ def test_an_element_needs_no_order_of_writing() -> None:
     assert (2 - u + (u - 2)).is_zero
     assert (2 * u - u * 2).is_zero
     assert (2 / u * u - 2).is_zero
+
+
+@given(st.fractions("1e-9", "1/2", max_denominator=10**9))
+def test_a_tilted_start_has_the_length_of_e3(tilt: Fraction) -> None:
+    """F = G = 1, exactly, whatever the tilt; and the sine of the angle is nearly the tilt."""
+    start = tilted(tilt)
+    assert dot(start.linear, start.linear) == dot(start.linear, start.angular) == 1
+    assert abs(start.linear[0] - tilt) <= tilt**3

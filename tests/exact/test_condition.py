@@ -20,6 +20,8 @@ from builders.scenes import (
     sample_scene,
     vector,
 )
+from hypothesis import given
+from hypothesis import strategies as st
 from mpmath import mp, mpf
 
 from taylor_verify.exact.conditioning.condition import Path, many, path, transition
@@ -29,6 +31,8 @@ from taylor_verify.exact.conditioning.variation import integrated
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.exact.units import exponent, later
+from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
 from taylor_verify.scenes.motion import Clock, Impulse, Motion, Quaternion, Spin
 from taylor_verify.scenes.reading.reader import load
@@ -341,6 +345,13 @@ def test_velocities_are_counted_in_lengths_and_times() -> None:
     U, Omega = (form @ state for form in (equations.velocity, equations.spin))
     assert np.allclose(scaled.velocity @ counted, (U * time / length).astype(float))
     assert np.allclose(scaled.spin @ counted, (Omega * time).astype(float))
+
+
+@given(st.integers(-40, 40), st.integers(-40, 40))
+def test_what_grows_is_as_large_as_rate_times_time(rate: int, time: int) -> None:
+    """A velocity that grows by 2^rate a second is 2^(rate + time) after 2^time seconds."""
+    grown = tensors.scaled(Fraction(2) ** time, vector(Fraction(2) ** rate, 0, 0))
+    assert later(exponent(vector(Fraction(2) ** rate, 0, 0)), time) == exponent(grown)
 
 
 @pytest.mark.parametrize("axis", [0, 1, 2])

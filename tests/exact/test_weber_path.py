@@ -5,6 +5,8 @@ from __future__ import annotations
 import cmath
 from dataclasses import replace
 from fractions import Fraction
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -224,6 +226,30 @@ def test_the_rule_is_wrong_by_less_than_is_said(bits: int) -> None:
                     assert narrow.rad() < arb(2) ** -130
                     assert wide.contains(narrow)
                     assert wide.rad() > arb(2) ** (-2 * bits)
+
+
+def test_the_arcs_cover_the_upper_boundary(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those that are used follow each other from one end of the ellipse to the other."""
+    scene = whole("plain", "theta > 0")
+    body, _ = solid(scene)
+    arcs, whole_arc = list[tuple[Fraction, Fraction]](), Panels._arc
+
+    def recorded(
+        self: Panels, middle: Fraction, half: Fraction, at: Fraction, spread: Fraction
+    ) -> Any:
+        arcs.append((at - spread, at + spread))
+        return whole_arc(self, middle, half, at, spread)
+
+    panels = Panels(curve_of(scene), body, 1)
+    monkeypatch.setattr(Panels, "_arc", recorded)
+    with ctx.workprec(panels._bits):
+        assert panels._bounded(Fraction(1, 2), Fraction(1, 4)) is not None
+    # An arc that holds too much is followed by its halves.
+    used = [
+        arc for arc, later in pairwise([*arcs, (Fraction(1), Fraction(1))]) if later[0] == arc[1]
+    ]
+    assert (used[0][0], used[-1][1]) == (0, 1)
+    assert all(before[1] == after[0] for before, after in pairwise(used))
 
 
 def test_an_ellipse_with_a_pole_inside_is_declined() -> None:
