@@ -54,6 +54,19 @@ def test_the_balls_of_a_box_are_not_much_wider_than_its_motions(name: str) -> No
         assert max(values) - min(values) >= float(width.rad()) / 30
 
 
+def test_the_axes_of_a_box_follow_its_longest_edge_first() -> None:
+    """Nearly orthonormal, also of edges that are nearly parallel; the longest edge keeps its direction."""
+    edges = [[arb(e) for e in edge] for edge in ((1, 1, 1), (0, 1e3, 1), (1, 1, 1 + 1e-9))]
+    with ctx.workprec(100):
+        lengths = [box._dot(edge, edge).sqrt() for edge in edges]
+        axes = box.directions(edges, lengths, 3)
+        longest, length = edges[1], lengths[1]
+        assert all(abs(axes[0][i] - longest[i] / length) < 1e-12 for i in range(3))
+        for i, one in enumerate(axes):
+            for j, other in enumerate(axes):
+                assert abs(box._dot(one, other) - (i == j)) < 1e-12
+
+
 def norm_of_the_sum(form: arb_mat, deviations: tuple[list[arb_mat], arb_mat]) -> arb:
     """The false bound of the integral of |W (z - p)|: smaller than the true one."""
     spread, constant = deviations
