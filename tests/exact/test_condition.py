@@ -347,6 +347,16 @@ def test_velocities_are_counted_in_lengths_and_times() -> None:
     assert np.allclose(scaled.spin @ counted, (Omega * time).astype(float))
 
 
+@pytest.mark.parametrize("heavier", [Fraction(2) ** 20, Fraction(2) ** -20])
+def test_the_unit_of_time_is_that_of_a_heavier_body(heavier: Fraction) -> None:
+    """A damped body whose moments are all larger turns alike, and is damped alike."""
+    light, heavy = (
+        sample_scene(RigidBody(tuple(scaled(factor, row) for row in TENSOR), damping=Fraction(3)))
+        for factor in (Fraction(1), heavier)
+    )
+    assert Flow.of(light).time == Flow.of(heavy).time
+
+
 @given(st.integers(-40, 40), st.integers(-40, 40))
 def test_what_grows_is_as_large_as_rate_times_time(rate: int, time: int) -> None:
     """A velocity that grows by 2^rate a second is 2^(rate + time) after 2^time seconds."""
