@@ -28,7 +28,7 @@ from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.scene import Scene
 
-# Up to here the leading law of the flip is off by (1 - 1/L) m'/4 of itself, less than 2 %.
+# Up to here the leading law of the flip is off by (1 - 1/L) m'/4 of itself: 1 %.
 _NEAR: Final = Fraction(1, 16)
 
 _CONSERVED: Final = (
