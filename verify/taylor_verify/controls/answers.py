@@ -18,16 +18,16 @@ from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
 _CONSERVED: Final = frozenset({"T", "H2", "H_space"})
 
-# Half a millisecond is what separates one simulation of NASA's check case of this brick from others.
+# In NASA's check case of this brick, one simulation differs from the others by half a millisecond.
 _EARLY: Final = Fraction(1, 2000)
-# The step between whose ends the last point is interpolated, in units of time.
+# The last point is interpolated between the ends of a step of this length, in units of time.
 _STEP: Final = Fraction(1, 1000)
 
 Rows = Any
 
 
 def _early(problem: Problem) -> Problem:
-    """Return the problem with all times half a millisecond later, whose answer has the old stamps."""
+    """Return the problem with all times half a millisecond later; its answer gets the times asked for."""
     ahead = _EARLY / problem.units.time
     times = tuple(problem.rung.round(t + ahead) for t in problem.times)
     return replace(problem, times=times)
@@ -99,9 +99,9 @@ def _mapped(sound: Trajectory, change: Callable[[Rows], Rows]) -> Trajectory:
 
 ANSWERS: Final = (
     Defect(
-        "half-a-millisecond-early",
-        BRICK,
-        "omega",
+        name="half-a-millisecond-early",
+        scene=BRICK,
+        gate="omega",
         passes=_CONSERVED,
         what="every sample stamped 0.5 ms early",
         why="a true state of the same motion at another time: it has every conserved quantity to "
@@ -111,27 +111,27 @@ ANSWERS: Final = (
         is_common=True,
     ),
     Defect(
-        "one-sample-late",
-        BRICK,
-        "omega",
+        name="one-sample-late",
+        scene=BRICK,
+        gate="omega",
         passes=_CONSERVED,
         what="the output written one sample late",
         why="true states all of them, each under the next one's time",
         spoil=_one_sample_late,
     ),
     Defect(
-        "one-sample-late-impulse",
-        SCREW,
-        "impulse",
+        name="one-sample-late-impulse",
+        scene=SCREW,
+        gate="impulse",
         passes=frozenset({"T", "F2", "FG", "y3", "x_space", "y_space"}),
         what="the same late output, for a solid in a fluid",
         why="six conserved quantities instead of three, and none of them has a clock",
         spoil=_one_sample_late,
     ),
     Defect(
-        "success-after-failure",
-        BRICK,
-        "attitude",
+        name="success-after-failure",
+        scene=BRICK,
+        gate="attitude",
         passes=_CONSERVED,
         what="stopped half way, padded with the last state, success reported",
         why="a body that is frozen loses nothing",
@@ -139,18 +139,18 @@ ANSWERS: Final = (
         is_common=True,
     ),
     Defect(
-        "stopped-and-said-so",
-        BRICK,
-        "omega",
+        name="stopped-and-said-so",
+        scene=BRICK,
+        gate="omega",
         what="stopped half way, and reported as stopped",
         why="what did not finish is not scored: it has the outcome for its error",
         spoil=_stopped,
         honest=True,
     ),
     Defect(
-        "last-point-interpolated",
-        BRICK,
-        "omega",
+        name="last-point-interpolated",
+        scene=BRICK,
+        gate="omega",
         what="the last point interpolated between two steps of 1 ms",
         why="a chord runs inside the arc by h^2/8 of its curvature: one sample in a hundred is "
         "wrong, in everything",
@@ -158,18 +158,18 @@ ANSWERS: Final = (
         is_common=True,
     ),
     Defect(
-        "conjugate-quaternion",
-        BRICK,
-        "attitude",
+        name="conjugate-quaternion",
+        scene=BRICK,
+        gate="attitude",
         passes=frozenset({"omega", "T", "H2"}),
         what="the quaternion from space to body in place of body to space",
         why="no quantity in body axes knows the attitude; in space the momentum wanders",
         spoil=_conjugated,
     ),
     Defect(
-        "scalar-part-rebuilt",
-        BRICK,
-        "H_space",
+        name="scalar-part-rebuilt",
+        scene=BRICK,
+        gate="H_space",
         passes=frozenset({"omega", "T", "H2"}),
         what="q0 rebuilt as the positive root after each renormalisation",
         why="q and -q are one rotation, but the sign of q0 alone is not free: right until the body "
@@ -177,18 +177,18 @@ ANSWERS: Final = (
         spoil=_scalar_rebuilt,
     ),
     Defect(
-        "one-nan",
-        BRICK,
-        "omega",
+        name="one-nan",
+        scene=BRICK,
+        gate="omega",
         what="one number that is not a number",
         why="NaN is neither smaller nor larger than anything: a gate that asks whether error > bound "
         "passes it, one that asks whether error <= bound does not",
         spoil=_one_nan,
     ),
     Defect(
-        "one-ulp-over",
-        "euler/generic",
-        "omega",
+        name="one-ulp-over",
+        scene="euler/generic",
+        gate="omega",
         passes=frozenset({"T", "H2"}),
         what="one sample off by the bound and one ulp of it",
         why="the least error that must fail; its twin, an ulp within, must pass. It leads along the "

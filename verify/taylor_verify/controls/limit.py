@@ -1,4 +1,4 @@
-"""An answer exactly on the edge of a gate: an error of the bound, more or less one ulp of it.
+"""Answers on the edge of a gate: their error is the bound, plus or minus one ulp.
 
 The error is put along the orbit, omega' = K (H x omega), so that no conserved quantity changes to
 first order: the gate of the state alone is on its edge.
@@ -28,13 +28,13 @@ _CONSPICUOUS = 1e-6
 
 
 def just_over(problem: Problem, sound: Trajectory) -> Trajectory:
-    """Return the answer with one omega in the middle wrong by one ulp more than the bound."""
+    """Return the answer with an error in the middle omega of one ulp more than the bound."""
     return _moved(problem, sound, nextafter(_bound(problem, sound), inf))
 
 
 @final
 class JustWithin(Solver):
-    """The sound twin: wrong by one ulp less than the bound."""
+    """The sound twin: its error is one ulp less than the bound."""
 
     name = "taylor"
     setting = "an ulp within"

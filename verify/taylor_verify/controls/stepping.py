@@ -5,8 +5,8 @@ k  principal values of I^-1           omega  k H
 q  attitude quaternion, body to space
 
 The sound twin is the classical Runge-Kutta method of fourth order at the same step, which is so small
-that the twin passes every gate: the defect fails, not the step. The last defect is a step that heyoka
-chooses; its twin is the driver.
+that the twin passes every gate: the defect fails, not the step. In the last defect heyoka
+chooses the step; its twin is our driver of heyoka, `Taylor`.
 """
 
 from __future__ import annotations
@@ -49,12 +49,12 @@ class Body:
         return self.k * H
 
     def momentum_rate(self, H: Vector) -> Vector:
-        """H x omega."""
+        """Return H x omega."""
         (k1, k2, k3), (H1, H2, H3) = self.k.tolist(), H.tolist()
         return np.array([(k3 - k2) * H2 * H3, (k1 - k3) * H3 * H1, (k2 - k1) * H1 * H2])
 
     def rate(self, state: Vector) -> Vector:
-        """H' = H x omega and q' = q (0, omega)/2."""
+        """Return H' = H x omega and q' = q (0, omega)/2, as one vector of seven."""
         H = state[:3]
         turning = attitude_rate(state[3:].tolist(), self.omega(H).tolist())
         return np.array([*self.momentum_rate(H), *turning])
@@ -119,7 +119,10 @@ def _averaged_exponential(body: Body, state: Vector, h: float) -> Vector:
 
 
 def _explicit(body: Body, state: Vector, h: float, iterations: int = 1) -> Vector:
-    """Return H + h (H x omega), with H x omega at the old state; then turn the frame by the new omega."""
+    """Return H + h (H x omega), with H x omega at the old state, and the frame turned by the new omega.
+
+    More iterations approach H x omega at the new state.
+    """
     H = state[:3]
     for _ in range(iterations):
         H = state[:3] + h * body.momentum_rate(H)
@@ -152,9 +155,9 @@ _TWIN: Final = FixedStep(runge_kutta, "runge-kutta-4", "1.5 ms")
 
 STEPPING: Final = (
     Defect(
-        "explicit-gyroscopic-update",
-        BRICK,
-        "T",
+        name="explicit-gyroscopic-update",
+        scene=BRICK,
+        gate="T",
         what="the gyroscopic term taken at the old state (explicit)",
         why="H x omega stands at right angles to H, and a step along a tangent ends outside the sphere: "
         "|H| and T rise in every step",
@@ -163,9 +166,9 @@ STEPPING: Final = (
         is_common=True,
     ),
     Defect(
-        "implicit-gyroscopic-update",
-        BRICK,
-        "T",
+        name="implicit-gyroscopic-update",
+        scene=BRICK,
+        gate="T",
         what="the gyroscopic term taken at the new state (implicit)",
         why="the mirror image: every step ends inside the sphere, |H| and T fall",
         solver=FixedStep(partial(_explicit, iterations=_ITERATIONS), "implicit-gyroscopic-update"),
@@ -173,9 +176,9 @@ STEPPING: Final = (
         is_common=True,
     ),
     Defect(
-        "energy-restored",
-        BRICK,
-        "H2",
+        name="energy-restored",
+        scene=BRICK,
+        gate="H2",
         passes=frozenset({"T"}),
         what="an explicit step, the energy then restored by scaling",
         why="the energy is what is put there; the error is where it was",
@@ -184,9 +187,9 @@ STEPPING: Final = (
         is_common=True,
     ),
     Defect(
-        "averaged-exponential",
-        BRICK,
-        "attitude",
+        name="averaged-exponential",
+        scene=BRICK,
+        gate="attitude",
         passes=frozenset({"omega", "T", "H2"}),
         what="the attitude by one rotation about the mean velocity of a step",
         why="turns about different axes do not commute: omega is of fourth order, the attitude only of "
@@ -196,9 +199,9 @@ STEPPING: Final = (
         is_common=True,
     ),
     Defect(
-        "float32-state",
-        BRICK,
-        "T",
+        name="float32-state",
+        scene=BRICK,
+        gate="T",
         what="the state kept in float32 between steps",
         why="each step rounds to 24 bits, half a billion times as coarsely as to 53",
         solver=FixedStep(_in_single_precision, "float32-state"),
@@ -206,9 +209,9 @@ STEPPING: Final = (
         is_common=True,
     ),
     Defect(
-        "unbounded-step",
-        "extremes/euler-unstable-axis-1e-12",
-        "omega",
+        name="unbounded-step",
+        scene="extremes/euler-unstable-axis-1e-12",
+        gate="omega",
         passes=frozenset({"T", "H2"}),
         what="no bound on the step beside an unstable axis",
         why="the error of a step is held against the whole state: the distance from the axis, 1e-12 of "

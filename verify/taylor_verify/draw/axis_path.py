@@ -33,8 +33,11 @@ _SPHERE: Final = Ellipsoid((1.0, 1.0, 1.0))
 _AT_REST: Final = 1e-6
 _WIDTH: Final = 1.3
 _FIXED: Final[Look] = {
-    **{"linestyle": "none", "marker": "x", "markersize": 6},
-    **{"markeredgecolor": "#A83C00", "markeredgewidth": 1.6},
+    "linestyle": "none",
+    "marker": "x",
+    "markersize": 6,
+    "markeredgecolor": "#A83C00",
+    "markeredgewidth": 1.6,
 }
 
 
@@ -42,8 +45,8 @@ _FIXED: Final[Look] = {
 class Series:
     """The axis in space, one unit vector a time, and its number in the body.
 
-    ``fixed`` is a direction that does not change in space, None where there is none. ``fixed_name`` is the
-    vector that has this direction.
+    ``fixed`` is the direction of the momentum in space, None if it changes. ``fixed_name`` names that
+    vector.
     """
 
     times: Numbers
@@ -131,5 +134,5 @@ def _figure(track: Series, words: str) -> Figure:
 
 def _middle(path: Numbers) -> list[float]:
     mean = path.mean(axis=0)
-    # A path all round the sphere has no side: it is seen from any.
+    # A path all round the sphere has no middle: any view is as good.
     return mean.tolist() if float(np.linalg.norm(mean)) > 0.05 else [1.0, 0.7, 0.5]

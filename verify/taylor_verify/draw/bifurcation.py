@@ -43,20 +43,28 @@ _UNSTABLE: Final[Look] = {
     "gid": "unstable",
 }
 _HERE: Final[Look] = {
-    **{"linestyle": "none", "marker": "*", "markersize": 11, "markerfacecolor": "#F2B705"},
-    **{"markeredgecolor": INK, "markeredgewidth": 0.8, "gid": "scene"},
+    "linestyle": "none",
+    "marker": "*",
+    "markersize": 11,
+    "markerfacecolor": "#F2B705",
+    "markeredgecolor": INK,
+    "markeredgewidth": 0.8,
+    "gid": "scene",
 }
 # Colours by the number of pairs of spins, beyond the two spins that are always there.
 _REGIONS: Final = ("#FFFFFF", "#DCE9F2", "#A9C8DF")
 _PATCH: Final[Look] = {
-    **{"linestyle": "none", "marker": "s", "markersize": 8},
-    **{"markeredgecolor": QUIET, "markeredgewidth": 0.6},
+    "linestyle": "none",
+    "marker": "s",
+    "markersize": 8,
+    "markeredgecolor": QUIET,
+    "markeredgewidth": 0.6,
 }
 _BORDER: Final[Look] = {"color": "#35607F", "linewidth": 0.9, "gid": "border"}
 _EVOLUTE: Final[Look] = {"colors": [_BORDER["color"]], "linewidths": _BORDER["linewidth"]}
-# A panel shows so many times what it has to show.
+# The extent of a panel, in parts of what it has to show.
 _ROOM: Final = 1.3
-# Sizes of a larger ratio have a logarithmic axis.
+# If the sizes have a larger ratio, their axis is logarithmic.
 _UNLIKE: Final = 15.0
 # Points on each side of the grid that is drawn, and of the one that finds the extent of the border.
 _GRID: Final = 181
@@ -65,7 +73,7 @@ _COARSE: Final = 61
 
 @dataclass(frozen=True)
 class Series:
-    """The body with its wheels, |H| and H at the start; ``births`` are |H| of the cusps, upwards."""
+    """The body with its wheels, its |H| and H at the start, and the |H| of the cusps, ascending."""
 
     wheels: Wheels
     size: float
@@ -125,7 +133,7 @@ def picture(document: Document) -> Picture:
 
 
 def _figure(bifurcations: Series, caption: str) -> Figure:
-    # Beyond the panel, so that no curve ends in it.
+    # The branches go beyond the panel, so that no curve ends inside.
     branches = bifurcations.wheels.branches(bifurcations.limits[1] * _ROOM)
     is_mixed = any(not branch.stable for branch in branches)
     entries: list[Entry] = [

@@ -1,4 +1,4 @@
-"""The caption of a picture, with the scene and the route of its numbers; and the refusal to draw one."""
+"""The caption of a picture, with the scene and the route of its numbers, and the refusal of a picture."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ _WAYS: Final = {
 
 
 class NotDrawn(ValueError):  # noqa: N818 (an answer, not a fault of the code)
-    """Refusal of a picture: the scene lacks what it shows, and the text says what is missing."""
+    """Refusal of a picture that the scene cannot have; the text says what is missing."""
 
 
 def caption(document: Mapping[str, Any]) -> str:
-    """Return the scene and the exact route; nothing for a document that `course.motion` has not made."""
+    """Return the scene and the exact route; "" for a document that `course.motion` has not made."""
     way = _WAYS.get(document.get("route", ""))
     return f"{document['scene']}: {way}." if way and "evidence" in document else ""

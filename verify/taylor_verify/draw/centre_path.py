@@ -39,7 +39,7 @@ _GLYPH: Final = 0.07
 _MARGIN: Final = 0.08
 # No side of the box is shorter than this part of the longest one.
 _LEAST_SIDE: Final = 0.35
-# The most solids on a path, and their distance from each other in parts of their size.
+# The greatest number of solids on a path, and their distance from each other in parts of their size.
 _FRAMES: Final = 10
 _APART: Final = 1.25
 # The axes of a frame are so many times as long as a glyph.
@@ -60,9 +60,10 @@ _BELOW: Final = 0.42
 
 @dataclass(frozen=True)
 class Series:
-    """The origin of the body and its attitude in space, one row a time; ``axis`` is drawn.
+    """The path of the origin (n, 3) and the attitudes (n, 3, 3) in space, at the times (n,).
 
-    ``semi_axes`` are those of an ellipsoid. ``is_solid`` says that the body is drawn, and not its axis.
+    ``axis`` is the number of the body axis that is drawn; with ``is_solid`` the body itself is drawn
+    instead. ``semi_axes`` are those of an ellipsoid, else None.
     """
 
     times: Numbers
@@ -200,7 +201,7 @@ def _body_entries(track: Series) -> list[Entry]:
 
 
 def _view(path: Numbers) -> View:
-    """Return the view that shows the path at its widest, among some that see no wall edge on."""
+    """Return the view in which the path is widest, among views that show every wall."""
     views = [View(float(azimuth), _ELEVATION) for azimuth in _AZIMUTHS]
     return max(views, key=lambda view: round(float(np.ptp(view.project(path)[:, 0])), 6))
 

@@ -29,7 +29,7 @@ Document = Mapping[str, Any]
 
 # In inches.
 _HEIGHT: Final = 2.7
-# Dashes tell the components apart as well as colours do.
+# The components differ in their dashes too, for readers who see no colours.
 LINES: Final[tuple[dict[str, Any], ...]] = (
     {"color": "#0B5FA5", "linewidth": 1.5},
     {"color": "#A83C00", "linewidth": 1.5, "dashes": (5, 1.6)},
@@ -85,11 +85,11 @@ def series(document: Document) -> Series:
     panel = Panel("\N{GREEK SMALL LETTER OMEGA}", "angular velocity, principal axes", rows)
     numbers = {row["name"]: float(row["value"]) for row in document["analytic"]}
     flips: tuple[float, ...] = ()
-    # Flips are given in the time of the scene. With damping the orbit has a time of its own.
+    # The flips are in the time of the scene. With damping the flip time of the orbit is in another time.
     if document["is_free"] and not document["rotor"] and "saddle_rate" in numbers:
         flips = _zeros(times, rows[:, int(np.argsort(body["principal_moments"])[1])])
-    same = None if document["damping"] else numbers.get("flip_time")
-    return Series(times, (panel,), flips, same)
+    flip_time = None if document["damping"] else numbers.get("flip_time")
+    return Series(times, (panel,), flips, flip_time)
 
 
 def _zeros(times: Numbers, values: Numbers) -> tuple[float, ...]:
@@ -154,8 +154,7 @@ def _draw(axes: Axes, components: Series, panel: Panel) -> None:
 
 def _write_flip_time(axes: Axes, flips: Sequence[float], flip_time: float) -> None:
     """Write the flip time between the first two flips."""
-    top = axes.get_ylim()[1]
-    low = axes.get_ylim()[0]
+    low, top = axes.get_ylim()
     height = top - 0.09 * (top - low)
     arrow = {"arrowstyle": "<|-|>", "color": INK, "linewidth": 0.8, "shrinkA": 0, "shrinkB": 0}
     axes.annotate("", (flips[0], height), (flips[1], height), arrowprops=arrow, zorder=4)

@@ -39,7 +39,7 @@ INTERVALS: Final = 360
 PERIODS: Final = 3
 # Radians that a body may turn between two rows.
 _TURN: Final = 0.1
-# An interval is cut into so many parts at most.
+# The most parts of an interval.
 _MOST: Final = 8
 # Digits of a number in the course. The motion is computed to one digit more: a component that is smaller
 # than this digit of its vector counts as zero, although it is not proven to be zero.
@@ -132,7 +132,7 @@ def course_of(
 
 
 def _enough(course: Document) -> int:
-    """Return the number of parts to cut an interval into, so that the body turns little in each."""
+    """Return the number of parts of an interval in which the body turns little; `_MOST` at most."""
     turned = np.array(course["attitude"]).reshape(-1, 3, 3)
     cosines = (np.einsum("nij,nij->n", turned[1:], turned[:-1]) - 1) / 2
     # Rows show angles below half a turn only, however fast the body is: more parts than these do not help.

@@ -2,7 +2,7 @@
 
 The errors are those that `check` judges: against the exact motion of the same start, relative to the
 largest value of the motion, and in radians for an attitude. The floor is what perfect rounding would leave.
-The row at the start is left out: it has the rounding of the data, and no error of the motion.
+The row at the start is left out: its only error is the rounding of the data.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ Panels = Mapping[str, Sequence[Line]]
 
 
 def panels_of(records: Mapping[str, Record], start: float) -> Panels:
-    """Return the lines of each quantity: the states, then one conserved quantity, the energy if it is.
+    """Return the lines of each state quantity, then of one conserved quantity, mostly the energy.
 
     ``records`` are those of the files, by name. The row at ``start`` is left out.
     """
@@ -83,8 +83,8 @@ def _above_zero(values: Sequence[float]) -> Numbers:
 def picture(document: Document, records: Mapping[str, Record]) -> Picture:
     """Return the errors of all files in one picture, beside the roundoff floor.
 
-    ``document`` is the exact motion, ``records`` those of the judged files, by the names that the picture
-    shows. Raises NotDrawn if no error is above zero.
+    ``document`` is the exact motion. ``records`` are those of the judged files, by the names that the
+    picture shows. Raises NotDrawn if no error is above zero.
     """
     panels = panels_of(records, document["course"]["t"][0])
     if not panels:

@@ -27,22 +27,22 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 ENDINGS: Final = (".gif", ".mp4")
-# In inches and pixels to the inch.
+# The size in inches, and pixels per inch.
 _SIZE: Final = (8.0, 4.6)
 _RESOLUTION: Final = 100
-# Pictures a second, and the most in all: a GIF of more would be too large for a page.
+# Frames per second, and the most frames: a GIF of more would be too large for a page.
 _RATE: Final = {".gif": 12, ".mp4": 30}
 _MOST: Final = {".gif": 180, ".mp4": 1200}
 _VIEW: Final = View(28.0, 14.0)
 _COLOURS: Final = {
-    **{
-        "plus": "#D9541E",
-        "minus": "#1F6FB2",
-        "side": "#E9E4D8",
-        "edge": "#B9B2A3",
-        "string": "#8B8F93",
-    },
-    **{"axis1": "#C2481A", "axis2": "#1C8578", "axis3": "#1F6FB2"},
+    "plus": "#D9541E",
+    "minus": "#1F6FB2",
+    "side": "#E9E4D8",
+    "edge": "#B9B2A3",
+    "string": "#8B8F93",
+    "axis1": "#C2481A",
+    "axis2": "#1C8578",
+    "axis3": "#1F6FB2",
 }
 _LIGHT: Final = np.array([-0.45, 0.62, 0.64])
 _POINT: Final[dict[str, Any]] = {
@@ -58,8 +58,8 @@ _TAIL: Final = 60
 def film(motion: Moving, ending: str, frames: int | None = None) -> bytes:
     """Return the content of a film of a motion; of a long motion it shows the beginning.
 
-    ``ending`` is ``.gif`` or ``.mp4``. ``frames`` is the number of pictures; by default the length of the
-    motion decides. Raises NotDrawn for an MP4 on a machine without ffmpeg.
+    ``ending`` is ``.gif`` or ``.mp4``. ``frames`` is the number of frames; by default it follows from the
+    length of the motion. Raises NotDrawn for an MP4 on a machine without ffmpeg.
     """
     if ending == ".mp4" and shutil.which("ffmpeg") is None:
         raise NotDrawn(
@@ -67,7 +67,7 @@ def film(motion: Moving, ending: str, frames: int | None = None) -> bytes:
             ".html @ --out"
         )
     rate = _RATE[ending]
-    # The whole motion at its own pace, or the beginning of a long one.
+    # Below 1 for a motion that takes more than the most frames.
     part = min(1.0, _MOST[ending] / (motion.seconds * rate))
     shown = motion.until(part)
     count = frames or max(2, round(shown.seconds * rate))
@@ -117,7 +117,7 @@ def _figure(motion: Moving) -> tuple[Figure, Callable[[int], list[Artist]]]:
 
 
 def _bare(axes: Axes, reach: float) -> None:
-    """Show the axes to this distance in every direction, at one scale and without lines."""
+    """Set the axes to this distance in every direction, at one scale and without lines."""
     axes.axis("off")
     axes.set_aspect("equal")
     axes.set(xlim=(-reach, reach), ylim=(-reach, reach))

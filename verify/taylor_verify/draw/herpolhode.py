@@ -1,4 +1,4 @@
-"""The herpolhode: the tip of omega in space, seen along the angular momentum H, which does not move.
+"""The herpolhode: the tip of omega in space, seen along the constant direction of the momentum H.
 
 Without wheels and loads the tip stays in a plane across H, between two circles.
 """
@@ -30,21 +30,25 @@ Document = Mapping[str, Any]
 _HEIGHT: Final = 3.9
 _STAGE: Final = 4.2
 _WIDTH: Final = 1.5
-# Straight down on the plane.
+# The view straight down on the plane.
 _ABOVE: Final = View(-90.0, 90.0)
 _CORNERS: Final = 181
 _CIRCLE: Final[Look] = {"color": QUIET, "linewidth": 0.8, "dashes": (3, 2), "gid": "circle"}
 _H: Final[Look] = {
-    **{"linestyle": "none", "marker": "x", "markersize": 7, "gid": "H"},
-    **{"markeredgecolor": "#A83C00", "markeredgewidth": 1.6},
+    "linestyle": "none",
+    "marker": "x",
+    "markersize": 7,
+    "markeredgecolor": "#A83C00",
+    "markeredgewidth": 1.6,
+    "gid": "H",
 }
-# A curve of less extent across H, in parts of omega, is a point.
+# A curve that is smaller than this across H, in parts of omega, is a point.
 _A_POINT: Final = 1e-7
 
 
 @dataclass(frozen=True)
 class Series:
-    """The tip of omega across H, shape (n, 2), at these times; the radii that it stays between, if any."""
+    """The tip of omega across H, (n, 2), at its times (n,); the radii that it stays between, or None."""
 
     times: Numbers
     tips: Numbers
@@ -54,7 +58,7 @@ class Series:
 def series(document: Document) -> Series:
     """Return the herpolhode of a free rigid body.
 
-    Raises NotDrawn for another scene, and where omega is along H.
+    Raises NotDrawn for any other scene, and if omega is along H.
     """
     course = document["course"]
     if document["body"] is None or not document["is_free"]:

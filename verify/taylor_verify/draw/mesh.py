@@ -64,22 +64,18 @@ class Mesh:
 def rigid(moments: Numbers, axes: Numbers) -> Mesh:
     """Return a brick or a racket with these principal moments, its farthest corner at distance 1.
 
-    The rows of ``axes`` are the principal axes. A flat body is a racket. The moments of the brick are as
-    near to ``moments`` as those of a real body can be.
+    The rows of ``axes`` are the principal axes. A flat body whose two smaller moments differ is a racket.
+    The moments of the brick are as near to ``moments`` as those of a real body can be.
     """
     low, middle, high = np.argsort(moments, kind="stable")
-    if abs(moments[high] - moments[middle] - moments[low]) < _FLAT * moments[high]:
-        unlike = moments[middle] - moments[low] > _FLAT * moments[high]
-        if unlike:
-            turned = np.array([axes[low], axes[middle], np.cross(axes[low], axes[middle])])
-            return _fitted(_racket(), turned, "a racket")
+    turned = np.array([axes[low], axes[middle], np.cross(axes[low], axes[middle])])
+    is_flat = abs(moments[high] - moments[middle] - moments[low]) < _FLAT * moments[high]
+    if is_flat and moments[middle] - moments[low] > _FLAT * moments[high]:
+        return _fitted(_racket(), turned, "a racket")
     squares = moments.sum() - 2 * moments
     sides = np.sqrt(np.maximum(squares, 0))
-    sides = np.maximum(sides, _THINNEST * sides.max())
-    order = np.array([low, middle, high])
-    turned = axes[order].copy()
-    turned[2] = np.cross(turned[0], turned[1])
-    return _fitted(list(box(sides[order], _BRICK)), turned, "a brick with these moments")
+    sides = np.maximum(sides, _THINNEST * sides.max())[[low, middle, high]]
+    return _fitted(list(box(sides, _BRICK)), turned, "a brick with these moments")
 
 
 # Colours of the faces at both ends of the axes of least, middle and greatest moment.
@@ -157,10 +153,8 @@ def _strings(head: Numbers, half: Numbers) -> Iterator[Face]:
 def ellipsoid(semi_axes: Sequence[float]) -> Mesh:
     """Return an ellipsoid in its own size; the colours of its octants alternate."""
     faces = []
-    polar, azimuth = (
-        np.linspace(0, np.pi, _PARALLELS + 1),
-        np.linspace(0, 2 * np.pi, _MERIDIANS + 1),
-    )
+    polar = np.linspace(0, np.pi, _PARALLELS + 1)
+    azimuth = np.linspace(0, 2 * np.pi, _MERIDIANS + 1)
     for i, (a, b) in enumerate(pairwise(polar)):
         for k, (c, d) in enumerate(pairwise(azimuth)):
             angles = [(b, c), (b, d), (a, d), (a, c)]

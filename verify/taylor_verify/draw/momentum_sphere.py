@@ -41,10 +41,11 @@ UNSTABLE: Final[Look] = {**_SPIN, "marker": "X", "markersize": 7, "markerfacecol
 _ROTOR: Final[Look] = {**_SPIN, "marker": "D", "markersize": 8, "markerfacecolor": PAPER}
 # Curves between neighbouring energies of steady spins.
 _LEVELS: Final = 5
-# A point counts as in front if it is nearer to the viewer than the rim by this part of |H|.
+# A point is in front if it is nearer to the viewer than the rim by this part of |H|.
 _INSIDE: Final = 0.25
-# Points of the grid on which curves of equal energy are sought, from pole to pole.
+# Intervals of the grid on which curves of equal energy are searched, from pole to pole.
 _ROWS: Final = 120
+# Newton steps from the grid onto the curve.
 _STEPS: Final = 4
 # Levels are drawn between two energies that differ by more than this part of the whole range.
 _SAME: Final = 1e-6
@@ -71,11 +72,8 @@ class Series:
     def saddles(self) -> list[float]:
         """The energies of the unstable spins."""
         momenta = [spin.momentum for spin in self.spins if not spin.stable]
-        return (
-            sorted({float(energy) for energy in self.wheels.energy(np.array(momenta))})
-            if momenta
-            else []
-        )
+        energies = self.wheels.energy(np.array(momenta).reshape(-1, 3))
+        return sorted({float(energy) for energy in energies})
 
 
 def series(document: Document) -> Series:
@@ -85,13 +83,8 @@ def series(document: Document) -> Series:
     """
     body, course = document["body"], document["course"]
     if body is None or not document["is_free"] or document["damping"]:
-        got = (
-            "a solid in a fluid"
-            if body is None
-            else "damping"
-            if document["damping"]
-            else "a torque"
-        )
+        load = "damping" if document["damping"] else "a torque"
+        got = "a solid in a fluid" if body is None else load
         raise NotDrawn(
             f"expected a free rigid body without damping, got {got} @ {document['scene']}"
         )
@@ -105,7 +98,7 @@ def series(document: Document) -> Series:
 
 
 def _spins(document: Document, wheels: Wheels, size: float) -> list[Spin]:
-    """Return the steady spins; their rates and stability are those of the elements of the orbit."""
+    """Return the steady spins; rates and stability come from the elements of the orbit."""
     numbers = {row["name"]: float(row["value"]) for row in document["analytic"]}
     spins: list[Spin] = []
     pending: list[Numbers] = []

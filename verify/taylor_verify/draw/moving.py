@@ -1,7 +1,7 @@
 """A motion to be animated: the body in space, a curve in the body, and components against time.
 
-Space is turned so that a constant H points upwards. The course is exact and as dense as in the other
-pictures: between two rows the body turns by a tenth of a radian at most.
+Space is turned so that a constant H points upwards. The course is the exact one of the other pictures:
+between two rows the body turns by a tenth of a radian, or by more if it turns very often.
 """
 
 from __future__ import annotations
@@ -22,14 +22,15 @@ from taylor_verify.draw.view import Numbers
 
 Document = Mapping[str, Any]
 
-# Seconds for a turn, so that the eye can follow; and for the whole animation.
+# Seconds for a turn, so that the eye can follow.
 _TURN: Final = 2.4
+# Limits of the whole animation, in seconds.
 _SHORTEST, _LONGEST = 6.0, 40.0
-# The frame of a body without a shape, in parts of its path.
+# The length of the axes of a body without a shape, in parts of its path.
 _FRAME: Final = 0.09
-# A direction or an attitude that changes by less stands still.
+# A direction or an attitude that changes by less than this is constant.
 _STILL: Final = 1e-6
-# A course is off the surface beyond this squared distance, in units of its semi-axes.
+# Beyond this squared distance, in units of the semi-axes, a course has left the surface.
 _OFF: Final = 1e-6
 OMEGA: Final = "\N{GREEK SMALL LETTER OMEGA}"
 
@@ -53,9 +54,10 @@ class Inset:
 
 @dataclass(frozen=True)
 class Moving:
-    """Data of an animation at its times (n,): attitudes (n, 3, 3), centres (n, 3) or none.
+    """Data of an animation at its times (n,): attitudes (n, 3, 3), and centres (n, 3) or None, in space.
 
-    ``seconds`` is how long it plays. ``arrow`` is True if H points upwards.
+    ``rows`` (n, 3) are the components against time, with their ``letter`` and ``heading``; ``flips`` are
+    times. ``arrow`` is True if H points upwards. The animation plays for so many ``seconds``.
     """
 
     title: str
@@ -89,7 +91,7 @@ class Moving:
         return float(away.max()) + self.body.reach
 
     def until(self, part: float) -> Moving:
-        """Return the beginning of the motion: this part of it, from 0 to 1."""
+        """Return the beginning of the motion; ``part`` is its share of the whole, from 0 to 1."""
         last = max(2, round(part * (len(self.times) - 1)) + 1)
         inset = self.inset and replace(self.inset, course=self.inset.course[:last])
         elapsed = abs(self.times[last - 1] - self.times[0])

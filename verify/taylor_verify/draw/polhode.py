@@ -35,14 +35,20 @@ _HEIGHT: Final = 3.5
 _STAGE: Final = 4.2
 _COURSE: Final[Look] = {"color": INK, "linewidth": 0.8, "gid": "course"}
 _BORDER: Final[Look] = {
-    **{"color": "#8A5A00", "linewidth": 0.8, "dashes": (4, 2)},
+    "color": "#8A5A00",
+    "linewidth": 0.8,
+    "dashes": (4, 2),
     "gid": "separatrix",
 }
 _SAMPLE: Final[Look] = {
-    **{"linestyle": "none", "marker": "o", "markersize": 4.5},
-    **{"markerfacecolor": QUIET, "markeredgecolor": INK, "markeredgewidth": 0.4},
+    "linestyle": "none",
+    "marker": "o",
+    "markersize": 4.5,
+    "markerfacecolor": QUIET,
+    "markeredgecolor": INK,
+    "markeredgewidth": 0.4,
 }
-# A course is off the surface beyond this squared distance, which has the rounding of nine digits.
+# Beyond this squared distance a course has left the surface; below it is the rounding of nine digits.
 _OFF: Final = 1e-6
 _WIDTH: Final = 2.0
 _OMEGA: Final = "\N{GREEK SMALL LETTER OMEGA}"

@@ -13,7 +13,7 @@ AXES: Final = ("#A83C00", "#1C8578", "#0B5FA5")
 _BODY: Final[Look] = {"facecolor": "#E8EEF2", "edgecolor": "#43525C", "linewidth": 0.8}
 _SEAM: Final[Look] = {"color": "#8596A1", "linewidth": 0.6}
 _FRAME_WIDTH: Final = 1.3
-# A solid lets the line behind it show through.
+# The line behind a solid shows through.
 _OPACITY: Final = 0.82
 
 
@@ -29,7 +29,7 @@ def draw_ellipsoid(
     centre: Numbers,
     at: float,
 ) -> None:
-    """Draw the ellipsoid, with its three sections on the near side; ``at`` is its layer."""
+    """Draw the ellipsoid with the near halves of its three sections; ``at`` is its layer."""
     surface = Ellipsoid(semi_axes)
     towards = attitude.T @ stage.view.towards
     rim = surface.circle(towards / np.array(semi_axes)) @ attitude.T + centre

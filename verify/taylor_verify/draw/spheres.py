@@ -36,7 +36,7 @@ _ZERO: Final = 1e-9
 
 @dataclass(frozen=True)
 class Series:
-    """The direction of x and of y at each time, by letter; one that is zero somewhere is left out."""
+    """The directions of x and y (n, 3) by letter; an impulse that is zero at some time is left out."""
 
     directions: Mapping[str, Numbers]
 

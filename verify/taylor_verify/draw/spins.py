@@ -18,7 +18,8 @@ from taylor_verify.draw.view import Numbers
 
 # After so many bisections an interval is as small as its roundings.
 _BISECTIONS: Final = 44
-# The least and the greatest distance from a pole, in parts of an interval; weak wheels have spins near it.
+# The least and the greatest distance of a rate from a pole, in parts of an interval. With weak wheels
+# the spins are near the poles.
 _NEAREST: Final = 1e-9
 _FAR: Final = 1e6
 # Points on a branch.
@@ -29,7 +30,7 @@ _ZERO: Final = 1e-8
 
 @dataclass(frozen=True)
 class Branch:
-    """Curve of steady spins: the momentum of each (n, 3), and True if they are stable."""
+    """Curve of steady spins: their momenta (n, 3) in principal axes, and True if all are stable."""
 
     momenta: Numbers
     stable: bool
@@ -119,7 +120,7 @@ class Wheels:
         """Return the spins at the pole of an axis without h: one of each pair, which has one energy."""
         rate = float(1 / self.moments[axis])
         base = self.momentum(np.array([rate]))[0]
-        # Where another axis has the same moment, wheels along it leave no spin there.
+        # If another axis has the same moment, and wheels along it, there are no such spins.
         if not np.isfinite(base).all() or not base @ base < largest**2:
             return []
         along = np.sqrt(np.linspace(0, largest**2 - base @ base, _DENSE))
@@ -131,7 +132,7 @@ class Wheels:
 
     def _pieces(self, rates: Numbers, momenta: Numbers, largest: float) -> list[Branch]:
         """Return runs of neighbours below this N that are all stable, or all not."""
-        # At a pole a momentum is infinite, and not within.
+        # A momentum that is infinite, at a pole, is not within.
         within = np.asarray(np.linalg.norm(momenta, axis=1) <= largest)
         if not within.any():
             return []

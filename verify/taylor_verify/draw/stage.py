@@ -1,6 +1,7 @@
 """A stage: axes without lines that show a body, and curves on it or in space, from one side.
 
-What faces the reader is drawn in full, the rest faintly. Colours of a scale run from light to dark.
+Lines and marks that face the reader are drawn in full, the rest faintly. A scale of colours runs from light
+to dark.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ _FROM: Final = 0.06
 _UNLIKE: Final = 30.0
 # The decades of a logarithmic scale.
 _DECADES: Final = 4
-# A course is drawn in so many pieces, each of one colour.
+# The number of pieces of a course, each of one colour.
 _STRETCHES: Final = 40
 
 _EDGE: Final[Look] = {"linestyle": "none", "markeredgecolor": INK, "markeredgewidth": 0.9}
@@ -69,7 +70,7 @@ class Stage:
     def showing(
         cls, spots: Numbers, view: View, width: float, height: float, above: float = _ABOVE
     ) -> Stage:
-        """Return a stage of this size in inches that shows all the spots, both directions at one scale."""
+        """Return a stage of this size in inches that shows all spots (n, 2), at one scale."""
         figure = blank(height)
         axes = add_axes(figure, Frame(0.0, 0.0, width, height))
         axes.axis("off")

@@ -1,4 +1,4 @@
-"""Solid things seen from far away: an orthographic view, and the side of an ellipsoid that faces it.
+"""Solids seen from far away: an orthographic view, and the side of an ellipsoid that faces the viewer.
 
 A view keeps lengths across the line of sight, so that a picture has one scale. A point of a convex surface
 is visible if and only if the outward normal there points to the viewer. So it is known exactly what is
@@ -27,14 +27,14 @@ _HIGHEST: Final = 28
 
 @dataclass(frozen=True)
 class View:
-    """The side of the viewer, in degrees: ``azimuth`` about the third axis, which is upright."""
+    """The side of the viewer in degrees: ``azimuth`` about the third axis, ``elevation`` above."""
 
     azimuth: float
     elevation: float
 
     @classmethod
     def facing(cls, direction: Sequence[float]) -> View:
-        """Return the view from this side, neither level nor steep."""
+        """Return the view from this side, with an elevation that is neither level nor steep."""
         x, y, z = direction
         height = degrees(asin(z / (hypot(x, y, z) or 1.0)))
         side = -1.0 if height < 0 else 1.0
@@ -42,7 +42,7 @@ class View:
 
     @property
     def frame(self) -> Numbers:
-        """Rows: to the right, upwards, and towards the viewer."""
+        """Unit vectors as rows (3, 3): to the right, upwards, and towards the viewer."""
         az, el = radians(self.azimuth), radians(self.elevation)
         c, s, ce, se = np.cos(az), np.sin(az), np.cos(el), np.sin(el)
         return np.array([[-s, c, 0.0], [-se * c, -se * s, ce], [ce * c, ce * s, se]])
@@ -74,7 +74,7 @@ class Ellipsoid:
         return self.circle(view.towards * np.array(self.semi_axes) ** -1)
 
     def circle(self, pole: Numbers) -> Numbers:
-        """Return a plane section through the centre; ``pole`` is its normal in units of the semi-axes."""
+        """Return a section (n, 3) through the centre; ``pole`` is its normal in units of the semi-axes."""
         unit = pole / np.linalg.norm(pole)
         other = np.eye(3)[int(np.argmin(np.abs(unit)))]
         first = np.cross(unit, other)

@@ -26,7 +26,7 @@ def explain(scene: Scene | str | PathLike[str], rung: Rung | str = "f64") -> dic
     dict
         The document of ``explain --json``: the equations built and their cost, the numbers of the orbit in
         the scene's units, its conditioning, and each gate with the terms of its bound. A number that
-        the run did not come to is None.
+        the run did not reach is None.
 
     Raises
     ------

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from taylor_verify.judge.judgement import Judgement
 
 _DIGITS = 15
-# Digits beyond those of a rung, so that the exact number is rounded, and rounded once.
+# Digits beyond those of a rung, so that the exact number is rounded once.
 _SPARE_DIGITS = 6
 _FROM_RECORD = ("equations", "parameters", "units", "route", "truth_digits", "unit_roundoff")
 
@@ -97,7 +97,7 @@ def _judged(scene: Scene, rung: Rung) -> tuple[Judgement, list[str]]:
 
 
 def _judged_exact_motion(scene: Scene, rung: Rung) -> Judgement | None:
-    """Return the judgement of the exact motion rounded once to the rung; None where there is none."""
+    """Return the judgement of the exact motion, rounded once to the rung; None if it cannot be computed."""
     try:
         problem = pose(scene, rung)
         digits = truth_digits(rung.bits, _SPARE_DIGITS)
@@ -252,8 +252,8 @@ _COUNTED = ("states", "parameters", "sums", "products", "quotients")
 def _cost(scene: Scene, rung: str) -> dict[str, Any]:
     """Return the cost of an evaluation, that of other equations, and why these were chosen.
 
-    ``general`` counts the general equations of all that the model has, ``same`` those of the same
-    body for the same quantities, as far as their coefficients are not zero.
+    ``general`` counts the general equations of all quantities that the model has. ``same`` counts the
+    general equations of this body for the quantities of this scene, without coefficients that are zero.
     """
     try:
         problem = pose(scene, rung_named(rung))
@@ -278,7 +278,7 @@ def _counts(form: Form) -> dict[str, Any]:
 
 
 def _left_out(scene: Scene) -> list[str]:
-    """Return sentences on the quantities and loads that the scene does not have."""
+    """Return sentences on the quantities and the loads that the scene lacks."""
     possible = TRACKED[scene.model]
     sentences = [f"no {name}: it is not tracked" for name in possible if name not in scene.track]
     if scene.body.is_free:

@@ -27,7 +27,8 @@ class Body(Parted):
     its initial state, and ``ENERGY`` what ``energy_matrix`` is called in messages. A new kind of body is
     a class like those below; each room that has its physics has one table by these classes.
 
-    ``damping`` c takes c z from the rate of every momentum z; of either sign, and a part where it is not 0.
+    ``damping`` c, of either sign, subtracts c z from the rate of every momentum z. It is a part if it is
+    not zero.
     """
 
     MODEL: ClassVar[str]
@@ -75,7 +76,10 @@ class Body(Parted):
 
     @property
     def is_conservative(self) -> bool:
-        """True if the energy and the momenta are conserved, of a damped body times powers of e^{ct}."""
+        """True if energy and momenta are conserved.
+
+        With damping c, "conserved" means: after multiplication by powers of e^{ct}.
+        """
         return self.is_free
 
     @property
@@ -133,8 +137,8 @@ class ImmersedBody(Body):
 
     A (``linear``) and C (``angular``) are symmetric, the row of B (``coupling``) is the index of x,
     and [[A, B], [B^T, C]] is positive definite. ``force`` (X, Y, Z) and ``couple`` (L, M, N) are
-    constant in body axes. ``ellipsoid`` is the shape of which the coefficients are the rounded ones,
-    for a body that was given so. Where there is a ``manufactured`` motion of (x, y), the loads are those
+    constant in body axes. ``ellipsoid`` is the shape of a body that was given by it; the coefficients are
+    then rounded. Where there is a ``manufactured`` motion of (x, y), the loads are those
     that make it a motion of this body.
     """
 
@@ -159,7 +163,7 @@ class ImmersedBody(Body):
     )
 
     def with_parts(self, values: Mapping[str, Value]) -> Self:
-        """Return the same with other values; other coefficients are no longer those of the ellipsoid."""
+        """Return a copy with other values; with other coefficients it has no ellipsoid."""
         other = super().with_parts(values)
         keeps_shape = values.keys() <= {*self.load_names(), DAMPING.name}
         return other if keeps_shape else replace(other, ellipsoid=None)
@@ -254,8 +258,8 @@ class Clebsch:
 class Ellipsoid:
     """A homogeneous ellipsoid, its semi-axes along body axes 1, 2, 3, in a fluid; origin the centre.
 
-    The semi-axes are positive. A density of zero asks for a fluid and three different semi-axes: else
-    nothing resists a motion, and there is no T of the impulses.
+    The semi-axes are positive. If the density is zero, the fluid has mass and the semi-axes are all
+    different. Otherwise some motion would have no inertia, and T would be no function of the impulses.
     """
 
     semi_axes: Vector
@@ -263,7 +267,7 @@ class Ellipsoid:
     fluid_density: Fraction
 
     def body(self, bits: int = COEFFICIENT_BITS) -> ImmersedBody:
-        """The body of the coefficients 1/(M + m_i) and 1/(I_i + j_i), rounded once to so many bits."""
+        """Return the body of the coefficients 1/(M + m_i) and 1/(I_i + j_i), rounded once to ``bits``."""
         linear, angular = inverse_inertias(self.semi_axes, self.density, self.fluid_density, bits)
         return ImmersedBody(
             linear=tensors.diagonal(linear),

@@ -68,7 +68,7 @@ class Expectations:
 
 
 def is_extreme(scene: str) -> bool:
-    """Return True if the answers of a scene, given by its shipped name, are held to the file."""
+    """Return True if the answers of a scene, given by its shipped name, are compared with the file."""
     return scene.startswith(f"{library.EXTREMES}/")
 
 
@@ -84,12 +84,12 @@ def left_out(words: Iterable[str], rungs: Iterable[str]) -> dict[tuple[str, str]
 
     A scene that is asked for by its own name is run.
     """
-    chosen, on = [*words], [*rungs]
+    chosen, chosen_rungs = [*words], [*rungs]
     scenes = {name for word in chosen for name in library.named(word)}.difference(chosen)
     if not any(is_extreme(scene) for scene in scenes):
         return {}
     reasons = shipped().left_out
-    return {run: why for run, why in reasons.items() if run[0] in scenes and run[1] in on}
+    return {run: why for run, why in reasons.items() if run[0] in scenes and run[1] in chosen_rungs}
 
 
 def read(text: str, scenes: Iterable[str]) -> Expectations:
@@ -141,7 +141,7 @@ def _runs(table: Table, known: Mapping[str, str]) -> list[tuple[str, str]]:
 
 
 def _words(table: Table, key: str, everything: Iterable[str] = ()) -> list[str]:
-    """Return a word, several, or for ``"*"`` all of them."""
+    """Return the words of a key, which has one or several; ``"*"`` stands for ``everything``."""
     expected = "a word or an array of words"
     value = table.take(key, expected)
     words = value if isinstance(value, list) else [value]

@@ -39,7 +39,7 @@ class Gyrostat(Body):
 
     @property
     def is_conservative(self) -> bool:
-        """True without loads and without damping, under which the wheels do work."""
+        """True without loads and without damping; with damping the wheels do work."""
         return self.is_free and not self.damping
 
     @property

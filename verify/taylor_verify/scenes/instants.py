@@ -1,7 +1,8 @@
-"""Exact numbers in a row that are formed when somebody first looks at one of them.
+"""Sequences of exact times, whose rationals are formed when they are first read.
 
-A solver of ten thousand samples takes milliseconds, and as many rationals take longer: who needs no
-rational makes none. A million of them take more memory than all that is made of them.
+A solver answers ten thousand samples in milliseconds, and forming as many rationals takes longer: code
+that reads no rational forms none. A million rationals would take more memory than all that is computed
+from them.
 """
 
 from __future__ import annotations
@@ -12,12 +13,12 @@ from functools import cached_property
 from math import lcm
 from typing import Any, Final
 
-# So many rationals are kept once they are formed; of more each is formed anew whenever it is looked at.
+# A sequence of at most so many stores its rationals; a longer one forms each whenever it is read.
 MOST_KEPT: Final = 8192
 
 
 class Instants(Sequence[Fraction]):
-    """``count`` rationals, the k-th of them ``at(k)``; equal to any sequence of the same numbers."""
+    """Sequence of ``count`` rationals, the k-th is ``at(k)``; equal to any sequence of the same numbers."""
 
     def __init__(self, count: int, at: Callable[[int], Fraction]) -> None:
         self._count, self._at = count, at
@@ -51,7 +52,7 @@ class Instants(Sequence[Fraction]):
 
     @cached_property
     def _hash(self) -> int:
-        # Nobody holds so many in a tuple beside these.
+        # A long sequence has another hash than the equal tuple: no dictionary has both as keys.
         return hash(self._numbers if self._is_kept else (self._count, self[0], self[-1]))
 
     def __hash__(self) -> int:
@@ -61,7 +62,7 @@ class Instants(Sequence[Fraction]):
         return repr(tuple(self))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # A process that is sent a scene is sent its numbers, not how they are formed.
+        # The function that forms the numbers may be a lambda, which pickle refuses: the numbers are sent.
         return tuple, (tuple(self),)
 
 
@@ -73,7 +74,7 @@ class EquallySpaced(Instants):
         self.first, self.step = first, step
 
     def __getitem__(self, place: Any) -> Any:
-        # One is wanted sooner than all.
+        # A single number is formed alone, without the others.
         if isinstance(place, int) and -len(self) <= place < len(self):
             return self._at(place % len(self))
         return super().__getitem__(place)
@@ -89,11 +90,11 @@ class EquallySpaced(Instants):
 
 
 def chosen(instants: Sequence[Fraction], most: int) -> list[Fraction]:
-    """Return at most so many of the instants, evenly, first and last among them."""
+    """Return at most ``most`` of the instants, evenly spread, the first and the last among them."""
     return [instants[k] for k in evenly(len(instants), most)]
 
 
 def evenly(samples: int, most: int) -> list[int]:
-    """Return at most so many indices, evenly, first and last among them."""
+    """Return at most ``most`` indices of samples, evenly spread, the first and the last among them."""
     count = min(samples, most)
     return sorted({round(k * (samples - 1) / max(count - 1, 1)) for k in range(count)})

@@ -15,9 +15,9 @@ from taylor_verify.scenes.reading.faults import Refused, brief
 
 STANDARD_SET: Final = ("euler", "kirchhoff", "manufactured")
 EXTREMES: Final = "extremes"
-# What a hunt has found; it runs with the extremes.
+# Scenes with the worst errors that searches came upon; they run with the extremes.
 WORST: Final = "extremes/worst"
-# The questions of the engine board, whose samples are multiples of every step of it.
+# Scenes for the comparison of physics engines: each sample time is a multiple of every step there.
 ENGINES: Final = "engines"
 # The few scenes to begin with, and the purpose of each.
 GUIDE: Final[Mapping[str, str]] = MappingProxyType(
@@ -55,9 +55,9 @@ def cases_directory() -> Path:
 
 
 def names(*folders: str) -> tuple[str, ...]:
-    """Return the scenes of these folders by name (``euler/generic``), in alphabetical order.
+    """Return the names of the scenes in these folders (``euler/generic``), sorted within each folder.
 
-    Those of the standard set unless a folder is given.
+    Without a folder, the names are those of the standard set.
     """
     cases = cases_directory()
     files = (
@@ -65,7 +65,7 @@ def names(*folders: str) -> tuple[str, ...]:
         for folder in folders or STANDARD_SET
         for file in sorted((cases / folder).glob("*.toml"))
     )
-    # A file in capitals is about the scenes and no scene itself.
+    # A file whose name is in capitals, such as EXPECTED.toml, is no scene.
     return tuple(
         file.relative_to(cases).with_suffix("").as_posix()
         for file in files
@@ -74,7 +74,7 @@ def names(*folders: str) -> tuple[str, ...]:
 
 
 def fitting(pattern: str, known: Iterable[str]) -> tuple[str, ...]:
-    """Return the names that a pattern such as ``euler/*`` fits; a star stands for slashes too."""
+    """Return the names that match a pattern such as ``euler/*``; a star matches slashes too."""
     return tuple(name for name in known if fnmatchcase(name, pattern))
 
 
@@ -86,14 +86,14 @@ def is_pattern(scene: str) -> bool:
 def named(scene: str) -> tuple[str, ...]:
     """Return the scenes that a word of the command line stands for.
 
-    A folder (``extremes``) is all its scenes. A pattern (``euler/*``) is the scenes whose names it fits, or
-    the files if it ends in ``.toml``. Any other word is one scene.
+    A folder (``extremes``) stands for all its scenes. A pattern (``euler/*``) stands for the shipped scenes
+    that match, or for the files that match if it ends in ``.toml``. Any other word, and a pattern that
+    nothing matches, is returned as it is.
     """
     if is_pattern(scene):
         is_of_files = scene.endswith(_ENDING)
-        return tuple(sorted(glob(scene)) if is_of_files else fitting(scene, _all_names())) or (
-            scene,
-        )
+        matches = sorted(glob(scene)) if is_of_files else fitting(scene, _all_names())
+        return tuple(matches) or (scene,)
     folders = (EXTREMES, WORST) if scene == EXTREMES else (scene,)
     is_folder = scene in (*STANDARD_SET, EXTREMES, WORST, ENGINES)
     return (names(*folders) if is_folder else ()) or (scene,)
@@ -102,8 +102,8 @@ def named(scene: str) -> tuple[str, ...]:
 def find(scene: str | os.PathLike[str]) -> Path:
     """Return the file of a scene given by path or by the name of a shipped scene.
 
-    A text that ends in ``.toml`` or names what is there is a path. Raises Refused for an unknown name,
-    and for what is neither text nor a path.
+    A text that ends in ``.toml``, or that names an existing file, is a path. Raises Refused for an unknown
+    name, and for an argument that is neither text nor a path.
     """
     expected = "a path or the name of a shipped scene"
     if not isinstance(scene, str | os.PathLike):

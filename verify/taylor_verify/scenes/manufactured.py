@@ -4,8 +4,8 @@ z*(t)  omega (a rigid body) or x and y as one vector of six (a solid in a fluid)
 t      time since the start
 nu     angular frequency of a wave, 1/time
 
-z* solves the equations of motion of any body at all, provided that the loads are what is left over when
-z* is put into them: M = I omega*' + omega* x I omega*, or X = x*' - x* x Omega* and
+z* solves the equations of motion of any body whose loads are the remainder when z* is put into them:
+M = I omega*' + omega* x I omega*, or X = x*' - x* x Omega* and
 L = y*' - y* x Omega* - x* x U*. So a motion under loads that change with time has an exact answer, for
 every tensor and every T.
 """
@@ -54,11 +54,11 @@ class Manufactured:
         return max((wave.frequency for wave in self.waves), default=Fraction(0))
 
     def mapped(self, matrix: Matrix) -> Manufactured:
-        """Return the same motion of another vector, matrix z*: of H = I omega, for one."""
+        """Return the motion of the vector matrix z*, for example of H = I omega."""
         return self._changed(lambda z: tensors.apply(matrix, z), Fraction(1))
 
     def in_units(self, sizes: Vector, time: Fraction) -> Manufactured:
-        """Return component i times sizes[i], and times to ``time`` times what they were."""
+        """Return the motion with component i multiplied by sizes[i], and every time by ``time``."""
         return self._changed(
             lambda z: tuple(c * size for c, size in zip(z, sizes, strict=True)), time
         )

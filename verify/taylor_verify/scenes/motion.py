@@ -40,7 +40,7 @@ class State(Parted):
         return tuple(entry for name in self.MOVING for entry in values[name])
 
     def with_moving(self, vector: Vector) -> Self:
-        """Return the same place with another moving state."""
+        """Return the state with another moving part, at the same place."""
         return self.with_parts(
             {name: vector[3 * k : 3 * k + 3] for k, name in enumerate(self.MOVING)}
         )
@@ -107,11 +107,10 @@ class Motion:
 
     ``quantities`` maps ``omega``, ``linear_impulse``, ``angular_impulse`` (n, 3; body axes),
     ``attitude`` (n, 3, 3; v_space = R v_body) and ``centre`` (n, 3; space axes), as far as tracked.
-    ``radius`` (n,) means one thing on every route: it bounds the error of every vector and matrix of the
-    row in the Frobenius norm, relative to the norm of the true one. A vector that cannot be told from
-    zero, though a thousand bits more than asked for were tried, is answered as zero, and its bound is
-    absolute. The radius is zero where the numbers are held exactly. ``radii`` bounds the error of single
-    quantities likewise, as far as it is known apart.
+    ``radius`` (n,) bounds the error of every vector and matrix of the row in the Frobenius norm, relative
+    to the norm of the true one, on every route. A vector that a thousand bits more than were asked for do
+    not distinguish from zero is zero here, and its bound is absolute. The radius is zero where the numbers
+    are exact. ``radii`` bounds the error of single quantities in the same way, where it is known.
     """
 
     quantities: Mapping[str, np.ndarray[Any, Any]]
@@ -122,7 +121,7 @@ class Motion:
         return self.quantities[quantity]
 
     def radius_of(self, quantity: str) -> np.ndarray[Any, Any]:
-        """Return the radius of this quantity alone; that of the whole row where no other is known."""
+        """Return the radius of this quantity alone, or that of the whole row if no other is known."""
         return self.radii.get(quantity, self.radius)
 
     def at(self, rows: Sequence[int]) -> Motion:

@@ -1,8 +1,8 @@
-"""MPFR's own numbers for what is done at every sample: a tenth of the time of mpmath's.
+"""Arithmetic on samples in MPFR's own numbers, which takes a tenth of the time of mpmath's.
 
-Both round every operation to nearest at one precision, so that sums, products, quotients and roots
-are the same to the last bit. `to_mpfr` and `to_mpf` lead from one to the other and back, exactly; what lies
-between stands in `precision`, which takes over the ambient precision of mpmath.
+Both libraries round every operation to nearest at one precision, so that sums, products, quotients and
+roots are the same to the last bit. `to_mpfr` and `to_mpf` convert exactly. The arithmetic between them
+stands in a block `with precision()`, which gives MPFR the ambient precision of mpmath.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ Array = np.ndarray[Any, Any]
 
 
 def precision() -> AbstractContextManager[Any]:
-    """Set MPFR to the ambient precision of mpmath, as long as this is open."""
+    """Return a context in which MPFR has the ambient precision of mpmath."""
     return _bits(mp.prec)
 
 
 def to_mpfr(values: Array) -> Array:
-    """Return numbers of mpmath, or Python's, as MPFR's, exactly, whatever their length."""
+    """Convert numbers of mpmath or of Python to MPFR's, exactly, whatever their length."""
     converted = _each(mp.convert, values)
     with _bits(max((value._mpf_[3] for value in converted.flat), default=1)):
         return _each(_mpfr, converted)
 
 
 def to_mpf(values: Array) -> Array:
-    """Return numbers of MPFR as mpmath's, exactly."""
+    """Convert numbers of MPFR to mpmath's, exactly."""
     return _each(_mpf, values)
 
 
@@ -44,17 +44,17 @@ def in_mpfr(motion: Motion) -> Motion:
 
 
 def real(values: Any, like: Array) -> Array:
-    """Return rationals, rounded to numbers of the kind that an array holds."""
+    """Round rationals to numbers of the library that the array `like` is made of."""
     return _each(gmpy2.mpfr if _is_mpfr(like) else mp.convert, np.array(values, dtype=object))
 
 
 def alike(values: Array, like: Array) -> Array:
-    """Return numbers of mpmath as those of the kind that an array holds."""
+    """Convert numbers of mpmath to those of the library that the array `like` is made of."""
     return to_mpfr(values) if _is_mpfr(like) else values
 
 
 def sqrt(values: Array) -> Array:
-    """Return the root of each, of either kind."""
+    """Return the square root of each number, of either library."""
     return _each(gmpy2.sqrt if _is_mpfr(values) else mp.sqrt, values)
 
 

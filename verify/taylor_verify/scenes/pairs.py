@@ -4,10 +4,11 @@ A number is hi + lo with |lo| at most half a unit in the last place of hi, and l
 the true one. Sums and products of doubles are exact as such pairs (Knuth's TwoSum, Dekker's
 product). The operations on pairs have proven relative errors below 16 u^2, u = 2^-53 (Joldes, Muller,
 Popescu, ACM TOMS 44, 2017: 3 u^2 for the sum, 7 u^2 for the product, 15 u^2 for the quotient,
-25/8 u^2 for the root). Radii are sums and products of numbers that are not negative: `radius`
-makes up for the roundings of so many operations.
+25/8 u^2 for the root). Radii are sums and products of numbers that are not negative. Their own
+roundings are small, and `radius` allows for them.
 
-FLINT has no arrays of balls; one of its operations from Python costs what some hundred of these cost.
+FLINT has no arrays of balls. One of its operations, called from Python, costs as much as a hundred of
+these.
 """
 
 from __future__ import annotations
@@ -21,8 +22,9 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 _SPLITTER: Final = 2.0**27 + 1
 _UNIT: Final = 2.0**-53
-# Above the bound of every operation, and what may be lost where a product is below the normal numbers.
+# Above the relative error of every operation.
 _ROUNDING: Final = 2.0**-102
+# Above the error of a product that is below the normal numbers.
 _LEAST: Final = 2.0**-960
 # Radii are made by fewer than 2^20 operations, each of which is a rounding of 2^-53.
 _RADII: Final = 1 + 2.0**-30
@@ -49,7 +51,7 @@ def two_product(a: Any, b: Any) -> tuple[Any, Any]:
 
 
 def _ordered_sum(a: Any, b: Any) -> tuple[Any, Any]:
-    """The sum of two numbers of which the first is the larger."""
+    """Return the rounded sum and its error, for |a| >= |b|."""
     total = a + b
     return total, b - (total - a)
 

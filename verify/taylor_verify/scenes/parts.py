@@ -1,7 +1,7 @@
 """Bodies and states as named exact numbers, each with its shape and its dimension.
 
-A room that treats every number of a body alike (rounds it, counts it in other units, moves it by a unit
-roundoff, writes it down) loops over the parts and asks for no type.
+Code that treats all numbers of a body alike loops over its parts and asks for no type: it rounds them,
+changes their units, moves them by a unit roundoff, or writes them down.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ Value = Any
 
 
 class Shape(Enum):
-    """The shape of a part; a symmetric matrix is one number less for each pair of equal entries."""
+    """The shape of a part; in a symmetric matrix two equal entries count as one number."""
 
     NUMBER = auto()
     VECTOR = auto()
@@ -53,7 +53,7 @@ class Part:
     """Named quantity of a body or a state.
 
     ``name`` is the word of documents and files, ``attribute`` the name in Python where that is another.
-    A load makes a body that is not free as soon as it is not zero.
+    A body with a load that is not zero is not free.
     """
 
     name: str
@@ -76,7 +76,7 @@ class Parted:
 
     @property
     def listed(self) -> tuple[Part, ...]:
-        """The parts that this one has: PARTS, unless stated."""
+        """The parts of this object: PARTS, to which a subclass may add."""
         return self.PARTS
 
     def parts(self) -> dict[str, Value]:
@@ -88,12 +88,12 @@ class Parted:
         return getattr(self, part.key)
 
     def with_parts(self, values: Mapping[str, Value]) -> Self:
-        """Return the same with other values for the parts of these names."""
+        """Return a copy with other values for the parts of these names."""
         changes = {part.key: values[part.name] for part in self.listed if part.name in values}
         return replace(self, **changes)
 
     def changed(self, change: Callable[[Part, Value], Value]) -> Self:
-        """Return the same with every part changed, whatever its shape."""
+        """Return a copy with every part changed, whatever its shape."""
         return self.with_parts({part.name: change(part, self.part(part)) for part in self.listed})
 
 

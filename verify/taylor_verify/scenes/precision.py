@@ -1,4 +1,4 @@
-"""The precision ladder: f32, f64, f80, f128 and mpN, and the one rounding that leads onto a rung."""
+"""The precision ladder: f32, f64, f80, f128 and mpN, and the rounding of exact numbers to a rung."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Any
 from taylor_verify.records.precisions import FORMATS, bits_of
 
 _LEAST_BITS = 24
-# The numbers of a verdict are doubles: errors of 2^-1000 still are, those of 2^-1075 are not.
+# The errors in a verdict are doubles: 2^-1000 is one, and 2^-1075 would be rounded to zero.
 _MOST_BITS = 1000
 _USUAL_DIGITS = 15
 
@@ -43,13 +43,13 @@ class Rung:
         return self.round_scaled(value, 0)
 
     def round_scaled(self, value: Fraction, shift: int) -> Fraction:
-        """Return the nearest number to value times 2^shift, likewise."""
+        """Return the number of this format nearest to value times 2^shift; raises as `round` does."""
         if not value:
             return value
         significand, exponent = nearest(value.numerator, value.denominator, self.bits)
         exponent += shift
         if self.emin is not None and exponent + self.bits <= self.emin + 1:
-            # Perhaps below the normal numbers, whose last place is then that of the smallest one.
+            # The number may be subnormal: its last place is then that of the smallest normal number.
             value *= power_of_two(shift)
             quantum = power_of_two(max(floor_log2(value), self.emin) - self.bits + 1)
             return round(value / quantum) * quantum
@@ -79,7 +79,7 @@ _FORMATS = {
 
 
 def rung(name: str | Rung) -> Rung:
-    """Return the rung of that name, or the one given; ValueError for a name that is not on the ladder."""
+    """Return the rung of a name, or the Rung given. Raises ValueError for an unknown name."""
     if isinstance(name, Rung):
         return name
     bits = 0
@@ -96,15 +96,15 @@ def rung(name: str | Rung) -> Rung:
 
 
 def nearest(numerator: int, denominator: int, bits: int) -> tuple[int, int]:
-    """Return significand and exponent of the number of so many bits nearest to a quotient, ties to even.
+    """Return significand and exponent of the number of this many bits nearest to a quotient, ties to even.
 
-    The denominator is positive, the exponent as small as it can be: the significand has all its bits,
-    or is the power of two above them that a carry leads to.
+    The denominator is positive. The significand has all its bits, or is the power of two above them,
+    after a carry. It is 0 with the exponent 0 if the quotient is zero.
     """
     if numerator == 0:
         return 0, 0
     size = abs(numerator)
-    # One bit more than is kept, or two: with what is left over they tell the side of a tie.
+    # One or two bits more than the result has: together with the remainder they decide the rounding.
     exponent = size.bit_length() - denominator.bit_length() - bits - 1
     if exponent > 0:
         whole, rest = divmod(size, denominator << exponent)
@@ -118,7 +118,7 @@ def nearest(numerator: int, denominator: int, bits: int) -> tuple[int, int]:
 
 
 def rounded(value: Fraction, bits: int) -> Fraction:
-    """Return the number of so many bits nearest to a value, ties to even, whatever its size."""
+    """Return the number of this many bits nearest to a value, ties to even; no exponent is too large."""
     significand, exponent = nearest(value.numerator, value.denominator, bits)
     return significand * power_of_two(exponent)
 
@@ -134,7 +134,8 @@ def dyadic(significand: int, exponent: int) -> Fraction:
 
 @lru_cache(maxsize=4096)
 def power_of_two(exponent: int) -> Fraction:
-    # What is kept is made of Python's integers, whoever asks first.
+    """Return 2^exponent."""
+    # The exponent may be gmpy2's integer, and the cached Fraction is to be made of Python's.
     places = int(exponent)
     return Fraction(1 << places) if places >= 0 else Fraction(1, 1 << -places)
 
@@ -163,7 +164,7 @@ def exact_value(number: Any) -> Fraction:
 
 
 def shortest_decimal(value: Fraction, bits: int) -> str:
-    """Return the decimal of fewest digits that rounds to the same number of so many bits as a value does.
+    """Return the shortest decimal that a rounding to this many bits takes to the same number as a value.
 
     Numbers of usual size are written without an exponent.
     """

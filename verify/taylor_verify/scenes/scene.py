@@ -10,7 +10,7 @@ from taylor_verify.scenes.motion import Clock, State
 
 @dataclass(frozen=True)
 class Scene:
-    """Scene file that was read: every number an exact rational, in the scene's own consistent units.
+    """Content of a scene file: every number is an exact rational, in the scene's own consistent units.
 
     ``name`` is the name of a shipped scene (``euler/generic``) or the path given; ``model`` is
     ``euler`` (RigidBody, Spin) or ``kirchhoff`` (ImmersedBody, Impulse); ``track`` holds what the

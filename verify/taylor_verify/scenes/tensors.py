@@ -119,7 +119,7 @@ def _has_factor(matrix: Matrix) -> bool:
         return False
     size = len(left)
     trace = sum(left[i][i] for i in range(size))
-    # Products that underflow are far below c then.
+    # Between these limits a product that underflows is far below c.
     if not _TINY < trace < _HUGE:
         return False
     for i in range(size):

@@ -1,4 +1,4 @@
-"""Rows that a test demands of a judgement, and the words for those that are no pass."""
+"""Verdicts that a test asks for, and the report on those that are no pass."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def is_met(verdict: Verdict) -> bool:
 
 
 def report(judgement: Judgement, demanded: Sequence[Verdict]) -> str:
-    """Return the demanded rows as text, quantity by quantity, those that are no pass first."""
+    """Return the demanded verdicts as text, a quantity after the other, first those that are no pass."""
     some, record = judgement.verdicts[0], judgement.record
     unmet = [verdict for verdict in demanded if not is_met(verdict)]
     lines = [
@@ -87,7 +87,7 @@ def report(judgement: Judgement, demanded: Sequence[Verdict]) -> str:
 
 
 def _reasons(verdict: Verdict, against: str) -> Iterator[tuple[str, str]]:
-    """Yield further lines for the reader, each a word and its text."""
+    """Yield the further lines of one verdict, each a word and its text."""
     if against:
         yield "against", f"its value on {against}" if verdict.is_conserved else against
     if verdict.bound is not None:

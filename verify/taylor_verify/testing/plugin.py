@@ -7,21 +7,21 @@
     def test_my_simulator_on(verify_scene):
         verify_scene(solve)
 
-``solve`` is a callable ``solve(problem) -> states`` as `taylor_verify.check` takes it, the name of a
-solver, ``"process:./my_simulator"`` among them, or a Solver. Both fixtures and the marker take
+``solve`` is a callable ``solve(problem) -> states`` as `taylor_verify.check` takes it, a Solver, or the
+name of a solver such as ``"process:./my_simulator"``. Both fixtures and the marker take
 
     rung       the precision of the arithmetic, "f64"; the marker also several
     tolerance  the error that a coarse method is allowed, in place of what rounding leaves: one number for
                all quantities, or a number for each of some, as in `taylor_verify.run`
-    only       the quantities that are judged, or "conserved" for all that are
+    only       the quantities that are judged, or "conserved" for all conserved ones
 
 and the fixtures return the Judgement. Whatever is not a pass fails the test, undecided and vacuous
 too, and so does a test that asks for a fixture and judges nothing with it. A solver that raises, or
 calls `sys.exit` with any code, has failed. `os._exit`, or a crash in compiled code, ends the whole
-session, and nothing inside it can help: such a solver is judged as a program, ``process:COMMAND``.
+session, which no plugin can prevent: judge such a solver as a program, ``process:COMMAND``.
 
-Only this module and the light ones of `import taylor_verify` are imported before a scene is named, and
-no library of numbers before a scene is run: every session of the environment loads the plugin.
+Every pytest session of the environment loads this plugin. So only this module and the light ones of
+`import taylor_verify` are imported before a scene is named, and no numerical library before one is run.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ _BLIND: Final = (
 class SolverGate:
     """The fixture ``verify_solver``: judges a solver on a scene, and fails the test if it must.
 
-    ``judged`` counts the judgements; ``notes`` are the properties that the test is reported with.
+    ``judged`` counts the judgements. ``notes`` are the user properties of the test, which reports show.
     """
 
     notes: list[tuple[str, object]] = field(default_factory=list)
@@ -152,7 +152,7 @@ def verify_scene(request: pytest.FixtureRequest) -> SceneGate:
 def _judgement(
     scene: Scene | Path | str, solve: Solve, rung: str, tolerance: Tolerance
 ) -> tuple[Judgement, BaseException | None]:
-    """Return the judgement, and the error of a callable: its traceback is worth more than a row."""
+    """Return the judgement, and the exception that a callable raised, whose traceback pytest then shows."""
     __tracebackhide__ = True
     from taylor_verify.judge.tolerances import tolerances
     from taylor_verify.run import run
@@ -197,7 +197,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """Make a test for each scene and rung of its markers; a marker that would judge nothing fails."""
+    """Make a test for each scene and rung of its markers. A marker that would judge nothing fails."""
     marks = list(metafunc.definition.iter_markers(_MARKER))
     if marks and "verify_scene" in metafunc.fixturenames:
         cases = [case for mark in marks for case in _cases(mark)]
@@ -255,7 +255,7 @@ def _wrong_mark(why: str) -> None:
 def pytest_runtest_call(item: pytest.Item) -> None:
     """Fail a test that ran to its end and judged nothing.
 
-    pytest's own implementation runs the test; this one is behind it, and not reached if it raises.
+    pytest's own implementation runs the test before this one, which is not called if the test raises.
     """
     values = getattr(item, "funcargs", {}).values()
     gates = [value.gate if isinstance(value, SceneGate) else value for value in values]

@@ -1,4 +1,4 @@
-"""Points of the unit cube, each by its number: the same whatever other points are asked for."""
+"""Points of the unit cube, each by its number. A point does not depend on which others are asked for."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ class Spread(StrEnum):
 def places(spread: Spread, size: int, seed: int, first: int, stop: int) -> Array:
     """Return the points with these numbers, an array of shape (stop - first, size), in [0, 1).
 
-    Random points are those of Philox, a generator that counts, with the seed as its key: each point has its
-    own counts. Sobol's are scrambled by the seed. Raises ModuleNotFoundError for Sobol's points without
-    SciPy.
+    Random points come from Philox, a generator with a counter, whose key is the seed: each point has
+    its own values of the counter. Sobol's points are scrambled by the seed. Raises ModuleNotFoundError
+    for Sobol's points without SciPy.
     """
     if size == 0 or stop <= first:
         return np.zeros((max(stop - first, 0), size))
@@ -30,7 +30,7 @@ def places(spread: Spread, size: int, seed: int, first: int, stop: int) -> Array
 
 
 def _random(size: int, seed: int, first: int, stop: int) -> Array:
-    # Four numbers a count.
+    # Philox makes four numbers at each value of its counter.
     blocks = -(-size // 4)
     drawn = np.random.Philox(key=seed, counter=first * blocks)
     raw = drawn.random_raw((stop - first) * blocks * 4).reshape(stop - first, blocks * 4)

@@ -14,19 +14,21 @@ from typing import Final
 
 # Digits of what is computed before it is rounded to those that were asked for.
 _WORKING: Final = Context(prec=50)
-# A share this near to 0 or 1 is the most extreme that a double between them can be.
+# Shares of 0 and 1, whose normal numbers are infinite, are moved by this and by twice this.
 _LEAST: Final = 2.0**-54
 # Larger whole numbers have a power of ten.
 _WRITTEN_OUT: Final = 10**15
 
+Share = float | Decimal
 
-def uniform(share: float, low: Decimal, high: Decimal) -> Decimal:
+
+def uniform(share: Share, low: Decimal, high: Decimal) -> Decimal:
     """Return the number at a share of the way from ``low`` to ``high``."""
     width = _WORKING.subtract(high, low)
     return _WORKING.add(low, _WORKING.multiply(Decimal(share), width))
 
 
-def log_uniform(share: float, low: Decimal, high: Decimal) -> Decimal:
+def log_uniform(share: Share, low: Decimal, high: Decimal) -> Decimal:
     """Return the number at a share of the way from ``low`` to ``high`` by their logarithms."""
     start, end = _WORKING.ln(low), _WORKING.ln(high)
     return _WORKING.exp(uniform(share, start, end))
@@ -40,7 +42,7 @@ def normal(share: float, mean: Decimal, deviation: Decimal) -> Decimal:
 
 
 def choice(share: float, *values: Decimal) -> Decimal:
-    """Return one of the values, each for an even part of the shares."""
+    """Return one of the values, each for an equal part of the shares."""
     return values[min(int(share * len(values)), len(values) - 1)]
 
 
@@ -83,30 +85,18 @@ def logspace(low: Decimal, high: Decimal, count: int, digits: int) -> Grid:
 
 
 def _spaced(
-    between: Callable[[float, Decimal, Decimal], Decimal],
+    between: Callable[[Share, Decimal, Decimal], Decimal],
     low: Decimal,
     high: Decimal,
     count: int,
     digits: int,
 ) -> Sequence[Decimal]:
-    inner = [_exactly(between, k, count - 1, low, high) for k in range(1, count - 1)]
-    return [low, *(rounded(value, digits) for value in inner), high]
-
-
-def _exactly(
-    between: Callable[[float, Decimal, Decimal], Decimal],
-    step: int,
-    steps: int,
-    low: Decimal,
-    high: Decimal,
-) -> Decimal:
-    """Return the number at ``step / steps``, a share that is no double."""
-    share = _WORKING.divide(Decimal(step), Decimal(steps))
-    return between(share, low, high)  # type: ignore[arg-type]
+    shares = [_WORKING.divide(Decimal(k), Decimal(count - 1)) for k in range(1, count - 1)]
+    return [low, *(rounded(between(share, low, high), digits) for share in shares), high]
 
 
 def rounded(value: Decimal, digits: int) -> Decimal:
-    """Return a decimal of so many significant digits, without zeros behind the last one."""
+    """Return a decimal rounded to this many significant digits, without zeros at its end."""
     near = Context(prec=digits).plus(value)
     return Decimal(0) if near == 0 else near.normalize(Context(prec=digits))
 

@@ -21,7 +21,8 @@ Place = Sequence[float]
 class Variable:
     """A number of a family, by its name or by its place in the file (``body.inertia[1]``).
 
-    ``unit`` is written behind it. A number that is ``named`` stands nowhere in the file: formulas use it.
+    ``unit`` is written after the number. A number that ``is_named`` stands nowhere in the file: formulas
+    use it by its name.
     """
 
     path: str
@@ -37,10 +38,11 @@ class Variable:
 
 @dataclass(frozen=True)
 class Family:
-    """Scenes with some numbers free.
+    """Scene file in which some numbers vary.
 
-    ``pieces`` are the text of a scene file, cut where a variable stands; a whole number is the place of
-    that variable among all. ``source`` is the text of the template.
+    ``pieces`` are the text of the file, cut where a variable stands; an int is the index of that
+    variable. ``source`` is the text of the template. ``count``, ``seed`` and ``spread`` are those that
+    the template gives, None if it gives none.
     """
 
     name: str
@@ -63,7 +65,7 @@ class Family:
         return prod(len(v.rule.values) for v in self.variables if isinstance(v.rule, Grid))
 
     def numbers(self, place: Place, node: int = 0) -> dict[str, Fraction]:
-        """Return every variable at a place of the unit cube, at a point of the grid.
+        """Return the value of every variable by path, at a place of the unit cube and a point of the grid.
 
         Raises Refused where a formula has no value there.
         """
@@ -83,7 +85,7 @@ class Family:
         return values
 
     def drawn(self, numbers: Mapping[str, Fraction]) -> dict[str, float]:
-        """Return the variables that were drawn or come from a grid, as doubles that read back the same."""
+        """Return the variables that were drawn or come from a grid, by path, as doubles."""
         return {v.path: float(numbers[v.path]) for v in self.variables if v.is_free}
 
     def text_of(self, numbers: Mapping[str, Fraction]) -> str:

@@ -34,7 +34,7 @@ _OPERATIONS: Final[Mapping[type[ast.operator], Callable[[Fraction, Fraction], Fr
 
 
 class NoValue(ValueError):  # noqa: N818 (it names what happened to the formula)
-    """A formula without a value at this point; the text is what was expected and what came."""
+    """A formula without a value at this point; the text says what was expected and what came instead."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ def _parsed(text: str) -> ast.expr:
 
 
 def _names(node: ast.expr) -> set[str]:
-    """Return the names below a node, all of whose parts a formula may have."""
+    """Return the names in a node. Raises ValueError for a part that no formula may have."""
     match node:
         case ast.Name(id=name):
             return {name}

@@ -29,7 +29,7 @@ MOST_POINTS: Final = 10**9
 LARGEST_SEED: Final = 2**63 - 1
 _NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _SLOT: Final = re.compile("\0(\\d+)\0")
-# Points that are tried before a template is refused, of which no point is a scene.
+# A template is refused if none of its first points, so many, is a scene.
 _TRIED: Final = 16
 # A word this near to the name of a distribution is meant as one.
 _NEAR: Final = 0.7
@@ -51,9 +51,9 @@ def load_family(file: Path) -> Family:
 
 
 def read_family(text: str, name: str, place: str = "") -> Family:
-    """Return the family that this text describes; raises Refused with every fault of it.
+    """Return the family that this text describes. Raises Refused with every fault of the text.
 
-    ``place`` is the file that faults of the whole text name; the name of the family unless given.
+    ``place`` is the file that faults of the whole text name, or by default the name of the family.
     """
     return _Reading(text, name, place or name).family()
 
@@ -169,7 +169,7 @@ class _Reading:
     def _variable(
         self, path: str, entries: Mapping[str, Any], place: str, is_named: bool = False
     ) -> int:
-        """Add the variable that a table writes; return its slot, or 1 beside a fault."""
+        """Add the variable that a table writes; return its slot, or 1 after a fault."""
         known = {v.path for v in self._variables if v.is_named}
         made = rule(entries, place, self._digits, known | set(self._faulty), self._faults)
         unit = entries.get(UNIT, "")
@@ -187,7 +187,7 @@ class _Reading:
     # The scene.
 
     def _of_scene(self, family: Family) -> list[str]:
-        """Return the faults of the scene, but for those that a faulty variable may have caused.
+        """Return the faults of the scene, without those that a faulty variable may have caused.
 
         Where the template itself is sound, some of its first points have to be scenes.
         """

@@ -31,7 +31,7 @@ Rule = Draw | Grid | Formula
 def rule(
     entries: Mapping[str, Any], place: str, digits: int, known: Collection[str], faults: Faults
 ) -> Rule | None:
-    """Return the rule that a table writes, or None beside a fault.
+    """Return the rule that a table writes; None after a fault.
 
     ``known`` are the names that a formula may use.
     """

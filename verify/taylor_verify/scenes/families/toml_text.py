@@ -1,6 +1,6 @@
-"""A scene as TOML, written from what its file was read as, with places for numbers left open.
+"""A TOML document as text, in which the caller writes the numbers.
 
-The standard library reads TOML and does not write it; here numbers have to keep their digits, too.
+The standard library reads TOML and does not write it. Here every number has to keep its digits, too.
 """
 
 from __future__ import annotations
@@ -11,12 +11,12 @@ from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 _BARE: Final = re.compile(r"[A-Za-z0-9_-]+")
-# A row of a table that is longer goes on below.
+# A longer array of arrays has one of them a line.
 _WIDTH: Final = 100
 
 
 def toml(document: Mapping[str, Any], number: Callable[[Any], str]) -> str:
-    """Return the text of a document; ``number`` writes whatever is no text, array or table."""
+    """Return the text of a document; ``number`` writes each value that is no text, bool, array or table."""
     lines = [f"{_key(k)} = {_value(v, number)}" for k, v in document.items() if not _is_table(v)]
     for name, table in document.items():
         if _is_table(table):

@@ -1,6 +1,6 @@
 """Scenes from other people's descriptions of bodies: URDF, SDF and MJCF.
 
-document   XML read without the parts of it that attack a reader
+document   XML, without document types and of bounded size
 rotation   rotations in rationals
 reading    numbers of such a file, or faults with their line
 urdf, sdf, mjcf   the links of a file, and the inertia of one
@@ -34,7 +34,7 @@ _OTHER_ROOTS: Final = {
 
 
 class Imported(NamedTuple):
-    """The text of a scene, and which link of what it was made from."""
+    """The text of a scene, with the link and the format that it was made from."""
 
     text: str
     link: str
@@ -73,10 +73,7 @@ def _format(root: Node, path: Path) -> Format:
 
 
 def _chosen(candidates: list[Candidate], link: str | None, form: Format, path: Path) -> Candidate:
-    """Return the one link that is meant.
-
-    Raises Refused, with the names of all, where there is none or several.
-    """
+    """Return the link that is meant. Raises Refused, with the names of all, if it is none or several."""
     with_inertia = [candidate for candidate in candidates if candidate.inertial is not None]
     if link is None:
         meant, place = with_inertia, str(path)

@@ -29,7 +29,7 @@ class Node:
     attributes: dict[str, str]
     line: int
     children: list[Node] = field(default_factory=list)
-    # To add to one text takes the square of its length.
+    # They are joined once: time would grow as the square of the length of a text that grows.
     pieces: list[str] = field(default_factory=list)
 
     @property
@@ -52,13 +52,16 @@ class Node:
 
 
 def read_document(path: Path) -> Node:
-    """Return the root; Refused for what is no XML, has a document type, or is too large or deep."""
+    """Return the root element.
+
+    Raises Refused for a text that is no XML, has a document type, or is too large or too deep.
+    """
     content = read_bytes(path, "a readable URDF, SDF or MJCF file", MOST_BYTES)
-    return _Builder(path).built(content)
+    return _Builder(path).root(content)
 
 
 class _Builder:
-    """Makes nodes of what the parser meets."""
+    """Builder of nodes from the events of the parser."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
@@ -72,7 +75,7 @@ class _Builder:
         self._parser.EndElementHandler = lambda name: self._open.pop()
         self._parser.CharacterDataHandler = lambda text: self._open[-1].pieces.append(text)
 
-    def built(self, content: bytes) -> Node:
+    def root(self, content: bytes) -> Node:
         try:
             self._parser.Parse(content, True)
         except (expat.ExpatError, LookupError, ValueError) as error:

@@ -20,7 +20,7 @@ class Candidate(NamedTuple):
     inertial: Node | None
 
     def is_called(self, name: str) -> bool:
-        """Return True for the whole name, and for the part behind the models that the link is in."""
+        """Return True for the whole name, and for the name without the models that the link is in."""
         return self.name == name or self.name.endswith(f"::{name}")
 
 
@@ -42,7 +42,7 @@ class Link:
 
     @property
     def rigid_matrix(self) -> Matrix:
-        """[[m 1, -m [c]x], [m [c]x, I - m [c]x [c]x]], so that (x, y) = it (U, Omega) without a fluid."""
+        """M = [[m 1, -m [c]x], [m [c]x, I - m [c]x [c]x]] of (x, y) = M (U, Omega) without a fluid."""
         m, c = self.mass, tensors.cross_matrix(self.centre)
         offset = tuple(tensors.scaled(-m, row) for row in c)
         steiner = tensors.product(offset, c)

@@ -24,7 +24,7 @@ from taylor_verify.scenes.tensors import ZERO_VECTOR, Matrix, Vector
 # Elements that hold bodies without being one.
 _AROUND: Final = ("worldbody", "frame", "replicate")
 _TURNS: Final = ("quat", "euler", "axisangle", "xyaxes", "zaxis")
-# How many numbers each of those has that are read.
+# The number of numbers of each orientation that is read.
 _LENGTHS: Final = {"quat": 4, "euler": 3, "axisangle": 4}
 _BY_QUATERNION: Final = (
     "The tensor was turned by quat, exactly: MuJoCo divides it by its length, and so does this."
@@ -52,21 +52,21 @@ def _below(part: Node) -> Iterator[Node]:
 
 
 def link(root: Node, name: str, inertial: Node, reading: Reading) -> Link | None:
-    """Return the inertia of one body; None beside a fault."""
+    """Return the inertia of one body; None after a fault."""
     # Of several <compiler> the last one counts.
     settings = dict(ChainMap(*(node.attributes for node in reversed(root.named("compiler")))))
-    is_taken = _takes_inertial(root, settings, reading)
+    is_valid = _takes_inertial(root, settings, reading)
     mass = reading.positive(inertial, inertial.attributes.get("mass"), "mass")
     centre = reading.vector(inertial, inertial.attributes.get("pos"), "pos")
     tensor = _tensor(inertial, reading)
     turn = _turn(inertial, settings, reading)
-    if not is_taken or mass is None or centre is None or tensor is None or turn is None:
+    if not is_valid or mass is None or centre is None or tensor is None or turn is None:
         return None
     return Link(name, mass, centre, rotation.turned(tensor, turn[0]), remarks=turn[1])
 
 
 def _takes_inertial(root: Node, settings: dict[str, str], reading: Reading) -> bool:
-    """Return True if MuJoCo takes the element as it is written."""
+    """Return True if MuJoCo uses <inertial> as it is written; a setting that changes it is a fault."""
     ignored = {
         "inertiafromgeom": settings.get("inertiafromgeom", "auto") == "true",
         "settotalmass": not settings.get("settotalmass", "-1").strip().startswith("-"),
@@ -90,7 +90,7 @@ def _tensor(inertial: Node, reading: Reading) -> Matrix | None:
         three = reading.vector(inertial, diagonal, "diaginertia")
         six = None if three is None else (*three, *ZERO_VECTOR)
     else:
-        six = reading.vector(inertial, full, f"fullinertia ({' '.join(_ORDER)})", 6)
+        six = reading.vector(inertial, full, f"fullinertia ({' '.join(_ORDER)})", length=6)
     if six is None:
         return None
     xx, yy, zz, xy, xz, yz = six
@@ -98,7 +98,7 @@ def _tensor(inertial: Node, reading: Reading) -> Matrix | None:
 
 
 def _turn(inertial: Node, settings: dict[str, str], reading: Reading) -> _Turn | None:
-    """Return the turn of the inertial frame, and remarks on it."""
+    """Return the turn of the inertial frame, and remarks on it; None after a fault."""
     written = [key for key in _TURNS if key in inertial.attributes]
     if not written:
         return IDENTITY, ()
@@ -114,7 +114,7 @@ def _turn(inertial: Node, settings: dict[str, str], reading: Reading) -> _Turn |
         mend = "write the same orientation as quat"
         reading.fault("quat, euler or axisangle", key, inertial, mend)
         return None
-    numbers = reading.vector(inertial, inertial.attributes[key], key, _LENGTHS[key])
+    numbers = reading.vector(inertial, inertial.attributes[key], key, length=_LENGTHS[key])
     if numbers is None:
         return None
     degrees = settings.get("angle", "degree") == "degree"

@@ -15,7 +15,7 @@ from taylor_verify.scenes.reading.table import complete
 from taylor_verify.scenes.tensors import Matrix, Vector
 
 _DECIMAL: Final = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
-# These formats hold doubles; beyond these sizes products of a few numbers leave what a scene may hold.
+# These formats hold doubles. A product of a few numbers beyond these sizes could be too large for a scene.
 _LONGEST: Final = 60
 _SMALLEST: Final = Fraction(1, 10**100)
 _LARGEST: Final = Fraction(10**100)
@@ -39,7 +39,7 @@ class Reading:
         length: int = 3,
         default: Vector | None = None,
     ) -> Vector | None:
-        """Return so many numbers with blanks between them; ``what`` names them in a fault."""
+        """Return ``length`` numbers with blanks between them; ``what`` names them in a fault."""
         if text is None and default is not None:
             return default
         words = (text or "").split()
@@ -54,7 +54,8 @@ class Reading:
         self, node: Node, text: str | None, what: str, default: Fraction | None = None
     ) -> Fraction | None:
         """Return one number."""
-        vector = self.vector(node, text, what, 1, None if default is None else (default,))
+        only = None if default is None else (default,)
+        vector = self.vector(node, text, what, length=1, default=only)
         return None if vector is None else vector[0]
 
     def positive(self, node: Node, text: str | None, what: str) -> Fraction | None:
@@ -66,7 +67,7 @@ class Reading:
         return number
 
     def tensor(self, node: Node, six: Sequence[Fraction | None]) -> Matrix | None:
-        """Return the positive definite tensor of ixx, ixy, ixz, iyy, iyz, izz; None beside a fault."""
+        """Return the positive definite tensor of ixx, ixy, ixz, iyy, iyz, izz; None after a fault."""
         known = complete(six)
         if known is None:
             return None

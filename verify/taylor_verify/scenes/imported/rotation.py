@@ -3,7 +3,7 @@
 The sine and cosine of a rational angle are irrational. But the matrix of a quaternion of rational
 components is rational, and orthogonal exactly, whatever the length of the quaternion. So the quaternion
 of an angle is formed with 400 bits, its largest component made 1, and the others rounded to 20 decimals;
-everything behind it is exact, and a tensor that is turned by it keeps its principal moments.
+everything after that is exact, and a tensor that is turned by it keeps its principal moments.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from taylor_verify.scenes.tensors import Matrix, Vector
 
 DECIMALS: Final = 20
 _BITS: Final = 400
-# An angle of four digits, 1.571, is as near to a quarter turn as that.
+# An angle written with four digits, 1.571, is as near as this to a quarter turn.
 _NEAR: Final = 3e-4
 AXES: Final = tensors.diagonal((Fraction(1),) * 3)
 
@@ -37,7 +37,7 @@ class Turn(NamedTuple):
 def combined(turns: Iterable[Turn]) -> Quaternion:
     """Return the product of the turns, the last one done first: each is about an axis that moves along.
 
-    No turn and whole quarter turns in degrees about body axes are exact.
+    Turns by zero, and whole quarter turns in degrees about body axes, are exact.
     """
     from mpmath import mp
 
@@ -102,7 +102,7 @@ _Parts = tuple[Any, Any, Any, Any]
 
 
 def _half_angle(turn: Turn) -> _Parts:
-    """The quaternion of one turn at the ambient precision of mpmath."""
+    """Return the quaternion of one turn at the ambient precision of mpmath."""
     from mpmath import mp
 
     half = mp.convert(turn.angle) / 2

@@ -46,7 +46,7 @@ def _below(part: Node, scope: str) -> Iterator[Candidate]:
 
 
 def link(root: Node, name: str, inertial: Node, reading: Reading) -> Link | None:
-    """Return the inertia of one link; None beside a fault."""
+    """Return the inertia of one link; None after a fault."""
     del root
     if _is_true(inertial.attributes.get("auto")):
         mend = "write <mass> and <inertia>: geometry is not read"
@@ -88,7 +88,7 @@ def _tensor(inertial: Node, reading: Reading) -> Matrix | None:
 
 
 def _pose(inertial: Node, reading: Reading) -> tuple[Vector, Quaternion, tuple[str, ...]] | None:
-    """Return the centre of mass, the turn of the axes of the tensor, and remarks on it."""
+    """Return the centre of mass, the turn of the tensor's axes, and remarks on it; None after a fault."""
     node = inertial.child("pose")
     if node is None or not node.text.strip():
         return ZERO_VECTOR, IDENTITY, ()
@@ -99,7 +99,7 @@ def _pose(inertial: Node, reading: Reading) -> tuple[Vector, Quaternion, tuple[s
             return None
     form = node.attributes.get("rotation_format", "euler_rpy").strip()
     if form == "quat_xyzw":
-        seven = reading.vector(node, node.text, "x y z and the quaternion x y z w", 7)
+        seven = reading.vector(node, node.text, "x y z and the quaternion x y z w", length=7)
         if seven is None:
             return None
         if not any(seven[3:]):
@@ -111,7 +111,7 @@ def _pose(inertial: Node, reading: Reading) -> tuple[Vector, Quaternion, tuple[s
         reading.fault("rotation_format euler_rpy or quat_xyzw", shown(form), node)
         return None
     degrees = _is_true(node.attributes.get("degrees"))
-    six = reading.vector(node, node.text, "x y z roll pitch yaw", 6)
+    six = reading.vector(node, node.text, "x y z roll pitch yaw", length=6)
     if six is None:
         return None
     turn = rotation.roll_pitch_yaw(six[3:], degrees)
@@ -119,7 +119,7 @@ def _pose(inertial: Node, reading: Reading) -> tuple[Vector, Quaternion, tuple[s
 
 
 def _added_mass(node: Node, reading: Reading) -> Matrix | None:
-    """Return the 6x6 matrix; what is not written of its 21 elements is zero."""
+    """Return the 6x6 matrix; each missing one of its 21 elements is zero. None after a fault."""
     rows = [[_ZERO] * 6 for _ in range(6)]
     is_sound = True
     for child in node.children:

@@ -27,7 +27,7 @@ def candidates(root: Node) -> list[Candidate]:
 
 
 def link(root: Node, name: str, inertial: Node, reading: Reading) -> Link | None:
-    """Return the inertia of one link; None beside a fault."""
+    """Return the inertia of one link; None after a fault."""
     del root
     mass_node, tensor_node = (_part(inertial, part, reading) for part in ("mass", "inertia"))
     origin = inertial.child("origin") or Node("origin", {}, inertial.line)

@@ -1,4 +1,4 @@
-"""The text of a scene made from a link: to be read and edited."""
+"""The text of a scene made from a link, which a user reads and edits."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from taylor_verify.scenes.tensors import Matrix, Vector
 _WIDTH: Final = 100
 _LONGEST_NAME: Final = 200
 
-# The start is off every axis and off the identity attitude: what is wrong shows in the first rows. The
+# The start is along no axis, and the attitude is not the identity: a fault shows in the first rows. The
 # quaternion has unit length exactly.
 _ATTITUDE: Final = "attitude = [0.68, 0.32, -0.64, 0.16]  # quaternion, scalar first, body to space"
 _RIGID_START: Final = """\
@@ -84,7 +84,7 @@ def _vehicle(link: Link) -> str:
 
 
 def _matrix(key: str, matrix: Matrix) -> str:
-    """Return the entries exactly, and before long fractions the same as short decimals."""
+    """Return the entries exactly; if some are long fractions, all entries come before as short decimals."""
     is_long = any(_decimal(entry) is None for row in matrix for entry in row)
     short = [f"#   {', '.join(map(float_text, row))}" for row in matrix]
     # A decimal where it ends, else a fraction.
@@ -98,7 +98,7 @@ def _listed(vector: Vector) -> str:
 
 
 def _decimal(value: Fraction) -> str | None:
-    """Return the decimal that equals the number; None where it has no end."""
+    """Return the decimal that equals the number; None if it has no end."""
     digits = len(str(value.numerator)) + value.denominator.bit_length()
     # A denominator of twos and fives alone has no more digits than bits behind the point.
     context = Context(prec=digits + 1, Emin=MIN_EMIN, Emax=MAX_EMAX)
@@ -107,7 +107,7 @@ def _decimal(value: Fraction) -> str | None:
 
 
 def _one_line(text: str) -> str:
-    """Return a name as a comment may hold it: a line break in it would begin a line of TOML."""
+    """Return a name on one line, for a comment: after a line break TOML would begin."""
     line = escaped(" ".join(text.split()))
     return line if len(line) <= _LONGEST_NAME else f"{line[:_LONGEST_NAME]}..."
 

@@ -25,7 +25,7 @@ _CLEBSCH_KEYS = ("p", "p_prime", "q", "q_prime", "r", "r_prime")
 
 
 def rigid_body(table: Table) -> RigidBody | Gyrostat | None:
-    """Return the body of model euler, a gyrostat where wheels turn; None beside a fault."""
+    """Return the body of model euler, a gyrostat if wheels turn; None after a fault."""
     inertia = _inertia(table)
     moment = table.vector("moment", default=ZERO_VECTOR)
     rotor = table.vector("rotor", default=ZERO_VECTOR)
@@ -47,20 +47,19 @@ def _inertia(table: Table) -> Matrix | None:
     if tensor is None:
         return None
     principal = {cell.format(i): tensor[i][i] for i in range(3)}
-    if _are(table, "a positive moment of inertia", principal) and _is_positive(
-        table, "a positive definite tensor", tensor, "inertia"
-    ):
+    are_positive = _are_right(table, "a positive moment of inertia", principal)
+    if are_positive and _is_positive(table, "a positive definite tensor", tensor, "inertia"):
         return tensor
     return None
 
 
-def _are(
+def _are_right(
     table: Table,
     expected: str,
     numbers: Mapping[str, Fraction | None],
     is_right: Callable[[Fraction], bool] = lambda number: number > 0,
 ) -> bool:
-    """Return True if all numbers are right, or missing; each other one is a fault at its place."""
+    """Return True if every number is right or missing; each other number is a fault at its key."""
     wrong = {key: n for key, n in numbers.items() if n is not None and not is_right(n)}
     for key, number in wrong.items():
         table.fault(expected, shown(number), key)
@@ -83,7 +82,7 @@ def _is_positive(
 
 
 def immersed_body(table: Table) -> ImmersedBody | None:
-    """Return the body of model kirchhoff; None beside a fault."""
+    """Return the body of model kirchhoff; None after a fault."""
     force = table.vector("force", default=ZERO_VECTOR)
     couple = table.vector("couple", default=ZERO_VECTOR)
     damping = table.number(DAMPING.name, default=Fraction(0))
@@ -95,7 +94,7 @@ def immersed_body(table: Table) -> ImmersedBody | None:
 
 
 def _form(table: Table) -> Callable[[Table], ImmersedBody | None] | None:
-    """Return the reader of the one form of T that the body writes."""
+    """Return the reader of the one form of T that the table has; None after a fault."""
     written = [form for form in FORMS if table.has(form)]
     if len(written) == 1:
         return FORMS[written[0]]
@@ -132,7 +131,7 @@ def _positive(form: Table, body: ImmersedBody) -> ImmersedBody | None:
 
 
 def _mass_matrix(table: Table) -> ImmersedBody | None:
-    """Return the body of the inertia of body and fluid, inverted exactly."""
+    """Return the body of a mass matrix, which is inverted exactly."""
     matrix = table.symmetric("mass_matrix", size=6)
     expected = "a positive definite mass matrix"
     mend = "an added mass is minus a naval derivative: X_udot = -0.93 adds 0.93"
@@ -159,12 +158,12 @@ def _ellipsoid(table: Table) -> ImmersedBody | None:
     axes = {f"semi_axes[{i}]": axis for i, axis in enumerate(semi_axes or ())}
     densities = {"density": density, "fluid_density": fluid_density}
     are_sound = [
-        _are(form, "a positive semi-axis", axes),
-        _are(form, "a density that is not negative", densities, lambda number: number >= 0),
+        _are_right(form, "a positive semi-axis", axes),
+        _are_right(form, "a density that is not negative", densities, lambda number: number >= 0),
     ]
     if semi_axes is None or density is None or fluid_density is None or not all(are_sound):
         return None
-    # Every motion takes an impulse: of a body without mass the fluid alone resists.
+    # Every motion has an impulse: without a mass of the body, it is that of the fluid alone.
     if density == fluid_density == 0:
         form.fault("a body or a fluid with mass", "two densities of 0", "density")
         return None
@@ -176,7 +175,7 @@ def _ellipsoid(table: Table) -> ImmersedBody | None:
 
 
 def warnings(body: Body) -> tuple[str, ...]:
-    """Return a sentence on what no real solid does, although the equations do not mind."""
+    """Return sentences on properties that no real solid has, although the equations allow them."""
     tensor = body.parts().get("inertia")
     if tensor is None or obeys_triangle_inequality(tensor):
         return ()

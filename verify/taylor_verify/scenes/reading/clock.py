@@ -15,13 +15,16 @@ MOST_SAMPLES: Final = 1_000_000
 
 
 def clock(table: Table) -> Clock | None:
-    """Return the start and either the instants listed in ``at`` or equally spaced ones up to ``end``."""
+    """Return the start and the instants: those in ``at``, or equally spaced ones up to ``end``.
+
+    None after a fault.
+    """
     start = table.number("start", default=Fraction(0))
     return _listed(table, start) if table.has("at") else _equally_spaced(table, start)
 
 
 def _listed(table: Table, start: Fraction | None) -> Clock | None:
-    """Return the instants of ``at``, beside which neither ``end`` nor ``samples`` has a place."""
+    """Return the instants of ``at``; ``end`` and ``samples`` beside it are faults."""
     instants = table.numbers("at", most=MOST_SAMPLES)
     for key in ("end", "samples"):
         if table.has(key):
@@ -33,7 +36,7 @@ def _listed(table: Table, start: Fraction | None) -> Clock | None:
 
 
 def _moves_away(table: Table, instants: Vector, start: Fraction) -> bool:
-    """Return True if the instants leave the start, on one side of it and never turning back."""
+    """Return True if the instants leave the start on one side of it and never turn back."""
     elapsed = [instant - start for instant in instants]
     side = next((time for time in elapsed if time != 0), None)
     if side is None:

@@ -10,8 +10,8 @@ from fractions import Fraction
 from taylor_verify.scenes.precision import float_text
 
 _LONGEST_SHOWN = 60
-# Who has mended as many asks again; a million would be read by nobody, and take minutes to write.
-_MOST_TOLD = 100
+# Nobody reads a million faults, and to write them takes minutes.
+_MOST_FAULTS = 100
 
 
 class Refused(Exception):  # noqa: N818 (it names what happened to the scene)
@@ -22,7 +22,7 @@ class Refused(Exception):  # noqa: N818 (it names what happened to the scene)
     """
 
     def __init__(self, faults: Sequence[str]) -> None:
-        # A name in it may hold line breaks; a fault is one line.
+        # A name in a fault may have line breaks; a fault is one line.
         self.faults = tuple(fault.replace("\n", "\\n") for fault in faults)
         super().__init__("\n".join(self.faults))
 
@@ -34,7 +34,7 @@ class Refused(Exception):  # noqa: N818 (it names what happened to the scene)
 class Faults:
     """The faults of one scene or file in the order of the reading, no more than a hundred.
 
-    ``notes`` are sentences on numbers that were formed from what is written, which is no fault.
+    ``notes`` are sentences on numbers that were computed from those of the file, which is no fault.
     """
 
     def __init__(self) -> None:
@@ -43,20 +43,20 @@ class Faults:
 
     @property
     def is_full(self) -> bool:
-        """True if no further fault will be told."""
-        return len(self.lines) > _MOST_TOLD
+        """True if no further fault is recorded."""
+        return len(self.lines) > _MOST_FAULTS
 
     def add(self, expected: str, got: str, path: str, mend: str = "") -> None:
         if self.is_full:
             return
-        if len(self.lines) == _MOST_TOLD:
+        if len(self.lines) == _MOST_FAULTS:
             self.lines.append("and more faults beyond these hundred")
             return
         self.lines.append(_line(expected, got, path, mend))
 
 
 def refusal(expected: str, got: object, place: object, mend: str = "") -> Refused:
-    """Return the refusal of what has this one fault."""
+    """Return the exception for a single fault."""
     return Refused([_line(expected, got, place, mend)])
 
 
@@ -76,7 +76,7 @@ def cut(text: str) -> str:
 
 
 def brief(value: object) -> str:
-    """Return what a Python caller handed over, on one line and cut short."""
+    """Return the argument of a Python caller as text on one line, cut short."""
     try:
         text = repr(value)
     except ValueError:  # Python prints no integer of more than 4300 digits
@@ -93,7 +93,7 @@ def _toml(value: object, depth: int = 0) -> str:
         case str():
             return f'"{value}"'
         case list():
-            # What tomllib could just nest would overflow the stack here.
+            # tomllib reads a deeper nesting than this recursion can follow.
             inner = ", ".join(_toml(entry, depth + 1) for entry in value) if depth < 3 else ".."
             return f"[{inner}]"
         case Mapping():
@@ -109,7 +109,7 @@ def _rational(value: Fraction) -> str:
 
 
 def near(word: str, known: Iterable[str]) -> str:
-    """Return a mend that names the known word most like this one, else all of them."""
+    """Return advice: the known word that is most like this one, or else all known words."""
     words = sorted(known)
     close = difflib.get_close_matches(word, words, n=1)
     if close:

@@ -1,7 +1,7 @@
 """Keys that people try and no scene has: what to write instead, or why it is not modelled.
 
-A text for each model and table: on a line the keys, in small letters, and behind a colon the sentence that
-stands in brackets behind the fault of each.
+There is one text for each model and table. A line of it has keys in small letters, a colon, and the
+sentence that is printed in brackets after the fault of each of these keys.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ def _by_key(text: str) -> Mapping[str, str]:
     return {key: sentence for keys, sentence in rows for key in keys.split()}
 
 
-# The top of a scene and its times are those of every model.
+# The top level and [time] have the same keys in every model.
 _HINTS: Final[Mapping[tuple[str, str], Mapping[str, str]]] = {
     ("", ""): _by_key(_TOP),
     ("", "time"): _by_key(_TIME),

@@ -36,7 +36,7 @@ _GUARD_BITS: Final = 40
 def state(
     kind: type[State], moving: Vector | None, place: Mapping[str, Value] | None
 ) -> State | None:
-    """Return the initial state of its moving part and its place; None without one of them."""
+    """Return the initial state of a moving part and a place; None if one of them is None."""
     if moving is None or place is None:
         return None
     vectors = {name: moving[3 * k : 3 * k + 3] for k, name in enumerate(kind.MOVING)}
@@ -45,7 +45,7 @@ def state(
 
 
 def place(table: Table, kind: type[State]) -> Mapping[str, Value] | None:
-    """Return the parts of a state that do not move by equations of their own; None beside a fault."""
+    """Return the parts of a state that do not move by equations of their own; None after a fault."""
     values = {
         part.name: _attitude(table)
         if part.shape is Shape.QUATERNION
@@ -57,13 +57,13 @@ def place(table: Table, kind: type[State]) -> Mapping[str, Value] | None:
 
 
 def turning(table: Table, body: Body | None) -> Vector | None:
-    """Return omega of a rigid body, whatever the body; None beside a fault."""
+    """Return omega of a rigid body, for which ``body`` is not needed; None after a fault."""
     del body
     return _rates(table, "omega")
 
 
 def impulses(table: Table, body: Body | None) -> Vector | None:
-    """Return x and y as written, or of the two velocities; None beside a fault, or without a body."""
+    """Return x and y as written, or from the two velocities; None after a fault, or without a body."""
     by_velocity = [key for key in VELOCITIES if table.has(key)]
     by_impulse = [key for key in IMPULSES if table.has(key)]
     if by_velocity and by_impulse:
@@ -107,7 +107,7 @@ def _attitude(table: Table) -> Vector | None:
 
 
 def _rates(table: Table, key: str) -> Vector | None:
-    """Return an angular velocity in radians per unit of time; None beside a fault.
+    """Return an angular velocity in radians per unit of time; None after a fault.
 
     Where one entry has a unit, each of the others has one or is 0. A note says what was converted.
     """

@@ -24,7 +24,7 @@ _Terms = Mapping[Fraction, tuple[Vector, Vector]]
 
 
 def manufactured(table: Table, vectors: Sequence[str]) -> Manufactured | None:
-    """Return the motion of these vectors, one after the other; None beside a fault."""
+    """Return the motion of these vectors, one after the other; None after a fault."""
     read = complete([_terms(table, name) for name in vectors])
     if read is None:
         return None
@@ -43,7 +43,7 @@ def manufactured(table: Table, vectors: Sequence[str]) -> Manufactured | None:
 
 
 def _terms(table: Table, name: str) -> _Terms | None:
-    """Return the terms of one vector, no frequency twice."""
+    """Return the terms of one vector by frequency; a frequency that occurs twice is a fault."""
     entries = table.tables(name)
     waves: dict[Fraction, tuple[Vector, Vector]] = {}
     is_sound = entries is not None
@@ -61,7 +61,7 @@ def _terms(table: Table, name: str) -> _Terms | None:
 
 
 def _term(entry: Table) -> tuple[Fraction, Vector, Vector] | None:
-    """Return frequency, cosine and sine of one term; what is not written of the two is zero."""
+    """Return frequency, cosine and sine of one term; a missing cosine or sine is zero."""
     frequency = entry.number("frequency")
     written = entry.has("cosine") or entry.has("sine")
     cosine = entry.vector("cosine", default=ZERO_VECTOR)

@@ -34,7 +34,7 @@ from taylor_verify.scenes.tensors import Vector
 T = TypeVar("T")
 
 MOST_BYTES: Final = Limit(2**25, "bytes", "a million instants of thirty characters")
-# No key of a scene has more than three parts, and tomllib takes the square of their number in time.
+# No key of a scene has more than three parts; the time of tomllib grows as the square of their number.
 _MOST_KEY_PARTS: Final = 16
 _DEEP_KEY: Final = re.compile(
     r"""(?:^|[\[{,])[ \t]*+(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+)"""
@@ -46,8 +46,8 @@ _DEEP_KEY: Final = re.compile(
 class Model(NamedTuple):
     """The readers of the parts of a scene that differ from model to model.
 
-    ``moving`` reads the part of the initial state that enters the equations; ``velocities`` are other keys
-    for it.
+    ``moving`` reads the part of the initial state that enters the equations. ``velocities`` are other keys
+    for that part.
     """
 
     kind: type[Body]
@@ -91,7 +91,7 @@ def as_scene(scene: Scene | str | os.PathLike[str]) -> Scene:
 
 
 def read(text: str, name: str) -> Scene:
-    """Return the scene that this text describes; raises Refused with every fault of it."""
+    """Return the scene that this text describes. Raises Refused with every fault of the text."""
     faults = Faults()
     top = Table(parsed(text, name), "", faults)
     title, source = top.text("title"), top.text("source", default="")
@@ -120,7 +120,7 @@ def read(text: str, name: str) -> Scene:
 
 
 def parsed(text: str, name: str) -> dict[str, object]:
-    """Return a TOML document with decimals in their digits. Raises Refused for any other text."""
+    """Return a TOML document, its decimals as Decimal. Raises Refused for a text that is no TOML."""
     if deep := _DEEP_KEY.search(text):
         line = text.count("\n", 0, deep.start()) + 1
         expected = f"a key of at most {_MOST_KEY_PARTS} parts"
@@ -135,7 +135,7 @@ def parsed(text: str, name: str) -> dict[str, object]:
 
 
 def _decimal(literal: str) -> Decimal | str:
-    """Return the literal exactly; one beyond even Decimal's exponents stays text and is refused later."""
+    """Return the literal exactly, or as text if its exponent is too large: it is refused later."""
     try:
         return Decimal(literal)
     except InvalidOperation:
@@ -145,7 +145,7 @@ def _decimal(literal: str) -> Decimal | str:
 def _part(
     top: Table, key: str, reader: Callable[[Table], T], model: Model | None = None
 ) -> T | None:
-    """Return a table of the scene as a reader makes it, and close it."""
+    """Read a table of the scene with ``reader``, and close it."""
     table = top.table(key)
     if table is None:
         return None
@@ -164,7 +164,7 @@ def _unread(top: Table) -> tuple[None, None]:
 
 
 def _posed(top: Table, model: Model) -> tuple[Body | None, State | None]:
-    """Return the body and its initial state; None beside a fault."""
+    """Return the body and its initial state; None after a fault."""
     body = _part(top, "body", model.body, model)
     if top.has("manufactured"):
         return _manufactured(top, model, body)

@@ -1,7 +1,7 @@
 """The bytes of a regular file of bounded size; anything else is refused before it is opened.
 
-A pipe would block for ever and a device never ends. What a path leads to is asked twice: by its name,
-because opening may do something already, and by the open file, because the name may have changed hands.
+A pipe would block for ever, and a device never ends. The kind of the file is checked twice: before it is
+opened, because opening a device can have effects, and after, because the path may lead elsewhere by then.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _KINDS: Final = {
 
 @contextmanager
 def regular_file(path: Path, expected: str, most: Limit) -> Iterator[BinaryIO]:
-    """Open a regular file for reading, of no more bytes than the limit.
+    """Open a regular file of no more bytes than the limit, for reading.
 
     ``expected`` names what the file should be. Raises Refused for a file that is missing, too large, or
     not regular, and for one that cannot be opened or read.
@@ -45,7 +45,7 @@ def regular_file(path: Path, expected: str, most: Limit) -> Iterator[BinaryIO]:
 
 
 def read_bytes(path: Path, expected: str, most: Limit) -> bytes:
-    """Return the whole content; Refused as in `regular_file`, and for a file that grows."""
+    """Return the whole content. Raises Refused as `regular_file` does, and for a file that grows."""
     with regular_file(path, expected, most) as file:
         content = file.read(most.most + 1)
     if len(content) > most.most:
@@ -56,7 +56,7 @@ def read_bytes(path: Path, expected: str, most: Limit) -> bytes:
 def _status(path: Path, expected: str) -> os.stat_result:
     try:
         return path.stat()
-    except ValueError:  # a NUL in it, or what this system cannot encode
+    except ValueError:  # a NUL in the name, or a character that this system cannot encode
         raise Refused([f"expected {expected}, got a name that no file has @ {path}"]) from None
 
 

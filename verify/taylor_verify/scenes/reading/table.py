@@ -34,18 +34,18 @@ _QUANTITY = re.compile(r"([+-]?[0-9.][0-9./eE+-]*)\s*([^\W\d_\s].*|[°%].*)")
 
 T = TypeVar("T")
 Number = Callable[[object], Fraction]
-"""Reads one entry of an array, or raises ValueError with what it expects."""
+"""Function that reads one entry of an array, or raises ValueError with what it expects."""
 
 
 def complete(values: Iterable[T | None]) -> tuple[T, ...] | None:
-    """Return all of the values; None where one is missing, because a fault stands in its place."""
+    """Return all values, or None if one of them is None because of a fault."""
     read = tuple(values)
     known = tuple(value for value in read if value is not None)
     return known if len(known) == len(read) else None
 
 
 class Table:
-    """Table of a scene: what is taken from it is known, and what is left over is a fault."""
+    """Table of a scene: each key that was asked for is known, and each other key is a fault."""
 
     def __init__(self, entries: Mapping[str, object], path: str, faults: Faults) -> None:
         self._left = dict(entries)
@@ -72,7 +72,7 @@ class Table:
         return self._left.pop(key)
 
     def close(self, hints: Mapping[str, str] = MappingProxyType({})) -> None:
-        """Report every key that nobody took; ``hints`` says of some what to write instead."""
+        """Report every key that was not taken; ``hints`` says for some keys what to write instead."""
         for key in self._left:
             if self.faults.is_full:
                 break
@@ -84,7 +84,7 @@ class Table:
         return None if entries is None else self._table(entries, key)
 
     def tables(self, key: str) -> tuple[Table, ...] | None:
-        """Return an array of tables, not empty; each entry that is none is a fault."""
+        """Return an array of tables; an empty array, and each entry that is no table, is a fault."""
         entries = self.take(key, "an array of tables")
         if entries is None:
             return None
@@ -134,7 +134,7 @@ class Table:
         return None if value is None else self._exact(value, key)
 
     def numbers(self, key: str, most: int) -> Vector | None:
-        """Return an array of at most so many exact numbers."""
+        """Return an array of at most ``most`` exact numbers."""
         value = self.take(key, "an array of numbers")
         if isinstance(value, list) and len(value) <= most:
             return self._entries(value, key)
@@ -147,9 +147,9 @@ class Table:
     def vector(
         self, key: str, default: Vector | None = None, length: int = 3, number: Number | None = None
     ) -> Vector | None:
-        """Return an array of so many numbers; missing is a fault, unless there is a default.
+        """Return an array of ``length`` numbers; missing is a fault, unless there is a default.
 
-        ``number`` reads each where that is not an exact number.
+        ``number`` reads an entry, and is `exact_number` unless given.
         """
         if default is not None and not self.has(key):
             return default
@@ -161,7 +161,7 @@ class Table:
         self.faults.notes.append(sentence)
 
     def matrix(self, key: str, size: int = 3) -> Matrix | None:
-        """Return as many rows as columns, of exact numbers."""
+        """Return a square matrix of exact numbers."""
         value = self.take(key, f"a {size}x{size} matrix")
         if value is None:
             return None
@@ -184,7 +184,7 @@ class Table:
         return None
 
     def peek(self, key: str) -> list[object]:
-        """Return the entries of an array, which is left to be taken; nothing for any other value."""
+        """Return the entries of an array without taking it; none for any other value."""
         value = self._left.get(key)
         return value if isinstance(value, list) else []
 
@@ -216,7 +216,7 @@ class Table:
 
 
 def exact_number(value: object) -> Fraction:
-    """Return the rational that an integer, a decimal or an ``"a/b"`` string writes.
+    """Return the rational that is written as an integer, a decimal or a string ``"a/b"``.
 
     Raises ValueError, whose text is what was expected. Powers of ten beyond 10^5000 are refused
     before anything is built: 1e999999999 would be a gigabyte of digits.
