@@ -335,6 +335,16 @@ class TestOfAClass:
     result.stdout.fnmatch_lines([f"*::test_it?euler/{name}? PASSED*" for name in names])
 
 
+def test_a_word_of_a_marker_is_that_of_the_command_line(pytester: pytest.Pytester) -> None:
+    """A pattern fits scenes beyond the standard set, and a folder stands for its scenes."""
+    tests = """
+@pytest.mark.verify_scenes("engines/full*", "extremes/worst")
+def test_it(verify_scene): pass
+"""
+    result = session(pytester, tests, "--collect-only", "-q")
+    result.stdout.fnmatch_lines(["*::test_it?engines/full*", "*::test_it?extremes/worst/*"])
+
+
 @pytest.mark.parametrize(
     ("tests", "words"),
     [
@@ -345,7 +355,7 @@ class TestOfAClass:
         ),
         (
             '@pytest.mark.verify_scenes("nobody/*")\ndef test_it(verify_scene): pass',
-            "expected a pattern that some shipped scene fits, got 'nobody/*'",
+            "got nobody/* (no scene fits the pattern",
         ),
         (
             '@pytest.mark.verify_scenes("euler/rest", rung="f65")\ndef test_it(verify_scene): pass',

@@ -66,7 +66,7 @@ def answer(options: argparse.Namespace) -> Answer:
         )
     messages = [f"{summary.total} bodies in {monotonic() - began:.1f} s"]
     messages += [f"nothing was judged: {lack}" for lack in summary.lacks]
-    messages += [f"refused, for one: {refusal}" for refusal in summary.refusals]
+    messages += [f"refused, for example: {refusal}" for refusal in summary.refusals]
     messages += [f"wrote {folder}"] if folder is not None else []
     return Answer(summary.exit_status, document(summary), partial(_text, summary), messages)
 

@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 _MARKER: Final = "verify_scenes"
 _MARKER_LINE: Final = (
     f"{_MARKER}(*scenes, rung='f64', tolerance=None, only=None): run the test once for each scene "
-    "(a name, a pattern such as 'euler/*', or a file) and rung; the fixture verify_scene judges it"
+    "(a name, a pattern such as 'euler/*', a folder such as 'extremes', or a file) and rung; the fixture verify_scene judges it"
 )
 _NOTE: Final = "taylor-verify"
 _BLIND: Final = (
@@ -222,7 +222,7 @@ def _cases(mark: pytest.Mark) -> Iterator[Case]:
         _wrong_mark("expected scenes, such as 'euler/generic', got none")
     rungs = options.get("rung", "f64")
     try:
-        names = [name for pattern in mark.args for name in _scenes(pattern)]
+        names = [name for word in mark.args for name in _scenes(word)]
         for rung in [rungs] if isinstance(rungs, str) else rungs:
             for name in names:
                 rung_name = rung_named(rung).name
@@ -231,19 +231,13 @@ def _cases(mark: pytest.Mark) -> Iterator[Case]:
         _wrong_mark(str(fault))
 
 
-def _scenes(pattern: str | Path) -> list[str]:
-    from taylor_verify.scenes.library import find, fitting, is_pattern, names
+def _scenes(word: str | Path) -> tuple[str, ...]:
+    """Return the scenes that a word of a marker stands for, as on the command line."""
+    from taylor_verify.scenes.library import find, named
 
-    text = str(pattern)
-    if not is_pattern(text):
-        find(text)
-        return [text]
-    scenes = list(fitting(text, names()))
-    if not scenes:
-        raise ValueError(
-            f"expected a pattern that some shipped scene fits, got {text!r}; "
-            "`taylor-verify list` names them"
-        )
+    scenes = named(str(word))
+    for scene in scenes:
+        find(scene)
     return scenes
 
 

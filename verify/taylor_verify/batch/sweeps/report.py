@@ -56,8 +56,9 @@ def write_summary(
         "summary.csv": sheet(_SHEET, map(_row, summary.quantities)),
         "summary.json": json.dumps(document(summary), indent=1, allow_nan=False) + "\n",
     }
-    stale = [file for file in (folder / WORST).glob("*.toml") if file.name not in files.values()]
-    written = [*replace_files(folder, texts, stale), *_drawn(folder, summary)]
+    # Those that are written now are not removed.
+    earlier = (folder / WORST).glob("*.toml")
+    written = [*replace_files(folder, texts, stale=earlier), *_drawn(folder, summary)]
     return summary, written
 
 
@@ -74,7 +75,7 @@ def page(summary: SweepSummary) -> str:
         f"# {prose(summary.title or summary.name)}",
         judged,
         *(f"Nothing was judged: {prose(lack)}." for lack in summary.lacks),
-        *(f"Refused, for one: {prose(refusal)}." for refusal in summary.refusals),
+        *(f"Refused, for example: {prose(refusal)}." for refusal in summary.refusals),
         f"Error over attainable, of the rows that passed or failed; a gate stands at {summary.factor}. "
         "A quantile is an error that occurred, at most a thousandth above the exact quantile.",
         table(
