@@ -8,8 +8,9 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,7 @@ from builders.executor import Backwards
 from pyarrow import dataset
 
 from taylor_verify.batch import bodies
-from taylor_verify.batch.cluster import executor_named
+from taylor_verify.batch.cluster import Placed, executor_named
 from taylor_verify.batch.failure import Failed
 from taylor_verify.batch.judging import Interrupted
 from taylor_verify.batch.sweeps import chunk as chunks
@@ -382,6 +383,22 @@ def test_where_nobody_answers_there_is_one_clear_error(
     assert "expected a dask scheduler that answers within 0.5 s, got" in last
 
 
+@pytest.mark.usefixtures("quick")
+def test_a_cluster_without_a_worker_is_named(
+    template: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A sweep that waits for the first worker of a cluster says so."""
+
+    @contextmanager
+    def placed(name: str) -> Iterator[Placed]:
+        del name
+        yield Placed(None, ahead=1, workers=0)
+
+    monkeypatch.setattr("taylor_verify.cli.sweep.executor_named", placed)
+    assert main(["sweep", template, "--count", "1", "--executor", "dask:tcp://head:8786"]) == 0
+    assert "the dask scheduler has no worker yet" in capsys.readouterr().err
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGKILL")
 @pytest.mark.filterwarnings("default")
@@ -396,6 +413,7 @@ def test_a_dask_worker_that_is_killed_loses_nothing(template: str, tmp_path: Pat
     )
     out = tmp_path / "out"
     with cluster, executor_named(f"dask:{cluster.scheduler_address}") as placed:
+        assert placed.workers == 2
         with distributed.Client(cluster) as client:
             victim = next(iter(client.run(os.getpid).values()))
 

@@ -24,10 +24,14 @@ class Unreachable(ConnectionError):  # noqa: N818 (it names what happened to the
 
 
 class Placed(NamedTuple):
-    """An executor, and how many chunks to have under way; None is the processes of this machine."""
+    """An executor, and how many chunks to have under way; None is the processes of this machine.
+
+    ``workers`` counts the workers of a cluster at the start; None for this machine.
+    """
 
     executor: Executor | None
     ahead: int
+    workers: int | None = None
 
 
 @contextmanager
@@ -56,6 +60,7 @@ def executor_named(name: str) -> Iterator[Placed]:
             f"expected a dask scheduler that answers within {_PATIENCE} s, got {reason!r}"
         ) from None
     with client:
-        threads = sum(client.nthreads().values())
+        threads = client.nthreads()
         executor = client.get_executor(pure=False, retries=_RETRIES)
-        yield Placed(executor, max(_AHEAD * threads, _LEAST_AHEAD))
+        ahead = max(_AHEAD * sum(threads.values()), _LEAST_AHEAD)
+        yield Placed(executor, ahead, workers=len(threads))

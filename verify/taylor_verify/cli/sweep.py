@@ -17,6 +17,7 @@ from taylor_verify.cli.folders import writable
 from taylor_verify.cli.inputs import known_rungs
 from taylor_verify.cli.progress import working
 from taylor_verify.cli.sentences import figure, print_end, status_text
+from taylor_verify.cli.streams import say
 from taylor_verify.records.quantities import INITIAL
 from taylor_verify.records.sweep import Spread, SweepSummary
 
@@ -50,6 +51,9 @@ def answer(options: argparse.Namespace) -> Answer:
         working(f"sweep {options.what}"),
         executor_named(options.executor) as placed,
     ):
+        if placed.workers == 0:
+            # A cluster that grows on demand begins so.
+            say("warning: the dask scheduler has no worker yet, and the sweep waits for one")
         summary = sweep(
             options.what,
             count=options.count,

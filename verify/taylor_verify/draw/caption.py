@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any, Final
 
 _WAYS: Final = {
-    "arb": "exact, by closed form in balls",
+    "arb": "exact, by closed form with proven bounds",
     "mpmath": "exact, by closed form",
     "taylor": "exact, by enclosed Taylor series",
 }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from fnmatch import fnmatchcase
 from glob import glob
 from pathlib import Path
@@ -73,27 +73,17 @@ def names(*folders: str) -> tuple[str, ...]:
     )
 
 
-def fitting(pattern: str, known: Iterable[str]) -> tuple[str, ...]:
-    """Return the names that match a pattern such as ``euler/*``; a star matches slashes too."""
-    return tuple(name for name in known if fnmatchcase(name, pattern))
-
-
-def is_pattern(scene: str) -> bool:
-    """Return True for a text with ``*``, ``?`` or ``[`` that is not the name of a file."""
-    return not _PATTERN.isdisjoint(scene) and not os.path.exists(scene)
-
-
 def named(scene: str) -> tuple[str, ...]:
     """Return the scenes that a word of the command line stands for.
 
     A folder (``extremes``) stands for all its scenes. A pattern (``euler/*``) stands for the shipped scenes
-    that match, or for the files that match if it ends in ``.toml``. Any other word, and a pattern that
-    nothing matches, is returned as it is.
+    that match, where a star matches slashes too, or for the files that match if it ends in ``.toml``. Any
+    other word, and a pattern that nothing matches, is returned as it is.
     """
-    if is_pattern(scene):
-        is_of_files = scene.endswith(_ENDING)
-        matches = sorted(glob(scene)) if is_of_files else fitting(scene, _all_names())
-        return tuple(matches) or (scene,)
+    if _is_pattern(scene):
+        if scene.endswith(_ENDING):
+            return tuple(sorted(glob(scene))) or (scene,)
+        return tuple(name for name in _all_names() if fnmatchcase(name, scene)) or (scene,)
     folders = (EXTREMES, WORST) if scene == EXTREMES else (scene,)
     is_folder = scene in (*STANDARD_SET, EXTREMES, WORST, ENGINES)
     return (names(*folders) if is_folder else ()) or (scene,)
@@ -121,12 +111,17 @@ def find(scene: str | os.PathLike[str]) -> Path:
     raise Refused([f"expected {expected}, got {name} ({_near(name)})"])
 
 
+def _is_pattern(scene: str) -> bool:
+    """Return True for a text with ``*``, ``?`` or ``[`` that is not the name of a file."""
+    return not _PATTERN.isdisjoint(scene) and not os.path.exists(scene)
+
+
 def _all_names() -> tuple[str, ...]:
     return names(*STANDARD_SET, EXTREMES, WORST, ENGINES)
 
 
 def _near(scene: str) -> str:
-    if is_pattern(scene):
+    if _is_pattern(scene):
         return "no scene fits the pattern; `list` names them all"
     if os.path.isdir(scene):
         return f"it is a folder: name the scenes in it, '{os.path.join(scene, f'*{_ENDING}')}'"
