@@ -395,7 +395,8 @@ def test_a_cluster_without_a_worker_is_named(
         yield Placed(None, ahead=1, workers=0)
 
     monkeypatch.setattr("taylor_verify.cli.sweep.executor_named", placed)
-    assert main(["sweep", template, "--count", "1", "--executor", "dask:tcp://head:8786"]) == 0
+    words = ["--count", "1", "--solver", SOLVER, "--executor", "dask:tcp://head:8786"]
+    assert main(["sweep", template, *words]) == 0
     assert "the dask scheduler has no worker yet" in capsys.readouterr().err
 
 

@@ -45,7 +45,8 @@ if TYPE_CHECKING:
 _MARKER: Final = "verify_scenes"
 _MARKER_LINE: Final = (
     f"{_MARKER}(*scenes, rung='f64', tolerance=None, only=None): run the test once for each scene "
-    "(a name, a pattern such as 'euler/*', a folder such as 'extremes', or a file) and rung; the fixture verify_scene judges it"
+    "(a name, a pattern such as 'euler/*', a folder such as 'extremes', or a file) and rung; the "
+    "fixture verify_scene judges it"
 )
 _NOTE: Final = "taylor-verify"
 _BLIND: Final = (
