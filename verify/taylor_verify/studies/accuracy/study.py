@@ -77,7 +77,9 @@ def _add_records(folder: Path, lacking: Sequence[Run], progress: Progress) -> tu
     jobs = [Job(scene, _SOLVER, tuple(own)) for scene, own in rungs.items()]
     with progress.jobs() as bar:
         results = judge_all(jobs, bar)
-    return store.add_records(folder, [one.record for one in results if one.record is not None])
+    return store.add_records(
+        folder, [result.record for result in results if result.record is not None]
+    )
 
 
 STUDY: Final = Study(

@@ -38,8 +38,8 @@ def advice(board: Board, entries: EntryList) -> list[str]:
     names = {row.name: row.title for row in entries.entry}
     plain = {row.name for row in entries.entry if row.plain}
     every, scenes = settings(board.study), advised(board, entries)
-    engines = [one for one in newest(every) if one.engine not in plain]
-    shipped = [one for one in newest(every, shipped=True) if one.engine not in plain]
+    engines = [setting for setting in newest(every) if setting.engine not in plain]
+    shipped = [setting for setting in newest(every, shipped=True) if setting.engine not in plain]
     return [
         *_take(board, engines, scenes, names),
         *_never(engines, scenes, names),
@@ -68,7 +68,7 @@ def named(setting: EngineSetting, names: dict[str, str]) -> str:
 def _take(
     board: Board, engines: Sequence[EngineSetting], scenes: Sequence[str], names: dict[str, str]
 ) -> Iterator[str]:
-    scores = [score for one in engines for score in one.scores(scenes)]
+    scores = [score for setting in engines for score in setting.scores(scenes)]
     if (best := best_of(scores)) is None:
         return
     yield (
@@ -89,8 +89,8 @@ def _never(
 ) -> Iterator[str]:
     """Yield warnings of methods that lose the motion, and of engines whose methods all do."""
     methods, without = [], []
-    for engine, group in groupby(engines, key=lambda one: one.engine):
-        own = [best for one in group if (best := best_of(one.scores(scenes))) is not None]
+    for engine, group in groupby(engines, key=lambda setting: setting.engine):
+        own = [best for setting in group if (best := best_of(setting.scores(scenes))) is not None]
         lost = [best for best in own if best.error >= LOST]
         sound = best_of(best for best in own if best.error < LOST)
         if not lost:
@@ -129,10 +129,10 @@ def _as_shipped(
 ) -> Iterator[str]:
     """Yield a warning of engines that are far worse as shipped than with the board's settings."""
     warnings = []
-    for engine, group in groupby(shipped, key=lambda one: one.engine):
-        pairs = [(row, like(row, engines, entries)) for one in group for row in one.rows]
+    for engine, group in groupby(shipped, key=lambda setting: setting.engine):
+        pairs = [(row, like(row, engines, entries)) for setting in group for row in setting.rows]
         ratios = [(a.worst / b.worst, a, b) for a, b in pairs if a.is_judged and b and b.worst > 0]
-        ratio, row, usual = max(ratios, key=lambda one: one[0], default=(0.0, None, None))
+        ratio, row, usual = max(ratios, key=lambda compared: compared[0], default=(0.0, None, None))
         if row is None or usual is None or ratio < FAR_WORSE:
             continue
         warning = next((e.warning for e in entries.entry if e.name == engine and e.warning), "")
@@ -157,8 +157,8 @@ def like(row: EngineRow, engines: Sequence[EngineSetting], entries: EntryList) -
     return next(
         (
             each
-            for one in engines
-            for each in one.rows
+            for setting in engines
+            for each in setting.rows
             if each.is_judged
             and (each.engine, each.version, each.variant, each.scene, each.value, each.rung)
             == asked
@@ -172,8 +172,8 @@ def _too_fine(
 ) -> Iterator[str]:
     """Yield a warning of engines whose smallest step is not their best."""
     steps = []
-    for engine, group in groupby(engines, key=lambda one: one.engine):
-        best = best_of(score for one in group for score in one.scores(scenes))
+    for engine, group in groupby(engines, key=lambda setting: setting.engine):
+        best = best_of(score for setting in group for score in setting.scores(scenes))
         if best is None or not best.value or best.error >= LOST or best.setting.knob != "step":
             continue
         finest = best.setting.scores(scenes)[-1]

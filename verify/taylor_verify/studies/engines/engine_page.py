@@ -30,8 +30,8 @@ def pages(board: Board, entries: EntryList) -> dict[str, str]:
 
 def page(board: Board, engine: str, title: str) -> str:
     """Return the page of one engine."""
-    own = [one for one in settings(board.study) if one.engine == engine]
-    scenes = dict.fromkeys(row.scene for one in own for row in one.rows)
+    own = [setting for setting in settings(board.study) if setting.engine == engine]
+    scenes = dict.fromkeys(row.scene for setting in own for row in setting.rows)
     return whole(
         f"{title} on the engine board",
         "Every setting that was measured, against the exact motion; [the board](engines.md) says what the "
@@ -46,7 +46,7 @@ def page(board: Board, engine: str, title: str) -> str:
 
 
 def _section(board: Board, own: Sequence[EngineSetting], scene: str) -> Iterator[str]:
-    rows = [row for one in own for row in one.on(scene)]
+    rows = [row for setting in own for row in setting.on(scene)]
     if not rows:
         return
     yield f"## {scene}"
@@ -58,7 +58,7 @@ def _section(board: Board, own: Sequence[EngineSetting], scene: str) -> Iterator
     yield table(columns, [_cells(board, row, states, conserved) for row in rows])
     if remarks := dict.fromkeys(f"{row.version}: {row.detail}" for row in rows if row.detail):
         yield bullets(prose(f"Remark on {remark}.") for remark in remarks)
-    if orders := [_order(one, scene, states) for one in own if len(one.on(scene)) > 2]:
+    if orders := [_order(setting, scene, states) for setting in own if len(setting.on(scene)) > 2]:
         yield bullets(filter(None, orders))
 
 
@@ -90,8 +90,8 @@ def _order(setting: EngineSetting, scene: str, states: Sequence[str]) -> str:
 def _not_judged(own: Iterable[EngineSetting]) -> Iterator[str]:
     """Yield the runs without numbers by their reason, each reason once."""
     reasons: dict[str, list[EngineRow]] = {}
-    for one in own:
-        for row in one.rows:
+    for setting in own:
+        for row in setting.rows:
             if not row.is_judged:
                 reasons.setdefault(f"{row.standing}: {row.detail}", []).append(row)
     if not reasons:
@@ -110,13 +110,13 @@ def _not_judged(own: Iterable[EngineSetting]) -> Iterator[str]:
 def _commands(own: Iterable[EngineSetting]) -> str:
     """Return a block with a command for each setting at its first step."""
     lines = []
-    for one in own:
-        steps = " ".join(filter(None, dict.fromkeys(row.value for row in one.rows)))
-        scenes = dict.fromkeys(row.scene for row in one.rows)
-        rung = f" --rung {one.rung}" if one.rung != "f64" else ""
-        first = one.rows[0]
+    for setting in own:
+        steps = " ".join(filter(None, dict.fromkeys(row.value for row in setting.rows)))
+        scenes = dict.fromkeys(row.scene for row in setting.rows)
+        rung = f" --rung {setting.rung}" if setting.rung != "f64" else ""
+        first = setting.rows[0]
         lines += [
-            f"# {f'{one.knob} {steps}; ' if steps else ''}{' '.join(scenes)}",
+            f"# {f'{setting.knob} {steps}; ' if steps else ''}{' '.join(scenes)}",
             f'taylor-verify run {first.scene} --solver "{first.solver}"{rung}',
         ]
     return "```sh\n" + "\n".join(lines) + "\n```"

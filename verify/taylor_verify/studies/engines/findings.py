@@ -63,7 +63,7 @@ def findings(folder: Path) -> Iterator[str]:
             f"adapter ([all of them](../{FOLDER}/README.md))."
         )
         yield bullets(
-            f"[{prose(one.title)}](../{FOLDER}/{one.script}): {prose(one.parts['Came'])} "
-            f"({prose(one.parts['Versions'])})"
-            for one in results
+            f"[{prose(finding.title)}](../{FOLDER}/{finding.script}): {prose(finding.parts['Came'])} "
+            f"({prose(finding.parts['Versions'])})"
+            for finding in results
         )

@@ -168,8 +168,8 @@ def _scenes(board: Board, entries: EntryList, every: Sequence[EngineSetting]) ->
     titles = {row.name: row.title for row in entries.entry}
     for scene in dict.fromkeys(row.scene for row in board.study.rows):
         rows = []
-        for engine, group in groupby(newest(every), key=lambda one: one.engine):
-            best_rows = [row for one in group if (row := one.best(scene)) is not None]
+        for engine, group in groupby(newest(every), key=lambda setting: setting.engine):
+            best_rows = [row for setting in group if (row := setting.best(scene)) is not None]
             best = min(best_rows, key=lambda row: row.worst, default=None)
             if best is not None:
                 rows.append(_scene_row(best, titles.get(engine, engine)))
@@ -208,13 +208,13 @@ def _states(board: Board, scene: str) -> set[str]:
 def _as_shipped(board: Board, entries: EntryList, every: Sequence[EngineSetting]) -> Iterator[str]:
     """Yield the table of the engines as shipped beside the settings of the board."""
     titles, rows, usual = {row.name: row.title for row in entries.entry}, [], newest(every)
-    for one in newest(every, shipped=True):
-        for row in one.rows:
+    for setting in newest(every, shipped=True):
+        for row in setting.rows:
             other = like(row, usual, entries)
             if row.is_judged:
                 rows.append(
                     [
-                        prose(titles.get(one.engine, one.engine)),
+                        prose(titles.get(setting.engine, setting.engine)),
                         prose(other.variant if other else row.variant) or NOTHING,
                         code(row.scene.rpartition("/")[2]),
                         row.value,

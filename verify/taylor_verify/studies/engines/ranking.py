@@ -115,8 +115,8 @@ def best_of(scores: Iterable[Score]) -> Score | None:
 def best_of_each(every: Iterable[EngineSetting], scene: str) -> list[Score]:
     """Return the best score of each engine in its newest version on a scene, in the order of the list."""
     best = []
-    for _, group in groupby(newest(every), key=lambda one: one.engine):
-        scores = [score for one in group for score in one.scores([scene])]
+    for _, group in groupby(newest(every), key=lambda setting: setting.engine):
+        scores = [score for setting in group for score in setting.scores([scene])]
         best += sorted(scores, key=lambda score: score.error)[:1]
     return best
 

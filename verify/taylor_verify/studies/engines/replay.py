@@ -107,7 +107,7 @@ def errors_of(result: Judgement) -> Errors:
 def _cause(causes: Iterable[LikelyCause], verdicts: Iterable[Verdict]) -> str:
     """Return the name of the cause that explains most of an error, first of the main quantity."""
     order = [verdict.quantity for verdict in verdicts]
-    ordered = sorted(causes, key=lambda one: (order.index(one.quantity), one.leaves))
+    ordered = sorted(causes, key=lambda cause: (order.index(cause.quantity), cause.leaves))
     return ordered[0].name if ordered else ""
 
 

@@ -127,8 +127,8 @@ def shown(stored: Stored) -> Iterator[Shown]:
 def page(pictures: Sequence[Shown]) -> str:
     """Return the page of all pictures below their headings."""
     blocks = []
-    for heading, group in groupby(pictures, key=lambda one: one.heading):
-        blocks += [f"## {heading}", *(one.block() for one in group)]
+    for heading, group in groupby(pictures, key=lambda entry: entry.heading):
+        blocks += [f"## {heading}", *(entry.block() for entry in group)]
     title = "Pictures of motions and of their errors"
     return whole(title, _WHAT, *blocks, "## Elsewhere", _ELSEWHERE)
 

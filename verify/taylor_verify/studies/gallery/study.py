@@ -51,7 +51,7 @@ def _page(pictures: list[Shown], folder: Path) -> str:
     from taylor_verify.studies.gallery.page import page
 
     drawn = {file.stem for file in (folder / FOLDER).glob("*.svg")}
-    shown = [one for one in pictures if one.picture.stem in drawn]
+    shown = [entry for entry in pictures if entry.picture.stem in drawn]
     return page(shown) if shown else ""
 
 
@@ -63,6 +63,6 @@ STUDY: Final = Study(
     find=_find,
     page=_page,
     place=f"{FOLDER}/README.md",
-    draw=lambda pictures: [one.picture for one in pictures],
+    draw=lambda pictures: [entry.picture for entry in pictures],
     needs_heyoka=False,
 )

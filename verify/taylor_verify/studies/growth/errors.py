@@ -81,7 +81,7 @@ def lane_errors(
             answer = Motion(quantities, motion.radius[1:])
             measured += _state_and_phase(problem, exact, answer, period)
     missing = [nan] * (len(states) - len(reached))
-    return [replace(one, values=np.append(one.values, missing)) for one in measured]
+    return [replace(errors, values=np.append(errors.values, missing)) for errors in measured]
 
 
 def _drifts(scene: Scene, motion: Motion) -> list[Measured]:
@@ -94,7 +94,7 @@ def _drifts(scene: Scene, motion: Motion) -> list[Measured]:
         if drift.ndim > 1:
             names = [f"{invariant.name}.{i}" for i in range(1, drift.shape[1] + 1)]
         columns = drift.reshape(len(drift), len(names)).T.astype(float)
-        drifts += [Measured(n, Law.WALK, one) for n, one in zip(names, columns, strict=True)]
+        drifts += [Measured(n, Law.WALK, column) for n, column in zip(names, columns, strict=True)]
     return drifts
 
 

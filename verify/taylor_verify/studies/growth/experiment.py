@@ -66,12 +66,12 @@ class Experiment:
             why=why,
         )
 
-    def _quantity(self, one: QuantityGrowth) -> GrowthOfQuantity:
-        u, grown = float(self.question.rung.unit_roundoff), one.growth
+    def _quantity(self, measured: QuantityGrowth) -> GrowthOfQuantity:
+        u, grown = float(self.question.rung.unit_roundoff), measured.growth
         late = grown.late
         row = {
             **complete(grown.exponent),
-            "quantity": one.quantity,
+            "quantity": measured.quantity,
             "rms": grown.rms,
             # Relative to a walk whose steps are single roundoffs.
             "in_walks": grown.rms[-1] / (u * sqrt(self.steps[-1])) if self.steps[-1] else None,
@@ -100,7 +100,9 @@ def course(
         lanes = ensemble.advance(progress.lanes, until)
         samples = progress.samples
         if is_instant:
-            samples += (tuple((one.state, one.steps) if one.goes_on else None for one in lanes),)
+            samples += (
+                tuple((lane.state, lane.steps) if lane.goes_on else None for lane in lanes),
+            )
         progress = Progress(progress.pieces + 1, lanes, samples)
         if file:
             checkpoint.write(file, asked, made_with, progress)
@@ -124,9 +126,11 @@ def experiment(
     ]
     u, times = float(question.rung.unit_roundoff), np.array(question.counts)
     grown = []
-    for name, kind in {one.quantity: one for lane in by_lane for one in lane}.items():
+    for name, kind in {
+        measured.quantity: measured for lane in by_lane for measured in lane
+    }.items():
         # A lane without the quantity has NaN.
-        rows = [{one.quantity: one.values for one in lane} for lane in by_lane]
+        rows = [{measured.quantity: measured.values for measured in lane} for lane in by_lane]
         errors = np.array([row.get(name, np.full(len(times), np.nan)) for row in rows])
         grown.append(QuantityGrowth(name, errors, growth(times, errors, kind.law, u, kind.signed)))
     counts = [[sample[1] for sample in row if sample is not None] for row in end.samples]

@@ -83,7 +83,7 @@ def find(folder: Path) -> GrowthStudy | None:
     if not stored:
         return None
     runs = tuple(run for study in stored for run in study.runs)
-    left_out = tuple(one for study in stored for one in study.left_out)
+    left_out = tuple(line for study in stored for line in study.left_out)
     return GrowthStudy(runs, left_out, stored[0].provenance)
 
 
@@ -94,7 +94,7 @@ def page(study: GrowthStudy, folder: Path) -> str:
         "How errors grow with time",
         _WHAT,
         _gates(runs),
-        bullets(prose(f"Left out: {one}.") for one in study.left_out),
+        bullets(prose(f"Left out: {line}.") for line in study.left_out),
         figures.shown(folder, pictures(study)),
         bullets(_LEGEND),
         *(block for run in runs for block in _section(run)),

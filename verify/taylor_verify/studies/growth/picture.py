@@ -70,7 +70,7 @@ def picture(runs: Sequence[Ensemble]) -> Picture:
 
 def _points(run: Ensemble, quantity: str) -> Points:
     """Return the root mean squares that a logarithmic axis can show."""
-    rms = next((one.rms for one in run.quantities if one.quantity == quantity), ())
+    rms = next((row.rms for row in run.quantities if row.quantity == quantity), ())
     return [(n, e) for n, e in zip(run.counts, rms, strict=False) if e is not None and e > 0]
 
 

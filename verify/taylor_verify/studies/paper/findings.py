@@ -133,16 +133,16 @@ def trade(sources: Sources) -> str:
 def _multiples(trades: Iterable[Trade], is_wanted: Callable[[str], bool]) -> list[float]:
     """Return for each scene the time of the fastest of the given families over that of taylor."""
     multiples = []
-    for one in trades:
-        taylor = _fastest(one, lambda family: family == TAYLOR)
-        other = _fastest(one, is_wanted)
+    for trade in trades:
+        taylor = _fastest(trade, lambda family: family == TAYLOR)
+        other = _fastest(trade, is_wanted)
         if taylor is not None and other is not None:
             multiples.append(other.timing.ratio / taylor.timing.ratio)
     return multiples
 
 
-def _fastest(one: Trade, is_wanted: Callable[[str], bool]) -> TimedPoint | None:
-    return cheapest((row for row in one.sound if is_wanted(row.point.family)), TRADED)
+def _fastest(trade: Trade, is_wanted: Callable[[str], bool]) -> TimedPoint | None:
+    return cheapest((row for row in trade.sound if is_wanted(row.point.family)), TRADED)
 
 
 def _span(multiples: Iterable[float]) -> str:

@@ -89,13 +89,13 @@ def pack(folder: Path) -> Pack:
     values = {
         "versions": prose(packages(versions(sources.verdicts))),
         **{name: finding(sources) for name, finding in FINDINGS.items()},
-        **{f"table:{one.name}": f"Table {i}" for i, one in enumerate(made, 1)},
-        **{f"tabular:{one.name}": one.markdown for one in made},
-        **{f"figure:{one.name}": f"Figure {i}" for i, one in enumerate(shown, 1)},
-        **{f"picture:{one.name}": one.markdown for one in shown},
+        **{f"table:{table.name}": f"Table {i}" for i, table in enumerate(made, 1)},
+        **{f"tabular:{table.name}": table.markdown for table in made},
+        **{f"figure:{picture.name}": f"Figure {i}" for i, picture in enumerate(shown, 1)},
+        **{f"picture:{picture.name}": picture.markdown for picture in shown},
     }
     text = _Marked(_TEXT.read_text(encoding="utf-8")).substitute(values)
-    return Pack(text, made, [one.picture for one in shown], _citation(folder))
+    return Pack(text, made, [picture.picture for picture in shown], _citation(folder))
 
 
 def _citation(folder: Path) -> Path:

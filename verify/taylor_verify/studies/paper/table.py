@@ -114,10 +114,10 @@ def _reach(sources: Sources) -> Table:
     for row in study.rows:
         own.setdefault((row.family, row.rung), []).append(row)
     rows = []
-    for one in study.families:
-        reached = (_reached(one, own.get((one.name, rung), ())) for rung in rungs)
-        title = prose(one.title.replace("^2", "²"))
-        rows.append([title, one.symbol or "periods", *reached])
+    for family in study.families:
+        reached = (_reached(family, own.get((family.name, rung), ())) for rung in rungs)
+        title = prose(family.title.replace("^2", "²"))
+        rows.append([title, family.symbol or "periods", *reached])
     headings = ["motion", "varied", *(f"{rung}:" for rung in rungs)]
     return Table("reach", headings, rows, Caption(words, (REACH.name,), study.provenance.processor))
 
@@ -143,7 +143,7 @@ def _trade(sources: Sources) -> Table:
         "no measured setting leaves so many."
     )
     trades = sources.trades
-    rows = [row for one in trades.short for row in _solvers(one)]
+    rows = [row for trade in trades.short for row in _solvers(trade)]
     headings = ["scene", "solver", *(f"{digits} digits:" for digits in DIGITS)]
     return Table(
         "tradeoff", headings, rows, Caption(words, TRADEOFF, trades.times.machine.processor)

@@ -76,7 +76,7 @@ def page(study: PricesStudy, folder: Path) -> str:
         _three_questions(study.rows),
         bullets(_LEGEND),
         figures.shown(folder, pictures(study)),
-        *_sections(study.rows, {one.variant: one.ratio for one in study.equal}),
+        *_sections(study.rows, {row.variant: row.ratio for row in study.equal}),
         "## How it was measured",
         bullets(_method(study)),
         "## To remake this",
@@ -174,7 +174,7 @@ _SHEET: Final = (
 
 def sheet(study: PricesStudy) -> str:
     """Return a row for every variant and rung; the prices at equal error are those of f64."""
-    at_equal = {one.variant: one.ratio for one in study.equal}
+    at_equal = {row.variant: row.ratio for row in study.equal}
     return csv_sheet(_SHEET, (_priced(row, at_equal) for row in study.rows))
 
 

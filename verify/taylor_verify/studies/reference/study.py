@@ -22,7 +22,7 @@ def _lacking(report: Published) -> tuple[str, ...]:
     target = report.folder / page.FOLDER
     return tuple(
         scene
-        for scene in report.without(page.FOLDER)
+        for scene in report.outdated_scenes(page.FOLDER)
         if (target / f"{of_scene(scene)}.csv").exists()
     )
 

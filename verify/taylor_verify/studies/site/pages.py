@@ -58,7 +58,12 @@ def staged(folder: Path) -> Stage:
         for scene in report.scenes
     }
     drawings = _drawn(
-        [one for drawn in pictures.values() for one in drawn if not report.has(drawing_of(one))]
+        [
+            picture
+            for drawn in pictures.values()
+            for picture in drawn
+            if not report.has(drawing_of(picture))
+        ]
     )
     stage.files |= {f"{SCENES}/{name}": svg for name, svg in drawings.items()}
     stage.add_pages(

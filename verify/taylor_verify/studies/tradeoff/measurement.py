@@ -121,7 +121,8 @@ def measurement(
         finished(f"errors of {scene.name}")
     end_sessions()
     asked = [
-        (one.scene, [p.timed.setting.name for p in sound_points(one.points)]) for one in trades
+        (trade.scene, [p.timed.setting.name for p in sound_points(trade.points)])
+        for trade in trades
     ]
     by_process = []
     for number in range(processes):
@@ -211,23 +212,23 @@ def _timings(
     for scene, names in asked:
         of_scene = [process[scene.name] for process in by_process]
         for name in names:
-            if of_scene and all(name in one for one in of_scene):
-                yield _timing(scene.name, name, [one[name] for one in of_scene])
+            if of_scene and all(name in process for process in of_scene):
+                yield _timing(scene.name, name, [process[name] for process in of_scene])
 
 
 def _timing(scene: str, name: Name, every: Sequence[Measured]) -> TradeTiming:
-    inner = [one.inner for one in every if one.inner is not None]
-    ratio = estimate(one.ratio for one in every)
+    inner = [times.inner for times in every if times.inner is not None]
+    ratio = estimate(times.ratio for times in every)
     return TradeTiming(
         scene,
         *name,
-        seconds=estimate(one.seconds for one in every).median,
+        seconds=estimate(times.seconds for times in every).median,
         inner_seconds=estimate(inner).median if len(inner) == len(every) else None,
         ratio=ratio.median,
         low=ratio.low,
         high=ratio.high,
         processes=len(every),
-        setup_seconds=max(one.setup for one in every),
+        setup_seconds=max(times.setup for times in every),
     )
 
 

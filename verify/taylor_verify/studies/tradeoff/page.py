@@ -87,7 +87,7 @@ def page(trades: Trades, folder: Path) -> str:
         "answer. The table has the digits that were left at each tolerance:",
         _by_request(trades),
         "## In pictures",
-        *(figures.shown(folder, _of_trade(one)) for one in trades.short),
+        *(figures.shown(folder, _of_trade(trade)) for trade in trades.short),
         "## The front",
         "The settings in float64 that no other beats in both time and error, the fastest first.",
         *(_front(trade) for trade in trades.short),
@@ -115,7 +115,10 @@ def page(trades: Trades, folder: Path) -> str:
 
 def pictures(trades: Trades) -> list[Picture]:
     """Return the pictures of every scene, and the picture of all rungs."""
-    return [*(one for trade in trades.short for one in _of_trade(trade)), *_of_rungs(trades.short)]
+    return [
+        *(picture for trade in trades.short for picture in _of_trade(trade)),
+        *_of_rungs(trades.short),
+    ]
 
 
 def _of_trade(trade: Trade) -> list[Picture]:
@@ -126,9 +129,9 @@ def _of_trade(trade: Trade) -> list[Picture]:
 def _of_rungs(trades: Sequence[Trade]) -> list[Picture]:
     """Return the picture of taylor's time at each rung's own tolerance, a line for each scene."""
     rows = [
-        Ratio(one.scene, row.point.rung, row.timing.ratio, row.timing.low, row.timing.high)
-        for one in trades
-        for row in one.sound
+        Ratio(trade.scene, row.point.rung, row.timing.ratio, row.timing.low, row.timing.high)
+        for trade in trades
+        for row in trade.sound
         if row.point.solver == "taylor"
     ]
     return [time_by_rung.picture("published", rows)] if rows else []

@@ -97,9 +97,13 @@ def recommend(
     check_target(error)
     scene = as_scene(scene)
     asked = settings(scene) if asked is None else asked
-    bound = [one for one in asked if not one.solver.name.startswith(_OF_ANOTHER_PRECISION)]
-    without = left_out(scene, (one.rung for one in bound), error)
-    measurable = [one for one in asked if one.rung not in without or one not in bound]
+    bound = [
+        setting for setting in asked if not setting.solver.name.startswith(_OF_ANOTHER_PRECISION)
+    ]
+    without = left_out(scene, (setting.rung for setting in bound), error)
+    measurable = [
+        setting for setting in asked if setting.rung not in without or setting not in bound
+    ]
     reasons = tuple(without.values())
     if not measurable and reasons:
         raise OutOfReach(_out_of_reach(scene, error, f": {'; '.join(reasons)}"))

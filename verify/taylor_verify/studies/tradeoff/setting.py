@@ -133,7 +133,7 @@ def outside(
 
 def toleranced() -> list[str]:
     """Return the names of the engines that have a tolerance, as those with fixed steps do not."""
-    return [name for name, one in engines().items() if "rtol" in one.script.about.settings]
+    return [name for name, engine in engines().items() if "rtol" in engine.script.about.settings]
 
 
 def setting(name: str, rung: Rung) -> Setting:

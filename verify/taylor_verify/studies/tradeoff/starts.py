@@ -27,4 +27,4 @@ def nearby(scene: Scene, seed: int, count: int = STARTS) -> list[Scene]:
         return component * (1 + _REACH * Fraction(draw.randint(-_GRAIN, _GRAIN), _GRAIN))
 
     starts = (start.with_moving(tuple(map(moved, start.moving))) for _ in range(count))
-    return [replace(scene, initial=one) for one in starts]
+    return [replace(scene, initial=initial) for initial in starts]

@@ -101,12 +101,16 @@ class Trades:
     def trades(self) -> tuple[Trade, ...]:
         """The scenes, each with its points and their times."""
         timings: dict[str, dict[tuple[str, str], TradeTiming]] = {}
-        for one in self.times.timings:
-            timings.setdefault(one.scene, {})[one.solver, one.rung] = one
+        for timing in self.times.timings:
+            timings.setdefault(timing.scene, {})[timing.solver, timing.rung] = timing
         points = self.numbers.points
         return tuple(
-            Trade(one, tuple(p for p in points if p.scene == one.scene), timings.get(one.scene, {}))
-            for one in self.numbers.scenes
+            Trade(
+                about,
+                tuple(p for p in points if p.scene == about.scene),
+                timings.get(about.scene, {}),
+            )
+            for about in self.numbers.scenes
         )
 
     @property

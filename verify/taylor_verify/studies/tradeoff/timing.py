@@ -75,11 +75,13 @@ def timed(
     a coarser one of its family took more than ``patience`` seconds.
     """
     firsts = _first_solves(problems, clock, patience)
-    finished = [one for one in firsts if one.trajectory.outcome is Outcome.FINISHED]
+    finished = [answer for answer in firsts if answer.trajectory.outcome is Outcome.FINISHED]
     # Only the seconds of each solve are stored, because whole answers would fill the memory.
-    again: dict[Setting, list[tuple[float, float | None]]] = {one.setting: [] for one in finished}
-    spent = {one.setting: one.trajectory.seconds for one in finished}
-    posed = {setting: one for setting, one in problems.items() if not isinstance(one, str)}
+    again: dict[Setting, list[tuple[float, float | None]]] = {
+        answer.setting: [] for answer in finished
+    }
+    spent = {answer.setting: answer.trajectory.seconds for answer in finished}
+    posed = {setting: answer for setting, answer in problems.items() if not isinstance(answer, str)}
     order = random.Random(seed)
     for _ in range(repeats):
         settings = [s for s, made in again.items() if not made or spent[s] <= patience]
@@ -88,13 +90,16 @@ def timed(
             solved = setting.solver.solve(posed[setting])
             again[setting].append((solved.seconds, solved.inner_seconds))
             spent[setting] += solved.seconds
-    return [_with_times(one, again[one.setting]) if one.setting in again else one for one in firsts]
+    return [
+        _with_times(answer, again[answer.setting]) if answer.setting in again else answer
+        for answer in firsts
+    ]
 
 
-def _with_times(one: Timed, again: Sequence[tuple[float, float | None]]) -> Timed:
-    solves = again or [(one.trajectory.seconds, one.trajectory.inner_seconds)]
+def _with_times(answer: Timed, again: Sequence[tuple[float, float | None]]) -> Timed:
+    solves = again or [(answer.trajectory.seconds, answer.trajectory.inner_seconds)]
     _, inner = min(solves, key=lambda solve: solve[0])
-    return replace(one, seconds=tuple(seconds for seconds, _ in solves), inner=inner)
+    return replace(answer, seconds=tuple(seconds for seconds, _ in solves), inner=inner)
 
 
 def _first_solves(

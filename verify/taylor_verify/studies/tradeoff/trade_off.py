@@ -89,10 +89,10 @@ def trade_off(
     asked = settings(scene) if asked is None else asked
     posed = {setting: _posed(scene, setting) for setting in asked}
     truths, points = Truths(), []
-    for one in timed(posed, repeats, seed, clock, patience):
-        problem = posed[one.setting]
-        known = None if isinstance(problem, str) else truths.accuracy(problem, one.trajectory)
-        points.append(point(one, known))
+    for answer in timed(posed, repeats, seed, clock, patience):
+        problem = posed[answer.setting]
+        known = None if isinstance(problem, str) else truths.accuracy(problem, answer.trajectory)
+        points.append(point(answer, known))
     return TradeOff(scene, tuple(points), repeats, seed)
 
 

@@ -174,16 +174,16 @@ def study(results: Iterable[FamilyResult], runs: int, seed: int) -> WorstStudy:
         provenance=Provenance(versions(), processor(), command()),
         families=tuple(
             WorstOfFamily(
-                name=one.quarry.name,
-                what=one.quarry.what,
-                judged=one.judged,
-                ratio=one.worst.ratio,
-                quantity=one.worst.verdict.quantity,
-                verdict=one.worst.verdict.verdict,
-                max=one.worst.verdict.max,
-                scene=f"extremes/worst/{one.quarry.name}",
+                name=result.quarry.name,
+                what=result.quarry.what,
+                judged=result.judged,
+                ratio=result.worst.ratio,
+                quantity=result.worst.verdict.quantity,
+                verdict=result.worst.verdict.verdict,
+                max=result.worst.verdict.max,
+                scene=f"extremes/worst/{result.quarry.name}",
             )
-            for one in results
+            for result in results
         ),
     )
 

@@ -25,7 +25,7 @@ def _measure(
 
     hunted = quarries()
     results = hunt(hunted, runs, seed, progress.counting(len(hunted)))
-    scenes = {one.quarry.name: one.scene_text for one in results}
+    scenes = {result.quarry.name: result.scene_text for result in results}
     shipped = page.store_scenes(cases_directory() / SCENES, scenes)
     return Measured([*WORST.write(folder, study(results, runs, seed)), *shipped])
 

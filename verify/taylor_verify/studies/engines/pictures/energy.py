@@ -52,8 +52,8 @@ def lines(board: Board, entries: EntryList, scene: str) -> list[Line]:
     """Return the engines on a scene, the one with the smallest error of the motion first."""
     titles = {row.name: row.title for row in entries.entry if not row.plain}
     drawn = []
-    for engine, group in groupby(newest(settings(board.study)), key=lambda one: one.engine):
-        rows = [row for one in group if (row := one.best(scene)) is not None]
+    for engine, group in groupby(newest(settings(board.study)), key=lambda setting: setting.engine):
+        rows = [row for setting in group if (row := setting.best(scene)) is not None]
         best = min(rows, key=lambda row: row.worst, default=None)
         if best is None or engine not in titles:
             continue

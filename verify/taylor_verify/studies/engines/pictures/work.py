@@ -76,7 +76,7 @@ def panels(
     plain_ones = {row.name for row in entries.entry if row.plain}
     lines: dict[str, list[Line]] = {_DOUBLE: [], _SINGLE: []}
     for number, (engine, group) in enumerate(
-        groupby(newest(settings(board.study)), key=lambda one: one.engine)
+        groupby(newest(settings(board.study)), key=lambda setting: setting.engine)
     ):
         best = _best([*group], scene)
         if best is None:
@@ -99,7 +99,7 @@ def panels(
 
 def _best(group: Sequence[EngineSetting], scene: str) -> EngineSetting | None:
     """Return the setting of an engine with the smallest error of the scene."""
-    errors = [(row.worst, one) for one in group if (row := one.best(scene)) is not None]
+    errors = [(row.worst, setting) for setting in group if (row := setting.best(scene)) is not None]
     return min(errors, key=lambda pair: pair[0])[1] if errors else None
 
 

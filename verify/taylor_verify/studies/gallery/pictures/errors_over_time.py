@@ -61,7 +61,7 @@ def series(records: Sequence[Record], start: float | None = None) -> dict[str, d
     ``start`` is the time of the initial state, by default that of the first sample.
     """
     curves: dict[str, dict[str, Points]] = {}
-    for record in sorted(records, key=lambda one: place_of_rung(one["rung"])):
+    for record in sorted(records, key=lambda record: place_of_rung(record["rung"])):
         first, u = record["times"][0] if start is None else start, record["unit_roundoff"]
         for gate in record["gates"]:
             pairs = zip(record["times"], gate["errors"], strict=True)

@@ -1,7 +1,8 @@
 """The quartic that rules the axial impulse of Clebsch's body, with its roots and the orbit's interval.
 
 x3'^2 = r^2 X3(x3) (Hydromechanics 49): the motion is where X3 >= 0, it turns back at a simple root, and
-takes for ever to reach a repeated one. -X3 is a potential in which x3 moves like a particle of no energy.
+needs an infinite time to reach a repeated root. -X3 is a potential, in which x3 moves like a particle
+whose energy is zero.
 """
 
 from __future__ import annotations
@@ -113,15 +114,15 @@ def _sentence(drawn: Series) -> str:
 
 
 def _figure(drawn: Sequence[Series]) -> Figure:
-    counts = {min(count, 3) for one in drawn for _, count in one.roots}
+    counts = {min(count, 3) for panel in drawn for _, count in panel.roots}
     entries: list[Entry] = [
         ({"color": _CURVE, "linewidth": 1.3}, "X\N{SUBSCRIPT THREE}"),
         ({"color": _ORBIT, "linewidth": 3}, "the orbit's interval"),
         *(entry for count, entry in _ROOTS.items() if count in counts),
     ]
     figure, places = sheet(len(drawn), entries, height=_HEIGHT)
-    for axes, one in zip(places, drawn, strict=True):
-        _draw(axes, one)
+    for axes, panel in zip(places, drawn, strict=True):
+        _draw(axes, panel)
     return figure
 
 

@@ -53,8 +53,8 @@ def work_precision(
     """
     from taylor_verify.publish.pictures.labels import write_names
 
-    front = front_of(one for panel in panels for one in panel.drawn)
-    strips = [[one for one in panel.drawn if one.border] for panel in panels]
+    front = front_of(series for panel in panels for series in panel.drawn)
+    strips = [[series for series in panel.drawn if series.border] for panel in panels]
     entries = _legend(panels, bars, bool(floors))
     frames, height = frames_of([len(strip) for strip in strips], foot_of(entries, note))
     figure = blank(height)
@@ -134,8 +134,12 @@ def _draw_exact(axes: Axes, series: Series) -> None:
 def _names_of(panel: Panel) -> list[Named]:
     """Return the lines of a panel with their names."""
     return [
-        Named(panel.label(one), one.look.colour, [[(s.x, s.y) for s in p] for p in one.pieces])
-        for one in panel.drawn
+        Named(
+            panel.label(series),
+            series.look.colour,
+            [[(s.x, s.y) for s in p] for p in series.pieces],
+        )
+        for series in panel.drawn
     ]
 
 
@@ -200,7 +204,7 @@ def _name_in_strip(axes: Axes, name: str, series: Series, line: int, limits: Lim
 
 def _legend(panels: Sequence[Panel], bars: bool, floors: bool) -> list[Entry]:
     """Return the legend of the marks that occur."""
-    spots = [spot for panel in panels for one in panel.drawn for spot in one.spots]
+    spots = [spot for panel in panels for series in panel.drawn for spot in series.spots]
     standings = {spot.row["standing"] for spot in spots if spot.is_at_the_border}
     exact = any(spot.is_exact for spot in spots)
     dotted, mark = (0, (1, 2)), {"linestyle": "none", "markersize": 4.5, "markeredgecolor": INK}
@@ -220,6 +224,6 @@ def _legend(panels: Sequence[Panel], bars: bool, floors: bool) -> list[Entry]:
 
 
 def _limits_x(panels: Iterable[Panel]) -> Limits:
-    spots = [spot for panel in panels for one in panel.drawn for spot in one.spots]
+    spots = [spot for panel in panels for series in panel.drawn for spot in series.spots]
     sound = [x for s in spots if s.is_sound for x in (s.x, s.x * s.spread)]
     return widened([*sound, *(s.x for s in spots if s.is_at_the_border)], *_MARGINS_X)

@@ -104,8 +104,8 @@ def series_of(document: Mapping[str, Any], x: str, y: str = "error") -> list[Ser
         spot = Spot(row, _amount(row, x), _amount(row, y), spread or 1.0)
         spots.setdefault((row["family"], row["rung"]), []).append(spot)
     every = [Series(family, rung, tuple(own)) for (family, rung), own in spots.items()]
-    ran = [one for one in every if any(s.row["standing"] != Standing.NOT_RUN for s in one.spots)]
-    return sorted(ran, key=lambda one: (place(one.family, one.rung), one.rung))
+    ran = [line for line in every if any(s.row["standing"] != Standing.NOT_RUN for s in line.spots)]
+    return sorted(ran, key=lambda line: (place(line.family, line.rung), line.rung))
 
 
 def _amount(row: Row, key: str) -> float:
@@ -118,7 +118,7 @@ def _amount(row: Row, key: str) -> float:
 
 def front_of(series: Iterable[Series]) -> list[Spot]:
     """Return the sound spots that no other beats in both numbers, by rising x and falling y."""
-    sound = [spot for one in series for spot in one.sound]
+    sound = [spot for line in series for spot in line.sound]
     return pareto(sound, lambda spot: (spot.x, spot.y))
 
 
@@ -135,7 +135,7 @@ class Panel:
 
     def label(self, series: Series) -> str:
         """Return the name of a family, in full if the heading does not name its kind."""
-        mixed = len({one.kind for one in self.series}) > 1 or series.kind != self.series[0].kind
+        mixed = len({line.kind for line in self.series}) > 1 or series.kind != self.series[0].kind
         return series.family if mixed else series.label
 
     @property
@@ -144,21 +144,21 @@ class Panel:
 
     @property
     def sound(self) -> list[Spot]:
-        return [spot for one in self.drawn for spot in one.sound]
+        return [spot for line in self.drawn for spot in line.sound]
 
     @property
     def ladder(self) -> dict[str, str]:
         """The colour of each rung of taylor in the panel."""
-        return {one.rung: one.look.colour for one in self.drawn if one.kind == TAYLOR}
+        return {line.rung: line.look.colour for line in self.drawn if line.kind == TAYLOR}
 
 
 def panels_of(series: Sequence[Series]) -> list[Panel]:
     """Return a panel of taylor by rung, and one or more panels of the others beside its f64."""
-    ladder = tuple(one for one in series if one.kind == TAYLOR)
-    others = [one for one in series if one.kind != TAYLOR]
+    ladder = tuple(line for line in series if line.kind == TAYLOR)
+    others = [line for line in series if line.kind != TAYLOR]
     # A single rung of taylor is no ladder, and belongs to the others.
     is_alone = len(ladder) == 1 and bool(others)
-    f64 = next((one for one in ladder if one.rung == "f64"), ladder[0] if is_alone else None)
+    f64 = next((line for line in ladder if line.rung == "f64"), ladder[0] if is_alone else None)
     panels = [] if is_alone or not ladder else [Panel(heading_of(TAYLOR), ladder)]
     return panels + [Panel(heading, group, f64) for heading, group in _groups(others)]
 
@@ -166,9 +166,9 @@ def panels_of(series: Sequence[Series]) -> list[Panel]:
 def _groups(others: Sequence[Series]) -> list[tuple[str, tuple[Series, ...]]]:
     """Return the families by heading: all together if they are few, else each kind by itself."""
     if 0 < len(others) <= _ALL_IN_ONE:
-        kinds = list(dict.fromkeys(heading_of(one.kind) for one in others))
+        kinds = list(dict.fromkeys(heading_of(line.kind) for line in others))
         return [(kinds[0] if len(kinds) == 1 else "other solvers", tuple(others))]
-    kinds_apart = [tuple(group) for _, group in groupby(others, key=lambda one: one.kind)]
+    kinds_apart = [tuple(group) for _, group in groupby(others, key=lambda line: line.kind)]
     return [part for group in kinds_apart for part in _parts(group)]
 
 
