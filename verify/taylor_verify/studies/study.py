@@ -35,8 +35,8 @@ class NotMeasured(ValueError):  # noqa: N818 (it names what did not happen)
 class Progress:
     """Reports on the progress of a measurement; silent by default.
 
-    ``say`` shows a line of text, ``jobs`` opens a progress bar for many runs, and ``working`` shows that one
-    long task is running.
+    ``say`` shows a line of text, ``jobs`` opens a progress bar for many runs, and ``working`` shows that
+    one long task is running.
     """
 
     say: Callable[[str], None] = lambda words: None

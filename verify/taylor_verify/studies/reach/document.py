@@ -24,8 +24,9 @@ class ReachRow:
     """The errors of one member of a family on a rung, after each number of ``periods``.
 
     ``errors`` and ``floors`` are the largest relative errors up to that number of periods: achieved, and
-    attainable. They are None for a lost motion (infinite during the measurement). ``floors`` is shorter than
-    ``periods`` if no rung was followed so far. If nothing was run, both are empty, and ``why`` is the reason.
+    attainable. They are None for a lost motion (infinite during the measurement). ``floors`` is shorter
+    than ``periods`` if no rung was followed so far. If nothing was run, both are empty, and ``why`` is the
+    reason.
     """
 
     family: str

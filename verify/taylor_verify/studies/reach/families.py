@@ -58,9 +58,9 @@ _MOST_OF_REGULAR_ORBITS: Final = {
 class Family:
     """Scenes that depend on one number, called ``symbol``; ``values`` are its texts, the easiest first.
 
-    ``extreme`` names the limit of the family. Values are decimals with an exponent. In a family of one value
-    only the number of periods varies. ``make`` returns the scene of a value. ``most_periods`` has the most
-    periods by rung, for the rungs on which the family is run.
+    ``extreme`` names the limit of the family. Values are decimals with an exponent. In a family of one
+    value only the number of periods varies. ``make`` returns the scene of a value. ``most_periods`` has the
+    most periods by rung, for the rungs on which the family is run.
     """
 
     name: str

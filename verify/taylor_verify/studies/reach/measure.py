@@ -172,8 +172,8 @@ def _errors(problem: Problem, trajectory: Trajectory) -> Floats:
 def _with_floors(rows: Sequence[ReachRow], scene: Scene) -> list[ReachRow]:
     """Return the rows with their floors, extended to the end of their periods.
 
-    All rows have the same orbit, because a rung that rounds it to another orbit was not run. Raises Unsettled
-    if the conditioning of the orbit cannot be computed.
+    All rows have the same orbit, because a rung that rounds it to another orbit was not run. Raises
+    Unsettled if the conditioning of the orbit cannot be computed.
     """
     followed = max((row.periods[: len(row.errors)] for row in rows), key=len)
     if not followed:

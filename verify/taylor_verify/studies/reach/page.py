@@ -98,7 +98,8 @@ def last_value(
 ) -> str | None:
     """Return the last value up to which ``digits`` are left after ``after`` periods; None if there is none.
 
-    ``rows`` are those of one family on one rung, the easiest value first. ``key`` is ACHIEVED or ATTAINABLE.
+    ``rows`` are those of one family on one rung, the easiest value first. ``key`` is ACHIEVED or
+    ATTAINABLE.
     """
     precise = list(takewhile(lambda row: _keeps(row, after, digits, key), rows))
     return precise[-1].value if precise else None

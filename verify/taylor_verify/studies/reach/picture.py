@@ -167,7 +167,7 @@ def _draw_cells(axes: Axes, panel: _Map, key: str) -> None:
             ha="center",
             va="center_baseline",
             color=text_on(colour) if digits else QUIET,
-            gid=f"{one.rung} {_HEADINGS[key]} {value} {count}",
+            gid=f"{panel.rung} {_HEADINGS[key]} {value} {count}",
         )
 
 

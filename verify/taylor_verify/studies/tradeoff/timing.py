@@ -22,7 +22,8 @@ from taylor_verify.studies.tradeoff.setting import Setting
 
 REPEATS: Final = 5
 SEED: Final = 1
-# Seconds after which finer settings of a family are skipped, and a setting is not repeated more than once.
+# If a setting takes more seconds, finer ones of its family are not run. Once its solves have taken more
+# seconds together, it is not repeated any more.
 PATIENCE: Final = 2.0
 _HEYOKA_CACHE: Final = "HEYOKA_CACHE_DIR"
 
@@ -39,10 +40,10 @@ Clock = Callable[[], float]
 
 @dataclass(frozen=True)
 class Timed:
-    """The first answer of a setting and the times of all others, in seconds.
+    """The first answer of a setting, and the times of its later solves in seconds.
 
-    ``first`` is the whole time of the first solve. ``seconds`` is empty for a failed run. ``inner`` is the
-    part of the best time in another library's compiled integrator, if known.
+    ``first`` is the whole time of the first solve. ``seconds`` is empty for a run that failed. ``inner`` is
+    the part of the best time that another library's compiled integrator took, if known.
     """
 
     setting: Setting
@@ -53,6 +54,7 @@ class Timed:
 
     @property
     def best(self) -> float | None:
+        """The shortest time; None for a run that failed."""
         return min(self.seconds, default=None)
 
     @property
@@ -68,20 +70,20 @@ def timed(
     clock: Clock = perf_counter,
     patience: float = PATIENCE,
 ) -> list[Timed]:
-    """Solve every setting once, and the finished ones ``repeats`` times more; return all in their order.
+    """Solve every setting once, and those that finished ``repeats`` times more; return all in their order.
 
-    A text in place of a problem is the reason why a setting cannot run. Without repeats there is the
-    first time alone, which is enough to measure errors. A setting is skipped, and reported as such, if
-    a coarser one of its family took more than ``patience`` seconds.
+    A text in place of a problem is the reason why a setting cannot run. Without repeats there is only the
+    first time, which is enough to measure errors. A setting is not run, and its answer says so, if a
+    coarser setting of its family took more than ``patience`` seconds.
     """
     firsts = _first_solves(problems, clock, patience)
-    finished = [answer for answer in firsts if answer.trajectory.outcome is Outcome.FINISHED]
+    finished = [first for first in firsts if first.trajectory.outcome is Outcome.FINISHED]
     # Only the seconds of each solve are stored, because whole answers would fill the memory.
     again: dict[Setting, list[tuple[float, float | None]]] = {
-        answer.setting: [] for answer in finished
+        first.setting: [] for first in finished
     }
-    spent = {answer.setting: answer.trajectory.seconds for answer in finished}
-    posed = {setting: answer for setting, answer in problems.items() if not isinstance(answer, str)}
+    spent = {first.setting: first.trajectory.seconds for first in finished}
+    posed = {key: problem for key, problem in problems.items() if not isinstance(problem, str)}
     order = random.Random(seed)
     for _ in range(repeats):
         settings = [s for s, made in again.items() if not made or spent[s] <= patience]
@@ -91,15 +93,16 @@ def timed(
             again[setting].append((solved.seconds, solved.inner_seconds))
             spent[setting] += solved.seconds
     return [
-        _with_times(answer, again[answer.setting]) if answer.setting in again else answer
-        for answer in firsts
+        _with_times(first, again[first.setting]) if first.setting in again else first
+        for first in firsts
     ]
 
 
-def _with_times(answer: Timed, again: Sequence[tuple[float, float | None]]) -> Timed:
-    solves = again or [(answer.trajectory.seconds, answer.trajectory.inner_seconds)]
+def _with_times(first: Timed, again: Sequence[tuple[float, float | None]]) -> Timed:
+    """Return the answer with the times of its later solves, or of its only one."""
+    solves = again or [(first.trajectory.seconds, first.trajectory.inner_seconds)]
     _, inner = min(solves, key=lambda solve: solve[0])
-    return replace(answer, seconds=tuple(seconds for seconds, _ in solves), inner=inner)
+    return replace(first, seconds=tuple(seconds for seconds, _ in solves), inner=inner)
 
 
 def _first_solves(
