@@ -91,7 +91,7 @@ class Published:
         return tuple(run for run in runs(self.verdicts) if run.scene in self.digests)
 
     def outdated_scenes(self, place: str) -> tuple[str, ...]:
-        """Return the scenes whose document in the folder ``place`` is missing or made from an older text."""
+        """Return the scenes whose document in the folder ``place`` is missing or of an older text."""
         scenes = dict.fromkeys(run.scene for run in self.runs)
         return tuple(s for s in scenes if self._digest(place, s) != self.digests[s])
 

@@ -32,7 +32,7 @@ from taylor_verify.studies.engines.entry import Asked, EntryList
 from taylor_verify.studies.engines.replay import errors_of, judged
 from taylor_verify.studies.engines.unfinished import Unfinished
 
-# Below the published folder, where local files are neither published nor committed.
+# A part of the report folder that is neither published nor committed.
 UNFINISHED: Final = "local/engines"
 
 # Runs of one process: more runs load a library less often, but more of them are lost after a kill.

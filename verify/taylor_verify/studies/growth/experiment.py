@@ -1,4 +1,4 @@
-"""Experiment: an ensemble followed piece by piece, and the growth of each of its errors."""
+"""Experiment: an ensemble of starts followed piece by piece, and the growth of each of its errors."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ from taylor_verify.studies.growth.errors import lane_errors
 from taylor_verify.studies.growth.fit import Floats, Growth, growth
 from taylor_verify.studies.growth.question import Question
 
-# The packages that the numbers of a course depend on.
+# The packages that the numbers of an experiment depend on.
 _NUMERICAL = ("taylor-verify", "heyoka", "numpy")
 
-# Called after each piece with the number of finished pieces and that of all pieces.
+# A function that is called after each piece with the number of finished pieces and of all pieces.
 Finished = Callable[[int, int], None]
 
 
 @dataclass(frozen=True)
 class QuantityGrowth:
-    """A quantity of an ensemble: its signed errors (lanes, instants), and their growth."""
+    """A quantity of an ensemble: its errors, an array (lanes, instants), and their growth."""
 
     quantity: str
     errors: Floats
@@ -37,9 +37,10 @@ class QuantityGrowth:
 
 @dataclass(frozen=True)
 class Experiment:
-    """An answered question; ``steps`` is the mean over the lanes at every instant.
+    """An answered question.
 
-    ``lost`` is the number of lanes that did not reach the end.
+    ``lost`` is the number of lanes that did not reach the end. ``steps`` are the steps up to each instant,
+    a mean over the lanes that reached it.
     """
 
     question: Question
@@ -67,6 +68,7 @@ class Experiment:
         )
 
     def _quantity(self, measured: QuantityGrowth) -> GrowthOfQuantity:
+        """Return a quantity in its stored form, in which None stands for a number that is not finite."""
         u, grown = float(self.question.rung.unit_roundoff), measured.growth
         late = grown.late
         row = {
@@ -80,16 +82,15 @@ class Experiment:
             "late_word": late.word,
             "gate": grown.gate,
         }
-        # A number that is not finite is stored as none.
         return converted(complete(row), GrowthOfQuantity)
 
 
 def course(
-    question: Question, file: Path | None = None, finished: Finished = lambda done, all_: None
+    question: Question, file: Path | None = None, finished: Finished = lambda done, total: None
 ) -> Progress:
-    """Follow the question to its end, from the checkpoint in ``file`` if there is one.
+    """Follow all lanes of a question to the end, from the checkpoint in ``file`` if there is one.
 
-    The result is the same to the last bit however often the course was stopped and continued. Raises
+    The result is the same to the last bit, however often the run was stopped and continued. Raises
     ValueError for a checkpoint of another question, and OSError if a checkpoint cannot be written.
     """
     asked, made_with = question.document(), numerical_versions()
@@ -111,14 +112,17 @@ def course(
 
 
 def numerical_versions() -> dict[str, str]:
-    """Return the versions that the numbers of a course depend on."""
+    """Return the versions of the packages that the numbers of an experiment depend on."""
     return {name: versions()[name] for name in _NUMERICAL}
 
 
 def experiment(
-    question: Question, file: Path | None = None, finished: Finished = lambda done, all_: None
+    question: Question, file: Path | None = None, finished: Finished = lambda done, total: None
 ) -> Experiment:
-    """Follow the ensemble and judge it; ``file`` holds its checkpoint."""
+    """Follow an ensemble and measure the growth of its errors; ``file`` is its checkpoint.
+
+    Raises the errors of `course`.
+    """
     end = course(question, file, finished)
     by_lane = [
         lane_errors(problem, [sample and sample[0] for sample in samples], question.period)

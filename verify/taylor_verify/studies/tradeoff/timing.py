@@ -22,8 +22,8 @@ from taylor_verify.studies.tradeoff.setting import Setting
 
 REPEATS: Final = 5
 SEED: Final = 1
-# If a setting takes more seconds, finer ones of its family are not run. Once its solves have taken more
-# seconds together, it is not repeated any more.
+# If a setting takes more seconds, finer ones of its family are not run. Every setting is repeated once, and
+# then only while all its solves have taken fewer seconds together.
 PATIENCE: Final = 2.0
 _HEYOKA_CACHE: Final = "HEYOKA_CACHE_DIR"
 
