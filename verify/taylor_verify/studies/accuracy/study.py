@@ -40,7 +40,8 @@ def _find(folder: Path) -> Verdicts | None:
     return store.load(folder) if (folder / store.FOLDER / store.VERDICTS).exists() else None
 
 
-# Files that the repository leaves out: every sample of every run, and every verdict with its reason.
+# Files that the repository leaves out: records with every sample, and tables with the reason of every
+# verdict.
 
 _GATES: Final = {"tables/gates.md": page.gates, "tables/gates.csv": sheet.gates}
 
@@ -63,7 +64,7 @@ def _runs_lacking(report: Published) -> tuple[Run, ...]:
     if not store.has_own_records(report.folder):
         return tuple(judged)
     names = [store.record_name(run.scene, run.solver, run.rung) for run in judged]
-    return tuple(r for r, name in zip(judged, names, strict=True) if not (data / name).exists())
+    return tuple(run for run, name in zip(judged, names, strict=True) if not (data / name).exists())
 
 
 def _add_records(folder: Path, lacking: Sequence[Run], progress: Progress) -> tuple[Path, ...]:

@@ -1,8 +1,9 @@
-"""The advice of the board: sentences computed from the stored rows, so that no number in them is typed."""
+"""The advice of the board: sentences whose names and numbers are computed from the stored rows."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import groupby
 from math import isfinite
 from typing import Final
@@ -25,15 +26,15 @@ ENOUGH: Final = 1e-3
 LOST: Final = 0.05
 # A setting gets a warning if another one of its engine has an error this many times smaller.
 FAR_WORSE: Final = 10.0
-# A warning of small steps is given if they increase the error by this factor.
+# A warning of too small steps is given if they increase the error by more than this factor.
 WORSE_BELOW: Final = 2.0
 
 
 def advice(board: Board, entries: EntryList) -> list[str]:
-    """Return the sentences that say what a user should do, the most useful first.
+    """Return sentences that tell a user what to take and what to avoid, the most useful first.
 
-    The sentences follow from the rows of the ``board``; ``entries`` is the list of engines, which names the
-    scenes of the advice.
+    They follow from the rows of the ``board``. ``entries`` is the list of engines, which names the scenes
+    of the advice.
     """
     names = {row.name: row.title for row in entries.entry}
     plain = {row.name for row in entries.entry if row.plain}
@@ -49,7 +50,7 @@ def advice(board: Board, entries: EntryList) -> list[str]:
 
 
 def advised(board: Board, entries: EntryList) -> list[str]:
-    """Return the scenes that the advice rests on, of those that were measured."""
+    """Return the scenes of the advice that were measured."""
     measured = {row.scene for row in board.study.rows if row.is_judged}
     return [scene for scene in entries.advised if scene in measured]
 
@@ -60,7 +61,7 @@ def error(size: float) -> str:
 
 
 def named(setting: EngineSetting, names: dict[str, str]) -> str:
-    """Return the name of an engine with its version and its settings."""
+    """Return the name of an engine with its version and its settings; ``names`` has the engines' titles."""
     words = f" with {prose(setting.words)}" if setting.words else ""
     return f"{bold(prose(f'{names[setting.engine]} {setting.version}'.strip()))}{words}"
 
@@ -68,6 +69,7 @@ def named(setting: EngineSetting, names: dict[str, str]) -> str:
 def _take(
     board: Board, engines: Sequence[EngineSetting], scenes: Sequence[str], names: dict[str, str]
 ) -> Iterator[str]:
+    """Yield the most accurate setting, and the cheapest of those that suffice for most uses."""
     scores = [score for setting in engines for score in setting.scores(scenes)]
     if (best := best_of(scores)) is None:
         return
@@ -75,7 +77,11 @@ def _take(
         f"For free rotation take {named(best.setting, names)}{_step(best)}: omega and attitude are "
         f"right to {figure(best.error)} on all of {_listed(scenes)}, the most that an engine reaches here."
     )
-    paced = [(pace, s) for s in scores if s.error <= ENOUGH and (pace := board.pace(s.row))]
+    paced = [
+        (pace, score)
+        for score in scores
+        if score.error <= ENOUGH and (pace := board.pace(score.row))
+    ]
     if paced:
         pace, cheap = min(paced, key=lambda pair: pair[0])
         yield (
@@ -87,8 +93,8 @@ def _take(
 def _never(
     engines: Sequence[EngineSetting], scenes: Sequence[str], names: dict[str, str]
 ) -> Iterator[str]:
-    """Yield warnings of methods that lose the motion, and of engines whose methods all do."""
-    methods, without = [], []
+    """Yield warnings of methods that lose the motion, and of engines whose methods all lose it."""
+    methods, whole_engines = [], []
     for engine, group in groupby(engines, key=lambda setting: setting.engine):
         own = [best for setting in group if (best := best_of(setting.scores(scenes))) is not None]
         lost = [best for best in own if best.error >= LOST]
@@ -98,17 +104,18 @@ def _never(
         least = min(lost, key=lambda best: best.error)
         name = bold(prose(f"{names[engine]} {least.setting.version}".strip()))
         if sound is None:
-            without.append(f"{name} ({figure(least.error)}, drift of the energy {_energy(least)})")
+            whole_engines.append(
+                f"{name} ({figure(least.error)}, drift of the energy {_energy(least)})"
+            )
         elif sound.error * FAR_WORSE <= least.error:
             words = _either([prose(best.setting.words) for best in lost])
             better = f"{prose(sound.setting.words)} has {figure(sound.error)}"
             methods.append(f"{name} with {words} (least error {figure(least.error)}; {better})")
     if methods:
         yield f"Never {'; '.join(methods)}."
-    if without:
-        yield (
-            f"Not for free rotation, with the least error at any step measured here: {'; '.join(without)}."
-        )
+    if whole_engines:
+        listed = "; ".join(whole_engines)
+        yield f"Not for free rotation, with the least error at any step measured here: {listed}."
 
 
 def _energy(score: Score) -> str:
@@ -131,7 +138,11 @@ def _as_shipped(
     warnings = []
     for engine, group in groupby(shipped, key=lambda setting: setting.engine):
         pairs = [(row, like(row, engines, entries)) for setting in group for row in setting.rows]
-        ratios = [(a.worst / b.worst, a, b) for a, b in pairs if a.is_judged and b and b.worst > 0]
+        ratios = [
+            (row.worst / usual.worst, row, usual)
+            for row, usual in pairs
+            if row.is_judged and usual and usual.worst > 0
+        ]
         ratio, row, usual = max(ratios, key=lambda compared: compared[0], default=(0.0, None, None))
         if row is None or usual is None or ratio < FAR_WORSE:
             continue
@@ -145,26 +156,25 @@ def _as_shipped(
 
 
 def like(row: EngineRow, engines: Sequence[EngineSetting], entries: EntryList) -> EngineRow | None:
-    """Return the row of the same run with the board's settings; None if there is none."""
-    bare = {
+    """Return the judged row that differs from ``row``, a run as shipped, in the board's settings alone.
+
+    The result is None if there is none.
+    """
+    defaults = {
         word
         for entry in entries.entry
         if entry.name == row.engine
         for word in (entry.shipped or {}).values()
     }
-    variant = ", ".join(word for word in row.variant.split(", ") if word not in bare)
-    asked = (row.engine, row.version, variant, row.scene, row.value, row.rung)
-    return next(
-        (
-            each
-            for setting in engines
-            for each in setting.rows
-            if each.is_judged
-            and (each.engine, each.version, each.variant, each.scene, each.value, each.rung)
-            == asked
-        ),
-        None,
-    )
+    variant = ", ".join(word for word in row.variant.split(", ") if word not in defaults)
+    wanted = _identity(replace(row, variant=variant))
+    rows = (other for setting in engines for other in setting.rows if other.is_judged)
+    return next((other for other in rows if _identity(other) == wanted), None)
+
+
+def _identity(row: EngineRow) -> tuple[str, ...]:
+    """Return the fields that distinguish the runs of the board."""
+    return row.engine, row.version, row.variant, row.scene, row.value, row.rung
 
 
 def _too_fine(
@@ -185,7 +195,7 @@ def _too_fine(
 
 
 def _step(score: Score) -> str:
-    """Return the step behind an "and"; empty for a solver without one."""
+    """Return the step with the words that join it to a setting; empty for a solver without a step."""
     if not score.value:
         return ""
     knob = score.setting.knob

@@ -79,7 +79,7 @@ def _cells(
 
 
 def _order(setting: EngineSetting, scene: str, states: Sequence[str]) -> str:
-    """Return the orders of one setting in a line; empty for a setting without steps."""
+    """Return a line with the observed orders of one setting; empty for a setting without steps."""
     orders = {name: setting.order(scene, name) for name in states}
     reasons = [f"{name}: {prose(order.reason)}" for name, order in orders.items() if order]
     words = [setting.version, setting.words, "as shipped" * setting.shipped]
@@ -88,7 +88,7 @@ def _order(setting: EngineSetting, scene: str, states: Sequence[str]) -> str:
 
 
 def _not_judged(own: Iterable[EngineSetting]) -> Iterator[str]:
-    """Yield the runs without numbers by their reason, each reason once."""
+    """Yield a section of the runs without numbers, with a line for each reason."""
     reasons: dict[str, list[EngineRow]] = {}
     for setting in own:
         for row in setting.rows:
@@ -108,7 +108,7 @@ def _not_judged(own: Iterable[EngineSetting]) -> Iterator[str]:
 
 
 def _commands(own: Iterable[EngineSetting]) -> str:
-    """Return a block with a command for each setting at its first step."""
+    """Return a block with the command of each setting at its first step, and its further steps."""
     lines = []
     for setting in own:
         steps = " ".join(filter(None, dict.fromkeys(row.value for row in setting.rows)))

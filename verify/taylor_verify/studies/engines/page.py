@@ -99,7 +99,7 @@ def page(board: Board, folder: Path) -> str:
 def pictures(board: Board) -> list[Picture]:
     """Return the pictures of the board: energy and motion, error against time, step and version."""
     entries = _entries(board)
-    return [made for kind in (energy, work, sweeps) for made in kind.pictures(board, entries)]
+    return [picture for kind in (energy, work, sweeps) for picture in kind.pictures(board, entries)]
 
 
 def _entries(board: Board) -> EntryList:
@@ -115,7 +115,7 @@ def _entries(board: Board) -> EntryList:
 
 
 def _best(board: Board, entries: EntryList, every: Sequence[EngineSetting]) -> str:
-    """Return a line for each engine: its best setting on the scenes that all engines take."""
+    """Return a table of the engines, each with its best setting on the first scene of the advice."""
     scene = entries.advised[0]
     titles, rows = {row.name: row.title for row in entries.entry}, []
     for best in best_of_each(every, scene):
@@ -142,7 +142,7 @@ COLUMNS: Final = (
 
 
 def cells(board: Board, setting: EngineSetting, row: EngineRow) -> list[str]:
-    """Return the cells of a row after the name of its engine."""
+    """Return the cells of a row of `COLUMNS` after the name of its engine."""
     orders = [setting.order(row.scene, name) for name in ("omega", "attitude")]
     order_cells = [f"{o.order:.1f}" if o and o.order is not None else NOTHING for o in orders]
     pace = board.pace(row)
@@ -202,6 +202,7 @@ def _scene_row(row: EngineRow, title: str) -> list[str]:
 
 
 def _states(board: Board, scene: str) -> set[str]:
+    """Return the state quantities that were judged on a scene."""
     return {name for row in board.study.rows if row.scene == scene for name in row.floors}
 
 
@@ -224,16 +225,27 @@ def _as_shipped(board: Board, entries: EntryList, every: Sequence[EngineSetting]
                     ]
                 )
     if rows:
-        numbers = ("step:", "omega:", "attitude:", "energy:", "set by us:")
+        columns = [
+            "engine",
+            "setting",
+            "scene",
+            "step:",
+            "omega:",
+            "attitude:",
+            "energy:",
+            "set by us:",
+            "cause",
+        ]
         yield "## As shipped"
         yield (
             "Sleeping, damping and caps are left as an engine ships them; *set by us* is the error with "
             "what the adapter sets, at the same step."
         )
-        yield table(["engine", "setting", "scene", *numbers, "cause"], rows)
+        yield table(columns, rows)
 
 
 def _unavailable(rows: Iterable[EngineRow]) -> Iterator[str]:
+    """Yield a section of the runs without numbers, with a line for each engine, version and reason."""
     lost = {
         (row.engine, row.version, row.standing, row.detail): row
         for row in rows

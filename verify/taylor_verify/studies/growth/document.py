@@ -53,7 +53,7 @@ class GrowthOfQuantity:
 
 @dataclass(frozen=True)
 class Ensemble:
-    """A scene followed from ``lanes`` starts for ``periods`` periods; ``lost`` starts did not reach the end.
+    """A scene followed from ``lanes`` starts for ``periods`` periods; ``lost`` of them did not get there.
 
     ``period`` is in the scene's unit of time, ``counts`` are the instants in periods, and ``steps`` the
     steps up to each instant, a mean over the lanes. ``why`` is the reason to measure the ensemble.

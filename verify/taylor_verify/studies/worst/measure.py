@@ -56,7 +56,7 @@ class SearchedFamily:
 
 @dataclass(frozen=True)
 class Candidate:
-    """A judged scene: its ``place`` in the cube of its family, and the verdict that is nearest to failing."""
+    """A judged scene: its ``place`` in the cube of its family, and its verdict nearest to failing."""
 
     place: tuple[float, ...]
     verdict: Verdict
