@@ -88,8 +88,8 @@ class SceneDocuments:
     def write(self, report: Path, documents: Iterable[Mapping[str, Any]]) -> list[Path]:
         """Write documents in place of earlier ones, and return the files written.
 
-        Documents of scenes that no longer exist are removed; other people's files stay. Raises OSError; the
-        folder then stays as it was.
+        Documents of scenes that no longer exist are removed; files of another maker stay. Raises OSError;
+        the folder then stays as it was.
         """
         return list(replace_files(report, self.texts(documents), stale=self.own(report)))
 

@@ -74,7 +74,7 @@ def _counts(rows: Sequence[ClaimRow]) -> str:
 def _entries(
     rows: Iterable[ClaimRow], lines: Callable[[ClaimRow], Sequence[str]], *verdicts: Verdict
 ) -> Iterator[str]:
-    """Yield the entries that have one of the verdicts; ``lines`` returns the lines below the name of one."""
+    """Yield the entries with one of the verdicts; ``lines`` returns the lines below the entry's name."""
     for row in rows:
         if row.verdict in verdicts:
             yield f"{bold(code(row.id))}\n\n{bullets(filter(None, lines(row)))}"

@@ -145,7 +145,7 @@ def _row(verdict: Verdict) -> dict[str, Any]:
 
 
 def _checked(file: Path, kind: type[ControlsStudy]) -> ControlsStudy:
-    """Return the document in a file. Raises ValueError for another file, and for a defect without verdicts."""
+    """Return the document in a file. Raises ValueError for other content, or a defect without verdicts."""
     study = read_study(file, kind)
     try:
         _ = study.sights

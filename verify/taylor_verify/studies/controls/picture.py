@@ -70,7 +70,7 @@ def _is_drawable(row: Verdict) -> bool:
 
 
 def picture(verdicts: Sequence[Verdict], scene: str) -> Picture:
-    """Return the picture of verdicts; ``scene`` is their common name. Raises ValueError without any shift."""
+    """Return the picture of verdicts; ``scene`` is their common name. Raises ValueError without a shift."""
     rows = series(verdicts)
     if not rows:
         raise ValueError(f"expected an error with its shift of time, got none @ {scene}")

@@ -13,7 +13,7 @@ from taylor_verify.studies.study import Measured, NotMeasured, Progress, Study
 if TYPE_CHECKING:
     from taylor_verify.studies.gallery.page import Shown
 
-# The pictures need NumPy, and other pages do not: it is imported late.
+# Functions import `page` when they are called: it needs NumPy, which other pages do not need.
 
 
 def _measure(folder: Path, progress: Progress) -> Measured:
@@ -47,7 +47,7 @@ def _find(folder: Path) -> list[Shown] | None:
 
 
 def _page(pictures: list[Shown], folder: Path) -> str:
-    """Return the page of the pictures that are drawn already; empty without any."""
+    """Return the page of those pictures that are drawn already; empty if there are none."""
     from taylor_verify.studies.gallery.page import page
 
     drawn = {file.stem for file in (folder / FOLDER).glob("*.svg")}

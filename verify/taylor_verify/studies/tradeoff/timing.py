@@ -27,7 +27,7 @@ SEED: Final = 1
 PATIENCE: Final = 2.0
 _HEYOKA_CACHE: Final = "HEYOKA_CACHE_DIR"
 
-# Explanation beside all shown times.
+# The explanation that stands with all times.
 WHAT_IS_TIMED: Final = (
     "the solver's own propagation; taylor runs compiled equations and looks for its longest step in "
     "Python, scipy calls straight-line equations in Python, geometric and odefun are Python "

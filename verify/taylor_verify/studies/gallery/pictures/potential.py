@@ -1,6 +1,6 @@
-"""The quartic that rules the axial impulse of Clebsch's body, with its roots and the orbit's interval.
+"""Picture of the quartic X3 of the axial impulse of Clebsch's body, its roots and the orbit's interval.
 
-x3'^2 = r^2 X3(x3) (Hydromechanics 49): the motion is where X3 >= 0, it turns back at a simple root, and
+x3'^2 = r^2 X3(x3) (Hydromechanics 49): the motion is where X3 >= 0. It turns back at a simple root, and
 needs an infinite time to reach a repeated root. -X3 is a potential, in which x3 moves like a particle
 whose energy is zero.
 """
@@ -32,6 +32,7 @@ _ORBIT: Final = "#A83C00"
 _POINTS: Final = 101
 # Margin beyond the shown roots, relative to the interval's length.
 _BESIDE: Final = 0.45
+# The least length of the interval, relative to the largest root.
 _LEAST: Final = 0.25
 # Margins above the hump of the orbit and below the axis, relative to that hump.
 _ABOVE: Final = 1.35
@@ -56,7 +57,11 @@ _SUBSCRIPTS: Final = str.maketrans("123", "\N{SUBSCRIPT ONE}\N{SUBSCRIPT TWO}\N{
 
 @dataclass(frozen=True)
 class Series:
-    """The curve (n, 2), the interval of the motion, and the real roots with their multiplicities."""
+    """The curve X3 as points (n, 2), the interval of the motion, and the roots.
+
+    ``roots`` has the real roots with their multiplicities, ``pair`` real and imaginary part of a complex
+    one.
+    """
 
     scene: str
     variable: str
@@ -77,7 +82,7 @@ def series(portrait: Document) -> Series:
     roots = tuple((root, real.count(root)) for root in dict.fromkeys(real))
     low, high = map(float, potential["interval"])
     left, right = _shown(low, high, [root for root, _ in roots])
-    # Half of the points are inside the interval, because the hump is the subject.
+    # Half of the points lie in the interval, where the curve matters most.
     z = np.union1d(np.linspace(left, right, _POINTS), np.linspace(low, high, _POINTS))
     curve = np.stack([z, np.polyval(potential["coefficients"], z)], axis=1)
     variable, regime = potential["variable"], portrait["regime"]
@@ -85,7 +90,7 @@ def series(portrait: Document) -> Series:
 
 
 def _shown(low: float, high: float, roots: Sequence[float]) -> tuple[float, float]:
-    """Return the interval, extended to the roots within its own length on either side."""
+    """Return the shown range: the interval, extended to roots that are no farther than its own length."""
     length = max(high - low, _LEAST * max(abs(low), abs(high), *map(abs, roots)))
     near = [root for root in roots if low - length <= root <= high + length]
     ends = [low, high, *near]

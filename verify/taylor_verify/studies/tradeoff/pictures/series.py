@@ -18,7 +18,7 @@ Row = Mapping[str, Any]
 # The standings that are marked at the border.
 AT_THE_BORDER: Final = (Standing.FALSE, Standing.FAILED)
 
-# The most lines of a legible panel: of all solvers but taylor together, and of one kind.
+# The most lines of a legible panel: if it has all solvers but taylor, and if it has one kind.
 _ALL_IN_ONE: Final = 6
 _MOST: Final = 7
 
@@ -80,21 +80,23 @@ class Series:
 
     @property
     def pieces(self) -> list[list[Spot]]:
-        """Runs of sound neighbours, which lines join."""
+        """The sequences of neighbouring sound settings, which lines join."""
         runs = groupby(self.spots, key=lambda spot: spot.is_sound)
         return [list(spots) for is_sound, spots in runs if is_sound]
 
     @property
     def sound(self) -> list[Spot]:
+        """The sound settings that an axis can show."""
         return [spot for spot in self.spots if spot.is_sound]
 
     @property
     def border(self) -> list[Spot]:
+        """The failures and false successes, which are marked at the border."""
         return [spot for spot in self.spots if spot.is_at_the_border]
 
 
 def series_of(document: Mapping[str, Any], x: str, y: str = "error") -> list[Series]:
-    """Return the families of a trade-off with runs, in the order of `style.place`.
+    """Return the families of a trade-off that were run, in the order of `style.place`.
 
     ``x`` and ``y`` are the keys of the rows for the axes.
     """
@@ -109,7 +111,10 @@ def series_of(document: Mapping[str, Any], x: str, y: str = "error") -> list[Ser
 
 
 def _amount(row: Row, key: str) -> float:
-    """Return a positive finite number of the row, or zero. A failed run has the time of its only solve."""
+    """Return a number of the row if it is positive and finite, else 0.
+
+    A run that is not sound has the time of its only solve.
+    """
     value = row.get(key)
     if value is None and key == "seconds" and row["standing"] != Standing.SOUND:
         value = row.get("first_seconds")
@@ -135,15 +140,17 @@ class Panel:
 
     def label(self, series: Series) -> str:
         """Return the name of a family, in full if the heading does not name its kind."""
-        mixed = len({line.kind for line in self.series}) > 1 or series.kind != self.series[0].kind
-        return series.family if mixed else series.label
+        is_named = {series.kind} == {line.kind for line in self.series}
+        return series.label if is_named else series.family
 
     @property
     def drawn(self) -> tuple[Series, ...]:
-        return (*((self.yardstick,) if self.yardstick else ()), *self.series)
+        """All families of the panel, the yardstick first."""
+        return (self.yardstick, *self.series) if self.yardstick else self.series
 
     @property
     def sound(self) -> list[Spot]:
+        """The sound settings of all families of the panel."""
         return [spot for line in self.drawn for spot in line.sound]
 
     @property
@@ -153,10 +160,10 @@ class Panel:
 
 
 def panels_of(series: Sequence[Series]) -> list[Panel]:
-    """Return a panel of taylor by rung, and one or more panels of the others beside its f64."""
+    """Return a panel of taylor on all rungs, and panels of the other solvers with taylor on f64."""
     ladder = tuple(line for line in series if line.kind == TAYLOR)
     others = [line for line in series if line.kind != TAYLOR]
-    # A single rung of taylor is no ladder, and belongs to the others.
+    # Taylor on a single rung needs no panel of its own, and is drawn with the others.
     is_alone = len(ladder) == 1 and bool(others)
     f64 = next((line for line in ladder if line.rung == "f64"), ladder[0] if is_alone else None)
     panels = [] if is_alone or not ladder else [Panel(heading_of(TAYLOR), ladder)]
@@ -173,7 +180,7 @@ def _groups(others: Sequence[Series]) -> list[tuple[str, tuple[Series, ...]]]:
 
 
 def _parts(group: tuple[Series, ...]) -> Iterator[tuple[str, tuple[Series, ...]]]:
-    """Yield the group, or its even parts if it is too large to be legible."""
+    """Yield a group with its heading, in equal parts if it is too large to be legible."""
     heading = heading_of(group[0].kind)
     count = -(-len(group) // _MOST)
     size = -(-len(group) // count)

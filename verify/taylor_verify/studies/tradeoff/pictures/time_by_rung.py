@@ -33,6 +33,8 @@ _NEAR: Final = 0.045
 def picture(scene: str, ratios: Sequence[Ratio]) -> Picture:
     """Return the picture of ratios to the time on f64; ``scene`` is the common part of their names.
 
+    The ends of a ratio are those of the interval for its median, at 95 %.
+
     Raises ValueError for invalid ratios, and for a rung without a number of bits.
     """
     check(ratios)
@@ -90,12 +92,12 @@ def _figure(lines: Mapping[str, Sequence[Ratio]]) -> Figure:
     write_names(axes, named)
     if any(point.least < point.greatest for point in every):
         bar = {"color": QUIET, "linewidth": 0.6, "marker": "|", "markersize": 6}
-        draw_legend(figure, [(bar, "least to greatest seen")])
+        draw_legend(figure, [(bar, "interval of the median, 95 %")])
     return figure
 
 
 def _name_rungs(axes: Axes, rungs: Sequence[str]) -> None:
-    """Set a tick for every rung; names that are too near are written below each other."""
+    """Set a tick for every rung; of two names that are too near, the second is written lower."""
     from matplotlib.ticker import NullLocator
 
     bits = [bits_of(rung) for rung in rungs]

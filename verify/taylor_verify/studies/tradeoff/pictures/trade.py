@@ -23,8 +23,8 @@ from taylor_verify.studies.tradeoff.pictures.series import (
     series_of,
 )
 
-# Kinds of work: the key of a row, and the name in titles and files. Evaluations and steps are the same on
-# every machine.
+# Kinds of work: the key of a row, and the word in titles and names of files. Evaluations and steps are the
+# same on every machine.
 WORKS: Final = {"seconds": "time", "evaluations": "evaluations", "steps": "steps"}
 _NOTE: Final = "An evaluation of taylor is one order of a step's series."
 
@@ -39,7 +39,7 @@ def draw(document: Mapping[str, Any], folder: Path | str) -> list[Path]:
 
 
 def pictures(document: Mapping[str, Any]) -> list[Picture]:
-    """Return every picture that has points."""
+    """Return every picture that has points. Raises ValueError for a document without a sound point."""
     if not any(row["standing"] == "sound" for row in document["points"]):
         raise ValueError(f"expected a sound point, got none @ {document['scene']}.points")
     drawn = (*(_work_precision(document, key) for key in WORKS), _digits_achieved(document))
@@ -69,7 +69,7 @@ def _work_precision(document: Mapping[str, Any], key: str) -> Picture | None:
     alt = (
         f"Largest error against {'time of a solve' if is_time else work} on {scene}, both "
         f"logarithmic, for {_names(series)}. "
-        f"{_ends(front, work)}{_fallen(series)}"
+        f"{_ends(front, work)}{_at_the_border(series)}"
     )
     return Picture(stem_of(document, work), f"Error against {work}: {scene}", alt, figure)
 
@@ -109,7 +109,7 @@ def floors_of(document: Mapping[str, Any]) -> dict[str, float]:
 
 
 def _ends(front: Sequence[Spot], work: str) -> str:
-    """Return the two ends of the front in words."""
+    """Return the two ends of the front in words: the cheapest and the most accurate setting."""
     first, best = front[0], front[-1]
     if work == "time":
         return (
@@ -123,7 +123,7 @@ def _ends(front: Sequence[Spot], work: str) -> str:
     )
 
 
-def _fallen(series: Sequence[Series]) -> str:
+def _at_the_border(series: Sequence[Series]) -> str:
     """Return the number of settings at the border in words; empty if all are sound."""
     standings = Counter(spot.row["standing"] for line in series for spot in line.spots)
     plural = {Standing.FALSE: "false successes"}
