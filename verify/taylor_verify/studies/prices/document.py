@@ -12,7 +12,7 @@ Interval = tuple[float, float | None, float | None]
 
 @dataclass(frozen=True)
 class PriceRow:
-    """A variant of a scene on a rung: the size of its equations, and the cost of a step and of a unit of time.
+    """A variant on a rung: the size of its equations, and the cost of a step and of a unit of time.
 
     ``against`` names the variant whose cost is the unit of ``step_ratio`` and ``time_ratio``. ``states``,
     ``parameters``, ``sums``, ``products`` and ``quotients`` are numbers in one evaluation, ``order`` is

@@ -97,7 +97,7 @@ def recommend(
     asked: Sequence[Setting] | None = None,
     seed: int = SEED,
 ) -> Recommendation:
-    """Return the fastest setting, measured now; arguments and errors are those of `taylor_verify.recommend`."""
+    """Return the fastest setting; arguments and raised errors are those of `taylor_verify.recommend`."""
     check_target(error)
     scene = as_scene(scene)
     asked = settings(scene) if asked is None else asked

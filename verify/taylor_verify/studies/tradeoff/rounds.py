@@ -133,7 +133,7 @@ def in_rounds(turns: Sequence[Callable[[], Answer]], rounds: int, seed: int) -> 
 def _summed(
     first: _Taken, later: Sequence[_Taken | None], unit: Sequence[_Taken | None]
 ) -> Measured:
-    """Return the medians over the rounds; for a setting that was solved once, that time over the yardstick's."""
+    """Return the medians over the rounds; a setting that was solved once has that one time."""
     rounds = [(a, b.seconds) for a, b in zip(later, unit, strict=False) if a and b]
     rounds = rounds or [(first, median(b.seconds for b in unit if b))]
     inner = [taken.inner for taken, _ in rounds if taken.inner is not None]

@@ -36,7 +36,7 @@ _GEOMETRIC: Final = (
 # Steps relative to the scene's natural unit of time, in which its rates are of size one.
 _STEPS: Final = (Fraction(1, 4), Fraction(1, 16), Fraction(1, 64))
 _ODEFUN: Final = ("mpmath:odefun?tol=1e-6", "mpmath:odefun")
-# odefun takes some ten milliseconds for a natural unit of time, so that this limit is a few seconds.
+# odefun takes tens of milliseconds for a natural unit of time, so that this limit is about ten seconds.
 _LONGEST_FOR_ODEFUN: Final = 400
 ELLIPJ: Final = "closed-form:ellipj"
 
