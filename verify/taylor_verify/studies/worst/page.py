@@ -49,7 +49,7 @@ def page(study: WorstStudy) -> str:
         _table(families),
         _KEPT,
         "## To remake this",
-        f"`taylor-verify publish worst --runs {study.runs} --seed {study.seed}` repeats the hunt and "
+        f"`taylor-verify publish worst --runs {study.runs} --seed {study.seed}` repeats the search and "
         "replaces the scenes. With the same versions it finds the same scenes. Other scenes may be "
         f"worse. Every digit is in [worst.csv](worst.csv) and [worst.json](../{WORST.name}).",
         traced(complete(study.provenance)),
