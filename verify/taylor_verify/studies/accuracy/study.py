@@ -100,11 +100,16 @@ STUDY: Final = Study(
     },
     bulk=(
         Bulk(
-            "tables of gates",
-            tuple(_GATES),
-            _gates_lacking,
-            lambda folder, lacking, progress: replace_files(folder, dict(lacking)),
+            what="tables of gates",
+            patterns=tuple(_GATES),
+            lacking=_gates_lacking,
+            make=lambda folder, lacking, progress: replace_files(folder, dict(lacking)),
         ),
-        Bulk("records of runs", ("data/records/",), _runs_lacking, _add_records),
+        Bulk(
+            what="records of runs",
+            patterns=("data/records/",),
+            lacking=_runs_lacking,
+            make=_add_records,
+        ),
     ),
 )

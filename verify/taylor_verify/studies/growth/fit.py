@@ -227,7 +227,15 @@ def gate(
         )
     # Written so that a NaN fails.
     verdict = Status.PASS if false_alarm <= chance else Status.FAIL
-    return Gate(verdict, law, chance, statistic, 2 * lanes, because, false_alarm)
+    return Gate(
+        verdict=verdict,
+        law=law,
+        chance=chance,
+        statistic=statistic,
+        freedom=2 * lanes,
+        because=because,
+        false_alarm=false_alarm,
+    )
 
 
 def early_and_late(

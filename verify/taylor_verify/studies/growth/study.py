@@ -50,11 +50,12 @@ class Pieces:
     def __init__(self, say: Callable[[str], None]) -> None:
         self._say, self._label, self._reported = say, "", 0.0
 
-    def __call__(self, label: str, done: int, of: int) -> None:
-        if done == of:
+    def __call__(self, label: str, done: int, total: int) -> None:
+        """Report that ``done`` of ``total`` pieces of the ensemble ``label`` have ended."""
+        if done == total:
             self._say(f"{label}: done")
         elif label != self._label or monotonic() - self._reported >= _SECONDS_BETWEEN_REPORTS:
-            self._say(f"{label}: piece {done} of {of}")
+            self._say(f"{label}: piece {done} of {total}")
         else:
             return
         self._label, self._reported = label, monotonic()

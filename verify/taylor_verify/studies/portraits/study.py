@@ -40,10 +40,10 @@ STUDY: Final = Study[None](
     measure=_measure,
     bulk=(
         Bulk(
-            "portraits of scenes",
-            (f"{PORTRAITS.folder}/",),
-            lambda report: report.outdated_scenes(PORTRAITS.folder),
-            _add,
+            what="portraits of scenes",
+            patterns=(f"{PORTRAITS.folder}/",),
+            lacking=lambda report: report.outdated_scenes(PORTRAITS.folder),
+            make=_add,
         ),
     ),
 )

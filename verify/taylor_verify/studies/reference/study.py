@@ -45,5 +45,12 @@ STUDY: Final = Study[None](
     measure=_measure,
     place=f"{page.FOLDER}/README.md",
     needs_heyoka=False,
-    bulk=(Bulk("exact trajectories as JSON", (f"{page.FOLDER}/*.json",), _lacking, _add),),
+    bulk=(
+        Bulk(
+            what="exact trajectories as JSON",
+            patterns=(f"{page.FOLDER}/*.json",),
+            lacking=_lacking,
+            make=_add,
+        ),
+    ),
 )

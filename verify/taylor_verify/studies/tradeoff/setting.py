@@ -150,17 +150,24 @@ def setting(name: str, rung: Rung) -> Setting:
     if isinstance(solver, Taylor):
         tolerance = 2 * rung.unit_roundoff if solver.tolerance is None else solver.tolerance
         code = " optimised" if solver.is_optimised else ""
-        return Setting(solver, rung, float(tolerance), TOLERANCE, f"taylor {rung.name}{code}")
+        return Setting(
+            solver,
+            rung,
+            requested=float(tolerance),
+            asked=TOLERANCE,
+            family=f"taylor {rung.name}{code}",
+        )
     if name.startswith(PROCESS):
         # The options of a command that set its accuracy are unknown.
-        return Setting(solver, rung, None, NOTHING, name)
+        return Setting(solver, rung, requested=None, asked=NOTHING, family=name)
     method, _, options = name.partition("?")
     family = method.replace(":", " ")
     for option in options.split("&"):
         key, _, value = option.partition("=")
         if key in _ASKED:
-            return Setting(solver, rung, float(Fraction(value)), _ASKED[key], family)
-    return Setting(solver, rung, None, NOTHING, family)
+            accuracy = float(Fraction(value))
+            return Setting(solver, rung, requested=accuracy, asked=_ASKED[key], family=family)
+    return Setting(solver, rung, requested=None, asked=NOTHING, family=family)
 
 
 def taylor(rung: Rung, tolerances: Iterable[str] = _TOLERANCES) -> Iterator[Setting]:

@@ -108,20 +108,22 @@ def _with_times(first: Timed, again: Sequence[tuple[float, float | None]]) -> Ti
 def _first_solves(
     problems: Mapping[Setting, Problem | str], clock: Clock, patience: float
 ) -> list[Timed]:
+    """Return the first answer of every setting, or the reason why it was not run."""
     solves: list[Timed] = []
-    dear: set[str] = set()
+    # Families whose finer settings are not run.
+    slow: set[str] = set()
     for setting, problem in problems.items():
-        if isinstance(problem, str) or setting.family in dear:
+        if isinstance(problem, str) or setting.family in slow:
             coarser = f"a coarser setting took more than {patience:g} s"
             because = problem if isinstance(problem, str) else coarser
             nothing = Trajectory(Outcome.NOT_STARTED, detail=because)
-            solves.append(Timed(setting, nothing, 0.0))
+            solves.append(Timed(setting, nothing, first=0.0))
             continue
         began = clock()
         trajectory = setting.solver.solve(problem)
-        solves.append(Timed(setting, trajectory, clock() - began))
+        solves.append(Timed(setting, trajectory, first=clock() - began))
         if not trajectory.seconds <= patience:
-            dear.add(setting.family)
+            slow.add(setting.family)
     return solves
 
 

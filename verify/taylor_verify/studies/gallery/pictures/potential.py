@@ -85,8 +85,15 @@ def series(portrait: Document) -> Series:
     # Half of the points lie in the interval, where the curve matters most.
     z = np.union1d(np.linspace(left, right, _POINTS), np.linspace(low, high, _POINTS))
     curve = np.stack([z, np.polyval(potential["coefficients"], z)], axis=1)
-    variable, regime = potential["variable"], portrait["regime"]
-    return Series(portrait["scene"], variable, regime, curve, (low, high), roots, pair)
+    return Series(
+        scene=portrait["scene"],
+        variable=potential["variable"],
+        regime=portrait["regime"],
+        curve=curve,
+        interval=(low, high),
+        roots=roots,
+        pair=pair,
+    )
 
 
 def _shown(low: float, high: float, roots: Sequence[float]) -> tuple[float, float]:

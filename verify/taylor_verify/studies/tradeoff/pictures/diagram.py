@@ -55,7 +55,7 @@ def work_precision(
 
     front = front_of(series for panel in panels for series in panel.drawn)
     strips = [[series for series in panel.drawn if series.border] for panel in panels]
-    entries = _legend(panels, bars, bool(floors))
+    entries = _legend(panels, has_bars=bars, has_floors=bool(floors))
     frames, height = frames_of([len(strip) for strip in strips], foot_of(entries, note))
     figure = blank(height)
     shared = _limits_x(p for p in panels if p.yardstick)
@@ -203,7 +203,7 @@ def _name_in_strip(axes: Axes, name: str, series: Series, line: int, limits: Lim
     )
 
 
-def _legend(panels: Sequence[Panel], bars: bool, floors: bool) -> list[Entry]:
+def _legend(panels: Sequence[Panel], has_bars: bool, has_floors: bool) -> list[Entry]:
     """Return the legend of the marks that occur."""
     spots = [spot for panel in panels for series in panel.drawn for spot in series.spots]
     standings = {spot.row["standing"] for spot in spots if spot.is_at_the_border}
@@ -211,8 +211,8 @@ def _legend(panels: Sequence[Panel], bars: bool, floors: bool) -> list[Entry]:
     dotted, mark = (0, (1, 2)), {"linestyle": "none", "markersize": 4.5, "markeredgecolor": INK}
     every: list[tuple[bool, dict[str, Any], str]] = [
         (True, {"color": QUIET, "linewidth": 0.8}, "Pareto front"),
-        (bars, {"color": QUIET, "linewidth": 0.5, "marker": "|"}, "best to slowest repeat"),
-        (floors, {"color": INK, "linewidth": 0.6, "linestyle": dotted}, "attainable"),
+        (has_bars, {"color": QUIET, "linewidth": 0.5, "marker": "|"}, "best to slowest repeat"),
+        (has_floors, {"color": INK, "linewidth": 0.6, "linestyle": dotted}, "attainable"),
         (
             Standing.FALSE in standings,
             {**mark, "marker": "o", "markerfacecolor": PAPER},
