@@ -45,7 +45,7 @@ int main(int count, char** argument) {
     const double largest = *std::max_element(size.begin(), size.end());
     const double scale = largest > 0 ? largest : 1;
     for (std::size_t k = 0; k < rows; ++k) {
-      if (error[k] <= tolerance * scale) continue;  // which a NaN is not
+      if (error[k] <= tolerance * scale) continue;  // NaN is not
       std::cout << vector << " row " << k << ": off by " << error[k] / scale << "\n";
       within = false;
     }

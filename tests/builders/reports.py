@@ -48,7 +48,7 @@ from taylor_verify.studies.reach.page import REACH
 from taylor_verify.studies.reference import page as reference_files
 from taylor_verify.studies.reference.measure import reference
 from taylor_verify.studies.tradeoff.stored import write as write_tradeoff
-from taylor_verify.studies.worst import measure as hunt
+from taylor_verify.studies.worst import measure as worst_measure
 from taylor_verify.studies.worst.page import WORST
 
 RUNGS: Final = ("f32", "f64", "f80", "f128", "mp237")
@@ -220,7 +220,7 @@ def small() -> Path:
     write_portraits(place, SCENES)
     _write_measured(place)
     GROWTH.write(place, followed([_ENSEMBLE], None, lambda label, done, of: None))
-    WORST.write(place, hunt.study([worst_of("euler-a", 1.5)], 60, 3))
+    WORST.write(place, worst_measure.study([worst_of("euler-a", 1.5)], 60, 3))
     EXTREMES.write(place, extremes_study())
     CLAIMS.write(place, STUDY)
     save(registry.pictures(place), place / figures.FOLDER, ["svg"])

@@ -20,7 +20,7 @@ from taylor_verify.solvers.taylor.ensemble import Lane
 from taylor_verify.solvers.trajectory import Outcome
 from taylor_verify.studies.growth import checkpoint
 from taylor_verify.studies.growth.checkpoint import OfAnotherError, Progress
-from taylor_verify.studies.growth.errors import PHASE, lane_errors, sure_shifts
+from taylor_verify.studies.growth.errors import PHASE, certain_shifts, lane_errors
 from taylor_verify.studies.growth.experiment import course, experiment, numerical_versions
 from taylor_verify.studies.growth.question import Question
 
@@ -240,12 +240,12 @@ def test_without_a_closed_form_the_drifts_are_measured() -> None:
 def test_a_phase_that_may_be_off_by_a_period_is_not_told() -> None:
     """No phase is given beyond a quarter of a period, or if t^2 could have led there unseen."""
     times = [Fraction(10) ** k for k in range(4)]
-    sure = sure_shifts(times, np.array([1e-6, -1e-4, 1e-3, 0.1]), 1.0)
+    sure = certain_shifts(times, np.array([1e-6, -1e-4, 1e-3, 0.1]), 1.0)
     assert sure.tolist() == [1e-6, -1e-4, 1e-3, 0.1]
     # 0.01 could have become 1, which looks like 0.001 if 1 is a period.
-    lost = sure_shifts(times, np.array([1e-6, 1e-2, 1e-3, 1e-3]), 1.0)
+    lost = certain_shifts(times, np.array([1e-6, 1e-2, 1e-3, 1e-3]), 1.0)
     assert np.isnan(lost).tolist() == [False, False, True, True]
-    assert np.isnan(sure_shifts(times, np.array([1e-6, 0.3, 0, 0]), 1.0)).tolist() == [
+    assert np.isnan(certain_shifts(times, np.array([1e-6, 0.3, 0, 0]), 1.0)).tolist() == [
         False,
         True,
         True,

@@ -93,11 +93,11 @@ def test_rows_count_what_is_built(measured: PricesStudy) -> None:
 def test_equal_error_is_read_between_two_tolerances() -> None:
     """Equal error is read on a straight line in logarithms; outside the row, or beside NaN, nowhere."""
     e = prices._EQUAL_ERROR
-    halfway = prices._between([100 * e, e / 100], [1.0, 4.0])
+    halfway = prices._cost_at_equal_error([100 * e, e / 100], [1.0, 4.0])
     assert halfway is not None
     assert math.isclose(halfway, 2.0, rel_tol=1e-12)
-    assert prices._between([100 * e, 10 * e], [1.0, 4.0]) is None
-    assert prices._between([math.nan, e / 100], [1.0, 4.0]) is None
+    assert prices._cost_at_equal_error([100 * e, 10 * e], [1.0, 4.0]) is None
+    assert prices._cost_at_equal_error([math.nan, e / 100], [1.0, 4.0]) is None
 
 
 def test_page_is_made_of_what_was_stored(tmp_path: Path, measured: PricesStudy) -> None:

@@ -25,7 +25,7 @@ from taylor_verify.studies.reach.families import (
     QUARTERS,
     Family,
     at_quarters,
-    family,
+    family_named,
     period_of,
 )
 from taylor_verify.studies.tradeoff.attainability import least_error, left_out, narrowest
@@ -40,11 +40,11 @@ EXTREMES = [(one, one.values[-1]) for one in FAMILIES]
 
 def short(name: str, far: Mapping[str, int]) -> Family:
     """The family on these rungs alone, for so many periods."""
-    return replace(family(name), far=dict(far))
+    return replace(family_named(name), most_periods=dict(far))
 
 
 def measured(one: Family, value: str, *names: str) -> dict[str, ReachRow]:
-    return {r.rung: r for r in reach.reaches(one, value, map(rung, names or one.far))}
+    return {r.rung: r for r in reach.reaches(one, value, map(rung, names or one.most_periods))}
 
 
 # The families
@@ -54,9 +54,9 @@ def test_names_are_there_once() -> None:
     """A family is found by its name, no two members have one label, and a wrong name is refused."""
     labels = [one.label(value) for one, value in MEMBERS]
     assert len(set(labels)) == len(labels) == len(reach.members())
-    assert all(family(one.name).values == one.values for one in FAMILIES)
+    assert all(family_named(one.name).values == one.values for one in FAMILIES)
     with pytest.raises(ValueError, match=r"expected one of the families .*, got 'comets'"):
-        family("comets")
+        family_named("comets")
 
 
 def test_values_lead_to_the_extreme() -> None:
@@ -81,14 +81,14 @@ def test_every_family_is_periodic_and_free(one: Family, value: str) -> None:
 def test_the_separatrix_is_as_far_as_it_says(value: str) -> None:
     """1 - k^2 of the member d is d, to as many digits as d has before its square counts."""
     d = Fraction(value)
-    m_prime = elements(family("separatrix").scene(value), 30)["m_prime"].value
+    m_prime = elements(family_named("separatrix").scene(value), 30)["m_prime"].value
     with mp.workdps(30):
         assert abs(m_prime / mp.convert(d) - 1) <= mp.convert(d)
 
 
 def test_instants_are_the_quarters_of_the_periods_named() -> None:
     """Four for each number of periods, the last of them its end; exact, and rising."""
-    scene = at_quarters(family("unstable-axis").scene("1e-6"), (1, 3, 10))
+    scene = at_quarters(family_named("unstable-axis").scene("1e-6"), (1, 3, 10))
     period, instants = period_of(scene), scene.clock.elapsed
     assert [t / period for t in instants[QUARTERS - 1 :: QUARTERS]] == [1, 3, 10]
     assert [t / period for t in instants[QUARTERS : 2 * QUARTERS]] == [
@@ -180,7 +180,7 @@ def test_what_is_lost_is_not_followed(axis: dict[str, dict[str, ReachRow]]) -> N
 )
 def test_another_orbit_is_not_followed(name: str, value: str, why: str) -> None:
     """A row has a reason in place of errors if its rounded data have another orbit."""
-    row = measured(family(name), value, "f32")["f32"]
+    row = measured(family_named(name), value, "f32")["f32"]
     assert row.errors == row.floors == ()
     assert why in row.why
 

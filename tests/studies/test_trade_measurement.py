@@ -197,7 +197,7 @@ def test_what_is_dear_is_solved_once(
     machine: Machine, scene: Scene, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The only solve of a dear setting is divided by the yardstick of all rounds."""
-    monkeypatch.setattr(rounds, "_DEAR", -1.0)
+    monkeypatch.setattr(rounds, "_SLOWEST_IN_ROUNDS", -1.0)
     ratios = measured(scene, names("dear:0.3"), 1, 3, 1e-9, machine.clock)
     assert machine.solved.count("dear:0.3") == 1
     assert machine.solved.count(YARDSTICK[0]) == 4

@@ -20,8 +20,9 @@ _LOCAL: Final = ("local", "site")
 def pack(folder: Path, target: Path, name: str) -> list[Path]:
     """Write ``target``/NAME.tar.gz and NAME.tar.gz.sha256, and return both.
 
-    The archive has one folder, NAME, with every file of ``folder`` and with SHA256SUMS, a list that
-    `sha256sum --check` reads. Names are in order; no date, owner or machine is in it. Raises OSError.
+    The archive has one folder, NAME, with the files of ``folder`` and with SHA256SUMS, a list that
+    `sha256sum --check` reads. Hidden files, compiled Python and the folders ``local`` and ``site`` are left
+    out. Names are sorted; no date, owner or machine is stored. Raises OSError.
     """
     contents = {path: (folder / path).read_bytes() for path in _paths(folder)}
     sums = "".join(f"{_digest(content)}  {path}\n" for path, content in contents.items())
@@ -44,7 +45,7 @@ def _paths(folder: Path) -> list[str]:
 
 
 def tar(contents: Mapping[str, bytes]) -> bytes:
-    """Return an archive of files by their names, the same bytes every time."""
+    """Return a tar archive of ``contents``, the files by their names, with the same bytes every time."""
     stream = io.BytesIO()
     with tarfile.open(fileobj=stream, mode="w", format=tarfile.USTAR_FORMAT) as archive:
         for path, content in contents.items():

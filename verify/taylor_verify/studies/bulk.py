@@ -1,6 +1,6 @@
-"""Bulk of a report folder: files made from the stored data, which the repository does not hold.
+"""Bulk of a report folder: files that are made from the stored data, and are not in the repository.
 
-Every study names its own bulk. The paper and the pictures as PDF come from `paper`.
+Every study names its own bulk. The room `paper` makes the paper, and the pictures as PDF.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ _RENDERINGS: Final = (f"{figures.FOLDER}/*.pdf", f"{FOLDER}/")
 
 
 def patterns() -> tuple[str, ...]:
-    """Return the patterns of .gitignore, relative to the folder."""
+    """Return the patterns of .gitignore for all bulk, relative to the report folder."""
     own = (pattern for study in STUDIES for bulk in study.bulk for pattern in bulk.patterns)
     return (*own, *_RENDERINGS)
 
 
 @dataclass(frozen=True)
 class Missing:
-    """Bulk that a report folder lacks: data by kind, and the files that `--paper` writes."""
+    """Bulk that is missing in ``folder``: the data of each kind, and the files that `--paper` writes."""
 
     folder: Path
     lacking: tuple[tuple[Bulk, Sequence[Any]], ...]
@@ -48,7 +48,7 @@ class Missing:
 
 
 def missing(folder: Path, digests: Mapping[str, str] | None = None) -> Missing:
-    """Return the bulk that ``folder`` lacks, or has of outdated verdicts or scenes.
+    """Return the bulk that is missing in ``folder``, or made from older verdicts or scenes.
 
     ``digests`` has the SHA-256 of every scene that can be run; by default, of the shipped scenes.
     Raises OSError for a folder without verdicts, and ValueError for files that hold something else.
@@ -58,7 +58,7 @@ def missing(folder: Path, digests: Mapping[str, str] | None = None) -> Missing:
     bulks = [(bulk, bulk.lacking(report)) for study in STUDIES for bulk in study.bulk]
     drawings = sorted((folder / figures.FOLDER).glob("*.svg"))
     drawn = (f"{figures.FOLDER}/{drawing.stem}.pdf" for drawing in drawings)
-    # The paper needs all of its studies.
+    # The paper can be made only when all of its studies are measured.
     renderings = () if unmeasured(folder) else (f"{FOLDER}/{PDF}", *drawn)
     return Missing(
         folder,

@@ -1,7 +1,7 @@
-"""Pictures beside the tables: drawn after a measurement, shown if their files exist.
+"""Pictures of the pages: drawn after a measurement into the folder ``figures`` of the report.
 
-A page shows the pictures of ``figures`` that exist. Without matplotlib no pictures are drawn; the pages
-are otherwise the same.
+A page shows those of its pictures whose files exist. Without matplotlib nothing is drawn, and the pages
+are the same except for new pictures.
 """
 
 from __future__ import annotations
@@ -17,15 +17,18 @@ FOLDER: Final = "figures"
 
 
 def draw(place: Path, pictures: Iterable[Picture]) -> list[Path]:
-    """Write pictures to ``place``/figures. Raises ImportError without matplotlib, and OSError."""
+    """Write pictures to ``place``/figures and return their files.
+
+    Raises ImportError without matplotlib, and OSError for a folder that cannot be written.
+    """
     drawn = [*pictures]
     return save(drawn, place / FOLDER) if drawn else []
 
 
 def shown(place: Path, pictures: Iterable[Picture]) -> str:
-    """Return Markdown that shows the existing pictures on a page in ``place``/tables."""
+    """Return Markdown for a page in ``place``/tables that shows those pictures whose files exist."""
     return "\n\n".join(
-        f"![{prose(one.alt)}](../{FOLDER}/{one.stem}.svg)"
-        for one in pictures
-        if (place / FOLDER / f"{one.stem}.svg").exists()
+        f"![{prose(picture.alt)}](../{FOLDER}/{picture.stem}.svg)"
+        for picture in pictures
+        if (place / FOLDER / f"{picture.stem}.svg").exists()
     )

@@ -43,11 +43,11 @@ STUDIES: Final[list[Study[Any]]] = [
 
 
 class UnknownStudy(ValueError):  # noqa: N818 (it names what was asked for)
-    """Unknown names of studies; the text has a line for each."""
+    """Some names are no studies; the text has a line for each."""
 
 
 def find(names: Iterable[str]) -> list[Study[Any]]:
-    """Return the studies of these names, each once, in the order asked. Raises UnknownStudy."""
+    """Return the studies of these names, each once, in the order of the names. Raises UnknownStudy."""
     known = {study.name: study for study in STUDIES}
     asked = list(dict.fromkeys(names))
     if faults := [_fault(name, list(known)) for name in asked if name not in known]:
@@ -56,6 +56,7 @@ def find(names: Iterable[str]) -> list[Study[Any]]:
 
 
 def _fault(name: str, known: list[str]) -> str:
+    # A study is a word after `publish`, and no option of it.
     if (word := name.removeprefix("--")) in known:
         return f"expected `publish {word}`, got {name}"
     return f"expected a study, got {name!r}; {hint(name, known)}"

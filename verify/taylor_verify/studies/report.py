@@ -23,8 +23,7 @@ if TYPE_CHECKING:
 
 TABLES = "tables"
 FRONT = "README.md"
-# Pages that no study makes.
-_BESIDES = (
+_PAGES_OF_NO_STUDY = (
     Page("tables/traps.md", "a plain heyoka call against the driver of this suite"),
     Page("upstream/README.md", "what to report to heyoka's authors, each in a few lines that run"),
     Page(
@@ -43,16 +42,16 @@ def write(folder: Path | str, verdicts: Iterable[Verdict], records: Iterable[Rec
 
 
 def load(folder: Path | str) -> tuple[Verdict, ...]:
-    """Return the verdicts of ``folder``/data, in reading order."""
+    """Return the verdicts of ``folder``/data, in reading order. Raises OSError and ValueError."""
     return store.load(Path(folder))
 
 
 def publish(folder: Path | str) -> list[Path]:
     """Make ``folder``/tables and its front page from ``folder``/data; return the files written.
 
-    Tables that are no longer made are removed. Other files stay, also a README.md by somebody else.
-    Raises OSError for files that cannot be read or
-    written, ValueError for data that are none.
+    Tables that are no longer made are removed. Files that this program did not make stay, even a README.md.
+    Raises OSError for files that cannot be read or written, and ValueError for files that hold something
+    else.
     """
     place = Path(folder)
     verdicts = load(place)
@@ -63,7 +62,10 @@ def publish(folder: Path | str) -> list[Path]:
 
 
 def publish_index(folder: Path | str) -> list[Path]:
-    """Make the front page, the index of the tables and the quoted blocks of other pages again."""
+    """Make the front page, the index of the tables and the quoted blocks of other pages again.
+
+    Returns the files written. Raises the errors of `publish`.
+    """
     place = Path(folder)
     verdicts = load(place)
     return [*replace_files(place, _index(place, verdicts)), *_requote(place, verdicts)]
@@ -72,8 +74,8 @@ def publish_index(folder: Path | str) -> list[Path]:
 def write_report(folder: str | PathLike[str], results: Judgements) -> list[Path]:
     """Write verdicts, records, tables and a front page of results, as `taylor-verify run --out DIR` does.
 
-    Returns the files. What an earlier run left there is replaced, as a whole or not at all. Raises
-    OSError for a folder that cannot be written, and ValueError for two unlike records of one run.
+    Returns the files written. They replace the files of an earlier run, all of them or none. Raises OSError
+    for a folder that cannot be written, and ValueError for two different records of one run.
     """
     stored = write(fspath(folder), results.verdicts, results.records)
     return [*stored, *publish(fspath(folder))]
@@ -94,11 +96,12 @@ def entries(place: Path, made: Collection[str] = ()) -> list[Page]:
     def is_there(path: str) -> bool:
         return path in made or (place / path).exists()
 
-    pages = (*(Page(study.path, study.title) for study in others()), *_BESIDES)
+    pages = (*(Page(study.path, study.title) for study in others()), *_PAGES_OF_NO_STUDY)
     return [replace(page, has_sheet=is_there(page.sheet)) for page in pages if is_there(page.path)]
 
 
 def _requote(place: Path, verdicts: Sequence[Verdict]) -> tuple[Path, ...]:
+    """Make the quoted blocks of the pages beside the report again."""
     return replace_files(place.resolve().parent, quoted.requoted(place, verdicts))
 
 

@@ -17,15 +17,16 @@ Document = TypeVar("Document")
 
 
 def made_by(study: str) -> dict[str, str]:
-    """Return the key with which a document names its maker."""
+    """Return the key ``made_by``, with which a document of ``study`` names its maker."""
     return {"made_by": f"taylor-verify publish {study}; do not edit"}
 
 
 @dataclass(frozen=True)
 class Stored(Generic[Document]):
-    """A type of document and its place: data/STEM.json, by default with the name of its study.
+    """A type of document and its place, data/STEM.json below the report folder.
 
-    ``fields`` returns the keys and values of a document, ``reader`` reads a document from a file.
+    ``stem`` is by default the name of the study. ``fields`` returns the keys and values of a document that
+    are stored; ``reader`` reads a document from a file.
     """
 
     kind: type[Document]
@@ -72,7 +73,7 @@ class SceneDocuments:
         return f"{self.folder}/{of_scene(scene)}.json"
 
     def texts(self, documents: Iterable[Mapping[str, Any]]) -> dict[str, str]:
-        """Return the text of each document by its path; every key has its own line."""
+        """Return the text of each document by its path below the report; every key has its own line."""
         return {self.name(str(document["scene"])): self._text(document) for document in documents}
 
     def _text(self, document: Mapping[str, Any]) -> str:
@@ -87,8 +88,8 @@ class SceneDocuments:
     def write(self, report: Path, documents: Iterable[Mapping[str, Any]]) -> list[Path]:
         """Write documents in place of earlier ones, and return the files written.
 
-        Documents of scenes that no longer exist are removed; other people's files stay. Raises OSError; the
-        folder then stays as it was.
+        Documents of scenes that no longer exist are removed; files of another maker stay. Raises OSError;
+        the folder then stays as it was.
         """
         return list(replace_files(report, self.texts(documents), stale=self.own(report)))
 
@@ -105,6 +106,6 @@ class SceneDocuments:
         return store.read_document(file) if file.exists() else None
 
     def own(self, report: Path) -> list[Path]:
-        """Return the files that this program made."""
+        """Return the files of the folder that have this maker in their first line."""
         first = f'{{"made_by": {json.dumps(self.maker)},'
         return [file for file in (report / self.folder).glob("*.json") if first_line(file) == first]

@@ -1,7 +1,7 @@
 """A study: a measurement, its document below a report folder, its pages and its pictures.
 
-Each folder of `studies` that has a module `study` holds one, and `registry` lists them all. The command
-line, the report, its index, the pictures and the missing data are made by loops over that list.
+Each folder of `studies` with a module `study` is one study, and `registry` lists all studies. The command
+line, the report with its index, the pictures and the missing data are made by loops over that list.
 """
 
 from __future__ import annotations
@@ -28,14 +28,15 @@ Document = TypeVar("Document")
 
 
 class NotMeasured(ValueError):  # noqa: N818 (it names what did not happen)
-    """A study that cannot be measured with the given options; the text is the message."""
+    """A study cannot be measured with the given options; the text is the message to the user."""
 
 
 @dataclass(frozen=True)
 class Progress:
-    """Reports of the progress of a measurement; silent by default.
+    """Reports on the progress of a measurement; silent by default.
 
-    ``jobs`` opens a bar for many runs, ``working`` a line for one long task.
+    ``say`` shows a line of text, ``jobs`` opens a progress bar for many runs, and ``working`` shows that
+    one long task is running.
     """
 
     say: Callable[[str], None] = lambda words: None
@@ -64,10 +65,10 @@ class Measured(NamedTuple):
 
 @dataclass(frozen=True)
 class Option:
-    """An option of one study, by its name without hyphens.
+    """An option of one study; ``name`` is its name without hyphens.
 
-    ``read`` makes the value from a text, and raises ValueError that says what it expected and got. An
-    option without ``read`` is a switch.
+    ``read`` makes the value from a text, and raises a ValueError that says what was expected and what it
+    got. An option without ``read`` is a switch. ``metavar`` stands for the value in the help text.
     """
 
     name: str
@@ -89,8 +90,8 @@ class Published:
         """The runs of scenes that can be run."""
         return tuple(run for run in runs(self.verdicts) if run.scene in self.digests)
 
-    def without(self, place: str) -> tuple[str, ...]:
-        """Return the scenes that have no document of their present text in the folder ``place``."""
+    def outdated_scenes(self, place: str) -> tuple[str, ...]:
+        """Return the scenes whose document in the folder ``place`` is missing or of an older text."""
         scenes = dict.fromkeys(run.scene for run in self.runs)
         return tuple(s for s in scenes if self._digest(place, s) != self.digests[s])
 
@@ -104,9 +105,9 @@ class Published:
 class Bulk:
     """Files of a study that are made from stored data, and that the repository leaves out.
 
-    ``what`` names the files in counts, ``patterns`` are their lines of .gitignore below the folder.
-    ``lacking`` returns what a report lacks, or has of outdated verdicts or scenes; ``make`` makes these
-    files.
+    ``what`` names the files after their number: "3 records of runs". ``patterns`` are their lines of
+    .gitignore, relative to the report folder. ``lacking`` returns what is missing in a report or made from
+    older verdicts or scenes; ``make`` makes these files and returns them.
     """
 
     what: str
@@ -117,31 +118,37 @@ class Bulk:
 
 @dataclass(frozen=True)
 class Study(Generic[Document]):
-    """Study that is measured and published.
+    """A measurement with everything that is published of it.
 
     Attributes
     ----------
     name, title
-        The word on the command line, and the contents of its page in a few words.
+        Its name on the command line, and the contents of its page in a few words.
     duration
-        The time that it takes to measure, in words.
+        The time that the measurement takes, in words.
     measure
         ``measure(folder, progress, **options)`` measures and writes below the folder. It imports its
         modules when it is called, so that the list of all studies loads fast. Raises NotMeasured.
     find
-        Returns the document stored below a folder, None if there is none.
+        Returns the document stored below a folder; None if there is none.
     page
         Makes the page of a document. Its second argument is the folder, whose pictures it shows.
     sheet
-        Makes the sheet of a document, with every digit.
+        Makes the CSV sheet of a document, with every digit.
     beside
-        Further pages and sheets, by their paths below the folder.
+        Makers of further pages and sheets, by their paths below the folder.
     parts
-        Makes further pages by their paths; their number depends on the document.
+        Makes further pages, by their paths; which ones depends on the document.
     draw
-        Returns the pictures made of a document.
+        Returns the pictures of a document.
     place
-        The path of the page, where it is not tables/NAME.md.
+        The path of the page, if it is not tables/NAME.md.
+    needs_heyoka
+        True if the measurement runs heyoka.
+    options
+        The options of this study alone.
+    bulk
+        Files that the repository leaves out.
     """
 
     name: str
@@ -180,13 +187,14 @@ class Study(Generic[Document]):
     def publish(self, folder: Path) -> Measured:
         """Draw the pictures of the document stored below ``folder``, then make its pages.
 
-        Without matplotlib the pages are made all the same, and a message says so. Raises OSError, and
-        ValueError as `pages`.
+        Without matplotlib only the pages are made, and a message says so. Raises the errors of `pages`, and
+        OSError for files that cannot be written.
         """
         document = self.find(folder)
         if document is None:
             return Measured()
-        drawn, messages = list[Path](), list[str]()
+        drawn: list[Path] = []
+        messages: list[str] = []
         try:
             drawn = figures.draw(folder, self.draw(document))
         except ImportError as error:
@@ -198,7 +206,7 @@ class Study(Generic[Document]):
         file = data / f"{self.name}.json"
         place = file if file.exists() else data
         with store.expecting(f"what `publish {self.name}` writes", place):
-            texts = {path: made(document) for path, made in self.beside.items()}
+            texts = {path: make(document) for path, make in self.beside.items()}
             texts |= self.parts(document)
             if self.sheet:
                 texts = {f"tables/{self.name}.csv": self.sheet(document), **texts}

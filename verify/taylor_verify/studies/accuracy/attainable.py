@@ -1,4 +1,4 @@
-"""The table of what each solver reached beside what was attainable: by rung, then by scene."""
+"""The table of errors reached and errors attainable: by rung, then by scene."""
 
 from __future__ import annotations
 
@@ -63,8 +63,15 @@ def attainable(verdicts: Sequence[Verdict]) -> str:
 
 
 def _by_rung(shown: Sequence[Verdict]) -> str:
-    ratios = ("median ratio:", "ratio at most 1:", "largest ratio:")
-    columns = ["rung", "u:", "errors:", *ratios, "where"]
+    columns = [
+        "rung",
+        "u:",
+        "errors:",
+        "median ratio:",
+        "ratio at most 1:",
+        "largest ratio:",
+        "where",
+    ]
     rungs = sorted({verdict.rung for verdict in shown}, key=place_of_rung)
     return table(columns, [_rung_row(rung, [v for v in shown if v.rung == rung]) for rung in rungs])
 
@@ -72,7 +79,7 @@ def _by_rung(shown: Sequence[Verdict]) -> str:
 def _rung_row(rung: str, verdicts: Sequence[Verdict]) -> list[str]:
     scored = [verdict for verdict in verdicts if verdict.is_compared]
     if not scored:
-        return [rung, *[NOTHING] * 6]
+        return [rung, NOTHING, NOTHING, NOTHING, NOTHING, NOTHING, NOTHING]
     ratios = [over_attainable(verdict) for verdict in scored]
     most = max(scored, key=over_attainable)
     within = sum(value <= 1 for value in ratios)

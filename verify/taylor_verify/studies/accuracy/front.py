@@ -1,4 +1,4 @@
-"""Front page of a report: its purpose, its headline numbers, how to read them, and further pages."""
+"""Front page of a report: its purpose, its main numbers, how to read them, and its other pages."""
 
 from __future__ import annotations
 
@@ -119,23 +119,23 @@ BY_RUNG: Final = (
 
 
 def by_rung(judged_runs: Sequence[Run]) -> list[list[str]]:
-    """Return a row for each rung: roundoff, median and worst error of state, worst over attainable."""
+    """Return a row of the columns `BY_RUNG` for each rung of the runs."""
     rungs = sorted({run.rung for run in judged_runs}, key=place_of_rung)
     return [_rung_row([r for r in judged_runs if r.rung == rung]) for rung in rungs]
 
 
-def _rung_row(of_rung: Sequence[Run]) -> list[str]:
-    states = [verdict for run in of_rung for verdict in run.state if verdict.is_compared]
+def _rung_row(rung_runs: Sequence[Run]) -> list[str]:
+    states = [verdict for run in rung_runs for verdict in run.state if verdict.is_compared]
     sizes = [in_roundoffs(verdict, verdict.max) for verdict in states]
     finite = [size for size in sizes if size is not None]
     most = worst(states)
-    passed = sum(all(v.verdict.value == "pass" for v in run.verdicts) for run in of_rung)
+    passed = sum(all(v.verdict.value == "pass" for v in run.verdicts) for run in rung_runs)
     lost = len(finite) < len(sizes)
     return [
-        of_rung[0].rung,
+        rung_runs[0].rung,
         figure(next((verdict.roundoff for verdict in states), None)),
-        str(len(of_rung)),
-        str(passed) if passed == len(of_rung) else bold(str(passed)),
+        str(len(rung_runs)),
+        str(passed) if passed == len(rung_runs) else bold(str(passed)),
         figure(median(finite)) if finite else NOTHING,
         bold("no number") if lost else figure(max(finite, default=None)),
         ratio(most) if most else NOTHING,
@@ -150,11 +150,13 @@ def _by_scene(judged_runs: Sequence[Run]) -> str:
     lines: dict[tuple[str, str, str], dict[str, Run]] = {}
     for run in judged_runs:
         lines.setdefault((run.scene, run.solver, run.setting), {})[run.rung] = run
-    columns = ["scene", *(["solver"] if len(solvers) > 1 else [])]
+    # A single solver needs no column.
+    has_solvers = len(solvers) > 1
+    columns = ["scene", *(["solver"] if has_solvers else [])]
     rows = [
         [
             code(scene),
-            *([prose(f"{solver} {setting}".strip())] if len(solvers) > 1 else []),
+            *([prose(f"{solver} {setting}".strip())] if has_solvers else []),
             *(main_error(by_rung.get(rung)) for rung in rungs),
         ]
         for (scene, solver, setting), by_rung in lines.items()

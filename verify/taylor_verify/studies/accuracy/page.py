@@ -143,16 +143,17 @@ def _conserved_section(group: Sequence[Run]) -> str:
 
 
 def _conserved_row(run: Run, group: Sequence[Run], quantities: Iterable[str]) -> list[str]:
-    of_scene = quantities_of_scene(run, group)
-    cells = [_drift(run, name, name in of_scene) for name in quantities]
+    scene_quantities = quantities_of_scene(run, group)
+    cells = [_drift(run, name, is_of_scene=name in scene_quantities) for name in quantities]
     verdict = judged(gravest(run.drifts)) if run.drifts else NOTHING
     return [code(run.scene), run.rung, *cells, worst_ratio(run.drifts), verdict]
 
 
-def _drift(run: Run, quantity: str, of_scene: bool) -> str:
+def _drift(run: Run, quantity: str, is_of_scene: bool) -> str:
+    """Return the cell of a conserved quantity, which the scene of a run may have or not."""
     if quantity not in run.conserved:
-        unscored = of_scene and not run.is_scored
-        return judged(gravest(run.verdicts)) if unscored else NOTHING
+        is_unscored = is_of_scene and not run.is_scored
+        return judged(gravest(run.verdicts)) if is_unscored else NOTHING
     verdict = run.conserved[quantity]
     text = prose(peak(verdict))
     if verdict.verdict is Status.PASS:

@@ -1,7 +1,7 @@
-"""Published numbers that the project's own pages quote; every report makes them again.
+"""Published numbers that pages of the project quote; they are made again with every report.
 
-A page beside the folder `reports` quotes a block if it has the marks of that block. Pages without
-marks and reports in other folders are left alone.
+A page beside the folder `reports` quotes a block of numbers if it has the two marks of that block. Pages
+without marks stay as they are, and so do all pages if the report is in another folder.
 """
 
 from __future__ import annotations
@@ -41,7 +41,8 @@ _SHOWN: Final = (
 def requoted(folder: Path, verdicts: Sequence[Verdict]) -> dict[str, str]:
     """Return the pages beside ``folder`` that quote it, with new blocks, by their relative paths.
 
-    Raises ValueError for a page with the first mark of a block and not the second.
+    Raises OSError for a page that cannot be read, and ValueError for a page with the first mark of a block
+    and not the second.
     """
     place = folder.resolve()
     if place.name != _FOLDER:
@@ -59,12 +60,12 @@ def requoted(folder: Path, verdicts: Sequence[Verdict]) -> dict[str, str]:
 
 
 def accuracy(verdicts: Iterable[Verdict]) -> str:
-    """Return the largest errors of chosen scenes by rung, in u and over what is attainable."""
+    """Return the block with the largest errors of chosen scenes by rung, between its marks."""
     return "\n\n".join([BEGIN, table(*chosen(verdicts)), END])
 
 
 def chosen(verdicts: Iterable[Verdict]) -> tuple[list[str], list[list[str]]]:
-    """Return headings and rows of the chosen scenes."""
+    """Return headings and rows of the chosen scenes: errors in u, and over attainable in brackets."""
     published = {(v.scene, v.quantity, v.rung): v for v in verdicts if v.solver == "taylor"}
     rungs = sorted({rung for _, _, rung in published}, key=place_of_rung)
     columns = ["scene", "what is compared", *(f"{r}:" for r in rungs)]

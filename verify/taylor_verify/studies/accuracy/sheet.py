@@ -75,9 +75,10 @@ def gates(
     more: Callable[[Verdict], dict[str, Any]] | None = None,
     without: Container[str] = (),
 ) -> str:
-    """Return a row for every verdict; ``more`` returns further columns, the same for all verdicts.
+    """Return a row for every verdict.
 
-    The columns ``without`` are left out.
+    ``more`` returns further cells of a verdict, under the same names for all verdicts. The columns
+    ``without`` are left out.
     """
     rows = [v for run in runs(verdicts) for v in run.verdicts]
     further = [more(v) if more else {} for v in rows]
@@ -86,10 +87,10 @@ def gates(
     return sheet(names, (_fields(v) | own for v, own in zip(rows, further, strict=True)))
 
 
-def _conserved_row(run: Run, of_scene: Iterable[str]) -> dict[str, Any]:
+def _conserved_row(run: Run, scene_quantities: Iterable[str]) -> dict[str, Any]:
     row: dict[str, Any] = {name: getattr(run, name) for name in _RUN}
     row["verdict"] = gravest(run.drifts).value if run.drifts else None
-    drifts = run.conserved if run.is_scored else dict.fromkeys(of_scene, run.verdicts[0])
+    drifts = run.conserved if run.is_scored else dict.fromkeys(scene_quantities, run.verdicts[0])
     for quantity, verdict in drifts.items():
         fields = _fields(verdict)
         row |= {f"{quantity}_{field}": fields[field] for field in _CONSERVED}
@@ -97,9 +98,9 @@ def _conserved_row(run: Run, of_scene: Iterable[str]) -> dict[str, Any]:
 
 
 def _fields(verdict: Verdict) -> dict[str, Any]:
-    """Return the fields of a verdict, with errors in u; a word replaces a maximum that is no number.
+    """Return the fields of a verdict and its errors in u; a word replaces a maximum that is no number.
 
-    A quotient of two other columns has six digits.
+    Numbers that are quotients of two other columns have six digits.
     """
     row = verdict.row() | {
         "mean_u": _short(in_roundoffs(verdict, verdict.mean)),

@@ -40,7 +40,8 @@ def _find(folder: Path) -> Verdicts | None:
     return store.load(folder) if (folder / store.FOLDER / store.VERDICTS).exists() else None
 
 
-# Files that the repository leaves out: every sample of every run, and every verdict with its reason.
+# Files that the repository leaves out: records with every sample, and tables with the reason of every
+# verdict.
 
 _GATES: Final = {"tables/gates.md": page.gates, "tables/gates.csv": sheet.gates}
 
@@ -63,7 +64,7 @@ def _runs_lacking(report: Published) -> tuple[Run, ...]:
     if not store.has_own_records(report.folder):
         return tuple(judged)
     names = [store.record_name(run.scene, run.solver, run.rung) for run in judged]
-    return tuple(r for r, name in zip(judged, names, strict=True) if not (data / name).exists())
+    return tuple(run for run, name in zip(judged, names, strict=True) if not (data / name).exists())
 
 
 def _add_records(folder: Path, lacking: Sequence[Run], progress: Progress) -> tuple[Path, ...]:
@@ -77,7 +78,9 @@ def _add_records(folder: Path, lacking: Sequence[Run], progress: Progress) -> tu
     jobs = [Job(scene, _SOLVER, tuple(own)) for scene, own in rungs.items()]
     with progress.jobs() as bar:
         results = judge_all(jobs, bar)
-    return store.add_records(folder, [one.record for one in results if one.record is not None])
+    return store.add_records(
+        folder, [result.record for result in results if result.record is not None]
+    )
 
 
 STUDY: Final = Study(
@@ -97,11 +100,16 @@ STUDY: Final = Study(
     },
     bulk=(
         Bulk(
-            "tables of gates",
-            tuple(_GATES),
-            _gates_lacking,
-            lambda folder, lacking, progress: replace_files(folder, dict(lacking)),
+            what="tables of gates",
+            patterns=tuple(_GATES),
+            lacking=_gates_lacking,
+            make=lambda folder, lacking, progress: replace_files(folder, dict(lacking)),
         ),
-        Bulk("records of runs", ("data/records/",), _runs_lacking, _add_records),
+        Bulk(
+            what="records of runs",
+            patterns=("data/records/",),
+            lacking=_runs_lacking,
+            make=_add_records,
+        ),
     ),
 )

@@ -1,1 +1,1 @@
-"""The ledger of both source texts as a page."""
+"""The ledger of the two source texts: every statement with its check, as a page."""

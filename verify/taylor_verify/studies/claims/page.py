@@ -1,7 +1,7 @@
 """Page of the ledger: first the corrections to the two texts, then every entry.
 
-It is made from the rows of `claims --json` alone, and is the same on every machine. The versions that
-made the rows are in data/claims.json.
+It is made from the rows of `claims --json` alone, and is the same on every machine. Their versions are in
+data/claims.json.
 """
 
 from __future__ import annotations
@@ -74,14 +74,14 @@ def _counts(rows: Sequence[ClaimRow]) -> str:
 def _entries(
     rows: Iterable[ClaimRow], lines: Callable[[ClaimRow], Sequence[str]], *verdicts: Verdict
 ) -> Iterator[str]:
-    """Yield the entries that have one of the verdicts, each with its lines."""
+    """Yield the entries with one of the verdicts; ``lines`` returns the lines below the entry's name."""
     for row in rows:
         if row.verdict in verdicts:
             yield f"{bold(code(row.id))}\n\n{bullets(filter(None, lines(row)))}"
 
 
 def _erratum(row: ClaimRow) -> list[str]:
-    """Return a false entry: as transcribed, corrected, and a counterexample."""
+    """Return the lines of a false entry: as transcribed, corrected, and a counterexample."""
     return [
         f"as transcribed: {_math(row.statement)}",
         f"correct: {_math(row.correction)}",
@@ -92,6 +92,7 @@ def _erratum(row: ClaimRow) -> list[str]:
 
 
 def _conditional(row: ClaimRow) -> list[str]:
+    """Return the lines of an entry that is true on a condition."""
     return [
         _math(row.statement),
         f"only if {prose(row.condition or '')}",
@@ -102,6 +103,7 @@ def _conditional(row: ClaimRow) -> list[str]:
 
 
 def _neither(row: ClaimRow) -> list[str]:
+    """Return the lines of an entry that is neither true nor false."""
     return [
         _math(row.statement),
         f"{bold(row.verdict.value)}: {prose(row.open or row.void or '')}",
@@ -111,6 +113,7 @@ def _neither(row: ClaimRow) -> list[str]:
 
 
 def _statement(row: ClaimRow) -> list[str]:
+    """Return the lines of any entry of the ledger."""
     return [
         _math(row.statement),
         f"domain: {prose(row.domain)}",
@@ -120,9 +123,11 @@ def _statement(row: ClaimRow) -> list[str]:
 
 
 def _restored(rows: Sequence[ClaimRow]) -> str:
-    """Return the table of the signs that the scan lost, and that make their equations true."""
-    lost = [[code(r.id), prose(r.lost or "")] for r in rows if r.verdict is Verdict.RESTORED]
-    return table(["equation", "what the scan lost"], lost)
+    """Return the table of the signs that are lost in the scan; with them the equations are true."""
+    cells = [
+        [code(row.id), prose(row.lost or "")] for row in rows if row.verdict is Verdict.RESTORED
+    ]
+    return table(["equation", "what the scan lost"], cells)
 
 
 def _ledger(rows: Sequence[ClaimRow]) -> Iterator[str]:
@@ -134,7 +139,8 @@ def _ledger(rows: Sequence[ClaimRow]) -> Iterator[str]:
         texts.setdefault(text, []).append(row)
     for text, own in texts.items():
         cells = [
-            [code(r.id), r.verdict.value, _residual(r), prose("; ".join(r.mutations))] for r in own
+            [code(row.id), row.verdict.value, _residual(row), prose("; ".join(row.mutations))]
+            for row in own
         ]
         yield f"### {text}"
         yield table(["claim", "verdict", "residual", "mutations rejected"], cells)
@@ -142,7 +148,7 @@ def _ledger(rows: Sequence[ClaimRow]) -> Iterator[str]:
 
 
 def _math(latex: str | None) -> str:
-    """Return mathematics as GitHub renders it inside a line, safe from Markdown's own signs."""
+    """Return a formula within a line as GitHub renders it, so that no sign of it is taken for Markdown."""
     return f"$`{latex}`$" if latex else ""
 
 

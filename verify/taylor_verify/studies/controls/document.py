@@ -18,9 +18,10 @@ from taylor_verify.studies.stored import Stored
 
 @dataclass(frozen=True)
 class DefectRow:
-    """Defect in words; ``twin`` names the sound solver without this defect, otherwise equal.
+    """A deliberate defect in words; ``twin`` is the solver that differs only in not having it.
 
-    ``gate`` is the quantity that must see it; ``told`` is true for defects of the short table.
+    ``gate`` is the quantity whose gate must see the defect; ``told`` is True for defects of the short
+    table.
     """
 
     name: str
@@ -41,9 +42,10 @@ class DefectRow:
 
 @dataclass(frozen=True)
 class Sight:
-    """Defect beside its sound twin: the verdicts on both by quantity.
+    """A defect beside its sound twin, with the verdicts on both by quantity.
 
-    ``factor`` is the bound of every gate over what is attainable.
+    ``verdicts`` are those on the defect, ``sound`` those on the twin. ``factor`` is the bound of every gate
+    over what is attainable. A gate sees a defect if it fails the defect and passes the twin.
     """
 
     defect: DefectRow
@@ -72,7 +74,7 @@ class Sight:
         return any(verdict.is_compared for verdict in self.verdicts.values())
 
     def is_seen_by(self, quantity: str) -> bool:
-        """Return True if the gate fails the defect and passes the sound twin."""
+        """Return True if the gate of ``quantity`` fails the defect and passes the sound twin."""
         judged, twin = self.verdicts.get(quantity), self.sound.get(quantity)
         if judged is None or not self.is_finished:
             return False
@@ -80,7 +82,7 @@ class Sight:
         return judged.verdict is Status.FAIL and sound
 
     def is_missed_by(self, quantity: str) -> bool:
-        """Return True if the gate passes the defect."""
+        """Return True if the gate of ``quantity`` passes the defect."""
         judged = self.verdicts.get(quantity)
         return judged is not None and judged.verdict is Status.PASS
 
@@ -97,7 +99,7 @@ class Sight:
 
 @dataclass(frozen=True)
 class ControlsStudy:
-    """Document of all defects, with the verdicts on them and on their twins by solver and setting."""
+    """All defects, and the verdicts on them and on their twins, in one list by solver and setting."""
 
     versions: dict[str, str]
     machine: Machine
@@ -107,7 +109,7 @@ class ControlsStudy:
 
     @cached_property
     def sights(self) -> tuple[Sight, ...]:
-        """The defects with their verdicts. Raises ValueError if verdicts on one or its twin are missing."""
+        """The defects with their verdicts. Raises ValueError if a defect or its twin has no verdicts."""
         return tuple(self._sights())
 
     def _sights(self) -> Iterator[Sight]:
@@ -118,30 +120,32 @@ class ControlsStudy:
                 raise ValueError(f"expected verdicts on {defect.name} and its twin, got none")
             yield Sight(defect, verdicts, sound, self.factor)
 
-    def _verdicts_on(self, *run: str) -> dict[str, Verdict]:
+    def _verdicts_on(self, scene: str, solver: str, setting: str) -> dict[str, Verdict]:
+        run = scene, solver, setting
         return {v.quantity: v for v in self.verdicts if (v.scene, v.solver, v.setting) == run}
 
 
 # The document as data/controls.json has it.
 
-_APART: Final = ("digits", "sentence", "seconds", "provenance")
+# Fields of a verdict that differ from run to run, or from machine to machine.
+_NOT_STORED: Final = ("digits", "sentence", "seconds", "provenance")
 _SHIFT: Final = ("time_shift", "residual", "shift", "trend", "remains")
 
 
 def _fields(study: ControlsStudy) -> dict[str, Any]:
-    """Return the stored keys and values: those fields of a verdict that are the same in every run."""
+    """Return the stored keys and values; of a verdict only the fields that are the same in every run."""
     rows = [_row(verdict) for verdict in study.verdicts]
     return {**complete(study), "machine": plain(study.machine), "verdicts": rows}
 
 
 def _row(verdict: Verdict) -> dict[str, Any]:
-    # The sign of a shift of time by roundings is random on each machine.
-    apart = _APART if verdict.verdict is Status.FAIL else (*_APART, *_SHIFT)
-    return {name: value for name, value in verdict.row().items() if name not in apart}
+    # A sound run is shifted in time by its roundings alone, whose sign differs between machines.
+    left_out = _NOT_STORED if verdict.verdict is Status.FAIL else (*_NOT_STORED, *_SHIFT)
+    return {name: value for name, value in verdict.row().items() if name not in left_out}
 
 
 def _checked(file: Path, kind: type[ControlsStudy]) -> ControlsStudy:
-    """Return the document in a file. Raises ValueError also for a defect without verdicts."""
+    """Return the document in a file. Raises ValueError for other content, or a defect without verdicts."""
     study = read_study(file, kind)
     try:
         _ = study.sights

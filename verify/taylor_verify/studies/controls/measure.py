@@ -1,4 +1,4 @@
-"""Runs of every defect and of its sound twin, as the document of the published table."""
+"""Measurement of the controls: every defect and its sound twin, run and judged on f64."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from taylor_verify.studies.controls.document import ControlsStudy, DefectRow, Si
 
 RUNG: Final = "f64"
 
-
+# Verdicts by quantity, and those on each twin by scene, solver and setting.
 Verdicts = dict[str, Verdict]
 Twins = dict[tuple[str, str, str], Verdicts]
 
@@ -26,10 +26,10 @@ def sights(
     finished: Callable[[str], None] | None = None,
     twins: Twins | None = None,
 ) -> list[Sight]:
-    """Run every defect, and every sound twin once, even if several defects share it.
+    """Run every defect, and every sound twin once, even if several defects have the same twin.
 
-    ``finished`` is called with the name of each defect as it ends. ``twins`` has the verdicts of twins that
-    ran before, by scene, solver and setting; new ones are added to it.
+    ``finished`` is called with the name of each defect as it ends. ``twins`` has verdicts on twins from
+    earlier calls; new ones are added to it.
     """
     twins = {} if twins is None else twins
     rows = []
@@ -62,10 +62,17 @@ def study(measured: Iterable[Sight]) -> ControlsStudy:
 
 
 def _row(defect: Defect) -> DefectRow:
-    names = ("name", "setting", "scene", "gate", "what", "why")
-    own = {name: getattr(defect, name) for name in names}
-    twin = {"twin": defect.twin.name, "twin_setting": defect.twin.setting}
-    return DefectRow(**own, **twin, told=defect.is_common)
+    return DefectRow(
+        name=defect.name,
+        setting=defect.setting,
+        scene=defect.scene,
+        gate=defect.gate,
+        what=defect.what,
+        why=defect.why,
+        told=defect.is_common,
+        twin=defect.twin.name,
+        twin_setting=defect.twin.setting,
+    )
 
 
 def _verdicts(scene: str, solver: Solver) -> Verdicts:

@@ -1,4 +1,4 @@
-"""Table of the defects that each gate sees, and the sentences that it proves, from stored rows."""
+"""Page of the defects that each gate sees, with the sentences that this proves, from stored rows."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ BEGIN: Final = "<!-- controls: made by taylor-verify publish; do not edit -->"
 END: Final = "<!-- end of controls -->"
 
 _NOT_SEEN: Final = NOTHING
-# A heading and its quantities, of which a body has one at most.
+# Headings of columns, each with its quantities, of which a body has at most one.
 _COLUMNS: Final = (
     ("start", (INITIAL,)),
     ("state", MAIN),
@@ -116,18 +116,20 @@ def _section(sights: Sequence[Sight], quantity: str, heading: str) -> str:
 
 
 def _cell(sight: Sight, names: Iterable[str]) -> str:
-    """Return the cell of the quantity that the scene has; empty if it has none, or nothing ran."""
-    here = [name for name in names if name in sight.quantities]
-    if not here or not sight.is_finished:
+    """Return the cell of that quantity of ``names`` which the scene has.
+
+    It is empty if the scene has none, and if the run stopped.
+    """
+    name = next((name for name in names if name in sight.quantities), None)
+    if name is None or not sight.is_finished:
         return ""
-    (name,) = here
     if sight.is_seen_by(name):
         return bold(times_bound(sight, name))
     return _NOT_SEEN if sight.is_missed_by(name) else sight.verdicts[name].verdict.value
 
 
 def _blindest_first(sights: Iterable[Sight]) -> list[Sight]:
-    """Return the defects, first those that few conserved quantities see, last the uncompared."""
+    """Return the defects that few conserved quantities see first, and those that did not finish last."""
 
     def key(sight: Sight) -> tuple[bool, int, int]:
         conserved = sum(name in sight.seen_by for name in sight.conserved)
@@ -137,7 +139,7 @@ def _blindest_first(sights: Iterable[Sight]) -> list[Sight]:
 
 
 def _by_gate(sights: Sequence[Sight]) -> str:
-    """Return, for each gate, how many of its defects it sees, and which it misses."""
+    """Return a table of the gates: how many defects each sees, and which it misses."""
     finished = [sight for sight in sights if sight.is_finished]
     rows = []
     for heading, name in ((heading, name) for heading, names in _COLUMNS for name in names):
@@ -153,15 +155,19 @@ def _by_gate(sights: Sequence[Sight]) -> str:
 
 def _in_words(sights: Sequence[Sight]) -> str:
     rows = [
-        [title(sight), code(defect.scene), prose(defect.what), prose(defect.why)]
+        [
+            title(sight),
+            code(sight.defect.scene),
+            prose(sight.defect.what),
+            prose(sight.defect.why),
+        ]
         for sight in sights
-        for defect in [sight.defect]
     ]
     return table(["defect", "scene", "what is wrong", "why it shows so"], rows)
 
 
 def _twins(sights: Sequence[Sight]) -> str:
-    """Return each twin once, with the gate that it comes closest to failing."""
+    """Return a table of the twins, each once, with its largest error over the bound."""
     rows = {}
     for sight in sights:
         verdicts = sight.sound.values()
@@ -209,7 +215,7 @@ def short_rows(study: ControlsStudy) -> list[list[str]]:
 
 
 def _summed(sight: Sight, wanted: Callable[[str], bool]) -> str:
-    """Return the largest error over its bound among these quantities."""
+    """Return the largest error over its bound among the wanted quantities that see the defect."""
     names = [name for name in sight.quantities if wanted(name)]
     failing = [name for name in names if sight.is_seen_by(name)]
     if not failing:
@@ -248,7 +254,7 @@ def sheet(study: ControlsStudy) -> str:
 
 def _rows_of(sight: Sight) -> Iterator[dict[str, Any]]:
     for name, verdict in sight.verdicts.items():
-        # A sound quaternion has norm 1, and no row of its own.
+        # Some rows exist only for a defect, such as the norm of a quaternion that is not 1.
         twin = sight.sound.get(name)
         yield verdict.row() | {
             "defect": sight.defect.name,

@@ -1,7 +1,7 @@
 """Picture of errors before and after the best shift of time, a line for each error.
 
-A right answer that comes late has no error in conserved quantities. A long line means that lateness
-explains the error, a short line that the motion itself is wrong.
+A right answer that comes late has no error of conserved quantities. A long line means that a shift of time
+explains the error, and a short line that the motion itself is wrong.
 """
 
 from __future__ import annotations
@@ -39,9 +39,10 @@ Row = Mapping[str, Any]
 
 
 def series(verdicts: Sequence[Verdict]) -> list[Row]:
-    """Return {solver, quantity, error, residual, shift, kind} of the rows that a shift explains.
+    """Return {solver, quantity, kind, error, residual, shift} of each error that a shift of time explains.
 
-    The rows of one solver stay together, those for which a shift explains the most first.
+    ``shift`` is in the scene's unit of time. The rows of one solver stay together. Solvers for which a
+    shift explains most come first.
     """
     rows: list[Row] = [
         {
@@ -63,22 +64,22 @@ def series(verdicts: Sequence[Verdict]) -> list[Row]:
 
 
 def _is_drawable(row: Verdict) -> bool:
-    """Return True if a shift explains anything, and both sizes can stand on a logarithmic axis."""
+    """Return True if a shift explains a part, and a logarithmic axis can show the error and the rest."""
     is_shifted = row.time_shift is not None and row.shift not in (None, Kind.NONE)
     return is_shifted and all(size and 0 < size < inf for size in (row.max, row.residual))
 
 
 def picture(verdicts: Sequence[Verdict], scene: str) -> Picture:
-    """Return the picture of rows that have ``scene`` in common. Raises ValueError without any shift."""
+    """Return the picture of verdicts; ``scene`` is their common name. Raises ValueError without a shift."""
     rows = series(verdicts)
     if not rows:
         raise ValueError(f"expected an error with its shift of time, got none @ {scene}")
-    each = "; ".join(
+    sizes = "; ".join(
         f"{row['solver']}, {row['quantity']}: error {plain(row['error'])}, {plain(row['residual'])} left "
         f"after a shift of {plain(row['shift'])}"
         for row in rows
     )
-    alt = f"Errors of {scene} and what the best shift of time leaves of each, logarithmic. {each}."
+    alt = f"Errors of {scene} and what the best shift of time leaves of each, logarithmic. {sizes}."
     title = f"Shift of time and residual: {scene}"
     return Picture(stem_of({"scene": scene}, "shifts"), title, alt, partial(_figure, rows))
 
@@ -96,7 +97,7 @@ def _figure(rows: Sequence[Row]) -> Figure:
 
 
 def _labels(rows: Sequence[Row]) -> list[str]:
-    """Return the quantity of each row, with its solver where that is another one."""
+    """Return the quantity of each row, with its solver in the first row of that solver."""
     solvers = ["", *(row["solver"] for row in rows)]
     return [
         row["quantity"]

@@ -1,4 +1,4 @@
-"""Sentences that the rows of a controls run prove: every name and number is counted from them."""
+"""Sentences that the stored controls prove: every name and number in them is computed from the rows."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from taylor_verify.studies.controls.document import Sight
 
 MAIN: Final = ("omega", "impulse")
 
-# A shift of time explains an error entirely if it leaves less than this part of it.
+# A shift of time explains an error entirely if it leaves at most this part of the error.
 _WHOLLY: Final = 0.01
-# Two draws of the same roundings differ by less than this factor.
+# Errors of equal roundings in two runs differ by at most this factor.
 _ALIKE: Final = 2
-_SPELT: Final = {"nan": "NaN", "munk": "Munk"}
+_SPELLINGS: Final = {"nan": "NaN", "munk": "Munk"}
 
 
 def proven(sights: Sequence[Sight]) -> list[str]:
@@ -40,6 +40,7 @@ def proven(sights: Sequence[Sight]) -> list[str]:
 
 
 def _energy_alone(sights: Sequence[Sight]) -> str:
+    """Return how many defects the gate of the energy passes."""
     blind = [sight for sight in sights if sight.is_missed_by("T")]
     if not blind:
         return ""
@@ -58,6 +59,7 @@ def _keeps_energy_like_its_twin(sight: Sight) -> bool:
 
 
 def _conservation_together(sights: Sequence[Sight]) -> str:
+    """Return how many defects all gates on conserved quantities pass together."""
     blind = conserving(sights)
     if not blind:
         return "Every defect shows in some conserved quantity."
@@ -74,7 +76,7 @@ def _conservation_together(sights: Sequence[Sight]) -> str:
 
 
 def conserving(sights: Iterable[Sight]) -> list[Sight]:
-    """Return the defects that pass all gates on conserved quantities, but fail one of the state."""
+    """Return the defects that pass every gate on a conserved quantity and fail one on the state."""
     return [
         sight
         for sight in sights
@@ -87,6 +89,7 @@ def _is_conserving(sight: Sight) -> bool:
 
 
 def _body_axes(sights: Sequence[Sight]) -> str:
+    """Return how many defects the gate of the main quantity passes, and which gates see them."""
     blind = [sight for sight in sights if any(sight.is_missed_by(name) for name in MAIN)]
     if not blind:
         return ""
@@ -98,10 +101,12 @@ def _body_axes(sights: Sequence[Sight]) -> str:
 
 
 def _seeing(sights: Iterable[Sight], quantities: Callable[[Sight], Iterable[str]]) -> int:
+    """Return the number of defects that a gate of one of the quantities sees."""
     return sum(any(map(sight.is_seen_by, quantities(sight))) for sight in sights)
 
 
 def _shifted(sights: Sequence[Sight]) -> str:
+    """Return the defects that a constant shift of time explains, with their shifts."""
     listed = []
     for sight in filter(_is_conserving, sights):
         shift = constant_shift(sight)
@@ -120,11 +125,15 @@ def _shifted(sights: Sequence[Sight]) -> str:
 
 
 def _all_caught(sights: Sequence[Sight]) -> str:
-    lost = [s for s in sights if s.is_finished and not s.seen_by]
-    unsound = [s for s in sights if any(v.verdict is not Status.PASS for v in s.sound.values())]
-    faulty = {sight.defect.sound_solver for sight in unsound}
-    if lost:
-        return f"{bold('Not seen by any gate')}: {_names(lost)}."
+    """Return that every defect is seen and every twin is sound, or the names of the others."""
+    unseen = [sight for sight in sights if sight.is_finished and not sight.seen_by]
+    faulty = {
+        sight.defect.sound_solver
+        for sight in sights
+        if any(verdict.verdict is not Status.PASS for verdict in sight.sound.values())
+    }
+    if unseen:
+        return f"{bold('Not seen by any gate')}: {_names(unseen)}."
     if faulty:
         return f"{bold('A sound twin fails')}: {_listed(sorted(faulty))}."
     return (
@@ -142,11 +151,11 @@ def _listed(words: Sequence[str]) -> str:
 
 def title(sight: Sight) -> str:
     """Return the name of a defect in words."""
-    return prose(" ".join(_SPELT.get(word, word) for word in sight.defect.name.split("-")))
+    return prose(" ".join(_SPELLINGS.get(word, word) for word in sight.defect.name.split("-")))
 
 
 def times_bound(sight: Sight, quantity: str) -> str:
-    """Return the error over the bound in two digits, as NaN or as infinity if the bound is zero."""
+    """Return the error over the bound in two digits: NaN for a NaN error, infinity if the bound is zero."""
     over = sight.over_bound(quantity)
     if over is None:
         return "NaN" if sight.verdicts[quantity].max is None else INFINITE
@@ -162,7 +171,10 @@ def _short(value: float) -> str:
 
 
 def constant_shift(sight: Sight) -> float | None:
-    """Return the shift of time that explains the error of the state; None if there is none."""
+    """Return the constant shift of time that explains the error of the main quantity; None without one.
+
+    It is in the scene's unit of time, positive for a late answer.
+    """
     for name in MAIN:
         verdict = sight.verdicts.get(name)
         if verdict is not None and sight.is_seen_by(name) and verdict.shift == "constant":

@@ -1,1 +1,1 @@
-"""The proven width of an enclosure beside its true error."""
+"""The proven width of an enclosure beside its true error, on two motions."""

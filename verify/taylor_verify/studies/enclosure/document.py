@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class WidthRow:
-    """Instant of a motion; ``width`` and ``error`` are relative to the vector."""
+    """The enclosure at the time ``t`` of a motion: its width and error, relative to the state vector."""
 
     scene: str
     t: float
@@ -17,7 +17,7 @@ class WidthRow:
 
 @dataclass(frozen=True)
 class EnclosureStudy:
-    """Document of all rows; ``bits`` is the precision of the enclosures."""
+    """The rows of all motions; ``bits`` is the precision of the enclosures."""
 
     bits: int
     rows: tuple[WidthRow, ...]

@@ -1,6 +1,6 @@
 """The width of an enclosure over time, beside the true error of its middle.
 
-The truth is an enclosure with twice the bits, whose own width is counted as error.
+The truth is an enclosure with twice the bits. Its own width counts as error.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from taylor_verify.studies.enclosure.document import EnclosureStudy, WidthRow
 
 # A regular motion of a general body, and an irregular one, whose errors grow like an exponential.
 SCENES: Final = ("kirchhoff/general-body", "kirchhoff/swimmer-vehicle")
-# The precision of the first attempt at 30 digits.
+# The precision at which a user who asks for 30 digits gets the first attempt.
 BITS: Final = 140
 _END: Final = 100
 _SAMPLES: Final = 200
@@ -30,21 +30,21 @@ _MOST_BITS: Final = 10_000
 
 
 def study() -> EnclosureStudy:
-    """Return width and error of the published motions."""
+    """Return the document of the published motions. Raises the errors of `widths`."""
     times = [Fraction(_END * (k + 1), _SAMPLES) for k in range(_SAMPLES)]
     rows = (row for name in SCENES for row in widths(load(name), times, BITS))
     return EnclosureStudy(BITS, tuple(rows))
 
 
 def widths(scene: Scene, times: Sequence[Fraction], bits: int) -> list[WidthRow]:
-    """Return a row for each time, all after the start: the state alone, at one precision.
+    """Return a row for each time after the start, for the state without attitude and centre.
 
-    ``width`` and ``error`` are relative to a vector, the largest over the vectors of the state. Raises
-    exact.enclosure.course.Coarse if this precision does not lead to the last time.
+    ``width`` and ``error`` are relative to the length of a vector; they are the largest over the vectors of
+    the state. Raises exact.enclosure.course.Coarse if ``bits`` are too few to reach the last time.
     """
     bare = replace(scene, track=frozenset())
     spans = posed(bare).spans
-    coarse, sharp = (_states(bare, times, used) for used in (bits, 2 * bits))
+    coarse, sharp = _states(bare, times, bits), _states(bare, times, 2 * bits)
     rows = []
     with ctx.workprec(BOUND_BITS):
         for time, state, truth in zip(times, coarse, sharp, strict=True):
@@ -57,6 +57,7 @@ def widths(scene: Scene, times: Sequence[Fraction], bits: int) -> list[WidthRow]
 
 
 def _states(scene: Scene, times: Sequence[Fraction], bits: int) -> list[list[arb]]:
+    """Return the enclosure of the state at each time, with so many bits."""
     with ctx.workprec(bits):
         rows = dict(TaylorSolution(scene).rows(dict(enumerate(times)), bits, _MOST_BITS))
         return [rows[k].state for k in range(len(times))]

@@ -19,7 +19,7 @@ Points = list[tuple[float, float]]
 Motions = Mapping[str, Mapping[str, Points]]
 
 STEM: Final = "enclosure-width"
-# Room for half of the last number.
+# The end of the axis over the last time: room for half of the last number.
 _BEYOND: Final = 1.04
 _LINES: Final[Mapping[str, Entry]] = {
     "width": ({"color": "#A83C00", "linewidth": 1.6}, "proven width"),
@@ -56,7 +56,7 @@ def picture(study: EnclosureStudy) -> Picture:
 
 def _figure(motions: Motions) -> Figure:
     figure, places = sheet(len(motions), list(_LINES.values()))
-    # One scale for all panels shows the difference between regular and irregular motions.
+    # All panels have one scale, which shows the difference between regular and irregular motions.
     points = [point for lines in motions.values() for drawn in lines.values() for point in drawn]
     limits = widened([e for _, e in points], 0.04, 0.04)
     for axes, (scene, lines) in zip(places, motions.items(), strict=True):

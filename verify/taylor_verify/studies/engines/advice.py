@@ -1,8 +1,9 @@
-"""The advice of the board: sentences computed from the stored rows, so that no number in them is typed."""
+"""The advice of the board: sentences whose names and numbers are computed from the stored rows."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import groupby
 from math import isfinite
 from typing import Final
@@ -25,21 +26,21 @@ ENOUGH: Final = 1e-3
 LOST: Final = 0.05
 # A setting gets a warning if another one of its engine has an error this many times smaller.
 FAR_WORSE: Final = 10.0
-# A warning of small steps is given if they increase the error by this factor.
+# A warning of too small steps is given if they increase the error by more than this factor.
 WORSE_BELOW: Final = 2.0
 
 
 def advice(board: Board, entries: EntryList) -> list[str]:
-    """Return the sentences that say what a user should do, the most useful first.
+    """Return sentences that tell a user what to take and what to avoid, the most useful first.
 
-    The sentences follow from the rows of the ``board``; ``entries`` is the list of engines, which names the
-    scenes of the advice.
+    They follow from the rows of the ``board``. ``entries`` is the list of engines, which names the scenes
+    of the advice.
     """
     names = {row.name: row.title for row in entries.entry}
     plain = {row.name for row in entries.entry if row.plain}
     every, scenes = settings(board.study), advised(board, entries)
-    engines = [one for one in newest(every) if one.engine not in plain]
-    shipped = [one for one in newest(every, shipped=True) if one.engine not in plain]
+    engines = [setting for setting in newest(every) if setting.engine not in plain]
+    shipped = [setting for setting in newest(every, shipped=True) if setting.engine not in plain]
     return [
         *_take(board, engines, scenes, names),
         *_never(engines, scenes, names),
@@ -49,7 +50,7 @@ def advice(board: Board, entries: EntryList) -> list[str]:
 
 
 def advised(board: Board, entries: EntryList) -> list[str]:
-    """Return the scenes that the advice rests on, of those that were measured."""
+    """Return the scenes of the advice that were measured."""
     measured = {row.scene for row in board.study.rows if row.is_judged}
     return [scene for scene in entries.advised if scene in measured]
 
@@ -60,7 +61,7 @@ def error(size: float) -> str:
 
 
 def named(setting: EngineSetting, names: dict[str, str]) -> str:
-    """Return the name of an engine with its version and its settings."""
+    """Return the name of an engine with its version and its settings; ``names`` has the engines' titles."""
     words = f" with {prose(setting.words)}" if setting.words else ""
     return f"{bold(prose(f'{names[setting.engine]} {setting.version}'.strip()))}{words}"
 
@@ -68,14 +69,19 @@ def named(setting: EngineSetting, names: dict[str, str]) -> str:
 def _take(
     board: Board, engines: Sequence[EngineSetting], scenes: Sequence[str], names: dict[str, str]
 ) -> Iterator[str]:
-    scores = [score for one in engines for score in one.scores(scenes)]
+    """Yield the most accurate setting, and the cheapest of those that suffice for most uses."""
+    scores = [score for setting in engines for score in setting.scores(scenes)]
     if (best := best_of(scores)) is None:
         return
     yield (
         f"For free rotation take {named(best.setting, names)}{_step(best)}: omega and attitude are "
         f"right to {figure(best.error)} on all of {_listed(scenes)}, the most that an engine reaches here."
     )
-    paced = [(pace, s) for s in scores if s.error <= ENOUGH and (pace := board.pace(s.row))]
+    paced = [
+        (pace, score)
+        for score in scores
+        if score.error <= ENOUGH and (pace := board.pace(score.row))
+    ]
     if paced:
         pace, cheap = min(paced, key=lambda pair: pair[0])
         yield (
@@ -87,10 +93,10 @@ def _take(
 def _never(
     engines: Sequence[EngineSetting], scenes: Sequence[str], names: dict[str, str]
 ) -> Iterator[str]:
-    """Yield warnings of methods that lose the motion, and of engines whose methods all do."""
-    methods, without = [], []
-    for engine, group in groupby(engines, key=lambda one: one.engine):
-        own = [best for one in group if (best := best_of(one.scores(scenes))) is not None]
+    """Yield warnings of methods that lose the motion, and of engines whose methods all lose it."""
+    methods, whole_engines = [], []
+    for engine, group in groupby(engines, key=lambda setting: setting.engine):
+        own = [best for setting in group if (best := best_of(setting.scores(scenes))) is not None]
         lost = [best for best in own if best.error >= LOST]
         sound = best_of(best for best in own if best.error < LOST)
         if not lost:
@@ -98,17 +104,18 @@ def _never(
         least = min(lost, key=lambda best: best.error)
         name = bold(prose(f"{names[engine]} {least.setting.version}".strip()))
         if sound is None:
-            without.append(f"{name} ({figure(least.error)}, drift of the energy {_energy(least)})")
+            whole_engines.append(
+                f"{name} ({figure(least.error)}, drift of the energy {_energy(least)})"
+            )
         elif sound.error * FAR_WORSE <= least.error:
             words = _either([prose(best.setting.words) for best in lost])
             better = f"{prose(sound.setting.words)} has {figure(sound.error)}"
             methods.append(f"{name} with {words} (least error {figure(least.error)}; {better})")
     if methods:
         yield f"Never {'; '.join(methods)}."
-    if without:
-        yield (
-            f"Not for free rotation, with the least error at any step measured here: {'; '.join(without)}."
-        )
+    if whole_engines:
+        listed = "; ".join(whole_engines)
+        yield f"Not for free rotation, with the least error at any step measured here: {listed}."
 
 
 def _energy(score: Score) -> str:
@@ -129,10 +136,14 @@ def _as_shipped(
 ) -> Iterator[str]:
     """Yield a warning of engines that are far worse as shipped than with the board's settings."""
     warnings = []
-    for engine, group in groupby(shipped, key=lambda one: one.engine):
-        pairs = [(row, like(row, engines, entries)) for one in group for row in one.rows]
-        ratios = [(a.worst / b.worst, a, b) for a, b in pairs if a.is_judged and b and b.worst > 0]
-        ratio, row, usual = max(ratios, key=lambda one: one[0], default=(0.0, None, None))
+    for engine, group in groupby(shipped, key=lambda setting: setting.engine):
+        pairs = [(row, like(row, engines, entries)) for setting in group for row in setting.rows]
+        ratios = [
+            (row.worst / usual.worst, row, usual)
+            for row, usual in pairs
+            if row.is_judged and usual and usual.worst > 0
+        ]
+        ratio, row, usual = max(ratios, key=lambda compared: compared[0], default=(0.0, None, None))
         if row is None or usual is None or ratio < FAR_WORSE:
             continue
         warning = next((e.warning for e in entries.entry if e.name == engine and e.warning), "")
@@ -145,26 +156,25 @@ def _as_shipped(
 
 
 def like(row: EngineRow, engines: Sequence[EngineSetting], entries: EntryList) -> EngineRow | None:
-    """Return the row of the same run with the board's settings; None if there is none."""
-    bare = {
+    """Return the judged row that differs from ``row``, a run as shipped, in the board's settings alone.
+
+    The result is None if there is none.
+    """
+    defaults = {
         word
         for entry in entries.entry
         if entry.name == row.engine
         for word in (entry.shipped or {}).values()
     }
-    variant = ", ".join(word for word in row.variant.split(", ") if word not in bare)
-    asked = (row.engine, row.version, variant, row.scene, row.value, row.rung)
-    return next(
-        (
-            each
-            for one in engines
-            for each in one.rows
-            if each.is_judged
-            and (each.engine, each.version, each.variant, each.scene, each.value, each.rung)
-            == asked
-        ),
-        None,
-    )
+    variant = ", ".join(word for word in row.variant.split(", ") if word not in defaults)
+    wanted = _identity(replace(row, variant=variant))
+    rows = (other for setting in engines for other in setting.rows if other.is_judged)
+    return next((other for other in rows if _identity(other) == wanted), None)
+
+
+def _identity(row: EngineRow) -> tuple[str, ...]:
+    """Return the fields that distinguish the runs of the board."""
+    return row.engine, row.version, row.variant, row.scene, row.value, row.rung
 
 
 def _too_fine(
@@ -172,8 +182,8 @@ def _too_fine(
 ) -> Iterator[str]:
     """Yield a warning of engines whose smallest step is not their best."""
     steps = []
-    for engine, group in groupby(engines, key=lambda one: one.engine):
-        best = best_of(score for one in group for score in one.scores(scenes))
+    for engine, group in groupby(engines, key=lambda setting: setting.engine):
+        best = best_of(score for setting in group for score in setting.scores(scenes))
         if best is None or not best.value or best.error >= LOST or best.setting.knob != "step":
             continue
         finest = best.setting.scores(scenes)[-1]
@@ -185,7 +195,7 @@ def _too_fine(
 
 
 def _step(score: Score) -> str:
-    """Return the step behind an "and"; empty for a solver without one."""
+    """Return the step with the words that join it to a setting; empty for a solver without a step."""
     if not score.value:
         return ""
     knob = score.setting.knob

@@ -1,4 +1,4 @@
-"""Answers of runs of the board, each with its row, its trajectory and its time."""
+"""Answer of a run of the board: its row, its trajectory and its time."""
 
 from __future__ import annotations
 
@@ -31,21 +31,21 @@ _STANDINGS: Final = {
     Outcome.NO_FORMAT: Standing.UNAVAILABLE,
     Outcome.UNSUITED: Standing.UNSUITED,
 }
-_MOST_WORDS: Final = 300
-# As pip and npm have it: numpy==2.4.6, @scope/name@1.0.0.
+_MOST_CHARACTERS: Final = 300
+# A pinned requirement of pip or npm: numpy==2.4.6, @scope/name@1.0.0.
 _PINNED: Final = re.compile(r"(.+?)(?:==|@)(\d[^@=]*)")
 
 
 @dataclass(frozen=True)
 class Answer:
-    """A row with the seconds of its propagation and its states; None for a run without states."""
+    """A row, the seconds of its propagation, and its states (samples, columns); None without states."""
 
     row: EngineRow
     seconds: float = 0.0
     states: States | None = None
 
     def to_bytes(self) -> bytes:
-        """Return the answer as JSON: floats read back to the last bit."""
+        """Return the answer as JSON, in which every float has all its bits."""
         states = None if self.states is None else self.states.tolist()
         kind = "" if self.states is None else self.states.dtype.str
         stored = _Stored(complete(self.row), self.seconds, kind, states)
@@ -53,7 +53,7 @@ class Answer:
 
     @classmethod
     def from_bytes(cls, content: bytes) -> Answer:
-        """Return the answer that JSON holds; ValueError for anything else."""
+        """Return the answer from its JSON. Raises ValueError for any other content."""
         stored = parsed(content, _Read)
         states = None if stored.states is None else np.array(stored.states, dtype=stored.kind)
         return cls(stored.row, stored.seconds, states)
@@ -61,6 +61,8 @@ class Answer:
 
 @dataclass(frozen=True)
 class _Stored:
+    """The written form of an answer; ``kind`` is NumPy's name of the float type, empty without states."""
+
     row: Mapping[str, Any]
     seconds: float
     kind: str
@@ -69,6 +71,8 @@ class _Stored:
 
 @dataclass(frozen=True)
 class _Read:
+    """The form of an answer that is read."""
+
     row: EngineRow
     seconds: float
     kind: str = ""
@@ -77,14 +81,18 @@ class _Read:
 
 def answered(asked: Sequence[Asked]) -> list[Answer]:
     """Run an engine in one version and precision on several scenes, and judge its answers."""
-    return [_judged(*pair) for pair in zip(asked, _trajectories(asked), strict=True)]
+    trajectories = _trajectories(asked)
+    return [_judged(run, answer) for run, answer in zip(asked, trajectories, strict=True)]
 
 
 def _trajectories(asked: Sequence[Asked]) -> list[Trajectory]:
-    """Return the trajectories; the script of an environment answers all its runs in one process."""
+    """Return the trajectories of runs; the script of an environment answers all of them in one process."""
     solvers = [solver_named(run.solver) for run in asked]
-    posing = zip(asked, solvers, strict=True)
-    problems = [posed(load(run.scene), solver, rung(run.rung)) for run, solver in posing]
+    problems = [
+        posed(load(run.scene), solver, rung(run.rung))
+        for run, solver in zip(asked, solvers, strict=True)
+    ]
+    # A problem that cannot be posed is a trajectory that says so.
     trajectories = {
         k: problem for k, problem in enumerate(problems) if isinstance(problem, Trajectory)
     }
@@ -101,7 +109,7 @@ def _trajectories(asked: Sequence[Asked]) -> list[Trajectory]:
 
 
 def _judged(asked: Asked, trajectory: Trajectory) -> Answer:
-    """Return the row of a run with the errors that the judge measures."""
+    """Return the answer of a run: its row has the errors that the judge measures."""
     standing = _STANDINGS.get(trajectory.outcome, Standing.FAILED)
     if standing is not Standing.JUDGED:
         return Answer(row_of(asked, standing, detail=_reason(trajectory)))
@@ -113,7 +121,7 @@ def _judged(asked: Asked, trajectory: Trajectory) -> Answer:
 
 
 def row_of(asked: Asked, standing: Standing, **numbers: Any) -> EngineRow:
-    """Return the row of a run."""
+    """Return the row of a run; ``numbers`` are further fields of EngineRow."""
     return EngineRow(
         engine=asked.entry.name,
         version=version_of(asked),
@@ -131,7 +139,7 @@ def row_of(asked: Asked, standing: Standing, **numbers: Any) -> EngineRow:
 
 
 def version_of(asked: Asked) -> str:
-    """Return the version of an engine: as asked for, as pinned in its script, or as installed."""
+    """Return the version of an engine: the one asked for, pinned in its script, or installed."""
     if asked.version or not asked.entry.package:
         return asked.version or _pinned(asked.entry.solver)
     try:
@@ -142,7 +150,7 @@ def version_of(asked: Asked) -> str:
 
 @cache
 def made_of(scene: str, solver: str) -> str:
-    """Return the digest of the scene and of the engine's script, by which outdated runs are known."""
+    """Return the digest of a scene and of the engine's script; another digest marks an outdated run."""
     digest = hashlib.sha256(load(scene).digest.encode())
     if solver.startswith(PREFIX):
         engine = engines()[solver.removeprefix(PREFIX)]
@@ -151,6 +159,7 @@ def made_of(scene: str, solver: str) -> str:
 
 
 def _pinned(solver: str) -> str:
+    """Return the version of its package that an engine's script requires; empty if there is none."""
     engine = engines().get(solver.removeprefix(PREFIX)) if solver.startswith(PREFIX) else None
     for requirement in engine.script.requirements if engine else ():
         pinned = _PINNED.fullmatch(requirement)
@@ -160,5 +169,5 @@ def _pinned(solver: str) -> str:
 
 
 def _reason(trajectory: Trajectory) -> str:
-    words = trajectory.outcome.value
-    return f"{words}: {trajectory.detail}"[:_MOST_WORDS] if trajectory.detail else words
+    outcome = trajectory.outcome.value
+    return f"{outcome}: {trajectory.detail}"[:_MOST_CHARACTERS] if trajectory.detail else outcome

@@ -1,4 +1,4 @@
-"""The document of the board: a row for each run; times and machine are stored separately."""
+"""The document of the engine board: a row for each run; times and machine are stored separately."""
 
 from __future__ import annotations
 
@@ -25,12 +25,13 @@ class Standing(StrEnum):
 class EngineRow:
     """A run: its settings, and the judgement of its stored trajectory.
 
-    ``errors`` are the largest errors of all samples by quantity, relative or in radians, to four digits;
-    errors that are no finite number are left out. ``floors`` are the errors of the states that perfect
-    rounding would leave. ``start`` is the error of the first row. ``cause`` is the judge's hypothesis about
-    the dynamics that explains nearly all of the error. ``bits`` is the size of the floats that hold the
-    trajectory, ``place`` its index in the array of its scene. ``made_of`` is the digest of the scene and
-    the adapter.
+    ``knob`` is the option that sets the accuracy, and ``value`` its value as text; ``variant`` has the
+    method and the other options. ``errors`` are the largest errors of all samples by quantity, relative or
+    in radians, to four digits; errors that are no finite number are left out. ``floors`` are the errors of
+    the states that perfect rounding would leave. ``start`` is the error of the first row. ``cause`` is the
+    fault of the dynamics that, as the judge supposes, explains nearly all of the error. ``bits`` is the
+    size of the floats that store the trajectory, ``place`` its index in the array of its scene. ``made_of``
+    is the digest of the scene and the adapter.
     """
 
     engine: str
@@ -78,7 +79,7 @@ class EngineRow:
 
 @dataclass(frozen=True)
 class EnginesTimings:
-    """Seconds of each run's propagation by its key, the machine, and the number of ``workers`` at once."""
+    """The seconds of each run's propagation by its key, and the machine with ``workers`` runs at a time."""
 
     workers: int
     machine: Machine
@@ -87,7 +88,7 @@ class EnginesTimings:
 
 @dataclass(frozen=True)
 class EnginesStudy:
-    """All rows, in the order of the entry list; ``spans`` are the durations of the scenes."""
+    """All rows, in the order of the entry list; ``spans`` are durations in each scene's unit of time."""
 
     versions: dict[str, str]
     spans: dict[str, float]
@@ -96,12 +97,12 @@ class EnginesStudy:
 
 @dataclass(frozen=True)
 class Board:
-    """The document of the study: its rows, and their times if these are stored."""
+    """The document of the study: the rows, and their times, which are stored in another file."""
 
     study: EnginesStudy
     timings: EnginesTimings
 
     def pace(self, row: EngineRow) -> float | None:
-        """Return the seconds per unit of the scene's time; None if they are not known."""
+        """Return the seconds of a run per unit of the scene's time; None if they are unknown."""
         seconds = self.timings.seconds.get(row.key, 0.0)
         return seconds / self.study.spans[row.scene] if seconds > 0 else None

@@ -30,8 +30,8 @@ def pages(board: Board, entries: EntryList) -> dict[str, str]:
 
 def page(board: Board, engine: str, title: str) -> str:
     """Return the page of one engine."""
-    own = [one for one in settings(board.study) if one.engine == engine]
-    scenes = dict.fromkeys(row.scene for one in own for row in one.rows)
+    own = [setting for setting in settings(board.study) if setting.engine == engine]
+    scenes = dict.fromkeys(row.scene for setting in own for row in setting.rows)
     return whole(
         f"{title} on the engine board",
         "Every setting that was measured, against the exact motion; [the board](engines.md) says what the "
@@ -46,7 +46,7 @@ def page(board: Board, engine: str, title: str) -> str:
 
 
 def _section(board: Board, own: Sequence[EngineSetting], scene: str) -> Iterator[str]:
-    rows = [row for one in own for row in one.on(scene)]
+    rows = [row for setting in own for row in setting.on(scene)]
     if not rows:
         return
     yield f"## {scene}"
@@ -58,7 +58,7 @@ def _section(board: Board, own: Sequence[EngineSetting], scene: str) -> Iterator
     yield table(columns, [_cells(board, row, states, conserved) for row in rows])
     if remarks := dict.fromkeys(f"{row.version}: {row.detail}" for row in rows if row.detail):
         yield bullets(prose(f"Remark on {remark}.") for remark in remarks)
-    if orders := [_order(one, scene, states) for one in own if len(one.on(scene)) > 2]:
+    if orders := [_order(setting, scene, states) for setting in own if len(setting.on(scene)) > 2]:
         yield bullets(filter(None, orders))
 
 
@@ -79,7 +79,7 @@ def _cells(
 
 
 def _order(setting: EngineSetting, scene: str, states: Sequence[str]) -> str:
-    """Return the orders of one setting in a line; empty for a setting without steps."""
+    """Return a line with the observed orders of one setting; empty for a setting without steps."""
     orders = {name: setting.order(scene, name) for name in states}
     reasons = [f"{name}: {prose(order.reason)}" for name, order in orders.items() if order]
     words = [setting.version, setting.words, "as shipped" * setting.shipped]
@@ -88,10 +88,10 @@ def _order(setting: EngineSetting, scene: str, states: Sequence[str]) -> str:
 
 
 def _not_judged(own: Iterable[EngineSetting]) -> Iterator[str]:
-    """Yield the runs without numbers by their reason, each reason once."""
+    """Yield a section of the runs without numbers, with a line for each reason."""
     reasons: dict[str, list[EngineRow]] = {}
-    for one in own:
-        for row in one.rows:
+    for setting in own:
+        for row in setting.rows:
             if not row.is_judged:
                 reasons.setdefault(f"{row.standing}: {row.detail}", []).append(row)
     if not reasons:
@@ -108,15 +108,15 @@ def _not_judged(own: Iterable[EngineSetting]) -> Iterator[str]:
 
 
 def _commands(own: Iterable[EngineSetting]) -> str:
-    """Return a block with a command for each setting at its first step."""
+    """Return a block with the command of each setting at its first step, and its further steps."""
     lines = []
-    for one in own:
-        steps = " ".join(filter(None, dict.fromkeys(row.value for row in one.rows)))
-        scenes = dict.fromkeys(row.scene for row in one.rows)
-        rung = f" --rung {one.rung}" if one.rung != "f64" else ""
-        first = one.rows[0]
+    for setting in own:
+        steps = " ".join(filter(None, dict.fromkeys(row.value for row in setting.rows)))
+        scenes = dict.fromkeys(row.scene for row in setting.rows)
+        rung = f" --rung {setting.rung}" if setting.rung != "f64" else ""
+        first = setting.rows[0]
         lines += [
-            f"# {f'{one.knob} {steps}; ' if steps else ''}{' '.join(scenes)}",
+            f"# {f'{setting.knob} {steps}; ' if steps else ''}{' '.join(scenes)}",
             f'taylor-verify run {first.scene} --solver "{first.solver}"{rung}',
         ]
     return "```sh\n" + "\n".join(lines) + "\n```"

@@ -1,17 +1,17 @@
 """The entry list of the board, entries.toml, and the runs that it asks for.
 
-name       the engine: of its page, and of `--only`; several rows may share it
-title      the engine as its authors write it
+name       the engine, in the name of its page and for `--only`; several rows may have the same
+title      the name of the engine as its authors write it
 solver     the name of a solver, without settings
-versions   optional: oldest first. The last one is run on every scene, the others where `sweep` says so
-settings   optional: each setting with the words that are run, in all combinations
-knob       the setting that is made finer, `step` unless given
+versions   optional: the oldest first. The last one is run on every scene, the others on scenes with `sweep`
+settings   optional: each option with its values, which are run in all combinations
+knob       the option that sets the accuracy, `step` unless given
 values     its values, from coarse to fine, as text
 rungs      optional: the precisions of the arithmetic, f64 unless given
 only       optional: the scenes that are run; without them all scenes that the solver takes
 without    optional: scenes that are not run
-shipped    optional: the settings that restore the engine's defaults; they are run with the second of
-           the values alone
+shipped    optional: the options that restore the engine's defaults; they are run with the second of the
+           values only
 warning    optional: the fault of an engine as shipped, in words
 package    optional: the installed package whose version is shown, for a solver that runs here
 plain      true for a solver of differential equations that is no engine
@@ -36,8 +36,8 @@ FILE: Final = Path(__file__).with_name("entries.toml")
 class BoardScene:
     """A scene of the board; ``least`` is the smallest step that is run on it.
 
-    ``advice`` marks the scenes of the advice, ``sweep`` those on which older versions are run, and
-    ``shipped`` those of the table "as shipped".
+    ``advice`` marks a scene of the advice, ``sweep`` one on which older versions are run, and ``shipped``
+    one of the table "as shipped".
     """
 
     name: str
@@ -49,7 +49,7 @@ class BoardScene:
 
 @dataclass(frozen=True)
 class Entry:
-    """A row of the list."""
+    """A row of the list; the module's docstring explains its fields."""
 
     name: str
     title: str
@@ -76,9 +76,9 @@ class Entry:
         if self.shipped:
             for words, rung, scene in product(self._words(), self.rungs, scenes):
                 if self._is_asked(scene) and scene.shipped:
-                    bare = {**words, **self.shipped}
-                    every = self._at_values(newest, bare, rung, scene, shipped=True)
-                    # One step is enough to show the fault.
+                    defaults = {**words, **self.shipped}
+                    every = self._at_values(newest, defaults, rung, scene, shipped=True)
+                    # One value is enough to show the fault.
                     yield from (run for run in every if run.value in self.values[1:2])
 
     def _at_values(
@@ -89,12 +89,13 @@ class Entry:
         scene: BoardScene,
         shipped: bool = False,
     ) -> Iterator[Asked]:
+        """Yield a run for each value, without steps that are too small for the scene."""
         for value in self.values or ("",):
             if not value or self.knob != "step" or float(value) >= scene.least:
                 yield Asked(self, version, tuple(words.items()), value, rung, scene.name, shipped)
 
     def _words(self) -> list[dict[str, str]]:
-        """Return every combination of the words of the settings."""
+        """Return every combination of the options' values."""
         settings = self.settings or {}
         return [dict(zip(settings, words, strict=True)) for words in product(*settings.values())]
 
@@ -117,9 +118,9 @@ class Asked:
     @property
     def solver(self) -> str:
         """The whole name of the solver, as `--solver` takes it."""
-        versions = [("version", self.version)] if self.version else []
-        finer = [(self.entry.knob, self.value)] if self.value else []
-        settings = "&".join(f"{key}={word}" for key, word in (*versions, *self.words, *finer))
+        version = [("version", self.version)] if self.version else []
+        accuracy = [(self.entry.knob, self.value)] if self.value else []
+        settings = "&".join(f"{key}={word}" for key, word in (*version, *self.words, *accuracy))
         return "?".join(filter(None, (self.entry.solver, settings)))
 
     @property
@@ -127,7 +128,7 @@ class Asked:
         """The method and its settings, as tables name them."""
         family, _, method = self.entry.solver.partition(":")
         method = method.partition("-")[2] if family == "outside" else method
-        # A number is meaningless without its key.
+        # A number says nothing without the name of its option.
         words = [word if word[:1].isalpha() else f"{key}={word}" for key, word in self.words]
         return ", ".join(filter(None, [method, *words]))
 
@@ -142,7 +143,7 @@ class Asked:
 
 @dataclass(frozen=True)
 class EntryList:
-    """All scenes and rows."""
+    """All scenes and rows of the file, under its own names."""
 
     scene: tuple[BoardScene, ...]
     entry: tuple[Entry, ...]
@@ -165,7 +166,7 @@ class EntryList:
 
 @cache
 def entry_list(file: Path = FILE) -> EntryList:
-    """Return the list in a file. Raises ValueError that names the place of a fault."""
+    """Return the list in a file. Raises a ValueError that names the place of a fault."""
     try:
         return converted(tomllib.loads(file.read_text(encoding="utf-8")), EntryList)
     except ValueError as error:

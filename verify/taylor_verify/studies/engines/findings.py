@@ -1,7 +1,7 @@
 """Proven findings about engines: scripts below reports/upstream/engines, reported on the board.
 
-The docstring of a script in Python, and the first comment of one in JavaScript, begins with its title. Then
-come paragraphs, each of which begins with a word of `PARTS`.
+A script begins with its report: in Python the docstring, in JavaScript the first comment. The report is a
+title and paragraphs, each of which begins with a word of `PARTS` and a colon.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ PARTS: Final = ("Versions", "Expected", "Came", "Evidence")
 
 @dataclass(frozen=True)
 class Finding:
-    """A script, its title, and its paragraphs by the word that each begins with."""
+    """A script, its title, and its paragraphs by the first word of each."""
 
     script: str
     title: str
@@ -30,12 +30,13 @@ class Finding:
 
 
 def read(file: Path) -> Finding:
-    """Return the finding of a script. Raises ValueError for a script that lacks a part."""
-    words = _report(file.read_text(encoding="utf-8"), file.suffix)
-    title, *paragraphs = [" ".join(each.split()) for each in re.split(r"\n\s*\n", words)]
-    parts = {word: text.strip() for each in paragraphs for word, _, text in [each.partition(":")]}
-    if lost := [word for word in PARTS if not parts.get(word)]:
-        raise ValueError(f"expected paragraphs {', '.join(lost)}, got none @ {file.name}")
+    """Return the finding of a script. Raises OSError, and ValueError for a script that lacks a part."""
+    report = _report(file.read_text(encoding="utf-8"), file.suffix)
+    title, *paragraphs = [" ".join(text.split()) for text in re.split(r"\n\s*\n", report)]
+    splits = [paragraph.partition(":") for paragraph in paragraphs]
+    parts = {word: text.strip() for word, _, text in splits}
+    if missing := [word for word in PARTS if not parts.get(word)]:
+        raise ValueError(f"expected paragraphs {', '.join(missing)}, got none @ {file.name}")
     return Finding(file.name, title.removesuffix("."), parts)
 
 
@@ -54,7 +55,7 @@ def _report(text: str, suffix: str) -> str:
 
 
 def findings(folder: Path) -> Iterator[str]:
-    """Yield the section of the findings of a report folder; nothing without findings."""
+    """Yield the section with the findings of a report folder; nothing if there are none."""
     results = [read(file) for file in scripts(folder)]
     if results:
         yield "## Findings"
@@ -63,7 +64,7 @@ def findings(folder: Path) -> Iterator[str]:
             f"adapter ([all of them](../{FOLDER}/README.md))."
         )
         yield bullets(
-            f"[{prose(one.title)}](../{FOLDER}/{one.script}): {prose(one.parts['Came'])} "
-            f"({prose(one.parts['Versions'])})"
-            for one in results
+            f"[{prose(finding.title)}](../{FOLDER}/{finding.script}): {prose(finding.parts['Came'])} "
+            f"({prose(finding.parts['Versions'])})"
+            for finding in results
         )

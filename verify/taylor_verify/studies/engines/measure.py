@@ -1,9 +1,9 @@
 """The runs of the entry list, each in processes of its own, and the board that they make.
 
-Stored runs with the same scene, setting, version and adapter are not run again, and neither are runs for
-which the engine is not made. Failed runs, and runs of an engine that could not be installed, are tried
-again by the next measurement: a time limit, too little memory and a registry that does not answer are
-faults of a machine and a day. Each environment is made once for all runs.
+A run is not repeated while its scene, setting, version and adapter are the same, nor if the engine is not
+made for its scene. A run that failed, and one of an engine that could not be installed, is tried again by
+the next measurement: the cause may be the machine of that day, such as a time limit, too little memory or a
+registry that does not answer. Each environment is made once for all runs.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ from taylor_verify.studies.engines.entry import Asked, EntryList
 from taylor_verify.studies.engines.replay import errors_of, judged
 from taylor_verify.studies.engines.unfinished import Unfinished
 
-# Below the published folder, where local files are neither published nor committed.
+# A part of the report folder that is neither published nor committed.
 UNFINISHED: Final = "local/engines"
 
-# Runs of one process: more runs load a library less often, but more of them are lost after a kill.
-_TOGETHER: Final = 12
+# With more runs in a process, a library is loaded less often, but more of them are lost if it is killed.
+_RUNS_OF_A_PROCESS: Final = 12
 
 Say = Callable[[str], None]
 Known = Mapping[str, Answer]
@@ -50,19 +50,21 @@ def measure(
     only: Collection[str] = (),
     workers: int | None = None,
 ) -> list[Answer]:
-    """Return an answer for each run of the list that is known or made now, in the order of the list.
+    """Run what has no valid answer yet, and return all answers in the order of the list.
 
-    ``known`` are answers by their key. ``only`` restricts the measurement to engines of these names. Each
-    answer is stored as soon as it is there.
+    ``known`` has earlier answers by their keys, and ``store`` those of a measurement that was stopped; each
+    new answer is stored there at once. With ``only``, no engines but those of these names are run.
+    ``workers`` is the number of processes, by default one for each core. Raises OSError if an answer cannot
+    be stored.
     """
     every = entries.runs()
-    ended_before = {answer.row.key: answer for answer in store.answers()}
-    done_with = {key: answer for key, answer in known.items() if _is_final(answer)} | ended_before
-    answers = {**known, **ended_before}
+    unfinished = {answer.row.key: answer for answer in store.answers()}
+    final = {key: answer for key, answer in known.items() if _is_final(answer)} | unfinished
+    answers = {**known, **unfinished}
     waiting = [
         run
         for run in every
-        if (not only or run.entry.name in only) and not _is_current(run, done_with.get(run.key))
+        if (not only or run.entry.name in only) and not _is_current(run, final.get(run.key))
     ]
     lacking = _prepared(waiting, say)
     for run in waiting:
@@ -84,25 +86,26 @@ def measure(
 
 
 def _sets(runs: Iterable[Asked]) -> list[list[Asked]]:
-    """Return the runs in sets for one process each, with one environment and one precision."""
+    """Return the runs in sets, one for each process; a set has one environment and one precision."""
     alike: dict[tuple[str, str], list[Asked]] = {}
     for run in runs:
         solver = solver_named(run.solver)
         script = solver.block if isinstance(solver, Outside) else run.entry.solver
         alike.setdefault((script, run.rung), []).append(run)
     return [
-        every[first : first + _TOGETHER]
+        every[first : first + _RUNS_OF_A_PROCESS]
         for every in alike.values()
-        for first in range(0, len(every), _TOGETHER)
+        for first in range(0, len(every), _RUNS_OF_A_PROCESS)
     ]
 
 
 def _is_final(answer: Answer) -> bool:
+    """Return True for an answer that no later measurement would change."""
     return answer.row.standing in (Standing.JUDGED, Standing.UNSUITED)
 
 
 def _is_current(run: Asked, answer: Answer | None) -> bool:
-    """Return True for an answer to the present scene by the present adapter, which stays valid."""
+    """Return True for an answer by the present adapter to the present text of the scene."""
     digest = made_of(run.scene, run.entry.solver)
     return answer is not None and answer.row.made_of == digest
 
@@ -115,7 +118,7 @@ def _environment(run: Asked) -> str:
 
 
 def _prepared(runs: Iterable[Asked], say: Say) -> dict[str, str]:
-    """Make the environments of runs, and return the reasons why some of them could not be made."""
+    """Make the environments of runs, and return the reason for each one that could not be made."""
     lacking = {}
     names = [name for name in dict.fromkeys(map(_environment, runs)) if name]
     for place, name in enumerate(names, 1):
@@ -132,10 +135,10 @@ def _unavailable(run: Asked, reason: str) -> Answer:
 
 
 def judged_again(answers: Iterable[Answer], say: Say, workers: int | None = None) -> list[Answer]:
-    """Return the answers with the errors of their stored trajectories measured again."""
+    """Return the answers after their stored trajectories were judged again."""
     asked, done = [*answers], 0
 
-    def ended(answer: Answer, again: Answer) -> None:
+    def ended(answer: Answer, _: Answer) -> None:
         nonlocal done
         done += 1
         say(f"{done}/{len(asked)} {answer.row.key}")
@@ -144,6 +147,7 @@ def judged_again(answers: Iterable[Answer], say: Say, workers: int | None = None
 
 
 def _judged_again(answer: Answer) -> Answer:
+    """Return one answer judged again; an answer without a trajectory stays as it is."""
     row, states = answer.row, answer.states
     if states is None:
         return answer
@@ -154,14 +158,19 @@ def _judged_again(answer: Answer) -> Answer:
 def board_of(answers: Sequence[Answer], workers: int | None) -> tuple[Board, bytes]:
     """Return the document of the board made from answers, and the file of their trajectories."""
     rows, file = trajectories.packed(answers)
-    seconds = {a.row.key: float(f"{a.seconds:.3g}") for a in answers if a.row.is_judged}
+    seconds = {
+        answer.row.key: float(f"{answer.seconds:.3g}") for answer in answers if answer.row.is_judged
+    }
     spans = {scene: _span(scene) for scene in dict.fromkeys(row.scene for row in rows)}
     timings = EnginesTimings(workers or available_cores(), machine(), seconds)
     return Board(EnginesStudy(packages(), spans, tuple(rows)), timings), file
 
 
 def answers_of(board: Board, folder: Path) -> list[Answer]:
-    """Return the answers of a report folder. Raises OSError and ValueError for a broken folder."""
+    """Return the answers of a board that is stored in ``folder``.
+
+    Raises OSError for trajectories that cannot be read, and ValueError for a file that lacks some of them.
+    """
     arrays, seconds = trajectories.load(folder), board.timings.seconds
     return [
         Answer(row, seconds.get(row.key, 0.0), trajectories.states_of(arrays, row))
@@ -170,4 +179,5 @@ def answers_of(board: Board, folder: Path) -> list[Answer]:
 
 
 def _span(scene: str) -> float:
+    """Return the duration of a scene in its unit of time."""
     return float(max(abs(t) for t in load_scene(scene).clock.elapsed))

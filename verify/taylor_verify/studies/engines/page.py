@@ -99,7 +99,7 @@ def page(board: Board, folder: Path) -> str:
 def pictures(board: Board) -> list[Picture]:
     """Return the pictures of the board: energy and motion, error against time, step and version."""
     entries = _entries(board)
-    return [made for kind in (energy, work, sweeps) for made in kind.pictures(board, entries)]
+    return [picture for kind in (energy, work, sweeps) for picture in kind.pictures(board, entries)]
 
 
 def _entries(board: Board) -> EntryList:
@@ -115,7 +115,7 @@ def _entries(board: Board) -> EntryList:
 
 
 def _best(board: Board, entries: EntryList, every: Sequence[EngineSetting]) -> str:
-    """Return a line for each engine: its best setting on the scenes that all engines take."""
+    """Return a table of the engines, each with its best setting on the first scene of the advice."""
     scene = entries.advised[0]
     titles, rows = {row.name: row.title for row in entries.entry}, []
     for best in best_of_each(every, scene):
@@ -142,7 +142,7 @@ COLUMNS: Final = (
 
 
 def cells(board: Board, setting: EngineSetting, row: EngineRow) -> list[str]:
-    """Return the cells of a row after the name of its engine."""
+    """Return the cells of a row of `COLUMNS` after the name of its engine."""
     orders = [setting.order(row.scene, name) for name in ("omega", "attitude")]
     order_cells = [f"{o.order:.1f}" if o and o.order is not None else NOTHING for o in orders]
     pace = board.pace(row)
@@ -168,8 +168,8 @@ def _scenes(board: Board, entries: EntryList, every: Sequence[EngineSetting]) ->
     titles = {row.name: row.title for row in entries.entry}
     for scene in dict.fromkeys(row.scene for row in board.study.rows):
         rows = []
-        for engine, group in groupby(newest(every), key=lambda one: one.engine):
-            best_rows = [row for one in group if (row := one.best(scene)) is not None]
+        for engine, group in groupby(newest(every), key=lambda setting: setting.engine):
+            best_rows = [row for setting in group if (row := setting.best(scene)) is not None]
             best = min(best_rows, key=lambda row: row.worst, default=None)
             if best is not None:
                 rows.append(_scene_row(best, titles.get(engine, engine)))
@@ -202,19 +202,20 @@ def _scene_row(row: EngineRow, title: str) -> list[str]:
 
 
 def _states(board: Board, scene: str) -> set[str]:
+    """Return the state quantities that were judged on a scene."""
     return {name for row in board.study.rows if row.scene == scene for name in row.floors}
 
 
 def _as_shipped(board: Board, entries: EntryList, every: Sequence[EngineSetting]) -> Iterator[str]:
     """Yield the table of the engines as shipped beside the settings of the board."""
     titles, rows, usual = {row.name: row.title for row in entries.entry}, [], newest(every)
-    for one in newest(every, shipped=True):
-        for row in one.rows:
+    for setting in newest(every, shipped=True):
+        for row in setting.rows:
             other = like(row, usual, entries)
             if row.is_judged:
                 rows.append(
                     [
-                        prose(titles.get(one.engine, one.engine)),
+                        prose(titles.get(setting.engine, setting.engine)),
                         prose(other.variant if other else row.variant) or NOTHING,
                         code(row.scene.rpartition("/")[2]),
                         row.value,
@@ -224,16 +225,27 @@ def _as_shipped(board: Board, entries: EntryList, every: Sequence[EngineSetting]
                     ]
                 )
     if rows:
-        numbers = ("step:", "omega:", "attitude:", "energy:", "set by us:")
+        columns = [
+            "engine",
+            "setting",
+            "scene",
+            "step:",
+            "omega:",
+            "attitude:",
+            "energy:",
+            "set by us:",
+            "cause",
+        ]
         yield "## As shipped"
         yield (
             "Sleeping, damping and caps are left as an engine ships them; *set by us* is the error with "
             "what the adapter sets, at the same step."
         )
-        yield table(["engine", "setting", "scene", *numbers, "cause"], rows)
+        yield table(columns, rows)
 
 
 def _unavailable(rows: Iterable[EngineRow]) -> Iterator[str]:
+    """Yield a section of the runs without numbers, with a line for each engine, version and reason."""
     lost = {
         (row.engine, row.version, row.standing, row.detail): row
         for row in rows

@@ -1,7 +1,7 @@
-"""Comparison of the settings of the board: orders, best steps, and the worst of several scenes.
+"""Comparison of the settings of the board: orders, best steps, and the largest error on several scenes.
 
-A setting is an engine, a version, its options and a precision; the rows of a setting differ in the step
-and the scene.
+A setting is an engine, a version, options and a precision; the rows of a setting differ in the step and the
+scene.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class EngineSetting:
         return min(self.on(scene), key=lambda row: row.worst, default=None)
 
     def order(self, scene: str, quantity: str) -> Convergence | None:
-        """Return the order of a quantity over the steps on a scene; None for a setting without steps."""
+        """Return the observed order of a quantity over the steps; None for a setting without steps."""
         rows = [row for row in self.on(scene) if row.value and row.knob == "step"]
         if not rows:
             return None
@@ -56,7 +56,7 @@ class EngineSetting:
         )
 
     def at(self, value: str, scenes: Iterable[str]) -> Score | None:
-        """Return the worst of several scenes at one step; None if one of them was not judged."""
+        """Return the worst row of several scenes at one step; None if one of them was not judged."""
         rows = {row.scene: row for row in self.rows if row.value == value and row.is_judged}
         asked = [*scenes]
         if not asked or any(scene not in rows for scene in asked):
@@ -64,14 +64,14 @@ class EngineSetting:
         return Score(self, value, max((rows[scene] for scene in asked), key=lambda row: row.worst))
 
     def scores(self, scenes: Sequence[str]) -> list[Score]:
-        """Return the scores at every step for which all of the scenes were judged."""
+        """Return the score of every step at which all of the scenes were judged."""
         values = dict.fromkeys(row.value for row in self.rows)
         return [score for value in values if (score := self.at(value, scenes)) is not None]
 
 
 @dataclass(frozen=True)
 class Score:
-    """A setting at one step; ``row`` belongs to the scene with its worst error."""
+    """A setting at one step, on several scenes; ``row`` is that of the scene with the largest error."""
 
     setting: EngineSetting
     value: str
@@ -79,7 +79,7 @@ class Score:
 
     @property
     def error(self) -> float:
-        """The largest error of the states on its worst scene."""
+        """The largest error of the states on the scene where it is largest."""
         return self.row.worst
 
 
@@ -93,17 +93,20 @@ def settings(study: EnginesStudy) -> list[EngineSetting]:
 
 
 def newest(every: Iterable[EngineSetting], shipped: bool = False) -> list[EngineSetting]:
-    """Return the settings of the newest version of each engine, of ``every`` setting there is.
+    """Return those of ``every`` setting that belong to the newest version of their engine.
 
-    The list names that version last, and it is run first. With ``shipped`` the settings are those as
+    The newest version is the first in the rows of an engine. With ``shipped`` the settings are those as
     shipped, with sleep and damping left on, instead of the board's own.
     """
-    first: dict[str, str] = {}
-    chosen = []
+    every = [*every]
+    versions: dict[str, str] = {}
     for setting in every:
-        if setting.version == first.setdefault(setting.engine, setting.version):
-            chosen += [setting] if setting.shipped == shipped else []
-    return chosen
+        versions.setdefault(setting.engine, setting.version)
+    return [
+        setting
+        for setting in every
+        if setting.version == versions[setting.engine] and setting.shipped == shipped
+    ]
 
 
 def best_of(scores: Iterable[Score]) -> Score | None:
@@ -115,12 +118,13 @@ def best_of(scores: Iterable[Score]) -> Score | None:
 def best_of_each(every: Iterable[EngineSetting], scene: str) -> list[Score]:
     """Return the best score of each engine in its newest version on a scene, in the order of the list."""
     best = []
-    for _, group in groupby(newest(every), key=lambda one: one.engine):
-        scores = [score for one in group for score in one.scores([scene])]
-        best += sorted(scores, key=lambda score: score.error)[:1]
+    for _, group in groupby(newest(every), key=lambda setting: setting.engine):
+        scores = [score for setting in group for score in setting.scores([scene])]
+        if scores:
+            best.append(min(scores, key=lambda score: score.error))
     return best
 
 
 def digits(error: float) -> float:
-    """Return the number of right decimal digits; zero for a lost motion and for NaN."""
+    """Return the number of right decimal digits; 0 for a lost motion and for NaN, infinity for no error."""
     return max(0.0, -log10(error)) if 0 < error < inf else (0.0 if error else inf)

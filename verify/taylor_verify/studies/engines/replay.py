@@ -27,7 +27,7 @@ from taylor_verify.studies.engines.document import STATES
 
 States = np.ndarray[Any, Any]
 
-# A cause must explain the error of the motion; a cause of several quantities is named once.
+# Digits of a stored error.
 _DIGITS: Final = 4
 
 
@@ -42,9 +42,10 @@ class Stored(Solver):
     setting: str = ""
 
     def solve(self, problem: Problem) -> Trajectory:
+        """Return the stored trajectory as the answer to ``problem``."""
         layout = columns(problem)
         ends = np.cumsum([width for _, width in layout])[:-1]
-        # A float64 that holds a float32 has its value.
+        # A float32 becomes a float64 without a change of its value.
         numbers = np.array([[mp.mpf(float(v)) for v in row] for row in self.states], dtype=object)
         parts = np.split(numbers, ends, axis=1)
         quantities = {name: part for (name, _), part in zip(layout, parts, strict=True)}
@@ -62,9 +63,9 @@ class Errors:
 
 
 def states_of(scene: Scene, trajectory: Trajectory) -> States:
-    """Return a trajectory as an array of the smallest floats that hold it: float32, else float64.
+    """Return a trajectory as an array (samples, columns): float32 if that changes no number, else float64.
 
-    The numbers are those of the engine. Numbers that are no doubles are rounded; no engine here has any.
+    A number that is no double is rounded; no engine here has any.
     """
     parts = [trajectory.quantities[name] for name in state_groups(scene.model, scene.track)]
     doubles = np.array(
@@ -78,7 +79,7 @@ def states_of(scene: Scene, trajectory: Trajectory) -> States:
 def judged(scene: str, rung: str, solver: str, states: States, steps: int) -> Judgement:
     """Return the judgement of stored states, with the likely causes of what failed.
 
-    The problem has the data that the solver takes. The count of steps has no time limit, so that the
+    The problem has the data as the solver rounds them. The count of steps has no time limit, so that the
     judgement is the same on every machine.
     """
     problem = solver_named(solver).problem(load(scene), rung_named(rung))
@@ -105,14 +106,14 @@ def errors_of(result: Judgement) -> Errors:
 
 
 def _cause(causes: Iterable[LikelyCause], verdicts: Iterable[Verdict]) -> str:
-    """Return the name of the cause that explains most of an error, first of the main quantity."""
+    """Return the name of the cause that explains most of an error; the main quantity's comes first."""
     order = [verdict.quantity for verdict in verdicts]
-    ordered = sorted(causes, key=lambda one: (order.index(one.quantity), one.leaves))
+    ordered = sorted(causes, key=lambda cause: (order.index(cause.quantity), cause.leaves))
     return ordered[0].name if ordered else ""
 
 
 def _short(value: float | None) -> float | None:
-    """Return a number in four digits, which are enough for an error."""
+    """Return an error in four digits; None if it is no finite number."""
     if value is None or not isfinite(value):
         return None
     return float(f"{value:.{_DIGITS - 1}e}")

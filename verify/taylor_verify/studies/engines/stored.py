@@ -13,7 +13,7 @@ from taylor_verify.studies.stored import Stored
 
 
 def _fields(study: EnginesStudy) -> Mapping[str, Any]:
-    """Return the keys and values of the rows without defaults, to save bytes in thousands of rows."""
+    """Return the stored keys and values; fields with their default are left out of the many rows."""
     rows = [plain(row) for row in study.rows]
     return {"versions": study.versions, "spans": study.spans, "rows": rows}
 
@@ -24,7 +24,7 @@ TIMINGS: Final = Stored(EnginesTimings, "engines", complete, stem="engines-timin
 
 
 def write(folder: Path, board: Board, file: bytes) -> list[Path]:
-    """Store a board and the file of its trajectories below a report folder. Raises OSError."""
+    """Store a board and ``file``, the bytes of its trajectories, below a report folder. Raises OSError."""
     # The rows come last, because they refer to the other files.
     return [
         *replace_files(folder, {TRAJECTORIES: file}),

@@ -1,4 +1,4 @@
-"""The study of the engines: every row of the entry list measured against the exact motion."""
+"""The study of the engines: every run of the entry list compared with the exact motion."""
 
 from __future__ import annotations
 
@@ -20,7 +20,10 @@ def _measure(
     rejudge: bool = False,
     workers: int | None = None,
 ) -> Measured:
-    """Run what is not stored, or judge the stored trajectories again; continue a stopped measurement."""
+    """Run the engines whose runs are not stored, or judge the stored trajectories again.
+
+    A measurement that was stopped is continued.
+    """
     from taylor_verify.studies.engines.measure import (
         UNFINISHED,
         answers_of,
@@ -44,12 +47,12 @@ def _measure(
     if rejudge:
         answers = judged_again(known, progress.say, workers)
     else:
-        recalled = {
+        reused = {
             answer.row.key: answer
             for answer in known
             if not (anew and (not only or answer.row.engine in only))
         }
-        answers = measure(entries, recalled, store, progress.say, only, workers)
+        answers = measure(entries, reused, store, progress.say, only, workers)
     written = stored.write(folder, *board_of(answers, workers))
     # Until the results are stored, the measurement can be continued.
     store.forget()

@@ -1,9 +1,9 @@
-"""Stored trajectories: one NPZ with an array for each scene and type of float, a block for each run.
+"""Stored trajectories: one NPZ file with an array for each scene and type of float.
 
-`numpy.load` reads it: `file["oblique-f64"]` has shape (runs, samples, columns): those of float64 on the
-scene engines/oblique. The row of a run in engines.json has its place there. Columns are those of an
-answer: omega or the impulses, the quaternion, the centre where it is tracked. The bytes depend on the
-numbers alone.
+`numpy.load` reads the file: `file["oblique-f64"]` has shape (runs, samples, columns), and all runs on the
+scene engines/oblique in float64. The row of a run in engines.json has its index, ``place``. Columns are
+those of an answer: omega or the impulses, the quaternion, and the centre if the scene tracks it. The bytes
+of the file depend only on the numbers.
 """
 
 from __future__ import annotations
@@ -34,14 +34,14 @@ def packed(answers: Iterable[Answer]) -> tuple[list[EngineRow], bytes]:
             stored.append(answer.states)
         rows.append(replace(answer.row, place=place))
     file = BytesIO()
-    # numpy gives every member the same date.
+    # NumPy gives all arrays in the file the same date.
     stacked: dict[str, Any] = {name: np.array(each) for name, each in arrays.items()}
     np.savez_compressed(file, **stacked)
     return rows, file.getvalue()
 
 
 def load(folder: Path) -> Mapping[str, States]:
-    """Return the arrays that are stored below a report folder.
+    """Return the arrays that are stored below a report folder, by their names.
 
     Raises OSError for a file that cannot be read, and ValueError for one that is something else.
     """
@@ -50,15 +50,15 @@ def load(folder: Path) -> Mapping[str, States]:
         with np.load(place, allow_pickle=False) as file:
             return {name: file[name] for name in file.files}
     except (BadZipFile, EOFError, AttributeError, ValueError) as error:
-        # numpy takes any other file for a pickle, and refuses it.
+        # NumPy takes any other file for a pickle, and refuses to read it.
         expected = "expected an NPZ of trajectories, got another file"
         raise ValueError(f"{expected} @ {place}") from error
 
 
 def states_of(arrays: Mapping[str, States], row: EngineRow) -> States | None:
-    """Return the trajectory of a row; None for a run without one.
+    """Return the trajectory (samples, columns) of a row; None for a run without a trajectory.
 
-    Raises ValueError where the file lacks it.
+    Raises ValueError if the arrays lack it.
     """
     if not row.is_judged:
         return None

@@ -1,4 +1,4 @@
-"""Answers of an unfinished measurement, one file for each run, so that it continues after a kill."""
+"""Answers of an unfinished measurement, one file for each run, so that a killed one can be continued."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from taylor_verify.studies.engines.answer import Answer
 
 @dataclass(frozen=True)
 class Unfinished:
-    """The store of a measurement in a folder of its own."""
+    """The answers of a measurement so far, in a folder of their own."""
 
     folder: Path
 

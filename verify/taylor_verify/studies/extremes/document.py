@@ -1,4 +1,4 @@
-"""A run of all extremes, every row with the expected verdict."""
+"""Verdicts on all extremes, each beside the expected verdict."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from taylor_verify.records.verdict import Verdict
 
 @dataclass(frozen=True)
 class Expected:
-    """The expected verdict of a row, and the reason if it is no pass."""
+    """An expected verdict, and the reason for it unless it is a pass."""
 
     verdict: Status
     why: str
@@ -23,13 +23,13 @@ class Expected:
 
 @dataclass(frozen=True)
 class ExtremeVerdict(Verdict):
-    """A verdict and the expected one; None if the row was compared with nothing."""
+    """A verdict beside the expected one; None if nothing is expected of this row."""
 
     expected: Expected | None = None
 
     @property
     def is_met(self) -> bool:
-        """False for a mismatch; a row that was compared with nothing is no mismatch."""
+        """True unless the verdict differs from the expected one."""
         return self.expected is None or self.expected.verdict is self.verdict
 
     @classmethod
@@ -52,7 +52,7 @@ class Titled:
 
 @dataclass(frozen=True)
 class ExtremesStudy:
-    """Document of all verdicts, of the mismatches, and of the runs that were not made."""
+    """All verdicts, the mismatches in words, and the runs that were left out."""
 
     versions: dict[str, str]
     machine: Machine
@@ -64,4 +64,4 @@ class ExtremesStudy:
     @cached_property
     def titles(self) -> dict[str, str]:
         """The title of each scene."""
-        return {each.scene: each.title for each in self.scenes}
+        return {titled.scene: titled.title for titled in self.scenes}

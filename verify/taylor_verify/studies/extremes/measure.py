@@ -1,4 +1,4 @@
-"""Run of all extremes beside the expected verdicts, as a document."""
+"""Run of all extremes, and its document with the expected verdicts."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from taylor_verify.records.status import Status
 from taylor_verify.scenes.library import EXTREMES
 from taylor_verify.studies.extremes.document import Expected, ExtremesStudy, ExtremeVerdict, Titled
 
-# The rung on which the extremes are published, as `make verify` runs them.
+# The rung on which the extremes are published, and on which `make verify` runs them.
 _RUNG: Final = "f64"
 _SOLVER: Final = "taylor"
 
@@ -28,7 +28,7 @@ def extremes(progress: Progress | None = None) -> Judgements:
 def extremes_study(results: Judgements) -> ExtremesStudy:
     """Return the document that the page of the extremes is made from.
 
-    Raises ValueError for verdicts of unlike versions.
+    Raises ValueError for verdicts of different versions.
     """
     agreement, verdicts = results.agreement, results.verdicts
     expected = {row: Expected(Status(e.verdict), e.why) for row, e in agreement.expected.items()}

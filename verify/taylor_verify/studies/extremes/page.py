@@ -1,10 +1,10 @@
 """Page of the extremes, made from the stored verdicts of one run.
 
-        extremes.json   every verdict with the expected one; the titles of the scenes; the runs that were
-                        left out; the versions that made the rows
+    extremes.json   every verdict with the expected one; the titles of the scenes; the runs that were
+                    left out; the versions that made the rows
 
 The extremes are hard scenes. A verdict other than `pass` is either expected, with a reason, or a mismatch.
-The page shows both, apart from each other.
+The page lists mismatches in its summary, and every verdict other than `pass` with its reason.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ _LEGEND: Final = (
 
 
 def _fields(study: ExtremesStudy) -> dict[str, Any]:
-    """Return the stored keys and values, without the seconds of runs, which differ on every machine."""
+    """Return the stored keys and values without the seconds of runs, which differ between machines."""
     rows = [store.row(verdict) for verdict in study.verdicts]
     return {**complete(study), "machine": plain(study.machine), "verdicts": rows}
 
@@ -94,8 +94,15 @@ def _summary(study: ExtremesStudy) -> str:
 
 
 def _section(study: ExtremesStudy, own: Sequence[Run], model: str) -> str:
-    numbers = ("state:", "over attainable:")
-    columns = ["scene", "rung", "what it is", *numbers, "verdict", "as expected:"]
+    columns = [
+        "scene",
+        "rung",
+        "what it is",
+        "state:",
+        "over attainable:",
+        "verdict",
+        "as expected:",
+    ]
     rows = [_cells(study, run) for run in own]
     return f"## {model or 'Without a state'}\n\n{table(columns, rows)}"
 
@@ -116,7 +123,7 @@ def _cells(study: ExtremesStudy, run: Run) -> list[str]:
 
 
 def _state(verdict: Verdict) -> str:
-    """Return the error, and the verdict if it is no pass."""
+    """Return the error with the verdict unless that is a pass; a word if the error is no number."""
     if verdict.max is None:
         return bold(prose(word(verdict)))
     text = prose(peak(verdict))
@@ -165,5 +172,5 @@ def sheet(study: ExtremesStudy) -> str:
             "as_expected": "yes" if verdict.is_met else "no",
         }
 
-    # The reasons are long texts, and stand in the data.
+    # The reasons of the bounds are long texts, and extremes.json has them.
     return sheets.gates(study.verdicts, expected, without=("because", "scene_sha256"))

@@ -50,7 +50,7 @@ Document = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class Shown:
-    """A picture with its heading, its caption, and the files that it is made from."""
+    """A picture with its heading, its caption, and the files that it is made from, below the report."""
 
     heading: str
     picture: Picture
@@ -58,6 +58,7 @@ class Shown:
     sources: tuple[str, ...]
 
     def block(self) -> str:
+        """Return the picture with its caption and its data, in Markdown."""
         sources = ", ".join(map(_named, self.sources))
         stem, alt = self.picture.stem, prose(self.picture.alt)
         return f"![{alt}]({stem}.svg)\n\n{self.caption} Data: {sources}."
@@ -79,9 +80,11 @@ class Stored:
     folder: Path
 
     def portrait(self, scene: str) -> Document:
+        """Return the portrait of a scene."""
         return store.read_document(self.folder / PORTRAITS.name(scene))
 
     def record(self, scene: str, rung: str) -> Document:
+        """Return the record of the run of a scene on a rung."""
         return store.read_document(self.folder / record_name(scene, rung))
 
     def rungs(self, scene: str) -> list[str]:
@@ -92,19 +95,19 @@ class Stored:
         return sorted(names, key=place_of_rung)
 
     def samples(self, scene: str, columns: Sequence[str]) -> list[list[float]]:
-        """Return the exact motion at the scene's instants, a row each."""
+        """Return the exact motion as a row of the columns for each instant of the scene."""
         file = self.folder / reference_name(scene)
         with file.open(encoding="utf-8", newline="") as lines:
             return [[float(row[column]) for column in columns] for row in csv.DictReader(lines)]
 
 
 def record_name(scene: str, rung: str) -> str:
-    """Return the path of the record of a run."""
+    """Return the path of the record of a run, below the report folder."""
     return f"{store.FOLDER}/{store.record_name(scene, _SOLVER, rung)}"
 
 
 def reference_name(scene: str) -> str:
-    """Return the path of the exact motion of a scene."""
+    """Return the path of the exact motion of a scene, below the report folder."""
     return f"{reference_files.FOLDER}/{of_scene(scene)}.csv"
 
 
@@ -127,14 +130,15 @@ def shown(stored: Stored) -> Iterator[Shown]:
 def page(pictures: Sequence[Shown]) -> str:
     """Return the page of all pictures below their headings."""
     blocks = []
-    for heading, group in groupby(pictures, key=lambda one: one.heading):
-        blocks += [f"## {heading}", *(one.block() for one in group)]
+    for heading, group in groupby(pictures, key=lambda entry: entry.heading):
+        blocks += [f"## {heading}", *(entry.block() for entry in group)]
     title = "Pictures of motions and of their errors"
     return whole(title, _WHAT, *blocks, "## Elsewhere", _ELSEWHERE)
 
 
-# The kinds of pictures, each with its caption and its files of data.
+# The kinds of pictures.
 
+# A picture, its caption, and the files that it is made from.
 Made = tuple[Picture, str, tuple[str, ...]]
 
 
@@ -146,9 +150,9 @@ def _polhode(stored: Stored, portrait: Document) -> Made:
         "of u; dashed the separatrices. Repeated turns overlap, with later marks above earlier ones."
     )
     samples, record = stored.samples(scene, COLUMNS["omega"]), stored.record(scene, _RUNG)
-    sources = PORTRAITS.name(scene), record_name(scene, _RUNG)
     picture = polhode.picture(portrait, samples, record)
-    return picture, caption, (*sources, reference_name(scene))
+    sources = (PORTRAITS.name(scene), record_name(scene, _RUNG), reference_name(scene))
+    return picture, caption, sources
 
 
 def _axis(stored: Stored, portrait: Document) -> Made:

@@ -13,7 +13,7 @@ from taylor_verify.studies.study import Measured, NotMeasured, Progress, Study
 if TYPE_CHECKING:
     from taylor_verify.studies.gallery.page import Shown
 
-# The pictures need NumPy, and other pages do not: it is imported late.
+# Functions import `page` when they are called: it needs NumPy, which other pages do not need.
 
 
 def _measure(folder: Path, progress: Progress) -> Measured:
@@ -47,11 +47,11 @@ def _find(folder: Path) -> list[Shown] | None:
 
 
 def _page(pictures: list[Shown], folder: Path) -> str:
-    """Return the page of the pictures that are drawn already; empty without any."""
+    """Return the page of those pictures that are drawn already; empty if there are none."""
     from taylor_verify.studies.gallery.page import page
 
     drawn = {file.stem for file in (folder / FOLDER).glob("*.svg")}
-    shown = [one for one in pictures if one.picture.stem in drawn]
+    shown = [entry for entry in pictures if entry.picture.stem in drawn]
     return page(shown) if shown else ""
 
 
@@ -63,6 +63,6 @@ STUDY: Final = Study(
     find=_find,
     page=_page,
     place=f"{FOLDER}/README.md",
-    draw=lambda pictures: [one.picture for one in pictures],
+    draw=lambda pictures: [entry.picture for entry in pictures],
     needs_heyoka=False,
 )

@@ -1,7 +1,7 @@
-"""A checkpoint: the state of a course, with everything that is needed to continue it bit for bit.
+"""Checkpoint of a long measurement: all that is needed to continue it to the same last bit.
 
-States and times are exact hexadecimal numbers. The file is replaced whole, after each piece of the
-course. A checkpoint of another question or of other versions is refused.
+States and times are exact hexadecimal numbers. The file is replaced as a whole after each piece of the
+measurement. A checkpoint of another question or of other versions is refused.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from taylor_verify.studies.stored import made_by
 # The number of the file format.
 _FORMAT: Final = 2
 
-# The state of every lane at one instant and its steps up to then; None for a lane that never came there.
+# The state of one lane at one instant and its steps so far; None for a lane that ended before.
 Sample = tuple[tuple[Fraction, ...], int] | None
 
 
@@ -35,9 +35,9 @@ class OfAnotherError(ValueError):
 
 @dataclass(frozen=True)
 class Progress:
-    """The lanes after the first ``pieces`` pieces of the course.
+    """The lanes after the first ``pieces`` pieces of a measurement.
 
-    ``samples[k][i]`` is lane i at instant k, in its problem's own units, for the instants passed.
+    ``samples[k][i]`` is lane i at instant k, in its problem's own units, for the instants so far.
     """
 
     pieces: int
@@ -48,7 +48,7 @@ class Progress:
 def write(
     file: Path, question: Mapping[str, Any], versions: Mapping[str, str], progress: Progress
 ) -> None:
-    """Replace an earlier checkpoint, entirely or not at all. Raises OSError."""
+    """Store a checkpoint in place of an earlier one, entirely or not at all. Raises OSError."""
     content = {
         **made_by("growth"),
         "format": _FORMAT,
@@ -62,7 +62,7 @@ def write(
     with unfinished.open("w", encoding="utf-8", newline="\n") as stream:
         stream.write(text)
         stream.flush()
-        # The content must be on the disk before its new name.
+        # The content must be on the disk before the file gets its name.
         os.fsync(stream.fileno())
     os.replace(unfinished, file)
 
@@ -70,7 +70,8 @@ def write(
 def read(file: Path, question: Mapping[str, Any], versions: Mapping[str, str]) -> Progress | None:
     """Return the checkpoint of this question; None if there is no file.
 
-    Raises OfAnotherError for a checkpoint of another question, and ValueError for any other file.
+    Raises OSError for a file that cannot be read, OfAnotherError for a checkpoint of another question
+    or other versions, and ValueError for any other content.
     """
     try:
         text = file.read_text(encoding="utf-8")
@@ -94,7 +95,7 @@ def read(file: Path, question: Mapping[str, Any], versions: Mapping[str, str]) -
 def _check_origin(
     content: Mapping[str, Any], question: Mapping[str, Any], versions: Mapping[str, str], file: Path
 ) -> None:
-    """Raise OfAnotherError that names the first difference between the checkpoint and the question."""
+    """Raise an OfAnotherError that names the first difference, if there is one."""
     asked = {"format": _FORMAT, **question, **versions}
     stored = {"format": content["format"], **content["question"], **content["versions"]}
     for name in dict.fromkeys([*asked, *stored]):

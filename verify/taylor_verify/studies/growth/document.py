@@ -17,7 +17,7 @@ EXACT: Final = "exact"
 
 @dataclass(frozen=True)
 class GrowthGate:
-    """The gate on the growth of a conserved quantity, or of the phase."""
+    """The gate on the growth of a conserved quantity, or of the phase; see `fit.Gate`."""
 
     verdict: Status
     law: str
@@ -28,12 +28,13 @@ class GrowthGate:
 
 @dataclass(frozen=True)
 class GrowthOfQuantity:
-    """A quantity of an ensemble and its growth.
+    """The growth of one quantity of an ensemble.
 
-    ``rms`` are root mean squares over the starts at each of the ensemble's instants. ``in_walks`` is the
-    last one, relative to a random walk whose steps are single roundoffs. ``exponent`` lies between ``low``
-    and ``high`` at the confidence ``level``; ``late`` has these three numbers for the second half of the
-    decades.
+    ``rms`` are root mean squares over the starts, one for each of the ensemble's instants. ``in_walks`` is
+    the last of them over that of a random walk whose steps are single roundoffs. ``exponent`` is the power
+    of time, between ``low`` and ``high`` at the confidence ``level``, from ``lanes`` starts; ``word`` names
+    it. ``late`` has exponent, low and high for the second half of the decades, and ``late_word`` their
+    word.
     """
 
     quantity: str
@@ -52,7 +53,11 @@ class GrowthOfQuantity:
 
 @dataclass(frozen=True)
 class Ensemble:
-    """A scene followed from ``lanes`` starts; ``counts`` are its instants in periods."""
+    """A scene followed from ``lanes`` starts for ``periods`` periods; ``lost`` of them did not get there.
+
+    ``period`` is in the scene's unit of time, ``counts`` are the instants in periods, and ``steps`` the
+    steps up to each instant, a mean over the lanes. ``why`` is the reason to measure the ensemble.
+    """
 
     scene: str
     digest: str

@@ -1,4 +1,4 @@
-"""Experiment: an ensemble followed piece by piece, and the growth of each of its errors."""
+"""Experiment: an ensemble of starts followed piece by piece, and the growth of each of its errors."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ from taylor_verify.studies.growth.errors import lane_errors
 from taylor_verify.studies.growth.fit import Floats, Growth, growth
 from taylor_verify.studies.growth.question import Question
 
-# The packages that the numbers of a course depend on.
+# The packages that the numbers of an experiment depend on.
 _NUMERICAL = ("taylor-verify", "heyoka", "numpy")
 
-# Called after each piece with the number of finished pieces and that of all pieces.
+# A function that is called after each piece with the number of finished pieces and of all pieces.
 Finished = Callable[[int, int], None]
 
 
 @dataclass(frozen=True)
 class QuantityGrowth:
-    """A quantity of an ensemble: its signed errors (lanes, instants), and their growth."""
+    """A quantity of an ensemble: its errors, an array (lanes, instants), and their growth."""
 
     quantity: str
     errors: Floats
@@ -37,9 +37,10 @@ class QuantityGrowth:
 
 @dataclass(frozen=True)
 class Experiment:
-    """An answered question; ``steps`` is the mean over the lanes at every instant.
+    """An answered question.
 
-    ``lost`` is the number of lanes that did not reach the end.
+    ``lost`` is the number of lanes that did not reach the end. ``steps`` are the steps up to each instant,
+    a mean over the lanes that reached it.
     """
 
     question: Question
@@ -66,12 +67,13 @@ class Experiment:
             why=why,
         )
 
-    def _quantity(self, one: QuantityGrowth) -> GrowthOfQuantity:
-        u, grown = float(self.question.rung.unit_roundoff), one.growth
+    def _quantity(self, measured: QuantityGrowth) -> GrowthOfQuantity:
+        """Return a quantity in its stored form, in which None stands for a number that is not finite."""
+        u, grown = float(self.question.rung.unit_roundoff), measured.growth
         late = grown.late
         row = {
             **complete(grown.exponent),
-            "quantity": one.quantity,
+            "quantity": measured.quantity,
             "rms": grown.rms,
             # Relative to a walk whose steps are single roundoffs.
             "in_walks": grown.rms[-1] / (u * sqrt(self.steps[-1])) if self.steps[-1] else None,
@@ -80,16 +82,15 @@ class Experiment:
             "late_word": late.word,
             "gate": grown.gate,
         }
-        # A number that is not finite is stored as none.
         return converted(complete(row), GrowthOfQuantity)
 
 
 def course(
-    question: Question, file: Path | None = None, finished: Finished = lambda done, all_: None
+    question: Question, file: Path | None = None, finished: Finished = lambda done, total: None
 ) -> Progress:
-    """Follow the question to its end, from the checkpoint in ``file`` if there is one.
+    """Follow all lanes of a question to the end, from the checkpoint in ``file`` if there is one.
 
-    The result is the same to the last bit however often the course was stopped and continued. Raises
+    The result is the same to the last bit, however often the run was stopped and continued. Raises
     ValueError for a checkpoint of another question, and OSError if a checkpoint cannot be written.
     """
     asked, made_with = question.document(), numerical_versions()
@@ -100,7 +101,9 @@ def course(
         lanes = ensemble.advance(progress.lanes, until)
         samples = progress.samples
         if is_instant:
-            samples += (tuple((one.state, one.steps) if one.goes_on else None for one in lanes),)
+            samples += (
+                tuple((lane.state, lane.steps) if lane.goes_on else None for lane in lanes),
+            )
         progress = Progress(progress.pieces + 1, lanes, samples)
         if file:
             checkpoint.write(file, asked, made_with, progress)
@@ -109,14 +112,17 @@ def course(
 
 
 def numerical_versions() -> dict[str, str]:
-    """Return the versions that the numbers of a course depend on."""
+    """Return the versions of the packages that the numbers of an experiment depend on."""
     return {name: versions()[name] for name in _NUMERICAL}
 
 
 def experiment(
-    question: Question, file: Path | None = None, finished: Finished = lambda done, all_: None
+    question: Question, file: Path | None = None, finished: Finished = lambda done, total: None
 ) -> Experiment:
-    """Follow the ensemble and judge it; ``file`` holds its checkpoint."""
+    """Follow an ensemble and measure the growth of its errors; ``file`` is its checkpoint.
+
+    Raises the errors of `course`.
+    """
     end = course(question, file, finished)
     by_lane = [
         lane_errors(problem, [sample and sample[0] for sample in samples], question.period)
@@ -124,9 +130,11 @@ def experiment(
     ]
     u, times = float(question.rung.unit_roundoff), np.array(question.counts)
     grown = []
-    for name, kind in {one.quantity: one for lane in by_lane for one in lane}.items():
+    for name, kind in {
+        measured.quantity: measured for lane in by_lane for measured in lane
+    }.items():
         # A lane without the quantity has NaN.
-        rows = [{one.quantity: one.values for one in lane} for lane in by_lane]
+        rows = [{measured.quantity: measured.values for measured in lane} for lane in by_lane]
         errors = np.array([row.get(name, np.full(len(times), np.nan)) for row in rows])
         grown.append(QuantityGrowth(name, errors, growth(times, errors, kind.law, u, kind.signed)))
     counts = [[sample[1] for sample in row if sample is not None] for row in end.samples]

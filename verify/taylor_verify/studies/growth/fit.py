@@ -1,4 +1,4 @@
-"""Growth of errors over an ensemble of starts: exponent, interval, word, and a gate.
+"""Growth of errors over an ensemble of starts: its exponent with an interval, a word for it, and a gate.
 
 t_k          instants, equally many to a decade        e_ik   error of lane i at t_k, signed
 p_i          slope of log |e_ik| against log t_k       n      lanes, independent of each other
@@ -7,9 +7,9 @@ The roundings of a run are practically independent of each other (Brouwer's law)
 quantity by a random walk, e ~ t^1/2. They change a phase, whose rate depends on the conserved quantities,
 by the integral of such a walk, e ~ t^3/2. Errors of constant sign give t and t^2 instead.
 
-A process with e(ct) ~ c^p e(t) in distribution has E log |e_ik| = p log t_k + constant, whatever its
-distribution and however its instants are correlated. So p_i is unbiased, the lanes are draws of it,
-and Student's interval of their mean holds; lanes of different size do not disturb it.
+A process with e(ct) ~ c^p e(t) in distribution has E log |e_ik| = p log t_k + constant, for any
+distribution and any correlation between instants. So p_i has no bias. The lanes give independent values
+of it, and Student's interval holds for their mean, even if the errors of lanes differ in size.
 """
 
 from __future__ import annotations
@@ -29,18 +29,18 @@ from taylor_verify.studies.growth.document import EXACT
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
-# An interval misses the exponent, and a word is wrong, once in a hundred.
+# The probability that an interval contains the exponent.
 LEVEL: Final = 0.99
 # A page of a hundred gates raises a false alarm once in a thousand publications.
 FALSE_ALARM: Final = 1e-5
 
-# Powers differ by a half. Oscillations within a period, and a bias beside a walk, bend a line over few
-# decades. For the choice of a word, an interval therefore extends at least a tenth of that half to
-# either side.
+# The powers of neighbouring words differ by a half. Over few decades, oscillations within a period and a
+# bias beside a walk bend the line. For the choice of a word, an interval therefore extends at least a tenth
+# of that half to either side.
 _RESOLUTION: Final = 0.05
 
 _LEAST_LANES: Final = 2
-# Two late instants are compared with the early ones; a single one has hardly any spread.
+# The number of late instants, which are compared with all earlier ones.
 _LATE: Final = 2
 _LEAST_INSTANTS: Final = _LATE + 2
 
@@ -61,8 +61,8 @@ RANDOM_WALK: Final = "random walk"
 BIAS: Final = "bias"
 NO_WORD: Final = "no number"
 
-# The words of a phase name the kind of the single errors, which grow by one power of time more when they
-# pass to the rate of the phase.
+# The word of each power of time. A phase has the word of the errors that change its rate; the phase grows
+# by one more power of time than they do.
 _WORDS: Final[Mapping[Law, Mapping[float, str]]] = {
     Law.WALK: {0: BOUNDED, 0.5: RANDOM_WALK, 1: BIAS},
     Law.INTEGRATED: {0: BOUNDED, 0.5: "jitter", 1: "constant rate", 1.5: RANDOM_WALK, 2: BIAS},
@@ -71,9 +71,9 @@ _WORDS: Final[Mapping[Law, Mapping[float, str]]] = {
 
 @dataclass(frozen=True)
 class Exponent:
-    """The mean slope of the lanes, its interval at ``level``, and the word for it.
+    """The mean slope of ``lanes`` lanes, its interval at the confidence ``level``, and the word for it.
 
-    All are NaN unless two lanes have finite errors throughout.
+    Lanes with an error that is not finite are left out. The numbers are NaN if fewer than two lanes remain.
     """
 
     value: float
@@ -86,10 +86,11 @@ class Exponent:
 
 @dataclass(frozen=True)
 class Gate:
-    """The judgement on errors: whether they grow faster than ``law`` allows.
+    """The verdict on the growth of errors: it fails if they grow faster than ``law`` allows.
 
     ``chance`` is the probability of at least this growth under the law. The gate fails if it is less than
-    ``false_alarm``, which is therefore the probability that the law itself fails.
+    ``false_alarm``. This is therefore the probability that errors of exactly that law fail. ``statistic``
+    is chi-square with ``freedom`` degrees of freedom under the law.
     """
 
     verdict: Status
@@ -117,11 +118,12 @@ class Growth:
 
 
 def growth(times: Floats, errors: Floats, law: Law, roundoff: float, signed: bool = True) -> Growth:
-    """Return the growth of errors of shape (lanes, instants); NaN marks instants not reached.
+    """Return the growth of errors of shape (lanes, instants); NaN marks an instant that was not reached.
 
-    ``times`` (instants) are since the start and increase. ``law`` is the law that the errors are compared
-    with, if they are ``signed``; ``roundoff`` is the size of one rounding in the unit of the errors.
-    Raises ValueError for fewer than two lanes or four instants, and for instants that do not increase.
+    ``times`` (instants) are counted from the start, in any unit, and increase. ``law`` is the law that the
+    errors are compared with, if they are ``signed``; ``roundoff`` is the size of one rounding in the unit
+    of the errors. Raises ValueError for fewer than two lanes or four instants, and for instants that do not
+    increase.
     """
     times, errors = np.asarray(times, dtype=float), np.asarray(errors, dtype=float)
     _check(times, errors)
@@ -157,9 +159,9 @@ def _check(times: Floats, errors: Floats) -> None:
 def exponent(times: Floats, errors: Floats, law: Law, roundoff: float) -> Exponent:
     """Return Student's interval of the mean of the lanes' slopes, of log |error| over log time.
 
-    ``times`` (n), ``errors`` (lanes, n) and ``roundoff`` are as in `growth`; the interval holds the mean
-    with probability LEVEL, and ``law`` chooses the word for it. An error of exactly zero, which has no
-    logarithm, counts as one rounding.
+    ``times`` (n), ``errors`` (lanes, n) and ``roundoff`` are as in `growth`. The interval contains the true
+    exponent with probability LEVEL; ``law`` determines the word for it. An error of exactly zero, which has
+    no logarithm, counts as one rounding.
     """
     whole = errors[np.isfinite(errors).all(axis=1)]
     count = len(whole)
@@ -168,7 +170,7 @@ def exponent(times: Floats, errors: Floats, law: Law, roundoff: float) -> Expone
     if not whole.any():
         return Exponent(0.0, 0.0, 0.0, EXACT, count)
     x = np.log(times) - np.mean(np.log(times))
-    # The least-squares line of every lane.
+    # Slopes of the least-squares lines, one for each lane.
     slopes = np.log(np.where(whole == 0, roundoff, np.abs(whole))) @ x / (x @ x)
     mean = float(np.mean(slopes))
     reach = student(count - 1, LEVEL) * float(np.std(slopes, ddof=1)) / sqrt(count)
@@ -177,7 +179,10 @@ def exponent(times: Floats, errors: Floats, law: Law, roundoff: float) -> Expone
 
 
 def word(value: float, reach: float, law: Law) -> str:
-    """Return the word whose exponent is within reach, or words for several or none of them."""
+    """Return the word of the power between ``value`` - ``reach`` and ``value`` + ``reach``.
+
+    The text says so if there are several such powers, or if the interval lies between or beyond them.
+    """
     if isnan(value):
         return NO_WORD
     words, low, high = _WORDS[law], value - reach, value + reach
@@ -200,14 +205,14 @@ def gate(
     """Judge whether the errors of the last two instants are larger than the law and the earlier ones allow.
 
     The law's covariance turns the errors of a lane into independent numbers z_ik of one variance (for a
-    walk: its increments over the square roots of their times). Let L_i and E_i be the sums of squares of
-    the last two and of the m before. Then (L_i/2)/(E_i/m) has Fisher's distribution F(2, m) exactly,
+    walk: its increments over the square roots of their times). L_i is the sum of the squares of the last
+    two, E_i that of the m before. Then (L_i/2)/(E_i/m) has Fisher's distribution F(2, m) exactly,
     P(L_i/E_i > r) = (1 + r)^(-m/2), for any size of the lane's roundings. For n independent lanes
     -2 sum log P_i = m sum log(1 + L_i/E_i) is chi-square with 2n degrees of freedom.
 
-    The gate fails if that chance is below ``false_alarm``. Errors that are bounded, or early errors
-    smaller than one rounding (``roundoff``), make E_i larger than the law does, and the gate then fails
-    less often. Errors that are not finite fail.
+    The gate fails if the chance of so large a value is below ``false_alarm``. Bounded errors, and early
+    errors below one rounding (``roundoff``), have a larger E_i than the law, so that the gate fails less
+    often. Errors that are not finite fail.
     """
     early, late = early_and_late(times, errors, law, roundoff)
     lanes, m = len(errors), len(times) - _LATE
@@ -222,16 +227,24 @@ def gate(
         )
     # Written so that a NaN fails.
     verdict = Status.PASS if false_alarm <= chance else Status.FAIL
-    return Gate(verdict, law, chance, statistic, 2 * lanes, because, false_alarm)
+    return Gate(
+        verdict=verdict,
+        law=law,
+        chance=chance,
+        statistic=statistic,
+        freedom=2 * lanes,
+        because=because,
+        false_alarm=false_alarm,
+    )
 
 
 def early_and_late(
     times: Floats, errors: Floats, law: Law, roundoff: float
 ) -> tuple[Floats, Floats]:
-    """Return E_i and L_i of every lane; E_i counts at least one rounding at the first instant."""
+    """Return E_i and L_i of `gate` for every lane; one rounding at the first instant is added to E_i."""
     covariance = covariance_of(law, times)
     spread = np.sqrt(np.diag(covariance))
-    # In units of their own spread the instants have a covariance that is far from singular.
+    # Divided by the spread at each instant, the covariance is far from singular.
     root = np.linalg.cholesky(covariance / np.outer(spread, spread))
     squares = np.linalg.solve(root, (errors / spread).T).T ** 2
     least = (roundoff / spread[0]) ** 2
@@ -239,11 +252,10 @@ def early_and_late(
 
 
 def covariance_of(law: Law, times: Floats) -> Floats:
-    """Return the covariance of unit walk W, E W(s) W(t) = min(s, t), or of its integral.
+    """Return the covariance (n, n) of a unit walk W or of its integral at ``times`` (n).
 
-    That of the integral is s^2 (3 t - s)/6 for s <= t.
-
-    Times are relative to the last one, which changes the size of both laws alone.
+    For s <= t it is E W(s) W(t) = s for the walk, and s^2 (3 t - s)/6 for its integral. Times are taken
+    relative to the last one, which changes only the size of both laws.
     """
     scaled = times / times[-1]
     s, t = np.minimum.outer(scaled, scaled), np.maximum.outer(scaled, scaled)
@@ -269,5 +281,5 @@ def student(freedom: int, level: float) -> float:
         within = mpmath.betainc(0.5, freedom / 2, 0, mpmath.sin(theta) ** 2, regularized=True)
         return within - level
 
-    # t = sqrt(freedom) tan(theta) has its distribution on a bounded interval.
+    # With t = sqrt(freedom) tan(theta) the root lies in a bounded interval of theta.
     return sqrt(freedom) * tan(mpmath.findroot(excess, (0, mpmath.pi / 2), solver="bisect"))

@@ -1,7 +1,7 @@
 """Page of errors that grow over decades of time, made from the stored ensembles.
 
 growth.json        the published ensembles: of every quantity its root mean squares and the gate
-growth-long.json   the same for the long run, if somebody has made it
+growth-long.json   the same for the long run, which is made on request
 """
 
 from __future__ import annotations
@@ -78,12 +78,15 @@ _REMAKE: Final = (
 
 
 def find(folder: Path) -> GrowthStudy | None:
-    """Return both documents as one: the published runs, then the long ones; None without runs."""
+    """Return the published runs and the long ones as one document; None if there are no runs.
+
+    Raises OSError for files that cannot be read and ValueError for files that hold something else.
+    """
     stored = [study for study in (GROWTH.find(folder), LONG.find(folder)) if study and study.runs]
     if not stored:
         return None
     runs = tuple(run for study in stored for run in study.runs)
-    left_out = tuple(one for study in stored for one in study.left_out)
+    left_out = tuple(line for study in stored for line in study.left_out)
     return GrowthStudy(runs, left_out, stored[0].provenance)
 
 
@@ -94,7 +97,7 @@ def page(study: GrowthStudy, folder: Path) -> str:
         "How errors grow with time",
         _WHAT,
         _gates(runs),
-        bullets(prose(f"Left out: {one}.") for one in study.left_out),
+        bullets(prose(f"Left out: {line}.") for line in study.left_out),
         figures.shown(folder, pictures(study)),
         bullets(_LEGEND),
         *(block for run in runs for block in _section(run)),
@@ -130,7 +133,16 @@ def _gates(runs: Iterable[Ensemble]) -> str:
 def _section(run: Ensemble) -> list[str]:
     lost = bold(f" {run.lost} of them did not reach the end.") if run.lost else ""
     first, last = (f"{count:.3g}".replace("e+0", "e") for count in (run.counts[0], run.counts[-1]))
-    numbers = ("rms, first:", "rms, last:", "walks:", "exponent:")
+    columns = [
+        "quantity",
+        "rms, first:",
+        "rms, last:",
+        "walks:",
+        "exponent:",
+        "word",
+        "late",
+        "no worse than a walk",
+    ]
     rows = [
         [
             code(row.quantity),
@@ -150,7 +162,7 @@ def _section(run: Ensemble) -> list[str]:
         f"## {_name(run)}",
         f"{prose(run.why.capitalize())}. {run.lanes} starts from {first} to {last} periods of "
         f"{figure(run.period)} each, {figure(run.steps[-1])} steps.{lost}",
-        table(["quantity", *numbers, "word", "late", "no worse than a walk"], rows),
+        table(columns, rows),
     ]
 
 
@@ -214,7 +226,7 @@ _SHEET: Final = (
 
 
 def sheet(study: GrowthStudy) -> str:
-    """Return a row for every quantity of every ensemble: its exponent with the interval, and its gate."""
+    """Return a CSV row for every quantity of every ensemble: its exponent with interval, and its gate."""
     return csv_sheet(_SHEET, (_grown(run, row) for run in study.runs for row in run.quantities))
 
 

@@ -1,8 +1,8 @@
 """Picture of growing errors over decades of time: a line for each ensemble, and Brouwer's powers.
 
 The left panel has the drift of a conserved quantity, the right one the phase, over periods. Thin lines
-are powers of time: solid for roundings, dashed for a bias. The note names them, so that names of lines
-do not overlap.
+are powers of time: solid for roundings, dashed for a bias. Their names stand in the note below the panels,
+where they do not overlap.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ PANELS: Final = (
 _THIN: Final[dict[str, Any]] = {"color": QUIET, "linewidth": 0.6, "zorder": 1}
 # In the order of the powers above.
 _LOOKS: Final = (_THIN, {**_THIN, "dashes": (5, 3)})
-# The lines belong to different scenes.
+# The place of a scene in titles: the lines belong to different scenes.
 _TITLE: Final = "ensembles of starts"
-# Least distance, in decades, between the first points of two lines with powers of their own.
+# Powers of time are drawn for two lines only if their first points are so many decades apart.
 _APART: Final = 1.0
 _NOTE: Final = (
     "Root mean square over the starts. Thin: powers of time, 1/2 and 3/2 solid, 1 and 2 dashed."
@@ -69,8 +69,8 @@ def picture(runs: Sequence[Ensemble]) -> Picture:
 
 
 def _points(run: Ensemble, quantity: str) -> Points:
-    """Return the root mean squares that a logarithmic axis can show."""
-    rms = next((one.rms for one in run.quantities if one.quantity == quantity), ())
+    """Return the points (periods, root mean square) that a logarithmic axis can show."""
+    rms = next((row.rms for row in run.quantities if row.quantity == quantity), ())
     return [(n, e) for n, e in zip(run.counts, rms, strict=False) if e is not None and e > 0]
 
 
@@ -98,7 +98,7 @@ def _figure(lines: Mapping[str, Mapping[str, Points]]) -> Figure:
 
 
 def _apart(lines: Sequence[Points]) -> list[Points]:
-    """Return the lines that begin far from the others; of neighbours only the first."""
+    """Return the lines whose first points are far from each other; of near ones only the first."""
     separate: list[Points] = []
     for points in lines:
         if all(abs(log10(points[0][1] / other[0][1])) > _APART for other in separate):

@@ -1,4 +1,4 @@
-"""Published ensembles, and the long one. Each can be stopped and continued."""
+"""Published ensembles, and the long one; the measurement of each can be stopped and continued."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from taylor_verify.studies.growth.question import Question
 
 @dataclass(frozen=True)
 class Entry:
-    """An ensemble by names; ``why`` is its purpose."""
+    """An ensemble as text and numbers; ``why`` is the reason to measure it."""
 
     scene: str
     rung: str
@@ -31,17 +31,18 @@ class Entry:
     solver: str = TAYLOR
 
     def question(self, most: float | None = None) -> Question:
-        """Return the question of the ensemble, cut to ``most`` periods if these are given."""
+        """Return the question of the ensemble, with ``most`` periods at most. Raises ValueError."""
         periods = self.periods if most is None else min(self.periods, most)
         return Question(load(self.scene), rung(self.rung), periods, self.lanes, self.solver)
 
     @property
     def label(self) -> str:
+        """The name of the ensemble in messages."""
         return f"{self.scene} {self.solver} {self.rung}"
 
     @property
     def file(self) -> str:
-        """The name of the file of the checkpoint."""
+        """The name of the checkpoint's file."""
         plain = "".join(c if c.isalnum() or c in ".-" else "-" for c in self.label)
         return f"growth-{plain}-{self.periods:.0e}.json"
 
@@ -75,7 +76,7 @@ LONG: Final = (
     Entry("euler/about-max-axis", "f64", periods=1e8, lanes=8, why="a hundred million periods"),
 )
 
-# Called after each piece with the label of the ensemble, the pieces done, and their number.
+# A function that is called after each piece with the ensemble's label, the pieces done, and their number.
 Finished = Callable[[str, int, int], None]
 
 
@@ -85,10 +86,11 @@ def followed(
     finished: Finished,
     most: float | None = None,
 ) -> GrowthStudy:
-    """Return the ensembles of the entries, and the names of those whose rung is missing here.
+    """Follow the ensembles of the entries; those whose rung this machine lacks are named as left out.
 
-    ``checkpoints`` is the folder for the checkpoints of unfinished ensembles. Raises ValueError for too few
-    periods, and for a checkpoint of another question.
+    ``checkpoints`` is the folder for the checkpoints, and ``most`` the most periods of an ensemble. Raises
+    ValueError for too few periods and for a checkpoint of another question, and OSError for one that cannot
+    be written.
     """
     runs: list[Ensemble] = []
     left_out: list[str] = []

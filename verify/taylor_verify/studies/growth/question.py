@@ -20,26 +20,28 @@ from taylor_verify.solvers.registry import TAYLOR
 from taylor_verify.solvers.taylor.driver import tolerance
 from taylor_verify.studies.tradeoff.starts import nearby
 
-# A hundred periods are thousands of steps. Their roundings are a walk by then, and oscillations within a
-# period are small beside it.
+# A hundred periods are thousands of steps. Then roundings have become a random walk, and oscillations
+# within a period are small beside it.
 FIRST_PERIODS: Final = 100
 INSTANTS_PER_DECADE: Final = 2
 # The gate needs early instants besides the late ones.
 LEAST_PERIODS: Final = 10**3.5
 MOST_PERIODS: Final = 1e9
-# The distance of checkpoints, which is part of the question because a step ends at each checkpoint.
+# Periods between two checkpoints. They are part of the question, because a step ends at each checkpoint.
 PIECE_PERIODS: Final = 100_000
 
 _LEAST_LANES: Final = 2
-# Half-decades are rounded to whole periods.
+# A number of periods that is short by this part counts as reached.
 _SLACK: Final = 1e-6
 
 
 @dataclass(frozen=True)
 class Question:
-    """A scene and ``lanes`` - 1 starts drawn near it from ``seed``, followed for ``periods``.
+    """A scene and ``lanes`` - 1 starts near its own, drawn from ``seed``, followed for ``periods`` periods.
 
-    ``solver`` is a name of heyoka's integrator. Raises ValueError for a scene that cannot be followed.
+    ``solver`` is a name of heyoka's integrator, with its tolerance if it has one. Raises ValueError for a
+    body with loads or damping, for too few or too many periods, for fewer than two lanes, and for another
+    solver.
     """
 
     scene: Scene
@@ -77,11 +79,15 @@ class Question:
 
     @property
     def tolerance(self) -> Fraction | None:
+        """The tolerance of the solver; None for the rung's own."""
         return tolerance(self.solver)
 
     @cached_property
     def period(self) -> float:
-        """The period of the scene's orbit, or of its fastest linear rate at the start if it has none."""
+        """The period of the orbit in the scene's unit of time.
+
+        If the orbit has none, it is that of the fastest linear rate at the start.
+        """
         period = elements(self.scene).get("period")
         if period is not None:
             return float(period.value)
@@ -91,14 +97,14 @@ class Question:
 
     @cached_property
     def counts(self) -> tuple[float, ...]:
-        """The instants, in periods."""
+        """The instants, in periods: equally many in each decade."""
         first = round(INSTANTS_PER_DECADE * log10(FIRST_PERIODS))
         last = floor(INSTANTS_PER_DECADE * log10(self.periods * (1 + _SLACK)))
         return tuple(10 ** (k / INSTANTS_PER_DECADE) for k in range(first, last + 1))
 
     @cached_property
     def problems(self) -> tuple[Problem, ...]:
-        """A problem for every lane with the instants as its times; the first has the scene's own start."""
+        """The problem of every lane at the instants; that of the first lane has the scene's own start."""
         start = self.scene.clock.start
         clock = Clock(start, tuple(start + Fraction(n * self.period) for n in self.counts))
         scenes = [self.scene, *nearby(self.scene, self.seed, self.lanes - 1)]
@@ -106,7 +112,7 @@ class Question:
 
     @cached_property
     def pieces(self) -> tuple[tuple[tuple[Fraction, ...], bool], ...]:
-        """The stops of every lane in its own units, with True for instants and False for others."""
+        """The ends of the pieces: the time of every lane in its own units, and True if it is an instant."""
         stops: list[tuple[tuple[Fraction, ...], bool]] = []
         instants = [*zip(*(problem.times for problem in self.problems), strict=True)]
         start = (Fraction(0),) * len(self.problems)
@@ -121,7 +127,7 @@ class Question:
         return tuple(stops)
 
     def document(self) -> dict[str, Any]:
-        """Return the question, with a fingerprint of all exact numbers that the answer depends on."""
+        """Return the question as JSON holds it, with a digest of all exact numbers of the problems."""
         return {
             "scene": self.scene.name,
             "digest": self.scene.digest,

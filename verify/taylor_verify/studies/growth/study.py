@@ -11,10 +11,9 @@ from taylor_verify.studies.growth import page
 from taylor_verify.studies.growth.page import GROWTH, LONG
 from taylor_verify.studies.study import Measured, NotMeasured, Option, Progress, Study
 
-# Below the published folder, where local files are neither published nor committed.
+# A part of the report folder that is neither published nor committed.
 _CHECKPOINTS: Final = "local/growth"
-# Seconds between two reports.
-_PATIENCE: Final = 10.0
+_SECONDS_BETWEEN_REPORTS: Final = 10.0
 
 
 def _measure(
@@ -46,16 +45,17 @@ def _periods(text: str) -> float:
 
 
 class Pieces:
-    """Progress report: a line for every ensemble, and its progress from time to time."""
+    """Progress report: a line when an ensemble ends, and every few seconds while it is followed."""
 
     def __init__(self, say: Callable[[str], None]) -> None:
         self._say, self._label, self._reported = say, "", 0.0
 
-    def __call__(self, label: str, done: int, of: int) -> None:
-        if done == of:
+    def __call__(self, label: str, done: int, total: int) -> None:
+        """Report that ``done`` of ``total`` pieces of the ensemble ``label`` have ended."""
+        if done == total:
             self._say(f"{label}: done")
-        elif label != self._label or monotonic() - self._reported >= _PATIENCE:
-            self._say(f"{label}: piece {done} of {of}")
+        elif label != self._label or monotonic() - self._reported >= _SECONDS_BETWEEN_REPORTS:
+            self._say(f"{label}: piece {done} of {total}")
         else:
             return
         self._label, self._reported = label, monotonic()

@@ -22,7 +22,7 @@ from taylor_verify.studies.tradeoff.stored import TimedPoint, Trade, cheapest
 
 # An error that most users of an engine would ignore.
 GOOD: Final = 1e-6
-# Digits for the findings on the trade-off and on the reach.
+# The numbers of digits in the findings on the trade-off and on the reach.
 TRADED: Final = 9
 REACHED: Final = 6
 _RUNG: Final = "f64"
@@ -43,7 +43,7 @@ def controls(sources: Sources) -> str:
 
 def engines(sources: Sources) -> str:
     """Return the errors of engines on a free body, each at its best setting, in words."""
-    scores = [score for score in sources.best if not sources.name_of(score)[1]]
+    scores = [score for score in sources.best if not sources.is_plain(score)]
     finite = [score for score in scores if score.error < inf]
     if not finite:
         return ""
@@ -54,12 +54,12 @@ def engines(sources: Sources) -> str:
     words = (
         f"Of {len(scores)} physics engines that turn a free body, each at the best of all its measured "
         f"settings, {good} follow omega and attitude to {GOOD:g} or better; the best, "
-        f"{sources.name_of(best)[0]}, to {figure(best.error)}. At every step {len(lost)} are wrong by "
+        f"{sources.title_of(best)}, to {figure(best.error)}. At every step {len(lost)} are wrong by "
         f"{LOST} or more"
     )
     if deceiving is None or _drift(deceiving) == inf:
         return f"{words}."
-    name, attitude = sources.name_of(deceiving)[0], deceiving.row.errors.get("attitude")
+    name, attitude = sources.title_of(deceiving), deceiving.row.errors.get("attitude")
     return (
         f"{words}; of these {name} keeps the energy to {figure(_drift(deceiving))} while its attitude is "
         f"off by {figure(attitude)} rad."
@@ -67,6 +67,7 @@ def engines(sources: Sources) -> str:
 
 
 def _drift(score: Score) -> float:
+    """Return the drift of the energy; infinite if it is unknown."""
     return score.row.errors.get("T", inf)
 
 
@@ -91,8 +92,9 @@ def accuracy(sources: Sources) -> str:
 def reach(sources: Sources) -> str:
     """Return the reach of float64 in periods, and near an unstable motion, in words."""
     rows = [row for row in sources.reach.rows if row.rung == _RUNG]
-    long = next((f for f in sources.reach.families if not f.symbol), None)
-    near = next((f for f in sources.reach.families if f.symbol == "d"), None)
+    families = sources.reach.families
+    long = next((family for family in families if not family.symbol), None)
+    near = next((family for family in families if family.symbol == "d"), None)
     words = []
     for row in rows:
         if long is not None and row.family == long.name:
@@ -109,6 +111,7 @@ def reach(sources: Sources) -> str:
 
 
 def _of(family: ReachFamily) -> str:
+    """Return "of" and the title of a family, whose symbol d is set as a formula."""
     return re.sub(r"\bd\b", "$d$", f"of {prose(family.title)}")
 
 
@@ -131,21 +134,22 @@ def trade(sources: Sources) -> str:
 
 
 def _multiples(trades: Iterable[Trade], is_wanted: Callable[[str], bool]) -> list[float]:
-    """Return for each scene the time of the fastest of the given families over that of taylor."""
+    """Return for each scene the least time of the wanted families over that of taylor."""
     multiples = []
-    for one in trades:
-        taylor = _fastest(one, lambda family: family == TAYLOR)
-        other = _fastest(one, is_wanted)
+    for trade in trades:
+        taylor = _fastest(trade, lambda family: family == TAYLOR)
+        other = _fastest(trade, is_wanted)
         if taylor is not None and other is not None:
             multiples.append(other.timing.ratio / taylor.timing.ratio)
     return multiples
 
 
-def _fastest(one: Trade, is_wanted: Callable[[str], bool]) -> TimedPoint | None:
-    return cheapest((row for row in one.sound if is_wanted(row.point.family)), TRADED)
+def _fastest(trade: Trade, is_wanted: Callable[[str], bool]) -> TimedPoint | None:
+    return cheapest((row for row in trade.sound if is_wanted(row.point.family)), TRADED)
 
 
 def _span(multiples: Iterable[float]) -> str:
+    """Return the least and the greatest of some numbers in words."""
     low, *others = sorted(multiples)
     return f"{figure(low)} to {figure(others[-1])}" if others else figure(low)
 

@@ -16,7 +16,7 @@ from taylor_verify.studies.tradeoff import page as tradeoff_page
 
 @dataclass(frozen=True)
 class Illustration:
-    """A picture with its caption; ``width`` is in percent of the width of the text."""
+    """A picture with its caption; ``width`` is in per cent of the width of the text."""
 
     name: str
     picture: Picture
@@ -66,11 +66,12 @@ def _trade(sources: Sources) -> Illustration:
 
 
 def _named(stem: str, pictures: Sequence[Picture], study: str) -> Picture:
-    """Return the picture that a caption is written for, wherever it stands among its study's."""
+    """Return the picture with this stem. Raises ValueError if there is none."""
     return _first([picture for picture in pictures if picture.stem == stem], study)
 
 
 def _first(pictures: Sequence[Picture], study: str) -> Picture:
+    """Return the first picture of a study. Raises ValueError if there is none."""
     if not pictures:
         raise ValueError(f"expected a picture of what `publish {study}` has stored, got none")
     return pictures[0]

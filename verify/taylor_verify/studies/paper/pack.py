@@ -65,17 +65,16 @@ class Pack:
 
 
 def write(folder: Path) -> list[Path]:
-    """Write the pack into ``folder``/paper, and each picture of ``folder``/figures as PDF beside it.
+    """Write the pack into ``folder``/paper, and each picture of ``folder``/figures as PDF beside its SVG.
 
-    The errors are those of `pack` and of `Pack.write`.
+    Returns the files written. Raises the errors of `pack` and of `Pack.write`.
     """
-    made = pack(folder)
-    there = {file.stem for file in (folder / figures.FOLDER).glob("*.svg")}
-    shown = [picture for picture in registry.pictures(folder) if picture.stem in there]
-    return [
-        *made.write(folder / FOLDER),
-        *(save(shown, folder / figures.FOLDER, ("pdf",)) if shown else ()),
-    ]
+    drawings = folder / figures.FOLDER
+    stems = {file.stem for file in drawings.glob("*.svg")}
+    whole_pack = pack(folder)
+    drawn = [picture for picture in registry.pictures(folder) if picture.stem in stems]
+    written = whole_pack.write(folder / FOLDER)
+    return [*written, *save(drawn, drawings, ("pdf",))] if drawn else written
 
 
 def pack(folder: Path) -> Pack:
@@ -85,21 +84,26 @@ def pack(folder: Path) -> Pack:
     holds something else, or a checkout without its CITATION.cff.
     """
     sources = read(folder)
-    made, shown = tables(sources), pictures(sources)
+    all_tables, illustrations = tables(sources), pictures(sources)
     values = {
         "versions": prose(packages(versions(sources.verdicts))),
         **{name: finding(sources) for name, finding in FINDINGS.items()},
-        **{f"table:{one.name}": f"Table {i}" for i, one in enumerate(made, 1)},
-        **{f"tabular:{one.name}": one.markdown for one in made},
-        **{f"figure:{one.name}": f"Figure {i}" for i, one in enumerate(shown, 1)},
-        **{f"picture:{one.name}": one.markdown for one in shown},
+        **{f"table:{table.name}": f"Table {i}" for i, table in enumerate(all_tables, 1)},
+        **{f"tabular:{table.name}": table.markdown for table in all_tables},
+        **{f"figure:{shown.name}": f"Figure {i}" for i, shown in enumerate(illustrations, 1)},
+        **{f"picture:{shown.name}": shown.markdown for shown in illustrations},
     }
     text = _Marked(_TEXT.read_text(encoding="utf-8")).substitute(values)
-    return Pack(text, made, [one.picture for one in shown], _citation(folder))
+    return Pack(
+        text=text,
+        tables=all_tables,
+        pictures=[shown.picture for shown in illustrations],
+        citation=_citation(folder),
+    )
 
 
 def _citation(folder: Path) -> Path:
-    """Return the CITATION.cff with title and authors: beside the report, or in this checkout."""
+    """Return the CITATION.cff with title and authors, beside the report or in this checkout."""
     places = (folder.resolve().parent, Path(__file__).resolve().parents[4])
     for place in places:
         if (place / _CITATION).is_file():

@@ -15,7 +15,7 @@ from taylor_verify.records.verdict import Verdict
 from taylor_verify.studies.controls.document import CONTROLS, ControlsStudy
 from taylor_verify.studies.engines import stored as engines
 from taylor_verify.studies.engines.document import Board
-from taylor_verify.studies.engines.entry import EntryList, entry_list
+from taylor_verify.studies.engines.entry import Entry, EntryList, entry_list
 from taylor_verify.studies.engines.ranking import Score, best_of_each, settings
 from taylor_verify.studies.reach.document import ReachStudy
 from taylor_verify.studies.reach.page import REACH
@@ -48,7 +48,7 @@ class Sources:
 
     @property
     def processors(self) -> str:
-        """The machines of the runs."""
+        """The processors of the runs, in words."""
         processors = {
             v.provenance["processor"] for v in self.verdicts if "processor" in v.provenance
         }
@@ -66,18 +66,24 @@ class Sources:
 
     @cached_property
     def best(self) -> list[Score]:
-        """The best setting of each engine, plain solvers included."""
+        """The best setting of each engine on that scene, plain solvers included."""
         return best_of_each(settings(self.board.study), self.engine_scene)
 
-    def name_of(self, score: Score) -> tuple[str, bool]:
-        """Return title and version of an engine in Markdown, and True for a plain solver."""
+    def title_of(self, score: Score) -> str:
+        """Return the title and the version of an engine in Markdown."""
+        return prose(f"{self._entry_of(score).title} {score.setting.version}".strip())
+
+    def is_plain(self, score: Score) -> bool:
+        """Return True for a solver of differential equations that is no engine."""
+        return self._entry_of(score).plain
+
+    def _entry_of(self, score: Score) -> Entry:
         engine = score.setting.engine
-        entry = next(entry for entry in self.entries.entry if entry.name == engine)
-        return prose(f"{entry.title} {score.setting.version}".strip()), entry.plain
+        return next(entry for entry in self.entries.entry if entry.name == engine)
 
 
 def lacking(folder: Path) -> list[str]:
-    """Return the studies of the paper that a report folder lacks."""
+    """Return the studies of the paper that are not stored in a report folder."""
     return [name for name, file in _FILES.items() if not (folder / file).exists()]
 
 

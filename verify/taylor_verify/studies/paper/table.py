@@ -28,7 +28,7 @@ _RIVALS: Final = ("scipy DOP853", "scipy LSODA", "scipy RK45", "scipy Radau")
 
 @dataclass(frozen=True)
 class Table:
-    """Headings and rows in Markdown; a heading of numbers ends with a colon."""
+    """Headings and rows in Markdown; the heading of a column of numbers ends with a colon."""
 
     name: str
     headings: Sequence[str]
@@ -95,9 +95,9 @@ def _engines(sources: Sources) -> Table:
     )
     board, rows = sources.board, []
     for best in sources.best:
-        name, is_plain = sources.name_of(best)
+        title = sources.title_of(best)
         cells = engines_page.cells(board, best.setting, best.row)
-        rows.append([f"*{name}*" if is_plain else name, *cells])
+        rows.append([f"*{title}*" if sources.is_plain(best) else title, *cells])
     caption = Caption(words, ENGINES, board.timings.machine.processor)
     return Table("engines", [*engines_page.COLUMNS[:-1], "time, µs:"], rows, caption)
 
@@ -114,15 +114,16 @@ def _reach(sources: Sources) -> Table:
     for row in study.rows:
         own.setdefault((row.family, row.rung), []).append(row)
     rows = []
-    for one in study.families:
-        reached = (_reached(one, own.get((one.name, rung), ())) for rung in rungs)
-        title = prose(one.title.replace("^2", "²"))
-        rows.append([title, one.symbol or "periods", *reached])
+    for family in study.families:
+        reached = (_reached(family, own.get((family.name, rung), ())) for rung in rungs)
+        title = prose(family.title.replace("^2", "²"))
+        rows.append([title, family.symbol or "periods", *reached])
     headings = ["motion", "varied", *(f"{rung}:" for rung in rungs)]
     return Table("reach", headings, rows, Caption(words, (REACH.name,), study.provenance.processor))
 
 
 def _reached(family: ReachFamily, rows: Sequence[ReachRow]) -> str:
+    """Return how far a rung reaches in a family: the last value after one period, or the most periods."""
     if not rows:
         return NOTHING
     value: str | int | None
@@ -143,7 +144,7 @@ def _trade(sources: Sources) -> Table:
         "no measured setting leaves so many."
     )
     trades = sources.trades
-    rows = [row for one in trades.short for row in _solvers(one)]
+    rows = [row for trade in trades.short for row in _solvers(trade)]
     headings = ["scene", "solver", *(f"{digits} digits:" for digits in DIGITS)]
     return Table(
         "tradeoff", headings, rows, Caption(words, TRADEOFF, trades.times.machine.processor)
@@ -151,6 +152,7 @@ def _trade(sources: Sources) -> Table:
 
 
 def _solvers(trade: Trade) -> Iterator[list[str]]:
+    """Yield a row for each solver that ran on a scene; only the first row names the scene."""
     ran = {point.family for point in trade.points if point.standing is not Standing.NOT_RUN}
     compiled = sorted(family for family in ran if family.startswith(OUTSIDE))
     name = code(trade.scene)
@@ -162,6 +164,7 @@ def _solvers(trade: Trade) -> Iterator[list[str]]:
 
 
 def _cost(trade: Trade, family: str, digits: int) -> str:
+    """Return the time of the cheapest setting of a family that leaves so many digits, with its interval."""
     best = cheapest((row for row in trade.sound if row.point.family == family), digits)
     if best is None:
         return "not reached"

@@ -43,10 +43,13 @@ _CENTRE: Final = r"\dot{\mathbf c} = \mathsf R \mathbf U"
 
 
 def equations(scene: Scene) -> list[str]:
-    """Return a line for each equation of the scene, with its loads and its tracked quantities."""
-    of_body, omega = _EQUATIONS[type(scene.body)]
+    """Return the equations of the scene in LaTeX, with its loads and its tracked quantities."""
+    body_equations, omega = _EQUATIONS[type(scene.body)]
     tracked = {"attitude": rf"\dot{{\mathsf R}} = \mathsf R [{omega}]_\times", "centre": _CENTRE}
-    return [*of_body(scene.body), *(line for name, line in tracked.items() if name in scene.track)]
+    return [
+        *body_equations(scene.body),
+        *(line for name, line in tracked.items() if name in scene.track),
+    ]
 
 
 def _euler_equations(body: RigidBody) -> list[str]:

@@ -1,11 +1,11 @@
 """Portrait of a shipped scene: everything that its page shows, as one plain document.
 
-        document["course"]["omega"]      the motion at dense times, in plain floats, for pictures
-        document["values"]["rows"]       the motion at ten times, in 30 digits, for comparisons
+    document["course"]["omega"]      the motion at dense times, in plain floats, for pictures
+    document["values"]["rows"]       the motion at ten times, in 30 digits, for comparisons
     document["potential"]            the quartic X3 of Clebsch's body, x3'^2 = r^2 X3(x3)
 
-All of it belongs to the scene's own rational numbers, except ``explain``, which is a run on f64. Nothing
-depends on the machine or the hour: two portraits of one scene are the same.
+Every number is that of the scene's own rational values, except in ``explain``, which describes a run on
+f64. Nothing depends on the machine or the time of day: two portraits of one scene are equal.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ from taylor_verify.scenes.library import find
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.studies.portraits.equations import equations
 
-# Times of the values, as parts of the span.
+# The number of times at which the values are given.
 TIMES: Final = 10
 _RUNG: Final = "f64"
 _ROOT_BITS: Final = 160
@@ -52,7 +52,7 @@ Document = dict[str, Any]
 
 
 def portrait(scene: Scene) -> Document:
-    """Return the whole document of one shipped scene. Raises Unsettled if a number does not settle."""
+    """Return the document of one shipped scene. Raises Unsettled if a number does not reach its digits."""
     text = find(scene.name).read_text(encoding="utf-8")
     formed = formed_to(scene, DIGITS)
     exact, orbit = solution(formed), orbit_of(scene)
@@ -71,7 +71,7 @@ def portrait(scene: Scene) -> Document:
         "warnings": list(scene.warnings),
         "tex": equations(scene),
         "analytic": analytic(orbit),
-        # The time of a run is different each time.
+        # The seconds of a run differ from run to run.
         "explain": {**explained, "cost": {**explained["cost"], "seconds": None}},
         "values": values,
         "course": course_of(scene, exact, length(scene, orbit)),
@@ -82,7 +82,7 @@ def portrait(scene: Scene) -> Document:
 
 
 def _comment(text: str) -> list[str]:
-    """Return the comments of the file, which say why the scene exists, without their marks."""
+    """Return the comment lines of the file without their marks; they say why the scene exists."""
     return [line.lstrip("# ").rstrip() for line in text.splitlines() if line.startswith("#")]
 
 
@@ -94,7 +94,7 @@ def _tracked(scene: Scene) -> list[str]:
 
 
 def _times(scene: Scene) -> list[tuple[str, Fraction]]:
-    """Return parts of the span with their texts, which are exact decimals."""
+    """Return equidistant times of the span, each after its text, which is an exact decimal."""
     spread = [scene.clock.start + span(scene) * k / TIMES for k in range(1, TIMES + 1)]
     texts = [shortest_text(t, DIGITS) for t in spread]
     return [(text, Fraction(text)) for text in texts]
@@ -106,8 +106,8 @@ def _times(scene: Scene) -> list[tuple[str, Fraction]]:
 def _potential(scene: Scene, orbit: Elements) -> Document | None:
     """Return X3 of Hydromechanics 49 with its roots, and the interval of the axial impulse.
 
-    None unless the body is free, of revolution about a body axis, and has a linear impulse: x3 is
-    constant without one. ``variable`` names the component along the axis of symmetry: x1, x2 or x3.
+    The result is None unless the body is free, symmetric about one of its axes, and has a linear impulse,
+    without which x3 is constant. ``variable`` names the component along the axis: x1, x2 or x3.
     """
     body = scene.body
     if not isinstance(body, ImmersedBody) or not body.is_free:
@@ -142,9 +142,10 @@ def roots(polynomial: Sequence[Fraction]) -> list[list[float]]:
     with ctx.workprec(_ROOT_BITS):
         # flint's type stubs leave out the multiplicities.
         isolated: list[Any] = list(fmpz_poly(integers).complex_roots())
-        parts = [_parts(acb(root)) for root, times in isolated for _ in range(times)]
+        parts = [_parts(acb(root)) for root, multiplicity in isolated for _ in range(multiplicity)]
     return sorted(parts, key=lambda root: (root[1] != 0, root))
 
 
 def _parts(root: acb) -> list[float]:
+    """Return the rounded real and imaginary part; adding 0.0 makes 0.0 of -0.0."""
     return [float(f"{float(part.mid()):.{FIGURES}g}") + 0.0 for part in (root.real, root.imag)]

@@ -10,7 +10,7 @@ from taylor_verify.records import store
 from taylor_verify.studies.stored import SceneDocuments
 from taylor_verify.studies.study import Bulk, Measured, Progress, Study
 
-# Without blanks the rows of numbers are shorter.
+# Separators without blanks make the rows of numbers shorter.
 PORTRAITS: Final = SceneDocuments(
     f"{store.FOLDER}/portraits", "taylor-verify publish; do not edit", (",", ":")
 )
@@ -40,10 +40,10 @@ STUDY: Final = Study[None](
     measure=_measure,
     bulk=(
         Bulk(
-            "portraits of scenes",
-            (f"{PORTRAITS.folder}/",),
-            lambda report: report.without(PORTRAITS.folder),
-            _add,
+            what="portraits of scenes",
+            patterns=(f"{PORTRAITS.folder}/",),
+            lacking=lambda report: report.outdated_scenes(PORTRAITS.folder),
+            make=_add,
         ),
     ),
 )

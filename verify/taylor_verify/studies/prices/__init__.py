@@ -1,1 +1,1 @@
-"""The price of each option of a scene."""
+"""The computing time that each option of a scene costs."""

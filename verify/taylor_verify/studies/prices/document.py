@@ -1,4 +1,4 @@
-"""The cost of each option of a scene, as a multiple of the barest form of its model."""
+"""The computing time of each option of a scene, as a multiple of that of the simplest form."""
 
 from __future__ import annotations
 
@@ -12,7 +12,12 @@ Interval = tuple[float, float | None, float | None]
 
 @dataclass(frozen=True)
 class PriceRow:
-    """A variant on a rung: the size of its equations, and the cost of a step and of a unit of time."""
+    """A variant on a rung: the size of its equations, and the cost of a step and of a unit of time.
+
+    ``against`` names the variant whose cost is the unit of ``step_ratio`` and ``time_ratio``. ``states``,
+    ``parameters``, ``sums``, ``products`` and ``quotients`` are numbers in one evaluation, ``order`` is
+    that of a step. ``microseconds`` is the time of a step, and ``error`` the largest relative error.
+    """
 
     rung: str
     variant: str
@@ -33,7 +38,10 @@ class PriceRow:
 
 @dataclass(frozen=True)
 class PriceAtEqualError:
-    """The time of a variant over that of the barest form at the same achieved error."""
+    """The time of a variant over that of the variant ``against`` at the same achieved error.
+
+    ``ratio`` is None if no measured tolerances enclose that error.
+    """
 
     variant: str
     against: str
@@ -42,7 +50,7 @@ class PriceAtEqualError:
 
 @dataclass(frozen=True)
 class PriceMethod:
-    """The rounds of each rung, and the error at which costs are compared."""
+    """The rounds by rung, the least duration of a measurement, and the error of the comparison."""
 
     rounds: dict[str, int]
     seed: int

@@ -1,7 +1,7 @@
-"""Measurement of the price of each option of a scene, as a multiple of the barest form.
+"""Measurement of the price of each option of a scene, as a multiple of the simplest form of its model.
 
-A price is the processor time of a step, or of a unit of the scene's time, over that of the barest form
-of the model in the same round. An integrator steps from the start to the end of a stretch, again and
+A price is the processor time of a step, or of a unit of the scene's time, over that of the simplest form of
+the model in the same round. The integrator goes from the start to the end of a stretch of time, again and
 again, without samples. The time of compiling is left out.
 """
 
@@ -37,17 +37,18 @@ from taylor_verify.studies.tradeoff.rounds import in_rounds
 
 # Rounds by rung: the interval of the median needs six, and a wide rung takes long.
 RUNGS: Final = {"f64": 31, "f80": 31, "f128": 9, "mp237": 7}
-# The wide rungs have only the variants of the three questions: omega, attitude, the whole state.
+# Wide rungs have only these variants: omega and the impulses alone, with attitude, the whole state.
 _ON_WIDE_RUNGS: Final = ("omega", "attitude", "impulse", "whole")
 _WIDE: Final = ("f128", "mp237")
 _SEED: Final = 1
-# A measurement lasts many times the clock's resolution, about a microsecond, and an interrupt.
+# So long a measurement is not disturbed by the clock's resolution, a microsecond, or by an interrupt.
 _LEAST_SECONDS: Final = 4e-3
 # The stretch, in the problem's units of time: some hundreds of steps.
 _SPAN: Final = Fraction(128)
 _SPAN_ON_WIDE_RUNGS: Final = Fraction(8)
 # Costs at the same achieved error are interpolated between tolerances, on f64.
 _EQUAL_ERROR: Final = 1e-11
+_ROUNDS_AT_EQUAL_ERROR: Final = 9
 _TOLERANCES: Final = ("1e-7", "1e-9", "1e-11", "1e-13")
 
 
@@ -55,26 +56,28 @@ _TOLERANCES: Final = ("1e-7", "1e-9", "1e-11", "1e-13")
 class _Bench:
     """A problem and a solver, ready to run; ``count`` runs of ``steps`` steps make one measurement.
 
-    ``unit`` is the stretch in the scene's units of time; ``taken`` has the seconds of a run in each round.
+    ``duration`` is that of the stretch in the scene's unit of time. ``taken`` has the seconds of a run in
+    each round.
     """
 
     problem: Problem
     solver: Taylor
     pace: Pace
-    unit: float
+    duration: float
     steps: int
     count: int = 1
     taken: list[float] = field(default_factory=list)
 
     @classmethod
     def of(cls, variant: Variant, rung: Rung, solver: Taylor) -> _Bench:
+        """Return the bench of a variant, with as many runs as a measurement needs."""
         problem = variant.posed(rung)
         span = _SPAN_ON_WIDE_RUNGS if rung.name in _WIDE else _SPAN
         pace = Pace(problem, span, solver.tolerance, variant.literals)
-        # The first run, which fills caches, is not timed.
-        made = cls(problem, solver, pace, float(span * problem.units.time), pace.run())
-        made.count = max(1, ceil(_LEAST_SECONDS / max(made.seconds(), 1e-6)))
-        return made
+        # The first run counts the steps and fills caches, and is not timed.
+        bench = cls(problem, solver, pace, float(span * problem.units.time), steps=pace.run())
+        bench.count = max(1, ceil(_LEAST_SECONDS / max(bench.seconds(), 1e-6)))
+        return bench
 
     def seconds(self) -> float:
         """Return the processor time of one run."""
@@ -84,7 +87,7 @@ class _Bench:
         return (process_time() - began) / self.count
 
     def error(self) -> float:
-        """Return the largest relative error over the scene's samples, of omega or the impulses alone."""
+        """Return the largest relative error of omega or the impulses over the scene's samples."""
         accuracy = Truth(self.problem).accuracy(self.solver.solve(self.problem))
         return max(accuracy.max[name] for name in ("omega", "impulse") if name in accuracy.max)
 
@@ -104,9 +107,11 @@ def study(finished: Callable[[str], None] = lambda rung: None) -> PricesStudy:
 
 
 def _rows(rung: Rung, rounds: int) -> list[PriceRow]:
+    """Return the rows of a rung; an empty list if this machine does not have it."""
     if Taylor().unavailable(rung):
         return []
-    asked = [v for v in variants() if rung.name not in _WIDE or v.name in _ON_WIDE_RUNGS]
+    is_wide = rung.name in _WIDE
+    asked = [variant for variant in variants() if not is_wide or variant.name in _ON_WIDE_RUNGS]
     benches = {variant.name: _Bench.of(variant, rung, Taylor()) for variant in asked}
     _take([*benches.values()], rounds)
     return [
@@ -133,22 +138,27 @@ def _row(variant: Variant, rung: Rung, bench: _Bench, base: _Bench) -> PriceRow:
         parameters=len(form.parameters),
         **form.operations(),
         order=bench.pace.order,
-        steps_per_time=bench.steps / bench.unit,
+        steps_per_time=bench.steps / bench.duration,
         step_ratio=estimate(a / bench.steps / (b / base.steps) for a, b in rounds),
-        time_ratio=estimate(a / bench.unit / (b / base.unit) for a, b in rounds),
+        time_ratio=estimate(a / bench.duration / (b / base.duration) for a, b in rounds),
         microseconds=1e6 * median(bench.taken) / bench.steps,
         error=finite(bench.error()),
     )
 
 
 def _at_equal_error(rung: Rung) -> tuple[PriceAtEqualError, ...]:
-    """Return the time over that of the barest form at one error, from runs at several tolerances."""
-    asked = [v for v in variants() if not v.literals]
+    """Return the time of each variant over that of its unit, at one error between several tolerances."""
+    asked = [variant for variant in variants() if not variant.literals]
     solvers = [at_tolerance(text) for text in _TOLERANCES]
-    benches = {v.name: [_Bench.of(v, rung, solver) for solver in solvers] for v in asked}
-    _take([*chain.from_iterable(benches.values())], 9)
+    benches = {
+        variant.name: [_Bench.of(variant, rung, solver) for solver in solvers] for variant in asked
+    }
+    _take([*chain.from_iterable(benches.values())], _ROUNDS_AT_EQUAL_ERROR)
     costs = {
-        name: _between([b.error() for b in own], [median(b.taken) / b.unit for b in own])
+        name: _cost_at_equal_error(
+            [bench.error() for bench in own],
+            [median(bench.taken) / bench.duration for bench in own],
+        )
         for name, own in benches.items()
     }
     rows = []
@@ -159,11 +169,14 @@ def _at_equal_error(rung: Rung) -> tuple[PriceAtEqualError, ...]:
     return tuple(rows)
 
 
-def _between(errors: Sequence[float], costs: Sequence[float]) -> float | None:
-    """Return the cost at an error by linear interpolation of logarithms; None outside the range."""
+def _cost_at_equal_error(errors: Sequence[float], costs: Sequence[float]) -> float | None:
+    """Return the cost at the error _EQUAL_ERROR; None if it is outside the range of the errors.
+
+    Logarithms are interpolated linearly.
+    """
     points = sorted(zip(errors, costs, strict=True), reverse=True)
-    for (e, c), (f, d) in pairwise(points):
-        if e >= _EQUAL_ERROR >= f > 0 and e > f:
-            share = (log(e) - log(_EQUAL_ERROR)) / (log(e) - log(f))
-            return exp(log(c) + share * (log(d) - log(c)))
+    for (coarse, cheap), (fine, dear) in pairwise(points):
+        if coarse >= _EQUAL_ERROR >= fine > 0 and coarse > fine:
+            share = (log(coarse) - log(_EQUAL_ERROR)) / (log(coarse) - log(fine))
+            return exp(log(cheap) + share * (log(dear) - log(cheap)))
     return None

@@ -20,9 +20,9 @@ from taylor_verify.studies.stored import Stored
 
 PRICES: Final = Stored(PricesStudy, "prices")
 
-# The models by the names of their barest forms.
+# The models by the variant of their simplest form.
 _MODELS: Final = {"omega": "a rigid body", "impulse": "a solid in an ideal fluid"}
-# The three questions: the barest form, its attitude, and all of a solid in a fluid.
+# The variants of the table of questions, with what is followed.
 _ASKED: Final = (
     ("omega", "omega"),
     ("attitude", "omega and attitude"),
@@ -54,14 +54,14 @@ _LEGEND: Final = (
 def pictures(study: PricesStudy) -> list[Picture]:
     """Return a picture for each model: the price on f64 of each option of a scene."""
     drawn = []
-    for root, words in _MODELS.items():
+    for simplest, model in _MODELS.items():
         rows = [
             Ratio(row.variant, row.rung, *row.step_ratio)
             for row in study.rows
-            if row.against == root and row.rung == "f64" and row.variant != root
+            if row.against == simplest and row.rung == "f64" and row.variant != simplest
         ]
         if rows:
-            drawn.append(picture(words, f"{root} alone", rows))
+            drawn.append(picture(model, f"{simplest} alone", rows))
     return drawn
 
 
@@ -76,7 +76,7 @@ def page(study: PricesStudy, folder: Path) -> str:
         _three_questions(study.rows),
         bullets(_LEGEND),
         figures.shown(folder, pictures(study)),
-        *_sections(study.rows, {one.variant: one.ratio for one in study.equal}),
+        *_sections(study.rows, {row.variant: row.ratio for row in study.equal}),
         "## How it was measured",
         bullets(_method(study)),
         "## To remake this",
@@ -98,19 +98,28 @@ def _three_questions(rows: Iterable[PriceRow]) -> str:
 
 def _sections(rows: Sequence[PriceRow], equal: Mapping[str, float | None]) -> list[str]:
     blocks = []
-    for root, model in _MODELS.items():
+    for simplest, model in _MODELS.items():
         blocks.append(f"## {model[0].upper()}{model[1:]}")
-        own = [row for row in rows if row.against == root]
+        own = [row for row in rows if row.against == simplest]
         for rung in dict.fromkeys(row.rung for row in own):
-            of_rung = [row for row in own if row.rung == rung]
-            blocks += [f"On {rung}, order {of_rung[0].order}:", _prices(of_rung, equal)]
+            rung_rows = [row for row in own if row.rung == rung]
+            blocks += [f"On {rung}, order {rung_rows[0].order}:", _prices(rung_rows, equal)]
     return blocks
 
 
 def _prices(rows: Sequence[PriceRow], equal: Mapping[str, float | None]) -> str:
-    on_f64 = rows[0].rung == "f64"
-    numbers = ("states:", "operations:", "a step:", "a unit of time:", "error:")
-    at_equal = ("at equal error:",) if on_f64 else ()
+    # Prices at equal error were measured on f64 alone.
+    is_f64 = rows[0].rung == "f64"
+    columns = [
+        "variant",
+        "states:",
+        "operations:",
+        "a step:",
+        "a unit of time:",
+        "error:",
+        *(["at equal error:"] if is_f64 else []),
+        "what it is",
+    ]
     lines = [
         [
             prose(row.variant),
@@ -119,12 +128,12 @@ def _prices(rows: Sequence[PriceRow], equal: Mapping[str, float | None]) -> str:
             _ratio(row.step_ratio),
             _ratio(row.time_ratio),
             figure(row.error),
-            *([figure(equal.get(row.variant))] if on_f64 else []),
+            *([figure(equal.get(row.variant))] if is_f64 else []),
             prose(row.what),
         ]
         for row in rows
     ]
-    return table(["variant", *numbers, *at_equal, "what it is"], lines)
+    return table(columns, lines)
 
 
 def _ratio(interval: Interval) -> str:
@@ -133,7 +142,7 @@ def _ratio(interval: Interval) -> str:
 
 
 def _method(study: PricesStudy) -> list[str]:
-    method, given = study.method, study.provenance
+    method = study.method
     rounds = ", ".join(f"{rung} {count}" for rung, count in method.rounds.items())
     return [
         f"One process, processor time, rounds in which every variant has its turn in an order drawn "
@@ -141,7 +150,7 @@ def _method(study: PricesStudy) -> list[str]:
         f"{figure(method.least_seconds)} s and is as many runs of the same stretch as that takes.",
         "Compiling, sampling and the exact solution are not in a price. The errors are those of runs "
         "of the suite's own driver, compared with the exact motion.",
-        made_on(given),
+        made_on(study.provenance),
     ]
 
 
@@ -173,8 +182,8 @@ _SHEET: Final = (
 
 
 def sheet(study: PricesStudy) -> str:
-    """Return a row for every variant and rung; the prices at equal error are those of f64."""
-    at_equal = {one.variant: one.ratio for one in study.equal}
+    """Return a CSV row for every variant and rung; only rows on f64 have a price at equal error."""
+    at_equal = {row.variant: row.ratio for row in study.equal}
     return csv_sheet(_SHEET, (_priced(row, at_equal) for row in study.rows))
 
 

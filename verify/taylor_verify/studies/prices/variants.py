@@ -1,4 +1,4 @@
-"""Variants that are priced: one motion in several forms, one body with more and more options."""
+"""Variants whose price is measured: forms of one motion, and one body with more and more options."""
 
 from __future__ import annotations
 
@@ -22,7 +22,11 @@ _LOAD: Final = (Fraction(1, 64), Fraction(-1, 128), Fraction(1, 256))
 
 @dataclass(frozen=True)
 class Variant:
-    """A form of a scene. ``against`` names the variant that is the unit of its price."""
+    """A form of a scene.
+
+    ``against`` names the variant whose price is the unit. ``posed`` returns the problem on a rung. With
+    ``literals`` the coefficients are written into the compiled code.
+    """
 
     name: str
     against: str
@@ -90,6 +94,8 @@ def variants() -> tuple[Variant, ...]:
 
 
 def _of(name: str, *track: str, loaded: bool = False) -> Callable[[Rung], Problem]:
+    """Return a function that poses a shipped scene with other tracked quantities, and with loads."""
+
     def posed(rung: Rung) -> Problem:
         scene = replace(load(name), track=frozenset(track))
         if loaded:

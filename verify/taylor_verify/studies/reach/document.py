@@ -9,7 +9,7 @@ from taylor_verify.records.provenance import SceneProvenance
 
 @dataclass(frozen=True)
 class ReachFamily:
-    """A family of motions: its values, and the numbers of periods on each rung."""
+    """A family of motions: the texts of its values, and the most periods on each rung."""
 
     name: str
     title: str
@@ -21,11 +21,12 @@ class ReachFamily:
 
 @dataclass(frozen=True)
 class ReachRow:
-    """A member of a family on a rung, after each number of periods.
+    """The errors of one member of a family on a rung, after each number of ``periods``.
 
-    ``errors`` and ``floors`` are the largest up to that number. For a lost motion they are None, and
-    infinite during the measurement. Periods that no rung was followed for have no floor. Both are empty if
-    nothing was run, and ``why`` gives the reason.
+    ``errors`` and ``floors`` are the largest relative errors up to that number of periods: achieved, and
+    attainable. They are None for a lost motion (infinite during the measurement). ``floors`` is shorter
+    than ``periods`` if no rung was followed so far. If nothing was run, both are empty, and ``why`` is the
+    reason.
     """
 
     family: str

@@ -6,8 +6,8 @@
     R   a ratio of moments of inertia or of masses
     S   a scale
 
-Every scene is made of exact rationals. Its samples are at the quarters of some periods. Beside an unstable
-spin the motion is slow at two of the quarters and quick at the other two, where errors of the phase show.
+Every scene is made of exact rationals. Its samples are at the quarters of some periods. Near an unstable
+spin the motion is slow at two of the quarters and fast at the other two, where errors of the phase show.
 """
 
 from __future__ import annotations
@@ -28,32 +28,39 @@ from taylor_verify.scenes.motion import Clock, Impulse, Spin
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.studies.reach.document import ReachFamily
 
-# Rationals, or their texts with spaces between.
+# Rationals, or one text of rationals with spaces between.
 Numbers = tuple[Fraction | int, ...] | str
 
 QUARTERS: Final = 4
-# Half-decades, then decades for cheap periods.
+# Two numbers in each decade, and one for long runs.
 PERIODS: Final = (1, 3, 10, 30, 100, 300, 1000, 10_000, 100_000)
-# The period is only used to choose instants, which are exact decimals.
+# The period only chooses the instants, which need not be exact quarters.
 _PERIOD_DIGITS: Final = 12
 _START: Final = Fraction(0)
 
 # The most periods in a reasonable time: on f128 a period takes hundreds of times as long as on f64.
-_FAR: Final = {"f32": 1000, "f64": 1000, "f80": 100, "f128": 10}
-# Beside an unstable motion of six impulses the floor takes long.
-_NEARER: Final = {"f32": 30, "f64": 30, "f80": 30, "f128": 10}
+_MOST_PERIODS: Final = {"f32": 1000, "f64": 1000, "f80": 100, "f128": 10}
+# Near an unstable motion of all six impulses the floor takes long to compute.
+_MOST_BESIDE_UNSTABLE_SPIN: Final = {"f32": 30, "f64": 30, "f80": 30, "f128": 10}
 # A period has 1/e turns, and the driver allows steps of some hundred turns at most.
-_SLOW: Final = {"f32": 10, "f64": 10, "f80": 3, "f128": 1}
-_FARTHER: Final = {"f32": 1000, "f64": 1000, "f80": 1000, "f128": 100, "mp237": 3}
-_FARTHEST: Final = {"f32": 100_000, "f64": 100_000, "f80": 10_000, "f128": 100, "mp237": 10}
+_MOST_NEAR_SPHERE: Final = {"f32": 10, "f64": 10, "f80": 3, "f128": 1}
+_MOST_BESIDE_UNSTABLE_AXIS: Final = {"f32": 1000, "f64": 1000, "f80": 1000, "f128": 100, "mp237": 3}
+_MOST_OF_REGULAR_ORBITS: Final = {
+    "f32": 100_000,
+    "f64": 100_000,
+    "f80": 10_000,
+    "f128": 100,
+    "mp237": 10,
+}
 
 
 @dataclass(frozen=True)
 class Family:
     """Scenes that depend on one number, called ``symbol``; ``values`` are its texts, the easiest first.
 
-    ``extreme`` names the limit of the family. Values are decimals with an exponent; a family of one value
-    shows its periods alone. ``far`` has the rungs of its runs, each with the most periods.
+    ``extreme`` names the limit of the family. Values are decimals with an exponent. In a family of one
+    value only the number of periods varies. ``make`` returns the scene of a value. ``most_periods`` has the
+    most periods by rung, for the rungs on which the family is run.
     """
 
     name: str
@@ -61,27 +68,38 @@ class Family:
     symbol: str
     extreme: str
     values: tuple[str, ...]
-    made: Callable[[Fraction], Scene]
-    far: Mapping[str, int] = field(default_factory=lambda: _FAR)
+    make: Callable[[Fraction], Scene]
+    most_periods: Mapping[str, int] = field(default_factory=lambda: _MOST_PERIODS)
 
     def scene(self, value: str) -> Scene:
-        """Return the member of this value; its clock has the start alone."""
-        return replace(self.made(Fraction(value)), name=self.label(value), title=self.title)
+        """Return the scene of this value; its only sample is the start."""
+        return replace(self.make(Fraction(value)), name=self.label(value), title=self.title)
 
     def label(self, value: str) -> str:
+        """Return the name of the scene of this value."""
         return f"{self.name} {self.symbol} = {value}" if self.symbol else self.name
 
     def described(self) -> ReachFamily:
         """Return the family in its stored form."""
-        about = (self.name, self.title, self.symbol, self.extreme, self.values)
-        return ReachFamily(*about, dict(self.far))
+        return ReachFamily(
+            name=self.name,
+            title=self.title,
+            symbol=self.symbol,
+            extreme=self.extreme,
+            values=self.values,
+            rungs=dict(self.most_periods),
+        )
 
     def periods(self, rung: str) -> tuple[int, ...]:
-        return tuple(count for count in PERIODS if count <= self.far[rung])
+        """Return the numbers of periods after which errors are measured on a rung."""
+        return tuple(count for count in PERIODS if count <= self.most_periods[rung])
 
 
 def at_quarters(scene: Scene, periods: Sequence[int]) -> Scene:
-    """Return the scene with samples at the quarters of the n-th period, for every n."""
+    """Return the scene with samples at the quarters of the n-th period, for every n of ``periods``.
+
+    Raises ValueError for a scene without a period.
+    """
     period = period_of(scene)
     instants = [
         (n - 1 + Fraction(quarter, QUARTERS)) * period
@@ -93,23 +111,25 @@ def at_quarters(scene: Scene, periods: Sequence[int]) -> Scene:
 
 @lru_cache(maxsize=64)
 def period_of(scene: Scene) -> Fraction:
-    """Return the period of omega or the impulses, to a dozen digits. Raises ValueError without one."""
+    """Return the period of omega or the impulses, to a dozen digits, in the scene's unit of time.
+
+    Raises ValueError for a scene without a period.
+    """
     values = elements(scene)
     if "period" not in values:
         raise ValueError(f"expected a periodic orbit, got a {values.regime} one @ {scene.name}")
     return Fraction(mp.nstr(values["period"].value, _PERIOD_DIGITS))
 
 
-def family(name: str) -> Family:
+def family_named(name: str) -> Family:
     """Return the family of this name. Raises ValueError for an unknown name."""
-    for one in FAMILIES:
-        if one.name == name:
-            return one
-    names = ", ".join(one.name for one in FAMILIES)
-    raise ValueError(f"expected one of the families {names}, got {name!r}")
+    families = {family.name: family for family in FAMILIES}
+    if name not in families:
+        raise ValueError(f"expected one of the families {', '.join(families)}, got {name!r}")
+    return families[name]
 
 
-# The members. The starts are those of the scenes of cases/extremes.
+# The families. Their starts are those of the scenes of cases/extremes.
 
 
 def _euler(moments: Numbers, omega: Numbers, *track: str) -> Scene:
@@ -135,11 +155,12 @@ def _decades(first: int, last: int, step: int) -> tuple[str, ...]:
     return tuple(f"1e{exponent}" for exponent in range(first, beyond, step))
 
 
-_SIX: Final = "1 2 0 1/10 1 1/2"
+# Coefficients p p' q q' r r' of Clebsch's body.
+_STABLE: Final = "1 2 0 1/10 1 1/2"
 # Its unstable spin grows: A = 29/16 in Hydromechanics 49 (25).
-_FALLING: Final = "1 5/4 0 1/4 1 1/2"
+_UNSTABLE: Final = "1 5/4 0 1/4 1 1/2"
 
-# In reading order: many periods, then near a separatrix, nearly equal, unlike and large numbers.
+# In the order of the page: many periods; near a separatrix; nearly equal, very unequal and large numbers.
 FAMILIES: Final = (
     Family(
         "euler-periods",
@@ -147,8 +168,8 @@ FAMILIES: Final = (
         symbol="",
         extreme="many periods",
         values=("1",),
-        made=lambda _: _euler("1 2 3", "3/10 1 1/5"),
-        far=_FARTHEST,
+        make=lambda _: _euler("1 2 3", "3/10 1 1/5"),
+        most_periods=_MOST_OF_REGULAR_ORBITS,
     ),
     Family(
         "euler-attitude",
@@ -156,8 +177,14 @@ FAMILIES: Final = (
         symbol="",
         extreme="many periods",
         values=("1",),
-        made=lambda _: _euler("1 2 3", "3/10 1 1/5", "attitude"),
-        far={**_FARTHEST, "f64": 10_000, "f80": 1000, "f128": 30, "mp237": 3},
+        make=lambda _: _euler("1 2 3", "3/10 1 1/5", "attitude"),
+        most_periods={
+            **_MOST_OF_REGULAR_ORBITS,
+            "f64": 10_000,
+            "f80": 1000,
+            "f128": 30,
+            "mp237": 3,
+        },
     ),
     Family(
         "kirchhoff-periods",
@@ -165,8 +192,8 @@ FAMILIES: Final = (
         symbol="",
         extreme="many periods",
         values=("1",),
-        made=lambda _: _kirchhoff(_SIX, "3/10 1/5 1", "2/5 -1/2 1"),
-        far={**_FARTHEST, "f64": 10_000, "f80": 1000},
+        make=lambda _: _kirchhoff(_STABLE, "3/10 1/5 1", "2/5 -1/2 1"),
+        most_periods={**_MOST_OF_REGULAR_ORBITS, "f64": 10_000, "f80": 1000},
     ),
     Family(
         "unstable-axis",
@@ -174,8 +201,8 @@ FAMILIES: Final = (
         symbol="d",
         extreme="the axis itself",
         values=_decades(-2, -40, -2),
-        made=lambda d: _euler("1 2 3", (d, 1, 0)),
-        far=_FARTHER,
+        make=lambda d: _euler("1 2 3", (d, 1, 0)),
+        most_periods=_MOST_BESIDE_UNSTABLE_AXIS,
     ),
     Family(
         # The start is half-way between two flips of the unstable spin, where omega2 is zero.
@@ -184,7 +211,7 @@ FAMILIES: Final = (
         symbol="d",
         extreme="the separatrix itself",
         values=_decades(-2, -14, -2),
-        made=lambda d: _euler("1 4/3 2", (1, 0, Fraction(1, 2) + d / 4)),
+        make=lambda d: _euler("1 4/3 2", (1, 0, Fraction(1, 2) + d / 4)),
     ),
     Family(
         "unstable-spin",
@@ -192,8 +219,8 @@ FAMILIES: Final = (
         symbol="d",
         extreme="the spin itself",
         values=_decades(-2, -18, -4),
-        made=lambda d: _kirchhoff(_FALLING, (d, 0, Fraction(5, 4)), "0 0 1"),
-        far=_NEARER,
+        make=lambda d: _kirchhoff(_UNSTABLE, (d, 0, Fraction(5, 4)), "0 0 1"),
+        most_periods=_MOST_BESIDE_UNSTABLE_SPIN,
     ),
     Family(
         "homoclinic",
@@ -201,8 +228,8 @@ FAMILIES: Final = (
         symbol="d",
         extreme="the orbit itself",
         values=_decades(-2, -14, -4),
-        made=lambda d: _kirchhoff(_FALLING, "1 0 3/4", (Fraction(1, 2), Fraction(-1, 2), 1 + d)),
-        far=_NEARER,
+        make=lambda d: _kirchhoff(_UNSTABLE, "1 0 3/4", (Fraction(1, 2), Fraction(-1, 2), 1 + d)),
+        most_periods=_MOST_BESIDE_UNSTABLE_SPIN,
     ),
     Family(
         "nearly-spherical",
@@ -210,8 +237,8 @@ FAMILIES: Final = (
         symbol="e",
         extreme="a sphere",
         values=_decades(-2, -6, -1),
-        made=lambda e: _euler((1, 1 + e, 1 - e), "3/4 1/2 -5/8"),
-        far=_SLOW,
+        make=lambda e: _euler((1, 1 + e, 1 - e), "3/4 1/2 -5/8"),
+        most_periods=_MOST_NEAR_SPHERE,
     ),
     Family(
         "nearly-axisymmetric",
@@ -219,7 +246,7 @@ FAMILIES: Final = (
         symbol="e",
         extreme="an axis of symmetry",
         values=_decades(-2, -14, -3),
-        made=lambda e: _euler((1, 1 + e, 2), "1/2 -1/4 1"),
+        make=lambda e: _euler((1, 1 + e, 2), "1/2 -1/4 1"),
     ),
     Family(
         "nearly-singular",
@@ -227,7 +254,7 @@ FAMILIES: Final = (
         symbol="e",
         extreme="an energy that is none",
         values=_decades(-2, -14, -3),
-        made=lambda e: _kirchhoff(
+        make=lambda e: _kirchhoff(
             (1, 2, 1 - e, Fraction(1, 2), 1, Fraction(3, 4)), "1/2 1/4 1", "-1/2 3/4 1/4"
         ),
     ),
@@ -237,7 +264,7 @@ FAMILIES: Final = (
         symbol="R",
         extreme="unlike moments",
         values=_decades(2, 14, 2),
-        made=lambda r: _euler((1, isqrt(int(r)), r), "1 1 1"),
+        make=lambda r: _euler((1, isqrt(int(r)), r), "1 1 1"),
     ),
     Family(
         "thin-rod",
@@ -245,7 +272,7 @@ FAMILIES: Final = (
         symbol="R",
         extreme="a line",
         values=_decades(2, 14, 3),
-        made=lambda r: _euler((1 / r, 1, 1 + 1 / r), "1 1/1000 2/1000"),
+        make=lambda r: _euler((1 / r, 1, 1 + 1 / r), "1 1/1000 2/1000"),
     ),
     Family(
         "added-mass",
@@ -253,7 +280,7 @@ FAMILIES: Final = (
         symbol="R",
         extreme="a disc without mass",
         values=_decades(2, 14, 3),
-        made=lambda r: _kirchhoff((1, 1 / r, 0, 0, 1, 2), "1/2 1/4 1", "1/4 -1/2 1"),
+        make=lambda r: _kirchhoff((1, 1 / r, 0, 0, 1, 2), "1/2 1/4 1", "1/4 -1/2 1"),
     ),
     Family(
         "small-impulse",
@@ -261,7 +288,7 @@ FAMILIES: Final = (
         symbol="F",
         extreme="no linear impulse",
         values=_decades(-2, -32, -6),
-        made=lambda f: _kirchhoff(_SIX, (3 * f / 5, 0, 4 * f / 5), "2/5 -1/2 1"),
+        make=lambda f: _kirchhoff(_STABLE, (3 * f / 5, 0, 4 * f / 5), "2/5 -1/2 1"),
     ),
     Family(
         "large-impulse",
@@ -269,7 +296,7 @@ FAMILIES: Final = (
         symbol="S",
         extreme="no angular impulse",
         values=_decades(2, 20, 3),
-        made=lambda s: _kirchhoff(_SIX, (3 * s / 10, s / 5, s), "2/5 -1/2 1"),
+        make=lambda s: _kirchhoff(_STABLE, (3 * s / 10, s / 5, s), "2/5 -1/2 1"),
     ),
     Family(
         "mixed-scales",
@@ -277,6 +304,6 @@ FAMILIES: Final = (
         symbol="S",
         extreme="the ends of the range of numbers",
         values=_decades(10, 250, 80),
-        made=lambda s: _euler((1 / s, 2 / s, 3 / s), (3 * s / 10, s, s / 5)),
+        make=lambda s: _euler((1 / s, 2 / s, 3 / s), (3 * s / 10, s, s / 5)),
     ),
 )

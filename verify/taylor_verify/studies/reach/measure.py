@@ -1,4 +1,4 @@
-"""Measurement of the reach of each precision: digits left in families of extremes.
+"""Measurement of the reach of each precision: digits left in families of extreme scenes.
 
 Every member of a family is solved once on a rung, at the quarters of its 1st, 3rd, 10th ... period. The
 digits left after N periods are -log10 of the largest error at any instant up to then, compared with the
@@ -39,15 +39,15 @@ from taylor_verify.studies.reach.families import (
     QUARTERS,
     Family,
     at_quarters,
-    family,
+    family_named,
     period_of,
 )
 
-# Of a truth that says only how large the motion is.
+# Digits of a truth that only shows how large the motion is.
 _DIGITS_OF_SCALES: Final = 15
-# From this error on nothing is left, and a longer run would show nothing new.
+# An error of this size leaves no digit, and a longer run would show nothing new.
 _LOST: Final = 1.0
-# Rounded data whose period differs by more are another orbit, which the rung cannot represent.
+# If rounding changes the period by a larger part, the rung cannot represent the orbit.
 _SAME_PERIOD: Final = Fraction(1, 10)
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
@@ -60,11 +60,11 @@ def study(finished: Callable[[str], None] = lambda label: None) -> ReachStudy:
 
     def ended(member: Member, _: object) -> None:
         name, value = member
-        finished(family(name).label(value))
+        finished(family_named(name).label(value))
 
     measured = run_all(_measured, members(), expense=_expense, ended=ended)
     return ReachStudy(
-        families=tuple(one.described() for one in FAMILIES),
+        families=tuple(family.described() for family in FAMILIES),
         rows=tuple(stored(row) for rows in measured for row in rows),
         lost=_LOST,
         provenance=SceneProvenance(versions(), processor(), command()),
@@ -72,17 +72,29 @@ def study(finished: Callable[[str], None] = lambda label: None) -> ReachStudy:
 
 
 def members() -> list[Member]:
-    """Return every value of every family with its name, small enough to send to a process."""
-    return [(one.name, value) for one in FAMILIES for value in one.values]
+    """Return the members of all families as pairs of short texts, which are cheap to send to a process."""
+    return [(family.name, value) for family in FAMILIES for value in family.values]
 
 
-def reaches(one: Family, value: str, rungs: Iterable[Rung]) -> list[ReachRow]:
-    """Return the rows of one member on each of the rungs, with all digits."""
-    scene = one.scene(value)
+def reaches(family: Family, value: str, rungs: Iterable[Rung]) -> list[ReachRow]:
+    """Return the rows of one member on each of the rungs, with all digits.
+
+    Raises ValueError for a scene without a period, and Unsettled if its floor cannot be computed.
+    """
+    scene = family.scene(value)
     rows = []
     for rung in rungs:
-        nothing = ReachRow(one.name, value, rung.name, one.periods(rung.name), (), (), 0, "")
-        rows.append(_followed(nothing, scene, rung))
+        empty = ReachRow(
+            family=family.name,
+            value=value,
+            rung=rung.name,
+            periods=family.periods(rung.name),
+            errors=(),
+            floors=(),
+            steps=0,
+            why="",
+        )
+        rows.append(_followed(empty, scene, rung))
     return _with_floors(rows, scene)
 
 
@@ -95,28 +107,28 @@ def stored(row: ReachRow) -> ReachRow:
     return replace(row, errors=errors, floors=floors)
 
 
-class _Another(Exception):  # noqa: N818 (it names what the rounded orbit is)
-    """The rounded data have another orbit; the text says which."""
+class _OtherOrbit(Exception):  # noqa: N818 (it names what the rung has)
+    """The data rounded to the rung have another orbit; the text says which."""
 
 
-def _followed(nothing: ReachRow, scene: Scene, rung: Rung) -> ReachRow:
+def _followed(empty: ReachRow, scene: Scene, rung: Rung) -> ReachRow:
     """Return the row with the errors of the periods that were run, or the reason for none."""
     if reason := Taylor().unavailable(rung):
-        return replace(nothing, why=reason)
+        return replace(empty, why=reason)
     try:
         # A member that is lost within its first period is not followed further.
-        first = _solved(nothing, nothing.periods[:1], scene, rung)
+        first = _solved(empty, empty.periods[:1], scene, rung)
         error = first.errors[-1]
         is_lost = error is None or not error < _LOST
-        return first if is_lost else _solved(nothing, nothing.periods, scene, rung)
-    except (NotRepresentable, Unsettled, _Another) as fault:
-        return replace(nothing, why=str(fault))
+        return first if is_lost else _solved(empty, empty.periods, scene, rung)
+    except (NotRepresentable, Unsettled, _OtherOrbit) as fault:
+        return replace(empty, why=str(fault))
 
 
-def _solved(nothing: ReachRow, periods: Sequence[int], scene: Scene, rung: Rung) -> ReachRow:
-    """Return the row with the errors after so many periods.
+def _solved(empty: ReachRow, periods: Sequence[int], scene: Scene, rung: Rung) -> ReachRow:
+    """Return the row with the errors after each number of periods.
 
-    Raises NotRepresentable, Unsettled, and _Another if the rung does not have the orbit.
+    Raises NotRepresentable, Unsettled, and _OtherOrbit if the rung cannot represent the orbit.
     """
     problem = pose(at_quarters(scene, periods), rung)
     _check_orbit(scene, problem)
@@ -124,21 +136,27 @@ def _solved(nothing: ReachRow, periods: Sequence[int], scene: Scene, rung: Rung)
     is_whole = trajectory.outcome is Outcome.FINISHED
     why = "" if is_whole else f"the run {trajectory.outcome.value}"
     errors = _up_to(_errors(problem, trajectory))
-    return replace(nothing, errors=errors, steps=trajectory.steps, why=why)
+    return replace(empty, errors=errors, steps=trajectory.steps, why=why)
 
 
 def _check_orbit(scene: Scene, problem: Problem) -> None:
+    """Raise _OtherOrbit if the rounded data have no period, or a very different one."""
     asked, rounded = period_of(scene), elements(problem.given)
     if "period" not in rounded:
-        raise _Another(f"rounded to {problem.rung.name}, the orbit is a {rounded.regime} one")
+        raise _OtherOrbit(f"rounded to {problem.rung.name}, the orbit is a {rounded.regime} one")
     period = rounded["period"].value
     if not abs(period - mp.convert(asked)) <= mp.convert(_SAME_PERIOD * asked):
         ratio = float(period / mp.convert(asked))
-        raise _Another(f"rounded to {problem.rung.name}, its period is {ratio:.3g} times as long")
+        raise _OtherOrbit(
+            f"rounded to {problem.rung.name}, its period is {ratio:.3g} times as long"
+        )
 
 
 def _errors(problem: Problem, trajectory: Trajectory) -> Floats:
-    """Return the largest error of all tracked quantities at every instant; NaN for NaN."""
+    """Return the largest error of all tracked quantities at every instant.
+
+    An error is NaN if the answer is, and infinite for a run that did not finish.
+    """
     given, bits = problem.given, working_bits(problem.rung.bits)
     instants = given.clock.elapsed
     if trajectory.outcome is not Outcome.FINISHED:
@@ -146,7 +164,7 @@ def _errors(problem: Problem, trajectory: Trajectory) -> Floats:
     truth = solution(given).motion(instants, truth_digits(problem.rung.bits))
     with mp.workprec(bits):
         states = state_errors(given, truth, trajectory.motion(bits))
-        bounds = [(one.values + one.truth_radius).astype(float) for one in states]
+        bounds = [(errors.values + errors.truth_radius).astype(float) for errors in states]
     worst: Floats = np.max(bounds, axis=0)
     return worst
 
@@ -154,29 +172,29 @@ def _errors(problem: Problem, trajectory: Trajectory) -> Floats:
 def _with_floors(rows: Sequence[ReachRow], scene: Scene) -> list[ReachRow]:
     """Return the rows with their floors, extended to the end of their periods.
 
-    One orbit serves all rows, because a rung with another orbit has no run. Raises Unsettled if the
-    condition of the orbit does not settle.
+    All rows have the same orbit, because a rung that rounds it to another orbit was not run. Raises
+    Unsettled if the conditioning of the orbit cannot be computed.
     """
-    followed = max((one.periods[: len(one.errors)] for one in rows), key=len)
+    followed = max((row.periods[: len(row.errors)] for row in rows), key=len)
     if not followed:
         return list(rows)
     asked = at_quarters(scene, followed)
     truth = solution(asked).motion(asked.clock.elapsed, _DIGITS_OF_SCALES)
-    return [_with_floor(one, asked, truth) if one.errors else one for one in rows]
+    return [_with_floor(row, asked, truth) if row.errors else row for row in rows]
 
 
-def _with_floor(one: ReachRow, asked: Scene, truth: Motion) -> ReachRow:
-    elapsed, count = asked.clock.elapsed, len(one.errors)
-    # The orbit may be followed further than on this rung: steps are extrapolated in proportion.
-    steps = round(one.steps * elapsed[-1] / elapsed[count * QUARTERS - 1])
-    base = floor(asked, asked, rung_named(one.rung).unit_roundoff, steps)
-    # Only the parts and their scales are asked for: the truth is compared with itself.
+def _with_floor(row: ReachRow, asked: Scene, truth: Motion) -> ReachRow:
+    elapsed, count = asked.clock.elapsed, len(row.errors)
+    # Another rung may have been followed further: the steps are then extrapolated in proportion.
+    steps = round(row.steps * elapsed[-1] / elapsed[count * QUARTERS - 1])
+    base = floor(asked, asked, rung_named(row.rung).unit_roundoff, steps)
+    # The truth is compared with itself, because only the names and the scales of the errors are needed.
     states = state_errors(asked, truth, truth)
     worst = np.max([base.of_state(errors) for errors in states], axis=0)
-    floors = _up_to(worst.astype(float))[: len(one.periods)]
-    lost = () if floors[-1] < _LOST else (inf,) * (len(one.periods) - len(floors))
-    beyond = (inf,) * (len(one.periods) - count)
-    return replace(one, errors=one.errors + beyond, floors=floors + lost)
+    floors = _up_to(worst.astype(float))[: len(row.periods)]
+    lost = () if floors[-1] < _LOST else (inf,) * (len(row.periods) - len(floors))
+    beyond = (inf,) * (len(row.periods) - count)
+    return replace(row, errors=row.errors + beyond, floors=floors + lost)
 
 
 def _up_to(values: Floats) -> tuple[float, ...]:
@@ -187,10 +205,15 @@ def _up_to(values: Floats) -> tuple[float, ...]:
 
 def _measured(member: Member) -> list[ReachRow]:
     name, value = member
-    return reaches(family(name), value, map(rung_named, family(name).far))
+    family = family_named(name)
+    return reaches(family, value, map(rung_named, family.most_periods))
 
 
 def _expense(member: Member) -> float:
-    """Return the rank of a member by its expense: wide rungs, then extreme values."""
-    far = family(member[0]).far
-    return -(1000.0 * far.get("mp237", 0) + 100.0 * far.get("f128", 0) + far.get("f64", 0) / 10)
+    """Return a number that is the lower, the longer a member takes; periods on wide rungs weigh most."""
+    periods = family_named(member[0]).most_periods
+    return -(
+        1000.0 * periods.get("mp237", 0)
+        + 100.0 * periods.get("f128", 0)
+        + periods.get("f64", 0) / 10
+    )

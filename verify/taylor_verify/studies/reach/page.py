@@ -21,11 +21,12 @@ from taylor_verify.studies.stored import Stored
 REACH: Final = Stored(ReachStudy, "reach")
 DIGITS: Final = (3, 6, 12)
 
-# The numbers of periods that have a line.
+# The numbers of periods that have a line in the tables.
 _AFTER: Final = (1, 10, 100, 1000)
 # Mark after the last value that was tried, beyond which the reach may extend.
 _LAST: Final = " \N{RIGHTWARDS ARROW}"
 _NOT_HELD, _NOT_RUN = "not held", "not run"
+# The first word of a reason why a rung cannot represent an orbit.
 _ROUNDED: Final = "rounded"
 
 _WHAT: Final = (
@@ -51,11 +52,13 @@ _LEGEND: Final = (
 
 def pictures(study: ReachStudy) -> list[Picture]:
     """Return a map of digits for every family that leads to a separatrix."""
-    return [picture for one in study.families for picture in _maps(one, _rows_of(study, one))]
+    return [
+        picture for family in study.families for picture in _maps(family, _rows_of(study, family))
+    ]
 
 
-def _maps(one: ReachFamily, rows: Sequence[ReachRow]) -> list[Picture]:
-    return [digits_map.picture(one, rows)] if one.symbol == "d" else []
+def _maps(family: ReachFamily, rows: Sequence[ReachRow]) -> list[Picture]:
+    return [digits_map.picture(family, rows)] if family.symbol == "d" else []
 
 
 def page(study: ReachStudy, folder: Path) -> str:
@@ -64,7 +67,7 @@ def page(study: ReachStudy, folder: Path) -> str:
         "How far each precision carries",
         _WHAT,
         bullets(_LEGEND),
-        *(block for one in study.families for block in _section(study, one, folder)),
+        *(block for family in study.families for block in _section(study, family, folder)),
         "## How it was measured",
         bullets(_method(study)),
         "## To remake this",
@@ -73,14 +76,14 @@ def page(study: ReachStudy, folder: Path) -> str:
     )
 
 
-def _section(study: ReachStudy, one: ReachFamily, folder: Path) -> list[str]:
-    rows = _rows_of(study, one)
-    towards = f"; {one.symbol} leads to {one.extreme}" if one.symbol else ""
-    blocks = [f"## {one.name}", prose(f"{one.title[0].upper()}{one.title[1:]}{towards}.")]
-    if len(one.values) > 1:
-        blocks += [figures.shown(folder, _maps(one, rows)), _by_value(one, rows)]
+def _section(study: ReachStudy, family: ReachFamily, folder: Path) -> list[str]:
+    rows = _rows_of(study, family)
+    towards = f"; {family.symbol} leads to {family.extreme}" if family.symbol else ""
+    blocks = [f"## {family.name}", prose(f"{family.title[0].upper()}{family.title[1:]}{towards}.")]
+    if len(family.values) > 1:
+        blocks += [figures.shown(folder, _maps(family, rows)), _by_value(family, rows)]
         blocks.append("Periods at which so many digits are left:")
-    return [*blocks, _by_periods(one, rows)]
+    return [*blocks, _by_periods(family, rows)]
 
 
 def _rows_of(study: ReachStudy, family: ReachFamily) -> list[ReachRow]:
@@ -93,22 +96,23 @@ def _rows_of(study: ReachStudy, family: ReachFamily) -> list[ReachRow]:
 def last_value(
     rows: Sequence[ReachRow], after: int, digits: int, key: str = ACHIEVED
 ) -> str | None:
-    """Return the last value up to which ``digits`` are left after ``after`` periods, or None.
+    """Return the last value up to which ``digits`` are left after ``after`` periods; None if there is none.
 
-    ``rows`` are those of one rung, the easiest value first.
+    ``rows`` are those of one family on one rung, the easiest value first. ``key`` is ACHIEVED or
+    ATTAINABLE.
     """
     precise = list(takewhile(lambda row: _keeps(row, after, digits, key), rows))
     return precise[-1].value if precise else None
 
 
 def most_periods(row: ReachRow, digits: int, key: str = ACHIEVED) -> int | None:
-    """Return the most periods after which ``digits`` are left; None if the first leave fewer."""
+    """Return the most periods after which ``digits`` are left; None if the fewest periods leave fewer."""
     precise = list(takewhile(lambda count: _keeps(row, count, digits, key), row.periods))
     return precise[-1] if precise else None
 
 
 def _keeps(row: ReachRow, after: int, digits: int, key: str) -> bool:
-    """Return True if the largest error after so many periods is small enough, and a number."""
+    """Return True if the error after so many periods is a number and leaves so many digits."""
     error = dict(zip(row.periods, numbers_of(row, key), strict=False)).get(after)
     return error is not None and error <= 10.0**-digits
 
@@ -118,39 +122,39 @@ def _headings(what: str) -> list[str]:
     return [*achieved, *(f"attainable, {n}:" for n in DIGITS)]
 
 
-def _by_value(one: ReachFamily, rows: Sequence[ReachRow]) -> str:
+def _by_value(family: ReachFamily, rows: Sequence[ReachRow]) -> str:
     lines = []
-    for rung in one.rungs:
+    for rung in family.rungs:
         own = [row for row in rows if row.rung == rung]
         for after in _AFTER:
             if any(after in row.periods for row in own):
                 blocks = product((ACHIEVED, ATTAINABLE), DIGITS)
                 values = (last_value(own, after, n, key) for key, n in blocks)
-                lines.append([rung, str(after), *(cell(v, one.values[-1]) for v in values)])
-    return table(["rung", "periods:", *_headings(f"{one.symbol}, ")], lines)
+                lines.append([rung, str(after), *(cell(v, family.values[-1]) for v in values)])
+    return table(["rung", "periods:", *_headings(f"{family.symbol}, ")], lines)
 
 
 def cell(value: str | int | None, last: str | int) -> str:
-    """Return the value, with a mark if it is the last that was tried."""
+    """Return the value as a cell, with a mark if it is the ``last`` that was tried."""
     if value is None:
         return NOTHING
     return f"{value}{_LAST}" if value == last else str(value)
 
 
-def _by_periods(one: ReachFamily, rows: Sequence[ReachRow]) -> str:
-    """Return a line for each value with three numbers for every rung, or a transposed single value."""
+def _by_periods(family: ReachFamily, rows: Sequence[ReachRow]) -> str:
+    """Return a table of periods: a line for each value, or for each rung of a family of one value."""
     by_place = {(row.value, row.rung): row for row in rows}
     lines = []
-    if len(one.values) == 1:
-        for rung in one.rungs:
-            row = by_place[one.values[0], rung]
+    if len(family.values) == 1:
+        for rung in family.rungs:
+            row = by_place[family.values[0], rung]
             lines.append([rung, *_periods(row, ACHIEVED), *_periods(row, ATTAINABLE)])
         return table(["rung", *_headings("")], lines)
-    for value in one.values:
-        own = [by_place[value, rung] for rung in one.rungs]
+    for value in family.values:
+        own = [by_place[value, rung] for rung in family.rungs]
         cells = [_periods(row, ACHIEVED) if row.errors else [_nothing(row)] for row in own]
         lines.append([value, *map(", ".join, cells)])
-    return table([f"{one.symbol}:", *(f"{r}: 3, 6, 12:" for r in one.rungs)], lines)
+    return table([f"{family.symbol}:", *(f"{r}: 3, 6, 12:" for r in family.rungs)], lines)
 
 
 def _periods(row: ReachRow, key: str) -> list[str]:

@@ -57,14 +57,14 @@ def numbers_of(row: ReachRow, key: str) -> tuple[float | None, ...]:
 
 def picture(family: ReachFamily, rows: Sequence[ReachRow]) -> Picture:
     """Return the map of a family from its own rows. Raises ValueError without rows."""
-    maps = [_Map.of(family, rung, rows) for rung in family.rungs]
-    maps = [one for one in maps if one.periods]
+    every = [_Map.of(family, rung, rows) for rung in family.rungs]
+    maps = [panel for panel in every if panel.periods]
     if not maps:
         raise ValueError(f"expected runs of the family, got none @ {family.name}")
     alt = (
         f"Decimal digits left of {family.title}, over {family.symbol} from "
         f"{family.values[0]} to {family.values[-1]} and the periods, for each rung: achieved "
-        f"by taylor, and attainable beside it. {' '.join(one.sentence for one in maps)}"
+        f"by taylor, and attainable beside it. {' '.join(panel.sentence for panel in maps)}"
     )
     title = f"Digits left: {family.name}"
     return Picture(f"reach-{family.name}", title, alt, partial(_figure, family, maps))
@@ -74,7 +74,7 @@ def picture(family: ReachFamily, rows: Sequence[ReachRow]) -> Picture:
 class _Map:
     """The map of a rung: digits achieved and attainable, of each value and number of periods.
 
-    A missing cell was not run.
+    The keys of ``cells`` are value, periods, and ACHIEVED or ATTAINABLE; a missing key was not run.
     """
 
     rung: str
@@ -106,7 +106,7 @@ class _Map:
 
 
 def digits_of(error: float | None) -> int:
-    """Return whole digits; 0 for a lost motion, which is stored as null, and for NaN."""
+    """Return the whole decimal digits that an error leaves; 0 for NaN and None, which is a lost motion."""
     if error is None or not error < 1:
         return 0
     # An error of zero leaves all digits of a double.
@@ -114,44 +114,44 @@ def digits_of(error: float | None) -> int:
 
 
 def _figure(family: ReachFamily, maps: Sequence[_Map]) -> Figure:
-    heights = [_CELL * len(one.periods) for one in maps]
+    heights = [_CELL * len(panel.periods) for panel in maps]
     height = _TOP + sum(heights) + _GAP * (len(maps) - 1) + _BELOW + _LEGEND
     figure = blank(height)
     width = (PAGE_WIDTH - _LEFT - _BETWEEN - _RIGHT) / 2
     top = height - _TOP
-    for one, own in zip(maps, heights, strict=True):
+    for panel, own in zip(maps, heights, strict=True):
         for column, key in enumerate((ACHIEVED, ATTAINABLE)):
             left = _LEFT + column * (width + _BETWEEN)
             axes = add_axes(figure, Frame(left, top - own, width, own))
-            _draw_cells(axes, one, key)
-            if one is maps[0]:
+            _draw_cells(axes, panel, key)
+            if panel is maps[0]:
                 axes.set_title(_HEADINGS[key], pad=5)
-            if one is maps[-1]:
-                # Only some of many values are named.
+            if panel is maps[-1]:
+                # There is room for a few names only.
                 values = family.values
                 shown = range(0, len(values), -(-len(values) // _MOST_NAMES))
                 axes.set_xticks(list(shown), [power_of_ten(float(values[i])) for i in shown])
                 axes.set_xlabel(f"{family.symbol}: towards {family.extreme}", size=SMALL)
             if column == 0:
-                names = [str(n) if n < 1000 else power_of_ten(n) for n in one.periods]
+                names = [str(n) if n < 1000 else power_of_ten(n) for n in panel.periods]
                 axes.set_yticks(range(len(names)), names)
-                axes.set_ylabel(f"{one.rung}\nperiods", size=SMALL)
+                axes.set_ylabel(f"{panel.rung}\nperiods", size=SMALL)
                 axes.yaxis.set_label_coords(_NAMES / width, 0.5)
         top -= own + _GAP
     _draw_legend(figure)
     return figure
 
 
-def _draw_cells(axes: Axes, one: _Map, key: str) -> None:
+def _draw_cells(axes: Axes, panel: _Map, key: str) -> None:
     from matplotlib.patches import Rectangle
 
-    axes.set(xlim=(-0.5, len(one.values) - 0.5), ylim=(-0.5, len(one.periods) - 0.5))
+    axes.set(xlim=(-0.5, len(panel.values) - 0.5), ylim=(-0.5, len(panel.periods) - 0.5))
     axes.set(xticks=[], yticks=[])
     axes.tick_params(length=0)
     for spine in axes.spines.values():
         spine.set_visible(True)
-    for (x, value), (y, count) in product(enumerate(one.values), enumerate(one.periods)):
-        digits = one.cells.get((value, count, key))
+    for (x, value), (y, count) in product(enumerate(panel.values), enumerate(panel.periods)):
+        digits = panel.cells.get((value, count, key))
         cell = Rectangle((x - 0.5, y - 0.5), 1, 1, edgecolor=FAINT)
         axes.add_patch(cell)
         if digits is None:
@@ -167,12 +167,12 @@ def _draw_cells(axes: Axes, one: _Map, key: str) -> None:
             ha="center",
             va="center_baseline",
             color=text_on(colour) if digits else QUIET,
-            gid=f"{one.rung} {_HEADINGS[key]} {value} {count}",
+            gid=f"{panel.rung} {_HEADINGS[key]} {value} {count}",
         )
 
 
 def text_on(colour: str) -> str:
-    """Return the one of ink and paper that has more contrast with the colour."""
+    """Return the colour of a text on ``colour``: ink or paper, whichever has more contrast."""
     return max((INK, PAPER), key=lambda text: contrast(text, colour))
 
 

@@ -1,6 +1,6 @@
 """Exact trajectory of a shipped scene as a plain document, for users without Python.
 
-The numbers are those of the scene's own rational values, not of values rounded to a rung.
+The motion is that of the scene's own rational values, not of values rounded to a rung.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ DIGITS: Final = 32
 def reference(scene: Scene) -> dict[str, Any]:
     """Return the scene in exact text, and its motion at all its instants, column by column.
 
-    A row is the motion at exactly the time printed in its column ``t``, even if the instant itself has no
-    finite decimal. ``radius`` is that of `exact`, and includes the rounding of the digits. Raises Unsettled
-    if the exact solution does not settle.
+    A row is the motion at exactly the time printed in its column ``t``, even if the instant of the scene is
+    no finite decimal. The column ``radius`` is the error bound of the row, as in the command `exact`; it
+    includes the rounding of the digits. Raises Unsettled if the exact motion does not reach its digits.
     """
     texts = [shortest_text(instant, DIGITS) for instant in scene.clock.instants]
     times = [(text, Fraction(text)) for text in texts]
@@ -47,18 +47,23 @@ def reference(scene: Scene) -> dict[str, Any]:
 
 
 def _columns(rows: Sequence[dict[str, Any]]) -> dict[str, list[str]]:
+    """Return the columns of the rows by name: the time, each component, the radius."""
     columns = {"t": [row["t"] for row in rows]}
-    for quantity in (quantity for quantity in COLUMNS if quantity in rows[0]):
-        entries = np.array([row[quantity] for row in rows]).reshape(len(rows), -1).T
-        columns |= dict(zip(COLUMNS[quantity], entries.tolist(), strict=True))
+    for quantity, names in COLUMNS.items():
+        if quantity in rows[0]:
+            entries = np.array([row[quantity] for row in rows]).reshape(len(rows), -1).T
+            columns |= dict(zip(names, entries.tolist(), strict=True))
     return columns | {"radius": [row["radius"] for row in rows]}
 
 
-# The question, in exact text.
+# The scene, in exact text.
 
 
 def _manufactured(motion: Manufactured | None) -> dict[str, Any]:
-    """Return the motion of omega, or of x and y as one vector, with the time since the start."""
+    """Return the manufactured motion of omega, or of x and y as one vector, by the time since the start.
+
+    The result is empty for a scene without one.
+    """
     if motion is None:
         return {}
     waves = [{name: _exact(value) for name, value in vars(wave).items()} for wave in motion.waves]
@@ -68,8 +73,8 @@ def _manufactured(motion: Manufactured | None) -> dict[str, Any]:
 def _initial(scene: Scene) -> dict[str, Any]:
     """Return the state at the time ``t``, with attitude and centre if the scene tracks them."""
     state = scene.initial
-    asked = {*state.MOVING, *scene.track}
-    parts = {name: value for name, value in state.parts().items() if name in asked}
+    names = {*state.MOVING, *scene.track}
+    parts = {name: value for name, value in state.parts().items() if name in names}
     return {"t": _exact(scene.clock.start), **_exact_parts(parts)}
 
 
@@ -78,7 +83,7 @@ def _exact_parts(parts: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _exact(value: Any) -> Any:
-    """Return rationals as exact text: a decimal if 32 digits suffice, else a/b."""
+    """Return a rational, or nested lists of rationals, as exact text: a decimal of 32 digits, else a/b."""
     if not isinstance(value, Fraction):
         return [_exact(entry) for entry in value]
     text = shortest_text(value, DIGITS)

@@ -1,11 +1,11 @@
 """Exact trajectories as CSV and JSON files, with a page on how to read them.
 
 NAME.csv      a heading line and a row for every sample time, in decimal text
-    NAME.json     the same columns as arrays of strings, and the scene; no page links to it, because the
-                  repository does not hold it
+NAME.json     the same columns as arrays of strings, and the scene; no page links to it, because it
+              is not in the repository
 README.md     columns, conventions, tolerances
 example.cpp   a program that compares a trajectory with a reference
-example.rs    a program that integrates a body and compares itself with a reference
+example.rs    a program that integrates a body and compares its motion with a reference
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ _SHEET: Final = re.compile(r"\[csv\]\(([^()/]+\.csv)\)")
 _ROUTES: Final = {"mpmath": "closed form", "taylor": "Taylor"}
 
 Document = Mapping[str, Any]
-"""One scene: ``columns`` (name to decimal texts, one a row) and what else its JSON shall hold."""
+"""One scene: ``columns`` (a list of decimal texts by name), and the other keys of its JSON."""
 
 
 def write(folder: Path, documents: Sequence[Document]) -> list[Path]:
     """Write ``folder``/reference, in place of an earlier one, and return the files written.
 
-    Files of scenes that no longer exist are removed; other people's files stay. Raises OSError; the folder
-    then stays as it was.
+    Files of scenes that no longer exist are removed; files of another maker stay. Raises OSError; the
+    folder then stays as it was.
     """
     examples = {name: (_TEMPLATES / name).read_text(encoding="utf-8") for name in EXAMPLES}
     beside = {

@@ -22,7 +22,7 @@ def _lacking(report: Published) -> tuple[str, ...]:
     target = report.folder / page.FOLDER
     return tuple(
         scene
-        for scene in report.without(page.FOLDER)
+        for scene in report.outdated_scenes(page.FOLDER)
         if (target / f"{of_scene(scene)}.csv").exists()
     )
 
@@ -45,5 +45,12 @@ STUDY: Final = Study[None](
     measure=_measure,
     place=f"{page.FOLDER}/README.md",
     needs_heyoka=False,
-    bulk=(Bulk("exact trajectories as JSON", (f"{page.FOLDER}/*.json",), _lacking, _add),),
+    bulk=(
+        Bulk(
+            what="exact trajectories as JSON",
+            patterns=(f"{page.FOLDER}/*.json",),
+            lacking=_lacking,
+            make=_add,
+        ),
+    ),
 )

@@ -20,7 +20,7 @@ MADE_BY: Final = "<!-- made by taylor-verify publish --site; do not edit -->"
 FRONT: Final = "index.html"
 
 _SCRIPT: Final = "plotly.min.js"
-# Modules to import; their packages have these names with hyphens.
+# Modules that the site needs; their packages have these names with hyphens.
 _NEEDED: Final = (
     "sphinx",
     "myst_nb",
@@ -31,9 +31,9 @@ _NEEDED: Final = (
     "matplotlib",
     "plotly",
 )
-# Other Markdown is copied as files.
+# Patterns of pages; other Markdown is copied as files.
 _PAGES: Final = ["index.md", "docs/**", "reports/**"]
-# Shorter marks of code spans and cells, of which tables have tens of thousands, save a tenth of the site.
+# Tables have tens of thousands of code spans and cells. Shorter HTML for them saves a tenth of the site.
 _SHORTER: Final = {
     r'<code class="docutils literal notranslate"><span class="pre">([^<]*)</span></code>': (
         r'<code class="literal">\1</code>'
@@ -41,17 +41,16 @@ _SHORTER: Final = {
     r'<tr class="row-(?:even|odd)">': "<tr>",
     r"(<td[^>]*>)<p>([^<]*)</p></td>": r"\1\2</td>",
 }
-# Files of Sphinx and the theme that no page needs.
-_OWN: Final = (".buildinfo", ".inv", ".map")
+# Endings of files of Sphinx and the theme that no page needs.
+_UNNEEDED: Final = (".buildinfo", ".inv", ".map")
 
 
 def build(folder: Path, target: Path) -> list[Path]:
-    """Make the site of the report in ``folder`` in place of an earlier one in ``target``.
+    """Make the site of the report in ``folder``, in place of an earlier one in ``target``.
 
     The site has the pages of docs if the folder lies in a checkout. Returns the files written. Raises
-    ImportError without Sphinx or another necessary package, OSError for files that cannot be read or
-    written, and ValueError for invalid data, for pages with a fault, and for a target that holds
-    something else.
+    ImportError without Sphinx or another package that it needs, OSError for files that cannot be read or
+    written, and ValueError for invalid data, for pages with a fault, and for a target with other files.
     """
     stale = _earlier(target)
     return list(replace_files(target, contents(folder), stale=stale))
@@ -72,21 +71,21 @@ def contents(folder: Path) -> dict[str, str | bytes]:
         site = {
             file.relative_to(made).as_posix(): _content(file)
             for file in files
-            if not file.name.endswith(_OWN)
+            if not file.name.endswith(_UNNEEDED)
         }
-    # Pages load Plotly's script when a motion comes into view.
+    # A page loads Plotly's script when a picture of a motion comes into view.
     plotly = resources.files("plotly") / "package_data" / _SCRIPT
     return {**site, f"_static/{_SCRIPT}": plotly.read_bytes()}
 
 
 def _run_sphinx(source: Path, target: Path, settings: Path) -> None:
-    """Build all pages. Raises ValueError with all warnings, each of which is a fault of a page."""
+    """Build all pages. Raises a ValueError with Sphinx's warnings, because each is a fault of a page."""
     from sphinx.application import Sphinx
     from sphinx.util.docutils import docutils_namespace, patch_docutils
 
     messages = StringIO()
     with warnings.catch_warnings(), patch_docutils(settings), docutils_namespace():
-        # Python's warnings about calls between Sphinx and its extensions are no faults of pages.
+        # Python's own warnings, about calls between Sphinx and its extensions, are no faults of pages.
         warnings.simplefilter("ignore")
         app = Sphinx(
             srcdir=source,
@@ -106,12 +105,12 @@ def _run_sphinx(source: Path, target: Path, settings: Path) -> None:
 
 
 def _content(file: Path) -> str | bytes:
-    """Return the content of a file, with the maker's name in front if it is a page."""
+    """Return the content of a file; a page is shortened, and begins with the name of its maker."""
     if file.suffix != ".html":
         return file.read_bytes()
     text = file.read_text(encoding="utf-8")
-    for wordy, short in _SHORTER.items():
-        text = re.sub(wordy, short, text)
+    for long, short in _SHORTER.items():
+        text = re.sub(long, short, text)
     return f"{MADE_BY}\n{text}"
 
 

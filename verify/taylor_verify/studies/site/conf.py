@@ -10,18 +10,19 @@ project = "taylor-verify"
 author = "The taylor-verify authors"
 version = release = __version__
 
-# This extension reads notebooks in Markdown, and other Markdown like MyST's parser.
+# myst_nb reads notebooks in Markdown, and other Markdown as MyST's parser does.
 extensions = ["myst_nb", "sphinx_copybutton", "taylor_verify.studies.site.extension"]
 exclude_patterns = ["_build"]
-# Like GitHub: formulas between dollars, and anchors of headings made from their words.
+# As on GitHub: formulas stand between dollars, and headings have anchors made from their words.
 myst_enable_extensions = ["deflist", "dollarmath", "fieldlist"]
 myst_heading_anchors = 4
-# Notebooks are executed with each build, so that no stored output is outdated. An error is a warning.
+# Notebooks are executed with each build, so that their output is never outdated. Sphinx warns of an error
+# in a cell.
 nb_execution_mode = "force"
 nb_execution_in_temp = nb_execution_show_tb = nb_merge_streams = True
 nb_execution_timeout = 300
 nb_output_stderr = "error"
-# A transcript is plain text, and a lexer's complaint about it is no fault of the page.
+# Blocks without a language are plain text, so that no lexer warns of them.
 highlight_language = "text"
 # The quotation marks of pages stay as written.
 smartquotes = False
@@ -36,10 +37,10 @@ html_show_copyright = False
 html_show_sourcelink = False
 html_copy_source = False
 html_domain_indices = html_use_index = False
-# Results of the search have no excerpts, because a page that is opened as a file cannot read other pages.
+# Search results have no excerpts, because a page that is opened as a file cannot read other pages.
 html_show_search_summary = False
-# Names of colours in the style sheet and in the pictures. On dark paper a hue is lightened until a
-# line has the contrast of 3 that WCAG 2.1 (1.4.11) asks for.
+# Colours of the style sheet and the pictures, light and dark, by name. For dark pages a hue is lightened
+# until a line has the contrast of 3 that WCAG 2.1 (1.4.11) requires.
 _COLOURS = {
     "motion-ink": ("#1B1D21", "#E8E8E4"),
     "motion-quiet": ("#5B616A", "#A6ABB2"),

@@ -1,6 +1,7 @@
 """Sphinx extension: formulas as MathML, links of scenes and terms, search without large tables.
 
-It also gives kernels of notebooks their own settings, and each notebook as a file to download.
+It also gives the kernels of notebooks settings of their own, and writes each notebook as a file to
+download.
 """
 
 from __future__ import annotations
@@ -26,16 +27,16 @@ SCENES: Final = "reports/scenes"
 # GitHub writes a formula within a line as a code span between dollars, MyST between dollars alone.
 _FORMULA: Final = re.compile(r"\$`([^`\n]+)`\$")
 _SCENE: Final = re.compile(r"\w+(?:/[\w-]+)+")
-# A local kernel needs no encryption, whose absence it would report, and no history of cells.
+# A local kernel needs no encryption, and must not warn that it has none. It needs no history of cells.
 _KERNEL: Final = "c.IPKernelApp.log_level = 40\nc.HistoryManager.enabled = False\n"
-# Report tables with more rows are lists of numbers, which nobody searches for. They would fill the index.
-# The tables of docs are words, and stay in the index.
+# Report tables with more rows are lists of numbers, which nobody searches for, and would fill the index.
+# The tables of docs have words, and stay in the index.
 _SEARCHED_ROWS: Final = 20
 _NUMBERS: Final = "reports/"
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
-    """Register everything with Sphinx."""
+    """Register everything with Sphinx, and return what Sphinx wants to know of an extension."""
     app.connect("builder-inited", _set_kernels)
     app.connect("source-read", _read_formulas)
     app.connect("doctree-read", _link_scenes)
@@ -57,6 +58,7 @@ def _set_kernels(app: Sphinx) -> None:
 
 
 def _read_formulas(_app: Sphinx, _page: str, content: list[str]) -> None:
+    """Write GitHub's formulas within lines as MyST's."""
     content[0] = _FORMULA.sub(r"$\1$", content[0])
 
 
@@ -84,6 +86,7 @@ def _is_within_link_or_heading(node: nodes.Node | None) -> bool:
 
 
 def _leave_out_of_search(app: Sphinx, doctree: nodes.document) -> None:
+    """Mark large tables of the report, which the search then skips."""
     if not app.env.docname.startswith(_NUMBERS):
         return
     for table in doctree.findall(nodes.table):

@@ -1,7 +1,7 @@
-"""A motion that can be turned: Plotly's data as HTML within a page.
+"""Picture of a motion that can be turned: Plotly's data as HTML within a page.
 
-Colours are names after a dollar, which the style of the page resolves. Numbers are short, because nobody
-sees the fourth digit of a point.
+A colour is a name after a dollar sign, which the page's script replaces by a colour of the style. Numbers
+have few digits, because nobody sees more of a point.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ Trace = dict[str, Any]
 class Figure:
     """A picture in space: its ``name`` on the page, its alternative text and the titles of its axes.
 
-    ``box`` has the least and the greatest coordinate of each axis, and contains the whole drawing.
+    ``traces`` are Plotly's. ``box`` has the least and the greatest coordinate of each axis, and contains
+    the whole drawing.
     """
 
     name: str
@@ -32,12 +33,12 @@ class Figure:
     box: Sequence[tuple[float, float]]
 
     def html(self) -> str:
-        """Return the figure as a block of HTML without empty lines."""
+        """Return the figure as a block of HTML without empty lines, which would end it in Markdown."""
         box = [column(side) for side in self.box]
         document = {"traces": list(self.traces), "axes": list(self.axes), "box": box}
         text = json.dumps(document, allow_nan=False, ensure_ascii=False, separators=(",", ":"))
-        # Escaped, so that no text of the data can end the script element.
-        stored = text.replace("<", "\\u003c")
+        # No text of the data may end the script element.
+        escaped = text.replace("<", "\\u003c")
         alt = escape(self.alt)
         return "\n".join(
             [
@@ -45,15 +46,19 @@ class Figure:
                 f'<div class="plot" role="img" aria-label="{alt}"></div>',
                 f"<noscript><p>{alt}</p></noscript>",
                 f"<figcaption><b>{escape(self.title)}.</b> {escape(self.caption)}</figcaption>",
-                f'<script type="application/json">{stored}</script>',
+                f'<script type="application/json">{escaped}</script>',
                 "</figure>",
             ]
         )
 
 
 def column(values: Iterable[float], digits: int = 4) -> list[float | None]:
-    """Return numbers rounded to ``digits``; None for one that is not finite."""
-    rounded = [float(f"{value:.{digits - 1}e}") for value in values]
-    return [
-        None if not isfinite(v) else int(v) if v == int(v) and abs(v) < 1e6 else v for v in rounded
-    ]
+    """Return numbers rounded to ``digits`` significant digits; None for a number that is not finite."""
+    return [_short(float(f"{value:.{digits - 1}e}")) for value in values]
+
+
+def _short(value: float) -> float | None:
+    """Return a number that JSON writes shortly: an integer has no decimal point."""
+    if not isfinite(value):
+        return None
+    return int(value) if value == int(value) and abs(value) < 1e6 else value

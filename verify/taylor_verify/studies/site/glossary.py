@@ -1,6 +1,7 @@
-"""Words of the glossary as links: their first use on every page leads to the definition.
+"""Links to the glossary: the first use of each of its words on a page leads to the definition.
 
-Pages stay plain Markdown. Generated pages and docstrings are linked like pages of docs.
+The Markdown of a page has no such links, which are added when the site is built. Generated pages and
+docstrings get them like pages of docs.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from sphinx import addnodes
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
 
-# The linked headings of the glossary, with their forms in sentences.
+# The linked headings of the glossary, each with a pattern of its forms in sentences.
 TERMS: Final = {
     "added mass": r"added mass(?:es)?",
     "attainable": r"attainable",
@@ -50,9 +51,9 @@ TERMS: Final = {
 }
 CLASS: Final = "term"
 _PAGE: Final = "glossary"
-# Words are linked in sentences, and not in headings, code, links, formulas and tables.
+# Words are linked in sentences, but not in headings, code, links, formulas and tables.
 _SENTENCES: Final = (nodes.paragraph,)
-_APART: Final = (
+_WITHOUT_LINKS: Final = (
     nodes.reference,
     nodes.literal,
     nodes.literal_block,
@@ -76,25 +77,26 @@ def link_terms(app: Sphinx, doctree: nodes.document) -> None:
         return
     place = app.builder.get_relative_uri(page, glossary)
     own = _linked_by_hand(doctree)
-    left = {term: _pattern(term) for term in TERMS if nodes.make_id(term) not in own}
+    unlinked = {term: _pattern(term) for term in TERMS if nodes.make_id(term) not in own}
     for text in list(_sentences(doctree)):
-        parts = list(_linked(text.astext(), place, left))
+        parts = list(_linked(text.astext(), place, unlinked))
         if len(parts) > 1:
             text.parent.replace(text, parts)
 
 
 def _linked_by_hand(doctree: nodes.document) -> set[str]:
-    """Return the headings of the glossary that the page links by itself."""
+    """Return the headings of the glossary to which the page has links of its own."""
     links = (link for link in doctree.findall(addnodes.pending_xref) if "reftarget" in link)
     targets = (link for link in links if PurePosixPath(link["reftarget"]).stem == _PAGE)
     return {link.get("reftargetid") for link in targets}
 
 
 def _sentences(doctree: nodes.document) -> Iterator[nodes.Text]:
+    """Yield the texts of a page in which terms are linked."""
     for text in doctree.findall(nodes.Text):
         parents = list(_parents(text))
         if any(isinstance(p, _SENTENCES) for p in parents) and not any(
-            isinstance(p, _APART) for p in parents
+            isinstance(p, _WITHOUT_LINKS) for p in parents
         ):
             yield text
 
@@ -105,13 +107,13 @@ def _parents(node: nodes.Node) -> Iterator[nodes.Node]:
         yield node
 
 
-def _linked(text: str, place: str, left: dict[str, re.Pattern[str]]) -> Iterator[nodes.Node]:
-    """Yield a text in parts, with links for terms; linked terms are removed from the list."""
+def _linked(text: str, place: str, unlinked: dict[str, re.Pattern[str]]) -> Iterator[nodes.Node]:
+    """Yield the parts of a text, with links for terms; a linked term is removed from ``unlinked``."""
     while text:
         first = min(
             (
                 (match.start(), term, match)
-                for term, form in left.items()
+                for term, form in unlinked.items()
                 if (match := form.search(text))
             ),
             default=None,
@@ -120,16 +122,16 @@ def _linked(text: str, place: str, left: dict[str, re.Pattern[str]]) -> Iterator
             yield nodes.Text(text)
             return
         start, term, match = first
-        del left[term]
+        del unlinked[term]
         if start:
             yield nodes.Text(text[:start])
-        link = nodes.reference(
+        yield nodes.reference(
             "", match[0], refuri=f"{place}#{nodes.make_id(term)}", internal=True, classes=[CLASS]
         )
-        yield link
         text = text[match.end() :]
 
 
 @cache
 def _pattern(term: str) -> re.Pattern[str]:
+    """Return the compiled pattern of a term, which matches whole words only."""
     return re.compile(rf"(?<![\w-]){TERMS[term]}(?![\w-])", re.IGNORECASE)

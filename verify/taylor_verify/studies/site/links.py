@@ -1,4 +1,4 @@
-"""Links of Markdown files that are shown in another place than their own."""
+"""Links in the Markdown of a page that is shown in another folder than its own."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable
 from typing import Final
 
-# Text and target of a link or a picture within the tree; the text may have escaped brackets.
+# A link or a picture within the tree: its text, which may have escaped brackets, its path and its anchor.
 _LINK: Final = re.compile(r"!?\[((?:\\.|[^\\\[\]])*)\]\((?!\w+:|#)([^()#\s]+)(#[^()\s]*)?\)")
 # Sphinx does not read links to files in headings.
 _HEADING: Final = re.compile(r"^#+ .*\]\(.*$", re.MULTILINE)
@@ -18,9 +18,10 @@ def relinked(
 ) -> str:
     """Return Markdown of the folder ``written_in`` with links that work in the folder ``shown_in``.
 
-    ``resolve`` takes the target of a link as a path from the top of the tree, and returns the new target.
-    That may have a prefix ``path:``, Sphinx's mark of a file that is no page. A link that resolves to None
-    is replaced by its own text. A link whose text is its path shows the title of the page instead.
+    ``resolve`` takes the target of a link as a path from the top of the tree, and returns the new target. A
+    prefix ``path:`` of the new target is Sphinx's mark of a file that is no page. If the new target is
+    None, only the text of the link stays. A link whose text is its own path shows the title of the page
+    instead.
     """
 
     def moved(link: re.Match[str]) -> str:
@@ -40,6 +41,6 @@ def relinked(
 
 
 def _links_below(heading: re.Match[str]) -> str:
-    """Return the heading in plain words, with its links in a line below."""
+    """Return a heading without links, with its links in a line below."""
     links = " ".join(link[0] for link in _LINK.finditer(heading[0]))
     return f"{_LINK.sub(lambda link: link[1], heading[0])}\n\n{links}" if links else heading[0]

@@ -1,7 +1,7 @@
 """Pictures of one motion in space that can be turned: the polhode, the body's axis, the path.
 
-A portrait has a dense course in floats, a record the errors at fewer samples. The logarithm of the error,
-which is shown as colour, is interpolated linearly.
+A portrait has a dense course in floats, and a record the errors at fewer samples. The logarithm of the
+error is interpolated linearly and shown as colour.
 """
 
 from __future__ import annotations
@@ -20,28 +20,28 @@ Portrait = Mapping[str, Any]
 Record = Mapping[str, Any]
 Numbers = NDArray[np.float64]
 
-_WARM: Final = [[0, "$low"], [0.5, "$middle"], [1, "$high"]]
+_COLOUR_SCALE: Final = [[0, "$low"], [0.5, "$middle"], [1, "$high"]]
 _COLOUR_BAR: Final = {
     "title": {"text": "log₁₀ error", "side": "right"},
     "thickness": 10,
     "len": 0.7,
     "outlinewidth": 0,
 }
-# The smallest ratio of semi-axes of an ellipsoid that is drawn.
+# An ellipsoid is drawn only if its semi-axes have a larger ratio than this, least over greatest.
 _FLATTEST: Final = 1e-3
-# Tolerance as part of a curve's extent: a third of a pixel on the screen.
+# A deviation of a curve by this part of its extent is a third of a pixel, which nobody sees.
 _UNSEEN: Final = 0.0008
-# Shortest side of a box, as part of its longest side.
+# The margin and the shortest side of a box, as parts of its longest side.
 _MARGIN: Final = 0.03
 _LEAST_SIDE: Final = 0.3
 # A curve that spreads by less than this part of its size is a point: a body at rest, or a steady spin.
 _A_POINT: Final = 1e-7
-# Constant quantities differ in the last of the nine stored digits.
+# Stored values of a constant quantity differ by less than this part: they have nine digits.
 _ALIKE: Final = 1e-6
 
 
 def motions_of(portrait: Portrait, record: Record | None) -> list[Figure]:
-    """Return every picture in space of one scene."""
+    """Return every picture in space of one scene; errors are those of ``record``, if there is one."""
     if not portrait.get("course"):
         return []
     figures = (make(portrait, record) for make in (polhode, axis_in_space, path))
@@ -51,24 +51,25 @@ def motions_of(portrait: Portrait, record: Record | None) -> list[Figure]:
 def polhode(portrait: Portrait, record: Record | None) -> Figure | None:
     """Return omega in body axes on its energy ellipsoid, or the linear impulse on its sphere.
 
-    If loads change energy or length, the motion lies on no surface, and the curve is shown alone.
+    If loads change the energy or the length, the motion lies on no such surface, and only the curve is
+    shown. The result is None for a motion that is a point.
     """
-    euler = portrait["model"] == "euler"
-    key, quantity = ("omega", "omega") if euler else ("linear_impulse", "impulse")
+    is_rigid = portrait["model"] == "euler"
+    key, quantity = ("omega", "omega") if is_rigid else ("linear_impulse", "impulse")
     curve = _Curve.of(portrait, portrait["course"].get(key, []), record, quantity)
     if curve is None:
         return None
-    surface = _ellipsoid(portrait, curve.rows) if euler else _sphere(curve.rows)
-    label, name = ("ω", "angular velocity") if euler else ("x", "linear impulse")
-    on_it = (
+    surface = _ellipsoid(portrait, curve.rows) if is_rigid else _sphere(curve.rows)
+    label, name = ("ω", "angular velocity") if is_rigid else ("x", "linear impulse")
+    place = (
         " It runs along the polhode, which lies on the ellipsoid of its kinetic energy."
-        if euler
+        if is_rigid
         else " It keeps its length: it runs on a sphere."
     )
     return Figure(
         name="polhode",
-        title="Polhode" if euler and surface else name.capitalize(),
-        caption=f"The {name} in body axes.{on_it if surface else ''}{curve.colour}",
+        title="Polhode" if is_rigid and surface else name.capitalize(),
+        caption=f"The {name} in body axes.{place if surface else ''}{curve.colour}",
         alt=f"{portrait['title']}: the curve of the {name} in body axes.{curve.colour}",
         traces=[*([surface] if surface else []), *curve.traces()],
         axes=[f"{label}₁", f"{label}₂", f"{label}₃"],
@@ -77,7 +78,7 @@ def polhode(portrait: Portrait, record: Record | None) -> Figure | None:
 
 
 def axis_in_space(portrait: Portrait, record: Record | None) -> Figure | None:
-    """Return the third body axis as a curve on the unit sphere of space."""
+    """Return the third body axis as a curve on the unit sphere, in space axes; None without attitudes."""
     turned = np.array(portrait["course"].get("attitude", [])).reshape(-1, 3, 3)
     curve = _Curve.of(portrait, turned[:, :, 2], record, "attitude")
     if curve is None:
@@ -94,7 +95,7 @@ def axis_in_space(portrait: Portrait, record: Record | None) -> Figure | None:
 
 
 def path(portrait: Portrait, record: Record | None) -> Figure | None:
-    """Return the path of the centre through the fluid, in space axes."""
+    """Return the path of the centre through the fluid, in space axes; None without a path."""
     curve = _Curve.of(portrait, portrait["course"].get("centre", []), record, "centre")
     if curve is None:
         return None
@@ -131,7 +132,10 @@ def _box(rows: Numbers, surface: Trace | None) -> list[tuple[float, float]]:
 
 @dataclass(frozen=True)
 class _Curve:
-    """A curve (n, 3) with its times, and the samples (time, logarithm of the error) for its colour."""
+    """A curve (n, 3) with its times, and the samples (time, logarithm of the error) for its colour.
+
+    ``colour`` is the sentence that explains the colour; it is empty without errors.
+    """
 
     times: Numbers
     rows: Numbers
@@ -142,7 +146,7 @@ class _Curve:
     def of(
         cls, portrait: Portrait, rows: ArrayLike, record: Record | None, quantity: str
     ) -> _Curve | None:
-        """Return the curve of these rows; None without rows, and for a point."""
+        """Return the curve of ``rows`` (n, 3); None without rows, and for a curve that is a point."""
         points = np.asarray(rows, dtype=float)
         if not points.size or not _extent(points) > _A_POINT * np.abs(points).max():
             return None
@@ -152,14 +156,18 @@ class _Curve:
         return cls(np.array(portrait["course"]["t"]), points, errors, words if errors else "")
 
     def traces(self) -> list[Trace]:
-        """Return Plotly's traces: the curve, and a mark at its start."""
+        """Return Plotly's traces of the curve and of a mark at its start."""
         places = thinned(self.rows, _UNSEEN)
         times = self.times[places]
         line: dict[str, Any] = {"width": 5, "color": "$low"}
         if self.errors:
             instants, logarithms = np.array(self.errors).T
             colours = np.interp(times, instants, logarithms)
-            line |= {"color": column(colours, 3), "colorscale": _WARM, "colorbar": _COLOUR_BAR}
+            line |= {
+                "color": column(colours, 3),
+                "colorscale": _COLOUR_SCALE,
+                "colorbar": _COLOUR_BAR,
+            }
         start = {"marker": {"size": 4, "color": "$ink"}, "hovertemplate": "start<extra></extra>"}
         return [
             {
@@ -186,26 +194,27 @@ def _errors(record: Record | None, quantity: str) -> list[tuple[float, float]]:
     """Return time and logarithm of each error above zero, in the order of time."""
     gates = record["gates"] if record else ()
     errors = next((gate["errors"] for gate in gates if gate["quantity"] == quantity), ())
-    # The error at the start is the rounding of the data, and no error of the motion.
+    # The error at the start is that of the rounded data, and not one of the motion.
     pairs = list(zip(record["times"], errors, strict=True))[1:] if record and errors else []
     return sorted((t, log10(error)) for t, error in pairs if error and error > 0)
 
 
 def thinned(rows: ArrayLike, tolerance: float) -> list[int]:
-    """Return the points that a curve needs: all others lie within ``tolerance`` of the chords.
+    """Return the indices of the points that a curve (n, 3) needs; the others are near the chords of these.
 
-    The tolerance is relative to the curve's own extent (Ramer, Douglas and Peucker).
+    ``tolerance`` is the largest distance from a chord, relative to the extent of the curve. The method is
+    that of Ramer, Douglas and Peucker.
     """
     points = np.asarray(rows, dtype=float)
     farthest = tolerance * _extent(points)
-    places, open_ = {0, len(points) - 1}, [(0, len(points) - 1)]
-    while open_:
-        first, last = open_.pop()
+    places, chords = {0, len(points) - 1}, [(0, len(points) - 1)]
+    while chords:
+        first, last = chords.pop()
         away = _from_chord(points[first : last + 1])
         if away.max() > farthest:
             at = first + int(away.argmax())
             places.add(at)
-            open_ += [(first, at), (at, last)]
+            chords += [(first, at), (at, last)]
     return sorted(places)
 
 
@@ -220,19 +229,19 @@ def _from_chord(points: Numbers) -> Numbers:
 
 
 def _ellipsoid(portrait: Portrait, rows: Numbers) -> Trace | None:
-    """Return the ellipsoid omega.I omega = 2T in body axes; None if T changes, or if it is too flat."""
+    """Return the ellipsoid omega.I omega = 2T in body axes; None if T changes, or if it is very flat."""
     body = portrait.get("body")
     if not body:
         return None
     moments, axes = np.array(body["principal_moments"]), body["axes"]
     energies = np.square(rows @ np.transpose(axes)) @ moments
     semi = np.sqrt(energies[0] / moments)
-    is_seen = _is_constant(energies) and semi.min() > _FLATTEST * semi.max()
-    return _ball(semi, axes) if is_seen else None
+    is_drawn = _is_constant(energies) and semi.min() > _FLATTEST * semi.max()
+    return _ball(semi, axes) if is_drawn else None
 
 
 def _sphere(rows: Numbers) -> Trace | None:
-    """Return the sphere of all rows; None if their lengths differ, as under loads."""
+    """Return the sphere on which all rows lie; None if their lengths differ, as under loads."""
     lengths = np.linalg.norm(rows, axis=1)
     return _ball([lengths[0]] * 3) if _is_constant(lengths) else None
 

@@ -1,4 +1,4 @@
-"""Notebooks of the gallery as files for Jupyter: each lies beside its page, which links to it."""
+"""Notebooks of the gallery as files for Jupyter, each beside its page, which links to it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 SUFFIX: Final = ".ipynb"
 
 _OPENING: Final = "---\njupytext:\n"
-# A page of the site is not beside a notebook that somebody has downloaded.
+# Links to other pages of the site, which do not work in a downloaded notebook.
 _LINK_WITHIN: Final = re.compile(r"\[([^\]]+)\]\((?!https?:)[^)]*\)")
 
 
@@ -29,17 +29,17 @@ def notebook(text: str) -> str:
     """Return a notebook in Markdown as the JSON that Jupyter opens; no output is stored in it."""
     from myst_nb.core.read import read_myst_markdown_notebook
 
-    made = read_myst_markdown_notebook(text)
-    for i, cell in enumerate(made.cells):
-        # A random name would make two files of one page differ.
+    parsed = read_myst_markdown_notebook(text)
+    for i, cell in enumerate(parsed.cells):
+        # With the reader's random names, two builds of one page would differ.
         cell["id"] = f"cell-{i}"
         if cell.cell_type == "markdown":
             cell.source = _LINK_WITHIN.sub(r"\1", cell.source)
-    return json.dumps(made, ensure_ascii=False, indent=1)
+    return json.dumps(parsed, ensure_ascii=False, indent=1)
 
 
 def add_link(app: Sphinx, doctree: nodes.document) -> None:
-    """Link a page to its notebook, behind the conclusion that it opens with."""
+    """Add to a page the link to its notebook, after the conclusion with which the page begins."""
     page = app.env.docname
     section = next(doctree.findall(nodes.section), None)
     if section is None or not is_notebook(_source(app, page)):
@@ -50,7 +50,7 @@ def add_link(app: Sphinx, doctree: nodes.document) -> None:
 
 
 def write_notebooks(app: Sphinx, exception: Exception | None) -> None:
-    """Write the notebook of each page that is one beside that page."""
+    """Write a notebook beside each page that is made from one; nothing after a failed build."""
     if exception is not None:
         return
     for page in sorted(app.env.found_docs):

@@ -20,7 +20,7 @@ from taylor_verify.studies.site.source import Document, Report
 from taylor_verify.studies.site.stage import FRONT, REPORTS, Stage, docs_beside, smaller
 
 _GATES: Final = f"{REPORTS}/tables/gates.md"
-# Starting a process takes as long as some drawings.
+# Fewer pictures are drawn in this process, because to start others takes as long as some drawings.
 _MANY: Final = 20
 # The scene of the errors on the front page.
 _EXAMPLE: Final = "euler/generic"
@@ -48,7 +48,7 @@ _COLUMNS: Final = (
 
 
 def staged(folder: Path) -> Stage:
-    """Return the stage with every page of the site and the files that pages link to.
+    """Return a stage with every page of the site and the files that pages link to.
 
     Raises OSError for files that cannot be read, and ValueError for files that hold something else.
     """
@@ -58,7 +58,12 @@ def staged(folder: Path) -> Stage:
         for scene in report.scenes
     }
     drawings = _drawn(
-        [one for drawn in pictures.values() for one in drawn if not report.has(drawing_of(one))]
+        [
+            picture
+            for drawn in pictures.values()
+            for picture in drawn
+            if not report.has(drawing_of(picture))
+        ]
     )
     stage.files |= {f"{SCENES}/{name}": svg for name, svg in drawings.items()}
     stage.add_pages(
@@ -95,15 +100,15 @@ def _drawn(pictures: Sequence[Picture]) -> dict[str, str]:
 
 
 def _svg(picture: Picture) -> str:
+    """Return a picture as SVG; a function of the module, so that other processes can be sent it."""
     return smaller(content(picture, "svg").decode())
 
 
 def _front(report: Report, stage: Stage, pictures: Sequence[Picture]) -> str:
     pages = [f"{SCENES}.md", _GATES, *stage.report_pages]
-    summary_page = report.read("README.md")
     return _FRONT.format(
         counts=_counts(report.runs),
-        by_rung=next((b for b in summary_page.split("\n\n") if b.startswith("| rung")), ""),
+        by_rung=_table_by_rung(report),
         picture="\n\n".join(shown(report, picture, REPORTS) for picture in pictures),
         blind=_blind(report),
         made_with=made_with(report),
@@ -112,14 +117,20 @@ def _front(report: Report, stage: Stage, pictures: Sequence[Picture]) -> str:
     )
 
 
+def _table_by_rung(report: Report) -> str:
+    """Return the table of rungs on the front page of the report; empty without that page."""
+    blocks = report.read("README.md").split("\n\n")
+    return next((block for block in blocks if block.startswith("| rung")), "")
+
+
 def _reading_order(page: str) -> tuple[int, str]:
-    """Return a key to sort pages by: the summary, the scenes, then a folder's README before its pages."""
+    """Return the key by which pages are sorted: the front page, the scenes, then by depth and name."""
     first = (f"{REPORTS}/README", SCENES)
     return (first.index(page) if page in first else 2 + page.count("/"), page)
 
 
 def _counts(runs: Sequence[Run]) -> str:
-    """Return the table of the numbers of scenes, runs and verdicts, without zeros but of pass and fail."""
+    """Return a table of the numbers of scenes, runs and verdicts; a zero stands only for pass and fail."""
     verdicts = [verdict for run in runs for verdict in run.verdicts]
     by_status = summary(verdicts).items()
     counts = {
@@ -153,6 +164,7 @@ def _scenes(report: Report) -> str:
 
 
 def _scene_row(report: Report, scene: str) -> list[str]:
+    """Return the row of a scene in the list of scenes."""
     runs = {run.rung: run for run in report.runs_of(scene) if run.solver == "taylor"}
     about = report.portrait(scene) or next(iter(report.records(scene).values()), {})
     most = worst(verdict for run in runs.values() for verdict in run.state)

@@ -1,4 +1,4 @@
-"""Page of one scene as Markdown: its question, its exact motion, and each rung's answer."""
+"""Page of one scene as Markdown: its question, its exact motion, and the answer on each rung."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from taylor_verify.studies.tradeoff.stored import TimedPoint, Trade
 
 # The rung of the errors that colour the curves in space.
 _SHOWN: Final = "f64"
-# The navigation leaves scenes out, because hundreds of lines are too many; the table of scenes links them.
+# The navigation has no lines for scenes, which are too many; the table of scenes has links to them.
 _ORPHAN: Final = "---\norphan: true\n---"
 _ACCURACY: Final = (
     "rung",
@@ -47,7 +47,7 @@ _ALLOWED: Final = (
 
 
 def scene_page(scene: str, report: Report, pictures: Sequence[Picture]) -> str:
-    """Return the whole page of a scene with its pictures, without empty sections."""
+    """Return the whole page of a scene with its ``pictures``; empty sections are left out."""
     runs = report.runs_of(scene)
     portrait, records = report.portrait(scene) or {}, report.records(scene)
     record = next(iter(records.values()), {})
@@ -97,7 +97,7 @@ def drawing_of(picture: Picture) -> str:
 
 
 def shown(report: Report, picture: Picture, top: str) -> str:
-    """Return Markdown of a picture with its text; ``top`` is the relative path of the report's folder."""
+    """Return Markdown that shows a picture; ``top`` is the path from the page to the report's folder."""
     drawing = drawing_of(picture)
     place = drawing if report.has(drawing) else f"scenes/{picture.stem}.svg"
     return f"![{prose(picture.alt)}]({top}/{place})"
@@ -114,6 +114,7 @@ def made_with(report: Report) -> str:
 
 
 def _drawings(report: Report, pictures: Sequence[Picture]) -> Iterator[str]:
+    """Yield the static pictures of a scene; a sentence on gates follows the errors."""
     for picture in pictures:
         yield shown(report, picture, "..")
         if picture.stem.endswith("-errors"):
@@ -133,6 +134,7 @@ def _reference(scene: str, report: Report) -> str:
 
 
 def _facts(runs: Sequence[Run], portrait: Document, record: Document) -> str:
+    """Return the list of short facts at the head of the page."""
     periods = [row["value"] for row in portrait.get("analytic", ()) if row["name"] == "period"]
     facts = {
         "verdict": gravest(verdict for run in runs for verdict in run.verdicts).value,
@@ -148,7 +150,7 @@ def _facts(runs: Sequence[Run], portrait: Document, record: Document) -> str:
 
 def _words(portrait: Document) -> Iterator[str]:
     """Yield the reason for the scene, and its warnings."""
-    # Comment lines make paragraphs, which empty lines separate.
+    # Empty lines separate the comment into paragraphs.
     for is_filled, lines in groupby((line.strip() for line in portrait.get("why", ())), key=bool):
         if is_filled:
             text = " ".join(lines).removeprefix("Why: ")
@@ -158,6 +160,7 @@ def _words(portrait: Document) -> Iterator[str]:
 
 
 def _equations(portrait: Document, record: Document) -> list[str]:
+    """Return the equations of motion, and behind a line that opens them the ones that are integrated."""
     explained = portrait.get("explain", {})
     formulas = [f"$$\n{tex}\n$$" for tex in portrait.get("tex", ())]
     built = "\n".join(explained.get("equations") or record.get("equations", ()))
@@ -167,6 +170,7 @@ def _equations(portrait: Document, record: Document) -> list[str]:
 
 
 def _orbit(portrait: Document) -> list[str]:
+    """Return sentences and a table on the elements of the orbit; an empty list without any."""
     rows = portrait.get("analytic")
     if not rows:
         return []
@@ -179,7 +183,10 @@ def _orbit(portrait: Document) -> list[str]:
 
 
 def _solvers(trade: Trade | None) -> list[str]:
-    """Return the most accurate sound setting of each family, with its time over the yardstick's."""
+    """Return a table with the most accurate sound setting of each family of solvers.
+
+    Its time is that of a solve over the yardstick's.
+    """
     if trade is None:
         return []
     best: dict[tuple[str, str], TimedPoint] = {}
@@ -205,7 +212,7 @@ def _solvers(trade: Trade | None) -> list[str]:
 
 
 def _gates(verdicts: Sequence[Verdict]) -> str:
-    """Return the arithmetic of each bound by quantity and rung, with its words once."""
+    """Return a table with the arithmetic of each bound, and a list of what its terms mean."""
     names = list(dict.fromkeys(verdict.quantity for verdict in verdicts))
     rows: list[list[str]] = []
     meanings: dict[str, dict[str, None]] = {}
@@ -214,12 +221,14 @@ def _gates(verdicts: Sequence[Verdict]) -> str:
         rows.append([code(verdict.quantity), verdict.rung, prose(arithmetic)])
         if meaning:
             meanings.setdefault(meaning, {})[code(verdict.quantity)] = None
-    notes = [f"{', '.join(of)}: {prose(meaning)}." for meaning, of in meanings.items()]
+    notes = [
+        f"{', '.join(quantities)}: {prose(meaning)}." for meaning, quantities in meanings.items()
+    ]
     return "\n\n".join([table(["quantity", "rung", "bound"], rows), bullets(notes)])
 
 
 def _bound(verdict: Verdict) -> tuple[str, str]:
-    """Return the arithmetic of the bound, and the meaning of its terms; empty without a bound."""
+    """Return the arithmetic of a bound, and the meaning of its terms, which may be empty."""
     floor = verdict.reason.floor
     arithmetic, meaning = floor.parts() if floor else ("", "")
     parts = (conclusion(verdict), verdict.reason.rule, arithmetic)
@@ -229,18 +238,18 @@ def _bound(verdict: Verdict) -> tuple[str, str]:
 def _block(language: str, text: str, name: str = "") -> str:
     """Return a block of text for copying; ``name`` is its anchor on the page."""
     option = f":name: {name}\n" if name else ""
-    # A longer fence than any in the text, which could end the block.
+    # The fence must be longer than any in the text, which would end the block.
     fence = "`" * max(3, 1 + max(map(len, re.findall("`+", text)), default=0))
     return f"{fence}{{code-block}} {language}\n{option}\n{text}\n{fence}"
 
 
 def _folded(summary: str, contents: str) -> str:
-    """Return Markdown folded behind a line that opens it."""
+    """Return Markdown that is hidden behind the line ``summary`` until a reader opens it."""
     return f"<details>\n<summary>{escape(summary)}</summary>\n\n{contents}\n\n</details>"
 
 
 def _values(document: Document) -> list[str]:
-    """Return ten instants as columns of a trajectory file, each number with all digits."""
+    """Return the exact motion at ten instants as a trajectory file, every number with all its digits."""
     rows = document.get("rows")
     if not rows:
         return []
@@ -267,6 +276,7 @@ def _trajectory(rows: Sequence[Document]) -> str:
 
 
 def _commands(scene: str, rungs: Sequence[str], portrait: Document) -> str:
+    """Return the commands that reproduce the numbers of the page, a line each."""
     values = portrait.get("values") or {}
     times = ",".join(str(row["t"]) for row in values.get("rows", ()))
     at = f"--at={times}" if times.startswith("-") else f"--at {times}"

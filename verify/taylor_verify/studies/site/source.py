@@ -1,7 +1,7 @@
 """Data of a report folder that the site reads: verdicts, records, portraits and measurements.
 
     portrait   data/portraits/NAME.json: one scene in text, equations, exact values and a dense course;
-               the page of a scene without a portrait has fewer sections
+               without it the page of a scene has fewer sections
 record     data/records/NAME.taylor.RUNG.json: every sample's error of one run
 """
 
@@ -31,7 +31,7 @@ class Report:
     """The report in ``folder``; each part is read on its first use.
 
     Every part raises OSError for files that cannot be read and ValueError for files that hold something
-    else. A measurement that was never published is None.
+    else. A measurement that is not stored is None.
     """
 
     folder: Path
@@ -66,7 +66,7 @@ class Report:
         return [run for run in self.runs if run.scene == scene]
 
     def portrait(self, scene: str) -> Document | None:
-        """Return the portrait of a scene."""
+        """Return the portrait of a scene; None if it is not stored."""
         return PORTRAITS.find(self.folder, scene)
 
     def records(self, scene: str) -> dict[str, Document]:
@@ -76,7 +76,7 @@ class Report:
 
     @cached_property
     def sights(self) -> tuple[Sight, ...]:
-        """The deliberately broken solvers with their verdicts; empty if none are stored."""
+        """The deliberately broken solvers with the verdicts on them; empty if none are stored."""
         study = CONTROLS.find(self.folder)
         return study.sights if study else ()
 
@@ -86,7 +86,7 @@ class Report:
         return {trade.scene: trade for trade in study.trades} if study else {}
 
     def trade(self, scene: str) -> Trade | None:
-        """Return speed against accuracy on one scene."""
+        """Return the measurement of speed against accuracy on a scene; None if it is not stored."""
         return self._trades.get(scene)
 
     def has(self, place: str) -> bool:
@@ -94,7 +94,7 @@ class Report:
         return (self.folder / place).is_file()
 
     def read(self, place: str) -> str:
-        """Return the text of a published file; empty without a file."""
+        """Return the text of a published file; empty if there is none."""
         return (self.folder / place).read_text(encoding="utf-8") if self.has(place) else ""
 
     def _stored(self, name: str) -> Document | None:

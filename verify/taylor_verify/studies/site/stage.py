@@ -1,7 +1,7 @@
 """Source folder of Sphinx: pages of docs and of the report, and the files that they link to.
 
-Paths are those of a checkout: ``docs/method.md``, ``reports/tables/README.md``. Links that work there
-work here.
+Paths are those of a checkout: ``docs/method.md``, ``reports/tables/README.md``. So links that work in a
+checkout work on the site.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ DOCS: Final = "docs"
 REPORTS: Final = "reports"
 FRONT: Final = "index.md"
 
-# In bytes. Larger files are sheets and data, which packing shortens to a tenth.
+# In bytes. Larger files are sheets and data, which are packed to a tenth of their size.
 _LARGE: Final = 30_000
 PACKED: Final = ".tar.xz"
-# Fonts and metadata of a drawing, which its page does not need.
+# Parts of a drawing that its page does not need.
 _FONTS: Final = re.compile(r"font-family: [^;\"}]*")
 _METADATA: Final = re.compile(r"<metadata>.*?</metadata>\s*", re.DOTALL)
-_ROOMS: Final = ("figures", "tables", "reference", "upstream", "upstream/engines")
+_FOLDERS: Final = ("figures", "tables", "reference", "upstream", "upstream/engines")
 _INCLUDED: Final = re.compile(r"^```\{include\} (\S+)\n```$", re.MULTILINE)
 _TOCTREE: Final = re.compile(r"^```\{toctree\}\n.*?^```$", re.MULTILINE | re.DOTALL)
 _ENTRY: Final = re.compile(r"^([a-z][\w/-]*)$", re.MULTILINE)
@@ -42,7 +42,7 @@ def docs_beside(folder: Path) -> Path | None:
 
 @dataclass
 class Stage:
-    """Files for Sphinx by path. ``folder`` has the report, ``docs`` the pages beside it."""
+    """Files for Sphinx by path. ``folder`` has the report, ``docs`` the pages of the checkout, if any."""
 
     folder: Path
     docs: Path | None
@@ -58,8 +58,9 @@ class Stage:
                 self._stand_ins[_joined(place, included)] = place
 
     def _markdown(self) -> Iterator[tuple[str, Path]]:
-        for room in (self.folder, *(self.folder / name for name in _ROOMS)):
-            for file in sorted(room.glob("*.md")):
+        """Yield the path and the file of each page of the report and of docs."""
+        for folder in (self.folder, *(self.folder / name for name in _FOLDERS)):
+            for file in sorted(folder.glob("*.md")):
                 yield f"{REPORTS}/{file.relative_to(self.folder).as_posix()}", file
         for file in sorted(self.docs.rglob("*.md")) if self.docs else ():
             place = file.relative_to(self.docs or file)
@@ -89,7 +90,11 @@ class Stage:
         return "\n\n".join(lists).replace(":maxdepth: 1", ":hidden:")
 
     def add_pages(self, made: Mapping[str, str]) -> None:
-        """Add the stored pages and those of ``made``, with the files that they link to."""
+        """Add the stored pages and those of ``made``, by their paths, with the files that they link to.
+
+        A page of ``made`` replaces the stored page of its path. Raises OSError for files that cannot be
+        read, and ValueError for a page that includes a file outside the checkout.
+        """
         stored = {place: file for place, file in self._pages.items() if place not in made}
         self._places |= made.keys()
         for place, file in stored.items():
@@ -99,12 +104,10 @@ class Stage:
             self._add(place, text)
 
     def _add(self, place: str, text: str) -> None:
+        """Add a page, with a hidden list of the pages below it."""
         folder = posixpath.dirname(place)
-        if (
-            below := self._below(place.removesuffix(".md"))
-            if place.startswith(f"{REPORTS}/")
-            else []
-        ):
+        is_of_report = place.startswith(f"{REPORTS}/")
+        if is_of_report and (below := self._below(place.removesuffix(".md"))):
             names = "\n".join(map(posixpath.basename, below))
             text = f"{text}\n```{{toctree}}\n:hidden:\n\n{names}\n```\n"
         self.files[place] = relinked(text, folder, folder, self._resolve)
@@ -119,7 +122,7 @@ class Stage:
         return relinked(text, posixpath.dirname(included), posixpath.dirname(place), lambda at: at)
 
     def _resolve(self, place: str) -> str | None:
-        """Return the page or file that a link leads to; None for other links, and outside the tree."""
+        """Return the page or file that a link leads to, and add that file; None if there is neither."""
         for page in (self._stand_ins.get(place, place), f"{place}/README.md"):
             if page in self._places:
                 return page
@@ -135,14 +138,14 @@ class Stage:
         return _as_linked(place)
 
     def _origin(self, place: str) -> Path | None:
-        """Return the stored file of a path; None outside the report and its checkout."""
+        """Return the file that a path stands for; None outside the report and its checkout."""
         if place.startswith(f"{REPORTS}/"):
             return self.folder / place.removeprefix(f"{REPORTS}/")
         return None if self.docs is None or place.startswith("..") else self.docs.parent / place
 
 
 def smaller(svg: str) -> str:
-    """Return the drawing in the font of its page, with title and text, and without metadata."""
+    """Return an SVG drawing without metadata, and with the font of its page."""
     return _FONTS.sub("font-family: sans-serif", _METADATA.sub("", svg))
 
 
@@ -152,7 +155,7 @@ def _as_linked(place: str) -> str:
 
 
 def _content(file: Path, is_packed: bool) -> str | bytes:
-    """Return the content of a file: drawings are made smaller, and large files packed."""
+    """Return the content of a file: packed, or with a drawing made smaller."""
     content = file.read_bytes()
     if is_packed:
         return lzma.compress(tar({file.name: content}))
@@ -160,4 +163,5 @@ def _content(file: Path, is_packed: bool) -> str | bytes:
 
 
 def _joined(place: str, path: str) -> str:
+    """Return the path of a file that the page ``place`` names by a relative path."""
     return posixpath.normpath(posixpath.join(posixpath.dirname(place), path))

@@ -27,25 +27,27 @@ def tradeoff(
     scene
         A Scene, a path, or the name of a shipped scene.
     asked
-        The settings to measure (studies.tradeoff.setting.chosen makes them of names); all that there are
-        unless given.
+        The settings to measure, by default all of the scene. ``chosen`` in studies.tradeoff.setting makes
+        settings from names of solvers.
     repeats
-        The number of solves of which the best time counts; that of ``taylor-verify tradeoff`` unless given.
+        The number of repeated solves, whose best time counts; by default that of
+        ``taylor-verify tradeoff``.
     seed
-        The seed of the order of timing.
+        The seed of the random order in which settings are timed.
 
     Returns
     -------
     studies.tradeoff.trade_off.TradeOff
-        A point for each setting: errors in the judge's units, processor seconds, and the front. A setting
-        that cannot run is a point that says why. It takes from seconds to minutes.
+        A point for each setting, with errors in the judge's units and with seconds, and the front of those
+        that no other beats in both. A setting that cannot run is a point with the reason. The call takes
+        from seconds to minutes.
 
     Raises
     ------
     scenes.reading.faults.Refused
         For a scene that cannot be read.
     ValueError
-        For fewer than one of ``repeats``.
+        If ``repeats`` is below 1.
     """
     from taylor_verify.scenes.reading.reader import as_scene
     from taylor_verify.studies.tradeoff.timing import REPEATS, SEED, cold_caches
@@ -64,7 +66,7 @@ def recommend(
     asked: Sequence[Setting] | None = None,
     seed: int | None = None,
 ) -> Recommendation:
-    """Measure the settings and return the fastest whose error stays below a limit, here and nearby.
+    """Measure the settings, and return the fastest whose error stays below a limit on several starts.
 
     Parameters
     ----------
@@ -74,9 +76,9 @@ def recommend(
         The largest error of all tracked quantities that is allowed, in the judge's units: relative to the
         largest omega or impulse, radians, arc length.
     asked
-        The settings to choose from; all that there are unless given.
+        The settings to choose from, by default all of the scene.
     seed
-        The seed of the starts nearby and of the order of timing.
+        The seed of the other starts, and of the random order in which settings are timed.
 
     Returns
     -------
@@ -87,7 +89,7 @@ def recommend(
     Raises
     ------
     studies.tradeoff.recommendation.OutOfReach
-        Where no setting reaches the error.
+        If no setting reaches the error.
     scenes.reading.faults.Refused
         For a scene that cannot be read.
     ValueError

@@ -1,4 +1,4 @@
-"""The accuracy of a trajectory: its errors against the truth of one start on one rung, and its drift."""
+"""Accuracy of a trajectory: its errors against the exact motion of the same rounded data, and its drift."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ from taylor_verify.solvers.trajectory import Outcome, Trajectory
 class Accuracy:
     """Errors by tracked quantity, in the judge's units; NaN where an answer is no number.
 
-    Each is an upper bound: the sum of the error's size and the truth's own width.
-    ``drift`` is the largest of all conserved quantities, ``drifting`` its name; None under loads, because
-    nothing is conserved there.
+    ``max`` is the largest over all samples, ``final`` that of the last sample. Each is an upper bound: the
+    error plus the width of the truth. ``drift`` is the largest drift of a conserved quantity, and
+    ``drifting`` the name of that quantity; None and empty under loads, which conserve nothing.
     """
 
     max: Mapping[str, float] = field(default_factory=dict)
@@ -40,15 +40,15 @@ class Accuracy:
 
     @property
     def worst(self) -> float:
-        """The largest of all tracked quantities; NaN if one is NaN, infinite if none was compared."""
+        """The largest error of all tracked quantities; NaN if one is NaN, infinite if none was compared."""
         return float(largest(self.max.values())) if self.max else inf
 
 
 class Truth:
     """The exact motion of one problem, with which all answers are compared.
 
-    Its width is a thousandth of the unit roundoff, as for the judge. Raises Unsettled if its digits do not
-    settle.
+    Its width is a thousandth of the unit roundoff, as for the judge. Raises Unsettled if the exact motion
+    does not reach its digits.
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -58,7 +58,7 @@ class Truth:
         try:
             self._motion, self._start = self._evaluated(solution(self._given))
         except Unsettled:
-            # Beside a degenerate orbit Taylor series have digits that the closed form lacks.
+            # Near a degenerate orbit the closed form loses digits that Taylor series have.
             self._motion, self._start = self._evaluated(TaylorSolution(self._given))
 
     def _evaluated(self, exact: Solution) -> tuple[Motion, Motion]:
@@ -75,12 +75,24 @@ class Truth:
             bounds = {errors.quantity: errors.values + errors.truth_radius for errors in states}
             most = {name: float(largest(values)) for name, values in bounds.items()}
             final = {name: float(values[-1]) for name, values in bounds.items()}
-            own = (self._start, self._motion, answer, trajectory.quantities, self._digits)
-            conserved = drifts(given, *own) if given.body.is_conservative else ()
-            drift = [(float(largest(one.values)), name.name) for name, one in conserved]
+            conserved = (
+                drifts(
+                    given,
+                    start=self._start,
+                    truth=self._motion,
+                    answer=answer,
+                    own=trajectory.quantities,
+                    digits=self._digits,
+                )
+                if given.body.is_conservative
+                else ()
+            )
+            sizes = [
+                (float(largest(errors.values)), invariant.name) for invariant, errors in conserved
+            ]
         # NaN counts as larger than any number.
-        worst = max(drift, key=lambda one: (isnan(one[0]), one[0]), default=(None, ""))
-        return Accuracy(most, final, *worst)
+        drift, drifting = max(sizes, key=lambda size: (isnan(size[0]), size[0]), default=(None, ""))
+        return Accuracy(most, final, drift, drifting)
 
 
 class Truths:
@@ -90,7 +102,7 @@ class Truths:
         self._known: dict[tuple[Scene, Rung, Body, State], Truth | None] = {}
 
     def accuracy(self, problem: Problem, trajectory: Trajectory) -> Accuracy | None:
-        """Return the accuracy; None for an unfinished run, and if the truth does not settle."""
+        """Return the accuracy; None for an unfinished run, and if the truth does not reach its digits."""
         if trajectory.outcome is not Outcome.FINISHED:
             return None
         # Solvers may round the data of a scene differently.

@@ -1,8 +1,8 @@
 """Precisions that can reach an error, by the errors that rounding alone leaves on the scene's orbit.
 
-The judge's floor grows with the number of steps, which depends on the solver. Here it is taken for the
-fewest possible steps, one rounding for each sample. Only a solver that computes in a wider precision than
-that of its answer may do better.
+The judge's floor grows with the number of steps, which depends on the solver. The floor here is that of the
+fewest possible steps: one rounding for each sample. Only a solver that computes in a wider precision than
+that of its answer can have a smaller error.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.scene import Scene
 
-# Of a truth that says only how large the motion is.
+# Digits of a truth that only shows how large the motion is.
 _DIGITS: Final = 15
 _MOST_BITS: Final = 1000
-# A floor is not quite proportional to the roundoff, because rounding the data beside an unstable motion
-# moves the orbit too. Some more bits make up for it.
+# A floor is not quite proportional to the roundoff: near an unstable motion the rounding of the data
+# changes the orbit too. Each attempt has at least so many bits more than the one before.
 _MORE_BITS: Final = 8
 _ATTEMPTS: Final = 8
 
@@ -43,7 +43,7 @@ def least_error(scene: Scene, rung: Rung) -> float | None:
         base = floor(given, scene, rung.unit_roundoff, 0)
     except (NotRepresentable, Unsettled):
         return None
-    # Only the parts and their scales are asked for: the truth is compared with itself.
+    # The truth is compared with itself, because only the names and the scales of the errors are needed.
     states = state_errors(given, truth, truth)
     return float(max(np.max(base.of_state(errors)) for errors in states))
 
@@ -51,8 +51,8 @@ def least_error(scene: Scene, rung: Rung) -> float | None:
 def left_out(scene: Scene, rungs: Iterable[Rung], error: float) -> dict[Rung, str]:
     """Return the rungs on which rounding alone leaves far more than an error, each with the reason.
 
-    The floor is a model of random roundings. As the judge's gates allow GATE_FACTOR above it, a rung is
-    left out only if its floor is GATE_FACTOR times the error.
+    The floor is a model of random roundings, and the judge's gates allow GATE_FACTOR times the floor. So a
+    rung is left out only if its floor is more than GATE_FACTOR times the error.
     """
     reasons = {}
     for rung in dict.fromkeys(rungs):
@@ -66,8 +66,8 @@ def left_out(scene: Scene, rungs: Iterable[Rung], error: float) -> dict[Rung, st
 def narrowest(scene: Scene, error: float) -> tuple[Rung, float] | None:
     """Return the narrowest rung on which rounding alone leaves at most an error, and its floor.
 
-    It is a type of the ladder if one suffices, else mpN. The result is None if no rung suffices, or if the
-    floor is unknown.
+    It is one of the formats f32 to f128 if one suffices, else mpN. The result is None if no rung suffices,
+    or if the floor is unknown.
     """
     names = [*FORMATS]
     for attempt in range(len(FORMATS) + _ATTEMPTS):

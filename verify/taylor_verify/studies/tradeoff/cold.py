@@ -1,8 +1,8 @@
-"""First solves in processes of their own, with nothing loaded and nothing compiled.
+"""Times of first solves, each in a new process with nothing loaded and nothing compiled.
 
 A process that has solved before has loaded the libraries and compiled heyoka's code, so that it cannot
 measure a cold start. Each setting starts in a new process, with an empty folder as heyoka's cache. The
-solver is sent as bytes, so that reading it loads its libraries.
+solver is sent as bytes, so that its libraries are loaded when the new process reads it.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ Answer = TypeVar("Answer")
 def cold(
     scene: Scene, asked: Sequence[Setting], finished: Callable[[str], None] = lambda label: None
 ) -> dict[Setting, dict[str, float]]:
-    """Return the seconds of the first solves of settings, one after the other, part by part.
+    """Solve with each setting in a new process, one after the other, and return the seconds by part.
 
     The parts are ``process`` (starting the process), ``importing`` (loading all libraries and posing the
     problem), ``compiling`` (what the solver did before its propagation), ``solving`` (the propagation),
@@ -40,9 +40,9 @@ def cold(
 
     times = {}
     # The errors of pickling a lambda or a local function differ between versions.
-    unsent = (pickle.PicklingError, AttributeError, TypeError, BrokenProcessPool)
+    not_sent = (pickle.PicklingError, AttributeError, TypeError, BrokenProcessPool)
     for setting in asked:
-        with cold_caches(), suppress(*unsent):
+        with cold_caches(), suppress(*not_sent):
             data = pickle.dumps((scene, setting.solver, setting.rung))
             began = perf_counter()
             parts = in_a_new_process(first_solve, data)
@@ -56,7 +56,7 @@ def cold(
 def in_a_new_process(function: Callable[..., Answer], *arguments: object) -> Answer:
     """Return the result of a function in a process that has loaded nothing.
 
-    The process is spawned: a fork would inherit the memory, the compiled code and the hash seed.
+    The process is spawned, because a fork would inherit memory, compiled code and hash seed.
     """
     with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
         return pool.submit(function, *arguments).result()

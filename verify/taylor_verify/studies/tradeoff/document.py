@@ -1,6 +1,6 @@
 """Documents of speed against accuracy: the errors of every setting on a few scenes, and the times.
 
-The errors are the same on any machine, except for rounding. The times are those of one machine.
+The errors are the same on any machine, except for rounding. The times belong to one machine.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from taylor_verify.records.standing import Standing
 
 # None stands for a number that is not finite, or does not exist.
 Number = float | None
-# Mark between the name of a shipped scene and the later time until which it is followed.
+# Text between the name of a shipped scene and a later time until which the scene is followed.
 UNTIL: Final = " until t = "
 
 
@@ -23,10 +23,11 @@ def label(solver: str, setting: str, rung: str) -> str:
 
 @dataclass(frozen=True)
 class TradePoint:
-    """A setting on a scene: the tolerance or step asked for, and the errors achieved.
+    """A setting on a scene: the requested tolerance or step, and the achieved errors.
 
-    ``error`` is the largest of all tracked quantities and samples, ``drift`` the largest of the conserved
-    quantities, of which ``drifting`` is the name. ``max`` and ``final`` are errors by quantity.
+    ``asked`` is the word for ``requested``: tolerance, step, or empty. ``error`` is the largest of all
+    tracked quantities and samples, ``drift`` the largest of the conserved quantities, ``drifting`` the name
+    of that quantity. ``max`` and ``final`` are errors by quantity, of all samples and of the last one.
     ``because`` is the reason why a point is not sound.
     """
 
@@ -60,8 +61,8 @@ class TradePoint:
 class TradeScene:
     """A measured scene.
 
-    ``attainable`` is what rounding alone leaves on each rung; empty in measurements without it.
-    ``requests`` compare the requested and the achieved digits in words.
+    ``attainable`` are the errors that rounding alone leaves, by rung; empty if they were not measured.
+    ``requests`` are sentences on the requested and the achieved digits.
     """
 
     scene: str
@@ -81,7 +82,8 @@ class TradeScene:
 class PlainDouble:
     """The closed form in plain doubles on one orbit, and the error of another solver beside it.
 
-    ``m_prime`` is 1 - m of the orbit, ``end`` the last sample.
+    ``m_prime`` is 1 - m of the orbit, ``end`` the time of the last sample. ``beside`` names the other
+    solver.
     """
 
     what: str
@@ -111,10 +113,10 @@ class TradeNumbers:
 class TradeTiming:
     """The time of one setting on one scene, a median over processes.
 
-    ``ratio`` is the ratio to the yardstick, between ``low`` and ``high``, which are None if the
-    processes are too few for an interval. ``inner_seconds`` is the part in compiled code, if known.
-    ``setup_seconds`` is the time before the first solve of a process, such as compiling, the longest of
-    all processes.
+    ``ratio`` is the time over that of the yardstick. Its interval is from ``low`` to ``high``, which are
+    None if the processes are too few for one. ``inner_seconds`` is the part of the time in compiled code,
+    if known. ``setup_seconds`` is the time before the first solve of a process, mainly of compiling, in the
+    slowest process.
     """
 
     scene: str
@@ -145,7 +147,11 @@ class TimingMachine:
 
 @dataclass(frozen=True)
 class TimingMethod:
-    """The numbers of processes and rounds, the least duration of a measurement, and the confidence."""
+    """The method of the times: processes, rounds, the least duration of a measurement, and the confidence.
+
+    ``times_resolution`` is the least duration as a multiple of ``clock_resolution``. ``coverage`` is the
+    probability that an interval contains its median, by ``formula``. ``of`` says what is timed.
+    """
 
     processes: int
     rounds: int

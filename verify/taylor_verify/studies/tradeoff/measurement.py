@@ -1,8 +1,8 @@
 """Published measurement: every setting on a few scenes, in several fresh processes.
 
-The sample is a number of processes. The hash seed of a process, the places of its arrays and code in
-memory and the processor's frequency are random, but fixed for its life, so that solves within a process
-agree better than solves of different processes. The rounds of a process are reduced to their median.
+The sample is a number of processes, and not of solves. The hash seed of a process, the places of its arrays
+and code in memory and the processor's frequency are random, but the same for all of its solves. So solves
+of one process agree better than solves of different ones. Each process gives the median of its rounds.
 
 Errors and times are stored separately: errors are the same on other machines except for rounding, times
 are not.
@@ -70,7 +70,7 @@ SCENES: Final = (
     f"kirchhoff/whole-motion{UNTIL}1600",
 )
 _SAMPLES: Final = 101
-# The fewest processes whose extremes enclose the median with 95 %.
+# With fewer processes not even the least and the greatest time enclose the median with 95 %.
 PROCESSES: Final = 6
 # Every power of ten, so that the cheapest setting for each number of digits is among them. RK45 would
 # take seconds for the last one, and the two solvers for stiff equations much earlier.
@@ -83,8 +83,8 @@ _SCIPY: Final = {
     "scipy:BDF": ("1e-3", "1e-6"),
 }
 _ODEFUN: Final = "mpmath:odefun?tol=1e-6"
-# Integrators of other libraries that are compiled like heyoka's. They take turns with all others. They
-# and taylor have every power of ten, for the columns of the table.
+# Integrators of other libraries that are compiled like heyoka's. They and taylor are measured at every
+# power of ten, for the columns of the table.
 PEERS: Final = ("dop853", "cyrk-dop853", "cvode-adams", "diffrax-dopri8")
 _FOR_THE_COLUMNS: Final = tuple(f"1e-{digits}" for digits in range(5, 16))
 _OF_TAYLOR: Final = ("1e-3", *_FOR_THE_COLUMNS)
@@ -92,7 +92,7 @@ _OF_TAYLOR: Final = ("1e-3", *_FOR_THE_COLUMNS)
 _OF_OPTIMISED: Final = _FOR_THE_COLUMNS[::2]
 _OWN_TOLERANCE: Final = ("f32", "f80", "f128", "mp237")
 
-# A scene with its settings.
+# A scene with the names of its settings.
 Asked = tuple[Scene, Sequence[Name]]
 
 
@@ -106,8 +106,9 @@ def measurement(
 ) -> tuple[TradeNumbers, TradeTimings]:
     """Solve the scenes with every published setting, then time the sound ones in fresh processes.
 
-    ``finished`` is called with the name of each part as it ends. Settings of a library whose environment
-    cannot be made are not run.
+    ``names`` are those of scenes, as in SCENES. ``with_outside`` adds the compiled integrators of other
+    libraries; one whose environment cannot be made is not run. ``finished`` is called with the name of each
+    part as it ends.
     """
     if with_outside:
         for name in PEERS:
@@ -116,12 +117,13 @@ def measurement(
     trades = []
     for scene in map(scene_named, names):
         settings = tuple(published_settings(scene, with_outside))
-        # Without a limit of patience, so that the published settings do not depend on the machine's load.
+        # No limit of patience: the published settings must not depend on the machine's load.
         trades.append(trade_off(scene, settings, 0, seed, patience=inf))
         finished(f"errors of {scene.name}")
     end_sessions()
     asked = [
-        (one.scene, [p.timed.setting.name for p in sound_points(one.points)]) for one in trades
+        (trade.scene, [p.timed.setting.name for p in sound_points(trade.points)])
+        for trade in trades
     ]
     by_process = []
     for number in range(processes):
@@ -136,10 +138,12 @@ def measurement(
         plain_doubles=doubles,
         points=tuple(p.on(trade.scene.name) for trade in trades for p in trade.points),
     )
-    machine = TimingMachine(processor(), versions()["python"], command())
-    return numbers, TradeTimings(
-        machine, method(processes, rounds, seed), tuple(_timings(asked, by_process))
+    times = TradeTimings(
+        machine=TimingMachine(processor(), versions()["python"], command()),
+        method=method(processes, rounds, seed),
+        timings=tuple(_timings(asked, by_process)),
     )
+    return numbers, times
 
 
 def _versions() -> dict[str, str]:
@@ -162,7 +166,7 @@ def scene_named(name: str) -> Scene:
 
 
 def published_settings(scene: Scene, with_outside: bool = False) -> Iterator[Setting]:
-    """Yield the settings family by family, the coarsest first: taylor on every rung, all else on f64.
+    """Yield the settings family by family, the coarsest first: taylor on every rung, all others on f64.
 
     A scene that is followed beyond its own end has only taylor on f64 and the peers.
     """
@@ -177,7 +181,7 @@ def published_settings(scene: Scene, with_outside: bool = False) -> Iterator[Set
 
 
 def _for_short_scenes(scene: Scene) -> Iterator[Setting]:
-    """Yield the settings of the short scenes alone, many of which take seconds for a hundred periods."""
+    """Yield the settings of short scenes only; on long ones many of them would take seconds for a solve."""
     f64 = rung_named("f64")
     for name in _OWN_TOLERANCE:
         yield setting(YARDSTICK[0], rung_named(name))
@@ -192,9 +196,9 @@ def _for_short_scenes(scene: Scene) -> Iterator[Setting]:
 
 
 def one_process(asked: Sequence[Asked], seed: int, rounds: int) -> dict[str, dict[Name, Measured]]:
-    """Return the measurements of one process by scene; the order of the scenes is random too.
+    """Return the measurements of this process by scene; the order of the scenes is random too.
 
-    Everything is compiled there for the first time.
+    It is called in a new process, with an empty cache, so that everything is compiled anew.
     """
     scenes = list(asked)
     random.Random(seed).shuffle(scenes)
@@ -207,32 +211,35 @@ def one_process(asked: Sequence[Asked], seed: int, rounds: int) -> dict[str, dic
 def _timings(
     asked: Sequence[Asked], by_process: Sequence[dict[str, dict[Name, Measured]]]
 ) -> Iterator[TradeTiming]:
-    """Yield the times of every setting that finished in all the processes."""
+    """Yield the times of every setting that finished in all processes."""
     for scene, names in asked:
-        of_scene = [process[scene.name] for process in by_process]
+        scene_times = [process[scene.name] for process in by_process]
         for name in names:
-            if of_scene and all(name in one for one in of_scene):
-                yield _timing(scene.name, name, [one[name] for one in of_scene])
+            if scene_times and all(name in process for process in scene_times):
+                yield _timing(scene.name, name, [process[name] for process in scene_times])
 
 
 def _timing(scene: str, name: Name, every: Sequence[Measured]) -> TradeTiming:
-    inner = [one.inner for one in every if one.inner is not None]
-    ratio = estimate(one.ratio for one in every)
+    """Return the time of a setting from its measurements in all processes."""
+    inner = [times.inner for times in every if times.inner is not None]
+    ratio = estimate(times.ratio for times in every)
+    solver, rung = name
     return TradeTiming(
-        scene,
-        *name,
-        seconds=estimate(one.seconds for one in every).median,
+        scene=scene,
+        solver=solver,
+        rung=rung,
+        seconds=estimate(times.seconds for times in every).median,
         inner_seconds=estimate(inner).median if len(inner) == len(every) else None,
         ratio=ratio.median,
         low=ratio.low,
         high=ratio.high,
         processes=len(every),
-        setup_seconds=max(one.setup for one in every),
+        setup_seconds=max(times.setup for times in every),
     )
 
 
 def _scene(trade: TradeOff) -> TradeScene:
-    """Return the scene of a trade, without the sentences of its front."""
+    """Return a measured scene in its stored form."""
     return TradeScene(
         scene=trade.scene.name,
         title=trade.scene.title,

@@ -32,7 +32,7 @@ class Estimate(NamedTuple):
 
 
 def estimate(values: Iterable[float]) -> Estimate:
-    """Return the median of at least one value, with its interval at CONFIDENCE."""
+    """Return the median of the values, at least one, with its interval at CONFIDENCE."""
     ranked = sorted(values)
     rank = place(len(ranked), CONFIDENCE)
     low, high = (ranked[rank - 1], ranked[-rank]) if rank else (None, None)
@@ -45,6 +45,6 @@ def coverage(count: int, rank: int) -> float:
 
 
 def place(count: int, confidence: float) -> int:
-    """Return the largest rank whose interval has the confidence; 0 if even the extremes lack it."""
+    """Return the largest rank whose interval has the confidence; 0 if not even rank 1 has it."""
     ranks = range(1, (count + 1) // 2 + 1)
     return max((rank for rank in ranks if coverage(count, rank) >= confidence), default=0)

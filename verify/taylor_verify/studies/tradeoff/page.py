@@ -87,7 +87,7 @@ def page(trades: Trades, folder: Path) -> str:
         "answer. The table has the digits that were left at each tolerance:",
         _by_request(trades),
         "## In pictures",
-        *(figures.shown(folder, _of_trade(one)) for one in trades.short),
+        *(figures.shown(folder, _of_trade(trade)) for trade in trades.short),
         "## The front",
         "The settings in float64 that no other beats in both time and error, the fastest first.",
         *(_front(trade) for trade in trades.short),
@@ -114,8 +114,11 @@ def page(trades: Trades, folder: Path) -> str:
 
 
 def pictures(trades: Trades) -> list[Picture]:
-    """Return the pictures of every scene, and the picture of all rungs."""
-    return [*(one for trade in trades.short for one in _of_trade(trade)), *_of_rungs(trades.short)]
+    """Return the pictures of every short scene, and the picture of all rungs."""
+    return [
+        *(picture for trade in trades.short for picture in _of_trade(trade)),
+        *_of_rungs(trades.short),
+    ]
 
 
 def _of_trade(trade: Trade) -> list[Picture]:
@@ -126,9 +129,9 @@ def _of_trade(trade: Trade) -> list[Picture]:
 def _of_rungs(trades: Sequence[Trade]) -> list[Picture]:
     """Return the picture of taylor's time at each rung's own tolerance, a line for each scene."""
     rows = [
-        Ratio(one.scene, row.point.rung, row.timing.ratio, row.timing.low, row.timing.high)
-        for one in trades
-        for row in one.sound
+        Ratio(trade.scene, row.point.rung, row.timing.ratio, row.timing.low, row.timing.high)
+        for trade in trades
+        for row in trade.sound
         if row.point.solver == "taylor"
     ]
     return [time_by_rung.picture("published", rows)] if rows else []
@@ -185,16 +188,15 @@ def _ratio(row: TimedPoint) -> str:
 
 
 def _by_rung(trades: Trades) -> str:
-    own = {
-        trade.scene: {row.point.rung: row for row in trade.sound if _is_own_tolerance(row.point)}
-        for trade in trades.short
-    }
     rungs = {p.rung for p in trades.numbers.points if _is_own_tolerance(p)}
     ladder = sorted(rungs, key=place_of_rung)
     rows = []
     for trade in trades.short:
-        on = own[trade.scene]
-        cells = [f"{_ratio(on[r])}, {_digits(on[r].point)}" if r in on else NOTHING for r in ladder]
+        own = {row.point.rung: row for row in trade.sound if _is_own_tolerance(row.point)}
+        cells = [
+            f"{_ratio(own[rung])}, {_digits(own[rung].point)}" if rung in own else NOTHING
+            for rung in ladder
+        ]
         rows.append([code(trade.scene), *cells])
         if floors := trade.about.attainable:
             least = [floors.get(rung) for rung in ladder]
@@ -204,6 +206,7 @@ def _by_rung(trades: Trades) -> str:
 
 
 def _is_own_tolerance(point: TradePoint) -> bool:
+    """Return True for taylor at the tolerance of the rung."""
     return point.solver == "taylor" and not point.setting
 
 
@@ -252,8 +255,7 @@ def _front_line(row: TimedPoint) -> str:
 
 
 def _geometric(trades: Trades) -> str:
-    numbers = ("step:", "time:", "largest error:", "drift:")
-    columns = ["scene", "integrator", *numbers, "of"]
+    columns = ["scene", "integrator", "step:", "time:", "largest error:", "drift:", "of"]
     rows = [
         [
             code(trade.scene),
@@ -272,7 +274,7 @@ def _geometric(trades: Trades) -> str:
 
 
 def _failures(trades: Trades) -> str:
-    """Return the points that are not sound, or were not timed in every process."""
+    """Return a table of the points that are not sound, or were not timed in every process."""
     rows = []
     for trade in trades.trades:
         compared = [row.point for row in trade.sound]
@@ -293,24 +295,24 @@ def _family(family: str) -> str:
 
 
 def _doubles(rows: Iterable[PlainDouble]) -> str:
-    """Return a line for each case; a false success is bold, an honest outcome in its own words."""
+    """Return a table of the cases; a false success is bold, any other outcome in its own words."""
     lines = []
     for row in rows:
         error = figure(row.error)
         claims = {Standing.SOUND: "success", Standing.FALSE: bold("success, falsely")}
-        stands_out = row.error is not None and row.standing is not Standing.SOUND
+        is_wrong = row.error is not None and row.standing is not Standing.SOUND
         lines.append(
             [
                 prose(row.what),
                 figure(row.end),
                 figure(row.m_prime),
-                bold(error) if stands_out else error,
+                bold(error) if is_wrong else error,
                 figure(row.error_beside),
                 claims.get(row.standing, prose(row.outcome)),
             ]
         )
-    numbers = ("until t:", "1 - m:", "error:", "taylor f64:")
-    return table(["orbit", *numbers, "what it claims"], lines)
+    columns = ["orbit", "until t:", "1 - m:", "error:", "taylor f64:", "what it claims"]
+    return table(columns, lines)
 
 
 # The sheet.
@@ -343,5 +345,5 @@ _FIELDS: Final = (
 
 
 def sheet(trades: Trades) -> str:
-    """Return a row for every scene and setting, with every digit."""
+    """Return a CSV row for every scene and setting, with every digit."""
     return csv_sheet(_FIELDS, (row for trade in trades.trades for row in trade.rows))

@@ -9,10 +9,10 @@ Item = TypeVar("Item")
 
 
 def pareto(items: Iterable[Item], costs: Callable[[Item], tuple[float, float]]) -> list[Item]:
-    """Return the unbeaten items by rising first and falling second cost.
+    """Return the unbeaten items, by rising first and falling second cost.
 
-    An item is beaten by another that is no larger in both costs and smaller in one. Items of equal costs do
-    not beat each other.
+    An item beats another if neither of its costs is larger and one is smaller. Items of equal costs do not
+    beat each other.
     """
     front: list[Item] = []
     for item in sorted(items, key=costs):

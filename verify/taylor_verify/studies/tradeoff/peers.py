@@ -27,7 +27,7 @@ _WHAT: Final = (
     "over that of the yardstick. *ahead* is the fastest, with its lead: over the next peer if the "
     "fastest is taylor, else over taylor. They are *level* if the intervals of the two overlap."
 )
-# Titles of families of the columns; other families have their own names.
+# Headings of the columns by family; a family that is missing here has its own name as heading.
 TITLES: Final = {
     OPTIMISED: "taylor, optimised code",
     "outside dop853": "DOP853 in numba",
@@ -62,7 +62,7 @@ def peer_sections(trades: Trades) -> list[str]:
 
 
 def _peers(trade: Trade) -> list[str]:
-    """Return the families of other libraries that were asked, including unavailable ones."""
+    """Return the families of other libraries, including those that were not available."""
     return list(dict.fromkeys(p.family for p in trade.points if p.family.startswith(OUTSIDE)))
 
 

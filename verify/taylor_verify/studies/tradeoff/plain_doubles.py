@@ -1,6 +1,6 @@
-"""Failures of the closed form in plain doubles: one solver on orbits from easy to degenerate.
+"""Failures of the closed form in plain doubles: its errors on orbits from easy to degenerate ones.
 
-The parameter 1 - m of each orbit is exact; the error is the largest of omega over all samples.
+The parameter 1 - m of each orbit is exact. The error is the largest of omega over all samples.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from taylor_verify.studies.tradeoff.document import PlainDouble
 from taylor_verify.studies.tradeoff.setting import ELLIPJ, setting
 from taylor_verify.studies.tradeoff.trade_off import trade_off
 
-# A solver with steps is compared on short scenes.
+# The solver with steps that is run on short scenes for comparison.
 _BESIDE: Final = "taylor"
 
 _EASY: Final = "euler/generic"
@@ -32,7 +32,7 @@ _SAMPLES: Final = 11
 
 @dataclass(frozen=True)
 class Case:
-    """A scene, its description, and True if it is short enough for a solver with steps."""
+    """A scene with its description; ``is_short`` is True if a solver with steps can follow it."""
 
     scene: Scene
     what: str
@@ -40,11 +40,11 @@ class Case:
 
 
 def cases() -> Iterator[Case]:
-    """Yield easy orbits, long times, starts beside the middle axis, separatrices, the axis itself."""
+    """Yield an easy orbit, long times, starts near the middle axis, separatrices, a turn about the axis."""
     yield Case(load(_EASY), "far from every degeneracy")
     for digits in _LONG:
         end = Fraction(10) ** digits
-        # No sample is a multiple of another, so that none is easy by chance.
+        # No sample is a multiple of another one, so that none is exact by chance.
         times = tuple(end * k / (_SAMPLES - 1) + Fraction(k, 7) for k in range(_SAMPLES))
         scene = replace(load(_EASY), clock=Clock(Fraction(0), times))
         yield Case(scene, f"{_EASY} until t = 1e{digits}", digits <= 3)
@@ -59,7 +59,7 @@ def cases() -> Iterator[Case]:
 
 
 def plain_doubles() -> Iterator[PlainDouble]:
-    """Yield a row for each case: 1 - m, error and outcome, and the error of taylor on short scenes.
+    """Yield a row for each case: 1 - m, error and outcome, and on short scenes the error of taylor.
 
     ``m_prime`` is None for an orbit without a modulus.
     """

@@ -1,4 +1,4 @@
-"""Point of a trade: the accuracy of one setting on a scene, and its time."""
+"""Point of a trade-off: the accuracy of one setting on a scene, and its time."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from taylor_verify.studies.tradeoff.timing import Timed
 
 @dataclass(frozen=True)
 class Point:
-    """The accuracy and the time of a setting; ``because`` is the reason if it is not sound."""
+    """The accuracy and the time of a setting; ``because`` is the reason why the point is not sound."""
 
     timed: Timed
     accuracy: Accuracy
@@ -25,11 +25,12 @@ class Point:
 
     @property
     def label(self) -> str:
+        """The name of the setting in the output of `tradeoff`."""
         return self.timed.setting.label
 
     @property
     def asked_digits(self) -> float | None:
-        """Digits of the requested tolerance; None for a step."""
+        """The digits of the requested tolerance; None for a step."""
         setting = self.timed.setting
         asks = setting.asked == "tolerance" and setting.requested is not None
         return digits(setting.requested or 0.0) if asks else None
@@ -41,7 +42,7 @@ class Point:
 
     @property
     def seconds(self) -> float:
-        """The best time of a solve without compiling; None unless the point is sound."""
+        """The best time of a solve without compiling, in seconds; a point that is not sound has none."""
         assert self.timed.best is not None
         return self.timed.best
 
@@ -71,7 +72,7 @@ class Point:
         )
 
     def row(self) -> dict[str, Any]:
-        """Return the point with its times as a row of JSON; None replaces missing and infinite numbers."""
+        """Return the point with its times as a row of JSON; None stands for a number that is not finite."""
         achieved = complete(self.on(""))
         del achieved["scene"]
         return {
@@ -86,7 +87,7 @@ class Point:
 
 
 def point(timed: Timed, accuracy: Accuracy | None) -> Point:
-    """Return the point of a run; ``accuracy`` is None if there is no truth to compare with."""
+    """Return the point of a run; ``accuracy`` is None for a run that was not compared with the truth."""
     outcome = timed.trajectory.outcome
     if outcome is not Outcome.FINISHED:
         started = outcome is not Outcome.NOT_STARTED and not outcome.is_unavailable

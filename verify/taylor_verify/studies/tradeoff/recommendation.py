@@ -1,4 +1,4 @@
-"""Recommendation of the cheapest setting that reaches an error with a margin over several starts."""
+"""Recommendation of the fastest setting whose error, with a margin, is below a target on several starts."""
 
 from __future__ import annotations
 
@@ -26,22 +26,22 @@ from taylor_verify.studies.tradeoff.trade_off import TradeOff, sound_points, tra
 
 # A margin of one binary digit for starts outside the ensemble.
 MARGIN: Final = 2.0
-# These may compute in a wider precision than that of their answer, and so below its floor.
+# These may compute in a wider precision than that of their answer, so that the floor does not bind them.
 _OF_ANOTHER_PRECISION: Final = (PROCESS, "mpmath:")
 
 
 class OutOfReach(Exception):  # noqa: N818 (it names what the target is)
-    """No setting reaches the target; the text names the nearest one."""
+    """No setting reaches the target; the text names the most accurate one, or the reasons."""
 
 
 @dataclass(frozen=True)
 class Recommendation:
     """A setting that is ready to run: by ``taylor_verify.run``, by ``command``, or by ``solver`` itself.
 
-    ``solver.solve(solver.problem(scene, rung))`` returns a trajectory that nothing has judged.
-    ``error`` is the largest over the scene's own start and ``starts`` - 1 others; ``margin`` times
-    it is not above ``target``. ``seconds`` is the best time of a solve without compiling. ``left_out``
-    names the rungs that were not measured because their arithmetic cannot reach the target.
+    ``solver.solve(solver.problem(scene, rung))`` returns a trajectory that is not judged. ``error`` is the
+    largest over ``starts`` starts, of which the first is the scene's own; ``margin`` times ``error`` is at
+    most ``target``. ``seconds`` is the best time of a solve without compiling. ``left_out`` are the reasons
+    why rungs were not measured: their arithmetic cannot reach the target.
     """
 
     scene: str
@@ -57,12 +57,16 @@ class Recommendation:
 
     def document(self) -> dict[str, Any]:
         """Return the document that ``tradeoff --target --json`` prints."""
-        names = ("target", "error", "margin", "starts", "seed", "seconds")
         return {
             "solver": self.solver.name,
             "setting": self.solver.setting,
             "rung": self.rung.name,
-            **{name: getattr(self, name) for name in names},
+            "target": self.target,
+            "error": self.error,
+            "margin": self.margin,
+            "starts": self.starts,
+            "seed": self.seed,
+            "seconds": self.seconds,
             "left_out": list(self.left_out),
             "command": self.command,
             "sentence": self.sentence,
@@ -93,13 +97,17 @@ def recommend(
     asked: Sequence[Setting] | None = None,
     seed: int = SEED,
 ) -> Recommendation:
-    """Return the fastest setting measured here; the arguments are those of `taylor_verify.recommend`."""
+    """Return the fastest setting; arguments and raised errors are those of `taylor_verify.recommend`."""
     check_target(error)
     scene = as_scene(scene)
     asked = settings(scene) if asked is None else asked
-    bound = [one for one in asked if not one.solver.name.startswith(_OF_ANOTHER_PRECISION)]
-    without = left_out(scene, (one.rung for one in bound), error)
-    measurable = [one for one in asked if one.rung not in without or one not in bound]
+    bound = [
+        setting for setting in asked if not setting.solver.name.startswith(_OF_ANOTHER_PRECISION)
+    ]
+    without = left_out(scene, (setting.rung for setting in bound), error)
+    measurable = [
+        setting for setting in asked if setting.rung not in without or setting not in bound
+    ]
     reasons = tuple(without.values())
     if not measurable and reasons:
         raise OutOfReach(_out_of_reach(scene, error, f": {'; '.join(reasons)}"))
@@ -118,8 +126,8 @@ def recommended(trade: TradeOff, error: float) -> Recommendation:
     """
     scenes, truths = nearby(trade.scene, trade.seed), Truths()
     sound = sound_points(trade.points)
-    hopeful = [p for p in sound if MARGIN * p.error <= error]
-    for p in sorted(hopeful, key=lambda p: p.seconds):
+    candidates = [p for p in sound if MARGIN * p.error <= error]
+    for p in sorted(candidates, key=lambda p: p.seconds):
         worst = _largest(p, scenes, truths, error)
         if worst is not None:
             setting = p.timed.setting

@@ -1,9 +1,9 @@
 """Times of one process: settings in rounds of random order, as multiples of the round's yardstick.
 
-A time depends on the machine as much as on the solver. Therefore the ratio to the time of taylor on f64 in
-the same round is stored, when the machine was as warm, as busy and as fast. Times are processor times,
-without other programs. A peer has a process of its own, takes its turns with all others, and times itself
-in the same way.
+A time depends on the machine as much as on the solver. Therefore it is divided by the time of the
+yardstick, taylor on f64, in the same round, when the machine was equally warm, busy and fast. Times are
+processor times, without those of other programs. A peer, an integrator of another library, has a process of
+its own. It takes its turns with all others, and times itself in the same way.
 """
 
 from __future__ import annotations
@@ -33,14 +33,14 @@ Answer = TypeVar("Answer")
 
 YARDSTICK: Final = ("taylor", "f64")
 ROUNDS: Final = 3
-# The least duration of a measurement in units of the clock's resolution, which is then below 1 %.
+# The least duration of a measurement, in units of the clock's resolution: the clock errs by 1 % at most.
 _TIMES_RESOLUTION: Final = 100
 # The least duration in seconds, so that an interrupt of some microseconds does not matter.
 _LEAST_SECONDS: Final = 2e-3
-# The yardstick, which all ratios of its round have in common.
+# The least duration for the yardstick, which enters all ratios of its round.
 _YARDSTICK_SECONDS: Final = 1e-2
-# Slower settings, including the start of a program, are solved once in each process.
-_DEAR: Final = 0.2
+# A setting that takes more seconds, with the start of its program, is solved only once in each process.
+_SLOWEST_IN_ROUNDS: Final = 0.2
 _MOST_SOLVES: Final = 1000
 
 
@@ -48,9 +48,9 @@ _MOST_SOLVES: Final = 1000
 class Measured:
     """The times of one setting in one process: medians of its rounds, per solve.
 
-    ``ratio`` is the ratio of the seconds to the yardstick's of the same round, ``inner`` the seconds in
-    another library's compiled integrator, if known, and ``setup`` the seconds of compiling in the first
-    solve.
+    ``ratio`` is the seconds over the yardstick's in the same round. ``inner`` is the part of the seconds in
+    another library's compiled integrator, if known. ``setup`` is the time before the first solve, mainly
+    of compiling.
     """
 
     seconds: float
@@ -60,9 +60,11 @@ class Measured:
 
 
 class _Taken(NamedTuple):
-    """A measurement: seconds of a solve, seconds in a compiled integrator, and seconds of waiting.
+    """A measurement, in seconds per solve.
 
-    ``setup`` is the time of compiling before the propagation, which happens once.
+    ``seconds`` is processor time, ``inner`` the part of it in a compiled integrator, if known, and
+    ``waited`` the time on the clock without compiling. ``setup`` is the time of compiling before the first
+    propagation.
     """
 
     seconds: float
@@ -79,9 +81,10 @@ def measured(
     resolution: float | None = None,
     clock: Callable[[], float] = thread_time,
 ) -> dict[Name, Measured]:
-    """Measure these settings on a scene; settings that do not finish are left out.
+    """Measure settings on a scene by their names; settings that do not finish are left out.
 
-    The yardstick is always measured with them. ``clock`` returns the processor's seconds.
+    The yardstick is always measured too. ``resolution`` is that of a clock in seconds, by default measured
+    now. ``clock`` returns the processor's seconds.
     """
     least = max(_LEAST_SECONDS, _TIMES_RESOLUTION * (resolution or clock_resolution()))
     first: dict[Name, _Taken] = {}
@@ -106,10 +109,10 @@ def measured(
 
 
 def in_rounds(turns: Sequence[Callable[[], Answer]], rounds: int, seed: int) -> list[list[Answer]]:
-    """Return the answers of every turn by round; each round has every turn once, in a random order.
+    """Call every turn once in each round, in a random order, and return the answers of each turn by round.
 
-    Python's garbage collector runs once before all rounds and is off during them, so that it disturbs
-    no turn.
+    Python's garbage collector runs once before the first round and is off until the last one, so that it
+    disturbs no turn.
     """
     answers: list[list[Answer]] = [[] for _ in turns]
     order, draw = list(range(len(turns))), random.Random(seed)
@@ -130,15 +133,15 @@ def in_rounds(turns: Sequence[Callable[[], Answer]], rounds: int, seed: int) -> 
 def _summed(
     first: _Taken, later: Sequence[_Taken | None], unit: Sequence[_Taken | None]
 ) -> Measured:
-    """Return the medians over the rounds, or the only solve of a dear setting over the yardstick's."""
+    """Return the medians over the rounds; a setting that was solved once has that one time."""
     rounds = [(a, b.seconds) for a, b in zip(later, unit, strict=False) if a and b]
     rounds = rounds or [(first, median(b.seconds for b in unit if b))]
     inner = [taken.inner for taken, _ in rounds if taken.inner is not None]
     return Measured(
-        median(taken.seconds for taken, _ in rounds),
-        median(taken.seconds / seconds for taken, seconds in rounds),
-        median(inner) if len(inner) == len(rounds) else None,
-        first.setup,
+        seconds=median(taken.seconds for taken, _ in rounds),
+        ratio=median(taken.seconds / seconds for taken, seconds in rounds),
+        inner=median(inner) if len(inner) == len(rounds) else None,
+        setup=first.setup,
     )
 
 
@@ -148,37 +151,42 @@ def _solved(
     """Time ``count`` solves by the processor's clock; None if a solve did not finish."""
     if isinstance(solver, Peer) and not is_first:
         seconds = solver.seconds(problem, count)
-        return None if seconds is None else _Taken(seconds, None, seconds)
-    began, at = perf_counter(), clock()
+        return None if seconds is None else _Taken(seconds, inner=None, waited=seconds)
+    began, processor_began = perf_counter(), clock()
     made = []
     for _ in range(count):
-        # The trajectories would fill the memory.
+        # Only the times are stored, because whole trajectories would fill the memory.
         trajectory = solver.solve(problem)
         if trajectory.outcome is not Outcome.FINISHED:
             return None
         made.append((trajectory.seconds, trajectory.compile_seconds, trajectory.inner_seconds))
-    spent, waited = clock() - at, perf_counter() - began
+    spent, waited = clock() - processor_began, perf_counter() - began
     stated, compiling, inner = (list(values) for values in zip(*made, strict=True))
     if isinstance(solver, Peer):
-        return _Taken(stated[0], None, stated[0], compiling[0])
-    # A solver that compiles states the time of its propagation separately.
+        return _Taken(seconds=stated[0], inner=None, waited=stated[0], setup=compiling[0])
+    # The first solve may compile, and states the time of its propagation separately.
     seconds = min(spent, sum(stated)) if is_first else spent
-    # heyoka's part is known in wall time, and is scaled to processor time.
+    # The part in a compiled integrator is known as time on the clock, and is scaled to processor time.
     known = [part for part in inner if part is not None]
     share = sum(known) / sum(stated) if len(known) == count and sum(stated) else None
     inside = None if share is None else share * seconds / count
-    return _Taken(seconds / count, inside, (waited - sum(compiling)) / count, compiling[0])
+    return _Taken(
+        seconds=seconds / count,
+        inner=inside,
+        waited=(waited - sum(compiling)) / count,
+        setup=compiling[0],
+    )
 
 
 def _count(taken: _Taken, least: float) -> int:
-    """Return the number of solves of a measurement that lasts long enough; 0 for a dear setting."""
-    if not taken.waited <= _DEAR:
+    """Return the number of solves that last long enough together; 0 for a setting that is too slow."""
+    if not taken.waited <= _SLOWEST_IN_ROUNDS:
         return 0
     return min(_MOST_SOLVES, max(1, ceil(least / taken.seconds))) if taken.seconds else _MOST_SOLVES
 
 
 def clock_resolution(clock: Callable[[], float] = perf_counter) -> float:
-    """Return the smallest observed step of the clock."""
+    """Return the smallest observed step of the clock, in seconds."""
 
     def step() -> float:
         began = clock()
@@ -190,7 +198,7 @@ def clock_resolution(clock: Callable[[], float] = perf_counter) -> float:
 
 
 def method(processes: int, rounds: int, seed: int) -> TimingMethod:
-    """Return the method with its processes and rounds in its stored form."""
+    """Return the method of the measurement in its stored form."""
     return TimingMethod(
         processes=processes,
         rounds=rounds,
@@ -199,7 +207,7 @@ def method(processes: int, rounds: int, seed: int) -> TimingMethod:
         times_resolution=_TIMES_RESOLUTION,
         clock_resolution=clock_resolution(),
         confidence=CONFIDENCE,
-        # Too few processes have the confidence of their extremes.
+        # With too few processes for the confidence it is the coverage of their extremes.
         coverage=coverage(processes, max(place(processes, CONFIDENCE), 1)),
         formula=FORMULA,
         of=WHAT_IS_TIMED,

@@ -1,4 +1,4 @@
-"""Settings: solvers with their options on a rung, and the settings of a trade-off."""
+"""Setting: a solver with its options on a rung; and the lists of settings that a trade-off compares."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.studies.tradeoff.document import label
 
 RUNGS: Final = tuple(FORMATS)
-# Every third power of ten. A rung takes those above its own tolerance, which is twice its roundoff.
+# Every third power of ten. A rung has those above its own tolerance, which is twice its roundoff.
 _TOLERANCES: Final = tuple(f"1e-{digits}" for digits in range(3, 75, 3))
 _SCIPY: Final = tuple(f"scipy:{name}" for name in ("RK45", "DOP853", "Radau", "BDF", "LSODA"))
 # Tolerances of solvers of other libraries, the coarsest first.
@@ -36,7 +36,7 @@ _GEOMETRIC: Final = (
 # Steps relative to the scene's natural unit of time, in which its rates are of size one.
 _STEPS: Final = (Fraction(1, 4), Fraction(1, 16), Fraction(1, 64))
 _ODEFUN: Final = ("mpmath:odefun?tol=1e-6", "mpmath:odefun")
-# odefun takes some ten milliseconds for a unit of time, so that this limit is about ten seconds.
+# odefun takes tens of milliseconds for a natural unit of time, so that this limit is about ten seconds.
 _LONGEST_FOR_ODEFUN: Final = 400
 ELLIPJ: Final = "closed-form:ellipj"
 
@@ -52,9 +52,9 @@ _ASKED: Final = {"tol": TOLERANCE, "rtol": TOLERANCE, "step": STEP}
 class Setting:
     """A way to solve a scene, ready to run.
 
-    ``requested`` is the tolerance or the step, the latter in the scene's unit of time, and ``asked`` says
-    which; they are None and empty for a solver that takes neither. Settings of one ``family`` differ in
-    nothing else, the cheapest first. ``withheld`` is the reason if the setting is not run.
+    ``requested`` is a tolerance, or a step in the scene's unit of time; ``asked`` is the word for it. They
+    are None and empty for a solver that takes neither. Settings of one ``family`` differ in nothing but
+    this number. ``withheld`` is the reason why the setting is not run, if there is one.
     """
 
     solver: Solver
@@ -71,6 +71,7 @@ class Setting:
 
     @property
     def name(self) -> Name:
+        """The names of the solver and the rung."""
         return self.solver.name, self.rung.name
 
     @property
@@ -80,11 +81,10 @@ class Setting:
 
 
 def settings(scene: Scene, rungs: Iterable[str] = RUNGS) -> tuple[Setting, ...]:
-    """Return all settings for a scene, family by family, the coarsest first.
+    """Return all settings for a scene on the ``rungs``, family by family, the coarsest first.
 
-    A solver that is not installed, or is not made for the scene, reports it when it is run.
-
-    Raises ValueError for a name that is no rung.
+    A solver that is not installed, or is not made for the scene, says so when it is run. Raises ValueError
+    for a name that is no rung.
     """
     is_rigid = isinstance(scene.body, RigidBody)
     all_settings: list[Setting] = []
@@ -99,13 +99,15 @@ def settings(scene: Scene, rungs: Iterable[str] = RUNGS) -> tuple[Setting, ...]:
 
 
 def chosen(names: Iterable[str], rungs: Iterable[str] = RUNGS) -> tuple[Setting, ...]:
-    """Return the solvers of these names on each of their rungs, and taylor's settings as yardstick.
+    """Return taylor's settings for comparison, and the named solvers on each of the rungs that they have.
 
-    A solver that has none of the rungs gets the first one, and reports the reason. Raises ValueError for an
-    unknown solver or rung.
+    A solver that has none of the rungs gets the first one, and says so when it is run. Raises ValueError
+    for an unknown solver or rung.
     """
     ladder = [rung_named(name) for name in dict.fromkeys(rungs)]
-    all_settings = [one for rung in ladder for one in taylor(rung)]
+    all_settings: list[Setting] = []
+    for rung in ladder:
+        all_settings += taylor(rung)
     for name in names:
         solver = solver_named(name)
         known = [rung for rung in ladder if not solver.unavailable(rung)]
@@ -120,8 +122,8 @@ def outside(
 ) -> tuple[Setting, ...]:
     """Return the integrators of other libraries, or ``only`` those named, at each of the ``tolerances``.
 
-    They are on f64, which all have; there are none if the ``rungs`` lack it. A library that is not
-    available reports it when it is run.
+    They run on f64, which all of them have; without f64 among the ``rungs`` the result is empty. A library
+    that is not available says so when it is run.
     """
     if "f64" not in rungs:
         return ()
@@ -132,15 +134,15 @@ def outside(
 
 
 def toleranced() -> list[str]:
-    """Return the names of the engines that have a tolerance, as those with fixed steps do not."""
-    return [name for name, one in engines().items() if "rtol" in one.script.about.settings]
+    """Return the names of the engines that take a tolerance, unlike those with fixed steps."""
+    return [name for name, engine in engines().items() if "rtol" in engine.script.about.settings]
 
 
 def setting(name: str, rung: Rung) -> Setting:
     """Return the setting of a solver by its name, which includes its tolerance or step.
 
-    A library whose script stays in memory is a peer, timed like the solvers of this process. Raises
-    ValueError for an unknown solver.
+    A library whose process stays between solves becomes a Peer, and is timed like the solvers of this
+    process. Raises ValueError for an unknown solver.
     """
     solver = solver_named(name)
     if isinstance(solver, Outside) and solver.engine.script.about.serves:
@@ -148,21 +150,28 @@ def setting(name: str, rung: Rung) -> Setting:
     if isinstance(solver, Taylor):
         tolerance = 2 * rung.unit_roundoff if solver.tolerance is None else solver.tolerance
         code = " optimised" if solver.is_optimised else ""
-        return Setting(solver, rung, float(tolerance), TOLERANCE, f"taylor {rung.name}{code}")
+        return Setting(
+            solver,
+            rung,
+            requested=float(tolerance),
+            asked=TOLERANCE,
+            family=f"taylor {rung.name}{code}",
+        )
     if name.startswith(PROCESS):
         # The options of a command that set its accuracy are unknown.
-        return Setting(solver, rung, None, NOTHING, name)
-    family, _, options = name.partition("?")
-    for part in options.split("&"):
-        key, _, value = part.partition("=")
+        return Setting(solver, rung, requested=None, asked=NOTHING, family=name)
+    method, _, options = name.partition("?")
+    family = method.replace(":", " ")
+    for option in options.split("&"):
+        key, _, value = option.partition("=")
         if key in _ASKED:
             accuracy = float(Fraction(value))
-            return Setting(solver, rung, accuracy, _ASKED[key], family.replace(":", " "))
-    return Setting(solver, rung, None, NOTHING, family.replace(":", " "))
+            return Setting(solver, rung, requested=accuracy, asked=_ASKED[key], family=family)
+    return Setting(solver, rung, requested=None, asked=NOTHING, family=family)
 
 
 def taylor(rung: Rung, tolerances: Iterable[str] = _TOLERANCES) -> Iterator[Setting]:
-    """Yield taylor at each tolerance above the rung's own, and at that one, heyoka's machine epsilon."""
+    """Yield taylor at each tolerance above the rung's own, and at its own, which is heyoka's epsilon."""
     for text in tolerances:
         # A tolerance within a factor of ten of epsilon would be nearly the same setting.
         if float(text) > 10 * float(2 * rung.unit_roundoff):
@@ -171,7 +180,7 @@ def taylor(rung: Rung, tolerances: Iterable[str] = _TOLERANCES) -> Iterator[Sett
 
 
 def library(solvers: Iterable[str], tolerances: Sequence[str], rung: Rung) -> Iterator[Setting]:
-    """Yield each solver at each tolerance, which is both absolute and relative."""
+    """Yield each solver at each tolerance, both as the absolute and as the relative one."""
     for solver in solvers:
         for text in tolerances:
             yield setting(f"{solver}?rtol={text}&atol={text}", rung)
@@ -186,12 +195,12 @@ def geometric(scene: Scene, rung: Rung) -> Iterator[Setting]:
 
 
 def odefun(scene: Scene, rung: Rung) -> Iterator[Setting]:
-    """Yield mpmath's integrator, withheld from a scene that is too long for it."""
+    """Yield mpmath's integrator; if the scene is too long, its settings are withheld."""
     span = max(abs(t) for t in scene.clock.elapsed) / natural_units(scene).time
-    long = f"{float(span):.3g} units of time, more than {_LONGEST_FOR_ODEFUN}, would take minutes"
-    withheld = long if span > _LONGEST_FOR_ODEFUN else ""
+    reason = f"{float(span):.3g} units of time, more than {_LONGEST_FOR_ODEFUN}, would take minutes"
+    withheld = reason if span > _LONGEST_FOR_ODEFUN else ""
     for name in _ODEFUN:
-        made = setting(name, rung)
-        # Its own tolerance is ten bits beyond the precision, so that the cheaper setting is first.
-        requested = made.requested or float(rung.unit_roundoff / 2**10)
-        yield replace(made, requested=requested, asked=TOLERANCE, withheld=withheld)
+        bare = setting(name, rung)
+        # Without an option its tolerance is ten bits beyond the precision.
+        requested = bare.requested or float(rung.unit_roundoff / 2**10)
+        yield replace(bare, requested=requested, asked=TOLERANCE, withheld=withheld)

@@ -1,4 +1,4 @@
-"""Ensemble of starts: the scene's own, and random ones nearby from a stated seed."""
+"""Random starts near that of a scene, from a given seed."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from typing import Final
 from taylor_verify.scenes.scene import Scene
 
 STARTS: Final = 4
-# The largest relative change of each component, in steps of a hundredth of it.
+# The largest relative change of a component, and the number of equal steps to it.
 _REACH: Final = Fraction(1, 100)
 _GRAIN: Final = 100
 
 
 def nearby(scene: Scene, seed: int, count: int = STARTS) -> list[Scene]:
-    """Return scenes whose angular velocity or impulses differ by up to one per cent in each component.
+    """Return ``count`` scenes whose start differs from that of ``scene`` by up to one per cent.
 
-    Components that are zero stay zero. Attitude and centre do not change, because they only set the
-    observer.
+    Each component of the angular velocity or the impulses is changed; zero stays zero. Attitude and centre
+    stay the same, because they only fix the axes of space.
     """
     draw, start = random.Random(seed), scene.initial
 
@@ -27,4 +27,4 @@ def nearby(scene: Scene, seed: int, count: int = STARTS) -> list[Scene]:
         return component * (1 + _REACH * Fraction(draw.randint(-_GRAIN, _GRAIN), _GRAIN))
 
     starts = (start.with_moving(tuple(map(moved, start.moving))) for _ in range(count))
-    return [replace(scene, initial=one) for one in starts]
+    return [replace(scene, initial=initial) for initial in starts]

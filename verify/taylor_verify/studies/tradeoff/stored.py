@@ -31,7 +31,7 @@ _TIMES: Final = ("seconds", "inner_seconds", "ratio", "low", "high", "processes"
 
 @dataclass(frozen=True)
 class TimedPoint:
-    """A sound setting on a scene with its errors and its time in every process."""
+    """A sound setting on a scene: its errors, and its time, a median over processes."""
 
     point: TradePoint
     timing: TradeTiming
@@ -71,7 +71,7 @@ class Trade:
 
     @property
     def rows(self) -> list[dict[str, Any]]:
-        """A row of `tradeoff --json` for every setting, and the ratio to the yardstick."""
+        """The rows of `tradeoff --json`, one for each setting, with the ratio to the yardstick."""
         return [
             {**complete(p), **{name: getattr(self._timing(p), name, None) for name in _TIMES}}
             for p in self.points
@@ -92,7 +92,7 @@ class Trade:
 
 @dataclass(frozen=True)
 class Trades:
-    """The whole measurement: its numbers, its times, and both scene by scene."""
+    """The whole measurement: its errors, its times, and both of them scene by scene."""
 
     numbers: TradeNumbers
     times: TradeTimings
@@ -101,12 +101,16 @@ class Trades:
     def trades(self) -> tuple[Trade, ...]:
         """The scenes, each with its points and their times."""
         timings: dict[str, dict[tuple[str, str], TradeTiming]] = {}
-        for one in self.times.timings:
-            timings.setdefault(one.scene, {})[one.solver, one.rung] = one
+        for timing in self.times.timings:
+            timings.setdefault(timing.scene, {})[timing.solver, timing.rung] = timing
         points = self.numbers.points
         return tuple(
-            Trade(one, tuple(p for p in points if p.scene == one.scene), timings.get(one.scene, {}))
-            for one in self.numbers.scenes
+            Trade(
+                about,
+                tuple(p for p in points if p.scene == about.scene),
+                timings.get(about.scene, {}),
+            )
+            for about in self.numbers.scenes
         )
 
     @property
@@ -116,13 +120,13 @@ class Trades:
 
 
 def cheapest(rows: Iterable[TimedPoint], digits: int) -> TimedPoint | None:
-    """Return the fastest point that leaves these digits; None if there is none."""
+    """Return the fastest point that leaves so many digits; None if there is none."""
     reached = [row for row in rows if row.error <= 10.0**-digits]
     return min(reached, key=lambda row: row.timing.ratio, default=None)
 
 
 def write(folder: Path, numbers: TradeNumbers, times: TradeTimings) -> list[Path]:
-    """Store both documents of a measurement below ``folder``. Raises OSError."""
+    """Store both documents of a measurement below ``folder`` and return their files. Raises OSError."""
     return [*NUMBERS.write(folder, numbers), *TIMINGS.write(folder, times)]
 
 

@@ -22,11 +22,12 @@ from taylor_verify.studies.tradeoff.setting import Setting
 
 REPEATS: Final = 5
 SEED: Final = 1
-# Seconds after which finer settings of a family are skipped, and a setting is not repeated more than once.
+# If a setting takes more seconds, finer ones of its family are not run. Every setting is repeated once, and
+# then only while all its solves have taken fewer seconds together.
 PATIENCE: Final = 2.0
 _HEYOKA_CACHE: Final = "HEYOKA_CACHE_DIR"
 
-# Explanation beside all shown times.
+# The explanation that stands with all times.
 WHAT_IS_TIMED: Final = (
     "the solver's own propagation; taylor runs compiled equations and looks for its longest step in "
     "Python, scipy calls straight-line equations in Python, geometric and odefun are Python "
@@ -39,10 +40,10 @@ Clock = Callable[[], float]
 
 @dataclass(frozen=True)
 class Timed:
-    """The first answer of a setting and the times of all others, in seconds.
+    """The first answer of a setting, and the times of its later solves in seconds.
 
-    ``first`` is the whole time of the first solve. ``seconds`` is empty for a failed run. ``inner`` is the
-    part of the best time in another library's compiled integrator, if known.
+    ``first`` is the whole time of the first solve. ``seconds`` is empty for a run that failed. ``inner`` is
+    the part of the best time that another library's compiled integrator took, if known.
     """
 
     setting: Setting
@@ -53,6 +54,7 @@ class Timed:
 
     @property
     def best(self) -> float | None:
+        """The shortest time; None for a run that failed."""
         return min(self.seconds, default=None)
 
     @property
@@ -68,18 +70,20 @@ def timed(
     clock: Clock = perf_counter,
     patience: float = PATIENCE,
 ) -> list[Timed]:
-    """Solve every setting once, and the finished ones ``repeats`` times more; return all in their order.
+    """Solve every setting once, and those that finished ``repeats`` times more; return all in their order.
 
-    A text in place of a problem is the reason why a setting cannot run. Without repeats there is the
-    first time alone, which is enough to measure errors. A setting is skipped, and reported as such, if
-    a coarser one of its family took more than ``patience`` seconds.
+    A text in place of a problem is the reason why a setting cannot run. Without repeats there is only the
+    first time, which is enough to measure errors. A setting is not run, and its answer says so, if a
+    coarser setting of its family took more than ``patience`` seconds.
     """
     firsts = _first_solves(problems, clock, patience)
-    finished = [one for one in firsts if one.trajectory.outcome is Outcome.FINISHED]
+    finished = [first for first in firsts if first.trajectory.outcome is Outcome.FINISHED]
     # Only the seconds of each solve are stored, because whole answers would fill the memory.
-    again: dict[Setting, list[tuple[float, float | None]]] = {one.setting: [] for one in finished}
-    spent = {one.setting: one.trajectory.seconds for one in finished}
-    posed = {setting: one for setting, one in problems.items() if not isinstance(one, str)}
+    again: dict[Setting, list[tuple[float, float | None]]] = {
+        first.setting: [] for first in finished
+    }
+    spent = {first.setting: first.trajectory.seconds for first in finished}
+    posed = {key: problem for key, problem in problems.items() if not isinstance(problem, str)}
     order = random.Random(seed)
     for _ in range(repeats):
         settings = [s for s, made in again.items() if not made or spent[s] <= patience]
@@ -88,32 +92,38 @@ def timed(
             solved = setting.solver.solve(posed[setting])
             again[setting].append((solved.seconds, solved.inner_seconds))
             spent[setting] += solved.seconds
-    return [_with_times(one, again[one.setting]) if one.setting in again else one for one in firsts]
+    return [
+        _with_times(first, again[first.setting]) if first.setting in again else first
+        for first in firsts
+    ]
 
 
-def _with_times(one: Timed, again: Sequence[tuple[float, float | None]]) -> Timed:
-    solves = again or [(one.trajectory.seconds, one.trajectory.inner_seconds)]
+def _with_times(first: Timed, again: Sequence[tuple[float, float | None]]) -> Timed:
+    """Return the answer with the times of its later solves, or of its only one."""
+    solves = again or [(first.trajectory.seconds, first.trajectory.inner_seconds)]
     _, inner = min(solves, key=lambda solve: solve[0])
-    return replace(one, seconds=tuple(seconds for seconds, _ in solves), inner=inner)
+    return replace(first, seconds=tuple(seconds for seconds, _ in solves), inner=inner)
 
 
 def _first_solves(
     problems: Mapping[Setting, Problem | str], clock: Clock, patience: float
 ) -> list[Timed]:
+    """Return the first answer of every setting, or the reason why it was not run."""
     solves: list[Timed] = []
-    dear: set[str] = set()
+    # Families whose finer settings are not run.
+    slow: set[str] = set()
     for setting, problem in problems.items():
-        if isinstance(problem, str) or setting.family in dear:
+        if isinstance(problem, str) or setting.family in slow:
             coarser = f"a coarser setting took more than {patience:g} s"
             because = problem if isinstance(problem, str) else coarser
             nothing = Trajectory(Outcome.NOT_STARTED, detail=because)
-            solves.append(Timed(setting, nothing, 0.0))
+            solves.append(Timed(setting, nothing, first=0.0))
             continue
         began = clock()
         trajectory = setting.solver.solve(problem)
-        solves.append(Timed(setting, trajectory, clock() - began))
+        solves.append(Timed(setting, trajectory, first=clock() - began))
         if not trajectory.seconds <= patience:
-            dear.add(setting.family)
+            slow.add(setting.family)
     return solves
 
 

@@ -1,4 +1,4 @@
-"""Method of the published times in words: their scope, the rounds, the machine, the command."""
+"""Method of the published times in words: what is timed, the rounds, the machine, the command."""
 
 from __future__ import annotations
 
@@ -70,6 +70,7 @@ def how_it_was_timed(trades: Trades) -> list[str]:
 
 
 def _brackets(trades: Trades) -> str:
+    """Return the meaning of the interval in brackets."""
     m = trades.times.method
     n, coverage = m.processes, f"{m.coverage:.1%}"
     formula = (
@@ -85,6 +86,7 @@ def _brackets(trades: Trades) -> str:
 
 
 def remake(trades: Trades) -> str:
+    """Return the commands that make the measurement again, and the versions of this one."""
     packages = ", ".join(f"{name} {version}" for name, version in trades.numbers.versions.items())
     return (
         "`make tradeoff`, which is `taylor-verify publish tradeoff`, repeats the measurement, and "

@@ -1,4 +1,4 @@
-"""Trade of one scene: every setting solved, timed and compared with the truth; and the front."""
+"""Trade-off of one scene: every setting solved, timed and compared with the truth; and the front."""
 
 from __future__ import annotations
 
@@ -42,10 +42,13 @@ class TradeOff:
         return front(self.points)
 
     def document(self) -> dict[str, Any]:
-        """Return the document; ``sentences`` describe the front, ``integrators`` that of integrators."""
+        """Return the document of `tradeoff --json`.
+
+        ``sentences`` describe the front, and ``integrators`` the front of integrators alone.
+        """
         integrators = [p for p in self.points if p.timed.setting.is_integrator]
-        # Solvers without steps lead the front, so that integrators get a front of their own.
-        is_led = not all(p.timed.setting.is_integrator for p in self.front)
+        # If solvers without steps are on the front, integrators get a front of their own.
+        is_mixed = not all(p.timed.setting.is_integrator for p in self.front)
         return {
             "scene": self.scene.name,
             "track": sorted(self.scene.track),
@@ -53,7 +56,7 @@ class TradeOff:
             "attainable": self.attainable,
             "front": [p.label for p in self.front],
             "sentences": front_sentences(self.points),
-            "integrators": front_sentences(integrators) if is_led else [],
+            "integrators": front_sentences(integrators) if is_mixed else [],
             "requests": request_sentences(self.points),
             "timing": {
                 "repeats": self.repeats,
@@ -67,7 +70,7 @@ class TradeOff:
 
     @property
     def attainable(self) -> dict[str, float | None]:
-        """The least error that rounding leaves on each rung; None if it is unknown."""
+        """The least error that rounding leaves, by rung; None if it is unknown."""
         rungs = dict.fromkeys(p.timed.setting.rung for p in self.points)
         return {rung.name: finite(least_error(self.scene, rung)) for rung in rungs}
 
@@ -82,17 +85,17 @@ def trade_off(
 ) -> TradeOff:
     """Measure the errors and the best times of the settings ``asked``, or of all.
 
-    There are ``repeats`` rounds, shuffled by ``seed``; ``clock`` returns seconds, and a setting that
-    has taken ``patience`` seconds is timed no further (see `timing.timed`). A setting that cannot run
-    is a point with the reason, and no error.
+    There are ``repeats`` rounds, whose order ``seed`` draws. ``clock`` returns seconds. A setting that has
+    taken ``patience`` seconds is timed no further (see `timing.timed`). A setting that cannot run becomes a
+    point with the reason, and without an error.
     """
     asked = settings(scene) if asked is None else asked
     posed = {setting: _posed(scene, setting) for setting in asked}
     truths, points = Truths(), []
-    for one in timed(posed, repeats, seed, clock, patience):
-        problem = posed[one.setting]
-        known = None if isinstance(problem, str) else truths.accuracy(problem, one.trajectory)
-        points.append(point(one, known))
+    for answer in timed(posed, repeats, seed, clock, patience):
+        problem = posed[answer.setting]
+        known = None if isinstance(problem, str) else truths.accuracy(problem, answer.trajectory)
+        points.append(point(answer, known))
     return TradeOff(scene, tuple(points), repeats, seed)
 
 
@@ -116,12 +119,12 @@ def front(points: Iterable[Point]) -> list[Point]:
 
 
 def sound_points(points: Iterable[Point]) -> list[Point]:
-    """Return the sound points; none has an error of NaN, because comparisons with NaN are false."""
+    """Return the sound points whose error is below 1; NaN is not below 1."""
     return [p for p in points if p.standing is Standing.SOUND and p.error < 1]
 
 
 def front_sentences(points: Sequence[Point]) -> list[str]:
-    """Return the front in words, with ratios to the fastest of this run."""
+    """Return the front in words, with times as multiples of the fastest."""
     best, sound = front(points), sound_points(points)
     if not best:
         return ["No setting gave an answer that is sound."]
@@ -144,7 +147,7 @@ def front_sentences(points: Sequence[Point]) -> list[str]:
 
 
 def request_sentences(points: Iterable[Point]) -> list[str]:
-    """Return the digits requested and achieved for each tolerance, which bounds errors of steps alone."""
+    """Return a sentence for each tolerance with the digits that were requested and achieved."""
     sentences = []
     for p in sound_points(points):
         asked, got, requested = p.asked_digits, digits(p.error), p.timed.setting.requested

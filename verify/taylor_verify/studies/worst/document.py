@@ -1,4 +1,4 @@
-"""The worst error over attainable in each family, found by a search."""
+"""The largest error over attainable in each family of scenes, from a search."""
 
 from __future__ import annotations
 
@@ -10,7 +10,11 @@ from taylor_verify.records.status import Status
 
 @dataclass(frozen=True)
 class WorstOfFamily:
-    """The worst of one family; ``judged`` is the number of scenes, ``scene`` the name of the worst."""
+    """The worst scene of one family, by the name ``scene``.
+
+    ``what`` says what the scenes of the family are, ``judged`` is the number of judged scenes. ``ratio`` is
+    the error over attainable of ``quantity``, and ``max`` its error, None if it is no number.
+    """
 
     name: str
     what: str
@@ -24,7 +28,7 @@ class WorstOfFamily:
 
 @dataclass(frozen=True, kw_only=True)
 class WorstStudy:
-    """A search with ``runs`` runs in each family.
+    """A search with ``runs`` runs in each family, drawn from ``seed``.
 
     ``factor`` is the bound of a gate over what is attainable.
     """

@@ -1,9 +1,9 @@
-"""Hunt for the worst: the largest error over attainable in families of scenes.
+"""Search for the worst scene of a family: the one with the largest error over attainable.
 
-A family is a cube: numbers between 0 and 1 become a scene, in exact decimals. A population of points moves
-through it by differential evolution. The driver answers every scene, and its score is the largest error
-over attainable of all gates that are not vacuous. The budget is a number of runs, and not a time, so that
-a hunt can be repeated.
+A point of a cube, numbers between 0 and 1, becomes a scene of the family in exact decimals. A population of
+points moves through the cube by differential evolution. The Taylor driver answers every scene; its score is
+the largest error over attainable of all gates that are not vacuous. The budget is a number of runs, and not
+a time, so that a search can be repeated.
 """
 
 from __future__ import annotations
@@ -34,96 +34,98 @@ from taylor_verify.studies.worst.document import WorstOfFamily, WorstStudy
 Array = np.ndarray[Any, Any]
 
 RUNG: Final = "f64"
-# The budget has at least half a dozen generations, and a population small enough to climb.
+# The population has ten points for each free number of a family, but no more than leave ten generations to
+# the budget, and at least five.
+_POINTS_PER_NUMBER: Final = 10
+_LEAST_GENERATIONS: Final = 10
 _LEAST_POPULATION: Final = 5
-_GENERATIONS: Final = 10
-_PER_NUMBER: Final = 10
 
 
 @dataclass(frozen=True)
-class Quarry:
-    """A family of the hunt, and its scenes in a few words."""
+class SearchedFamily:
+    """A family of scenes to search; ``what`` says in a few words what its scenes are."""
 
     family: Family
     what: str
 
     @property
     def name(self) -> str:
+        """The name of the family."""
         return self.family.name
 
 
 @dataclass(frozen=True)
-class Catch:
-    """A scene of a family with its verdict that is nearest to failing."""
+class Candidate:
+    """A judged scene: its ``place`` in the cube of its family, and its verdict nearest to failing."""
 
     place: tuple[float, ...]
     verdict: Verdict
 
     @property
     def ratio(self) -> float:
-        """Error over attainable; infinite for a gate that failed without a number."""
+        """The error over attainable; infinite for a gate that failed without a number."""
         ratio = self.verdict.ratio
         return inf if ratio is None or ratio != ratio else ratio
 
 
 @dataclass(frozen=True)
 class FamilyResult:
-    """The result of a family: the number of judged scenes, and the worst scene."""
+    """The result of a search: the number of judged scenes of a family, and the worst of them."""
 
-    quarry: Quarry
+    searched: SearchedFamily
     judged: int
-    worst: Catch
+    worst: Candidate
 
     @property
     def scene_text(self) -> str:
-        """The worst scene as a file with its reason."""
+        """The worst scene as a TOML file, with a comment that says why it is there."""
         ratio = f"{self.worst.ratio:.3g}"
         return (
-            f"# Why: of {self.quarry.what}, the largest error over attainable that a hunt has found,\n"
+            f"# Why: of {self.searched.what}, the largest error over attainable that a hunt has found,\n"
             f"# {ratio} in {self.worst.verdict.quantity} on {RUNG}; a gate stands at {GATE_FACTOR}.\n"
-            f"{self.quarry.family.text(self.worst.place)}"
+            f"{self.searched.family.text(self.worst.place)}"
         )
 
 
-def hunt(
-    quarries: Sequence[Quarry], runs: int, seed: int, finished: Callable[[str], None]
+def search(
+    families: Sequence[SearchedFamily], runs: int, seed: int, finished: Callable[[str], None]
 ) -> list[FamilyResult]:
-    """Return the worst of each family after ``runs`` runs in each.
+    """Return the worst scene of each family, after ``runs`` runs in each.
 
-    ``finished`` is called with the name of each family as it ends. Raises NotMeasured without SciPy, and if
-    no scene of a family could be judged.
+    ``finished`` is called with the name of each family as its search ends. Raises NotMeasured without
+    SciPy, and if no scene of a family could be judged.
     """
     results = []
-    for quarry in quarries:
-        results.append(_hunt(quarry, runs, seed))
-        finished(quarry.name)
+    for searched in families:
+        results.append(_search(searched, runs, seed))
+        finished(searched.name)
     return results
 
 
-def _hunt(quarry: Quarry, runs: int, seed: int) -> FamilyResult:
+def _search(searched: SearchedFamily, runs: int, seed: int) -> FamilyResult:
     try:
         from scipy.optimize import differential_evolution
     except ImportError:
         expected = "expected SciPy (pip install 'taylor-verify[scipy]')"
-        raise NotMeasured(f"{expected} for the hunt, got none") from None
-    free = quarry.family.free
+        raise NotMeasured(f"{expected} for the search, got none") from None
+    free = searched.family.free
     # Each family has its own seed, which does not depend on the order of families.
-    own = crc32(f"{seed} {quarry.name}".encode())
-    catches: list[Catch] = []
+    own = crc32(f"{seed} {searched.name}".encode())
+    candidates: list[Candidate] = []
 
-    def least(population: Array) -> Array:
-        """Return the function to minimise at points that are the columns of an array."""
-        catches_of_one = caught(quarry.family, population.T.tolist())
-        catches.extend(catch for catch in catches_of_one if catch is not None)
-        return np.array([inf if catch is None else -catch.ratio for catch in catches_of_one])
+    def score(population: Array) -> Array:
+        """Return minus the ratio at each of the points, which are the columns of an array."""
+        judged_points = candidates_at(searched.family, population.T.tolist())
+        candidates.extend(point for point in judged_points if point is not None)
+        return np.array([inf if point is None else -point.ratio for point in judged_points])
 
-    population = max(_LEAST_POPULATION, min(_PER_NUMBER * free, runs // _GENERATIONS))
+    population = max(_LEAST_POPULATION, min(_POINTS_PER_NUMBER * free, runs // _LEAST_GENERATIONS))
     differential_evolution(
-        least,
+        score,
         [(0.0, 1.0)] * free,
         init=places(Spread.SOBOL, free, own, 0, population),
         maxiter=max(runs // population - 1, 0),
-        # The search ends with its budget alone.
+        # Only the budget ends the search.
         tol=0.0,
         atol=-1.0,
         polish=False,
@@ -131,37 +133,40 @@ def _hunt(quarry: Quarry, runs: int, seed: int) -> FamilyResult:
         updating="deferred",
         seed=np.random.default_rng(own),
     )
-    if not catches:
-        raise NotMeasured(f"expected a scene that can be judged, got none @ {quarry.name}")
-    return FamilyResult(quarry, len(catches), max(catches, key=lambda catch: catch.ratio))
+    if not candidates:
+        raise NotMeasured(f"expected a scene that can be judged, got none @ {searched.name}")
+    worst = max(candidates, key=lambda candidate: candidate.ratio)
+    return FamilyResult(searched, len(candidates), worst)
 
 
-def caught(family: Family, several: Sequence[Place]) -> list[Catch | None]:
-    """Return the gate nearest to failing at each point; None without a body or a non-vacuous gate."""
-    scenes = [_scene(family, place) for place in several]
+def candidates_at(family: Family, points: Sequence[Place]) -> list[Candidate | None]:
+    """Return the judged scene at each point; None for a refused scene, and if no verdict counts."""
+    scenes = [_scene(family, point) for point in points]
     answers = iter(judged([scene for scene in scenes if scene is not None], TAYLOR, RUNG))
     return [
-        None if scene is None else _nearest(place, next(answers))
-        for place, scene in zip(several, scenes, strict=True)
+        None if scene is None else _nearest(point, next(answers))
+        for point, scene in zip(points, scenes, strict=True)
     ]
 
 
 def _scene(family: Family, place: Place) -> Scene | None:
+    """Return the scene at a point; None if the reader refuses it."""
     try:
         return family.scene(place)
     except Refused:
         return None
 
 
-def _nearest(place: Place, verdicts: Iterable[Verdict]) -> Catch | None:
-    catches = (Catch(tuple(place), verdict) for verdict in verdicts if _counts(verdict))
-    return max(catches, key=lambda catch: catch.ratio, default=None)
+def _nearest(place: Place, verdicts: Iterable[Verdict]) -> Candidate | None:
+    """Return the scene with its verdict that is nearest to failing; None if no verdict counts."""
+    candidates = (Candidate(tuple(place), verdict) for verdict in verdicts if _counts(verdict))
+    return max(candidates, key=lambda candidate: candidate.ratio, default=None)
 
 
 def _counts(verdict: Verdict) -> bool:
-    is_asked = verdict.verdict in (Status.PASS, Status.FAIL)
+    is_compared = verdict.verdict in (Status.PASS, Status.FAIL)
     # The start is the first row of a state, which the error of the state includes.
-    return is_asked and verdict.quantity != INITIAL
+    return is_compared and verdict.quantity != INITIAL
 
 
 def study(results: Iterable[FamilyResult], runs: int, seed: int) -> WorstStudy:
@@ -174,21 +179,21 @@ def study(results: Iterable[FamilyResult], runs: int, seed: int) -> WorstStudy:
         provenance=Provenance(versions(), processor(), command()),
         families=tuple(
             WorstOfFamily(
-                name=one.quarry.name,
-                what=one.quarry.what,
-                judged=one.judged,
-                ratio=one.worst.ratio,
-                quantity=one.worst.verdict.quantity,
-                verdict=one.worst.verdict.verdict,
-                max=one.worst.verdict.max,
-                scene=f"extremes/worst/{one.quarry.name}",
+                name=result.searched.name,
+                what=result.searched.what,
+                judged=result.judged,
+                ratio=result.worst.ratio,
+                quantity=result.worst.verdict.quantity,
+                verdict=result.worst.verdict.verdict,
+                max=result.worst.verdict.max,
+                scene=f"extremes/worst/{result.searched.name}",
             )
-            for one in results
+            for result in results
         ),
     )
 
 
-_HUNTED: Final = {
+_SEARCHED: Final = {
     "euler-distance": "bodies that start beside their unstable axis",
     "euler-gaps": "bodies with two moments close together",
     "euler-ratios": "bodies with moments far apart",
@@ -201,6 +206,6 @@ _HUNTED: Final = {
 }
 
 
-def quarries() -> tuple[Quarry, ...]:
-    """Return the shipped families of the hunt."""
-    return tuple(Quarry(family(name), what) for name, what in _HUNTED.items())
+def searched_families() -> tuple[SearchedFamily, ...]:
+    """Return the shipped families that are searched."""
+    return tuple(SearchedFamily(family(name), what) for name, what in _SEARCHED.items())

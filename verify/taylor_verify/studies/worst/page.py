@@ -1,4 +1,4 @@
-"""Page of the hunt for the worst, made from the stored rows; and the files of its scenes."""
+"""Page of the search for the worst scenes, made from the stored rows; and the files of these scenes."""
 
 from __future__ import annotations
 
@@ -15,13 +15,14 @@ from taylor_verify.records.replacement import replace_files
 from taylor_verify.studies.stored import Stored
 from taylor_verify.studies.worst.document import WorstOfFamily, WorstStudy
 
-# The default budget is left out.
+# Fields with their default value are not stored.
 WORST: Final = Stored(WorstStudy, "worst", fields=plain)
 
 _WHAT: Final = (
     "A gate allows {factor} times the attainable error, which is the error that independent roundings "
-    "of every component leave. How near does a sound solver come to this bound? {searched}. The "
-    "Taylor driver answers every scene on {rung}, and the largest *error over attainable* of all its "
+    "of every component leave. How near does a sound solver come to this bound? In each family "
+    "{runs} runs are spent on a population of points that moves by differential evolution. The Taylor "
+    "driver answers every scene on {rung}, and the largest *error over attainable* of all its "
     "gates counts. Vacuous gates do not count."
 )
 _KEPT: Final = (
@@ -31,47 +32,40 @@ _KEPT: Final = (
 
 
 def store_scenes(folder: Path, scenes: Mapping[str, str]) -> list[Path]:
-    """Write scene files by their names in place of existing ones. Raises OSError."""
+    """Write scene files, TOML by their names, in place of all in ``folder``. Raises OSError."""
     texts = {f"{name}.toml": text for name, text in scenes.items()}
     return list(replace_files(folder, texts, stale=folder.glob("*.toml")))
 
 
 def page(study: WorstStudy) -> str:
-    """Return the page of the worst of each family, and of the search."""
+    """Return the page of the worst scene of each family, and of the search."""
     families = sorted(study.families, key=lambda row: -row.ratio)
     judged = sum(row.judged for row in families)
     return whole(
         "The worst that a search has found",
-        _WHAT.format(factor=f"{study.factor:g}", rung=code(study.rung), searched=_searched(study)),
+        _WHAT.format(factor=f"{study.factor:g}", rung=code(study.rung), runs=study.runs),
         f"Of {judged} scenes the worst is {code(families[0].scene)}: "
         f"{figure(families[0].ratio)} in {code(families[0].quantity)}.",
         _table(families),
         _KEPT,
         "## To remake this",
-        _remade(study)
-        + f"Every digit is in [worst.csv](worst.csv) and [worst.json](../{WORST.name}).",
+        f"`taylor-verify publish worst --runs {study.runs} --seed {study.seed}` repeats the search and "
+        "replaces the scenes. With the same versions it finds the same scenes. Other scenes may be "
+        f"worse. Every digit is in [worst.csv](worst.csv) and [worst.json](../{WORST.name}).",
         traced(complete(study.provenance)),
     )
 
 
-def _searched(study: WorstStudy) -> str:
-    return (
-        f"In each family {study.runs} runs are spent on a population of points that moves by "
-        "differential evolution"
-    )
-
-
-def _remade(study: WorstStudy) -> str:
-    return (
-        f"`taylor-verify publish worst --runs {study.runs} --seed {study.seed}` repeats the hunt and "
-        "replaces the scenes. With the same versions it finds the same scenes. Other scenes may be "
-        "worse. "
-    )
-
-
 def _table(families: Sequence[WorstOfFamily]) -> str:
-    numbers = ("scenes:", "error over attainable:")
-    columns = ["family", *numbers, "in", "its error:", "verdict", "kept as"]
+    columns = [
+        "family",
+        "scenes:",
+        "error over attainable:",
+        "in",
+        "its error:",
+        "verdict",
+        "kept as",
+    ]
     rows = [
         [
             prose(row.what),
@@ -105,7 +99,7 @@ _SHEET: Final = (
 
 
 def sheet(study: WorstStudy) -> str:
-    """Return a row for every family."""
+    """Return a CSV row for every family."""
     shared = {"rung": study.rung, "factor": study.factor}
     rows = ({**complete(row), **shared, "family": row.name} for row in study.families)
     return csv_sheet(_SHEET, rows)

@@ -11,21 +11,21 @@ from taylor_verify.studies.worst import page
 from taylor_verify.studies.worst.page import WORST
 
 RUNS: Final = 400
-# The first population and one more generation.
+# Enough for the first population and one more generation.
 LEAST_RUNS: Final = 10
 
 
 def _measure(
     folder: Path, progress: Progress, runs: int = RUNS, seed: int = 1, seconds: None = None
 ) -> Measured:
-    """Search, and replace the shipped scenes by the new ones."""
+    """Search every family, and replace the shipped worst scenes by the new ones."""
     from taylor_verify.scenes.library import WORST as SCENES
     from taylor_verify.scenes.library import cases_directory
-    from taylor_verify.studies.worst.measure import hunt, quarries, study
+    from taylor_verify.studies.worst.measure import search, searched_families, study
 
-    hunted = quarries()
-    results = hunt(hunted, runs, seed, progress.counting(len(hunted)))
-    scenes = {one.quarry.name: one.scene_text for one in results}
+    families = searched_families()
+    results = search(families, runs, seed, progress.counting(len(families)))
+    scenes = {result.searched.name: result.scene_text for result in results}
     shipped = page.store_scenes(cases_directory() / SCENES, scenes)
     return Measured([*WORST.write(folder, study(results, runs, seed)), *shipped])
 

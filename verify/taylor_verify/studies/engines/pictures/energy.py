@@ -1,4 +1,4 @@
-"""Picture of each engine's errors of energy and of motion, which shows that energy proves no motion."""
+"""Picture of each engine's errors of energy and of motion: a good energy does not prove a right motion."""
 
 from __future__ import annotations
 
@@ -52,8 +52,8 @@ def lines(board: Board, entries: EntryList, scene: str) -> list[Line]:
     """Return the engines on a scene, the one with the smallest error of the motion first."""
     titles = {row.name: row.title for row in entries.entry if not row.plain}
     drawn = []
-    for engine, group in groupby(newest(settings(board.study)), key=lambda one: one.engine):
-        rows = [row for one in group if (row := one.best(scene)) is not None]
+    for engine, group in groupby(newest(settings(board.study)), key=lambda setting: setting.engine):
+        rows = [row for setting in group if (row := setting.best(scene)) is not None]
         best = min(rows, key=lambda row: row.worst, default=None)
         if best is None or engine not in titles:
             continue
@@ -64,9 +64,10 @@ def lines(board: Board, entries: EntryList, scene: str) -> list[Line]:
 
 
 def pictures(board: Board, entries: EntryList) -> list[Picture]:
-    """Return the picture of the first scene that all engines take; none if no engine ran there.
+    """Return the picture of the first scene of the advice; an empty list if no engine ran there.
 
-    A motion that multiplies roundings would show the precision of an engine instead of its method.
+    The motion of that scene is regular. A motion that multiplies roundings would show the precision of an
+    engine instead of its method.
     """
     scene = entries.advised[0]
     drawn = lines(board, entries, scene)

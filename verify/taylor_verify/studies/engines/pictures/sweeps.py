@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _HEIGHT: Final = 3.0
-# The least number of versions that makes a course.
+# The least number of versions for a line.
 _FEWEST: Final = 3
 
 
@@ -30,7 +30,8 @@ _FEWEST: Final = 3
 class Sweep:
     """The versions of an engine, oldest first, and the error of each setting at each of them.
 
-    ``step`` is the step of all lines; ``lines`` has None for a version that was not judged.
+    ``step`` is the step of all lines; ``lines`` has the errors of each setting by its name, None for a
+    version that was not judged.
     """
 
     title: str
@@ -53,14 +54,17 @@ def sweeps(board: Board, entries: EntryList) -> list[Sweep]:
 
 
 def _shared(rows: Sequence[EngineRow], versions: Sequence[str]) -> tuple[str, str] | None:
-    """Return the last scene, and its middle step, on which most versions were run."""
+    """Return the scene and the step on which most versions were run; None if there are too few.
+
+    Of several scenes it is the last one, and of several steps the middle one.
+    """
     counts: dict[tuple[str, str], set[str]] = {}
     for row in rows:
         counts.setdefault((row.scene, row.value), set()).add(row.version)
     most = max(map(len, counts.values()))
-    full = [place for place, own in counts.items() if len(own) == most and most >= _FEWEST]
+    full = [key for key, own in counts.items() if len(own) == most and most >= _FEWEST]
     scene = full[-1][0] if full else ""
-    steps = [value for place, value in full if place == scene]
+    steps = [value for name, value in full if name == scene]
     return (scene, steps[len(steps) // 2]) if steps else None
 
 
@@ -77,7 +81,7 @@ def _sweep(
 
 
 def pictures(board: Board, entries: EntryList) -> list[Picture]:
-    """Return the picture of all sweeps; none if no engine has several versions."""
+    """Return the picture of all sweeps; an empty list if no engine has several versions."""
     drawn = [sweep for sweep in sweeps(board, entries) if sweep.lines]
     if not drawn:
         return []
@@ -123,4 +127,5 @@ def _figure(drawn: Sequence[Sweep]) -> Figure:
 
 
 def _parts(version: str) -> tuple[int, ...]:
+    """Return the numbers of a version, by which versions are sorted."""
     return tuple(int(part) for part in version.split(".") if part.isdecimal())

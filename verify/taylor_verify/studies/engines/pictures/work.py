@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _HEIGHT: Final = 3.9
-# In characters: a longer name crosses its neighbours' lines, and stands in two rows.
+# In characters. A longer name would cross its neighbours' lines, and is written in two rows.
 _WIDEST: Final = 22
 _ERROR: Final = "largest error of omega and attitude"
 _DOUBLE, _SINGLE = "float64", "float32"
@@ -32,7 +32,7 @@ _DOUBLE, _SINGLE = "float64", "float32"
 
 @dataclass(frozen=True)
 class Line:
-    """An engine in a picture: its points with numbers above zero, from coarse to fine."""
+    """An engine in a picture: the points (work, error) that are above zero, from coarse to fine."""
 
     name: str
     look: Look
@@ -50,11 +50,11 @@ class Panel:
 def pictures(board: Board, entries: EntryList) -> list[Picture]:
     """Return the pictures of error against time and against step for the engines of the ``board``.
 
-    ``entries`` is the list of engines. A picture needs at least one judged run with an error above zero.
+    ``entries`` is the list of engines. A picture without any point is left out.
     """
     scene = entries.advised[0]
-    time = panels(board, entries, scene, board.pace, 1e6)
-    step = panels(board, entries, scene, _step, 1.0)
+    time = panels(board, entries, scene, work=board.pace, unit=1e6)
+    step = panels(board, entries, scene, work=_step, unit=1.0)
     drawn = []
     if time:
         axis = "time for a second of the motion (µs)"
@@ -71,35 +71,39 @@ def panels(
     work: Callable[[EngineRow], float | None],
     unit: float,
 ) -> list[Panel]:
-    """Return a panel for each precision of an engine, with a line for each engine of that precision."""
+    """Return a panel for each precision, with a line for each engine whose best setting has it.
+
+    ``work`` returns the work of a row, which is multiplied by ``unit``. A panel of plain solvers alone is
+    left out.
+    """
     titles = {row.name: row.title for row in entries.entry}
-    plain_ones = {row.name for row in entries.entry if row.plain}
+    plain_solvers = {row.name for row in entries.entry if row.plain}
     lines: dict[str, list[Line]] = {_DOUBLE: [], _SINGLE: []}
     for number, (engine, group) in enumerate(
-        groupby(newest(settings(board.study)), key=lambda one: one.engine)
+        groupby(newest(settings(board.study)), key=lambda setting: setting.engine)
     ):
         best = _best([*group], scene)
         if best is None:
             continue
-        dashes = DASHED if engine in plain_ones else ()
+        dashes = DASHED if engine in plain_solvers else ()
         look = look_of_line(number)
         costs = [(work(row), row.worst) for row in best.on(scene)]
         points = tuple((unit * x, y) for x, y in costs if x and 0 < y < inf)
         line = Line(titles.get(engine, engine), Look(look.colour, look.marker, dashes), points)
-        if points and engine in plain_ones:
+        if points and engine in plain_solvers:
             lines[_DOUBLE].append(line)
             lines[_SINGLE].append(line)
         elif points:
             lines[_SINGLE if best.rung == "f32" else _DOUBLE].append(line)
-    known = {titles.get(name, name) for name in plain_ones}
-    if all(line.name in known for line in lines[_SINGLE]):
+    plain_titles = {titles.get(name, name) for name in plain_solvers}
+    if all(line.name in plain_titles for line in lines[_SINGLE]):
         lines[_SINGLE] = []
     return [Panel(heading, tuple(own)) for heading, own in lines.items() if own]
 
 
 def _best(group: Sequence[EngineSetting], scene: str) -> EngineSetting | None:
-    """Return the setting of an engine with the smallest error of the scene."""
-    errors = [(row.worst, one) for one in group if (row := one.best(scene)) is not None]
+    """Return the setting of an engine with the smallest error on the scene; None without judged rows."""
+    errors = [(row.worst, setting) for setting in group if (row := setting.best(scene)) is not None]
     return min(errors, key=lambda pair: pair[0])[1] if errors else None
 
 
@@ -108,9 +112,7 @@ def _step(row: EngineRow) -> float | None:
 
 
 def _picture(scene: str, what: str, axis: str, drawn: Sequence[Panel]) -> Picture:
-    every = [
-        (line.name, *point) for panel in drawn for line in panel.lines for point in line.points
-    ]
+    every = [(line.name, x, y) for panel in drawn for line in panel.lines for x, y in line.points]
     name, x, y = min(every, key=lambda point: point[2])
     names = ", ".join(dict.fromkeys(line.name for panel in drawn for line in panel.lines))
     alt = (

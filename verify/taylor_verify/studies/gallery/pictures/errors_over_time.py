@@ -1,4 +1,4 @@
-"""Picture of the errors on every rung against time, beside the powers of time of rounding errors.
+"""Picture of errors against time on every rung, beside the powers of time with which roundings grow.
 
 Both axes are logarithmic; a line is the largest error so far. Errors are in units of the rung's own unit
 roundoff u, so that the lines of all rungs agree if roundings are the only errors. The first panel is a
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 Record = Mapping[str, Any]
 Points = list[tuple[float, float]]
 
-# Heading, quantities (the first one in the record is drawn), the power and its name.
+# Of each panel: the heading, the quantities (the first in the record is drawn), the power and its name.
 PANELS: Final = (
     ("conserved", ("T", "H2", "FG", "F2"), 0.5, "\N{SQUARE ROOT}t"),
     ("state", ("omega", "impulse"), 1.5, "t\N{SQUARE ROOT}t"),
@@ -40,13 +40,13 @@ PANELS: Final = (
 _NAMES: Final = {"T": "energy T", "H2": "|H|\N{SUPERSCRIPT TWO}", "omega": "angular velocity"}
 _NOTE: Final = "The largest error up to t, in u, the rung's unit roundoff."
 _POWER: Final[Mapping[str, Any]] = {"color": QUIET, "linewidth": 0.8, "dashes": (5, 2)}
-# The number of marks on a line, whose samples are crowded on the right.
+# The number of marks on a line. A mark for every sample would crowd the right side.
 _MARKS: Final = 9
 
 
 @dataclass(frozen=True)
 class Panel:
-    """Panel of a quantity: a line for each rung, and the power of time expected of it."""
+    """A panel: the lines of one quantity by rung, and the expected power of time, which ``words`` name."""
 
     heading: str
     quantity: str
@@ -58,10 +58,11 @@ class Panel:
 def series(records: Sequence[Record], start: float | None = None) -> dict[str, dict[str, Points]]:
     """Return the points (time since the start, error in u) by quantity and rung, without zeros.
 
-    ``start`` is the time of the initial state, by default that of the first sample.
+    Times are in the scene's unit and positive, also of a run backwards in time. ``start`` is the time of
+    the initial state, by default that of the first sample.
     """
     curves: dict[str, dict[str, Points]] = {}
-    for record in sorted(records, key=lambda one: place_of_rung(one["rung"])):
+    for record in sorted(records, key=lambda record: place_of_rung(record["rung"])):
         first, u = record["times"][0] if start is None else start, record["unit_roundoff"]
         for gate in record["gates"]:
             pairs = zip(record["times"], gate["errors"], strict=True)
@@ -72,6 +73,7 @@ def series(records: Sequence[Record], start: float | None = None) -> dict[str, d
 
 
 def _is_drawable(elapsed: float, error: float | None) -> bool:
+    """Return True for a point that logarithmic axes can show."""
     return elapsed != 0 and error is not None and isfinite(error) and error > 0
 
 
@@ -142,7 +144,7 @@ def _marked(points: Points) -> list[int]:
 
 
 def so_far(points: Points) -> Points:
-    """Return the largest error up to each time, because an error vanishes when it changes its sign."""
+    """Return the largest error up to each time; the error itself is small where its sign changes."""
     largest = accumulate((error for _, error in points), max)
     return [(t, error) for (t, _), error in zip(points, largest, strict=True)]
 

@@ -1,7 +1,8 @@
-"""The quartic that rules the axial impulse of Clebsch's body, with its roots and the orbit's interval.
+"""Picture of the quartic X3 of the axial impulse of Clebsch's body, its roots and the orbit's interval.
 
-x3'^2 = r^2 X3(x3) (Hydromechanics 49): the motion is where X3 >= 0, it turns back at a simple root, and
-takes for ever to reach a repeated one. -X3 is a potential in which x3 moves like a particle of no energy.
+x3'^2 = r^2 X3(x3) (Hydromechanics 49): the motion is where X3 >= 0. It turns back at a simple root, and
+needs an infinite time to reach a repeated root. -X3 is a potential, in which x3 moves like a particle
+whose energy is zero.
 """
 
 from __future__ import annotations
@@ -31,6 +32,7 @@ _ORBIT: Final = "#A83C00"
 _POINTS: Final = 101
 # Margin beyond the shown roots, relative to the interval's length.
 _BESIDE: Final = 0.45
+# The least length of the interval, relative to the largest root.
 _LEAST: Final = 0.25
 # Margins above the hump of the orbit and below the axis, relative to that hump.
 _ABOVE: Final = 1.35
@@ -55,7 +57,11 @@ _SUBSCRIPTS: Final = str.maketrans("123", "\N{SUBSCRIPT ONE}\N{SUBSCRIPT TWO}\N{
 
 @dataclass(frozen=True)
 class Series:
-    """The curve (n, 2), the interval of the motion, and the real roots with their multiplicities."""
+    """The curve X3 as points (n, 2), the interval of the motion, and the roots.
+
+    ``roots`` has the real roots with their multiplicities, ``pair`` real and imaginary part of a complex
+    one.
+    """
 
     scene: str
     variable: str
@@ -76,15 +82,22 @@ def series(portrait: Document) -> Series:
     roots = tuple((root, real.count(root)) for root in dict.fromkeys(real))
     low, high = map(float, potential["interval"])
     left, right = _shown(low, high, [root for root, _ in roots])
-    # Half of the points are inside the interval, because the hump is the subject.
+    # Half of the points lie in the interval, where the curve matters most.
     z = np.union1d(np.linspace(left, right, _POINTS), np.linspace(low, high, _POINTS))
     curve = np.stack([z, np.polyval(potential["coefficients"], z)], axis=1)
-    variable, regime = potential["variable"], portrait["regime"]
-    return Series(portrait["scene"], variable, regime, curve, (low, high), roots, pair)
+    return Series(
+        scene=portrait["scene"],
+        variable=potential["variable"],
+        regime=portrait["regime"],
+        curve=curve,
+        interval=(low, high),
+        roots=roots,
+        pair=pair,
+    )
 
 
 def _shown(low: float, high: float, roots: Sequence[float]) -> tuple[float, float]:
-    """Return the interval, extended to the roots within its own length on either side."""
+    """Return the shown range: the interval, extended to roots that are no farther than its own length."""
     length = max(high - low, _LEAST * max(abs(low), abs(high), *map(abs, roots)))
     near = [root for root in roots if low - length <= root <= high + length]
     ends = [low, high, *near]
@@ -113,15 +126,15 @@ def _sentence(drawn: Series) -> str:
 
 
 def _figure(drawn: Sequence[Series]) -> Figure:
-    counts = {min(count, 3) for one in drawn for _, count in one.roots}
+    counts = {min(count, 3) for panel in drawn for _, count in panel.roots}
     entries: list[Entry] = [
         ({"color": _CURVE, "linewidth": 1.3}, "X\N{SUBSCRIPT THREE}"),
         ({"color": _ORBIT, "linewidth": 3}, "the orbit's interval"),
         *(entry for count, entry in _ROOTS.items() if count in counts),
     ]
     figure, places = sheet(len(drawn), entries, height=_HEIGHT)
-    for axes, one in zip(places, drawn, strict=True):
-        _draw(axes, one)
+    for axes, panel in zip(places, drawn, strict=True):
+        _draw(axes, panel)
     return figure
 
 

@@ -97,7 +97,7 @@ fn main() {
     let mut before = 0.0;
     for steps in [25, 50, 100, 200, 400, 800, 1600] {
         let error = error(&rows, &[a, b, c], steps);
-        // Of order four: a sixteenth, until roundings are what is left.
+        // The method is of order four: a sixteenth, until only roundings are left.
         let gained = if before > 0.0 {
             format!(", 1/{:.1} of it", before / error)
         } else {

@@ -5,7 +5,7 @@
   const PARALLELS = 25, MERIDIANS = 49;
   let library = null;
 
-  // A page that is opened as a file cannot fetch another one, but it can ask for a script.
+  // A page that is opened as a file cannot fetch other files, but it can load a script.
   function plotly() {
     library = library || new Promise(function (done, failed) {
       const script = document.createElement("script");
@@ -22,7 +22,7 @@
     if (typeof value === "string" && value[0] === "$") {
       return style.getPropertyValue("--motion-" + value.slice(1)).trim();
     }
-    if (Array.isArray(value)) return value.map(function (one) { return coloured(one, style); });
+    if (Array.isArray(value)) return value.map(function (part) { return coloured(part, style); });
     if (value === null || typeof value !== "object") return value;
     return Object.fromEntries(Object.entries(value).map(function (pair) {
       return [pair[0], coloured(pair[1], style)];
@@ -50,8 +50,8 @@
     return Object.assign({}, trace, { ball: undefined, x: net[0], y: net[1], z: net[2] });
   }
 
-  // One scale for all axes, and a diagonal as long as that of the unit cube: whatever the sides, all of the
-  // box is in the frame, from wherever it is seen. Beside a narrow one titles and numbers need more of the room.
+  // All axes have one scale, and the diagonal of the box is as long as that of the unit cube. So the whole box is
+  // in the frame, whatever its sides and the view. In a narrow frame titles and numbers take a larger part.
   function layout(titles, box, narrow) {
     const far = narrow ? 1.65 : 1.15, ticks = narrow ? 3 : 5;
     const sides = box.map(function (ends) { return ends[1] - ends[0]; }), longest = Math.max.apply(null, sides);
@@ -88,7 +88,7 @@
     plot.dataset.drawn = style.getPropertyValue("--motion-ink").trim();
   }
 
-  function tried(plot) {
+  function tryToDraw(plot) {
     draw(plot).catch(function (reason) {
       plot.textContent = "This picture could not be drawn: " + (reason.message || "the script is missing") + ".";
     });
@@ -98,17 +98,17 @@
     const watch = new IntersectionObserver(function (entries) {
       entries.filter(function (entry) { return entry.isIntersecting; }).forEach(function (entry) {
         watch.unobserve(entry.target);
-        tried(entry.target);
+        tryToDraw(entry.target);
       });
     }, { rootMargin: "300px" });
     plots.forEach(function (plot) { watch.observe(plot); });
     function again() {
-      plots.filter(function (plot) { return plot.dataset.drawn !== undefined; }).forEach(tried);
+      plots.filter(function (plot) { return plot.dataset.drawn !== undefined; }).forEach(tryToDraw);
     }
     new MutationObserver(again).observe(document.body, { attributeFilter: ["data-theme"] });
     window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", again);
-    // On paper nothing is scrolled into view.
-    window.addEventListener("beforeprint", function () { plots.forEach(tried); });
+    // A print shows all pictures, also those that were never scrolled into view.
+    window.addEventListener("beforeprint", function () { plots.forEach(tryToDraw); });
   }
 
   document.addEventListener("DOMContentLoaded", function () {

@@ -2,34 +2,34 @@
 "use strict";
 
 (function () {
-  // A number with what may stand before and behind it: "<1e-3", "11.5, 7.42 @ 77", "1.26e-5 fail".
+  // A number, with other text before or after it: "<1e-3", "11.5, 7.42 @ 77", "1.26e-5 fail".
   const NUMBER = /^[<>~≈]?\s*([-+−]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)/i;
   const NOTHING = /^(?:–|-|—|)$/;
-  // A table of fewer lines is seen at a glance, one of more is looked through with a filter.
+  // Tables with fewer rows need no sorting. Tables with more rows than the second number get a filter.
   const SORTABLE = 6, FILTERABLE = 40;
-  // A cell with more letters is read as a sentence, and needs the room of one.
+  // A cell with more letters is a sentence, and needs a wide column.
   const SENTENCE = 40;
 
   function value(cell) {
     const text = cell.textContent.trim();
     if (NOTHING.test(text)) return null;
     if (text.startsWith("∞")) return Infinity;
-    const found = NUMBER.exec(text);
-    return found ? Number(found[1].replace("−", "-")) : NaN;
+    const match = NUMBER.exec(text);
+    return match ? Number(match[1].replace("−", "-")) : NaN;
   }
 
   function isNumeric(cells) {
-    const found = cells.map(value).filter(function (one) { return one !== null; });
-    const numbers = found.filter(function (one) { return !Number.isNaN(one); });
-    return numbers.length > found.length / 2;
+    const filled = cells.map(value).filter(function (entry) { return entry !== null; });
+    const numbers = filled.filter(function (entry) { return !Number.isNaN(entry); });
+    return numbers.length > filled.length / 2;
   }
 
-  // What is no number stands behind all numbers, whichever way they run.
+  // Cells without a number come last in both directions.
   function byNumber(a, b, sign) {
-    const one = value(a), other = value(b);
-    const lost = [one, other].map(function (v) { return v === null || Number.isNaN(v); });
-    if (lost[0] || lost[1]) return lost[0] - lost[1];
-    return one === other ? 0 : sign * (one < other ? -1 : 1);
+    const first = value(a), second = value(b);
+    const isWord = [first, second].map(function (v) { return v === null || Number.isNaN(v); });
+    if (isWord[0] || isWord[1]) return isWord[0] - isWord[1];
+    return first === second ? 0 : sign * (first < second ? -1 : 1);
   }
 
   const words = new Intl.Collator("en", { numeric: true });
@@ -44,12 +44,12 @@
     const upwards = heading.getAttribute("aria-sort") !== "ascending";
     const compare = isNumeric(rows.map(function (row) { return row.cells[index]; })) ? byNumber : byWord;
     rows.sort(function (a, b) { return compare(a.cells[index], b.cells[index], upwards ? 1 : -1); });
-    table.querySelectorAll("th").forEach(function (one) { one.removeAttribute("aria-sort"); });
+    table.querySelectorAll("th").forEach(function (other) { other.removeAttribute("aria-sort"); });
     heading.setAttribute("aria-sort", upwards ? "ascending" : "descending");
     body.append.apply(body, rows);
   }
 
-  // A row that begins empty or in italics goes on with the row above: sorted, it would be nobody's.
+  // A row that begins empty or in italics belongs to the row above, so that its table must not be sorted.
   function hasGroups(table) {
     return Array.from(table.tBodies[0].rows).some(function (row) {
       return !row.cells[0].textContent.trim() || row.cells[0].querySelector(":scope > p > em:first-child");
@@ -82,19 +82,20 @@
 
     function filter() {
       const asked = input.value.toLowerCase().split(/\s+/).filter(Boolean);
-      let seen = 0;
+      let shown = 0;
       rows.forEach(function (row, i) {
         row.hidden = !asked.every(function (word) { return texts[i].includes(word); });
-        seen += row.hidden ? 0 : 1;
+        shown += row.hidden ? 0 : 1;
       });
-      count.textContent = seen === rows.length ? rows.length + " rows" : seen + " of " + rows.length + " rows";
+      count.textContent = shown === rows.length ? rows.length + " rows" : shown + " of " + rows.length + " rows";
     }
 
     input.addEventListener("input", filter);
     filter();
   }
 
-  // Only what scrolls is a stop for the keyboard; a fold that opens shows its table for the first time.
+  // Only a box that scrolls gets the focus of the keyboard. Boxes are measured again when a fold opens, because
+  // a hidden table has no width.
   function addStops() {
     document.querySelectorAll(".table-wrapper, .formula").forEach(function (box) {
       if (box.scrollWidth > box.clientWidth) {

@@ -48,20 +48,21 @@ def work_precision(
 ) -> Figure:
     """Return the whole figure: the panels row by row, the meaning of the marks below.
 
-    ``floors`` are the attainable errors by rung, drawn in panels with the rung; ``bars`` shows the spread
-    of times; ``note`` is a text below the marks.
+    ``floors`` are the attainable errors by rung, each drawn in panels with taylor on that rung. ``bars`` is
+    True to draw the spread of times. ``note`` is a text below the marks.
     """
     from taylor_verify.publish.pictures.labels import write_names
 
-    front = front_of(one for panel in panels for one in panel.drawn)
-    strips = [[one for one in panel.drawn if one.border] for panel in panels]
-    entries = _legend(panels, bars, bool(floors))
+    front = front_of(series for panel in panels for series in panel.drawn)
+    strips = [[series for series in panel.drawn if series.border] for panel in panels]
+    entries = _legend(panels, has_bars=bars, has_floors=bool(floors))
     frames, height = frames_of([len(strip) for strip in strips], foot_of(entries, note))
     figure = blank(height)
     shared = _limits_x(p for p in panels if p.yardstick)
     for panel, strip, frame in zip(panels, strips, frames, strict=True):
         axes = add_axes(figure, frame)
-        # The ladder's times are near each other. Other panels have one axis, so that they can be compared.
+        # The panels with the yardstick have one axis, so that they can be compared. The panel of taylor on
+        # all rungs has its own axis, because its times are near each other.
         x_limits = shared if panel.yardstick else _limits_x([panel])
         own = {rung: floors[rung] for rung in panel.ladder if rung in floors}
         y_limits = widened([*(spot.y for spot in panel.sound), *own.values()], *_MARGINS_Y)
@@ -69,7 +70,7 @@ def work_precision(
         axes.set(xlabel=x_name, ylabel=y_name)
         number_axes(axes)
         stairs = _stairs(front, axes)
-        # Thin lines behind everything.
+        # The front is a thin line behind everything else.
         axes.plot(*zip(*stairs, strict=True), color=QUIET, linewidth=0.6, zorder=1, gid="front")
         for rung, floor in own.items():
             colour = panel.ladder[rung]
@@ -109,7 +110,7 @@ def digits_achieved(panels: Sequence[Panel]) -> Figure:
 
 
 def _draw_series(axes: Axes, series: Series, bars: bool) -> None:
-    """Draw the lines of a family, one for each run of sound neighbours, and bars of the spread."""
+    """Draw a line through each sequence of sound settings of a family, and bars for the spread of times."""
     look = series.look
     for piece in series.pieces:
         x, y = [spot.x for spot in piece], [spot.y for spot in piece]
@@ -123,7 +124,7 @@ def _draw_series(axes: Axes, series: Series, bars: bool) -> None:
 
 
 def _draw_exact(axes: Axes, series: Series) -> None:
-    """Mark answers without an error at the lower border, without lines."""
+    """Mark answers without any error at the lower border."""
     look = {**series.look.line, "linestyle": "none", "marker": "v"}
     place = axes.get_xaxis_transform()
     for spot in series.spots:
@@ -134,8 +135,12 @@ def _draw_exact(axes: Axes, series: Series) -> None:
 def _names_of(panel: Panel) -> list[Named]:
     """Return the lines of a panel with their names."""
     return [
-        Named(panel.label(one), one.look.colour, [[(s.x, s.y) for s in p] for p in one.pieces])
-        for one in panel.drawn
+        Named(
+            panel.label(series),
+            series.look.colour,
+            [[(s.x, s.y) for s in p] for p in series.pieces],
+        )
+        for series in panel.drawn
     ]
 
 
@@ -143,7 +148,7 @@ def _stairs(front: Sequence[Spot], axes: Axes) -> list[tuple[float, float]]:
     """Return the corners of the front; settings above and to the right of it are beaten."""
     level = max(axes.get_ylim()[1], front[0].y)
     corners = []
-    # The yardstick is in several panels, but counts once.
+    # The yardstick is in several panels, and counts once.
     for x, y in dict.fromkeys((spot.x, spot.y) for spot in front):
         corners += [(x, level), (x, y)]
         level = y
@@ -153,7 +158,7 @@ def _stairs(front: Sequence[Spot], axes: Axes) -> list[tuple[float, float]]:
 def _draw_strip(
     figure: Figure, frame: Frame, panel: Panel, strip: Sequence[Series], limits: Limits
 ) -> Axes:
-    """Draw above the panel a line for each family with failures, each at its work."""
+    """Draw a strip above the panel, with a line for each family with failures, each mark at its work."""
     above = Frame(frame.left, frame.low + frame.height, frame.width, STRIP * len(strip))
     axes = add_axes(figure, above)
     axes.set(xscale="log", xlim=limits, ylim=(len(strip) - 0.5, -0.5), yticks=[])
@@ -165,14 +170,14 @@ def _draw_strip(
     for line, series in enumerate(strip):
         colour = series.look.colour
         for spot in series.border:
-            hollow = spot.row["standing"] == Standing.FALSE
+            is_hollow = spot.row["standing"] == Standing.FALSE
             axes.plot(
                 [spot.x],
                 [line],
                 linestyle="none",
-                marker=series.look.marker if hollow else "x",
+                marker=series.look.marker if is_hollow else "x",
                 markersize=4.5,
-                markerfacecolor=PAPER if hollow else colour,
+                markerfacecolor=PAPER if is_hollow else colour,
                 markeredgecolor=colour,
                 markeredgewidth=1.0,
                 gid=spot.row["standing"],
@@ -183,7 +188,7 @@ def _draw_strip(
 
 
 def _name_in_strip(axes: Axes, name: str, series: Series, line: int, limits: Limits) -> None:
-    """Write a name right of the last mark, or left of the first if that is nearer the middle."""
+    """Write a name right of the last mark if the first one is in the left half, else left of the first."""
     taken = [spot.x for spot in series.border]
     after = min(taken) < (limits[0] * limits[1]) ** 0.5
     axes.annotate(
@@ -198,28 +203,29 @@ def _name_in_strip(axes: Axes, name: str, series: Series, line: int, limits: Lim
     )
 
 
-def _legend(panels: Sequence[Panel], bars: bool, floors: bool) -> list[Entry]:
+def _legend(panels: Sequence[Panel], has_bars: bool, has_floors: bool) -> list[Entry]:
     """Return the legend of the marks that occur."""
-    spots = [spot for panel in panels for one in panel.drawn for spot in one.spots]
+    spots = [spot for panel in panels for series in panel.drawn for spot in series.spots]
     standings = {spot.row["standing"] for spot in spots if spot.is_at_the_border}
-    exact = any(spot.is_exact for spot in spots)
+    has_exact = any(spot.is_exact for spot in spots)
     dotted, mark = (0, (1, 2)), {"linestyle": "none", "markersize": 4.5, "markeredgecolor": INK}
     every: list[tuple[bool, dict[str, Any], str]] = [
         (True, {"color": QUIET, "linewidth": 0.8}, "Pareto front"),
-        (bars, {"color": QUIET, "linewidth": 0.5, "marker": "|"}, "best to slowest repeat"),
-        (floors, {"color": INK, "linewidth": 0.6, "linestyle": dotted}, "attainable"),
+        (has_bars, {"color": QUIET, "linewidth": 0.5, "marker": "|"}, "best to slowest repeat"),
+        (has_floors, {"color": INK, "linewidth": 0.6, "linestyle": dotted}, "attainable"),
         (
             Standing.FALSE in standings,
             {**mark, "marker": "o", "markerfacecolor": PAPER},
             "false success",
         ),
         (Standing.FAILED in standings, {**mark, "marker": "x"}, "failed"),
-        (exact, {**mark, "marker": "v", "markerfacecolor": INK}, "no error seen"),
+        (has_exact, {**mark, "marker": "v", "markerfacecolor": INK}, "no error seen"),
     ]
     return [(look, name) for occurs, look, name in every if occurs]
 
 
 def _limits_x(panels: Iterable[Panel]) -> Limits:
-    spots = [spot for panel in panels for one in panel.drawn for spot in one.spots]
+    """Return the limits of the work in the panels, with room for names."""
+    spots = [spot for panel in panels for series in panel.drawn for spot in series.spots]
     sound = [x for s in spots if s.is_sound for x in (s.x, s.x * s.spread)]
     return widened([*sound, *(s.x for s in spots if s.is_at_the_border)], *_MARGINS_X)

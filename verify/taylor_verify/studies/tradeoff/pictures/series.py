@@ -18,7 +18,7 @@ Row = Mapping[str, Any]
 # The standings that are marked at the border.
 AT_THE_BORDER: Final = (Standing.FALSE, Standing.FAILED)
 
-# The most lines of a legible panel: of all solvers but taylor together, and of one kind.
+# The most lines of a legible panel: if it has all solvers but taylor, and if it has one kind.
 _ALL_IN_ONE: Final = 6
 _MOST: Final = 7
 
@@ -80,21 +80,23 @@ class Series:
 
     @property
     def pieces(self) -> list[list[Spot]]:
-        """Runs of sound neighbours, which lines join."""
+        """The sequences of neighbouring sound settings, which lines join."""
         runs = groupby(self.spots, key=lambda spot: spot.is_sound)
         return [list(spots) for is_sound, spots in runs if is_sound]
 
     @property
     def sound(self) -> list[Spot]:
+        """The sound settings that an axis can show."""
         return [spot for spot in self.spots if spot.is_sound]
 
     @property
     def border(self) -> list[Spot]:
+        """The failures and false successes, which are marked at the border."""
         return [spot for spot in self.spots if spot.is_at_the_border]
 
 
 def series_of(document: Mapping[str, Any], x: str, y: str = "error") -> list[Series]:
-    """Return the families of a trade-off with runs, in the order of `style.place`.
+    """Return the families of a trade-off that were run, in the order of `style.place`.
 
     ``x`` and ``y`` are the keys of the rows for the axes.
     """
@@ -104,12 +106,15 @@ def series_of(document: Mapping[str, Any], x: str, y: str = "error") -> list[Ser
         spot = Spot(row, _amount(row, x), _amount(row, y), spread or 1.0)
         spots.setdefault((row["family"], row["rung"]), []).append(spot)
     every = [Series(family, rung, tuple(own)) for (family, rung), own in spots.items()]
-    ran = [one for one in every if any(s.row["standing"] != Standing.NOT_RUN for s in one.spots)]
-    return sorted(ran, key=lambda one: (place(one.family, one.rung), one.rung))
+    ran = [line for line in every if any(s.row["standing"] != Standing.NOT_RUN for s in line.spots)]
+    return sorted(ran, key=lambda line: (place(line.family, line.rung), line.rung))
 
 
 def _amount(row: Row, key: str) -> float:
-    """Return a positive finite number of the row, or zero. A failed run has the time of its only solve."""
+    """Return a number of the row if it is positive and finite, else 0.
+
+    A run that is not sound has the time of its only solve.
+    """
     value = row.get(key)
     if value is None and key == "seconds" and row["standing"] != Standing.SOUND:
         value = row.get("first_seconds")
@@ -118,7 +123,7 @@ def _amount(row: Row, key: str) -> float:
 
 def front_of(series: Iterable[Series]) -> list[Spot]:
     """Return the sound spots that no other beats in both numbers, by rising x and falling y."""
-    sound = [spot for one in series for spot in one.sound]
+    sound = [spot for line in series for spot in line.sound]
     return pareto(sound, lambda spot: (spot.x, spot.y))
 
 
@@ -135,30 +140,32 @@ class Panel:
 
     def label(self, series: Series) -> str:
         """Return the name of a family, in full if the heading does not name its kind."""
-        mixed = len({one.kind for one in self.series}) > 1 or series.kind != self.series[0].kind
-        return series.family if mixed else series.label
+        is_named = {series.kind} == {line.kind for line in self.series}
+        return series.label if is_named else series.family
 
     @property
     def drawn(self) -> tuple[Series, ...]:
-        return (*((self.yardstick,) if self.yardstick else ()), *self.series)
+        """All families of the panel, the yardstick first."""
+        return (self.yardstick, *self.series) if self.yardstick else self.series
 
     @property
     def sound(self) -> list[Spot]:
-        return [spot for one in self.drawn for spot in one.sound]
+        """The sound settings of all families of the panel."""
+        return [spot for line in self.drawn for spot in line.sound]
 
     @property
     def ladder(self) -> dict[str, str]:
         """The colour of each rung of taylor in the panel."""
-        return {one.rung: one.look.colour for one in self.drawn if one.kind == TAYLOR}
+        return {line.rung: line.look.colour for line in self.drawn if line.kind == TAYLOR}
 
 
 def panels_of(series: Sequence[Series]) -> list[Panel]:
-    """Return a panel of taylor by rung, and one or more panels of the others beside its f64."""
-    ladder = tuple(one for one in series if one.kind == TAYLOR)
-    others = [one for one in series if one.kind != TAYLOR]
-    # A single rung of taylor is no ladder, and belongs to the others.
+    """Return a panel of taylor on all rungs, and panels of the other solvers with taylor on f64."""
+    ladder = tuple(line for line in series if line.kind == TAYLOR)
+    others = [line for line in series if line.kind != TAYLOR]
+    # Taylor on a single rung needs no panel of its own, and is drawn with the others.
     is_alone = len(ladder) == 1 and bool(others)
-    f64 = next((one for one in ladder if one.rung == "f64"), ladder[0] if is_alone else None)
+    f64 = next((line for line in ladder if line.rung == "f64"), ladder[0] if is_alone else None)
     panels = [] if is_alone or not ladder else [Panel(heading_of(TAYLOR), ladder)]
     return panels + [Panel(heading, group, f64) for heading, group in _groups(others)]
 
@@ -166,14 +173,14 @@ def panels_of(series: Sequence[Series]) -> list[Panel]:
 def _groups(others: Sequence[Series]) -> list[tuple[str, tuple[Series, ...]]]:
     """Return the families by heading: all together if they are few, else each kind by itself."""
     if 0 < len(others) <= _ALL_IN_ONE:
-        kinds = list(dict.fromkeys(heading_of(one.kind) for one in others))
+        kinds = list(dict.fromkeys(heading_of(line.kind) for line in others))
         return [(kinds[0] if len(kinds) == 1 else "other solvers", tuple(others))]
-    kinds_apart = [tuple(group) for _, group in groupby(others, key=lambda one: one.kind)]
+    kinds_apart = [tuple(group) for _, group in groupby(others, key=lambda line: line.kind)]
     return [part for group in kinds_apart for part in _parts(group)]
 
 
 def _parts(group: tuple[Series, ...]) -> Iterator[tuple[str, tuple[Series, ...]]]:
-    """Yield the group, or its even parts if it is too large to be legible."""
+    """Yield a group with its heading, in equal parts if it is too large to be legible."""
     heading = heading_of(group[0].kind)
     count = -(-len(group) // _MOST)
     size = -(-len(group) // count)

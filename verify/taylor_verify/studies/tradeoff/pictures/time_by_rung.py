@@ -33,19 +33,21 @@ _NEAR: Final = 0.045
 def picture(scene: str, ratios: Sequence[Ratio]) -> Picture:
     """Return the picture of ratios to the time on f64; ``scene`` is the common part of their names.
 
+    The ends of a ratio are those of the interval for its median, at 95 %.
+
     Raises ValueError for invalid ratios, and for a rung without a number of bits.
     """
     check(ratios)
-    for i, one in enumerate(ratios):
-        if not bits_of(one.rung) > 0:
+    for i, point in enumerate(ratios):
+        if not bits_of(point.rung) > 0:
             raise ValueError(
-                f"expected a rung, such as f64 or mp237, got {one.rung!r} @ ratios[{i}]"
+                f"expected a rung, such as f64 or mp237, got {point.rung!r} @ ratios[{i}]"
             )
-    lines: dict[str, list[Ratio]] = {one.label: [] for one in ratios}
-    for one in sorted(ratios, key=lambda one: (bits_of(one.rung), place_of_rung(one.rung))):
-        lines[one.label].append(one)
+    lines: dict[str, list[Ratio]] = {point.label: [] for point in ratios}
+    for point in sorted(ratios, key=lambda point: (bits_of(point.rung), place_of_rung(point.rung))):
+        lines[point.label].append(point)
     words = "; ".join(
-        f"{label}: {', '.join(f'{one.rung} {times(one.ratio)}' for one in line)}"
+        f"{label}: {', '.join(f'{point.rung} {times(point.ratio)}' for point in line)}"
         for label, line in lines.items()
     )
     alt = (
@@ -61,24 +63,24 @@ def _figure(lines: Mapping[str, Sequence[Ratio]]) -> Figure:
 
     figure = blank(_HEIGHT)
     axes = add_axes(figure, _FRAME)
-    every = [one for line in lines.values() for one in line]
-    ends = [end for one in every for end in (one.least, one.greatest)]
+    every = [point for line in lines.values() for point in line]
+    ends = [end for point in every for end in (point.least, point.greatest)]
     axes.set(xscale="log", yscale="log", ylim=widened([*ends, 1.0], 0.08, 0.12))
-    axes.set(xlim=widened([float(bits_of(one.rung)) for one in every], 0.05, 0.2))
+    axes.set(xlim=widened([float(bits_of(point.rung)) for point in every], 0.05, 0.2))
     axes.set(xlabel="rung, by the bits of its significand", ylabel="time over that on f64")
     axes.yaxis.set_major_formatter("{x:g}")
-    _name_rungs(axes, sorted({one.rung for one in every}, key=bits_of))
+    _name_rungs(axes, sorted({point.rung for point in every}, key=bits_of))
     axes.grid(visible=True)
     axes.axhline(1, color=QUIET, linewidth=0.8, zorder=1)
     named = []
     for i, (label, line) in enumerate(lines.items()):
         look = look_of_line(i)
-        bits, ratios = [bits_of(one.rung) for one in line], [one.ratio for one in line]
-        for x, one in zip(bits, line, strict=True):
-            spread = [[one.ratio - one.least], [one.greatest - one.ratio]]
+        bits, ratios = [bits_of(point.rung) for point in line], [point.ratio for point in line]
+        for x, point in zip(bits, line, strict=True):
+            spread = [[point.ratio - point.least], [point.greatest - point.ratio]]
             axes.errorbar(
                 [x],
-                [one.ratio],
+                [point.ratio],
                 spread,
                 fmt="none",
                 ecolor=look.colour,
@@ -88,14 +90,14 @@ def _figure(lines: Mapping[str, Sequence[Ratio]]) -> Figure:
         axes.plot(bits, ratios, gid=label, zorder=3, **look.line)
         named.append(Named(label, look.colour, [[*zip(bits, ratios, strict=True)]]))
     write_names(axes, named)
-    if any(one.least < one.greatest for one in every):
+    if any(point.least < point.greatest for point in every):
         bar = {"color": QUIET, "linewidth": 0.6, "marker": "|", "markersize": 6}
-        draw_legend(figure, [(bar, "least to greatest seen")])
+        draw_legend(figure, [(bar, "interval of the median, 95 %")])
     return figure
 
 
 def _name_rungs(axes: Axes, rungs: Sequence[str]) -> None:
-    """Set a tick for every rung; names that are too near are written below each other."""
+    """Set a tick for every rung; of two names that are too near, the second is written lower."""
     from matplotlib.ticker import NullLocator
 
     bits = [bits_of(rung) for rung in rungs]

@@ -23,8 +23,8 @@ from taylor_verify.studies.tradeoff.pictures.series import (
     series_of,
 )
 
-# Kinds of work: the key of a row, and the name in titles and files. Evaluations and steps are the same on
-# every machine.
+# Kinds of work: the key of a row, and the word in titles and names of files. Evaluations and steps are the
+# same on every machine.
 WORKS: Final = {"seconds": "time", "evaluations": "evaluations", "steps": "steps"}
 _NOTE: Final = "An evaluation of taylor is one order of a step's series."
 
@@ -39,16 +39,16 @@ def draw(document: Mapping[str, Any], folder: Path | str) -> list[Path]:
 
 
 def pictures(document: Mapping[str, Any]) -> list[Picture]:
-    """Return every picture that has points."""
+    """Return every picture that has points. Raises ValueError for a document without a sound point."""
     if not any(row["standing"] == "sound" for row in document["points"]):
         raise ValueError(f"expected a sound point, got none @ {document['scene']}.points")
     drawn = (*(_work_precision(document, key) for key in WORKS), _digits_achieved(document))
-    return [one for one in drawn if one is not None]
+    return [picture for picture in drawn if picture is not None]
 
 
 def _work_precision(document: Mapping[str, Any], key: str) -> Picture | None:
     """Return the picture of error against work; None if no sound setting has both numbers."""
-    series = [one for one in series_of(document, key) if one.sound or one.border]
+    series = [line for line in series_of(document, key) if line.sound or line.border]
     front = front_of(series)
     if not front:
         return None
@@ -69,7 +69,7 @@ def _work_precision(document: Mapping[str, Any], key: str) -> Picture | None:
     alt = (
         f"Largest error against {'time of a solve' if is_time else work} on {scene}, both "
         f"logarithmic, for {_names(series)}. "
-        f"{_ends(front, work)}{_fallen(series)}"
+        f"{_ends(front, work)}{_at_the_border(series)}"
     )
     return Picture(stem_of(document, work), f"Error against {work}: {scene}", alt, figure)
 
@@ -78,10 +78,10 @@ def _digits_achieved(document: Mapping[str, Any]) -> Picture | None:
     """Return the picture of digits achieved against digits requested; None if no setting has both."""
     asking = [row for row in document["points"] if row["asked"] == "tolerance"]
     every = series_of({**document, "points": asking}, "requested_digits", "achieved_digits")
-    series = [one for one in every if one.sound]
+    series = [line for line in every if line.sound]
     if not series:
         return None
-    gained = [(one.family, median(spot.y - spot.x for spot in one.sound)) for one in series]
+    gained = [(line.family, median(spot.y - spot.x for spot in line.sound)) for line in series]
     typical = ", ".join(
         f"{family} {abs(more):.1f} {'more' if more >= 0 else 'fewer'}" for family, more in gained
     )
@@ -98,7 +98,7 @@ def _digits_achieved(document: Mapping[str, Any]) -> Picture | None:
 
 def _names(series: Sequence[Series]) -> str:
     """Return the names of the families as a list in a sentence."""
-    *others, last = (one.family for one in series)
+    *others, last = (line.family for line in series)
     return f"{', '.join(others)} and {last}" if others else last
 
 
@@ -109,7 +109,7 @@ def floors_of(document: Mapping[str, Any]) -> dict[str, float]:
 
 
 def _ends(front: Sequence[Spot], work: str) -> str:
-    """Return the two ends of the front in words."""
+    """Return the two ends of the front in words: the cheapest and the most accurate setting."""
     first, best = front[0], front[-1]
     if work == "time":
         return (
@@ -123,9 +123,9 @@ def _ends(front: Sequence[Spot], work: str) -> str:
     )
 
 
-def _fallen(series: Sequence[Series]) -> str:
+def _at_the_border(series: Sequence[Series]) -> str:
     """Return the number of settings at the border in words; empty if all are sound."""
-    standings = Counter(spot.row["standing"] for one in series for spot in one.spots)
+    standings = Counter(spot.row["standing"] for line in series for spot in line.spots)
     plural = {Standing.FALSE: "false successes"}
     names = [
         f"{standings[name]} {plural.get(name, name) if standings[name] > 1 else name}"

@@ -1,4 +1,4 @@
-"""The hunt for the worst: its scenes pass, are reproducible, and are published unchanged."""
+"""The search for the worst: its scenes pass, are reproducible, and are published unchanged."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from builders.studies.worst import quarry, verdict, worst_of
+from builders.studies.worst import searched_family, verdict, worst_of
 from hypothesis import HealthCheck, example, given, settings, target
 from hypothesis import strategies as st
 
@@ -21,12 +21,12 @@ from taylor_verify.scenes.families.family import Family
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.studies.study import NotMeasured
-from taylor_verify.studies.worst import measure as hunt
+from taylor_verify.studies.worst import measure
 from taylor_verify.studies.worst import page as worst
-from taylor_verify.studies.worst.measure import Catch, Quarry, quarries
+from taylor_verify.studies.worst.measure import Candidate, SearchedFamily, searched_families
 from taylor_verify.studies.worst.study import STUDY
 
-FAMILIES = quarries()
+FAMILIES = searched_families()
 KEPT = library.names(library.WORST)
 EACH_FAMILY = pytest.mark.parametrize("family", FAMILIES, ids=lambda family: family.name)
 
@@ -34,15 +34,15 @@ EACH_FAMILY = pytest.mark.parametrize("family", FAMILIES, ids=lambda family: fam
 # The families.
 
 
-def places(quarry: Quarry) -> st.SearchStrategy[list[float]]:
+def places(searched: SearchedFamily) -> st.SearchStrategy[list[float]]:
     """Places of the cube of a family, its edges too."""
-    return st.lists(st.floats(0, 1), min_size=quarry.family.free, max_size=quarry.family.free)
+    return st.lists(st.floats(0, 1), min_size=searched.family.free, max_size=searched.family.free)
 
 
 @EACH_FAMILY
 @given(st.data())
 @settings(max_examples=20)
-def test_every_place_of_a_cube_is_a_scene(family: Quarry, data: st.DataObject) -> None:
+def test_every_place_of_a_cube_is_a_scene(family: SearchedFamily, data: st.DataObject) -> None:
     """Every point of the cube and its edges is a scene of the model that the family's name begins with."""
     place = data.draw(places(family))
     try:
@@ -60,31 +60,31 @@ def test_every_place_of_a_cube_is_a_scene(family: Quarry, data: st.DataObject) -
 @given(st.data())
 @settings(max_examples=12, deadline=None, suppress_health_check=list(HealthCheck))
 def test_searched_for_the_worst_the_sound_driver_passes(
-    family: Quarry, data: st.DataObject
+    family: SearchedFamily, data: st.DataObject
 ) -> None:
     """Led by error over attainable, a search finds no scene at which a gate fails."""
-    (catch,) = hunt.caught(family.family, [data.draw(places(family))])
-    if catch is not None:
-        target(catch.ratio)
-        assert catch.verdict.verdict is Status.PASS
+    (candidate,) = measure.candidates_at(family.family, [data.draw(places(family))])
+    if candidate is not None:
+        target(candidate.ratio)
+        assert candidate.verdict.verdict is Status.PASS
 
 
 # The search.
 
 
-def _peaks(family: Family, several: Sequence[Sequence[float]]) -> list[Catch | None]:
+def _peaks(family: Family, points: Sequence[Sequence[float]]) -> list[Candidate | None]:
     """A smooth hill with its top, 5, at 0.7 everywhere."""
-    distances = [sum((value - 0.7) ** 2 for value in place) ** 0.5 for place in several]
+    distances = [sum((value - 0.7) ** 2 for value in place) ** 0.5 for place in points]
     return [
-        Catch(tuple(place), verdict(5 - away))
-        for place, away in zip(several, distances, strict=True)
+        Candidate(tuple(place), verdict(5 - away))
+        for place, away in zip(points, distances, strict=True)
     ]
 
 
-def test_hunt_climbs(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The hunt comes from its first places to the top of a hill, in five dimensions too."""
-    monkeypatch.setattr(hunt, "caught", _peaks)
-    (result,) = hunt.hunt([quarry("euler-hill", 5)], 2000, 1, lambda name: None)
+def test_a_search_climbs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The search goes from its first places to the top of a hill, in five dimensions too."""
+    monkeypatch.setattr(measure, "candidates_at", _peaks)
+    (result,) = measure.search([searched_family("euler-hill", 5)], 2000, 1, lambda name: None)
     # A cloud of as many places comes no nearer than some 0.1.
     assert result.worst.ratio >= 5 - 0.05
 
@@ -92,47 +92,47 @@ def test_hunt_climbs(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("runs", [10, 77, 400])
 def test_a_budget_is_a_number_of_runs(monkeypatch: pytest.MonkeyPatch, runs: int) -> None:
     """No more runs are made than were asked for, and less than a generation is left over."""
-    monkeypatch.setattr(hunt, "caught", _peaks)
-    (result,) = hunt.hunt([quarry("euler-hill", 3)], runs, 1, lambda name: None)
+    monkeypatch.setattr(measure, "candidates_at", _peaks)
+    (result,) = measure.search([searched_family("euler-hill", 3)], runs, 1, lambda name: None)
     assert runs * 0.6 < result.judged <= runs
 
 
-def test_a_hunt_can_be_repeated(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_search_can_be_repeated(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every place follows from seed and family; another seed has others."""
-    points: list[list[float]] = []
+    asked: list[list[float]] = []
 
-    def noted(family: Family, several: Sequence[Sequence[float]]) -> list[Catch | None]:
-        points.extend(map(list, several))
-        return _peaks(family, several)
+    def noted(family: Family, points: Sequence[Sequence[float]]) -> list[Candidate | None]:
+        asked.extend(map(list, points))
+        return _peaks(family, points)
 
-    monkeypatch.setattr(hunt, "caught", noted)
+    monkeypatch.setattr(measure, "candidates_at", noted)
     rounds = []
     for seed in (1, 1, 2):
-        points.clear()
-        hunt.hunt([quarry("euler-hill", 2)], 60, seed, str)
-        rounds.append([*points])
+        asked.clear()
+        measure.search([searched_family("euler-hill", 2)], 60, seed, str)
+        rounds.append([*asked])
     assert rounds[0] == rounds[1]
     assert rounds[0][0] != rounds[2][0]
 
 
-def test_a_family_without_a_judged_scene_is_no_hunt(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The hunt raises an error that names a family without a gate that is not vacuous."""
-    monkeypatch.setattr(hunt, "caught", lambda family, several: [None] * len(several))
+def test_a_family_without_a_judged_scene_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The search raises an error that names a family without a gate that is not vacuous."""
+    monkeypatch.setattr(measure, "candidates_at", lambda family, points: [None] * len(points))
     with pytest.raises(NotMeasured, match="euler-nothing"):
-        hunt.hunt([quarry("euler-nothing")], 20, 1, str)
+        measure.search([searched_family("euler-nothing")], 20, 1, str)
 
 
 @example(None)
 @given(st.sampled_from([float("nan"), float("inf"), None]))
 def test_a_gate_without_a_number_is_the_worst_of_all(ratio: float | None) -> None:
     """A NaN cannot hide from the search: it counts as infinitely bad."""
-    assert Catch((), verdict(ratio, Status.FAIL)).ratio == float("inf")
+    assert Candidate((), verdict(ratio, Status.FAIL)).ratio == float("inf")
 
 
 def test_vacuous_gates_do_not_count() -> None:
     """A vacuous gate cannot be the worst, whatever its ratio."""
-    assert not hunt._counts(verdict(1e9, Status.VACUOUS))
-    assert hunt._counts(verdict(1e9, Status.FAIL))
+    assert not measure._counts(verdict(1e9, Status.VACUOUS))
+    assert measure._counts(verdict(1e9, Status.FAIL))
 
 
 # What was found.
@@ -155,7 +155,7 @@ def test_the_worst_that_was_found_still_passes(name: str) -> None:
 
 
 def test_the_worst_runs_with_the_extremes() -> None:
-    """`run extremes` has the scenes of the hunt among its own."""
+    """`run extremes` has the worst scenes of the search among its own."""
     assert set(KEPT) <= set(library.named(library.EXTREMES))
     assert library.named(library.WORST) == KEPT
 
@@ -170,7 +170,7 @@ def test_scene_file_says_why_it_is_there() -> None:
 
 def test_page_is_made_from_stored_rows_alone(tmp_path: Path) -> None:
     """The worst family stands first; a ratio changed in worst.json is changed on the page."""
-    rows = hunt.study([worst_of("euler-a", 1.5), worst_of("euler-b", 2.5)], 60, 3)
+    rows = measure.study([worst_of("euler-a", 1.5), worst_of("euler-b", 2.5)], 60, 3)
     worst.WORST.write(tmp_path, rows)
     page = STUDY.pages(tmp_path)[STUDY.path]
     assert page.index("euler-b") < page.index("euler-a")
@@ -194,7 +194,7 @@ def test_rows_that_are_none_are_refused(tmp_path: Path) -> None:
 
 
 def test_old_scenes_make_room(tmp_path: Path) -> None:
-    """Scenes of an earlier hunt go when a new one has ended."""
+    """Scenes of an earlier search are removed when a new one has ended."""
     worst.store_scenes(tmp_path, {"one": "1\n", "two": "2\n"})
     worst.store_scenes(tmp_path, {"two": "3\n"})
     assert {p.name: p.read_text(encoding="utf-8") for p in tmp_path.iterdir()} == {
@@ -212,9 +212,9 @@ def test_old_scenes_make_room(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_no_budget_is_no_hunt(
+def test_a_wrong_budget_is_refused(
     capsys: pytest.CaptureFixture[str], words: list[str], sentence: str
 ) -> None:
-    """No runs, and seconds, which no hunt can be repeated by, are wrong calls and change nothing."""
+    """No runs, and seconds, with which no search can be repeated, are wrong calls and change nothing."""
     assert main(["publish", "worst", *words]) == 2
     assert sentence in capsys.readouterr().err
