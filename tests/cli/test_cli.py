@@ -109,6 +109,12 @@ def test_every_verb_has_help_with_an_example(capsys: Captured, verb: list[str]) 
         assert "--json" in text
 
 
+def test_times_are_those_of_every_at(capsys: Captured) -> None:
+    """`--at` may be repeated: its times are printed in the order given, also negative ones."""
+    assert main(["exact", "euler/rest", "--at", "1", "--at", "-2,3", "--json"]) == 0
+    assert [row["t"] for row in json.loads(capsys.readouterr().out)["rows"]] == ["1", "-2", "3"]
+
+
 def test_help_imports_nothing_heavy() -> None:
     """`--help` answers before numpy, mpmath, heyoka or rich are imported."""
     script = (

@@ -5,7 +5,7 @@ a verb are a text: a line for each, with its help two blanks behind it, which go
 
     --csv           an option without a value        --link NAME       one with a value
     --jobs N        a whole number                   --rung R [f64]    with a default
-    --at! T,T,...   it must be given                 --solver* S       it may be repeated
+    --scene! SCENE  it must be given                 --solver* S       it may be repeated
     --rung+ R       with several values as well      --route arb|mpmath  one of these words
     link NAME       no option                        files+ FILE       at least one (*: any number)
 """
@@ -31,7 +31,7 @@ _VERB: Final = "VERB"
 _RUNG_NAME = re.compile(r"(f|mp)\d*", re.IGNORECASE)
 _NEGATIVE_TIME = re.compile(r"-[\d.]")
 # Name, sign, value, default and help of an argument.
-_ARGUMENT: Final = re.compile(r"([-\w]+)([!*+]?)(?: ([^ ]+))?(?: \[(.+?)\])?(?:  (.*))?")
+_ARGUMENT: Final = re.compile(r"([-\w]+)(!?)([*+]?)(?: ([^ ]+))?(?: \[(.+?)\])?(?:  (.*))?")
 
 _SCENE: Final = "SCENE  a scene file, or the name of a shipped scene (`taylor-verify list`)"
 _RUNG: Final = (
@@ -100,7 +100,7 @@ scenes* SCENE  scene files, names of shipped scenes, patterns ('euler/*') or fol
         "exact euler/generic --at 0,10,1e9 --digits 40",
         f"""
 scene {_SCENE}
---at! T,T,...  the times: decimals or a/b, in any order, on the clock of the scene
+--at!* T,T,...  the times: decimals or a/b, in any order, on the clock of the scene; may be repeated
 --digits N [30]  the number of significant digits; default: 30
 --route arb|mpmath|taylor  how to compute: arb, the closed form with proven error bounds (default where
   there is one); mpmath, the same by other formulas; taylor, Taylor series with proven error bounds
@@ -359,7 +359,7 @@ def _add(verb: argparse.ArgumentParser, line: str) -> None:
     """Add the argument that a line of the text describes."""
     match = _ARGUMENT.fullmatch(line)
     assert match is not None, line
-    name, sign, value, default, meaning = match.groups()
+    name, required, sign, value, default, meaning = match.groups()
     if value is None:
         verb.add_argument(name, action="store_true", help=meaning)
         return
@@ -369,9 +369,9 @@ def _add(verb: argparse.ArgumentParser, line: str) -> None:
         given["choices"] = [first, *others]
     if value == "N":
         given["type"] = int
-    if sign == "!":
+    if required:
         given["required"] = True
-    elif sign and name.startswith("-"):
+    if sign and name.startswith("-"):
         given |= {"action": "append", "nargs": "+" if sign == "+" else None}
     elif sign:
         given["nargs"] = sign

@@ -24,7 +24,8 @@ def answer(options: argparse.Namespace) -> Answer:
         raise WrongCall(
             f"expected a number from 1 to {MOST_DIGITS}, got {options.digits} @ --digits"
         )
-    times = [(text.strip(), read_number(text, "--at")) for text in options.at.split(",")]
+    words = [text for times in options.at for text in times.split(",")]
+    times = [(text.strip(), read_number(text, "--at")) for text in words]
     scene = read_scene(options.scene)
     try:
         with working(f"exact {scene.name}"):
