@@ -49,7 +49,7 @@ site: $(INSTALLED)  ## Make one site of docs and of all that is published, into 
 test-site: site  ## Look at those pages in a browser without a window (Debian: installs chromium)
 	@command -v chromium > /dev/null && command -v chromedriver > /dev/null || \
 		{ apt-get --quiet update && apt-get --quiet --yes install chromium chromium-driver; }
-	@$(BIN)/python -m pytest -m browser tests/site
+	@$(BIN)/python -m pytest -n 2 -m browser tests/site
 	@$(BIN)/python -m pytest tests/studies/test_site.py
 
 # Five minutes of one core at most; with AGAINST some ten on two.
