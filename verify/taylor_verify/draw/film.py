@@ -100,7 +100,7 @@ def _figure(motion: Moving) -> tuple[Figure, Callable[[int], list[Artist]]]:
     }
     figure.text(0.02, 0.945, motion.title, size=12, weight="bold", va="center")
     figure.text(0.02, 0.03, motion.caption, size=SMALL, color=QUIET, va="center")
-    clock = figure.text(0.53, 0.03, "", size=SMALL, ha="right", va="center")
+    clock = figure.text(0.98, 0.03, "", size=SMALL, ha="right", va="center")
     movers = [
         _body(figure.add_axes(places["body"]), motion),
         *([] if is_alone else [_inset(figure.add_axes(places["inset"]), motion)]),
