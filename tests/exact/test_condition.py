@@ -335,7 +335,7 @@ def test_where_float64_cannot_follow_there_are_no_variational_norms() -> None:
 
 
 def test_velocities_are_counted_in_lengths_and_times() -> None:
-    """In the units of a flow U and Omega of a state are the same, times the time, over the length."""
+    """U and Omega in the units of a flow are those of the scene times the time, U also over the length."""
     body = sample_scene(CLEBSCH).body
     equations, units = kind_of(body).equations(body), vector(2, 2, 2, 8, 8, 8)
     state = np.array(vector(1, -2, 3, 5, 7, -4), dtype=object)

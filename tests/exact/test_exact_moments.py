@@ -446,7 +446,7 @@ def test_across_the_axis_omega_recurs_after_the_period() -> None:
 def test_whether_a_line_is_short_does_not_depend_on_the_unit_of_time(
     t: str, is_short: bool, faster: Fraction
 ) -> None:
-    """By |b| t^2/4 = 25/16, 225/4 and 10^4 beside a limit of 10."""
+    """The first of |b| t^2/4 = 25/16, 225/4 and 10^4 is below the limit of 10, the others are above."""
     a, b = (
         tensors.scaled(Fraction(faster) ** k, v)
         for k, v in ((1, vector(0, 3, 4)), (2, vector(15, 0, 20)))

@@ -229,7 +229,7 @@ def test_the_rule_is_wrong_by_less_than_is_said(bits: int) -> None:
 
 
 def test_the_arcs_cover_the_upper_boundary(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Those that are used follow each other from one end of the ellipse to the other."""
+    """The arcs that are used follow each other from one end of the ellipse to the other."""
     scene = whole("plain", "theta > 0")
     body, _ = solid(scene)
     arcs, whole_arc = list[tuple[Fraction, Fraction]](), Panels._arc

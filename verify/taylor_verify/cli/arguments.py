@@ -30,7 +30,7 @@ _VERB: Final = "VERB"
 # Words that count as rungs, even if misspelt: a scene with such a name is written ./f64.
 _RUNG_NAME = re.compile(r"(f|mp)\d*", re.IGNORECASE)
 _NEGATIVE_TIME = re.compile(r"-[\d.]")
-# Name, sign, value, default and help of an argument.
+# Name, whether it must be given, sign, value, default and help of an argument.
 _ARGUMENT: Final = re.compile(r"([-\w]+)(!?)([*+]?)(?: ([^ ]+))?(?: \[(.+?)\])?(?:  (.*))?")
 
 _SCENE: Final = "SCENE  a scene file, or the name of a shipped scene (`taylor-verify list`)"

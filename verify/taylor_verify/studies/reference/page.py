@@ -30,7 +30,7 @@ _SHEET: Final = re.compile(r"\[csv\]\(([^()/]+\.csv)\)")
 _ROUTES: Final = {"mpmath": "closed form", "taylor": "Taylor"}
 
 Document = Mapping[str, Any]
-"""One scene: ``columns`` (a list of decimal texts by name), and the other keys of its JSON."""
+"""Row of a scene: ``columns`` (a list of decimal texts by name), and the other keys of its JSON."""
 
 
 def write(folder: Path, documents: Sequence[Document]) -> list[Path]:
