@@ -1,6 +1,6 @@
 """Bulk of a report folder: files that are made from the stored data, and are not in the repository.
 
-Every study names its own bulk. The room `paper` makes the paper, and the pictures as PDF.
+Every study names its own bulk. The package `paper` makes the paper, and the pictures as PDF.
 """
 
 from __future__ import annotations
