@@ -24,7 +24,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
-from taylor_verify.exact.conditioning.condition import Path, many, path, transition
+from taylor_verify.exact.conditioning.condition import Path, many, path, sharp, transition
 from taylor_verify.exact.conditioning.differences import Derivatives, derivatives
 from taylor_verify.exact.conditioning.flow import Flow
 from taylor_verify.exact.conditioning.variation import integrated
@@ -322,6 +322,47 @@ def test_variational_equations_agree_with_differences(start: Scene) -> None:
                 for way in (by_steps, by_differences)
             )
             assert np.abs(one - other).max() <= 1e-4 * max(other.max(), 1e-12)
+
+
+def test_errors_that_shrink_again_are_as_small_by_steps_as_by_differences() -> None:
+    """Errors grow by 3e8 in a fall, and shrink to a thousandth of that; rough steps would hide it."""
+    start = load("extremes/kirchhoff-unstable-spin-1e-8")
+    by_steps = path(start)
+    points, flow = by_steps.elapsed, by_steps.flow
+    by_differences = sharp(start, flow, points, least=50)
+    rough = integrated(start, flow, points, more_digits=9, is_rough=True)
+    assert (by_steps.exponent, by_differences.exponent) == (0, 50)
+    assert rough is not None
+    unit = np.ones((len(points), 3 * len(by_steps.blocks)))
+    by_rough_steps = Path(start, flow, points, rough).gathered(unit)
+    for name, expected in by_differences.gathered(unit).items():
+        assert np.allclose(by_steps.gathered(unit)[name], expected, rtol=1e-2), name
+        assert by_rough_steps[name][-1] > 10 * expected[-1], name
+        assert expected.max() > 1000 * expected[-1], name
+
+
+def test_steps_that_cannot_hold_what_shrinks_are_told_apart() -> None:
+    """Errors grow by 2e20 and shrink by more than float64 has digits: differences take over there."""
+    start = load("extremes/euler-unstable-axis-1e-20")
+    condition = path(start)
+    steps = integrated(start, condition.flow, condition.elapsed, more_digits=21)
+    assert steps is not None
+    followed = Path(start, condition.flow, condition.elapsed, steps)
+    assert not followed.is_resolved
+    assert condition.exponent > 60
+    assert np.allclose(followed.growth[:60], condition.growth[:60], rtol=1e-6)
+
+
+def test_two_sizes_of_differences_that_agree_are_enough() -> None:
+    """Errors grow by 1e41 in proportion to time; differences of 10^-100 give what those of 10^-250 give."""
+    start = load("extremes/kirchhoff-linear-1e20")
+    condition = path(start)
+    smallest_differences = sharp(start, condition.flow, condition.elapsed, least=250)
+    assert (condition.exponent, smallest_differences.exponent) == (100, 250)
+    for name in ("linear_impulse", "angular_impulse"):
+        for into in ("linear_impulse", "angular_impulse"):
+            norms = condition.norms(name, into)
+            assert np.allclose(norms, smallest_differences.norms(name, into), rtol=1e-9)
 
 
 def test_where_float64_cannot_follow_there_are_no_variational_norms() -> None:

@@ -72,6 +72,9 @@ def test_unlike_integrators_are_unlike_files(folder: Path) -> None:
         {"tolerance": Fraction(1, 1000)},
         {"tolerance": Fraction(1, 1001)},
         {"name": "f80", "is_optimised": False},
+        {"name": "mp237"},
+        {"name": "mp113"},
+        {"name": "mp113", "tolerance": Fraction(1, 1000)},
         {"literals": problem.parameters},
         {"literals": tuple(2 * value for value in problem.parameters)},
     ):
@@ -80,10 +83,28 @@ def test_unlike_integrators_are_unlike_files(folder: Path) -> None:
         assert len(files(folder)) == before + 1, other
 
 
-def test_code_for_mpfr_numbers_is_not_stored(folder: Path) -> None:
-    """Code with addresses of this process in it is of no use to another."""
-    compile_afresh("mp237")
-    assert files(folder) == []
+_SOLVED_IN_MPFR = """
+from taylor_verify.run import solve
+
+rows = solve("euler/generic", rung="mp237").quantities["omega"]
+print(*(value for row in rows for value in row))
+"""
+
+
+def test_code_for_mpfr_numbers_is_found_by_another_process(folder: Path) -> None:
+    """Three processes store one piece of code, and it computes the same numbers in each."""
+    answers = {
+        subprocess.run(
+            [sys.executable, "-c", _SOLVED_IN_MPFR], check=True, capture_output=True, text=True
+        ).stdout
+        for _ in range(3)
+    }
+    of_mpfr = {file.name for file in files(folder)}
+    compile_afresh("f64")
+    assert len(answers) == 1
+    assert len(of_mpfr) == len(files(folder)) == 2, (
+        "one in MPFR, and one that finds its fastest rate"
+    )
 
 
 def test_heyoka_stores_nothing_itself(folder: Path, tmp_path: Path) -> None:

@@ -84,9 +84,9 @@ STORED_CODE: Final = (
         "stored code for MPFR numbers is never found again",
         (stored_by,),
         _never_found,
-        "compiles one system in several processes with the cache on disk; each stores it anew, under "
-        "a key that addresses enter, and whoever next opens the cache reads all of it",
-        "stores no code for MPFR numbers, and opens the cache once in a process",
+        "compiles one system in several processes with the cache on disk; each stores it anew, under a "
+        "key that the unset significand of a zero enters, and whoever next opens the cache reads all of it",
+        "stores code itself, under a name made of the equations and options and not of the code",
         Cause.FAULT,
         script="real_is_never_found",
     ),

@@ -42,9 +42,9 @@ def inverse_inertias(
 
     Equal semi-axes give equal coefficients. Raises ZeroDivisionError where M + m_i or I_i + j_i is 0.
     """
-    from mpmath import mp
+    import gmpy2
 
-    with mp.workprec(bits + _GUARD_BITS):
+    with gmpy2.context(precision=bits + _GUARD_BITS, trap_divzero=True):
         masses, moments = _inertias(semi_axes, density, fluid_density)
         p, r = (
             tuple(rounded(exact_value(1 / inertia), bits) for inertia in inertias)
@@ -54,29 +54,29 @@ def inverse_inertias(
 
 
 def _inertias(semi_axes: Vector, density: Fraction, fluid_density: Fraction) -> tuple[Any, Any]:
-    """Return M + m_i and I_i + j_i at the ambient precision of mpmath."""
-    from mpmath import mp
+    """Return M + m_i and I_i + j_i at the ambient precision of MPFR."""
+    from gmpy2 import const_pi, mpfr
 
     squares = [axis * axis for axis in semi_axes]
     a1, a2, a3 = semi_axes
-    volume = 4 * mp.pi * mp.convert(a1 * a2 * a3) / 3
-    mass, displaced = volume * mp.convert(density), volume * mp.convert(fluid_density)
+    volume = 4 * const_pi() * mpfr(a1 * a2 * a3) / 3
+    mass, displaced = volume * mpfr(density), volume * mpfr(fluid_density)
     alphas, divided = lamb_integrals(semi_axes)
     masses, moments = [], []
     for i in range(3):
         # The longer axis first, so that two equal ones are dealt with alike.
         j, k = sorted(((i + 1) % 3, (i + 2) % 3), key=lambda n: -squares[n])
         m = displaced * alphas[i] / (alphas[j] + alphas[k])
-        solid = mass * mp.convert(squares[j] + squares[k]) / 5
-        gap = mp.convert((squares[j] - squares[k]) ** 2)
-        rest = alphas[i] + 2 * (alphas[j] - mp.convert(squares[k]) * divided[i])
+        solid = mass * mpfr(squares[j] + squares[k]) / 5
+        gap = mpfr((squares[j] - squares[k]) ** 2)
+        rest = alphas[i] + 2 * (alphas[j] - mpfr(squares[k]) * divided[i])
         masses.append(mass + m)
         moments.append(solid + displaced * gap * divided[i] / (5 * rest))
     return masses, moments
 
 
 def lamb_integrals(semi_axes: Vector) -> tuple[list[Any], list[Any]]:
-    """Return alpha_i and J_i at the ambient precision of mpmath.
+    """Return alpha_i and J_i at the ambient precision of MPFR.
 
     Duplication: with s = sqrt, shift = s(x)s(y) + s(y)s(z) + s(z)s(x) and x' = (x + shift)/4,
 
@@ -88,13 +88,13 @@ def lamb_integrals(semi_axes: Vector) -> tuple[list[Any], list[Any]]:
     R_D by taking the difference of squares apart. At the end, where the arguments nearly agree, R_D is
     w^(-3/2) and E is 3 w^(-5/2)/5, w being their weighted mean.
     """
-    from mpmath import mp, mpf
+    from gmpy2 import mpfr, sqrt
 
-    alphas, divided = [mpf(0)] * 3, [mpf(0)] * 3
-    quarter = mpf(1)
-    x = [mp.convert(axis * axis) for axis in semi_axes]
+    alphas, divided = [mpfr(0)] * 3, [mpfr(0)] * 3
+    quarter = mpfr(1)
+    x = [mpfr(axis * axis) for axis in semi_axes]
     while not _agree(x):
-        roots = [mp.sqrt(xi) for xi in x]
+        roots = [sqrt(xi) for xi in x]
         a, b, c = sorted(roots)
         shift = a * b + (b * c + c * a)  # in one order, so that equal axes stay equal
         for i in range(3):
@@ -109,10 +109,12 @@ def lamb_integrals(semi_axes: Vector) -> tuple[list[Any], list[Any]]:
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
         others = x[j] + x[k]
-        alphas[i] += quarter * ((3 * x[i] + others) / 5) ** mpf("-1.5")
-        divided[i] += quarter**2 * 3 * ((x[i] + 3 * others) / 7) ** mpf("-2.5") / 5
+        mean = (3 * x[i] + others) / 5
+        alphas[i] += quarter / (mean * sqrt(mean))
+        mean = (x[i] + 3 * others) / 7
+        divided[i] += quarter**2 * 3 / (5 * mean**2 * sqrt(mean))
     a1, a2, a3 = semi_axes
-    factor = mp.convert(a1 * a2 * a3) * 2 / 3
+    factor = mpfr(a1 * a2 * a3) * 2 / 3
     return [factor * alpha for alpha in alphas], [factor * E for E in divided]
 
 
@@ -123,6 +125,7 @@ def _agree(x: list[Any]) -> bool:
     itself is wrong by the relative s (s + 1)/2 (spread/least)^2 at most, so that half the bits of
     agreement suffice.
     """
-    from mpmath import mp
+    import gmpy2
 
-    return bool(max(x) - min(x) <= mp.ldexp(min(x), -mp.prec // 2 - 2))
+    bits = gmpy2.get_context().precision
+    return bool(max(x) - min(x) <= min(x) * gmpy2.exp2(-bits // 2 - 2))

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from math import ceil, inf, log10
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -40,14 +40,18 @@ _MOST_DECAY: Final = 300
 # If a derivative exceeds 1 + rate x time by more than this, the orbit passes an unstable motion. Then the
 # moments at which an error is made and observed matter.
 REGULAR: Final = 8.0
-# Steps of float64 cost less than orbits of dozens of digits beside this one until there are many. For a
-# solid in a fluid they cost less than seven of hundreds of digits until there are thousands; the four of
-# a rigid body, in functions of real numbers, cost less than those.
-_FEW_RADIANS: Final = 200
+# Steps of float64 cost less than orbits of dozens of digits beside this one until there are many; they
+# cost less than orbits of hundreds of digits until there are thousands.
+_FEW_RADIANS: Final = 500
 _MOST_RADIANS: Final = 2000
 # Norms are needed to one or two digits, and the size of a too large norm to a tenth.
 _SHARP: Final = 1e-3
 _ROUGH: Final = 0.1
+# Each step in float64 errs by about this part of what it leads on. If errors shrink again after they grew
+# far, that may be more than what is left of them.
+_STEP_ERROR: Final = 1e-15
+# Too little growth for that: the square of it, times the error of a step, is nothing beside a new error.
+_LITTLE_GROWTH: Final = 1e6
 # On a regular orbit all errors grow alike, so this many samples represent all,
 _FEW: Final = 33
 # with this many times besides that share no period: samples may meet the orbit in one phase only.
@@ -138,6 +142,22 @@ class Path:
         return growth
 
     @property
+    def is_resolved(self) -> bool:
+        """True if the errors of steps in float64 become small beside the errors that are carried.
+
+        The carried errors are one unit in each component at each time. A step's own error is made in
+        proportion to what it carries, and is carried on like any other error.
+        """
+        if self.growth.max() <= _LITTLE_GROWTH:
+            return True
+        made = np.ones((len(self.elapsed), 3 * len(self.blocks)))
+        carried = self.gathered(made)
+        with np.errstate(over="ignore"):
+            size = np.sqrt(sum(carried[block] ** 2 for block in self.blocks))
+        noise = self.gathered(_STEP_ERROR * size[:, None] * made)
+        return all((noise[block] <= _ROUGH * carried[block]).all() for block in self.blocks)
+
+    @property
     def rate(self) -> float:
         """The largest norm of the Jacobian along the orbit, per unit of the scene's time."""
         norms = np.linalg.norm(self.flow.jacobian(self.momentum), 2, axis=(-2, -1))
@@ -164,7 +184,9 @@ class Path:
 def _narrowed(factor: Floats) -> Floats:
     """A square L with the same L L^T; what is once beyond float64 is so for ever."""
     if np.isfinite(factor).all():
-        return np.linalg.qr(factor.T).R.T
+        upper: Any = np.linalg.qr(factor.T, mode="r")
+        lower: Floats = upper.T
+        return lower
     return np.full((len(factor), len(factor)), np.inf)
 
 
@@ -208,14 +230,20 @@ def path(scene: Scene) -> Path:
         return coarse
     rate, growth = coarse.rate, coarse.growth.max()
     points = many(elapsed, rate)
-    is_solid_in_fluid = coarse.momentum.shape[1] == 6
-    takes_few_steps = is_solid_in_fluid and rate * abs(elapsed[-1]) <= _MOST_RADIANS
-    if growth < inf and (takes_few_steps or differs_dearly(scene)):
+    is_dear = differs_dearly(scene)
+    if growth < inf and (is_dear or rate * abs(elapsed[-1]) <= _MOST_RADIANS):
         # The growth may magnify the last digit of the truth, so the truth gets as many more digits.
         steps = integrated(scene, flow, points, ceil(log10(growth)))
         if steps is not None:
-            return Path(scene, flow, points, steps)
-    return sharp(scene, flow, points, coarse.exponent)
+            followed = Path(scene, flow, points, steps)
+            if is_dear or followed.is_resolved:
+                return followed
+    return sharp(scene, flow, points, _sharp_exponent(growth) or coarse.exponent)
+
+
+def _sharp_exponent(growth: float) -> int:
+    """Return the exponent of differences that give such growth to six digits; 0 for an infinite growth."""
+    return ceil(3 * log10(growth)) + 6 if growth < inf else 0
 
 
 def _refuse_far_decay(scene: Scene, elapsed: Sequence[Fraction]) -> None:
@@ -246,11 +274,13 @@ def sharp(
 ) -> Path:
     """A path from differences so small that products of F with its inverses have their leading digits.
 
-    A step of 10^-e leaves an error of 10^-e |F|^2 in F, and that is multiplied by F^-1. If no precision
-    of the ladder is enough, the result contains noise, which makes it larger and not smaller. With
-    ``to_tell`` the search ends as soon as the orbit is known not to be regular, because |F| is sharp
-    before F F^-1 is.
+    A step of 10^-e leaves an error of 10^-e |F|^2 in F, and that is multiplied by F^-1. This is the worst
+    case. If the products of two precisions agree, their error is known to be smaller: it shrinks with the
+    step. If no precision of the ladder is enough, the result contains noise, which makes it larger and not
+    smaller. With ``to_tell`` the search ends as soon as the orbit is known not to be regular, because |F|
+    is sharp before F F^-1 is.
     """
+    last: Steps | None = None
     for differences in settled(scene, points, least):
         steps, shrinkage = differences.steps(flow)
         path = Path(scene, flow, points, steps, differences.exponent)
@@ -259,13 +289,32 @@ def sharp(
             break
         if to_tell and growth.max() <= _ROUGH * sharpness and not path.is_regular:
             break
+        if last is not None and _agree(last, steps):
+            break
+        last = steps
     return path
+
+
+def _agree(rough: Steps, fine: Steps) -> bool:
+    """Return True if each block of three components agrees to `_SHARP` of its size, or of one unit."""
+    pairs = (rough.steps, fine.steps), (rough.since_first, fine.since_first)
+    return all(
+        bool((_block_norms(a - b) <= _SHARP * np.maximum(_block_norms(b), 1)).all())
+        for a, b in pairs
+    )
+
+
+def _block_norms(matrices: Floats) -> Floats:
+    """Return the norms of the 3 x 3 blocks of matrices (n, 3k, 3k), as (n, k, k)."""
+    count, size, _ = matrices.shape
+    norms: Floats = np.linalg.norm(matrices.reshape(count, size // 3, 3, size // 3, 3), axis=(2, 4))
+    return norms
 
 
 def _along(scene: Scene, flow: Flow, points: Sequence[Fraction]) -> Path:
     """Return the orbit at a few points, only as sharp as needed to see whether they are too few."""
     if _is_short(scene, flow) or differs_dearly(scene):
-        steps = integrated(scene, flow, points)
+        steps = integrated(scene, flow, points, is_rough=True)
         if steps is not None:
             return Path(scene, flow, points, steps)
     return sharp(scene, flow, points, to_tell=True)

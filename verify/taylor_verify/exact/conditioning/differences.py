@@ -29,11 +29,11 @@ from taylor_verify.scenes.tensors import Vector
 
 Array = np.ndarray[Any, Any]
 
-# (e, digits): momenta are changed by 10^-e of their size. The first attempt is for regular orbits. A
-# perturbed orbit may lie 10^-e beside a degenerate one, where a closed form can lose 3e digits; the
-# Taylor route loses none.
-_CLOSED_FORM_DIGITS: Final = ((12, 36), (25, 110), (50, 220), (100, 440), (250, 1100))
-_TAYLOR_DIGITS: Final = ((12, 32), (30, 70), (60, 130))
+# Momenta are changed by 10^-e of their size, with these e. The first attempt is for regular orbits.
+_CLOSED_FORM_EXPONENTS: Final = (12, 25, 50, 100, 250)
+_TAYLOR_EXPONENTS: Final = (12, 30, 60)
+# Besides the e digits that a difference loses it has e of its own, and these.
+_GUARD_DIGITS: Final = 12
 # Norms are wanted to a digit or two; a single number, the determinant, stands for a whole matrix.
 _VOLUME_ERROR: Final = mpf("1e-6")
 # A determinant of six columns takes the digits of each: with so many times the precision of the
@@ -49,11 +49,11 @@ def settled(scene: Scene, elapsed: Sequence[Fraction], least: int = 0) -> Iterat
     """
     exact = solution(scene)
     is_by_series = exact.route == "taylor" or exact.by_quadrature
-    ladder = _TAYLOR_DIGITS if is_by_series else _CLOSED_FORM_DIGITS
+    ladder = _TAYLOR_EXPONENTS if is_by_series else _CLOSED_FORM_EXPONENTS
+    first = max(least, ladder[0])
     is_settled = False
-    for exponent, digits in ladder:
-        if exponent < least:
-            continue
+    for exponent in (first, *(higher for higher in ladder if higher > first)):
+        digits = 2 * exponent + _GUARD_DIGITS
         differences = derivatives(scene, elapsed, exponent, digits)
         if differences.volume_error() <= _VOLUME_ERROR:
             is_settled = True

@@ -19,6 +19,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from math import ceil
 from typing import Any, Final
 
@@ -27,6 +28,7 @@ import numpy as np
 
 from taylor_verify.exact import clocks
 from taylor_verify.exact.clocks import Floats
+from taylor_verify.exact.conditioning.extrapolation import extrapolated
 from taylor_verify.exact.conditioning.flow import Flow, applied
 from taylor_verify.exact.invariant import Array
 from taylor_verify.exact.kind import Kind
@@ -36,8 +38,6 @@ from taylor_verify.exact.rows import cross_matrices, turned
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.scene import Scene
 
-# The numbers of parts of a step, in ascending order; extrapolation from all of them has order 14.
-_PARTS: Final = (2, 4, 6, 8, 10, 12, 14)
 # Step in radians of the fastest rate. With more steps than these, enclosed arcs cost little more.
 _STEP: Final = 0.75
 _MOST_STEPS: Final = 64
@@ -188,24 +188,11 @@ class _Arcs:
             return _Reached(z, start), np.full_like(start, np.nan)
         steps = max(1, ceil(radians / _STEP))
         errors = np.zeros_like(start)
+        rates = partial(self._rates, size=size, m=m, d=d)
         for _ in range(steps):
-            at, error = self._step(at, (spans / steps)[:, None], size, m, d)
+            at, error = extrapolated(rates, at, (spans / steps)[:, None])
             errors += np.abs(error[:, m + d :])
         return _Reached(at[:, m : m + d], at[:, m + d :]), errors
-
-    def _step(self, at: Floats, h: Floats, size: float, m: int, d: int) -> tuple[Floats, Floats]:
-        """A step of the modified midpoint rule, extrapolated in the square of its parts."""
-        first, row = self._rates(at, size, m, d), list[Floats]()
-        for k, count in enumerate(_PARTS):
-            part = h / count
-            before, now = at, at + part * first
-            for _ in range(count - 1):
-                before, now = now, before + 2 * part * self._rates(now, size, m, d)
-            above, row = row, [now]
-            for j in range(k):
-                share = (count / _PARTS[k - 1 - j]) ** 2 - 1
-                row.append(row[j] + (row[j] - above[j]) / share)
-        return row[-1], row[-1] - row[-2]
 
     def _rates(self, at: Floats, size: float, m: int, d: int) -> Floats:
         flow = self.flow

@@ -11,27 +11,25 @@ from collections.abc import Sequence
 from fractions import Fraction
 from functools import reduce
 from itertools import pairwise
-from typing import Any, Final, NamedTuple
+from math import prod
+from typing import Final, NamedTuple
 
 import numpy as np
 from mpmath import mp
 
 from taylor_verify.exact import clocks
 from taylor_verify.exact.clocks import Floats
-from taylor_verify.exact.conditioning.flow import (
-    Flow,
-    Steps,
-    applied,
-    products,
-)
+from taylor_verify.exact.conditioning.extrapolation import FINE, ROUGH, extrapolated
+from taylor_verify.exact.conditioning.flow import Flow, Steps, applied, products
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.rows import cross_matrices
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.scene import Scene
 
-# The classical Runge-Kutta step errs by (h rate)^5/120 of the state, 3e-6.
-_STEP: Final = 0.2
+# Steps in radians of the fastest rate: one errs by less than 1e-6 of the state, and by its rounding.
+_ROUGH_STEP: Final = 0.5
+_FINE_STEP: Final = 0.75
 _MOST_STEPS: Final = 100_000
 # Norms are wanted to a digit or two: a motion that misses the truth by this part of its size, or a
 # step that changes volume by it, is not what was asked about.
@@ -45,12 +43,17 @@ _FLOAT_DIGITS: Final = 20
 
 
 def integrated(
-    scene: Scene, flow: Flow, elapsed: Sequence[Fraction], more_digits: int = 0
+    scene: Scene,
+    flow: Flow,
+    elapsed: Sequence[Fraction],
+    more_digits: int = 0,
+    is_rough: bool = False,
 ) -> Steps | None:
     """The derivative of the motion between these times, or None where float64 does not follow it.
 
     ``more_digits`` of the truth keep its small components. The motion is set back to the truth at these
-    times, and where it misses it so, between them too.
+    times, and where it misses it so, between them too. If ``is_rough``, each step is right to about six
+    digits, which is enough unless errors shrink again after they grew.
     """
     for parts in (1, _PARTS):
         points = [elapsed[0]]
@@ -58,7 +61,7 @@ def integrated(
             points += [begin + (end - begin) * Fraction(k, parts) for k in range(1, parts + 1)]
         truth = solution(scene).motion(points, _TRUTH_DIGITS + more_digits)
         with np.errstate(all="ignore"):  # what overflows is not finite, and then there is no answer
-            parts_of_steps = _steps(scene, flow, points, truth)
+            parts_of_steps = _steps(scene, flow, points, truth, is_rough)
             if parts_of_steps is not None:
                 short, momentum, centre = parts_of_steps
                 # Products of so many steps each.
@@ -70,7 +73,7 @@ def integrated(
 
 
 def _steps(
-    scene: Scene, flow: Flow, points: Sequence[Fraction], truth: Motion
+    scene: Scene, flow: Flow, points: Sequence[Fraction], truth: Motion, is_rough: bool
 ) -> tuple[Floats, Floats, Floats] | None:
     """The steps on (z, theta, c) from point to point, and z and c there, counted in the flow's units.
 
@@ -83,16 +86,18 @@ def _steps(
         path = truth.quantities.get("centre", np.empty((0, 3), dtype=object))
         centre = ((path - path[:1]) / mp.convert(flow.length)).astype(float)
     n, d = z.shape
-    R = truth.quantities.get("attitude", np.tile(np.eye(3), (n, 1, 1))).astype(float)
+    R = truth.quantities.get("attitude", np.empty((n, 0, 3))).astype(float)
     clock = clocks.floats(scene.body.manufactured, points)
-    nothing, identity = np.zeros((n - 1, 3, d)), np.tile(np.eye(d), (n - 1, 1, 1))
+    nothing = np.zeros((n - 1, R.shape[1], d))
+    identity = np.tile(np.eye(d), (n - 1, 1, 1))
     arcs = _Arcs(clock[:-1], z[:-1], R[:-1], identity, nothing, nothing)
     spans = np.diff([float(t / flow.time) for t in points])
-    reached = _followed(flow, arcs, spans)
+    reached = _followed(flow, arcs, spans, is_rough)
     if reached is None or not _arrive(reached, z[1:], np.exp(flow.expansion * spans)):
         return None
     steps = np.tile(np.eye(d + 6), (n - 1, 1, 1))
-    steps[:, :, :d] = np.concatenate([reached.by_momentum, reached.turn, reached.shift], axis=1)
+    rows = np.concatenate([reached.by_momentum, reached.turn, reached.shift], axis=1)
+    steps[:, : rows.shape[1], :d] = rows
     if len(centre):
         steps[:, d + 3 :, d : d + 3] = -cross_matrices(np.diff(centre, axis=0))
     return steps, z, centre
@@ -113,7 +118,7 @@ class _Arcs(NamedTuple):
     """The ends of n arcs: w (n, m), z (n, d), R (n, 3, 3), and what errors of z at their starts became.
 
     ``by_momentum`` (n, d, d) are the derivatives of z, ``turn`` and ``shift`` (n, 3, d) those of theta
-    and c.
+    and c. Where no attitude is tracked, R, ``turn`` and ``shift`` have no rows.
     """
 
     clock: Floats
@@ -123,53 +128,48 @@ class _Arcs(NamedTuple):
     turn: Floats
     shift: Floats
 
-    def only(self, places: Any) -> _Arcs:
-        """The arcs at these places, an array of indices: always a copy."""
-        return _Arcs(*(part[places] for part in self))
+    @property
+    def whole(self) -> Floats:
+        """All numbers of an arc in a row, (n, columns)."""
+        return np.hstack([part.reshape(len(part), prod(part.shape[1:])) for part in self])
 
-    def moved(self, rates: _Arcs, h: Floats) -> _Arcs:
-        """Return the arcs advanced by h times their rates."""
-        pairs = zip(self, rates, strict=True)
-        return _Arcs(*(part + h.reshape(-1, *[1] * (part.ndim - 1)) * rate for part, rate in pairs))
+    def of(self, whole: Floats) -> _Arcs:
+        """Return the arcs whose numbers, shaped as these, are in the rows of an array."""
+        ends = np.cumsum([prod(part.shape[1:]) for part in self])[:-1]
+        columns = zip(np.split(whole, ends, axis=1), self, strict=True)
+        return _Arcs(*(column.reshape(len(whole), *part.shape[1:]) for column, part in columns))
 
 
-def _followed(flow: Flow, arcs: _Arcs, spans: Floats) -> _Arcs | None:
+def _followed(flow: Flow, arcs: _Arcs, spans: Floats, is_rough: bool) -> _Arcs | None:
     """Return every arc after its time span (n), or None if an arc is lost.
 
-    By the classical Runge-Kutta method, each in steps that resolve its own Jacobian.
+    Each is followed in steps that resolve its own Jacobian.
     """
-    left, active = spans.copy(), np.arange(len(spans))
-    # A copy, because the loop below writes into it.
-    reached = arcs.only(active)
+    parts, longest = (ROUGH, _ROUGH_STEP) if is_rough else (FINE, _FINE_STEP)
+    left, active, reached = spans.copy(), np.arange(len(spans)), arcs.whole
+
+    def rates(whole: Floats) -> Floats:
+        return _rates(flow, arcs.of(whole)).whole
+
     for _ in range(_MOST_STEPS):
-        current = reached.only(active)
-        rate = flow.rate(current.momentum)
+        current = reached[active]
+        rate = flow.rate(arcs.of(current).momentum)
         if not np.isfinite(rate).all():
             return None
-        whole = abs(left[active]) * rate <= _STEP
-        h = np.where(whole, left[active], np.copysign(_STEP / rate, left[active]))
-        for part, moved in zip(reached, _step(flow, current, h), strict=True):
-            part[active] = moved
+        is_last = abs(left[active]) * rate <= longest
+        h = np.where(is_last, left[active], np.copysign(longest / rate, left[active]))
+        reached[active], _ = extrapolated(rates, current, h[:, None], parts)
         left[active] -= h
-        active = active[~whole]
+        active = active[~is_last]
         if not active.size:
-            return reached
+            return arcs.of(reached)
     return None
-
-
-def _step(flow: Flow, at: _Arcs, h: Floats) -> _Arcs:
-    first = _rates(flow, at)
-    second = _rates(flow, at.moved(first, h / 2))
-    third = _rates(flow, at.moved(second, h / 2))
-    fourth = _rates(flow, at.moved(third, h))
-    slopes = zip(first, second, third, fourth, strict=True)
-    return at.moved(_Arcs(*((a + 2 * b + 2 * c + d) / 6 for a, b, c, d in slopes)), h)
 
 
 def _rates(flow: Flow, at: _Arcs) -> _Arcs:
     jacobian, R = flow.jacobian(at.momentum), at.attitude
     turn = R @ (flow.equations.spin @ at.by_momentum)
-    if not len(flow.equations.velocity):
+    if not len(flow.equations.velocity) or not turn.shape[1]:
         shift = np.zeros_like(turn)
     else:
         speed = applied(R, at.momentum @ flow.equations.velocity.T)

@@ -30,7 +30,7 @@ import numpy as np
 from platformdirs import user_cache_path
 
 CACHE_VARIABLE: Final = "HEYOKA_CACHE_DIR"
-# In bytes. The standard set fills a quarter of it; the least recently used files go first.
+# In bytes. The standard set fills a third of it; the least recently used files go first.
 _LARGEST_CACHE: Final = 2**28
 _DIGEST_SIZE: Final = hashlib.sha256().digest_size
 _log = logging.getLogger(__name__)
@@ -85,12 +85,22 @@ def _processor_features() -> str:
 
 def _name(make: Callable[..., Any], system: Any, options: dict[str, Any]) -> str:
     """Return a file name that differs wherever the compiled code could."""
-    described = {
-        name: value.shape if isinstance(value, np.ndarray) else value
-        for name, value in options.items()
-    }
+    described = {name: _described(value) for name, value in options.items()}
     asked = pickle.dumps((make.__name__, system, sorted(described.items())))
     return hashlib.sha256(_build() + asked).hexdigest()
+
+
+def _described(value: Any) -> Any:
+    """Return the part of an option that the code depends on, so that equal options are equal bytes.
+
+    Of an array that is its shape. An MPFR number is its precision and its digits: the bytes of a zero
+    contain an unset significand, another one in each process.
+    """
+    import heyoka as hy
+
+    if isinstance(value, np.ndarray):
+        return value.shape
+    return (value.prec, str(value)) if isinstance(value, hy.real) else value
 
 
 @lru_cache(maxsize=1)

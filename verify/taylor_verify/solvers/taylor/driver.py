@@ -28,7 +28,7 @@ from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.solvers.options import options
 from taylor_verify.solvers.registry import TAYLOR
 from taylor_verify.solvers.solver import Solver
-from taylor_verify.solvers.taylor.cache import heyoka_cache_off, stored
+from taylor_verify.solvers.taylor.cache import stored
 from taylor_verify.solvers.taylor.numbers import arithmetic, unavailable
 from taylor_verify.solvers.taylor.way import Way
 from taylor_verify.solvers.trajectory import Outcome, Postponed, Trajectory
@@ -158,10 +158,7 @@ def compiled(
         # heyoka takes 0 for the machine epsilon of the type.
         "tol": zero if tolerance is None else numbers.number(rung.round(tolerance)),
     }
-    if numbers.is_found_again:
-        return stored(hy.taylor_adaptive, system, **options)
-    heyoka_cache_off()
-    return hy.taylor_adaptive(system, **options)
+    return stored(hy.taylor_adaptive, system, **options)
 
 
 def equations(form: Form, coefficients: Sequence[Any]) -> list[tuple[Any, Any]]:

@@ -33,8 +33,7 @@ class Arithmetic:
     ``scaled`` makes one of a significand and an exponent of two; ``double`` rounds a double to nearest
     where the rung is the narrower. ``exact`` leads back. Where ``is_software``, a library computes, some
     hundred times slower than a processor; without compact mode its code compiles for seconds to minutes,
-    and runs no faster. Code that is stored on disk is found again by another process if
-    ``is_found_again``. Straight-line code ``is_quick_plain``: without any optimising it runs as fast as
+    and runs no faster. Straight-line code ``is_quick_plain``: without any optimising it runs as fast as
     optimised loops, and compiles in a quarter of their time.
     """
 
@@ -43,7 +42,6 @@ class Arithmetic:
     double: Callable[[float], Any]
     exact: Callable[[Any], Fraction] = exact_value
     is_software: bool = False
-    is_found_again: bool = True
     is_quick_plain: bool = False
 
     def number(self, value: Fraction) -> Any:
@@ -91,7 +89,6 @@ def arithmetic(rung: Rung) -> Arithmetic:
         lambda v: hy.real(v, bits),
         _from_real,
         is_software=True,
-        is_found_again=False,
     )
 
 

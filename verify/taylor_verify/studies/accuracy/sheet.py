@@ -7,6 +7,7 @@ from typing import Any, Final
 
 from taylor_verify.publish.cells import in_roundoffs, over_attainable, word
 from taylor_verify.publish.sheet import sheet
+from taylor_verify.records.json_text import finite
 from taylor_verify.records.runs import (
     Run,
     conserved_quantities,
@@ -49,6 +50,8 @@ _GATES: Final = (
     "scene_sha256",
 )
 _CONSERVED: Final = ("max_u", "mean_u", "at", "ratio", "verdict")
+_FORMED: Final = ("max_u", "mean_u", "attainable_u", "scene_sha256")
+_FIELDS: Final = tuple({*_ACCURACY, *_ATTAINABLE, *_GATES} - {*_FORMED})
 
 
 def accuracy(verdicts: Iterable[Verdict]) -> str:
@@ -102,7 +105,7 @@ def _fields(verdict: Verdict) -> dict[str, Any]:
 
     Numbers that are quotients of two other columns have six digits.
     """
-    row = verdict.row() | {
+    row = {name: finite(getattr(verdict, name)) for name in _FIELDS} | {
         "mean_u": _short(in_roundoffs(verdict, verdict.mean)),
         "attainable_u": _short(in_roundoffs(verdict, verdict.attainable)),
         "scene_sha256": verdict.provenance.get("scene"),
