@@ -19,14 +19,14 @@ verify:  ## Run the standard set on all rungs, the extremes on f64; print the ve
 verify-all:  ## The same with the extremes on all rungs
 verify-all: EXTREMES_ON = --rung f32 f64 f80 f128 mp237
 
+# Bytecode is kept, whatever the shell says: else each process that starts compiles the package.
+verify verify-all test test-all: export PYTHONDONTWRITEBYTECODE =
+
 # Both are run, whatever the first one finds; an interrupt (130) ends both.
 verify verify-all: $(SOLVING)
 	@status=0; $(BIN)/taylor-verify run --out reports/local || status=$$?; \
 		[ $$status -ne 130 ] || exit 130; \
 		$(BIN)/taylor-verify run extremes $(EXTREMES_ON) --out reports/local/extremes && exit $$status
-
-# Bytecode is kept, whatever the shell says: else each program that a test starts compiles the package.
-test test-all: export PYTHONDONTWRITEBYTECODE =
 
 # What a file of tests shares is made once, in one process.
 test: lint  ## Check style and types, then run all but the slow tests

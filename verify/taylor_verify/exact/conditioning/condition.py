@@ -99,17 +99,16 @@ class Path:
         """The size, root mean square, of what the errors up to each time have become there.
 
         ``errors`` (n, components) are their sizes at each time. By name of the block, ``omega`` too;
-        in units, infinite beyond float64.
+        in units, infinite beyond float64. Of errors that shrink again by more than float64 has digits, its
+        rounding is left, which makes them larger and not smaller.
         """
         size = 3 * len(self.blocks)
-        factor, rows = np.diag(errors[0]), []
+        factors = [np.diag(errors[0])]
         with np.errstate(all="ignore"):
-            rows.append(self._sizes(factor))
             for step, sizes in zip(self.carried.steps, errors[1:], strict=True):
-                both = np.hstack([step[:size, :size] @ factor, np.diag(sizes)])
-                factor = _narrowed(both)
-                rows.append(self._sizes(factor))
-        return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+                both = np.hstack([step[:size, :size] @ factors[-1], np.diag(sizes)])
+                factors.append(_narrowed(both))
+            return self._sizes(np.array(factors))
 
     def norms(self, out: str, into: str, since: int = 0) -> Floats:
         """The spectral norms of d out(t) / d into(t_since) from that time on, in the scene's units.
@@ -173,12 +172,13 @@ class Path:
         first = 3 * self.blocks.index(block)
         return slice(first, first + 3)
 
-    def _sizes(self, factor: Floats) -> dict[str, float]:
-        names = {name: factor[self._place(name)] for name in self.blocks}
+    def _sizes(self, factors: Floats) -> dict[str, Floats]:
+        """Return the norm of the rows of each block at each time, and those of omega."""
+        names = {name: factors[:, self._place(name)] for name in self.blocks}
         if "momentum" in names:
             names["omega"] = self.flow.equations.spin @ names["momentum"]
-        sizes = {name: float(np.linalg.norm(rows)) for name, rows in names.items()}
-        return {name: size if size == size else np.inf for name, size in sizes.items()}
+        sizes = {name: np.linalg.norm(rows, axis=(1, 2)) for name, rows in names.items()}
+        return {name: np.where(np.isnan(size), inf, size) for name, size in sizes.items()}
 
 
 def _narrowed(factor: Floats) -> Floats:

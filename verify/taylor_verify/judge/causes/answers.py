@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import replace
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -26,8 +26,10 @@ from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.files.file import TrajectoryFile
 from taylor_verify.solvers.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from taylor_verify.solvers.files.file import TrajectoryFile
 
 _DIGITS: Final = 20
 _MOST_ROWS: Final = 4096

@@ -20,11 +20,10 @@ from mpmath import mp
 
 from taylor_verify.exact.rates import Rates, rates
 from taylor_verify.exact.solution import Solution, Unsettled
-from taylor_verify.judge.errors.state import Errors, largest
+from taylor_verify.judge.errors.state import Errors
 from taylor_verify.records.quantities import QUANTITIES, Measure
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.scenes.motion import Clock, Motion
-from taylor_verify.scenes.mpfr import precision, to_mpf, to_mpfr
 from taylor_verify.scenes.precision import power_of_two
 from taylor_verify.scenes.scene import Scene
 
@@ -180,10 +179,9 @@ class Compared:
         """Largest distance of the answer from its first sample, in the unit of the error."""
         parts = []
         for part, scale in self._scales.items():
-            rows = to_mpfr(self.run.answer[part].reshape(len(self.run.elapsed), -1))
-            with precision():
-                squares = np.sum((rows - rows[:1]) ** 2, axis=1)
-            parts.append(mp.sqrt(largest(to_mpf(squares))) / scale)
+            rows = self.run.answer[part].reshape(len(self.run.elapsed), -1)
+            apart = ((rows - rows[:1]) / scale).astype(float)
+            parts.append(np.max(np.linalg.norm(apart, axis=1)))
         return float(max(parts))
 
     @cached_property

@@ -35,10 +35,6 @@ from taylor_verify.solvers.trajectory import Outcome, Postponed, Trajectory
 
 # Beyond this many states optimising straight-line code takes longer than it runs once.
 _LARGEST_STRAIGHT_LINE = 5
-# Where code may be left as it is, it is optimised for ways longer than this, in the units of time. Loops
-# run up to twice as fast then (f80), MPFR's calls by a quarter, f128's not at all; in some hundred steps
-# that is what optimising takes.
-_LONG_WAY = 50
 # The standard set asks for nearly four hundred, a scene's rungs one after the other.
 _MOST_COMPILED = 128
 # Ways are kept for whoever asks many questions in turns, and their instants only where they are few.
@@ -154,7 +150,8 @@ def compiled(
         "pars": np.array([zero] * passed, dtype=numbers.fp_type),
         "fp_type": numbers.fp_type,
         "compact_mode": numbers.is_software or not is_straight_line,
-        "opt_level": 3 if is_optimised else 0,
+        # Code of level 3 computes the same, runs no faster, and compiles up to twice as long.
+        "opt_level": 1 if is_optimised else 0,
         # heyoka takes 0 for the machine epsilon of the type.
         "tol": zero if tolerance is None else numbers.number(rung.round(tolerance)),
     }
@@ -174,14 +171,18 @@ def equations(form: Form, coefficients: Sequence[Any]) -> list[tuple[Any, Any]]:
 
 
 def pays(form: Form, rung: Rung, problem: Problem | None = None) -> bool:
-    """Return True where a way costs less with optimised code, its optimising included.
+    """Return True where three ways cost less with optimised code, its optimising included.
 
-    The way is that of a problem of this form, or a long one.
+    The ways are those of a problem of this form, or long ones. Code that was stored is optimised once.
     """
-    if arithmetic(rung).is_quick_plain:
+    numbers = arithmetic(rung)
+    if numbers.is_quick_plain:
         # One code for short and long ways, so that a longer one begins as a shorter one does.
         return len(form.states) <= _LARGEST_STRAIGHT_LINE
-    return problem is None or _is_long(problem)
+    if problem is None:
+        return True
+    length = abs(float(numbers.times(problem.times)[-1]))
+    return length * len(form.states) > numbers.optimised_from
 
 
 def _foreseen(problem: Problem) -> float:
@@ -201,10 +202,6 @@ def _foreseen(problem: Problem) -> float:
     )
     integrator = compiled(scout.form, rung, None, pays(scout.form, rung))
     return Way(integrator, scout).fastest()
-
-
-def _is_long(problem: Problem) -> bool:
-    return abs(float(arithmetic(problem.rung).times(problem.times)[-1])) > _LONG_WAY
 
 
 # Whoever times a solver asks it one question many times: what follows from the question is made once.

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
-from math import ldexp
+from math import inf, ldexp
 from typing import Any, Final
 
 import numpy as np
@@ -34,7 +34,8 @@ class Arithmetic:
     where the rung is the narrower. ``exact`` leads back. Where ``is_software``, a library computes, some
     hundred times slower than a processor; without compact mode its code compiles for seconds to minutes,
     and runs no faster. Straight-line code ``is_quick_plain``: without any optimising it runs as fast as
-    optimised loops, and compiles in a quarter of their time.
+    optimised loops, and compiles in a quarter of their time. Other code is optimised for ways whose length
+    in units of time, times the number of states, exceeds ``optimised_from``.
     """
 
     fp_type: Any
@@ -43,6 +44,7 @@ class Arithmetic:
     exact: Callable[[Any], Fraction] = exact_value
     is_software: bool = False
     is_quick_plain: bool = False
+    optimised_from: float = inf
 
     def number(self, value: Fraction) -> Any:
         return self.scaled(value.numerator, 1 - value.denominator.bit_length())
@@ -64,7 +66,13 @@ _OF_NUMPY: Final = {
         np.float32, lambda m, e: np.float32(ldexp(m, e)), np.float32, is_quick_plain=True
     ),
     "f64": Arithmetic(float, ldexp, float, is_quick_plain=True),
-    "f80": Arithmetic(np.longdouble, lambda m, e: np.ldexp(np.longdouble(m), e), np.longdouble),
+    # Optimised loops run twice as fast, but even long ways take milliseconds.
+    "f80": Arithmetic(
+        np.longdouble,
+        lambda m, e: np.ldexp(np.longdouble(m), e),
+        np.longdouble,
+        optimised_from=1e4,
+    ),
 }
 
 
@@ -75,6 +83,7 @@ def arithmetic(rung: Rung) -> Arithmetic:
     import heyoka as hy
 
     if rung.name == "f128":
+        # Nearly all of the time is spent in the library, which nothing here optimises.
         return Arithmetic(
             hy.real128,
             lambda m, e: hy.real128(_real(m, e, 113)),
@@ -89,6 +98,8 @@ def arithmetic(rung: Rung) -> Arithmetic:
         lambda v: hy.real(v, bits),
         _from_real,
         is_software=True,
+        # A fifth of the time goes into calls, and not into MPFR.
+        optimised_from=100,
     )
 
 
