@@ -2,7 +2,10 @@
 # requires-python = ">=3.11"
 # dependencies = ["heyoka==7.13.2", "numpy>=2"]
 # ///
-"""Code for `hy.real` that one process stores in the disk cache is never found by another."""
+"""Code for `hy.real` that one process stores in the disk cache is never found by another.
+
+The code of two processes differs in one thing: the significand of a zero, which nothing sets or reads.
+"""
 
 import sqlite3
 import subprocess

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import partial
 from types import SimpleNamespace
 from typing import Any
 
@@ -13,6 +14,7 @@ from builders.turns import by_turns
 from mpmath import mp, mpf
 
 from taylor_verify.exact.conditioning import neighbours as module
+from taylor_verify.exact.conditioning.extrapolation import extrapolated
 from taylor_verify.exact.conditioning.neighbours import _Arcs, neighbours
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.taylor import arcs
@@ -145,7 +147,7 @@ def test_too_low_an_order_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
         scene = load("euler/constant-moment")
         states = beside(scene, Fraction("1e-14"))
         assert asked(scene, states, 16) is not None
-        monkeypatch.setattr(module, "_PARTS", (2, 4))
+        monkeypatch.setattr(module, "extrapolated", partial(extrapolated, parts=(2, 4)))
         assert asked(scene, states, 16) is None
 
 

@@ -364,12 +364,27 @@ def test_unoptimised_code_takes_the_same_steps(name: str, monkeypatch: pytest.Mo
     """How loops are compiled changes what they cost, and not a bit of what they compute."""
     problem = pose(load("euler/with-attitude"), rung(name))
     runs = []
-    for long_way in (0, 10**6):
-        monkeypatch.setattr(driver, "_LONG_WAY", long_way)
+    for is_optimised in (True, False):
+        monkeypatch.setattr(driver, "pays", lambda *_, answer=is_optimised: answer)
         runs.append(Taylor().solve(problem))
     assert runs[0].steps == runs[1].steps
     for quantity, rows in runs[0].quantities.items():
         assert np.array_equal(rows, runs[1].quantities[quantity])
+
+
+@pytest.mark.parametrize(
+    ("scene", "name", "expected"),
+    [
+        ("kirchhoff/remus-100", "mp237", True),
+        ("kirchhoff/general-body", "mp237", False),
+        ("kirchhoff/remus-100", "f128", False),
+        ("kirchhoff/remus-100", "f80", False),
+    ],
+)
+def test_code_is_optimised_where_it_saves_seconds(scene: str, name: str, expected: bool) -> None:
+    """MPFR's on a long way; float128's library gains nothing, and a way in f80 takes milliseconds."""
+    problem = pose(load(scene), rung(name))
+    assert driver.pays(problem.form, problem.rung, problem) is expected
 
 
 def test_optimised_code_passes_the_same_gates() -> None:

@@ -1,4 +1,4 @@
-"""One step of a system of differential equations in float64, by Gragg's method of extrapolation.
+"""Steps of differential equations in float64, by Gragg's method of extrapolation.
 
 A step is taken as 2, 4, 6, ... parts of the modified midpoint rule. The error of such a result has only
 even powers of the length of a part, so each number of parts adds two orders.

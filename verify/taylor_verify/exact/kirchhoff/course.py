@@ -11,7 +11,6 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from fractions import Fraction
-from math import prod
 from typing import NamedTuple, Self, final
 
 from flint import acb, arb
@@ -48,17 +47,13 @@ class Pole(NamedTuple):
         value, slope = self.value, self.slope
         return (value.real * slope.real + value.imag * slope.imag) / self.square
 
-    def conjugate(self) -> Pole:
-        """Return the pole at the conjugate of w."""
-        slope = None if self.slope is None else self.slope.conjugate()
-        return Pole(self.value.conjugate(), self.square, slope)
-
 
 class Course(ABC):
     """z(u), z'(u) and their integrals, with numbers of one precision and to be used at that one.
 
     ``poles`` are the arguments of the poles of z, each of order ``order``, those at a double point
-    left out. ``are_conjugate`` says that there are two, and that so also are the quotients N of both.
+    left out. ``are_conjugate`` says that there are two, and that so also are the quotients N of both: then
+    the first one alone is asked for.
     """
 
     poles: tuple[acb, ...]
@@ -170,16 +165,13 @@ class QuarticCourse(Course):
 
     def integral(self, u: arb, speed: arb, poles: Sequence[Pole]) -> arb:
         """Found from the logarithms of N, whose arguments are followed continuously."""
-        if not self.are_conjugate:
-            # One logarithm, of the square of a quotient.
-            parts = zip(self._signs, poles, strict=True)
-            square = prod(
-                (pole.square if sign > 0 else 1 / pole.square for sign, pole in parts),
-                start=arb(1),
-            )
-            grown = square.log() / 2
-        else:
+        if self.are_conjugate:
             grown = 2 * self.lattice.turn(u, self.poles[0], poles[0].value)
+        elif len(poles) == 2:
+            # One logarithm, of the square of a quotient.
+            grown = (poles[0].square / poles[1].square).log() / 2
+        else:
+            grown = self._signs[0] * poles[0].square.log() / 2
         return self._pace * u - grown / self._size
 
     def integral_of_square(self, u: arb, poles: Sequence[Pole], integral: arb) -> arb:
@@ -187,7 +179,8 @@ class QuarticCourse(Course):
 
         The latter is not read where f has no cubic term.
         """
-        change = sum((pole.rate for pole in poles), arb(0)) - self._start_slopes
+        rate = sum((pole.rate for pole in poles), arb(0))
+        change = (2 * rate if self.are_conjugate else rate) - self._start_slopes
         tilted = arb(0) if self._slant.is_zero() else self._slant * integral
         return self._square_pace * u - change / self._a0 - tilted
 

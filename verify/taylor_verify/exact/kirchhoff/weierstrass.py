@@ -20,7 +20,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from math import prod
 from typing import Any, Final, final
 
 from flint import acb, arb, arb_mat
@@ -151,12 +150,10 @@ class Orbit:
     ) -> tuple[dict[str, Any], Rows]:
         """The impulses, and the rows of R and of the way since the start by the axes of the formulas."""
         z, speed = place
-        poles = self._with_conjugate(own)
+        poles = [Pole.of(jet) for jet in own]
         along = self._course.integral(u, speed, poles) if self._needs_integral else arb(0)
         screw = self._screw * along
-        over = prod((pole.value.conjugate() * (1 / pole.square) for pole in poles), start=acb(1))
-        if self._course.order == 2:
-            over = over * over
+        over = self._over(poles)
         turn = self._xi * self._grown(self._xi_rate, u, -screw) * over
         xi = turn * above[0].conjugate() * above[1]
         re, im = xi.real, xi.imag
@@ -190,17 +187,16 @@ class Orbit:
         return impulses, frame
 
     def _carry_to_space(self, rows: Sequence[dict[str, Any]], frames: Sequence[Rows]) -> None:
-        """Add R and the centre in space."""
-        # Entry by entry: to make a matrix of balls takes longer than the product.
-        to_space, start = self._to_space.tolist(), self._at_start["centre"]
-        for row, (first, second, third) in zip(rows, frames, strict=True):
-            carried = [
-                [p * a + q * b + r * c for a, b, c in zip(first, second, third, strict=True)]
-                for p, q, r in to_space
-            ]
-            row["attitude"] = [line[:3] for line in carried]
+        """Add R and the centre in space, by one product of matrices."""
+        start, size = self._at_start["centre"], len(frames[0][0])
+        side_by_side = [entry for k in range(3) for frame in frames for entry in frame[k]]
+        columns = arb_mat(3, size * len(frames), side_by_side)
+        lines = (self._to_space * columns).tolist()
+        for k, row in enumerate(rows):
+            first = k * size
+            row["attitude"] = [line[first : first + 3] for line in lines]
             if "centre" in self._track:
-                row["centre"] = [c + line[3] for c, line in zip(start, carried, strict=True)]
+                row["centre"] = [c + line[first + 3] for c, line in zip(start, lines, strict=True)]
 
     def _grown(self, rate: acb, u: arb, angle: arb) -> acb:
         """e^{rate u + i angle}, for a rate of xi, D1 or D2.
@@ -293,10 +289,14 @@ class Orbit:
         """The factors of the poles; of two that are conjugate, the first one."""
         return self._poles[:1] if self._course.are_conjugate else self._poles
 
-    def _with_conjugate(self, jets: Sequence[Sequence[acb]]) -> list[Pole]:
-        """All poles, from the jets of ``_own_poles``."""
-        own = [Pole.of(jet) for jet in jets]
-        return [*own, own[0].conjugate()] if self._course.are_conjugate else own
+    def _over(self, own: Sequence[Pole]) -> acb:
+        """The product of 1/N over all poles, each as often as its order says, from ``_own_poles``."""
+        if self._course.are_conjugate:
+            return acb(1 / own[0].square)
+        over = acb(1)
+        for pole in own:
+            over = over * pole.value.conjugate() * (1 / pole.square)
+        return over * over if self._course.order == 2 else over
 
     def _eta_near_pole(self, u: arb, z: arb, xi: acb, turn: acb, above: tuple[acb, acb]) -> acb:
         """Solve xi' = i r z eta - i (r' y3 + (q' - q) z) xi for eta, without a division by xi."""
