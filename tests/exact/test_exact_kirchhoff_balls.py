@@ -551,23 +551,24 @@ def lost_windings(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def no_advance(monkeypatch: pytest.MonkeyPatch) -> None:
     """The centre keeps its height along the impulse."""
-    right = Orbit._path
+    right = Orbit._add_paths
 
-    def path(self: Orbit, *arguments: Any) -> list[arb]:
-        return [*right(self, *arguments)[:2], arb(0)]
+    def add_paths(self: Orbit, frames: list[list[list[arb]]], *arguments: Any) -> None:
+        right(self, frames, *arguments)
+        for frame in frames:
+            frame[2][3] = arb(0)
 
-    monkeypatch.setattr(Orbit, "_path", path)
+    monkeypatch.setattr(Orbit, "_add_paths", add_paths)
 
 
 def transposed(monkeypatch: pytest.MonkeyPatch) -> None:
     """Space to body instead of body to space."""
     right = Orbit.rows
 
-    def rows(self: Orbit, times: Sequence[arb]) -> list[dict[str, Any]]:
-        return [
-            {**row, "attitude": [list(column) for column in zip(*row["attitude"], strict=True)]}
-            for row in right(self, times)
-        ]
+    def rows(self: Orbit, times: Sequence[arb]) -> dict[str, list[Any]]:
+        quantities = right(self, times)
+        frames = [[list(column) for column in zip(*R, strict=True)] for R in quantities["attitude"]]
+        return {**quantities, "attitude": frames}
 
     monkeypatch.setattr(Orbit, "rows", rows)
 

@@ -30,7 +30,7 @@ class Line(ABC):
 
     @abstractmethod
     def jets(self, w: acb, scale: acb, order: int) -> list[list[acb]]:
-        """s(u - w)/scale at each argument, and for order 1 its derivative."""
+        """s(u - w)/scale at each argument, and for order 1 a second list: its derivatives there."""
 
 
 @final
@@ -45,8 +45,8 @@ class OneByOne(Line):
         return [(p.real, slope.real) for p, slope in both]
 
     def jets(self, w: acb, scale: acb, order: int) -> list[list[acb]]:
-        jets = (self._lattice.jet(u - w, order) for u in self._arguments)
-        return [[value / scale for value in jet] for jet in jets]
+        jets = [self._lattice.jet(u - w, order) for u in self._arguments]
+        return [[jet[k] / scale for jet in jets] for k in range(order + 1)]
 
 
 @final
@@ -62,27 +62,26 @@ class BySeries(Line):
         series, places = self._series, self._places
         theta1, theta2 = series.one(arb(1)), series.two(arb(1))
         e, c, cube = self._lattice.real_constants
-        # -2 (theta_1'(0)/(L lead))^3, for sin 2 pi v = 2 sin cos
-        cube = -2 * cube
-        values = []
-        for sin, cos, one_v, two_v, one_2v in zip(
+        cube = -cube
+        doubled, values = places.doubled, []
+        for sin, cos, one_v, two_v, sin_2v, one_2v in zip(
             places.sines,
             places.cosines,
             places.at(theta1),
             places.at(theta2),
-            places.doubled.at(theta1),
+            doubled.sines,
+            doubled.at(theta1),
             strict=True,
         ):
             below = 1 / (sin * one_v)
             across, square = cos * two_v * below, below * below
-            slope = cube * cos * sin * one_2v * square * square
+            slope = cube * sin_2v * one_2v * (square * square)
             values.append((e + c * (across * across), slope))
         return values
 
     def jets(self, w: acb, scale: acb, order: int) -> list[list[acb]]:
         length, factor = self._lattice.period, self._series.lead / scale
-        rows = [
+        return [
             self._series.shifted(-w / length, factor / length**k, k).at(self._places)
             for k in range(order + 1)
         ]
-        return [list(jet) for jet in zip(*rows, strict=True)]

@@ -184,7 +184,7 @@ class Azimuth:
         """e^{i phi} at each of the times, which are those of the line."""
         quotients = [acb(1)] * len(times)
         for argument, scale, sigma in self._factors:
-            values = (value for value, *_ in line.jets(argument, scale, order=0))
+            (values,) = line.jets(argument, scale, order=0)
             # A factor for sigma = -1 is inverted; once its modulus is left out that is the conjugate.
             quotients = [
                 quotient * (value if sigma > 0 else value.conjugate())

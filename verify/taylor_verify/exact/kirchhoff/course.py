@@ -28,24 +28,26 @@ from taylor_verify.exact.line import Line
 
 
 class Pole(NamedTuple):
-    """N(u) = s(u - w)/s(-w) at a pole w of z, |N|^2, and, where it was asked for, N'(u)."""
+    """N(u) = s(u - w)/s(-w) at many times, for a pole w of z: N, |N|^2 and the real parts of N'/N.
 
-    value: acb
-    square: arb
-    slope: acb | None = None
+    Without derivatives there are no ``rates``.
+    """
+
+    values: list[acb]
+    squares: list[arb]
+    rates: list[arb]
 
     @classmethod
-    def of(cls, jet: Sequence[acb]) -> Self:
-        """Return the pole of N and, if it is there, N'."""
-        re, im = jet[0].real, jet[0].imag
-        return cls(jet[0], re * re + im * im, *jet[1:])
-
-    @property
-    def rate(self) -> arb:
-        """The real part of N'/N: real numbers cost a third of a division of complex ones."""
-        assert self.slope is not None
-        value, slope = self.value, self.slope
-        return (value.real * slope.real + value.imag * slope.imag) / self.square
+    def of(cls, values: list[acb], slopes: Sequence[acb] = ()) -> Self:
+        """Return the pole of values N and derivatives N'."""
+        parts = [(value.real, value.imag) for value in values]
+        squares = [x * x + y * y for x, y in parts]
+        # Real numbers cost a third of a division of complex ones.
+        rates = [
+            (x * slope.real + y * slope.imag) / square
+            for (x, y), square, slope in zip(parts, squares, slopes, strict=False)
+        ]
+        return cls(values, squares, rates)
 
 
 class Course(ABC):
@@ -100,8 +102,10 @@ class Course(ABC):
         )
 
     @abstractmethod
-    def integral(self, u: arb, speed: arb, poles: Sequence[Pole]) -> arb:
-        """int_0^u z du, where z' = ``speed`` at u; the poles of a cubic have their slopes."""
+    def integrals(
+        self, times: Sequence[arb], speeds: Sequence[arb], poles: Sequence[Pole]
+    ) -> list[arb]:
+        """int_0^u z du at each time u, where z' is its speed; the poles of a cubic have their rates."""
 
 
 @final
@@ -163,26 +167,40 @@ class QuarticCourse(Course):
         self._pace = self.z + (change / self._root).real
         self._square_pace = self.z**2 + sum(bends, acb(0)).real / self._a0 + self._slant * self.z
 
-    def integral(self, u: arb, speed: arb, poles: Sequence[Pole]) -> arb:
+    def integrals(
+        self, times: Sequence[arb], speeds: Sequence[arb], poles: Sequence[Pole]
+    ) -> list[arb]:
         """Found from the logarithms of N, whose arguments are followed continuously."""
+        pace, twice = self._pace, 2 / self._size
         if self.are_conjugate:
-            grown = 2 * self.lattice.turn(u, self.poles[0], poles[0].value)
-        elif len(poles) == 2:
-            # One logarithm, of the square of a quotient.
-            grown = (poles[0].square / poles[1].square).log() / 2
-        else:
-            grown = self._signs[0] * poles[0].square.log() / 2
-        return self._pace * u - grown / self._size
+            turn, w = self.lattice.turn, self.poles[0]
+            grown = [turn(u, w, N) for u, N in zip(times, poles[0].values, strict=True)]
+            return [pace * u - twice * angle for u, angle in zip(times, grown, strict=True)]
+        # One logarithm, of the square of a quotient.
+        squares: Sequence[arb] = poles[0].squares
+        if len(poles) == 2:
+            squares = [p / q for p, q in zip(squares, poles[1].squares, strict=True)]
+        part = self._signs[0] * twice / 4
+        return [pace * u - part * square.log() for u, square in zip(times, squares, strict=True)]
 
-    def integral_of_square(self, u: arb, poles: Sequence[Pole], integral: arb) -> arb:
-        """int_0^u z^2 du from N and N', where ``integral`` is int_0^u z du.
+    def integrals_of_square(
+        self, times: Sequence[arb], poles: Sequence[Pole], integrals: Sequence[arb]
+    ) -> list[arb]:
+        """int_0^u z^2 du at each time u from N and N', where ``integrals`` are int_0^u z du.
 
-        The latter is not read where f has no cubic term.
+        The latter are not read where f has no cubic term.
         """
-        rate = sum((pole.rate for pole in poles), arb(0))
-        change = (2 * rate if self.are_conjugate else rate) - self._start_slopes
-        tilted = arb(0) if self._slant.is_zero() else self._slant * integral
-        return self._square_pace * u - change / self._a0 - tilted
+        pace, part = self._square_pace, 1 / self._a0
+        rates: Sequence[arb] = poles[0].rates
+        if self.are_conjugate:
+            rates = [2 * rate for rate in rates]
+        elif len(poles) == 2:
+            rates = [p + q for p, q in zip(rates, poles[1].rates, strict=True)]
+        start = self._start_slopes
+        squares = [pace * u - (p - start) * part for u, p in zip(times, rates, strict=True)]
+        if self._slant.is_zero():
+            return squares
+        return [square - self._slant * z for square, z in zip(squares, integrals, strict=True)]
 
     def _pole(self, sign: int) -> acb:
         _, b1, b2, b3, _ = self._b
@@ -204,8 +222,13 @@ class CubicCourse(Course):
         self._start_slope = (s1 / s0).real
         self._pace = self.z + (s2 / s0 - (s1 / s0) ** 2).real / self._a1
 
-    def integral(self, u: arb, speed: arb, poles: Sequence[Pole]) -> arb:
-        return self._pace * u - (poles[0].rate - self._start_slope) / self._a1
+    def integrals(
+        self, times: Sequence[arb], speeds: Sequence[arb], poles: Sequence[Pole]
+    ) -> list[arb]:
+        pace, start, part = self._pace, self._start_slope, 1 / self._a1
+        return [
+            pace * u - (rate - start) * part for u, rate in zip(times, poles[0].rates, strict=True)
+        ]
 
 
 @final
@@ -218,8 +241,13 @@ class QuadraticCourse(Course):
         super().__init__(nutation)
         self._c2, self._half_c1 = ball(nutation.f[0]), ball(nutation.f[1] / 2)
 
-    def integral(self, u: arb, speed: arb, poles: Sequence[Pole]) -> arb:
-        return (speed - self.speed - self._half_c1 * u) / self._c2
+    def integrals(
+        self, times: Sequence[arb], speeds: Sequence[arb], poles: Sequence[Pole]
+    ) -> list[arb]:
+        part, start, half_c1 = 1 / self._c2, self.speed, self._half_c1
+        return [
+            (speed - start - half_c1 * u) * part for u, speed in zip(times, speeds, strict=True)
+        ]
 
 
 def _about(f: Polynomial, z: Fraction) -> tuple[Fraction, ...]:

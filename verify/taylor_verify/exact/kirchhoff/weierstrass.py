@@ -17,7 +17,7 @@ exponential of a linear function of u and of i (q' - q) int z.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any, Final, final
@@ -34,9 +34,12 @@ from taylor_verify.exact.solution import Time
 from taylor_verify.scenes.motion import Impulse
 
 Rows = list[list[arb]]
+# The columns of a matrix, of each the first component plus i times the second.
+Columns = tuple[acb, acb, acb]
 
 _I: Final = acb(0, 1)
 _HALF: Final = arb(0.5)
+_HALF_I: Final = acb(0, 0.5)
 # Where |xi|^2 is a smaller part of F^2, eta is not found by a division by it.
 _NEAR_POLE: Final = 2.0**-6
 
@@ -57,8 +60,7 @@ class NutatingBody(Enclosed):
             heteroclinic = self.regime == "heteroclinic"
             self._orbits[bits] = Orbit(self.nutation, self.start, self.track, heteroclinic)
         rows = self._orbits[bits].rows(balls_of(elapsed))
-        names = ("linear_impulse", "angular_impulse", *sorted(self.track))
-        return {name: [row[name] for row in rows] for name in names}
+        return {name: rows[name] for name in ("linear_impulse", "angular_impulse", *self.track)}
 
 
 @final
@@ -72,9 +74,9 @@ class Factor:
             self._scale = lattice.jet(-argument, order)[order]
 
     def jets(self, line: Line, count: int, order: int) -> list[list[acb]]:
-        """N and, for order 1, its derivative, at each of so many arguments of the line."""
+        """N at each of so many arguments of the line and, for order 1, its derivatives there."""
         if self._argument is None:
-            return [[acb(1), acb(0)][: order + 1]] * count
+            return [[acb(1)] * count, [acb(0)] * count][: order + 1]
         return line.jets(self._argument, self._scale, order)
 
     def jet(self, u: arb, order: int) -> list[acb]:
@@ -127,76 +129,101 @@ class Orbit:
         if track:
             self._find_space(attitude)
 
-    def rows(self, times: Sequence[arb]) -> list[dict[str, Any]]:
-        """Return all tracked quantities, and possibly others, at each time since the start."""
+    def rows(self, times: Sequence[arb]) -> dict[str, list[Any]]:
+        """Return every tracked quantity, and possibly others, at each time since the start."""
         line, count = self._course.lattice.along(times), len(times)
         places = self._course.places(times, line)
-        above = (factor.jets(line, count, order=0) for factor in (self._alpha, self._beta))
-        jets = [pole.jets(line, count, self._pole_order) for pole in self._own_poles]
-        poles = zip(*jets, strict=True) if jets else [()] * count
-        parts = zip(times, places, *above, poles, strict=True)
-        rows = [
-            self._row(u, place, (alpha[0], beta[0]), own) for u, place, alpha, beta, own in parts
+        (alpha,) = self._alpha.jets(line, count, order=0)
+        (beta,) = self._beta.jets(line, count, order=0)
+        poles = [Pole.of(*pole.jets(line, count, self._pole_order)) for pole in self._own_poles]
+        along = [arb(0)] * count
+        if self._needs_integral:
+            along = self._course.integrals(times, [speed for _, speed in places], poles)
+        screws = [self._screw * z for z in along]
+        over = self._over(poles, count)
+        turns = [
+            self._xi * self._grown(self._xi_rate, u, -screw) * part
+            for u, screw, part in zip(times, screws, over, strict=True)
         ]
-        quantities: list[dict[str, Any]] = [impulses for impulses, _ in rows]
+        across = [turn * a.conjugate() * b for turn, a, b in zip(turns, alpha, beta, strict=True)]
+        etas = self._etas(times, places, across, turns, alpha, beta)
+        rows: dict[str, list[Any]] = {
+            "linear_impulse": [
+                [xi.real, xi.imag, z] for xi, (z, _) in zip(across, places, strict=True)
+            ],
+            "angular_impulse": [[eta.real, eta.imag, self._y3] for eta in etas],
+        }
         if self._track:
-            self._carry_to_space(quantities, [columns for _, columns in rows])
-        return [
-            self._at_start if u.is_zero() else row for u, row in zip(times, quantities, strict=True)
-        ]
+            larger = [
+                self._larger(u, z, a, b, screw) * part
+                for u, (z, _), a, b, screw, part in zip(
+                    times, places, alpha, beta, screws, over, strict=True
+                )
+            ]
+            columns = [
+                self._columns(large, xi, z)
+                for large, xi, (z, _) in zip(larger, across, places, strict=True)
+            ]
+            frames = [
+                self._frame(three, xi, z)
+                for three, xi, (z, _) in zip(columns, across, places, strict=True)
+            ]
+            if "centre" in self._track:
+                moments = map(self._moment, columns, etas)
+                self._add_paths(frames, times, moments, poles, along)
+            rows |= self._carried_to_space(frames)
+        for k, u in enumerate(times):
+            if u.is_zero():
+                for name, quantity in rows.items():
+                    quantity[k] = self._at_start[name]
+        return rows
 
-    def _row(
-        self, u: arb, place: tuple[arb, arb], above: tuple[acb, acb], own: Sequence[list[acb]]
-    ) -> tuple[dict[str, Any], Rows]:
-        """The impulses, and the rows of R and of the way since the start by the axes of the formulas."""
-        z, speed = place
-        poles = [Pole.of(jet) for jet in own]
-        along = self._course.integral(u, speed, poles) if self._needs_integral else arb(0)
-        screw = self._screw * along
-        over = self._over(poles)
-        turn = self._xi * self._grown(self._xi_rate, u, -screw) * over
-        xi = turn * above[0].conjugate() * above[1]
-        re, im = xi.real, xi.imag
-        square = re * re + im * im
+    def _etas(
+        self,
+        times: Sequence[arb],
+        places: Sequence[tuple[arb, arb]],
+        across: Sequence[acb],
+        turns: Sequence[acb],
+        alpha: Sequence[acb],
+        beta: Sequence[acb],
+    ) -> list[acb]:
+        """eta at each time, from xi; near a pole, where that is no division, from xi'."""
         front = self._course.front
         if front is not None:
             # G = y3 = 0, and y keeps its digits where z' = c (F^2 - z^2) has none left.
-            eta = _I * front.c / self._r * xi
-        elif square.mid() < self._near:
-            eta = self._eta_near_pole(u, z, xi, turn, above)
-        else:
-            eta = acb(self._FG - z * self._y3, speed * self._over_r) * xi * (1 / square)
-        impulses = {
-            "linear_impulse": [re, im, z],
-            "angular_impulse": [eta.real, eta.imag, self._y3],
-        }
-        if not self._track:
-            return impulses, []
-        # Of D1 and D2 the larger one.
-        if z.mid() >= 0:
-            larger = self._one * above[0] * above[0] * self._grown(self._one_rate, u, screw)
-        else:
-            larger = self._two * above[1] * above[1] * self._grown(self._two_rate, u, -screw)
-        larger = larger * over
-        frame = self._frame(larger, xi, z)
-        if "centre" in self._track:
-            for row, entry in zip(
-                frame, self._path(u, self._moment(frame, eta), poles, along), strict=True
-            ):
-                row.append(entry)
-        return impulses, frame
+            factor = _I * front.c / self._r
+            return [factor * xi for xi in across]
+        FG, y3, over_r, near, etas = self._FG, self._y3, self._over_r, self._near, list[acb]()
+        for k, (xi, (z, speed)) in enumerate(zip(across, places, strict=True)):
+            re, im = xi.real, xi.imag
+            square = re * re + im * im
+            if square.mid() < near:
+                eta = self._eta_near_pole(times[k], z, xi, turns[k], (alpha[k], beta[k]))
+            else:
+                eta = acb(FG - z * y3, speed * over_r) * xi * (1 / square)
+            etas.append(eta)
+        return etas
 
-    def _carry_to_space(self, rows: Sequence[dict[str, Any]], frames: Sequence[Rows]) -> None:
-        """Add R and the centre in space, by one product of matrices."""
-        start, size = self._at_start["centre"], len(frames[0][0])
+    def _larger(self, u: arb, z: arb, alpha: acb, beta: acb, screw: arb) -> acb:
+        """The larger one of D1 and D2, without the factors of the poles."""
+        if z.mid() >= 0:
+            return self._one * alpha * alpha * self._grown(self._one_rate, u, screw)
+        return self._two * beta * beta * self._grown(self._two_rate, u, -screw)
+
+    def _carried_to_space(self, frames: Sequence[Rows]) -> dict[str, list[Any]]:
+        """R and the centre in space, by one product of matrices."""
+        size = len(frames[0][0])
         side_by_side = [entry for k in range(3) for frame in frames for entry in frame[k]]
         columns = arb_mat(3, size * len(frames), side_by_side)
-        lines = (self._to_space * columns).tolist()
-        for k, row in enumerate(rows):
-            first = k * size
-            row["attitude"] = [line[first : first + 3] for line in lines]
-            if "centre" in self._track:
-                row["centre"] = [c + line[first + 3] for c, line in zip(start, lines, strict=True)]
+        a, b, c = (self._to_space * columns).tolist()
+        firsts = range(0, size * len(frames), size)
+        carried: dict[str, list[Any]] = {
+            "attitude": [[a[k : k + 3], b[k : k + 3], c[k : k + 3]] for k in firsts]
+        }
+        if size > 3:
+            x, y, z = self._at_start["centre"]
+            carried["centre"] = [[x + a[k + 3], y + b[k + 3], z + c[k + 3]] for k in firsts]
+        return carried
 
     def _grown(self, rate: acb, u: arb, angle: arb) -> acb:
         """e^{rate u + i angle}, for a rate of xi, D1 or D2.
@@ -275,9 +302,10 @@ class Orbit:
     def _find_space(self, attitude: arb_mat) -> None:
         """The scene's space axes, in which R and the centre begin as it says."""
         larger = self._one if self._nutation.z >= 0 else self._two
-        frame = self._frame(larger, self._start_xi, self._course.z)
+        columns = self._columns(larger, self._start_xi, self._course.z)
+        frame = self._frame(columns, self._start_xi, self._course.z)
         self._to_space = attitude * arb_mat(frame).transpose()
-        self._start_moment = self._moment(frame, self._start_eta)
+        self._start_moment = self._moment(columns, self._start_eta)
         body, F2 = self._nutation.body, self._nutation.F2
         self._ahead = self._rate(body.p * F2 + body.q * self._nutation.FG)
         self._ahead_by_square = self._rate(body.p_prime - body.p)
@@ -289,14 +317,18 @@ class Orbit:
         """The factors of the poles; of two that are conjugate, the first one."""
         return self._poles[:1] if self._course.are_conjugate else self._poles
 
-    def _over(self, own: Sequence[Pole]) -> acb:
-        """The product of 1/N over all poles, each as often as its order says, from ``_own_poles``."""
+    def _over(self, poles: Sequence[Pole], count: int) -> list[acb]:
+        """The product of 1/N over all poles, each as often as its order says, at each time."""
         if self._course.are_conjugate:
-            return acb(1 / own[0].square)
-        over = acb(1)
-        for pole in own:
-            over = over * pole.value.conjugate() * (1 / pole.square)
-        return over * over if self._course.order == 2 else over
+            return [acb(1 / square) for square in poles[0].squares]
+        if not poles:
+            return [acb(1)] * count
+        values, squares = poles[0].values, poles[0].squares
+        for pole in poles[1:]:
+            values = [N * other for N, other in zip(values, pole.values, strict=True)]
+            squares = [size * other for size, other in zip(squares, pole.squares, strict=True)]
+        over = [N.conjugate() * (1 / size) for N, size in zip(values, squares, strict=True)]
+        return [part * part for part in over] if self._course.order == 2 else over
 
     def _eta_near_pole(self, u: arb, z: arb, xi: acb, turn: acb, above: tuple[acb, acb]) -> acb:
         """Solve xi' = i r z eta - i (r' y3 + (q' - q) z) xi for eta, without a division by xi."""
@@ -314,44 +346,54 @@ class Orbit:
         change = turn * growth + pull * xi
         return (change / _I + (self._spin + self._screw * z) * xi) / (self._r * z)
 
-    def _frame(self, larger: acb, xi: acb, z: arb) -> Rows:
-        """R with the space axis Z along the impulse, row by row, from xi, z and the larger of D1 and D2.
+    def _columns(self, larger: acb, xi: acb, z: arb) -> Columns:
+        """The columns of R with the space axis Z along the impulse, from xi, z and the larger of D1 and D2.
 
         With g = xi/(F + z) the other one is -D1 g^2, and sin(theta) e^{i psi} is -i D1 g; where D2 is the
         larger, with g the conjugate of xi/(F - z), they are -D2 g^2 and i D2 g.
         """
-        F, over = self._F, self._over_F
         is_up = z.mid() >= 0
-        g = xi * (1 / (F + z)) if is_up else xi.conjugate() * (1 / (F - z))
+        g = xi * (1 / (self._F + z)) if is_up else xi.conjugate() * (1 / (self._F - z))
         slanted = larger * g
-        smaller = -slanted * g
-        total, rest = (larger + smaller) * _HALF, (larger - smaller) * _HALF
-        re, im = slanted.real, slanted.imag
-        if is_up:
-            re, im = -re, -im
-        else:
-            rest = -rest
-        # sin(theta) e^{i psi} = i (re + i im)
+        smaller = slanted * g
+        first, second = (larger - smaller) * _HALF, (larger + smaller) * _HALF_I
+        return (first, second, -slanted) if is_up else (first, -second, slanted)
+
+    def _frame(self, columns: Columns, xi: acb, z: arb) -> Rows:
+        """The rows of R with the space axis Z along the impulse."""
+        (first, second, third), over = columns, self._over_F
         return [
-            [total.real, -rest.imag, re],
-            [total.imag, rest.real, im],
+            [first.real, second.real, third.real],
+            [first.imag, second.imag, third.imag],
             [xi.real * over, xi.imag * over, z * over],
         ]
 
-    def _moment(self, frame: Rows, eta: acb) -> acb:
+    def _moment(self, columns: Columns, eta: acb) -> acb:
         """X + i Y of R y."""
-        (a, b, c, *_), (d, e, f, *_), _ = frame
-        re, im, y3 = eta.real, eta.imag, self._y3
-        return acb(a * re + b * im + c * y3, d * re + e * im + f * y3)
+        first, second, third = columns
+        return first * eta.real + second * eta.imag + third * self._y3
 
-    def _path(self, u: arb, moment: acb, poles: Sequence[Pole], along: arb) -> list[arb]:
-        """The centre from its start: 49 (18)-(19) across the impulse, and Z along it.
+    def _add_paths(
+        self,
+        frames: Sequence[Rows],
+        times: Sequence[arb],
+        moments: Iterable[acb],
+        poles: Sequence[Pole],
+        along: Sequence[arb],
+    ) -> None:
+        """Add the way of the centre since the start as a fourth column of each frame.
 
-        F dZ/dt = p F^2 + q FG + (p' - p) z^2 + (q' - q) y3 z, from Z' = (U.x)/F.
+        49 (18)-(19) across the impulse, and Z along it: F dZ/dt = p F^2 + q FG + (p' - p) z^2
+        + (q' - q) y3 z, from Z' = (U.x)/F.
         """
-        advance = self._ahead * u + self._screw * self._y3 * along
+        over, start, screw = self._over_F, self._start_moment, self._screw * self._y3
+        advances = [self._ahead * u + screw * z for u, z in zip(times, along, strict=True)]
         if isinstance(self._course, QuarticCourse):
-            square = self._course.integral_of_square(u, poles, along)
-            advance += self._ahead_by_square * square
-        across, over = moment - self._start_moment, self._over_F
-        return [across.imag * over, -across.real * over, advance * over]
+            share = self._ahead_by_square
+            squares = self._course.integrals_of_square(times, poles, along)
+            advances = [way + share * z for way, z in zip(advances, squares, strict=True)]
+        for frame, moment, advance in zip(frames, moments, advances, strict=True):
+            across = moment - start
+            frame[0].append(across.imag * over)
+            frame[1].append(-across.real * over)
+            frame[2].append(advance * over)
