@@ -275,7 +275,7 @@ def test_rows_of_other_code_are_refused(
         (["--jobs", "0", "--seed", "-1"], "got 0 @ jobs\nexpected a whole number from 0 to 2^63"),
         (["--resume"], "expected the folder of the sweep to go on with (--out), got none @ resume"),
         (["--resume", "--out", "gone"], "expected a folder with a sweep to go on with"),
-        (["--executor", "slurm"], "expected local or dask:ADDRESS, got 'slurm' @ executor"),
+        (["--executor", "slurm"], "HOST:8786, got 'slurm' @ executor"),
         (["--executor", "dask:x:1", "--jobs", "2"], "expected --jobs or --executor"),
         (["--solver", "nobody"], "got 'nobody' @ solver\n"),
         (["--rung", "f65"], "@ --rung"),
@@ -302,11 +302,62 @@ def test_a_folder_with_another_sweep_is_refused(template: str, tmp_path: Path) -
     swept(template, tmp_path / "out")
     with pytest.raises(Refused, match=r"a folder without a sweep, got one .*--resume"):
         swept(template, tmp_path / "out")
-    with pytest.raises(Refused, match=r"seed as in the sweep that is there \(5\), got 6 @ resume"):
+    with pytest.raises(
+        Refused, match=r"seed 5 as in the sweep that is there, got 6 @ resume .*repeat"
+    ):
         swept(template, tmp_path / "out", resume=True, seed=6)
     Path(template).write_text(TEMPLATE.replace("[1, 2]", "[1, 3]"))
-    with pytest.raises(Refused, match="expected scenes as in the sweep that is there"):
+    with pytest.raises(
+        Refused, match=r"expected the text of the template.* got another one @ resume"
+    ):
         swept(template, tmp_path / "out", resume=True)
+
+
+@pytest.mark.usefixtures("quick")
+@pytest.mark.parametrize(
+    "name", ["template.toml", "summary.csv", "verdicts/mine", "worst/mine.toml"]
+)
+def test_files_of_the_user_are_never_overwritten(template: str, tmp_path: Path, name: str) -> None:
+    """A folder in which a name of a sweep is taken is refused, and stays as it is."""
+    mine = tmp_path / "out" / name
+    mine.parent.mkdir(parents=True)
+    mine.write_text("mine\n")
+    with pytest.raises(
+        Refused, match=r"expected a folder without files of these names, got .* another"
+    ):
+        swept(template, tmp_path / "out")
+    assert mine.read_text() == "mine\n"
+    assert not (tmp_path / "out" / "sweep.json").exists()
+
+
+@pytest.mark.usefixtures("quick")
+def test_scenes_of_the_user_beside_the_worst_cases_stay(template: str, tmp_path: Path) -> None:
+    """A sweep that goes on removes the worst cases that it wrote before, and no other scene."""
+    swept(template, tmp_path / "out")
+    mine = tmp_path / "out" / "worst" / "mine.toml"
+    mine.write_text("title = 'mine'\n")
+    swept(template, tmp_path / "out", resume=True, worst=1)
+    assert {file.name for file in mine.parent.iterdir()} > {"mine.toml"}
+    assert len([*mine.parent.iterdir()]) == 2
+
+
+def test_a_grid_beyond_the_largest_sweep_is_refused_at_once(tmp_path: Path) -> None:
+    """The bodies are counted before anything is drawn or written."""
+    axis = "{ linspace = [1, 2, 5000] }"
+    text = TEMPLATE.replace("{ uniform = [1, 2] }, 2, 3", ", ".join([axis] * 3))
+    file = tmp_path / "grid.toml"
+    file.write_text(text)
+    with pytest.raises(ValueError, match="expected at most 1000000000 bodies, got"):
+        sweep(str(file), solver=SOLVER, out=tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_number_that_is_none_is_a_value_error() -> None:
+    """From Python a count that is a text is refused by its name, as from the command line."""
+    with pytest.raises(
+        ValueError, match="expected a whole number from 1 to 1000000000, got '3' @ count"
+    ):
+        sweep("satellites", count="3")  # type: ignore[arg-type]
 
 
 def test_a_folder_of_scenes_is_swept(template: str, tmp_path: Path) -> None:
@@ -318,7 +369,7 @@ def test_a_folder_of_scenes_is_swept(template: str, tmp_path: Path) -> None:
         (folder / file.name).write_bytes(file.read_bytes())
     result = sweep(str(folder), solver=SOLVER, jobs=1)
     assert (result.total, result.seed, result.exit_status) == (4, None, 0)
-    with pytest.raises(ValueError, match="expected none beside a folder of scenes, got 3 @ count"):
+    with pytest.raises(ValueError, match="expected no count for a folder of scenes, got 3 @ count"):
         sweep(str(folder), count=3)
     (folder / "wrong.toml").write_text("x = 1\n")
     with pytest.raises(Refused, match=r"wrong\.toml is refused:\n.*title"):
@@ -380,7 +431,9 @@ def test_where_nobody_answers_there_is_one_clear_error(
     assert main(["sweep", template, "--executor", "dask:tcp://127.0.0.1:9"]) == 2
     assert time.monotonic() - began < 10
     *_, last = capsys.readouterr().err.splitlines()
-    assert "expected a dask scheduler that answers within 0.5 s, got" in last
+    assert (
+        "expected the address of a dask scheduler that answers within 0.5 s, such as dask:" in last
+    )
 
 
 @pytest.mark.usefixtures("quick")

@@ -78,7 +78,7 @@ def test_a_verb_like_none_is_told_where_they_are(capsys: Captured) -> None:
         ),
         (["list", "--zzz"], "got --zzz (there is none like it)"),
         (["exact", "euler/rest", "euler/apollo", "--at", "1"], "got euler/apollo"),
-        (["run", "euler/rest", "--jobs", "x"], "--jobs: invalid int value: 'x'"),
+        (["run", "euler/rest", "--jobs", "x"], "--jobs: expected a whole number, got 'x'"),
         (["run", "euler/rest", "--gate", "x"], "--gate: invalid choice: 'x'"),
         (["check", "mine.csv"], "required: --scene"),
         (["draw"], "required: SCENE"),

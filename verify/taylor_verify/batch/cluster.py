@@ -46,7 +46,9 @@ def executor_named(name: str) -> Iterator[Placed]:
         return
     address = name.removeprefix(DASK)
     if not name.startswith(DASK) or not address:
-        raise ValueError(f"expected local or dask:ADDRESS, got {name!r} @ executor")
+        raise ValueError(
+            f"expected local or dask:ADDRESS, such as dask:tcp://HOST:8786, got {name!r} @ executor"
+        )
     try:
         # It has types for a part of itself only.
         distributed: Any = import_module("distributed")
@@ -57,7 +59,8 @@ def executor_named(name: str) -> Iterator[Placed]:
     except (OSError, TimeoutError, ValueError) as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise Unreachable(
-            f"expected a dask scheduler that answers within {_PATIENCE} s, got {reason!r}"
+            f"expected the address of a dask scheduler that answers within {_PATIENCE} s, such as "
+            f"dask:tcp://HOST:8786, got {name!r}: {reason}"
         ) from None
     with client:
         threads = client.nthreads()

@@ -355,6 +355,13 @@ def _act(name: str, options: argparse.Namespace) -> Answer:
     return answer
 
 
+def _whole_number(text: str) -> int:
+    try:
+        return int(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"expected a whole number, got {text!r:.60}") from None
+
+
 def _add(verb: argparse.ArgumentParser, line: str) -> None:
     """Add the argument that a line of the text describes."""
     match = _ARGUMENT.fullmatch(line)
@@ -368,7 +375,7 @@ def _add(verb: argparse.ArgumentParser, line: str) -> None:
     if others:
         given["choices"] = [first, *others]
     if value == "N":
-        given["type"] = int
+        given["type"] = _whole_number
     if required:
         given["required"] = True
     if sign and name.startswith("-"):

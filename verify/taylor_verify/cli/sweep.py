@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 from functools import partial
+from importlib.util import find_spec
+from pathlib import Path
 from time import monotonic
 from typing import Final
 
@@ -18,6 +20,7 @@ from taylor_verify.cli.inputs import known_rungs
 from taylor_verify.cli.progress import working
 from taylor_verify.cli.sentences import figure, print_end, status_text
 from taylor_verify.cli.streams import say
+from taylor_verify.publish.pictures.exceedance import STEM
 from taylor_verify.records.quantities import INITIAL
 from taylor_verify.records.sweep import Spread, SweepSummary
 
@@ -71,8 +74,19 @@ def answer(options: argparse.Namespace) -> Answer:
     messages = [f"{summary.total} bodies in {monotonic() - began:.1f} s"]
     messages += [f"nothing was judged: {lack}" for lack in summary.lacks]
     messages += [f"refused, for example: {refusal}" for refusal in summary.refusals]
-    messages += [f"wrote {folder}"] if folder is not None else []
+    if folder is not None:
+        messages.append(f"wrote {folder}, with {len(summary.worst)} of the worst cases as scenes")
+        messages += _lack_of_picture(folder)
     return Answer(summary.exit_status, document(summary), partial(_text, summary), messages)
+
+
+def _lack_of_picture(folder: Path) -> list[str]:
+    """Return the reason why a sweep's folder has no picture; nothing where it has one."""
+    if (folder / f"{STEM}.svg").exists():
+        return []
+    if find_spec("matplotlib") is None:
+        return ["no picture: it takes matplotlib (pip install 'taylor-verify[plots]')"]
+    return ["no picture: no judged error is a finite number above zero"]
 
 
 # The text.
@@ -84,7 +98,8 @@ def _text(summary: SweepSummary) -> str:
     page.line()
     print_table(page.console, _HEADINGS, [_cells(each) for each in summary.quantities], keys=1)
     page.line()
-    page.line(f"Error over attainable; a gate stands at {summary.factor}.")
+    floor = "the roundoff floor, which perfect rounding would leave"
+    page.line(f"Errors over {floor}; a body fails above {summary.factor}.")
     page.line()
     if summary.worst:
         page.line(bold("the worst cases"))

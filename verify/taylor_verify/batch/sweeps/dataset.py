@@ -19,14 +19,22 @@ from taylor_verify.records.replacement import replace_files
 from taylor_verify.scenes.reading.faults import Refused
 
 MANIFEST: Final = "sweep.json"
+TEMPLATE: Final = "template.toml"
 _ROWS: Final = "verdicts"
+OWN_NAMES: Final = (MANIFEST, TEMPLATE, _ROWS)
+"""The names in a sweep's folder of what was asked and of the rows."""
 _MADE_BY: Final = "taylor-verify sweep"
-# What a caller calls them.
-_WORDS: Final = {
-    "digest": "scenes",
+# What cannot be shown in a line.
+_UNSEEN: Final = {
+    "digest": "the text of the template, or of the scenes,",
     "package": "the code of taylor-verify",
-    "programs": "the programs of the solver",
+    "programs": "the program of the solver",
+    "versions": "the versions of libraries",
 }
+_WORDS: Final = {"name": "the template or family", "points": "the kind of points"}
+# Made of the others.
+_DERIVED: Final = ("total", "chunk", "made_by")
+_MEND: Final = "(repeat the first call with --resume, or name another folder)"
 # Texts that a column repeats.
 _REPEATED: Final = ("scene", "quantity", "verdict", "outcome", "unit", "because")
 
@@ -52,17 +60,17 @@ class Manifest:
     def differences(self, other: Manifest) -> list[str]:
         """Return a sentence for each option in which another sweep differs."""
         mine, theirs = vars(self), vars(other)
-        return [
-            f"expected {_WORDS.get(name, name)} as in the sweep that is there ({_text(mine[name])}), "
-            f"got {_text(theirs[name])} @ resume"
-            for name in mine
-            if mine[name] != theirs[name]
-        ]
+        names = [name for name in mine if name not in _DERIVED and mine[name] != theirs[name]]
+        return [_difference(name, mine[name], theirs[name]) for name in names]
 
 
-def _text(value: object) -> str:
-    text = str(value)
-    return text if len(text) <= 40 else f"{text[:12]}..."
+def _difference(name: str, mine: object, theirs: object) -> str:
+    if name in _UNSEEN:
+        expected, got = f"{_UNSEEN[name]} as in the sweep that is there", "another one"
+    else:
+        expected = f"{_WORDS.get(name, name)} {mine} as in the sweep that is there"
+        got = str(theirs)
+    return f"expected {expected}, got {got} @ resume {_MEND}"
 
 
 @dataclass(frozen=True)

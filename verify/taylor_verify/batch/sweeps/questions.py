@@ -180,36 +180,43 @@ def questions(
 
 def _drawn(family: Family, count: int | None, seed: int | None, spread: str | None) -> Drawn:
     faults = []
-    if count is not None and not 1 <= count <= MOST_POINTS:
-        faults.append(f"expected a whole number from 1 to {MOST_POINTS}, got {count} @ count")
-    if seed is not None and not 0 <= seed < 2**63:
-        faults.append(f"expected a whole number from 0 to 2^63 - 1, got {seed} @ seed")
+    if count is not None and not _is_whole(count, 1, MOST_POINTS):
+        faults.append(f"expected a whole number from 1 to {MOST_POINTS}, got {count!r} @ count")
+    if seed is not None and not _is_whole(seed, 0, 2**63 - 1):
+        faults.append(f"expected a whole number from 0 to 2^63 - 1, got {seed!r} @ seed")
     known = [each.value for each in Spread]
     if spread is not None and spread not in known:
         faults.append(f"expected one of {', '.join(known)}, got {spread} @ points")
     if not family.free:
         asked = {"count": count, "seed": seed, "points": spread}
         faults += [
-            f"expected none beside a grid, where nothing is drawn, got {value} @ {key}"
+            f"expected no {key} for a grid, where nothing is drawn, got {value} @ {key}"
             for key, value in asked.items()
             if value is not None
         ]
     if faults:
         raise ValueError("\n".join(faults))
-    drawn = count or family.count or COUNT
+    drawn = (count or family.count or COUNT) if family.free else 1
+    if (total := drawn * family.nodes) > MOST_POINTS:
+        each = f"{drawn} points, each with {family.nodes} of the grid" if drawn > 1 else "a grid"
+        raise ValueError(f"expected at most {MOST_POINTS} bodies, got {total} ({each}) @ count")
     chosen = seed if seed is not None else family.seed
     return Drawn(
         family,
-        drawn if family.free else 1,
+        drawn,
         chosen if chosen is not None else SEED,
         Spread(spread or family.spread or Spread.RANDOM),
     )
 
 
+def _is_whole(value: object, least: int, most: int) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and least <= value <= most
+
+
 def _listed(name: str, files: Any, count: object, seed: object, spread: object) -> Listed:
     asked = {"count": count, "seed": seed, "points": spread}
     faults = [
-        f"expected none beside a folder of scenes, got {value} @ {key}"
+        f"expected no {key} for a folder of scenes, got {value} @ {key}"
         for key, value in asked.items()
         if value is not None
     ]

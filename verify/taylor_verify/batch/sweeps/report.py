@@ -18,7 +18,7 @@ from taylor_verify.publish.pictures import exceedance
 from taylor_verify.publish.pictures.picture import save
 from taylor_verify.publish.sheet import sheet
 from taylor_verify.records.json_text import complete
-from taylor_verify.records.replacement import replace_files
+from taylor_verify.records.replacement import first_line, replace_files
 from taylor_verify.records.status import Status
 from taylor_verify.records.sweep import Quantiles, Spread, SweepSummary, WorstCase
 
@@ -26,6 +26,13 @@ WORST: Final = "worst"
 PICTURES: Final = ("svg", "png")
 _NAMES: Final = ("median", "ninety", "ninety_nine", "thousandth", "largest")
 _HEADINGS: Final = ("median:", "90 %:", "99 %:", "99.9 %:", "largest:")
+SUMMARY_NAMES: Final = (
+    *("summary.md", "summary.csv", "summary.json"),
+    *(f"{exceedance.STEM}.{kind}" for kind in PICTURES),
+    WORST,
+)
+"""The names in a sweep's folder of the summary, its picture and the worst cases."""
+_REASON: Final = "# Why: "
 # What stands in a name of a scene and in no name of a file.
 _ODD: Final = re.compile(r"[^A-Za-z0-9._-]+")
 _SHEET: Final = (
@@ -56,8 +63,10 @@ def write_summary(
         "summary.csv": sheet(_SHEET, map(_row, summary.quantities)),
         "summary.json": json.dumps(document(summary), indent=1, allow_nan=False) + "\n",
     }
-    # Those that are written now are not removed.
-    earlier = (folder / WORST).glob("*.toml")
+    # Those that are written now are not removed, nor scenes that the user has put there.
+    earlier = [
+        file for file in (folder / WORST).glob("*.toml") if first_line(file).startswith(_REASON)
+    ]
     written = [*replace_files(folder, texts, stale=earlier), *_drawn(folder, summary)]
     return summary, written
 
@@ -76,7 +85,8 @@ def page(summary: SweepSummary) -> str:
         judged,
         *(f"Nothing was judged: {prose(lack)}." for lack in summary.lacks),
         *(f"Refused, for example: {prose(refusal)}." for refusal in summary.refusals),
-        f"Error over attainable, of the rows that passed or failed; a gate stands at {summary.factor}. "
+        "The error over what perfect rounding would leave (the roundoff floor), of the rows that passed or "
+        f"failed; a body fails above {summary.factor}. "
         "A quantile is an error that occurred, at most a thousandth above the exact quantile.",
         table(
             ["quantity", "judged:", *_HEADINGS, "fail:", "undecided:"],
@@ -142,7 +152,7 @@ def _reason(summary: SweepSummary, case: WorstCase, questions: Questions) -> str
     size = "no number" if case.ratio is None else f"{case.ratio:.3g}"
     drawn = f", seed {summary.seed}, {summary.points} points" if summary.seed is not None else ""
     return (
-        f"# Why: {case.verdict} in {case.quantity} by {summary.solver} on {summary.rung}.\n"
+        f"{_REASON}{case.verdict} in {case.quantity} by {summary.solver} on {summary.rung}.\n"
         f"# Error over attainable: {size}. "
         f"Scene {case.scene} of a sweep of {summary.total}{drawn}.\n"
     )

@@ -18,9 +18,16 @@ from taylor_verify.batch.lock import alone_in
 from taylor_verify.batch.runs import run_stream
 from taylor_verify.batch.store import package_digest, program_digests
 from taylor_verify.batch.sweeps.chunk import Chunk, Judged, judge
-from taylor_verify.batch.sweeps.dataset import MANIFEST, Dataset, Manifest, read_manifest
+from taylor_verify.batch.sweeps.dataset import (
+    MANIFEST,
+    OWN_NAMES,
+    TEMPLATE,
+    Dataset,
+    Manifest,
+    read_manifest,
+)
 from taylor_verify.batch.sweeps.questions import Drawn, Questions, questions
-from taylor_verify.batch.sweeps.report import write_summary
+from taylor_verify.batch.sweeps.report import SUMMARY_NAMES, write_summary
 from taylor_verify.batch.sweeps.summary import WORST, summary, with_files
 from taylor_verify.judge.provenance import packages
 from taylor_verify.records.sweep import SweepSummary
@@ -32,7 +39,6 @@ from taylor_verify.solvers.solver import Lack
 from taylor_verify.solvers.trajectory import Outcome
 
 AHEAD: Final = 64
-TEMPLATE: Final = "template.toml"
 # Chunks are many enough to go round and to lose little by an end, and long enough to be worth a message.
 _CHUNKS: Final = 64
 _LEAST_CHUNK: Final = 4
@@ -119,6 +125,10 @@ def sweep(
                 # Nothing is left to go on from.
                 raise KeyboardInterrupt from None
             raise
+        except Failed as lost:
+            if out is None:
+                raise
+            raise Failed(f"{lost}; what was judged is stored: go on with --resume") from lost
         written, _ = write_summary(folder, summary(dataset, asked, asked.title, worst), asked)
     # What was written into a folder that is gone has no file.
     return written if out is not None else with_files(written, {})
@@ -181,9 +191,14 @@ def _begin(dataset: Dataset, asked: Questions, resume: bool) -> None:
         if differences := there.differences(dataset.manifest):
             raise Refused(differences)
         return
-    if there is not None or dataset.rows.exists():
+    if there is not None:
         mend = "go on with --resume, or name another folder"
         raise refusal("a folder without a sweep", "one", dataset.folder, mend)
+    if others := [
+        name for name in (*OWN_NAMES, *SUMMARY_NAMES) if (dataset.folder / name).exists()
+    ]:
+        expected, mend = "a folder without files of these names", "name another folder"
+        raise refusal(expected, ", ".join(others), dataset.folder, mend)
     dataset.begin({TEMPLATE: asked.family.source} if isinstance(asked, Drawn) else {})
 
 

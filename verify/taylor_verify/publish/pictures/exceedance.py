@@ -1,4 +1,4 @@
-"""Picture of the share of bodies with an error over attainable above a size, by quantity of a sweep."""
+"""Picture of a sweep: the share of judged rows with an error over the roundoff floor above a size."""
 
 from __future__ import annotations
 
@@ -37,16 +37,17 @@ def picture(summary: SweepSummary) -> Picture:
     )
     return Picture(
         STEM,
-        f"Error over attainable of {summary.total} bodies: {summary.name}",
-        f"Share of {summary.total} bodies of {summary.name} whose largest error, by {summary.solver} on "
-        f"{summary.rung}, is above a multiple of what is attainable; both axes are logarithmic, and a gate "
-        f"stands at {summary.factor}. The largest: {largest}.",
+        f"Error over the roundoff floor of {summary.total} bodies: {summary.name}",
+        f"Of {summary.total} bodies of {summary.name}, the share of the judged rows whose largest error, "
+        f"by {summary.solver} on {summary.rung}, is above a multiple of the roundoff floor; both axes are "
+        f"logarithmic, a body fails above {summary.factor}, and the largest error is drawn at half a row. "
+        f"The largest: {largest}.",
         partial(_figure, summary, drawn),
     )
 
 
 def _points(spread: Spread) -> Points:
-    """Return the points of a line; the largest error lies at half a body."""
+    """Return the points of a line; the largest error lies at half a row."""
     least = 0.5 / spread.judged if spread.judged else 1.0
     return [(size, max(share, least)) for size, share in spread.above]
 
@@ -59,7 +60,7 @@ def _figure(summary: SweepSummary, drawn: list[Spread]) -> Figure:
     sizes = [size for points in lines for size, _ in points]
     shares = [share for points in lines for _, share in points]
     axes.set(xscale="log", yscale="log")
-    axes.set(xlabel="error over attainable", ylabel="share of bodies above it")
+    axes.set(xlabel="error over the roundoff floor", ylabel="share of judged rows above it")
     axes.set(xlim=widened([*sizes, summary.factor], 0.03, 0.12))
     axes.set(ylim=widened([*shares, 1.0], 0.06, 0.06))
     number_axes(axes)
