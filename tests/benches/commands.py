@@ -74,9 +74,13 @@ class Verification:
 def ratios(other: Path, caches: Path) -> Iterator[Ratio]:
     """Yield this checkout over the other one, their caches in a folder that exists as long as these.
 
-    Both judge the scenes that both have, unchanged: a scene that was added is no slowness.
+    Both judge the scenes that both have, unchanged: a scene that was added is no slowness. Raises
+    ValueError if there is none.
     """
-    calls = tuple((*_shared(other, folders), "--rung", *rungs) for folders, rungs in _RUNS)
+    shared = [([*_shared(other, folders)], rungs) for folders, rungs in _RUNS]
+    calls = tuple((*names, "--rung", *rungs) for names, rungs in shared if names)
+    if not calls:
+        raise ValueError(f"expected a checkout with scenes of this one, got {other} @ --against")
 
     def pair(is_cold: bool) -> tuple[Side, Side]:
         return (

@@ -21,6 +21,7 @@ from benches.table import remarks, table
 from rich.console import Console
 
 from taylor_verify.models.problem import pose
+from taylor_verify.scenes.library import find
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.taylor.driver import Taylor
@@ -292,6 +293,7 @@ def test_another_checkout_has_caches_of_its_own(
         return Done()
 
     monkeypatch.setattr(commands.subprocess, "run", run)
+    share_a_scene(tmp_path)
     cold, warm = commands.ratios(tmp_path, tmp_path / "caches")
     (tmp_path / "caches").mkdir()
     in_turns(replace(cold, rounds=1))
@@ -307,9 +309,28 @@ def test_a_verification_that_fails_is_not_timed(tmp_path: Path) -> None:
     package.mkdir(parents=True)
     (package / "__init__.py").touch()
     (package / "__main__.py").write_text("raise SystemExit('a gate failed')")
+    share_a_scene(tmp_path)
     side, _ = next(commands.ratios(tmp_path, tmp_path / "caches")).pair()
-    with pytest.raises(ChildProcessError, match=r"status 0, got 1 of `run`.*a gate failed"):
+    with pytest.raises(ChildProcessError, match=r"got 1 of `run euler/rest \.\.\.`.*a gate failed"):
         replace(side, checkout=tmp_path).cost()  # type: ignore[type-var]
+
+
+def share_a_scene(checkout: Path) -> None:
+    """Give a checkout one scene of this one, and another scene under the name of one of this one."""
+    cases = checkout / "cases" / "euler"
+    cases.mkdir(parents=True)
+    (cases / "rest.toml").write_text(find("euler/rest").read_text())
+    (cases / "generic.toml").write_text("another scene")
+
+
+def test_two_checkouts_are_timed_on_the_scenes_that_both_have(tmp_path: Path) -> None:
+    """A scene that was added or changed would make one of them slower; without any there is no ratio."""
+    with pytest.raises(ValueError, match="expected a checkout with scenes of this one"):
+        next(commands.ratios(tmp_path, tmp_path / "caches"))
+    share_a_scene(tmp_path)
+    sides = next(commands.ratios(tmp_path, tmp_path / "caches")).pair()
+    calls = {side.calls for side in sides}  # type: ignore[attr-defined]
+    assert calls == {(("euler/rest", "--rung", "f32", "f64", "f80", "f128", "mp237"),)}
 
 
 # The ratios

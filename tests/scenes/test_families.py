@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from taylor_verify.scenes.families.cube import Spread, places
-from taylor_verify.scenes.families.draw import Draw, linspace, logspace, number_text
+from taylor_verify.scenes.families.draw import Draw, linspace, logspace, number_text, with_decimals
 from taylor_verify.scenes.families.family import Family
 from taylor_verify.scenes.families.formula import NoValue, formula
 from taylor_verify.scenes.families.library import family, family_names
@@ -78,6 +78,27 @@ def test_a_number_reads_back_as_it_was(value: Fraction) -> None:
     """The text of a rational in a scene is that rational, as a decimal where it has one."""
     text = number_text(value)
     assert exact_number(text.strip('"') if text.startswith('"') else Decimal(text)) == value
+
+
+@pytest.mark.parametrize(
+    ("fault", "written"),
+    [
+        ("got -197633/100000 @ body.inertia[0]", "got -1.97633 @ body.inertia[0]"),
+        ("got [0][1] = 1/3 but [1][0] = 3/2 @ body", "got [0][1] = 1/3 but [1][0] = 1.5 @ body"),
+        *((text, text) for text in ('got "-1/4 deg/s"', 'got "1/0"', "got 1/25...", "2x2/5x5")),
+    ],
+)
+def test_faults_have_decimals(fault: str, written: str) -> None:
+    """A fraction in a fault becomes a decimal, but not in quotation marks or where it is cut short."""
+    assert with_decimals(fault) == written
+
+
+def test_the_refusal_of_a_drawn_scene_has_the_number_of_its_file() -> None:
+    """The fault of a drawn scene shows the number as its scene file has it."""
+    drawn = template("inertia = [{ uniform = [-1, 1] }, 1, 1]", "[sweep]\ndigits = 3")
+    assert "inertia = [-0.754, 1, 1]" in drawn.text([0.123])
+    with pytest.raises(Refused, match=r"inertia, got -0\.754 @ body\.inertia\[0\]"):
+        drawn.scene([0.123])
 
 
 @pytest.mark.parametrize("spread", Spread)
@@ -208,11 +229,113 @@ def test_all_faults_of_a_template_are_named_at_once() -> None:
     ]
 
 
+def refusal_of(body: str, sweep: str = "", rest: str = REST) -> tuple[str, ...]:
+    """The faults of a template with this body, which is refused."""
+    with pytest.raises(Refused) as refused:
+        template(body, sweep, rest)
+    return refused.value.faults
+
+
 def test_a_template_of_which_no_point_is_a_scene_is_refused() -> None:
-    """The faults are those of its first point; where some points are scenes, it is none."""
-    with pytest.raises(Refused, match=r"positive moment of inertia, got -.* @ body\.inertia\[0\]"):
-        template("inertia = [{ uniform = [-2, -1] }, 1, 1]")
-    template("inertia = [{ uniform = [-1, 2] }, 1, 1]")
+    """One fault says how many trial bodies were refused, shows one in decimals, and says what to do."""
+    (fault,) = refusal_of("inertia = [{ uniform = [-2, -1] }, 1, 1]")
+    assert re.fullmatch(
+        r"expected numbers of which some make a body, got 512 refused trial bodies, for example: "
+        r"expected a positive moment of inertia, got -1\.\d+ @ body\.inertia\[0\] "
+        r"\(widen or move the range\)",
+        fault,
+    )
+
+
+def test_a_template_with_rare_bodies_is_accepted() -> None:
+    """A template of which 2 % of the points are bodies is accepted, because there are many trial bodies."""
+    drawn = template("inertia = [{ uniform = [-2, 0.05] }, 1, 1]")
+    assert drawn.scene([0.99])
+    with pytest.raises(Refused, match="positive moment of inertia"):
+        drawn.scene([0.5])
+
+
+def test_all_points_of_a_small_grid_are_tried() -> None:
+    """A grid of which only the last point is a body is accepted; a grid without a body names its size."""
+    values = ", ".join(map(str, range(-299, 2)))
+    assert template(f"inertia = [{{ grid = [{values}] }}, 1, 1]").nodes == 301
+    (fault,) = refusal_of("inertia = [{ grid = [-1.5, -2] }, { grid = [1] }, 1]")
+    assert "got 2 refused trial bodies, for example: " in fault
+    assert fault.endswith("got -1.5 @ body.inertia[0] (add other numbers)")
+    (fault,) = refusal_of("inertia = [{ grid = [-1] }, 1, 1]")
+    assert "got 1 refused trial body, for example: " in fault
+
+
+def test_trial_bodies_come_from_all_parts_of_a_large_grid() -> None:
+    """A grid of 2000 points of which the second half are bodies is accepted."""
+    first, second = "{ linspace = [1, 2, 1000] }", "{ grid = [-1, 1] }"
+    assert template(f"inertia = [{first}, {second}, 1]").nodes == 2000
+    assert template(f"inertia = [{second}, {first}, 1]").nodes == 2000
+
+
+def test_a_fault_of_the_scene_stands_without_trial_bodies() -> None:
+    """Faults that no drawn number causes are named alone, even where most points are no body."""
+    rest = REST.replace("end = 1", "end = 0")
+    faults = refusal_of("inertia = [{ uniform = [-2, 0.05] }, 1, 1]", rest=rest)
+    assert [fault.rpartition(" @ ")[2] for fault in faults] == ["time.end (the time span is empty)"]
+    (fault,) = refusal_of("inertia = [{ uniform = [1, 2] }, 1]")
+    assert re.fullmatch(r"expected 3 numbers, got \[.*\] @ body\.inertia", fault)
+
+
+def test_a_long_template_has_fewer_trial_bodies() -> None:
+    """A template of 100 kB that makes no body is refused after 16 trial bodies."""
+    instants = ", ".join(map(str, range(1, 20_000)))
+    long = REST.replace("end = 1\nsamples = 2", f"at = [{instants}]")
+    (fault,) = refusal_of("inertia = [{ uniform = [-2, -1] }, 1, 1]", rest=long)
+    assert "got 16 refused trial bodies" in fault
+
+
+DISTRIBUTIONS = "uniform, log_uniform, normal, choice, grid, linspace, logspace, formula"
+
+
+@pytest.mark.parametrize(
+    ("body", "place"),
+    [
+        ("inertia = [{ triangular = [1, 2] }, { uniform = [1, 2] }, 1]", "body.inertia[0]"),
+        (
+            "inertia = [[{ uniform = [1, 2] }, 0, 0], [0, { cauchy = [1], unit = 1 }, 0], [0, 0, 1]]",
+            "body.inertia[1][1]",
+        ),
+        ("inertia = [1, 1, 1]\ndamping = { weibull = [1, 2] }", "body.damping"),
+    ],
+)
+def test_an_unknown_distribution_is_answered_with_all_names(body: str, place: str) -> None:
+    """A table in place of a number is answered with all distributions, even if it resembles none."""
+    (word,) = re.findall("triangular|cauchy|weibull", body)
+    assert refusal_of(body) == (f"expected one of {DISTRIBUTIONS}, got `{word}` @ {place}",)
+
+
+def test_a_misspelt_distribution_is_answered_with_the_near_one() -> None:
+    """A misspelt distribution or unit is answered with the word that was meant."""
+    assert refusal_of("inertia = [{ unifrom = [1, 2] }, 1, 1]") == (
+        f"expected one of {DISTRIBUTIONS}, got `unifrom` @ body.inertia[0] (did you mean `uniform`?)",
+    )
+    assert refusal_of("inertia = [{ uniform = [1, 2], units = 1 }, 1, 1]") == (
+        "expected at most `unit` beside `uniform`, got `units` @ body.inertia[0] "
+        "(did you mean `unit`?)",
+    )
+
+
+@pytest.mark.parametrize(
+    "rule",
+    [
+        '{ formula = "a**21" }',
+        '{ formula = "2 a" }',
+        '{ formula = "2 * a + q" }',
+        '{ formla = "2 * a" }',
+        '{ expression = "2 * a" }',
+    ],
+)
+def test_a_faulty_formula_uses_its_names(rule: str) -> None:
+    """A formula that cannot be read is one fault; the numbers that it names are not said to be unused."""
+    numbers = "[sweep.numbers]\na = { uniform = [1, 2] }"
+    (fault,) = refusal_of(f"inertia = [{rule}, 1, 1]", numbers)
+    assert "body.inertia[0]" in fault
 
 
 def test_a_plain_scene_is_no_template() -> None:

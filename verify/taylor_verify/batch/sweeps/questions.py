@@ -15,7 +15,7 @@ from taylor_verify.scenes.families.library import family, is_family
 from taylor_verify.scenes.families.reading import MOST_POINTS, load_family
 from taylor_verify.scenes.library import find, named
 from taylor_verify.scenes.reading.faults import Refused, refusal
-from taylor_verify.scenes.reading.reader import load, read
+from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 
 COUNT: Final = 100
@@ -85,7 +85,7 @@ class Drawn:
                 continue
             drawn = self.family.drawn(numbers)
             try:
-                scene = read(self.family.text_of(numbers), name)
+                scene = self.family.scene_of(numbers, name)
             except Refused as refused:
                 yield Question(number, name, refused, drawn)
             else:

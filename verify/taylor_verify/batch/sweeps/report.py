@@ -27,8 +27,7 @@ PICTURES: Final = ("svg", "png")
 _NAMES: Final = ("median", "ninety", "ninety_nine", "thousandth", "largest")
 _HEADINGS: Final = ("median:", "90 %:", "99 %:", "99.9 %:", "largest:")
 SUMMARY_NAMES: Final = (
-    *("summary.md", "summary.csv", "summary.json"),
-    *(f"{exceedance.STEM}.{kind}" for kind in PICTURES),
+    *(f"{exceedance.STEM}.{kind}" for kind in ("md", "csv", "json", *PICTURES)),
     WORST,
 )
 """The names in a sweep's folder of the summary, its picture and the worst cases."""

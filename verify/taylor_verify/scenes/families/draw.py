@@ -5,6 +5,7 @@ All but `normal` is computed in decimals, correctly rounded, so that every machi
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Context, Decimal
@@ -18,6 +19,8 @@ _WORKING: Final = Context(prec=50)
 _LEAST: Final = 2.0**-54
 # Larger whole numbers have a power of ten.
 _WRITTEN_OUT: Final = 10**15
+# No part of a longer number, of a text in quotation marks, or of a number that was cut short.
+_FRACTION: Final = re.compile(r'(?<![\w"./-])-?\d+/[1-9]\d*(?![\w"/.])')
 
 Share = float | Decimal
 
@@ -116,3 +119,8 @@ def number_text(value: Fraction) -> str:
     digits = value.numerator * 10**places // value.denominator
     exact = Context(prec=len(str(abs(digits))) + 1)
     return str(Decimal(digits).scaleb(-places, exact).normalize(exact)).replace("E+", "e")
+
+
+def with_decimals(text: str) -> str:
+    """Return a text whose fractions are decimals where they have one, except those in quotation marks."""
+    return _FRACTION.sub(lambda match: number_text(Fraction(match[0])).strip('"'), text)

@@ -8,7 +8,7 @@ from fractions import Fraction
 from functools import cached_property
 from math import prod
 
-from taylor_verify.scenes.families.draw import Draw, Grid, number_text
+from taylor_verify.scenes.families.draw import Draw, Grid, number_text, with_decimals
 from taylor_verify.scenes.families.formula import Formula, NoValue
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import read
@@ -101,7 +101,17 @@ class Family:
 
     def scene(self, place: Place, node: int = 0, name: str = "") -> Scene:
         """Return the scene of a place. Raises Refused where there is no body."""
-        return read(self.text(place, node), name or self.name)
+        return self.scene_of(self.numbers(place, node), name)
+
+    def scene_of(self, numbers: Mapping[str, Fraction], name: str = "") -> Scene:
+        """Return the scene with these numbers.
+
+        Raises Refused where they make no body. The faults have numbers as the scene file has them.
+        """
+        try:
+            return read(self.text_of(numbers), name or self.name)
+        except Refused as refused:
+            raise Refused([with_decimals(fault) for fault in refused.faults]) from None
 
     @staticmethod
     def _written(variable: Variable, numbers: Mapping[str, Fraction]) -> str:

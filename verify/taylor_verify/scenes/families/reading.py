@@ -14,11 +14,12 @@ from typing import Any, Final
 
 from taylor_verify.scenes.families.cube import Spread
 from taylor_verify.scenes.families.family import Family, Variable
-from taylor_verify.scenes.families.formula import Formula
+from taylor_verify.scenes.families.formula import Formula, words
 from taylor_verify.scenes.families.rules import KINDS, UNIT, rule
 from taylor_verify.scenes.families.toml_text import toml
+from taylor_verify.scenes.families.trial import place_of, trial_faults
 from taylor_verify.scenes.reading.faults import Faults, Refused, shown
-from taylor_verify.scenes.reading.reader import MOST_BYTES, parsed, read
+from taylor_verify.scenes.reading.reader import MOST_BYTES, parsed
 from taylor_verify.scenes.reading.regular_file import read_bytes
 from taylor_verify.scenes.reading.table import Table
 
@@ -29,10 +30,10 @@ MOST_POINTS: Final = 10**9
 LARGEST_SEED: Final = 2**63 - 1
 _NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _SLOT: Final = re.compile("\0(\\d+)\0")
-# A template is refused if none of its first points, so many, is a scene.
-_TRIED: Final = 16
 # A word this near to the name of a distribution is meant as one.
 _NEAR: Final = 0.7
+# The reader of scenes says this of a table whose distribution is not known.
+_TABLE_FOR_NUMBER: Final = "expected a finite number, got a table @ "
 
 
 def load_family(file: Path) -> Family:
@@ -73,12 +74,32 @@ class _Reading:
         # Paths of variables that are not known, because of a fault.
         self._faulty: list[str] = []
         self._used: set[str] = set()
+        # Tables of the scene that stand for no known number, by place.
+        self._tables: dict[str, Mapping[str, Any]] = {}
         self._digits = DIGITS
 
     def family(self) -> Family:
         table = self._document.pop(SWEEP, {})
         options = self._options(table)
         scene = {key: self._with_slots(value, key) for key, value in self._document.items()}
+        title = scene.get("title")
+        family = Family(
+            name=self._name,
+            title=title if isinstance(title, str) else "",
+            pieces=tuple(_pieces(toml(scene, _number))),
+            variables=tuple(self._variables),
+            source=self._text,
+            **options,
+        )
+        of_scene = self._of_scene(family)
+        self._compare_with_use()
+        faults = [*self._faults.lines, *of_scene]
+        if faults:
+            raise Refused(faults)
+        return family
+
+    def _compare_with_use(self) -> None:
+        """Report named numbers that no formula uses, and a template in which nothing is drawn."""
         for variable in self._variables:
             if variable.is_named and variable.path not in self._used | set(self._faulty):
                 place = f"{SWEEP}.numbers.{variable.path}"
@@ -86,20 +107,6 @@ class _Reading:
         if not self._variables and not self._faulty:
             mend = "{ uniform = [1, 3] } in place of a number"
             self._faults.add("a number that is drawn", "none", self._place, mend)
-        pieces = tuple(_pieces(toml(scene, _number)))
-        title = scene.get("title")
-        family = Family(
-            name=self._name,
-            title=title if isinstance(title, str) else "",
-            pieces=pieces,
-            variables=tuple(self._variables),
-            source=self._text,
-            **options,
-        )
-        faults = [*self._faults.lines, *self._of_scene(family)]
-        if faults:
-            raise Refused(faults)
-        return family
 
     # The table [sweep].
 
@@ -164,6 +171,7 @@ class _Reading:
             return value
         if _is_rule(value):
             return self._variable(place, value, place)
+        self._tables[place] = value
         return {key: self._with_slots(entry, f"{place}.{key}") for key, entry in value.items()}
 
     def _variable(
@@ -177,7 +185,7 @@ class _Reading:
             self._faults.add("a unit where the number stands", shown(unit), f"{place}.{UNIT}")
             made = None
         names = made.names if isinstance(made, Formula) else frozenset()
-        self._used |= names
+        self._used |= names or _words(entries)
         if made is None or names & set(self._faulty):
             self._faulty.append(path)
             return 1
@@ -187,27 +195,19 @@ class _Reading:
     # The scene.
 
     def _of_scene(self, family: Family) -> list[str]:
-        """Return the faults of the scene, without those that a faulty variable may have caused.
+        """Return the faults of the scene, without those that a faulty variable may have caused."""
+        return [self._of_number(fault) for fault in trial_faults(family, self._faulty)]
 
-        Where the template itself is sound, some of its first points have to be scenes.
-        """
-        from taylor_verify.scenes.families.cube import places
-
-        first: list[str] = []
-        tried = 1 if self._faulty or self._faults.lines else _TRIED
-        for point, place in enumerate(places(Spread.RANDOM, family.free, 0, 0, tried)):
-            try:
-                numbers = family.numbers(place, point % family.nodes)
-                read(family.text_of(numbers), self._name)
-            except Refused as refused:
-                first = first or [f for f in refused.faults if not self._is_caused(f)]
-            else:
-                return []
-        return first
-
-    def _is_caused(self, fault: str) -> bool:
-        place = fault.rpartition(" @ ")[2].partition(" (")[0]
-        return any(path.startswith(place) for path in self._faulty)
+    def _of_number(self, fault: str) -> str:
+        """Return the fault of a table that stands for a number; any other fault as it is."""
+        entries = self._tables.get(place_of(fault))
+        if entries is None or not fault.startswith(_TABLE_FOR_NUMBER):
+            return fault
+        self._faulty.append(place_of(fault))
+        self._used |= _words(entries)
+        faults = Faults()
+        rule(entries, place_of(fault), self._digits, (), faults)
+        return faults.lines[0]
 
 
 def _is_rule(entries: Mapping[str, Any]) -> bool:
@@ -217,6 +217,12 @@ def _is_rule(entries: Mapping[str, Any]) -> bool:
     return len(entries) == 1 and any(
         difflib.get_close_matches(key, KINDS, n=1, cutoff=_NEAR) for key in entries
     )
+
+
+def _words(entries: Mapping[str, Any]) -> set[str]:
+    """Return the words in the texts of a table, which may be names that a faulty formula uses."""
+    texts = [value for key, value in entries.items() if key != UNIT and isinstance(value, str)]
+    return {word for text in texts for word in words(text)}
 
 
 def _pieces(text: str) -> Iterator[str | int]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Callable, Collection, Mapping
 from decimal import Context, Decimal
 from fractions import Fraction
@@ -16,7 +17,7 @@ from taylor_verify.scenes.families.draw import (
     rounded,
 )
 from taylor_verify.scenes.families.formula import Formula, formula
-from taylor_verify.scenes.reading.faults import Faults, near, shown
+from taylor_verify.scenes.reading.faults import Faults, cut, near, shown
 from taylor_verify.scenes.reading.table import exact_number
 
 UNIT: Final = "unit"
@@ -37,17 +38,24 @@ def rule(
     """
     kinds = [key for key in entries if key in KINDS]
     others = [key for key in entries if key not in (*KINDS, UNIT)]
+    expected = f"one of {', '.join(KINDS)}"
     for key in others:
-        faults.add("a known distribution", f"`{key}`", place, near(key, (*KINDS, UNIT)))
+        allowed = f"at most `{UNIT}` beside `{kinds[0]}`" if kinds else expected
+        faults.add(allowed, f"`{cut(key)}`", place, _nearest(key))
     if len(kinds) != 1:
         if kinds or not others:
-            got = " and ".join(kinds) or "none"
-            faults.add(f"one of {', '.join(KINDS)}", got, place)
+            faults.add(expected, " and ".join(kinds) or "none", place)
         return None
     (kind,) = kinds
     reading = _Parameters(entries[kind], f"{place}.{kind}", digits, faults)
     made = reading.formula(known) if kind == "formula" else reading.rule(kind)
     return None if others else made
+
+
+def _nearest(key: str) -> str:
+    """Return advice: the distribution that was probably meant, if one is near."""
+    close = difflib.get_close_matches(key, (*KINDS, UNIT), n=1)
+    return f"did you mean `{close[0]}`?" if close else ""
 
 
 class _Parameters:
