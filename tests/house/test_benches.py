@@ -316,11 +316,12 @@ def test_a_verification_that_fails_is_not_timed(tmp_path: Path) -> None:
 
 
 def share_a_scene(checkout: Path) -> None:
-    """Give a checkout one scene of this one, and another scene under the name of one of this one."""
-    cases = checkout / "cases" / "euler"
-    cases.mkdir(parents=True)
-    (cases / "rest.toml").write_text(find("euler/rest").read_text())
-    (cases / "generic.toml").write_text("another scene")
+    """Give a checkout two scenes of this one, and another scene under the name of one of this one."""
+    for name in ("euler/rest", "extremes/euler-many-turns"):
+        file = checkout / "cases" / f"{name}.toml"
+        file.parent.mkdir(parents=True)
+        file.write_text(find(name).read_text())
+    (checkout / "cases" / "euler" / "generic.toml").write_text("another scene")
 
 
 def test_two_checkouts_are_timed_on_the_scenes_that_both_have(tmp_path: Path) -> None:
@@ -330,7 +331,8 @@ def test_two_checkouts_are_timed_on_the_scenes_that_both_have(tmp_path: Path) ->
     share_a_scene(tmp_path)
     sides = next(commands.ratios(tmp_path, tmp_path / "caches")).pair()
     calls = {side.calls for side in sides}  # type: ignore[attr-defined]
-    assert calls == {(("euler/rest", "--rung", "f32", "f64", "f80", "f128", "mp237"),)}
+    standard = ("euler/rest", "--rung", "f32", "f64", "f80", "f128", "mp237")
+    assert calls == {(standard, ("extremes/euler-many-turns", "--rung", "f64"))}
 
 
 # The ratios
