@@ -353,6 +353,15 @@ def test_steps_that_cannot_hold_what_shrinks_are_told_apart() -> None:
     assert np.allclose(followed.growth[:60], condition.growth[:60], rtol=1e-6)
 
 
+def test_growth_whose_cube_is_beyond_float64_is_known() -> None:
+    """A start 1e-150 from the unstable axis: errors grow by the inverse of that, to three digits."""
+    saddle = sample_scene(RigidBody(diagonal(vector(1, 2, 3))), start=Spin(vector("1e-150", 1, 0)))
+    saddle = replace(saddle, clock=Clock(Fraction(0), times(0, 500, 1000)))
+    condition = path(saddle)
+    assert condition.exponent > 400
+    assert 1e150 < condition.growth.max() < 1e151
+
+
 def test_two_sizes_of_differences_that_agree_are_enough() -> None:
     """Errors grow by 1e41 in proportion to time; differences of 10^-100 give what those of 10^-250 give."""
     start = load("extremes/kirchhoff-linear-1e20")

@@ -52,6 +52,8 @@ _ROUGH: Final = 0.1
 _STEP_ERROR: Final = 1e-15
 # Too little growth for that: the square of it, times the error of a step, is nothing beside a new error.
 _LITTLE_GROWTH: Final = 1e6
+# Differences that are smaller take minutes.
+_LARGEST_EXPONENT: Final = 500
 # On a regular orbit all errors grow alike, so this many samples represent all,
 _FEW: Final = 33
 # with this many times besides that share no period: samples may meet the orbit in one phase only.
@@ -153,6 +155,8 @@ class Path:
         carried = self.gathered(made)
         with np.errstate(over="ignore"):
             size = np.sqrt(sum(carried[block] ** 2 for block in self.blocks))
+        if not np.isfinite(size).all():
+            return False
         noise = self.gathered(_STEP_ERROR * size[:, None] * made)
         return all((noise[block] <= _ROUGH * carried[block]).all() for block in self.blocks)
 
@@ -243,7 +247,7 @@ def path(scene: Scene) -> Path:
 
 def _sharp_exponent(growth: float) -> int:
     """Return the exponent of differences that give such growth to six digits; 0 for an infinite growth."""
-    return ceil(3 * log10(growth)) + 6 if growth < inf else 0
+    return min(ceil(3 * log10(growth)) + 6, _LARGEST_EXPONENT) if growth < inf else 0
 
 
 def _refuse_far_decay(scene: Scene, elapsed: Sequence[Fraction]) -> None:
@@ -284,10 +288,11 @@ def sharp(
     for differences in settled(scene, points, least):
         steps, shrinkage = differences.steps(flow)
         path = Path(scene, flow, points, steps, differences.exponent)
-        growth, sharpness = path.growth, 10.0**differences.exponent
-        if (growth**2 * shrinkage <= _SHARP * sharpness).all():
+        # In decades, because squares and powers may be beyond float64.
+        growth, shrunk = _decades(path.growth.max()), _decades(shrinkage)
+        if 2 * growth + shrunk <= _decades(_SHARP) + differences.exponent:
             break
-        if to_tell and growth.max() <= _ROUGH * sharpness and not path.is_regular:
+        if to_tell and growth <= _decades(_ROUGH) + differences.exponent and not path.is_regular:
             break
         if last is not None and _agree(last, steps):
             break
@@ -295,13 +300,19 @@ def sharp(
     return path
 
 
+def _decades(size: float) -> float:
+    """Return log10 of a size that is no less than zero; NaN where it is none."""
+    return log10(size) if 0 < size < inf else -inf if size == 0 else float(size)
+
+
 def _agree(rough: Steps, fine: Steps) -> bool:
     """Return True if each block of three components agrees to `_SHARP` of its size, or of one unit."""
     pairs = (rough.steps, fine.steps), (rough.since_first, fine.since_first)
-    return all(
-        bool((_block_norms(a - b) <= _SHARP * np.maximum(_block_norms(b), 1)).all())
-        for a, b in pairs
-    )
+    with np.errstate(all="ignore"):  # what is not finite does not agree
+        return all(
+            bool((_block_norms(a - b) <= _SHARP * np.maximum(_block_norms(b), 1)).all())
+            for a, b in pairs
+        )
 
 
 def _block_norms(matrices: Floats) -> Floats:
