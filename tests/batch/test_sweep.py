@@ -353,7 +353,7 @@ def test_a_grid_beyond_the_largest_sweep_is_refused_at_once(tmp_path: Path) -> N
 
 
 def test_a_number_that_is_none_is_a_value_error() -> None:
-    """From Python a count that is a text is refused by its name, as from the command line."""
+    """A count that is a text is refused by its name, from Python as from the command line."""
     with pytest.raises(
         ValueError, match="expected a whole number from 1 to 1000000000, got '3' @ count"
     ):

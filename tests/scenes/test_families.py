@@ -237,7 +237,7 @@ def refusal_of(body: str, sweep: str = "", rest: str = REST) -> tuple[str, ...]:
 
 
 def test_a_template_of_which_no_point_is_a_scene_is_refused() -> None:
-    """One fault says how many trial bodies were refused, shows one in decimals, and says what to do."""
+    """The only fault says how many trial bodies were refused, shows one in decimals, and how to mend it."""
     (fault,) = refusal_of("inertia = [{ uniform = [-2, -1] }, 1, 1]")
     assert re.fullmatch(
         r"expected numbers of which some make a body, got 512 refused trial bodies, for example: "
