@@ -383,7 +383,7 @@ def test_unoptimised_code_takes_the_same_steps(name: str, monkeypatch: pytest.Mo
     ],
 )
 def test_code_is_optimised_where_the_way_is_long(scene: str, name: str, expected: bool) -> None:
-    """On long ways, in f80 and MPFR; float128's library gains nothing."""
+    """Code is optimised on long ways, in f80 and MPFR; float128's library would gain nothing."""
     problem = pose(load(scene), rung(name))
     assert driver.pays(problem.form, problem.rung, problem) is expected
 

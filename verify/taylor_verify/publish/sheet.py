@@ -18,7 +18,7 @@ def sheet(names: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> str:
     scene may be the path of anybody's file.
     """
     text = io.StringIO()
-    writer = csv.DictWriter(text, names, extrasaction="ignore", lineterminator="\n")
+    writer = csv.DictWriter(text, names, lineterminator="\n")
     writer.writeheader()
     writer.writerows({name: _cell(row[name]) for name in names if name in row} for row in rows)
     return text.getvalue()

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from hashlib import sha256
+from math import inf
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -180,9 +181,9 @@ def questions(
 
 def _drawn(family: Family, count: int | None, seed: int | None, spread: str | None) -> Drawn:
     faults = []
-    if count is not None and not _is_whole(count, 1, MOST_POINTS):
+    if count is not None and not is_whole(count, 1, MOST_POINTS):
         faults.append(f"expected a whole number from 1 to {MOST_POINTS}, got {count!r} @ count")
-    if seed is not None and not _is_whole(seed, 0, 2**63 - 1):
+    if seed is not None and not is_whole(seed, 0, 2**63 - 1):
         faults.append(f"expected a whole number from 0 to 2^63 - 1, got {seed!r} @ seed")
     known = [each.value for each in Spread]
     if spread is not None and spread not in known:
@@ -209,7 +210,8 @@ def _drawn(family: Family, count: int | None, seed: int | None, spread: str | No
     )
 
 
-def _is_whole(value: object, least: int, most: int) -> bool:
+def is_whole(value: object, least: int, most: float = inf) -> bool:
+    """Return True for a whole number from ``least`` to ``most``; a boolean is none."""
     return isinstance(value, int) and not isinstance(value, bool) and least <= value <= most
 
 

@@ -26,7 +26,7 @@ from taylor_verify.batch.sweeps.dataset import (
     Manifest,
     read_manifest,
 )
-from taylor_verify.batch.sweeps.questions import Drawn, Questions, questions
+from taylor_verify.batch.sweeps.questions import Drawn, Questions, is_whole, questions
 from taylor_verify.batch.sweeps.report import SUMMARY_NAMES, write_summary
 from taylor_verify.batch.sweeps.summary import WORST, summary, with_files
 from taylor_verify.judge.provenance import packages
@@ -140,8 +140,7 @@ def _faults(
     """Yield a sentence for each argument that is none."""
     wanted = {"jobs": (jobs, 1), "worst": (worst, 0), "ahead": (ahead, 1)}
     for name, (value, least) in wanted.items():
-        is_whole = isinstance(value, int) and not isinstance(value, bool)
-        if value is not None and not (is_whole and int(str(value)) >= least):
+        if value is not None and not is_whole(value, least):
             yield f"expected a whole number of at least {least}, got {value!r} @ {name}"
     if isinstance(worst, int) and worst > _MOST_WORST:
         yield f"expected at most {_MOST_WORST} worst cases, got {worst} @ worst"
