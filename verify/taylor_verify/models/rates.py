@@ -21,8 +21,8 @@ from taylor_verify.models.problem import Problem
 from taylor_verify.models.symbol import Symbol
 
 _SLOWEST = 2.0**-10  # keeps a step finite for a body that is (almost) at rest
-_ENOUGH, _NEARLY = 4, 1.2
-_ONES = np.ones(4)
+_SQUARINGS: Final = 4
+_NEARLY: Final = 1.2
 # Numbers whose squares add up to this have fourth powers far below the largest double.
 _MODERATE: Final = 2.0**400
 _OPERATIONS: Final[Mapping[tuple[str, int], Any]] = {
@@ -54,68 +54,75 @@ class Linearised:
         # A row for the constant, and one for each momentum.
         self._table = np.ascontiguousarray(entries.T)
         self._square = float(np.vdot(entries, entries))
-        self._shape, self._turns = (-1, n, n), "e0" in problem.form.states
-        self._ones = np.ones(n * n)
+        self._turns = "e0" in problem.form.states
 
-    def fastest(self, states: Any, squarings: int = _ENOUGH) -> float:
+    def fastest(self, states: Any) -> float:
         """Return the fastest rate at a state, or at all rows of an array; infinite where not finite.
 
         The unit is radians per unit of time. A component that is too small for the error control grows or
-        turns at an eigenvalue of J, in any units. The eigenvalues are bounded by |J^N|^(1/N) with N =
-        2^squarings. For N = 16 the bound is some tenths too large; if it is worse, the eigenvalues are
-        computed. The attitude turns at |omega|/2.
+        turns at an eigenvalue of J, in any units. The eigenvalues are bounded by |J^16|^(1/16), which is
+        some tenths too large; if it is worse, they are computed. The attitude turns at |omega|/2.
         """
-        rows = np.atleast_2d(states)[:, : self._momenta].astype(float)
+        n = self._momenta
         with np.errstate(all="ignore"):
-            entries = rows @ self._table[1:] + self._table[0]
-            J = entries[:, :-4].reshape(self._shape)
-            bound = size = self._norm(J)
-            turned = self._turned(entries) if self._turns else 0.0
-        if not isfinite(size + turned):
+            entries = self._augmented(np.asarray(states)).dot(self._table)
+        omega = _largest(entries[..., -4:]) if self._turns else 0.0
+        J = entries[..., :-4].reshape(*entries.shape[:-1], n, n)
+        bound = size = n * _largest(J)
+        if not isfinite(size + omega):
             return inf
         power, before = J / size if size else J, bound
-        for k in range(squarings):
+        for k in range(_SQUARINGS):
             power, before = power @ power, bound
-            bound = size * self._norm(power) ** (0.5 / 2**k)
+            bound = size * (n * _largest(power)) ** (0.5 / 2**k)
         # A norm may exceed the spectral radius by a factor, of which only the N-th root remains.
-        if squarings == _ENOUGH and not before <= _NEARLY * bound:
+        if not before <= _NEARLY * bound:
             bound = float(np.abs(np.linalg.eigvals(J)).max())
-        return max(bound, turned, _SLOWEST)
+        if 2 * omega > bound:
+            turns = entries[..., -4:].reshape(-1, 4) / omega
+            bound = max(bound, omega * sqrt(_largest_sum_of_squares(turns)))
+        return max(bound, _SLOWEST)
 
     def is_within(self, states: Any, rate: float) -> bool:
         """Return True if no row of an array of states has a faster rate.
 
         Most rows are decided by a cheap bound, |J^2|^(1/2) in Frobenius's norm.
         """
-        rows = states[:, : self._momenta]
-        augmented = np.empty((len(rows), self._momenta + 1))
-        augmented[:, 0] = 1.0
-        augmented[:, 1:] = rows if rows.dtype == float else rows.astype(float)
+        n, augmented = self._momenta, self._augmented(states)
         numbers = augmented.ravel()
         # NumPy's dot never warns, and what follows cannot overflow. NaN is not moderate.
         if numbers.dot(numbers) * self._square <= _MODERATE:
             entries = augmented.dot(self._table)
-            J = entries[:, :-4].reshape(self._shape)
-            squares = (J @ J).reshape(-1, len(self._ones))
-            squares *= squares
-            bound = _largest(squares.dot(self._ones))
-            if bound <= rate**4 and (not self._turns or self._turned(entries) <= rate):
+            J = entries[:, :-4].reshape(-1, n, n)
+            if _largest_sum_of_squares((J @ J).reshape(-1, n * n)) <= rate**4 and (
+                not self._turns or _largest_sum_of_squares(entries[:, -4:]) <= rate**2
+            ):
                 return True
         return self.fastest(states) <= rate
 
-    def _turned(self, entries: Any) -> float:
-        """Return the largest |omega|/2."""
-        omega = entries[:, -4:]
-        return sqrt(_largest((omega * omega).dot(_ONES)))
-
-    def _norm(self, matrices: Any) -> float:
-        """Return a bound of Frobenius's norm of each: the largest entry times the order."""
-        return self._shape[1] * float(np.maximum.reduce(np.abs(matrices), axis=None))
+    def _augmented(self, states: Any) -> Floats:
+        """Return 1 and the momenta of a state, or of each row of an array."""
+        augmented = np.empty((*states.shape[:-1], self._momenta + 1))
+        augmented[..., 0] = 1.0
+        augmented[..., 1:] = states[..., : self._momenta]
+        return augmented
 
 
 def _largest(numbers: Floats) -> float:
-    """Return the largest number, NaN if there is one; NumPy's maximum takes four times as long."""
-    return float(numbers[numbers.argmax()])
+    """Return the largest size of a number, NaN if there is one; NumPy's maximum takes longer."""
+    sizes = np.abs(numbers).ravel()
+    return float(sizes[sizes.argmax()])
+
+
+def _largest_sum_of_squares(rows: Floats) -> float:
+    """Return the largest sum of the squares of a row."""
+    sums = (rows * rows).dot(_ones(rows.shape[1]))
+    return float(sums[sums.argmax()])
+
+
+@lru_cache
+def _ones(count: int) -> Floats:
+    return np.ones(count)
 
 
 class _Terms(NamedTuple):

@@ -68,25 +68,25 @@ class Taylor(Solver):
 
     def solve(self, problem: Problem) -> Trajectory:
         began = perf_counter()
-        numbers = arithmetic(problem.rung)
-        is_optimised = self.is_optimised or pays(problem.form, problem.rung, problem)
-        integrator = compiled(problem.form, problem.rung, self.tolerance, is_optimised)
-        compile_seconds = perf_counter() - began
-        way = (_way if len(problem.times) <= _MOST_INSTANTS else Way)(integrator, problem)
-        rate = _foreseen(problem) if numbers.is_software else 0.0
-        outcome, rows, _, steps, inner = way.run(rate)
-        seconds = perf_counter() - began - compile_seconds
+        tolerance = None if self.tolerance is None else self.tolerance.as_integer_ratio()
+        # What follows from a question is made once, for whoever asks it many times to time a solver.
+        way_of = _kept_way if len(problem.times) <= _MOST_INSTANTS else _way
+        way = way_of(problem, tolerance, self.is_optimised)
+        ready = perf_counter()
+        is_slow = arithmetic(problem.rung).is_software
+        outcome, rows, _, steps, inner = way.run(_foreseen(problem) if is_slow else 0.0)
+        seconds = perf_counter() - ready
         quantities: Mapping[str, Any] = {}
         if outcome is Outcome.FINISHED:
             # Exact numbers of many samples take longer than the samples: the judge asks for them.
-            quantities = Postponed(problem, rows, numbers.exact)
+            quantities = Postponed(problem, rows, way.numbers.exact)
         return Trajectory(
             outcome=outcome,
             quantities=quantities,
             steps=steps,
             evaluations=steps * way.order,
             seconds=seconds,
-            compile_seconds=compile_seconds,
+            compile_seconds=ready - began,
             inner_seconds=inner,
         )
 
@@ -204,7 +204,17 @@ def _foreseen(problem: Problem) -> float:
     return Way(integrator, scout).fastest()
 
 
-# Whoever times a solver asks it one question many times: what follows from the question is made once.
-@lru_cache(maxsize=_MOST_WAYS)
-def _way(integrator: Any, problem: Problem) -> Way:
-    return Way(integrator, problem)
+def _way(problem: Problem, tolerance: tuple[int, int] | None, is_optimised: bool) -> Way:
+    """Return the way of a problem; the tolerance is a quotient, which is found sooner than a Fraction."""
+    return Way(
+        compiled(
+            problem.form,
+            problem.rung,
+            None if tolerance is None else Fraction(*tolerance),
+            is_optimised or pays(problem.form, problem.rung, problem),
+        ),
+        problem,
+    )
+
+
+_kept_way = lru_cache(maxsize=_MOST_WAYS)(_way)

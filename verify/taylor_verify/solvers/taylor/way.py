@@ -62,13 +62,14 @@ class Way:
     """A problem on its way from its start through its instants.
 
     ``integrator`` is that of the problem's form, shared with other problems: each run fills it in anew.
+    ``numbers`` are those of its rung, and ``order`` is that of its Taylor series.
     """
 
     def __init__(self, integrator: Any, problem: Problem) -> None:
         numbers = arithmetic(problem.rung)
-        self._integrator, self._problem, self._numbers = integrator, problem, numbers
-        self._order = int(integrator.order)
-        self._longest = longest_step(self._order)
+        self._integrator, self._problem = integrator, problem
+        self.numbers, self.order = numbers, int(integrator.order)
+        self._longest = longest_step(self.order)
         self._parameters = numbers.array(problem.parameters)
         self._start = numbers.array(problem.initial_momenta)
         self._times = numbers.times(problem.times)
@@ -105,11 +106,6 @@ class Way:
         ran = self.run()
         return self._linearised.fastest(ran.rows) if ran.outcome is Outcome.FINISHED else inf
 
-    @property
-    def order(self) -> int:
-        """The order of the Taylor series."""
-        return self._order
-
     def _went(
         self, stretches: Sequence[np.ndarray[Any, Any]], rate: float, is_watched: bool = False
     ) -> Ran:
@@ -121,36 +117,38 @@ class Way:
         integrator.pars[:] = self._parameters
         integrator.time = stretches[0][0]
         integrator.state[:] = self._start
-        rows, longest, steps, seconds = list[Rows](), 0.0, 0, 0.0
-        outcome = Outcome.FINISHED
+        legs = list[Ran]()
         for instants in stretches:
-            radians = rate * abs(float(instants[-1] - instants[0]))
-            if not radians <= MOST_RADIANS:
-                outcome = Outcome.STEP_LIMIT if isfinite(rate) else Outcome.NON_FINITE
-                break
-            cap = self._longest / rate
-            began = perf_counter()
-            status, _, uncut, taken, _, reached = integrator.propagate_grid(
-                instants,
-                max_delta_t=self._numbers.double(cap),
-                max_steps=LEAST_STEPS + int(STEPS_PER_RADIAN * radians),
-                callback=self._callback,
-            )
-            seconds += perf_counter() - began
-            # Steps that were cut to the cap are left out of heyoka's longest.
-            step = float(uncut)
-            longest = max(longest, step if 0 < step < _UNCUT * cap else cap)
-            steps += int(taken)
-            rows.append(reached[1:] if rows else reached)
-            outcome = outcome_of(status)
-            if outcome is Outcome.FINISHED and not _is_finite(reached):
-                outcome = Outcome.NON_FINITE
-            if outcome is not Outcome.FINISHED:
+            leg = self._leg(instants, rate)
+            legs.append(leg)
+            if leg.outcome is not Outcome.FINISHED:
                 break
             if is_watched:
-                rate = max(rate, self._linearised.fastest(reached[-1]))
-        whole = rows[0] if len(rows) == 1 else np.concatenate(rows or [self._start[None]])
-        return Ran(outcome, whole, longest, steps, seconds)
+                rate = max(rate, self._linearised.fastest(leg.rows[-1]))
+        return legs[0] if len(legs) == 1 else _joined(legs)
+
+    def _leg(self, instants: np.ndarray[Any, Any], rate: float) -> Ran:
+        """Go from the first instant, where the integrator is, to the last: one call of heyoka."""
+        radians = rate * abs(float(instants[-1] - instants[0]))
+        if not radians <= MOST_RADIANS:
+            outcome = Outcome.STEP_LIMIT if isfinite(rate) else Outcome.NON_FINITE
+            return Ran(outcome, self._start[None], longest=0.0, steps=0, seconds=0.0)
+        cap = self._longest / rate
+        began = perf_counter()
+        status, _, uncut, steps, _, rows = self._integrator.propagate_grid(
+            instants,
+            max_delta_t=self.numbers.double(cap),
+            max_steps=LEAST_STEPS + int(STEPS_PER_RADIAN * radians),
+            callback=self._callback,
+        )
+        seconds = perf_counter() - began
+        outcome = outcome_of(status)
+        if outcome is Outcome.FINISHED and not _is_finite(rows):
+            outcome = Outcome.NON_FINITE
+        # Steps that were cut to the cap are left out of heyoka's longest.
+        step = float(uncut)
+        longest = step if 0 < step < _UNCUT * cap else cap
+        return Ran(outcome, rows, longest, int(steps), seconds)
 
     def _was_too_fast(self, ran: Ran, rate: float) -> bool:
         """Return True where the rate has grown, and steps were too long for it or ran out for it."""
@@ -171,7 +169,7 @@ class Way:
         so many pieces can be cut there as often as between many.
         """
         times, exact = self._times, self._problem.times
-        zero = self._numbers.array([Fraction(0)])
+        zero = self.numbers.array([Fraction(0)])
         grid = times if times[0] == zero[0] else np.concatenate([zero, times])
         if len(grid) > pieces:
             return grid, slice(len(grid) - len(times), None)
@@ -181,7 +179,15 @@ class Way:
             instants += _waypoints(after, before, abs(ends[-1]) / pieces, self._problem.rung)
             samples.append(len(instants))
             instants.append(before)
-        return self._numbers.array(instants), samples[len(grid) - len(times) :]
+        return self.numbers.array(instants), samples[len(grid) - len(times) :]
+
+
+def _joined(legs: Sequence[Ran]) -> Ran:
+    """Return the whole of several legs, each of which begins where the one before it ended."""
+    rows = [leg.rows[1:] if k else leg.rows for k, leg in enumerate(legs)]
+    longest = max(leg.longest for leg in legs)
+    steps, seconds = sum(leg.steps for leg in legs), sum(leg.seconds for leg in legs)
+    return Ran(legs[-1].outcome, np.concatenate(rows), longest, steps, seconds)
 
 
 def longest_step(order: int) -> float:
