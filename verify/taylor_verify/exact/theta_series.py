@@ -10,7 +10,8 @@ three sequences of integer polynomials with P_{n+1} = 2x P_n - P_{n-1}, a series
     theta_1(v + s)/2q^(1/4) = sin(pi v) sum c_n W_n(x) + cos(pi v) sum s_n V_n(x),
     c_n, s_n = (-1)^n h^{n(n+1)/2} times the cosine and the sine of (2n+1) pi s.
 
-A polynomial is evaluated at all arguments by one call of FLINT, and each of its coefficients is a ball.
+A polynomial is the row of its coefficients, which are balls. It is evaluated at all arguments by one call
+of FLINT. Of several, that is a product with the matrix of all powers, which is made once.
 
 The terms that are left out stand as a ball in the constant coefficient. It encloses them because, for a
 real v, |T_n| <= 1 and |V_n|, |W_n| <= 2n + 1, and cosine and sine of (2n+1) pi s are at most
@@ -22,7 +23,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 from math import log, pi
 from typing import Final, Self, final
 
@@ -39,7 +40,7 @@ MOST_TERMS: Final = 40
 _MOST_BITS_CANCELLED: Final = 16
 
 
-Parts = Sequence[arb_poly | None]
+Parts = Sequence[arb_mat | None]
 
 
 @final
@@ -50,6 +51,7 @@ class Places:
         both = [angle.sin_cos() for angle in angles]
         self.sines, self.cosines = [s for s, _ in both], [c for _, c in both]
         self.x = [1 - 2 * (s * s) for s in self.sines]
+        self._powers = arb_mat(0, len(both))
 
     @cached_property
     def doubled(self) -> Places:
@@ -58,11 +60,24 @@ class Places:
         doubled.sines = [2 * s * c for s, c in zip(self.sines, self.cosines, strict=True)]
         doubled.cosines = self.x
         doubled.x = [2 * (x * x) - 1 for x in self.x]
+        doubled._powers = arb_mat(0, len(self.x))
         return doubled
 
-    def at(self, polynomial: arb_poly) -> list[arb]:
+    def at(self, polynomial: arb_mat) -> list[arb]:
         """The values of a polynomial in x."""
-        values: list[arb] = polynomial.evaluate(self.x, "iter")
+        values: list[arb] = arb_poly(polynomial.entries()).evaluate(self.x, "iter")
+        return values
+
+    def at_each(self, polynomials: Sequence[arb_mat]) -> list[list[arb]]:
+        """The values of several polynomials in x."""
+        count = max(polynomial.ncols() for polynomial in polynomials)
+        if count > self._powers.nrows():
+            self._powers = _powers(self.x, count)
+        rows = arb_mat(len(polynomials), self._powers.nrows())
+        for k, polynomial in enumerate(polynomials):
+            for n, coefficient in enumerate(polynomial.entries()):
+                rows[k, n] = coefficient
+        values: list[list[arb]] = (rows * self._powers).tolist()
         return values
 
 
@@ -79,10 +94,13 @@ class Odd:
 
     def parts(self, places: Places) -> tuple[list[arb], list[arb]]:
         """The real and the imaginary part at each place."""
-        real, imaginary = (
-            _added(places, sine, cosine)
-            for sine, cosine in zip(self.sine, self.cosine, strict=True)
+        asked = [part for part in (*self.sine, *self.cosine) if part is not None]
+        values = iter(places.at_each(asked) if asked else [])
+        sines, cosines = (
+            [None if part is None else next(values) for part in parts]
+            for parts in (self.sine, self.cosine)
         )
+        real, imaginary = map(partial(_added, places), sines, cosines)
         return real, imaginary
 
     def at(self, places: Places) -> list[acb]:
@@ -90,17 +108,25 @@ class Odd:
         return [acb(re, im) for re, im in zip(*self.parts(places), strict=True)]
 
 
-def _added(places: Places, sine: arb_poly | None, cosine: arb_poly | None) -> list[arb]:
-    """sin(pi v) S(x) + cos(pi v) C(x), each a real polynomial or zero."""
+def _powers(x: Sequence[arb], count: int) -> arb_mat:
+    """The powers of numbers, a row for each exponent from 0 on."""
+    rows = [[arb(1)] * len(x), list(x)][:count]
+    while len(rows) < count:
+        rows.append([power * each for power, each in zip(rows[-1], x, strict=True)])
+    return arb_mat(count, len(x), [power for row in rows for power in row])
+
+
+def _added(places: Places, sine: list[arb] | None, cosine: list[arb] | None) -> list[arb]:
+    """sin(pi v) S + cos(pi v) C at each place, from the values of S and C; None for zeros."""
     if sine is None and cosine is None:
         return [arb(0)] * len(places.x)
     if cosine is None:
         assert sine is not None
-        return [s * S for s, S in zip(places.sines, places.at(sine), strict=True)]
-    odd = [c * C for c, C in zip(places.cosines, places.at(cosine), strict=True)]
+        return [s * S for s, S in zip(places.sines, sine, strict=True)]
+    odd = [c * C for c, C in zip(places.cosines, cosine, strict=True)]
     if sine is None:
         return odd
-    return [s * S + rest for s, S, rest in zip(places.sines, places.at(sine), odd, strict=True)]
+    return [s * S + rest for s, S, rest in zip(places.sines, sine, odd, strict=True)]
 
 
 @final
@@ -149,15 +175,15 @@ class ThetaSeries:
             _polynomials(on_sine, "W", tail, sine), _polynomials(on_cosine, "V", tail, cosine)
         )
 
-    def one(self, scale: arb) -> arb_poly:
+    def one(self, scale: arb) -> arb_mat:
         """``scale`` times theta_1(v)/(2q^(1/4) sin pi v)."""
         return self._alone(scale, "W", -1)
 
-    def two(self, scale: arb) -> arb_poly:
+    def two(self, scale: arb) -> arb_mat:
         """``scale`` times theta_2(v)/(2q^(1/4) cos pi v)."""
         return self._alone(scale, "V", 1)
 
-    def three_and_four(self, scale: arb) -> tuple[arb_poly, arb_poly]:
+    def three_and_four(self, scale: arb) -> tuple[arb_mat, arb_mat]:
         """``scale`` times theta_3(v), and theta_4(v), for an imaginary tau."""
         count, q = self._even_count(), self._q
         terms = [arb(1), *(2 * q ** (n * n) for n in range(1, count))]
@@ -167,7 +193,7 @@ class ThetaSeries:
             _polynomial([(-1) ** n * term for n, term in enumerate(terms)], "T", tail),
         )
 
-    def _alone(self, scale: arb, basis: str, sign: int) -> arb_poly:
+    def _alone(self, scale: arb, basis: str, sign: int) -> arb_mat:
         count = self._count(0.0, order=0)
         coefficients = [scale * power * sign**n for n, power in enumerate(self._powers(count))]
         return _polynomial(coefficients, basis, abs(scale) * self._tail(count, arb(0), order=0))
@@ -236,12 +262,12 @@ def _polynomials(
     ]
 
 
-def _polynomial(coefficients: Sequence[arb], basis: str, tail: arb) -> arb_poly:
+def _polynomial(coefficients: Sequence[arb], basis: str, tail: arb) -> arb_mat:
     """The polynomial in x of a sum over a sequence T, V or W, and what is left out of it as a ball."""
     count = len(coefficients)
-    row = (arb_mat(1, count, list(coefficients)) * _integers(basis, count)).entries()
-    row[0] = row[0] + arb(0, tail.upper())
-    return arb_poly(row)
+    row = arb_mat(1, count, list(coefficients)) * _integers(basis, count)
+    row[0, 0] = row[0, 0] + arb(0, tail.upper())
+    return row
 
 
 @lru_cache(maxsize=256)

@@ -164,14 +164,11 @@ class Orbit:
                 self._columns(large, xi, z)
                 for large, xi, (z, _) in zip(larger, across, places, strict=True)
             ]
-            frames = [
-                self._frame(three, xi, z)
-                for three, xi, (z, _) in zip(columns, across, places, strict=True)
-            ]
+            rows["attitude"] = self._attitudes(columns, across, [z for z, _ in places])
             if "centre" in self._track:
                 moments = map(self._moment, columns, etas)
-                self._add_paths(frames, times, moments, poles, along)
-            rows |= self._carried_to_space(frames)
+                advances = self._advances(times, poles, along)
+                rows["centre"] = self._centres(moments, advances)
         for k, u in enumerate(times):
             if u.is_zero():
                 for name, quantity in rows.items():
@@ -210,20 +207,14 @@ class Orbit:
             return self._one * alpha * alpha * self._grown(self._one_rate, u, screw)
         return self._two * beta * beta * self._grown(self._two_rate, u, -screw)
 
-    def _carried_to_space(self, frames: Sequence[Rows]) -> dict[str, list[Any]]:
-        """R and the centre in space, by one product of matrices."""
-        size = len(frames[0][0])
-        side_by_side = [entry for k in range(3) for frame in frames for entry in frame[k]]
-        columns = arb_mat(3, size * len(frames), side_by_side)
-        a, b, c = (self._to_space * columns).tolist()
-        firsts = range(0, size * len(frames), size)
-        carried: dict[str, list[Any]] = {
-            "attitude": [[a[k : k + 3], b[k : k + 3], c[k : k + 3]] for k in firsts]
-        }
-        if size > 3:
-            x, y, z = self._at_start["centre"]
-            carried["centre"] = [[x + a[k + 3], y + b[k + 3], z + c[k + 3]] for k in firsts]
-        return carried
+    def _attitudes(
+        self, columns: Sequence[Columns], across: Sequence[acb], heights: Sequence[arb]
+    ) -> list[Rows]:
+        """R in the scene's space axes, by one product of matrices, from its columns, xi and z."""
+        frames = arb_mat(3, 3 * len(columns), self._frames(columns, across, heights))
+        first, second, third = (self._to_space * frames).tolist()
+        places = range(0, 3 * len(columns), 3)
+        return [[first[k : k + 3], second[k : k + 3], third[k : k + 3]] for k in places]
 
     def _grown(self, rate: acb, u: arb, angle: arb) -> acb:
         """e^{rate u + i angle}, for a rate of xi, D1 or D2.
@@ -303,8 +294,8 @@ class Orbit:
         """The scene's space axes, in which R and the centre begin as it says."""
         larger = self._one if self._nutation.z >= 0 else self._two
         columns = self._columns(larger, self._start_xi, self._course.z)
-        frame = self._frame(columns, self._start_xi, self._course.z)
-        self._to_space = attitude * arb_mat(frame).transpose()
+        frame = arb_mat(3, 3, self._frames([columns], [self._start_xi], [self._course.z]))
+        self._to_space = attitude * frame.transpose()
         self._start_moment = self._moment(columns, self._start_eta)
         body, F2 = self._nutation.body, self._nutation.F2
         self._ahead = self._rate(body.p * F2 + body.q * self._nutation.FG)
@@ -359,41 +350,47 @@ class Orbit:
         first, second = (larger - smaller) * _HALF, (larger + smaller) * _HALF_I
         return (first, second, -slanted) if is_up else (first, -second, slanted)
 
-    def _frame(self, columns: Columns, xi: acb, z: arb) -> Rows:
-        """The rows of R with the space axis Z along the impulse."""
-        (first, second, third), over = columns, self._over_F
-        return [
-            [first.real, second.real, third.real],
-            [first.imag, second.imag, third.imag],
-            [xi.real * over, xi.imag * over, z * over],
-        ]
+    def _frames(
+        self, columns: Sequence[Columns], across: Sequence[acb], heights: Sequence[arb]
+    ) -> list[arb]:
+        """The first rows of all R with the space axis Z along the impulse, their second and their third."""
+        over = self._over_F
+        first = [column.real for three in columns for column in three]
+        second = [column.imag for three in columns for column in three]
+        impulses = zip(across, heights, strict=True)
+        third = [part * over for xi, z in impulses for part in (xi.real, xi.imag, z)]
+        return first + second + third
 
     def _moment(self, columns: Columns, eta: acb) -> acb:
         """X + i Y of R y."""
         first, second, third = columns
         return first * eta.real + second * eta.imag + third * self._y3
 
-    def _add_paths(
-        self,
-        frames: Sequence[Rows],
-        times: Sequence[arb],
-        moments: Iterable[acb],
-        poles: Sequence[Pole],
-        along: Sequence[arb],
-    ) -> None:
-        """Add the way of the centre since the start as a fourth column of each frame.
+    def _centres(self, moments: Iterable[acb], advances: Sequence[arb]) -> Rows:
+        """The centre in the scene's space axes, from X + i Y of R y and F times its way along the impulse.
 
-        49 (18)-(19) across the impulse, and Z along it: F dZ/dt = p F^2 + q FG + (p' - p) z^2
-        + (q' - q) y3 z, from Z' = (U.x)/F.
+        Across the impulse, by 49 (18)-(19), F times its way is that of R y, turned by a right angle.
         """
-        over, start, screw = self._over_F, self._start_moment, self._screw * self._y3
+        start = self._start_moment
+        ways = [moment - start for moment in moments]
+        across = [way.imag for way in ways] + [-way.real for way in ways]
+        to_space = self._to_space * self._over_F
+        moved = (to_space * arb_mat(3, len(ways), across + list(advances))).tolist()
+        begun = self._at_start["centre"]
+        x, y, z = ([at + way for way in ways] for at, ways in zip(begun, moved, strict=True))
+        return [list(centre) for centre in zip(x, y, z, strict=True)]
+
+    def _advances(
+        self, times: Sequence[arb], poles: Sequence[Pole], along: Sequence[arb]
+    ) -> list[arb]:
+        """F times the way of the centre along the impulse, from int z du.
+
+        F dZ/dt = p F^2 + q FG + (p' - p) z^2 + (q' - q) y3 z, from Z' = (U.x)/F.
+        """
+        screw = self._screw * self._y3
         advances = [self._ahead * u + screw * z for u, z in zip(times, along, strict=True)]
-        if isinstance(self._course, QuarticCourse):
-            share = self._ahead_by_square
-            squares = self._course.integrals_of_square(times, poles, along)
-            advances = [way + share * z for way, z in zip(advances, squares, strict=True)]
-        for frame, moment, advance in zip(frames, moments, advances, strict=True):
-            across = moment - start
-            frame[0].append(across.imag * over)
-            frame[1].append(-across.real * over)
-            frame[2].append(advance * over)
+        if not isinstance(self._course, QuarticCourse):
+            return advances
+        share = self._ahead_by_square
+        squares = self._course.integrals_of_square(times, poles, along)
+        return [way + share * z for way, z in zip(advances, squares, strict=True)]
