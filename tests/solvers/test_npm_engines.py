@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builders.oblique import oblique
+from builders.other_equations import WITHOUT_GYROSCOPIC_TERM
 
 from taylor_verify.models.problem import Problem, pose_as_stored
 from taylor_verify.scenes.precision import rung
@@ -24,10 +25,7 @@ DIAGONAL = "[2, 3, 4]"
 FULL = "[[2.64, -0.288, -0.384], [-0.288, 3.4096, -0.7872], [-0.384, -0.7872, 2.9504]]"
 PRECISION = {"cannon": "f64"}
 WITH_THE_TERM = ["ammo", "ammo?build=wasm", "jolt", "rapier"]
-WITHOUT_IT = [
-    *("ammo?flags=0", "ammo?flags=8", "cannon", "havok"),
-    *("jolt?gyroscopic=off", "rapier?version=0.19.3"),
-]
+WITHOUT_IT = [name for name in WITHOUT_GYROSCOPIC_TERM if not name.startswith("brax")]
 ALL = [*WITH_THE_TERM, *WITHOUT_IT]
 
 Rows = Callable[[str, str, float], tuple[Problem, Any]]

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from builders.other_equations import has_other_equations
 from builders.programs import imported_tops
 from builders.scenes import THREE_INSTANTS
 from packaging.specifiers import SpecifierSet
@@ -321,10 +322,6 @@ def test_a_library_keeps_near_its_tolerance(
     assert errors[1e-9] <= errors[1e-6] / 10
 
 
-# No step brings them nearer: two lack omega x I omega, one what of the added mass goes with accelerations.
-OTHER_EQUATIONS = {"brax-spring", "brax-positional", "mujoco_fluid-ellipsoid"}
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("one", ready("step"), ids=lambda one: one.name)
 def test_an_engine_begins_with_the_start_and_comes_nearer_with_the_step(
@@ -350,7 +347,7 @@ def test_an_engine_begins_with_the_start_and_comes_nearer_with_the_step(
         assert verdicts[INITIAL].verdict is Status.PASS
         errors.append(max(v.max or 0 for v in verdicts.values() if v.quantity in STATES))
     # The first order is half the error.
-    assert (errors[1] <= 0.6 * errors[0]) is (one.name not in OTHER_EQUATIONS)
+    assert (errors[1] <= 0.6 * errors[0]) is not has_other_equations(one.name)
 
 
 def written(folder: Path, metadata: str) -> Path:

@@ -88,8 +88,6 @@ _ODEFUN: Final = "mpmath:odefun?tol=1e-6"
 PEERS: Final = ("dop853", "cyrk-dop853", "cvode-adams", "diffrax-dopri8")
 _FOR_THE_COLUMNS: Final = tuple(f"1e-{digits}" for digits in range(5, 16))
 _OF_TAYLOR: Final = ("1e-3", *_FOR_THE_COLUMNS)
-# Each of these takes seconds to compile, anew in every process.
-_OF_OPTIMISED: Final = _FOR_THE_COLUMNS[::2]
 _OWN_TOLERANCE: Final = ("f32", "f80", "f128", "mp237")
 
 # A scene with the names of its settings.
@@ -175,7 +173,7 @@ def published_settings(scene: Scene, with_outside: bool = False) -> Iterator[Set
     if not is_long:
         yield from _for_short_scenes(scene)
     if with_outside:
-        for tolerance in _OF_OPTIMISED:
+        for tolerance in _FOR_THE_COLUMNS:
             yield setting(f"{TAYLOR}?tol={tolerance}&code=optimised", f64)
         yield from outside(["f64"], PEERS, _FOR_THE_COLUMNS)
 

@@ -43,8 +43,7 @@ _HOW: Final = (
     "want of another.",
     "diffrax is compiled as a whole by XLA (`jit`).",
     "The time of taylor includes its driver's work in Python around heyoka's compiled steps.",
-    "Optimised code is `taylor?code=optimised`: it compiles for seconds, and is read from disk later. "
-    "Every second power of ten was measured.",
+    "Optimised code is `taylor?code=optimised`: it compiles for seconds, and is read from disk later.",
 )
 _SET_UP: Final = (
     "The times above exclude the set-up: the processor's seconds before the first solve of a process, "

@@ -89,11 +89,11 @@ def remake(trades: Trades) -> str:
     """Return the commands that make the measurement again, and the versions of this one."""
     packages = ", ".join(f"{name} {version}" for name, version in trades.numbers.versions.items())
     return (
-        "`make tradeoff`, which is `taylor-verify publish tradeoff`, repeats the measurement, and "
-        f"writes [tradeoff.json](../{NUMBERS.name}) (errors, the same on any machine except for "
-        f"rounding) and [tradeoff-timings.json](../{TIMINGS.name}) (times of this machine, which no "
-        "test compares); this page and its [CSV](tradeoff.csv) are made from those alone. `make "
-        "reports` and `make check-reports` leave the times as they are. `--outside` adds the "
-        "integrators of other libraries that are compiled as heyoka is. Made by "
+        "`make tradeoff`, which is `taylor-verify publish tradeoff --outside`, repeats the measurement. "
+        "Without `--outside` the compiled integrators of other libraries are left out. It writes "
+        f"[tradeoff.json](../{NUMBERS.name}) (errors, the same on any machine except for rounding) and "
+        f"[tradeoff-timings.json](../{TIMINGS.name}) (times of this machine, which no test compares); "
+        "this page and its [CSV](tradeoff.csv) are made from those alone. `make reports` and `make "
+        "check-reports` leave the times as they are. Made by "
         f"{code(trades.times.machine.command)} with {packages or 'unknown versions'}."
     )
