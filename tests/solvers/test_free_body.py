@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import math
 import sys
 from collections.abc import Callable, Iterator
+from fractions import Fraction
 from importlib import import_module
 from typing import Any
 
@@ -121,6 +123,33 @@ def test_principal_axes_lead_back_to_the_tensor(seed: int, shared: Any) -> None:
     assert np.linalg.det(axes) > 0
     assert np.max(np.abs(np.sort(moments) - np.linalg.eigvalsh(tensor))) <= few
     assert np.max(np.abs(axes @ np.diag(moments) @ axes.T - tensor)) <= few
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_vector_is_turned_exactly_and_rounded_once(seed: int, shared: Any) -> None:
+    """By a quaternion of any length, to space axes and to body axes."""
+    random = np.random.default_rng(seed)
+    attitude, vector = random.normal(size=4) * 10.0 ** random.integers(-9, 9), random.normal(size=3)
+    q0, *r = map(Fraction, attitude)
+    v = [Fraction(entry) for entry in vector]
+
+    def cross(a: list[Fraction], b: list[Fraction]) -> list[Fraction]:
+        return [a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2] for i in range(3)]
+
+    size = q0**2 + sum(entry**2 for entry in r)
+    for sign, turned in ((1, shared.to_space), (-1, shared.to_body)):
+        across = cross(r, v)
+        along = [a + sign * q0 * b for a, b in zip(across, v, strict=True)]
+        moved = cross(r, along)
+        exact = [a + 2 * b / size for a, b in zip(v, moved, strict=True)]
+        assert turned(attitude, vector) == [float(entry) for entry in exact]
+
+
+def test_a_number_that_is_none_is_turned_to_none(shared: Any) -> None:
+    """An engine that has lost its state, or its attitude, has no omega in other axes either."""
+    for attitude, vector in (((math.nan, 0, 0, 1), (1, 2, 3)), ((0, 0, 0, 0), (1, 2, 3))):
+        assert all(map(math.isnan, shared.to_space(attitude, vector)))
+    assert all(map(math.isnan, shared.to_space((1, 0, 0, 0), (math.inf, 0, 0))))
 
 
 def test_a_diagonal_tensor_keeps_its_axes(shared: Any) -> None:

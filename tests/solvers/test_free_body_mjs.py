@@ -110,6 +110,23 @@ def test_the_first_row_is_the_start(inertia: str, engine: list[str]) -> None:
     assert np.max(np.abs(np.subtract(first, expected))) <= 80 * 2**-53
 
 
+@pytest.mark.parametrize("inertia", [FULL, EQUAL, DIAGONAL])
+def test_what_an_engine_was_given_is_read_back(inertia: str, tmp_path: Path) -> None:
+    """Of four turns, to principal axes, to space and back, each component is rounded once in each."""
+    shutil.copy(SCRIPTS / "free_body.mjs", tmp_path)
+    (tmp_path / "engine.mjs").write_text(
+        'import { answer, stepped } from "./free_body.mjs";\n'
+        "answer((body, settings) => stepped(body, settings.step, () => ({\n"
+        "  advance() {}, row: () => body.rowFromSpace(body.omegaInSpace, body.attitude),\n"
+        "})));\n"
+    )
+    problem = posed(inertia)
+    resting = [shutil.which("node") or "", str(tmp_path / "engine.mjs")]
+    omega = np.array(problem.given.initial.omega, dtype=float)
+    first = np.array(solved(resting, problem, 0.5).quantities["omega"][0], dtype=float)
+    assert np.linalg.norm(first - omega) <= 4 * 2**-53 * np.linalg.norm(omega)
+
+
 def test_instants_of_float32_are_multiples_of_a_decimal_step(engine: list[str]) -> None:
     """Instants that are rounded to the rung are multiples of a decimal step all the same."""
     problem = posed(time="at = [0, 0.1, 0.7]", on="f32")

@@ -129,6 +129,51 @@ function doubles(number) {
   return sign ? -size : size;
 }
 
+// Numbers of twice the precision: sums of two doubles, the second of which is what rounding the sum loses.
+// Dekker, Numerische Mathematik 18 (1971); Knuth's exact sum.
+
+const exact = (a) => [a, 0];
+const opposite = ([a, b]) => [-a, -b];
+
+function exactSum(a, b) {
+  const sum = a + b;
+  const part = sum - a;
+  return [sum, a - (sum - part) + (b - part)];
+}
+
+function exactProduct(a, b) {
+  const [product, [ah, al], [bh, bl]] = [a * b, halves(a), halves(b)];
+  return [product, al * bl - (product - ah * bh - al * bh - ah * bl)];
+}
+
+// Two numbers of half the digits each, so that their products are exact.
+function halves(a) {
+  const scaled = (2 ** 27 + 1) * a;
+  const high = scaled - (scaled - a);
+  return [high, a - high];
+}
+
+function plus([a, b], [c, d]) {
+  const [sum, rest] = exactSum(a, c);
+  return exactSum(sum, rest + b + d);
+}
+
+function times([a, b], [c, d]) {
+  const [product, rest] = exactProduct(a, c);
+  return exactSum(product, rest + a * d + b * c);
+}
+
+function over(above, below) {
+  const quotient = above[0] / below[0];
+  const [rest] = plus(above, opposite(times(exact(quotient), below)));
+  return exactSum(quotient, rest / below[0]);
+}
+
+function cross(u, v) {
+  const minor = (i, j) => plus(times(u[i], v[j]), opposite(times(u[j], v[i])));
+  return [minor(1, 2), minor(2, 0), minor(0, 1)];
+}
+
 // Axes.
 
 export const vector = ([x, y, z]) => ({ x, y, z });
@@ -150,10 +195,15 @@ function product([px, py, pz, pw], [qx, qy, qz, qw]) {
   ];
 }
 
-// Turn a vector from body to space axes; the quaternion of an engine need not be quite unit.
+// Turn a vector from body to space axes in twice the precision, and round it once: what is read is the
+// engine's state. v + 2 r x (r x v + w v)/|q|^2, r = (x, y, z); the quaternion need not be unit.
 function toSpace(attitude, v) {
-  const q = unit(attitude);
-  return product(product(q, [...v, 0]), conjugate(q)).slice(0, 3);
+  const [x, y, z, w] = attitude.map(exact);
+  const [r, given] = [[x, y, z], v.map(exact)];
+  const inner = cross(r, given).map((entry, k) => plus(entry, times(w, given[k])));
+  const outer = cross(r, inner);
+  const size = [x, y, z, w].map((entry) => times(entry, entry)).reduce(plus);
+  return given.map((entry, k) => plus(entry, over(plus(outer[k], outer[k]), size))[0]);
 }
 
 // Turn a vector from space to body axes.

@@ -26,7 +26,6 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
-import equations
 from question import (
     Question,
     Row,
@@ -238,9 +237,32 @@ def product(p: Quaternion, q: Quaternion) -> Quaternion:
 
 
 def to_space(attitude: Quaternion, vector: Vector) -> Vector:
-    """Turn a vector from body to space axes; the quaternion of an engine need not be quite unit."""
-    turned: Vector = equations.to_space(*unit(attitude), *map(float, vector))
-    return turned
+    """Turn a vector from body to space axes, exactly, and round it once: what is read is the engine's state.
+
+    v + 2 r x (r x v + q0 v)/|q|^2, r = (q1, q2, q3), in integers; the quaternion need not be unit. NaN where
+    a number is not finite, or the quaternion zero.
+    """
+    numbers = [*map(float, attitude), *map(float, vector)]
+    if not all(map(math.isfinite, numbers)) or not any(numbers[:4]):
+        return [math.nan] * 3
+    (w, x, y, z), _ = _integers(numbers[:4])
+    (a, b, c), n = _integers(numbers[4:])
+    d, e, f = y * c - z * b + w * a, z * a - x * c + w * b, x * b - y * a + w * c
+    size = w * w + x * x + y * y + z * z
+    turned = (
+        a * size + 2 * (y * f - z * e),
+        b * size + 2 * (z * d - x * f),
+        c * size + 2 * (x * e - y * d),
+    )
+    # Python rounds the quotient of two integers once.
+    return [entry / (size * n) for entry in turned]
+
+
+def _integers(numbers: Vector) -> tuple[list[int], int]:
+    """Return the numbers as multiples of one fraction 1/n, and n."""
+    quotients = [number.as_integer_ratio() for number in numbers]
+    n = max(below for _, below in quotients)
+    return [above * (n // below) for above, below in quotients], n
 
 
 def to_body(attitude: Quaternion, vector: Vector) -> Vector:
