@@ -195,8 +195,8 @@ function product([px, py, pz, pw], [qx, qy, qz, qw]) {
   ];
 }
 
-// Turn a vector from body to space axes in twice the precision, and round it once: what is read is the
-// engine's state. v + 2 r x (r x v + w v)/|q|^2, r = (x, y, z); the quaternion need not be unit.
+// Turn a vector from body to space axes in twice the precision, and round it once: the engine's state is
+// judged. v + 2 r x (r x v + w v)/|q|^2, r = (x, y, z); the quaternion need not be unit.
 function toSpace(attitude, v) {
   const [x, y, z, w] = attitude.map(exact);
   const [r, given] = [[x, y, z], v.map(exact)];

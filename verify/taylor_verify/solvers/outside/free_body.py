@@ -237,10 +237,10 @@ def product(p: Quaternion, q: Quaternion) -> Quaternion:
 
 
 def to_space(attitude: Quaternion, vector: Vector) -> Vector:
-    """Turn a vector from body to space axes, exactly, and round it once: what is read is the engine's state.
+    """Turn a vector from body to space axes, exactly, and round it once: the engine's state is judged.
 
-    v + 2 r x (r x v + q0 v)/|q|^2, r = (q1, q2, q3), in integers; the quaternion need not be unit. NaN where
-    a number is not finite, or the quaternion zero.
+    v + 2 r x (r x v + q0 v)/|q|^2, r = (q1, q2, q3), in integers; the quaternion need not be unit. NaN
+    where a number is not finite, or the quaternion zero.
     """
     numbers = [*map(float, attitude), *map(float, vector)]
     if not all(map(math.isfinite, numbers)) or not any(numbers[:4]):
