@@ -33,7 +33,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import equations
+from equations import to_space
 from free_body import Engine, Settings, Solved, answer, conjugate, stepped, to_body
 from immersed_body import ImmersedBody, immersed_body
 from question import Unsuited, unit
@@ -107,13 +107,13 @@ def kirchhoff(body: ImmersedBody, mass: float, inertia: float) -> Force:
     def force(_: Any, data: Any) -> None:
         q, omega = unit(data.qpos[3:7]), data.qvel[3:6]
         # In floating point, because it is a part of each step.
-        velocity = equations.to_space(*conjugate(q), *data.qvel[:3])
+        velocity = to_space(*conjugate(q), *data.qvel[:3])
         x, y = (matrix @ [*velocity, *omega]).reshape(2, 3)
         rates = [*numpy.cross(x, omega), *(numpy.cross(y, omega) + numpy.cross(x, velocity))]
         acceleration, angular = (energy @ rates).reshape(2, 3)
         # The velocity of the engine stands in space axes, which turn against the body.
         linear = mass * (acceleration + numpy.cross(omega, velocity))
-        data.qfrc_passive[:3] = equations.to_space(*q, *linear)
+        data.qfrc_passive[:3] = to_space(*q, *linear)
         data.qfrc_passive[3:6] = inertia * angular
 
     return force
