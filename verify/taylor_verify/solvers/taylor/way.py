@@ -68,6 +68,8 @@ class Way:
     def __init__(self, integrator: Any, problem: Problem) -> None:
         numbers = arithmetic(problem.rung)
         self._integrator, self._problem = integrator, problem
+        # Views of heyoka's own memory.
+        self._pars, self._state = integrator.pars, integrator.state
         self.numbers, self.order = numbers, int(integrator.order)
         self._longest = longest_step(self.order)
         self._parameters = numbers.array(problem.parameters)
@@ -113,10 +115,9 @@ class Way:
 
         Where it is watched, the rate is looked at after each stretch, and the fastest so far counts.
         """
-        integrator = self._integrator
-        integrator.pars[:] = self._parameters
-        integrator.time = stretches[0][0]
-        integrator.state[:] = self._start
+        self._pars[:] = self._parameters
+        self._state[:] = self._start
+        self._integrator.time = stretches[0][0]
         legs = list[Ran]()
         for instants in stretches:
             leg = self._leg(instants, rate)
