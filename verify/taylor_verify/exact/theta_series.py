@@ -72,7 +72,7 @@ class Places:
         """The values of several polynomials in x."""
         count = max(polynomial.ncols() for polynomial in polynomials)
         if count > self._powers.nrows():
-            self._powers = _powers(self.x, count)
+            self._powers = _matrix_of_powers(self.x, count)
         rows = arb_mat(len(polynomials), self._powers.nrows())
         for k, polynomial in enumerate(polynomials):
             for n, coefficient in enumerate(polynomial.entries()):
@@ -108,7 +108,7 @@ class Odd:
         return [acb(re, im) for re, im in zip(*self.parts(places), strict=True)]
 
 
-def _powers(x: Sequence[arb], count: int) -> arb_mat:
+def _matrix_of_powers(x: Sequence[arb], count: int) -> arb_mat:
     """The powers of numbers, a row for each exponent from 0 on."""
     rows = [[arb(1)] * len(x), list(x)][:count]
     while len(rows) < count:

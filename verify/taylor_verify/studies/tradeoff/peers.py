@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Final
 
 from taylor_verify.publish.cells import NOTHING, figure
 from taylor_verify.publish.markdown import bold, bullets, code, prose, table
 from taylor_verify.studies.tradeoff.document import UNTIL
 from taylor_verify.studies.tradeoff.stored import TimedPoint, Trade, Trades, cheapest
+
+SetUp = Callable[[str], float | None]
 
 DIGITS: Final = (6, 9, 12)
 OUTSIDE: Final = "outside "
@@ -25,7 +28,8 @@ _WHAT: Final = (
     "same samples, and are compared with the same exact motion. A cell is the processor's time of the "
     "cheapest tolerance, of all powers of ten from 1e-5 to 1e-15, that leaves this number of digits, "
     "over that of the yardstick. *ahead* is the fastest, with its lead: over the next peer if the "
-    "fastest is taylor, else over taylor. They are *level* if the intervals of the two overlap."
+    "fastest is taylor, else over taylor. They are *level* if the intervals of the two overlap. A peer "
+    "that is ahead compiles for longer, for one body: it is behind until so many solves have repaid that."
 )
 # Headings of the columns by family; a family that is missing here has its own name as heading.
 TITLES: Final = {
@@ -96,7 +100,8 @@ def _times(trades: Trades) -> str:
             best = {f: cheapest(_of_family(trade, f), digits) for f in families}
             ours, *others = (_cell(best[f], bool(_of_family(trade, f))) for f in families)
             name = code(trade.scene) if digits == DIGITS[0] else ""
-            ahead = _ahead([row for row in best.values() if row])
+            longest = partial(_longest, trades, trade.scene)
+            ahead = _ahead([row for row in best.values() if row], longest)
             rows.append([name, str(digits), ours, _inner(best[TAYLOR]), *others, ahead])
     columns = ["taylor:", "of which heyoka:", *(f"{_title(f)}:" for f in families[1:])]
     return table(["scene", "digits:", *columns, "ahead"], rows)
@@ -116,8 +121,11 @@ def _inner(row: TimedPoint | None) -> str:
     return figure(row.timing.ratio * row.timing.inner_seconds / row.timing.seconds)
 
 
-def _ahead(reached: Sequence[TimedPoint]) -> str:
-    """Return the fastest family in words, with its lead over the next peer, or over taylor."""
+def _ahead(reached: Sequence[TimedPoint], set_up: SetUp) -> str:
+    """Return the fastest family in words, with its lead over the next peer, or over taylor.
+
+    ``set_up`` returns the seconds that a family needs once.
+    """
     if not reached:
         return "nobody"
     first, *others = sorted(reached, key=lambda row: row.timing.ratio)
@@ -130,7 +138,18 @@ def _ahead(reached: Sequence[TimedPoint]) -> str:
     if _overlap(first, other):
         return f"level: {name} and {_title(other.point.family)}"
     lead = f"{other.timing.ratio / first.timing.ratio:.1f} times"
-    return f"{name}, {lead}" if is_taylor else f"{bold(name)}, {lead}"
+    if is_taylor:
+        return f"{name}, {lead}"
+    return f"{bold(name)}, {lead}{_repaid(first, other, set_up)}"
+
+
+def _repaid(peer: TimedPoint, ours: TimedPoint, set_up: SetUp) -> str:
+    """Return the number of solves in which a faster peer makes up for its longer set-up, in words."""
+    longer, shorter = set_up(peer.point.family), set_up(ours.point.family)
+    gained = ours.timing.seconds - peer.timing.seconds
+    if longer is None or shorter is None or not longer > shorter or not gained > 0:
+        return ""
+    return f", set-up repaid after {figure((longer - shorter) / gained)} solves"
 
 
 def _overlap(first: TimedPoint, other: TimedPoint) -> bool:
@@ -144,18 +163,26 @@ def _overlap(first: TimedPoint, other: TimedPoint) -> bool:
 
 def _set_up(trades: Trades) -> str:
     families = _families(trades)
-    scenes = dict.fromkeys(trade.scene.partition(UNTIL)[0] for trade in trades.trades)
-    rows = [[code(scene), *(_longest(trades, scene, f) for f in families)] for scene in scenes]
+    rows = []
+    for scene in dict.fromkeys(_shipped(trade.scene) for trade in trades.trades):
+        seconds = [_longest(trades, scene, family) for family in families]
+        cells = [NOTHING if longest is None else f"{figure(longest)} s" for longest in seconds]
+        rows.append([code(scene), *cells])
     return table(["scene", *(f"{_title(f)}:" for f in families)], rows)
 
 
-def _longest(trades: Trades, scene: str, family: str) -> str:
+def _longest(trades: Trades, scene: str, family: str) -> float | None:
     """Return the longest set-up of a family on a scene, which may be part of its short or long run."""
     seconds = [
         row.timing.setup_seconds
         for trade in trades.trades
-        if trade.scene.partition(UNTIL)[0] == scene
+        if _shipped(trade.scene) == _shipped(scene)
         for row in _of_family(trade, family)
         if row.timing.setup_seconds is not None
     ]
-    return f"{figure(max(seconds))} s" if seconds else NOTHING
+    return max(seconds, default=None)
+
+
+def _shipped(scene: str) -> str:
+    """Return the name of the shipped scene that one of this name follows beyond its end."""
+    return scene.partition(UNTIL)[0]
