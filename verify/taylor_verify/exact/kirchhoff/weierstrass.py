@@ -371,13 +371,12 @@ class Orbit:
 
         Across the impulse, by 49 (18)-(19), F times its way is that of R y, turned by a right angle.
         """
-        start = self._start_moment
-        ways = [moment - start for moment in moments]
+        ways = [moment - self._start_moment for moment in moments]
         across = [way.imag for way in ways] + [-way.real for way in ways]
         to_space = self._to_space * self._over_F
         moved = (to_space * arb_mat(3, len(ways), across + list(advances))).tolist()
-        begun = self._at_start["centre"]
-        x, y, z = ([at + way for way in ways] for at, ways in zip(begun, moved, strict=True))
+        start = self._at_start["centre"]
+        x, y, z = ([at + way for way in ways] for at, ways in zip(start, moved, strict=True))
         return [list(centre) for centre in zip(x, y, z, strict=True)]
 
     def _advances(
