@@ -29,7 +29,8 @@ _WHAT: Final = (
     "cheapest tolerance, of all powers of ten from 1e-5 to 1e-15, that leaves this number of digits, "
     "over that of the yardstick. *ahead* is the fastest, with its lead: over the next peer if the "
     "fastest is taylor, else over taylor. They are *level* if the intervals of the two overlap. A peer "
-    "that is ahead compiles for longer, for one body: it is behind until so many solves have repaid that."
+    "that is ahead compiles for longer, for one body. It is behind until that is *repaid*, after so many "
+    "solves of this body in one process."
 )
 # Headings of the columns by family; a family that is missing here has its own name as heading.
 TITLES: Final = {
@@ -100,11 +101,15 @@ def _times(trades: Trades) -> str:
             best = {f: cheapest(_of_family(trade, f), digits) for f in families}
             ours, *others = (_cell(best[f], bool(_of_family(trade, f))) for f in families)
             name = code(trade.scene) if digits == DIGITS[0] else ""
-            longest = partial(_longest, trades, trade.scene)
-            ahead = _ahead([row for row in best.values() if row], longest)
-            rows.append([name, str(digits), ours, _inner(best[TAYLOR]), *others, ahead])
+            reached = sorted(
+                (row for row in best.values() if row), key=lambda row: row.timing.ratio
+            )
+            repaid = _repaid(reached, partial(_longest, trades, trade.scene))
+            rows.append(
+                [name, str(digits), ours, _inner(best[TAYLOR]), *others, _ahead(reached), repaid]
+            )
     columns = ["taylor:", "of which heyoka:", *(f"{_title(f)}:" for f in families[1:])]
-    return table(["scene", "digits:", *columns, "ahead"], rows)
+    return table(["scene", "digits:", *columns, "ahead", "repaid after:"], rows)
 
 
 def _cell(row: TimedPoint | None, is_there: bool) -> str:
@@ -121,35 +126,38 @@ def _inner(row: TimedPoint | None) -> str:
     return figure(row.timing.ratio * row.timing.inner_seconds / row.timing.seconds)
 
 
-def _ahead(reached: Sequence[TimedPoint], set_up: SetUp) -> str:
-    """Return the fastest family in words, with its lead over the next peer, or over taylor.
-
-    ``set_up`` returns the seconds that a family needs once.
-    """
+def _ahead(reached: Sequence[TimedPoint]) -> str:
+    """Return the fastest family in words, with its lead over the next peer, or over taylor."""
     if not reached:
         return "nobody"
-    first, *others = sorted(reached, key=lambda row: row.timing.ratio)
-    name = _title(first.point.family)
-    is_taylor = _is_ours(first)
-    other = next((row for row in others if _is_ours(row) is not is_taylor), None)
+    first, name, other = reached[0], _title(reached[0].point.family), _next(reached)
     if other is None:
-        is_alone = is_taylor or not others
+        is_alone = _is_ours(first) or len(reached) == 1
         return f"{name}, alone" if is_alone else f"{bold(name)}: taylor does not reach them"
     if _overlap(first, other):
         return f"level: {name} and {_title(other.point.family)}"
     lead = f"{other.timing.ratio / first.timing.ratio:.1f} times"
-    if is_taylor:
-        return f"{name}, {lead}"
-    return f"{bold(name)}, {lead}{_repaid(first, other, set_up)}"
+    return f"{name}, {lead}" if _is_ours(first) else f"{bold(name)}, {lead}"
 
 
-def _repaid(peer: TimedPoint, ours: TimedPoint, set_up: SetUp) -> str:
-    """Return the number of solves in which a faster peer makes up for its longer set-up, in words."""
-    longer, shorter = set_up(peer.point.family), set_up(ours.point.family)
-    gained = ours.timing.seconds - peer.timing.seconds
+def _next(reached: Sequence[TimedPoint]) -> TimedPoint | None:
+    """Return the fastest of the other side than the first of all, taylor or a peer."""
+    return next((row for row in reached if _is_ours(row) is not _is_ours(reached[0])), None)
+
+
+def _repaid(reached: Sequence[TimedPoint], set_up: SetUp) -> str:
+    """Return the number of solves in which a peer that is ahead makes up for its longer set-up.
+
+    ``set_up`` returns the seconds that a family needs once.
+    """
+    ours = _next(reached)
+    if ours is None or _is_ours(reached[0]) or _overlap(reached[0], ours):
+        return NOTHING
+    longer, shorter = (set_up(row.point.family) for row in (reached[0], ours))
+    gained = ours.timing.seconds - reached[0].timing.seconds
     if longer is None or shorter is None or not longer > shorter or not gained > 0:
-        return ""
-    return f", set-up repaid after {figure((longer - shorter) / gained)} solves"
+        return NOTHING
+    return f"{figure((longer - shorter) / gained)} solves"
 
 
 def _overlap(first: TimedPoint, other: TimedPoint) -> bool:
