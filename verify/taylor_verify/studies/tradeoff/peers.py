@@ -105,11 +105,10 @@ def _times(trades: Trades) -> str:
                 (row for row in best.values() if row), key=lambda row: row.timing.ratio
             )
             repaid = _repaid(reached, partial(_longest, trades, trade.scene))
-            rows.append(
-                [name, str(digits), ours, _inner(best[TAYLOR]), *others, _ahead(reached), repaid]
-            )
+            times = [ours, _inner(best[TAYLOR]), *others]
+            rows.append([name, str(digits), _ahead(reached), repaid, *times])
     columns = ["taylor:", "of which heyoka:", *(f"{_title(f)}:" for f in families[1:])]
-    return table(["scene", "digits:", *columns, "ahead", "repaid after:"], rows)
+    return table(["scene", "digits:", "ahead", "repaid after:", *columns], rows)
 
 
 def _cell(row: TimedPoint | None, is_there: bool) -> str:
