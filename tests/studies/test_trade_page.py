@@ -84,7 +84,7 @@ def test_the_cheapest_setting_for_so_many_digits(folder: Path) -> None:
 
 
 def test_a_peer_that_is_ahead_is_named(tmp_path: Path) -> None:
-    """The fastest stands in the last column with its lead; level are two whose intervals meet."""
+    """The fastest stands before the times with its lead; level are two whose intervals meet."""
     name = "outside:cvode-bdf?rtol=1e-9&atol=1e-9"
     lines = {}
     for ratio in (0.2, 0.7, 2.0):
