@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from flint import acb, arb, ctx
+from flint import acb, arb, arb_mat, ctx
 from mpmath import mp
 
 from taylor_verify.exact import lattice as lattice_module
@@ -120,6 +120,19 @@ def test_short_series_of_real_arguments_need_their_tails(
     monkeypatch.setattr(ThetaSeries, "_tail", lambda self, count, b, order: arb(0))
     monkeypatch.setattr(ThetaSeries, "_even_tail", lambda self, count: arb(0))
     assert agree(tau_of(tau)) == [False] * 4
+
+
+@pytest.mark.parametrize("count", [2, 7])
+def test_polynomials_together_have_the_values_of_each_alone(count: int) -> None:
+    """Whether few or many, short or long, and asked again with longer ones."""
+    places = Places([arb.pi() * v for v in arguments()])
+    for most in (3, 9, 5):
+        asked = [
+            arb_mat(1, 1 + k % most, [arb(n - k) / 7 for n in range(1 + k % most)])
+            for k in range(count)
+        ]
+        for values, polynomial in zip(places.at_each(asked), asked, strict=True):
+            assert all(map(arb.overlaps, values, places.at(polynomial)))
 
 
 @pytest.mark.parametrize("tau", TAUS)

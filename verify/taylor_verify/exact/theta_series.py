@@ -38,7 +38,8 @@ MOST_TERMS: Final = 40
 # Near a separatrix theta functions are as small as e^{-pi/4y} beside their terms, which cancel to as many
 # bits: more than half of those that a first precision has to spare are not given up.
 _MOST_BITS_CANCELLED: Final = 16
-
+# The matrix of all powers costs as much as three polynomials without it.
+_WORTH_A_MATRIX: Final = 4
 
 Parts = Sequence[arb_mat | None]
 
@@ -70,6 +71,8 @@ class Places:
 
     def at_each(self, polynomials: Sequence[arb_mat]) -> list[list[arb]]:
         """The values of several polynomials in x."""
+        if len(polynomials) < _WORTH_A_MATRIX:
+            return [self.at(polynomial) for polynomial in polynomials]
         count = max(polynomial.ncols() for polynomial in polynomials)
         if count > self._powers.nrows():
             self._powers = _matrix_of_powers(self.x, count)
