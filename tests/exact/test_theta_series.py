@@ -124,7 +124,7 @@ def test_short_series_of_real_arguments_need_their_tails(
 
 @pytest.mark.parametrize("count", [2, 7])
 def test_polynomials_together_have_the_values_of_each_alone(count: int) -> None:
-    """Whether few or many, short or long, and asked again with longer ones."""
+    """Values are the same whether few or many are asked for, short or long, and longer ones later."""
     places = Places([arb.pi() * v for v in arguments()])
     for most in (3, 9, 5):
         asked = [

@@ -127,7 +127,7 @@ def test_principal_axes_lead_back_to_the_tensor(seed: int, shared: Any) -> None:
 
 @pytest.mark.parametrize("seed", range(20))
 def test_a_vector_is_turned_exactly_and_rounded_once(seed: int, shared: Any) -> None:
-    """By a quaternion of any length, to space axes and to body axes."""
+    """A quaternion of any length turns a vector to space axes, and one to body axes."""
     random = np.random.default_rng(seed)
     attitude, vector = random.normal(size=4) * 10.0 ** random.integers(-9, 9), random.normal(size=3)
     q0, *r = map(Fraction, attitude)

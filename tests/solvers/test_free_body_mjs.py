@@ -112,7 +112,7 @@ def test_the_first_row_is_the_start(inertia: str, engine: list[str]) -> None:
 
 @pytest.mark.parametrize("inertia", [FULL, EQUAL, DIAGONAL])
 def test_what_an_engine_was_given_is_read_back(inertia: str, tmp_path: Path) -> None:
-    """Of four turns, to principal axes, to space and back, each component is rounded once in each."""
+    """Four turns, to principal axes, to space and back, round each component once in each."""
     shutil.copy(SCRIPTS / "free_body.mjs", tmp_path)
     (tmp_path / "engine.mjs").write_text(
         'import { answer, stepped } from "./free_body.mjs";\n'

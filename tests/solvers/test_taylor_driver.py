@@ -399,7 +399,7 @@ def test_optimised_code_passes_the_same_gates() -> None:
 @pytest.mark.parametrize("name", ["f64", "f128"])
 @pytest.mark.parametrize("scene", ["euler/tennis-racket", "kirchhoff/whole-motion"])
 def test_a_question_that_is_asked_again_has_the_same_answer(scene: str, name: str) -> None:
-    """To the last bit, and in as many steps, though its rates are looked at by tables from then on."""
+    """The answer is the same to the last bit, in as many steps, though rates are found by a table."""
     problem, solver = pose(load(scene), rung(name)), Taylor()
     first, *later = (solver.solve(problem) for _ in range(3))
     for again in later:

@@ -48,11 +48,13 @@ Parts = Sequence[arb_mat | None]
 class Places:
     """Many real arguments v, given as the angles pi v."""
 
+    # Of x, a row for each exponent: as many as were needed so far.
+    _powers = arb_mat(0, 0)
+
     def __init__(self, angles: Sequence[arb]) -> None:
         both = [angle.sin_cos() for angle in angles]
         self.sines, self.cosines = [s for s, _ in both], [c for _, c in both]
         self.x = [1 - 2 * (s * s) for s in self.sines]
-        self._powers = arb_mat(0, len(both))
 
     @cached_property
     def doubled(self) -> Places:
@@ -61,7 +63,6 @@ class Places:
         doubled.sines = [2 * s * c for s, c in zip(self.sines, self.cosines, strict=True)]
         doubled.cosines = self.x
         doubled.x = [2 * (x * x) - 1 for x in self.x]
-        doubled._powers = arb_mat(0, len(self.x))
         return doubled
 
     def at(self, polynomial: arb_mat) -> list[arb]:

@@ -8,8 +8,8 @@ from __future__ import annotations
 import operator
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
-from functools import lru_cache
-from math import inf, isfinite, nan, sqrt
+from functools import cached_property, lru_cache
+from math import inf, isfinite
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -55,8 +55,7 @@ class Linearised:
         self._table: Floats = np.ascontiguousarray(entries.T)
         self._square = float(np.vdot(entries, entries))
         self._turns = "e0" in problem.form.states
-        self._asked = 0
-        self._products: _Products | None = None
+        self._was_asked = False
 
     def fastest(self, states: Any) -> float:
         """Return the fastest rate at a state, or at all rows of an array; infinite where not finite.
@@ -81,33 +80,63 @@ class Linearised:
         if not before <= _NEARLY * bound:
             bound = float(np.abs(np.linalg.eigvals(J)).max())
         if 2 * omega > bound:
-            turns = entries[..., -4:].reshape(-1, 4) / omega
-            bound = max(bound, omega * sqrt(_largest_sum_of_squares(turns)))
+            # Scaled, so that no square overflows.
+            turns = np.linalg.norm(entries[..., -4:] / omega, axis=-1)
+            bound = max(bound, omega * float(turns.max()))
         return max(bound, _SLOWEST)
 
     def is_within(self, states: Any, rate: float) -> bool:
         """Return True if no row of an array of states has a faster rate.
 
-        Most rows are decided by a cheap bound, |J^2|^(1/2) in Frobenius's norm. Whoever asks again, for as
-        many rows, is answered from tables, in half the time.
+        Most rows are decided by a cheap bound, |J^2|^(1/2) in Frobenius's norm.
         """
-        n, asked, square = self._momenta, self._asked, rate * rate
-        self._asked = len(states)
-        if asked == len(states):
-            if self._products is None or self._products.count != asked:
-                self._products = _Products(self._table, asked, self._turns)
-            return self._products.largest(states) <= square * square or self.fastest(states) <= rate
-        augmented = self._augmented(states)
+        augmented, square = self._augmented(states), rate * rate
         numbers = augmented.ravel()
         # NumPy's dot never warns, and what follows cannot overflow. NaN is not moderate.
         if numbers.dot(numbers) * self._square <= _MODERATE:
-            entries = augmented.dot(self._table)
-            J = entries[:, :-4].reshape(-1, n, n)
-            if _largest_sum_of_squares((J @ J).reshape(-1, n * n)) <= square * square and (
-                not self._turns or _largest_sum_of_squares(entries[:, -4:]) <= square
-            ):
+            # Most are asked once, and some by the thousand.
+            entries = (self._by_products if self._was_asked else self._squares)(augmented)
+            self._was_asked = True
+            entries *= entries
+            sums = entries.dot(_sums(self._momenta, entries.shape[1])).ravel()
+            if sums[sums.argmax()] <= square * square:
                 return True
         return self.fastest(states) <= rate
+
+    def _squares(self, augmented: Floats) -> Floats:
+        """Return the entries of J^2 and, where an attitude turns, |omega|^2/4 at each row."""
+        n = self._momenta
+        rates = augmented.dot(self._table)
+        J, omega = rates[:, :-4].reshape(-1, n, n), rates[:, -4:]
+        entries = np.empty((len(rates), n * n + self._turns))
+        entries[:, : n * n] = (J @ J).reshape(-1, n * n)
+        if self._turns:
+            entries[:, -1] = (omega * omega).sum(axis=1)
+        return entries
+
+    def _by_products(self, augmented: Floats) -> Floats:
+        """Return the same sooner, by a table that takes longer to make than a look without it."""
+        left, right, _ = _pairs(self._momenta)
+        products = augmented.take(left, 1)
+        products *= augmented.take(right, 1)
+        entries: Floats = products.dot(self._products)
+        return entries
+
+    @cached_property
+    def _products(self) -> Floats:
+        """A row for each product of two numbers of (1, s): its factors in J^2, and in |omega|^2/4."""
+        n = self._momenta
+        left, right, share = _pairs(n)
+        J, omega = self._table[:, :-4].reshape(n + 1, n, n), self._table[:, -4:]
+        # J_i J_j for all i and j, by one product of matrices.
+        matrices = J.reshape(-1, n).dot(J.transpose(1, 0, 2).reshape(n, -1))
+        squares = matrices.reshape(n + 1, n, n + 1, n).transpose(0, 2, 1, 3)
+        products = np.empty((len(left), n * n + self._turns))
+        products[:, : n * n] = (squares[left, right] + squares[right, left]).reshape(-1, n * n)
+        if self._turns:
+            products[:, -1] = 2 * omega.dot(omega.T)[left, right]
+        products *= share
+        return products
 
     def _augmented(self, states: Any) -> Floats:
         """Return 1 and the momenta of a state, or of each row of an array."""
@@ -117,63 +146,25 @@ class Linearised:
         return augmented
 
 
-class _Products:
-    """J^2 and |omega|^2/4 at so many states, linear in the products of two numbers of (1, s).
+@lru_cache
+def _pairs(n: int) -> tuple[Indices, Indices, Floats]:
+    """Return i and j of each product of two of n + 1 numbers, and 1/2 for a square, else 1."""
+    left, right = np.triu_indices(n + 1)
+    return left, right, np.where(left == right, 0.5, 1.0)[:, None]
 
-    The rooms for all that is computed are made once.
-    """
 
-    def __init__(self, table: Floats, count: int, turns: bool) -> None:
-        n = len(table) - 1
-        left, right = np.triu_indices(n + 1)
-        J, omega = table[:, :-4].reshape(n + 1, n, n), table[:, -4:]
-        squares = J[left] @ J[right] + J[right] @ J[left]
-        twice = np.where(left == right, 0.5, 1.0)[:, None]
-        entries = [squares.reshape(len(left), -1) * twice]
-        if turns:
-            entries.append(2 * twice * (omega @ omega.T)[left, right][:, None])
-        self._table = np.hstack(entries)
-        self._square = float(np.vdot(table, table))
-        # Of the squares of all entries, those of J^2 are added, and that of |omega|^2/4 stays alone.
-        self._sums = np.zeros((self._table.shape[1], len(entries)))
-        self._sums[: n * n, 0], self._sums[n * n :, 1:] = 1.0, 1.0
-        self.count, self._left, self._right = count, left, right
-        self._augmented = np.ones((count, n + 1))
-        self._states, self._numbers = self._augmented[:, 1:], self._augmented.ravel()
-        self._first, self._second = (np.empty((count, len(left))) for _ in range(2))
-        self._entries = np.empty((count, len(self._sums)))
-        self._bounds = np.empty((count, len(entries)))
-        self._each = self._bounds.ravel()
-
-    def largest(self, states: Any) -> float:
-        """Return the largest |J^2|^2 or |omega|^4/16 of a row; NaN where the numbers are not moderate."""
-        self._states[:] = states[:, : self._states.shape[1]]
-        numbers, first, entries = self._numbers, self._first, self._entries
-        if not numbers.dot(numbers) * self._square <= _MODERATE:
-            return nan
-        self._augmented.take(self._left, 1, first, "clip")
-        first *= self._augmented.take(self._right, 1, self._second, "clip")
-        first.dot(self._table, entries)
-        entries *= entries
-        entries.dot(self._sums, self._bounds)
-        return float(self._each[self._each.argmax()])
+@lru_cache
+def _sums(n: int, count: int) -> Floats:
+    """Return the matrix that adds the first n^2 of so many numbers, and leaves those after them alone."""
+    sums = np.zeros((count, 1 + count - n * n))
+    sums[: n * n, 0], sums[n * n :, 1:] = 1.0, 1.0
+    return sums
 
 
 def _largest(numbers: Floats) -> float:
     """Return the largest size of a number, NaN if there is one; NumPy's maximum takes longer."""
     sizes = np.abs(numbers).ravel()
     return float(sizes[sizes.argmax()])
-
-
-def _largest_sum_of_squares(rows: Floats) -> float:
-    """Return the largest sum of the squares of a row."""
-    sums = (rows * rows).dot(_ones(rows.shape[1]))
-    return float(sums[sums.argmax()])
-
-
-@lru_cache
-def _ones(count: int) -> Floats:
-    return np.ones(count)
 
 
 class _Terms(NamedTuple):

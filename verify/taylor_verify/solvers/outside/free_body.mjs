@@ -198,8 +198,8 @@ function product([px, py, pz, pw], [qx, qy, qz, qw]) {
 // Turn a vector from body to space axes in twice the precision, and round it once: the engine's state is
 // judged. v + 2 r x (r x v + w v)/|q|^2, r = (x, y, z); the quaternion need not be unit.
 function toSpace(attitude, v) {
-  const [x, y, z, w] = attitude.map(exact);
-  const [r, given] = [[x, y, z], v.map(exact)];
+  const [x, y, z, w] = Array.from(attitude, exact);
+  const [r, given] = [[x, y, z], Array.from(v, exact)];
   const inner = cross(r, given).map((entry, k) => plus(entry, times(w, given[k])));
   const outer = cross(r, inner);
   const size = [x, y, z, w].map((entry) => times(entry, entry)).reduce(plus);
