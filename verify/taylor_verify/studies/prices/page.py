@@ -46,8 +46,9 @@ _LEGEND: Final = (
     "*error* is that of omega or of the impulses at the rung's own tolerance, the largest of all "
     "samples, relative; *at equal error* is the price of a unit of time at tolerances for which both "
     "forms achieve 1e-11, on f64.",
-    "Up to five states are compiled as straight-line code, more as loops over tables, which "
-    "compile in a fraction of the time and run slower: part of the price of a sixth state.",
+    "Up to five states, code on f64 is optimised, and on f80 written out instead of looping over tables. "
+    "More would compile for longer than it saves: it runs slower, which is part of the price of a sixth "
+    "state.",
 )
 
 
