@@ -17,7 +17,8 @@ from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.taylor.driver import Taylor, at_tolerance
+from taylor_verify.solvers.taylor.driver import Taylor
+from taylor_verify.solvers.taylor.names import at_tolerance
 from taylor_verify.studies.reach import measure as reach
 from taylor_verify.studies.reach.document import ReachRow
 from taylor_verify.studies.reach.families import (

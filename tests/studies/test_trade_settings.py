@@ -23,7 +23,8 @@ from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.registry import solver_named, solver_names
 from taylor_verify.solvers.solver import Callback, Solver
-from taylor_verify.solvers.taylor.driver import Taylor, at_tolerance
+from taylor_verify.solvers.taylor.driver import Taylor
+from taylor_verify.solvers.taylor.names import at_tolerance
 from taylor_verify.solvers.trajectory import Trajectory
 from taylor_verify.studies.tradeoff.cold import cold
 from taylor_verify.studies.tradeoff.recommendation import recommend

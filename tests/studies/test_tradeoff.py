@@ -26,7 +26,8 @@ from taylor_verify.scenes.precision import Rung, rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.solver import Solver
-from taylor_verify.solvers.taylor.driver import Taylor, at_tolerance
+from taylor_verify.solvers.taylor.driver import Taylor
+from taylor_verify.solvers.taylor.names import at_tolerance
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.studies.tradeoff.accuracy import Accuracy, Truth
 from taylor_verify.studies.tradeoff.attainability import least_error

@@ -15,7 +15,7 @@ from interrupt import interrupted, swung
 
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import read
-from taylor_verify.solvers.taylor.driver import at_tolerance
+from taylor_verify.solvers.taylor.names import at_tolerance
 from traps.document import TrapCase
 from traps.measured import GENERIC, driver_on, error_at, free, typed_equations
 from traps.trap import Cause, Trap

@@ -174,6 +174,11 @@ class Bodies:
                 rate = np.maximum(rate, np.max(_norm(omega), axis=1) / 2)
         return rate
 
+    def grown(self, states: Floats, rates: Floats) -> Floats:
+        """Return the fastest rate (n) at any of the states (s, n, m); 0 where it is not above ``rates``."""
+        fastest = self.fastest(states)
+        return np.where(fastest <= rates, 0.0, fastest)
+
     @property
     def are_moderate(self) -> Any:
         """Return True for the bodies (n) without a number so large or small that a double loses bits."""

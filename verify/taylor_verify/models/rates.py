@@ -179,10 +179,15 @@ class _Terms(NamedTuple):
     factors: Indices
 
 
+def momenta(form: Form) -> int:
+    """Return the number of the momenta, which come first of all states."""
+    return sum(name[0] not in "ec" for name in form.states)
+
+
 @lru_cache(maxsize=64)
 def _linearised(form: Form) -> tuple[int, _Terms]:
-    """Return the number of the momenta, which come first of all states, and the terms of J and omega/2."""
-    n = sum(name[0] not in "ec" for name in form.states)
+    """Return the number of the momenta, and the terms of J and omega/2."""
+    n = momenta(form)
     terms = list[tuple[int, float, list[int]]]()
     for i, c, variables, factors in _monomials(form):
         if i < n:

@@ -102,9 +102,4 @@ def named(name: str) -> Odefun:
         raise ValueError(f"expected a tolerance of at most 1, got {asked.values['tol']!r} @ tol")
     if "degree" not in asked:
         return Odefun(name, tol)
-    degree = asked.positive("degree", "")
-    if degree.denominator != 1 or not 2 <= degree <= _MOST_DEGREE:
-        text = asked.values["degree"]
-        expected = f"a whole number from 2 to {_MOST_DEGREE}"
-        raise ValueError(f"expected {expected}, got {text!r:.60} @ degree")
-    return Odefun(name, tol, int(degree))
+    return Odefun(name, tol, asked.whole("degree", 2, _MOST_DEGREE))

@@ -44,6 +44,14 @@ class Options:
             raise ValueError(f"expected {expected}, got {text!r:.60} @ {key}")
         return value
 
+    def whole(self, key: str, least: int, most: int) -> int:
+        """Return the whole number of that key; ValueError for anything else, and outside the limits."""
+        number = self.positive(key, default="")
+        if number.denominator != 1 or not least <= number <= most:
+            expected = f"a whole number from {least} to {most}"
+            raise ValueError(f"expected {expected}, got {self.values[key]!r:.60} @ {key}")
+        return int(number)
+
 
 def options(name: str, methods: Iterable[str], keys: Iterable[str]) -> Options:
     """Take a name apart. Raises ValueError for a method or a key that there is not, or twice."""

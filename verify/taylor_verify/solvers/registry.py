@@ -37,7 +37,7 @@ class Family(NamedTuple):
 
 _GEOMETRIC = "implicit-midpoint splitting moser-veselov preprocessed-moser-veselov lie-rk4"
 _SCIPY = "RK45 DOP853 Radau BDF LSODA"
-_TAYLOR = (TAYLOR, "taylor?tol=NUMBER", "taylor?code=optimised")
+_TAYLOR = (TAYLOR, "taylor?tol=NUMBER", "taylor?code=optimised", "taylor?bodies=NUMBER")
 _STEPPED = tuple(f"geometric:{method}?step=NUMBER" for method in _GEOMETRIC.split())
 _TOLERANT = tuple(f"scipy:{method}?rtol=NUMBER&atol=NUMBER" for method in _SCIPY.split())
 _ODEFUN = ("mpmath:odefun?tol=NUMBER&degree=NUMBER",)
@@ -45,7 +45,7 @@ _ELLIPJ = ("closed-form:ellipj",)
 _FMU = ("fmu:FILE?step=NUMBER",)
 
 FAMILIES = (
-    Family("taylor?", "taylor.driver", TAYLOR, _TAYLOR, "heyoka", "taylor"),
+    Family("taylor?", "taylor.names", TAYLOR, _TAYLOR, "heyoka", "taylor"),
     Family("geometric:", "geometric.methods", "geometric:METHOD?step=NUMBER", _STEPPED),
     Family("scipy:", "scipy", "scipy:METHOD", _TOLERANT, "scipy", "scipy"),
     Family("mpmath:", "odefun", "mpmath:odefun", _ODEFUN),

@@ -25,8 +25,6 @@ from taylor_verify.models.form import Form
 from taylor_verify.models.problem import Problem
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.precision import rung as rung_named
-from taylor_verify.solvers.options import options
-from taylor_verify.solvers.registry import TAYLOR
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.taylor.cache import stored
 from taylor_verify.solvers.taylor.numbers import arithmetic, unavailable
@@ -41,8 +39,6 @@ _MOST_COMPILED = 128
 _MOST_WAYS, _MOST_INSTANTS = 128, 1000
 # As many instants of the way in doubles tell the fastest rate.
 _SCOUTED = 24
-# `taylor?tol=1e-9&code=optimised`.
-_SETTINGS, _OPTIMISED = ("tol", "code"), "optimised"
 
 
 @final
@@ -89,34 +85,6 @@ class Taylor(Solver):
             compile_seconds=ready - began,
             inner_seconds=inner,
         )
-
-
-def at_tolerance(text: str) -> Taylor:
-    """Return the driver at a tolerance, a decimal or a/b; ValueError for one that is not positive."""
-    return named(f"{TAYLOR}?tol={text}")
-
-
-def named(name: str) -> Taylor:
-    """Return the driver that `taylor`, `taylor?tol=NUMBER` or `taylor?code=optimised` names.
-
-    Raises ValueError for any other name.
-    """
-    chosen = options(name, [TAYLOR], _SETTINGS)
-    code = chosen.values.get("code", _OPTIMISED)
-    if code != _OPTIMISED:
-        raise ValueError(f"expected {_OPTIMISED}, got {code!r:.60} @ code")
-    return Taylor(name, tolerance=tolerance(name), is_optimised="code" in chosen)
-
-
-def tolerance(name: str) -> Fraction | None:
-    """Return the tolerance that is set in a name, exactly as written; None for the rung's own.
-
-    Raises ValueError for a tolerance that is no positive number, and for a name of something else.
-    """
-    chosen = options(name, [TAYLOR], _SETTINGS)
-    if "tol" not in chosen and (name == TAYLOR or "code" in chosen):
-        return None
-    return chosen.positive("tol", default="")
 
 
 @lru_cache(maxsize=_MOST_COMPILED)

@@ -1,24 +1,27 @@
 """Many bodies of one form in heyoka's batches in float64: one lane for each body.
 
 heyoka steps the lanes of a batch together, and stops all of them where one is not finite. That one is
-left out, and the others go again from their starts. A lane whose rate has grown beyond the one that its
-steps were made for goes again too, at the larger rate.
+left out, and the others go again from their starts. A lane whose rate has grown, so that its longest step
+was too long for it, goes again too, at the larger rate.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Final
+from fractions import Fraction
+from typing import Any, Final, Protocol
 
 import numpy as np
 
-from taylor_verify.models.bodies import Bodies
+from taylor_verify.models.form import Form
 from taylor_verify.scenes.precision import rung
 from taylor_verify.solvers.taylor.ensemble import batch_width, stepper
 from taylor_verify.solvers.taylor.way import (
     LEAST_STEPS,
     MOST_RADIANS,
+    SLACK,
     STEPS_PER_RADIAN,
+    UNCUT,
     longest_step,
     outcome_of,
 )
@@ -26,13 +29,42 @@ from taylor_verify.solvers.trajectory import Outcome
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
-# A lane goes again where its rate is more than this factor above that of its steps, so often at most.
-_SLACK: Final = 1.25
+# A lane goes again so often at most.
 _MOST_WAYS: Final = 16
 _MOST_LOOKS: Final = 12
 _RUNG: Final = rung("f64")
 # Straight-line code of so many states compiles in a second, once for a machine, and runs twice as fast.
-_STATES: Final = 7
+_STATES: Final = 13
+# A batch is twice as wide as what a processor steps at once: half as many calls of heyoka. A batch of one
+# would have another interface.
+_WIDER: Final = 2
+
+
+class Posed(Protocol):
+    """n bodies of one form, in their units.
+
+    ``parameters`` (p, n), ``starts`` (s, n), ``grid`` (n, m) of the times, and ``rates`` (n), the fastest
+    ones at the starts.
+    """
+
+    @property
+    def form(self) -> Form: ...
+    @property
+    def parameters(self) -> Floats: ...
+    @property
+    def starts(self) -> Floats: ...
+    @property
+    def grid(self) -> Floats: ...
+    @property
+    def rates(self) -> Floats: ...
+
+    def __len__(self) -> int: ...
+
+    def at(self, places: Any) -> Posed:
+        """Return some of the bodies."""
+
+    def grown(self, states: Floats, rates: Floats) -> Floats:
+        """Return the fastest rate (n) at any of the states (s, n, m); 0 where it is not above ``rates``."""
 
 
 @dataclass(frozen=True)
@@ -49,25 +81,32 @@ class Lanes:
     order: int
 
 
-def propagate(bodies: Bodies) -> Lanes:
-    """Return the states of bodies at their times, in their units."""
-    return _Propagation(bodies).ended()
+def prepare(form: Form, tolerance: Fraction | None = None) -> Any:
+    """Return heyoka's integrator for such bodies, compiled or read from disk the first time."""
+    return stepper(form, _RUNG, tolerance, _WIDER * batch_width(_RUNG), _STATES)
+
+
+def propagate(bodies: Posed, tolerance: Fraction | None = None) -> Lanes:
+    """Return the states of bodies at their times, in their units; ``tolerance`` is as in Taylor."""
+    return _Propagation(bodies, tolerance).ended()
 
 
 class _Propagation:
-    def __init__(self, bodies: Bodies) -> None:
+    def __init__(self, bodies: Posed, tolerance: Fraction | None) -> None:
         self._bodies, self._rates = bodies, bodies.rates
         grid = bodies.grid
         is_sampled = bool(grid.size) and not grid[:, 0].any()
         self._grid = grid if is_sampled else np.insert(grid, 0, 0.0, axis=1)
         self._first = 0 if is_sampled else 1
-        # A batch of one has another interface.
-        self._stepper = stepper(bodies.form, _RUNG, None, max(2, batch_width(_RUNG)), _STATES)
+        width = 16
+        self._stepper = stepper(bodies.form, _RUNG, tolerance, width, _STATES)
+        self._cap = longest_step(int(self._stepper.order))
         count = len(bodies)
         self._rows = np.full((len(bodies.form.states), count, self._grid.shape[1]), np.nan)
         self._steps = np.zeros(count, dtype=np.int64)
+        self._uncut = np.zeros(count)
         self._ways = np.zeros(count, dtype=np.int64)
-        self._outcomes = [Outcome.INTERRUPTED] * count
+        self._outcomes = np.full(count, Outcome.INTERRUPTED, dtype=object)
 
     def ended(self) -> Lanes:
         waiting = self._startable()
@@ -80,7 +119,7 @@ class _Propagation:
             waiting = np.concatenate([again, self._grown(done)]).astype(np.intp)
             waiting = waiting[self._ways[waiting] < _MOST_WAYS]
         return Lanes(
-            self._outcomes,
+            self._outcomes.tolist(),
             self._rows[:, :, self._first :],
             self._steps,
             self._ways,
@@ -107,45 +146,48 @@ class _Propagation:
         """Go the way of at most a batch of lanes, and return those that others have stopped."""
         stepper, count = self._stepper, len(lanes)
         # Places left over repeat the first lane, unseen.
-        places = np.concatenate([lanes, np.repeat(lanes[:1], stepper.batch_size - count)])
-        limits = LEAST_STEPS + (STEPS_PER_RADIAN * self._radians(places)).astype(np.int64)
+        missing = stepper.batch_size - count
+        places = np.concatenate([lanes, np.repeat(lanes[:1], missing)]) if missing else lanes
         stepper.set_time(0.0)
         stepper.state[:] = self._bodies.starts[:, places]
         stepper.pars[:] = self._bodies.parameters[:, places]
         _, rows = stepper.propagate_grid(
             np.ascontiguousarray(self._grid[places].T),
-            max_delta_t=longest_step(int(stepper.order)) / self._rates[places],
-            max_steps=int(limits.max()),
+            max_delta_t=self._cap / self._rates[places],
+            max_steps=self._most_steps(places),
         )
-        self._rows[:, lanes] = np.transpose(rows, (1, 2, 0))[:, :count]
-        results = stepper.propagate_res[:count]
-        self._steps[lanes] = [result[3] for result in results]
+        rows = rows[..., :count]
+        statuses, _, uncut, steps = zip(*stepper.propagate_res[:count], strict=True)
+        self._rows[:, lanes] = rows.transpose(1, 2, 0)
+        self._uncut[lanes], self._steps[lanes] = uncut, steps
         self._ways[lanes] += 1
-        is_whole: Any = np.isfinite(self._rows[:, lanes]).all(axis=(0, 2))
+        self._outcomes[lanes] = Outcome.FINISHED
         stopped = []
-        for k, whole, (status, *_, steps), limit in zip(
-            lanes, is_whole.tolist(), results, limits, strict=False
-        ):
-            outcome = outcome_of(status)
-            if whole:
-                self._outcomes[k] = Outcome.FINISHED
-            elif outcome is Outcome.NON_FINITE or steps >= limit:
-                self._outcomes[k] = outcome
-            else:
-                stopped.append(k)
+        for k in np.flatnonzero(~np.isfinite(rows).all(axis=(0, 1))):
+            lane, outcome = lanes[k], outcome_of(statuses[k])
+            ended = outcome is Outcome.NON_FINITE or steps[k] >= self._most_steps(lanes[k : k + 1])
+            self._outcomes[lane] = outcome if ended else Outcome.INTERRUPTED
+            if not ended:
+                stopped.append(lane)
         return np.array(stopped, dtype=np.intp)
 
+    def _most_steps(self, lanes: Any) -> int:
+        """Return a bound that no regular orbit comes near."""
+        return LEAST_STEPS + int(STEPS_PER_RADIAN * self._radians(lanes).max())
+
     def _grown(self, lanes: Any) -> Any:
-        """Return the lanes that must go again, because their rate has grown."""
-        whole = np.array([k for k in lanes if self._outcomes[k] is Outcome.FINISHED], dtype=np.intp)
+        """Return the lanes that must go again, because a step was too long for a rate on the way."""
+        whole = lanes[self._outcomes[lanes] == Outcome.FINISHED]
         if not whole.size:
             return whole
+        # Steps that were cut to the cap are left out of heyoka's longest.
+        caps, uncut = self._cap / self._rates[whole], self._uncut[whole]
+        longest = np.where((uncut > 0) & (uncut < UNCUT * caps), uncut, caps)
         stride = self._rows.shape[2] // _MOST_LOOKS + 1
         some = self._rows[:, whole, ::-stride]
-        met = self._bodies.at(whole).fastest(some)
-        has_grown = ~(met <= _SLACK * self._rates[whole])
+        met = self._bodies.at(whole).grown(some, SLACK * self._cap / longest)
+        has_grown = met != 0
         again = whole[has_grown]
         self._rates[again] = met[has_grown]
-        for k in again:
-            self._outcomes[k] = Outcome.INTERRUPTED
+        self._outcomes[again] = Outcome.INTERRUPTED
         return again

@@ -17,7 +17,7 @@ from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import Rung, hexadecimal
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.registry import TAYLOR
-from taylor_verify.solvers.taylor.driver import tolerance
+from taylor_verify.solvers.taylor.names import tolerance
 from taylor_verify.studies.tradeoff.starts import nearby
 
 # A hundred periods are thousands of steps. Then roundings have become a random walk, and oscillations

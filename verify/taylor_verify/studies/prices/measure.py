@@ -22,7 +22,8 @@ from taylor_verify.records.json_text import finite
 from taylor_verify.records.provenance import SceneProvenance
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.precision import rung as rung_named
-from taylor_verify.solvers.taylor.driver import Taylor, at_tolerance
+from taylor_verify.solvers.taylor.driver import Taylor
+from taylor_verify.solvers.taylor.names import at_tolerance
 from taylor_verify.solvers.taylor.pace import Pace
 from taylor_verify.studies.prices.document import (
     PriceAtEqualError,

@@ -1,0 +1,48 @@
+"""The names of heyoka's integrator: `taylor`, `taylor?tol=1e-9&code=optimised`, `taylor?bodies=64`."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Final
+
+from taylor_verify.solvers.options import options
+from taylor_verify.solvers.registry import TAYLOR
+from taylor_verify.solvers.taylor.driver import Taylor
+from taylor_verify.solvers.taylor.neighbours import Neighbours
+
+_SETTINGS: Final = ("tol", "code")
+_OPTIMISED: Final = "optimised"
+_FEWEST, _MOST = 2, 4096
+
+
+def named(name: str) -> Taylor | Neighbours:
+    """Return the solver that such a name stands for; ValueError for any other name."""
+    chosen = options(name, [TAYLOR], (*_SETTINGS, "bodies"))
+    code = chosen.values.get("code", _OPTIMISED)
+    if code != _OPTIMISED:
+        raise ValueError(f"expected {_OPTIMISED}, got {code!r:.60} @ code")
+    allowed = (
+        chosen.positive("tol", default="") if "tol" in chosen or name == f"{TAYLOR}?" else None
+    )
+    if "bodies" not in chosen:
+        return Taylor(name, tolerance=allowed, is_optimised="code" in chosen)
+    if "code" in chosen:
+        raise ValueError("expected bodies without code, which is optimised for them anyway @ code")
+    return Neighbours(name, chosen.whole("bodies", _FEWEST, _MOST), tolerance=allowed)
+
+
+def at_tolerance(text: str) -> Taylor:
+    """Return the driver at a tolerance, a decimal or a/b; ValueError for one that is not positive."""
+    name = f"{TAYLOR}?tol={text}"
+    return Taylor(name, tolerance=tolerance(name))
+
+
+def tolerance(name: str) -> Fraction | None:
+    """Return the tolerance that is set in a name, exactly as written; None for the rung's own.
+
+    Raises ValueError for a tolerance that is no positive number, and for a name of something else.
+    """
+    chosen = options(name, [TAYLOR], _SETTINGS)
+    if "tol" not in chosen and (name == TAYLOR or "code" in chosen):
+        return None
+    return chosen.positive("tol", default="")

@@ -1,0 +1,58 @@
+"""A bound of the fastest rate of a form's motions, compiled, for the states of many bodies at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, final
+
+import numpy as np
+
+from taylor_verify.models.form import Form
+from taylor_verify.models.rates import momenta
+from taylor_verify.solvers.taylor.driver import equations
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+
+
+@final
+@dataclass(frozen=True)
+class RateBound:
+    """The bounds of `rates.py` for one form, as functions of the momenta and the parameters.
+
+    One is the square of |J^2| in Frobenius's norm. The other, where an attitude turns, is |omega/2|^4.
+    """
+
+    momenta: int
+    evaluate: Any
+
+    def fourth_powers(self, states: Floats, parameters: Floats) -> Floats:
+        """Return a number (n) for each body that the fourth power of no rate at its states exceeds.
+
+        ``states`` (s, n, m) are some of each body, and ``parameters`` (p, n). Where a state is not finite,
+        the number is not either.
+        """
+        inputs = np.empty((self.momenta + len(parameters), *states.shape[1:]))
+        inputs[: self.momenta] = states[: self.momenta]
+        inputs[self.momenta :] = parameters[:, :, None]
+        bounds = self.evaluate(inputs.reshape(len(inputs), -1))
+        largest: Floats = bounds.reshape(len(bounds), *states.shape[1:]).max(axis=(0, 2))
+        return largest
+
+
+@lru_cache(maxsize=32)
+def rate_bound(form: Form) -> RateBound:
+    """Return the bound for a form, compiled in some hundredths of a second."""
+    import heyoka as hy
+
+    coefficients = [hy.expression(name) for name in form.parameters]
+    states, rates = zip(*equations(form, coefficients), strict=True)
+    n = momenta(form)
+    J = np.array([[hy.diff(rate, state) for state in states[:n]] for rate in rates[:n]])
+    bounds = [hy.sum([entry**2 for entry in J.dot(J).ravel()])]
+    if "e0" in form.states:
+        # The factors of e0 in the rates of e1, e2 and e3 are omega/2.
+        e0 = form.states.index("e0")
+        omega = [hy.diff(rate, states[e0]) for rate in rates[e0 + 1 : e0 + 4]]
+        bounds.append(hy.sum([entry**2 for entry in omega]) ** 2)
+    return RateBound(n, hy.cfunc(bounds, [*states[:n], *coefficients], compact_mode=False))
