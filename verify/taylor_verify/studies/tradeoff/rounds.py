@@ -46,7 +46,7 @@ _MOST_SOLVES: Final = 1000
 
 @dataclass(frozen=True)
 class Measured:
-    """The times of one setting in one process: medians of its rounds, per solve.
+    """The times of one setting in one process: medians of its rounds, per body and solve.
 
     ``ratio`` is the seconds over the yardstick's in the same round. ``inner`` is the part of the seconds in
     another library's compiled integrator, if known. ``setup`` is the time before the first solve, mainly
@@ -88,13 +88,15 @@ def measured(
     """
     least = max(_LEAST_SECONDS, _TIMES_RESOLUTION * (resolution or clock_resolution()))
     first: dict[Name, _Taken] = {}
+    bodies: dict[Name, int] = {}
     turns: dict[Name, Callable[[], _Taken | None]] = {}
     for name in dict.fromkeys([YARDSTICK, *names]):
-        solver, rung = name[0], rung_named(name[1])
-        solve = partial(_solved, setting(solver, rung).solver, pose(scene, rung), clock)
+        rung = rung_named(name[1])
+        solver = setting(name[0], rung).solver
+        solve = partial(_solved, solver, pose(scene, rung), clock)
         if (taken := solve(1, is_first=True)) is None:
             continue
-        first[name] = taken
+        first[name], bodies[name] = taken, solver.bodies
         is_unit = name == YARDSTICK
         count = _count(taken, _YARDSTICK_SECONDS if is_unit else least)
         if count or is_unit:
@@ -104,7 +106,9 @@ def measured(
     later = dict(zip(turns, in_rounds([*turns.values()], rounds, seed), strict=True))
     unit = later[YARDSTICK]
     return {
-        name: _summed(first[name], later.get(name, []), unit) for name in names if name in first
+        name: _summed(first[name], later.get(name, []), unit, bodies[name])
+        for name in names
+        if name in first
     }
 
 
@@ -131,15 +135,18 @@ def in_rounds(turns: Sequence[Callable[[], Answer]], rounds: int, seed: int) -> 
 
 
 def _summed(
-    first: _Taken, later: Sequence[_Taken | None], unit: Sequence[_Taken | None]
+    first: _Taken, later: Sequence[_Taken | None], unit: Sequence[_Taken | None], bodies: int
 ) -> Measured:
-    """Return the medians over the rounds; a setting that was solved once has that one time."""
+    """Return the medians over the rounds; a setting that was solved once has that one time.
+
+    Each of the ``bodies`` of a solve has the same share of it.
+    """
     rounds = [(a, b.seconds) for a, b in zip(later, unit, strict=False) if a and b]
     rounds = rounds or [(first, median(b.seconds for b in unit if b))]
     inner = [taken.inner for taken, _ in rounds if taken.inner is not None]
     return Measured(
-        seconds=median(taken.seconds for taken, _ in rounds),
-        ratio=median(taken.seconds / seconds for taken, seconds in rounds),
+        seconds=median(taken.seconds for taken, _ in rounds) / bodies,
+        ratio=median(taken.seconds / seconds for taken, seconds in rounds) / bodies,
         inner=median(inner) if len(inner) == len(rounds) else None,
         setup=first.setup,
     )
@@ -165,7 +172,7 @@ def _solved(
     if isinstance(solver, Peer):
         return _Taken(seconds=stated[0], inner=None, waited=stated[0], setup=compiling[0])
     # The first solve may compile, and states the time of its propagation separately.
-    seconds = min(spent, sum(stated)) if is_first else spent
+    seconds = min(spent, solver.bodies * sum(stated)) if is_first else spent
     # The part in a compiled integrator is known as time on the clock, and is scaled to processor time.
     known = [part for part in inner if part is not None]
     share = sum(known) / sum(stated) if len(known) == count and sum(stated) else None

@@ -18,7 +18,8 @@ from taylor_verify.solvers.engines.peer import Peer
 from taylor_verify.solvers.registry import CLOSED_FORM, PROCESS, TAYLOR, solver_named
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.taylor.driver import Taylor
-from taylor_verify.studies.tradeoff.document import label
+from taylor_verify.solvers.taylor.neighbours import Neighbours
+from taylor_verify.studies.tradeoff.document import label, together
 
 RUNGS: Final = tuple(FORMATS)
 # Every third power of ten. A rung has those above its own tolerance, which is twice its roundoff.
@@ -147,16 +148,13 @@ def setting(name: str, rung: Rung) -> Setting:
     solver = solver_named(name)
     if isinstance(solver, Outside) and solver.engine.script.about.serves:
         solver = Peer(solver)
-    if isinstance(solver, Taylor):
+    if isinstance(solver, Taylor | Neighbours):
         tolerance = 2 * rung.unit_roundoff if solver.tolerance is None else solver.tolerance
-        code = " optimised" if solver.is_optimised else ""
-        return Setting(
-            solver,
-            rung,
-            requested=float(tolerance),
-            asked=TOLERANCE,
-            family=f"taylor {rung.name}{code}",
-        )
+        if isinstance(solver, Neighbours):
+            family = together(rung.name, solver.bodies)
+        else:
+            family = f"taylor {rung.name}{' optimised' if solver.is_optimised else ''}"
+        return Setting(solver, rung, float(tolerance), TOLERANCE, family)
     if name.startswith(PROCESS):
         # The options of a command that set its accuracy are unknown.
         return Setting(solver, rung, requested=None, asked=NOTHING, family=name)

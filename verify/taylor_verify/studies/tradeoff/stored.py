@@ -7,7 +7,7 @@ tradeoff-timings.json   seconds, ratios and intervals of one machine, which are 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -20,6 +20,7 @@ from taylor_verify.studies.tradeoff.document import (
     TradeScene,
     TradeTiming,
     TradeTimings,
+    together,
 )
 
 NUMBERS: Final = Stored(TradeNumbers, "tradeoff")
@@ -76,6 +77,11 @@ class Trade:
             {**complete(p), **{name: getattr(self._timing(p), name, None) for name in _TIMES}}
             for p in self.points
         ]
+
+    @property
+    def of_one_body(self) -> Trade:
+        """The same without the points that solve many bodies side by side."""
+        return replace(self, points=tuple(p for p in self.points if p.family != together(p.rung)))
 
     def document(self) -> dict[str, Any]:
         """Return the stored part of the document of `tradeoff --json` for one scene."""
