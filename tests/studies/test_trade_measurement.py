@@ -26,7 +26,7 @@ from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.studies import report
 from taylor_verify.studies.tradeoff import measurement, rounds
 from taylor_verify.studies.tradeoff.cold import in_a_new_process
-from taylor_verify.studies.tradeoff.document import TradePoint
+from taylor_verify.studies.tradeoff.document import TradePoint, together
 from taylor_verify.studies.tradeoff.measurement import (
     PROCESSES,
     SCENES,
@@ -115,9 +115,10 @@ class Paced(Solver):
     seconds: float
     outcome: Outcome = Outcome.FINISHED
     setting: str = ""
+    bodies: int = 1
 
     def solve(self, problem: Problem) -> Trajectory:
-        seconds = self.machine.take(self.name, self.seconds)
+        seconds = self.machine.take(self.name, self.seconds) / self.bodies
         return Trajectory(self.outcome, seconds=seconds, inner_seconds=seconds / 2)
 
 
@@ -131,7 +132,9 @@ def machine(monkeypatch: pytest.MonkeyPatch) -> Machine:
             return replace(real_setting(*_taylor()), solver=Paced(made, name, 0.02))
         word, _, seconds = name.partition(":")
         outcome = Outcome.NON_FINITE if word == "broken" else Outcome.FINISHED
-        return replace(real_setting(*_taylor()), solver=Paced(made, name, float(seconds), outcome))
+        bodies = 10 if word == "ten" else 1
+        solver = Paced(made, name, float(seconds), outcome, bodies=bodies)
+        return replace(real_setting(*_taylor()), solver=solver)
 
     monkeypatch.setattr(rounds, "setting", made_up)
     return made
@@ -205,6 +208,19 @@ def test_what_is_dear_is_solved_once(
     assert 0.3 / 0.02 / 1.01**6 <= one.ratio <= 0.3 / 0.02
 
 
+@pytest.mark.parametrize("slowest", [1e9, -1.0])
+def test_each_of_many_bodies_has_its_share(
+    machine: Machine, scene: Scene, monkeypatch: pytest.MonkeyPatch, slowest: float
+) -> None:
+    """A solve of ten bodies takes ten times the seconds of each, in rounds and where it is solved once."""
+    monkeypatch.setattr(rounds, "_SLOWEST_IN_ROUNDS", slowest)
+    ratios = measured(scene, names("one:0.4", "ten:0.4"), 1, 3, 1e-9, machine.clock)
+    one, ten = (ratios[name] for name in names("one:0.4", "ten:0.4"))
+    for whole, share in ((one.seconds, ten.seconds), (one.ratio, ten.ratio)):
+        assert whole / share == pytest.approx(10, rel=0.3)
+    assert ten.inner == pytest.approx(ten.seconds / 2)
+
+
 def test_the_resolution_is_the_smallest_step_of_the_clock() -> None:
     """The resolution of a clock that ticks in quarters is a quarter."""
     asked = 0
@@ -239,7 +255,7 @@ def test_the_compiled_integrators_of_other_libraries_are_known() -> None:
     extra = set(published_settings(scene, with_outside=True)) - set(published_settings(scene))
     peers = {one for one in extra if isinstance(one.solver, Peer)}
     assert len(peers) == len(measurement.PEERS) * len(measurement._FOR_THE_COLUMNS)
-    assert {one.family for one in extra - peers} == {"taylor f64 optimised"}
+    assert {one.family for one in extra - peers} == {"taylor f64 optimised", together("f64")}
 
 
 def test_a_scene_beyond_its_end_has_the_solvers_of_the_columns_alone() -> None:
@@ -249,7 +265,7 @@ def test_a_scene_beyond_its_end_has_the_solvers_of_the_columns_alone() -> None:
     assert (scene.name, scene.body, scene.initial) == (name, shipped.body, shipped.initial)
     assert (scene.clock.instants[0], scene.clock.instants[-1]) == (0, 1600)
     families = {one.family for one in published_settings(scene, with_outside=True)}
-    ours = {"taylor f64", "taylor f64 optimised"}
+    ours = {"taylor f64", "taylor f64 optimised", together("f64")}
     assert families == ours | {f"outside {peer}" for peer in measurement.PEERS}
 
 

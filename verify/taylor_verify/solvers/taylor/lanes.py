@@ -98,8 +98,7 @@ class _Propagation:
         is_sampled = bool(grid.size) and not grid[:, 0].any()
         self._grid = grid if is_sampled else np.insert(grid, 0, 0.0, axis=1)
         self._first = 0 if is_sampled else 1
-        width = 16
-        self._stepper = stepper(bodies.form, _RUNG, tolerance, width, _STATES)
+        self._stepper = prepare(bodies.form, tolerance)
         self._cap = longest_step(int(self._stepper.order))
         count = len(bodies)
         self._rows = np.full((len(bodies.form.states), count, self._grid.shape[1]), np.nan)

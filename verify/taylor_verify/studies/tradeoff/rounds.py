@@ -147,7 +147,7 @@ def _summed(
     return Measured(
         seconds=median(taken.seconds for taken, _ in rounds) / bodies,
         ratio=median(taken.seconds / seconds for taken, seconds in rounds) / bodies,
-        inner=median(inner) if len(inner) == len(rounds) else None,
+        inner=median(inner) / bodies if len(inner) == len(rounds) else None,
         setup=first.setup,
     )
 
