@@ -22,7 +22,7 @@ from taylor_verify.solvers.taylor.alike import Alike
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.taylor.lanes import propagate
 from taylor_verify.solvers.taylor.neighbours import neighbours
-from taylor_verify.solvers.taylor.rate_bound import rate_bound
+from taylor_verify.solvers.taylor.rate_bound import Look, rate_bound
 from taylor_verify.solvers.taylor.together import solve_together
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
@@ -136,6 +136,9 @@ def test_the_compiled_bound_is_that_of_the_matrices(name: str) -> None:
     by_row = [(entries[:, : n * n] ** 2).sum(axis=1), entries[:, -1] ** 2]
     bound = rate_bound(problem.form).fourth_powers(states, parameters)
     assert bound == pytest.approx([np.max(by_row)], rel=1e-12)
+    look, rate = Look(problem, 7), float(bound[0]) ** 0.25
+    assert look.is_within(states[:, 0].T, (1 + 1e-12) * rate)
+    assert not look.is_within(states[:, 0].T, (1 - 1e-12) * rate) or rate == 0
     assert linearised.fastest(states[:, 0].T) <= 1.35 * max(bound[0] ** 0.25, 2.0**-10)
 
 
@@ -146,6 +149,9 @@ def test_a_bound_of_what_is_not_finite_is_not_finite(bad: float) -> None:
     states = np.ones((6, 2, 3))
     states[4, 1, 2] = bad
     assert alike.grown(states, np.array([1e6, 1e6])).tolist() == [0.0, np.inf]
+    look = Look(problem_of("kirchhoff/general-body"), 3)
+    assert look.is_within(states[:, 0].T, 1e6)
+    assert not look.is_within(states[:, 1].T, 1e200)
 
 
 def test_neighbours_have_starts_of_their_own() -> None:

@@ -150,7 +150,7 @@ def test_many_bodies_are_compared_apart(tmp_path: Path) -> None:
     assert (six[2], six[4]) == ("**cvode-bdf**, 4.0 times", "taylor, 64 bodies, 2.0 times")
     assert "bodies=64" not in section(text, "The front")
     assert "bodies=64" not in section(text, "What so many digits cost")
-    assert all("bodies" not in picture.caption for picture in pictures(loaded))
+    assert all("bodies" not in picture.alt for picture in pictures(loaded))
 
 
 def test_without_peers_the_page_says_how_to_measure_them(tmp_path: Path) -> None:

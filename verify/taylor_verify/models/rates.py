@@ -8,7 +8,7 @@ from __future__ import annotations
 import operator
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from math import inf, isfinite
 from typing import Any, Final, NamedTuple
 
@@ -55,7 +55,6 @@ class Linearised:
         self._table: Floats = np.ascontiguousarray(entries.T)
         self._square = float(np.vdot(entries, entries))
         self._turns = "e0" in problem.form.states
-        self._was_asked = False
 
     def fastest(self, states: Any) -> float:
         """Return the fastest rate at a state, or at all rows of an array; infinite where not finite.
@@ -94,9 +93,7 @@ class Linearised:
         numbers = augmented.ravel()
         # NumPy's dot never warns, and what follows cannot overflow. NaN is not moderate.
         if numbers.dot(numbers) * self._square <= _MODERATE:
-            # Most are asked once, and some by the thousand.
-            entries = (self._by_products if self._was_asked else self._squares)(augmented)
-            self._was_asked = True
+            entries = self._squares(augmented)
             entries *= entries
             sums = entries.dot(_sums(self._momenta, entries.shape[1])).ravel()
             if sums[sums.argmax()] <= square * square:
@@ -114,43 +111,12 @@ class Linearised:
             entries[:, -1] = (omega * omega).sum(axis=1)
         return entries
 
-    def _by_products(self, augmented: Floats) -> Floats:
-        """Return the same sooner, by a table that takes longer to make than a look without it."""
-        left, right, _ = _pairs(self._momenta)
-        products = augmented.take(left, 1)
-        products *= augmented.take(right, 1)
-        entries: Floats = products.dot(self._products)
-        return entries
-
-    @cached_property
-    def _products(self) -> Floats:
-        """A row for each product of two numbers of (1, s): its factors in J^2, and in |omega|^2/4."""
-        n = self._momenta
-        left, right, share = _pairs(n)
-        J, omega = self._table[:, :-4].reshape(n + 1, n, n), self._table[:, -4:]
-        # J_i J_j for all i and j, by one product of matrices.
-        matrices = J.reshape(-1, n).dot(J.transpose(1, 0, 2).reshape(n, -1))
-        squares = matrices.reshape(n + 1, n, n + 1, n).transpose(0, 2, 1, 3)
-        products = np.empty((len(left), n * n + self._turns))
-        products[:, : n * n] = (squares[left, right] + squares[right, left]).reshape(-1, n * n)
-        if self._turns:
-            products[:, -1] = 2 * omega.dot(omega.T)[left, right]
-        products *= share
-        return products
-
     def _augmented(self, states: Any) -> Floats:
         """Return 1 and the momenta of a state, or of each row of an array."""
         augmented = np.empty((*states.shape[:-1], self._momenta + 1))
         augmented[..., 0] = 1.0
         augmented[..., 1:] = states[..., : self._momenta]
         return augmented
-
-
-@lru_cache
-def _pairs(n: int) -> tuple[Indices, Indices, Floats]:
-    """Return i and j of each product of two of n + 1 numbers, and 1/2 for a square, else 1."""
-    left, right = np.triu_indices(n + 1)
-    return left, right, np.where(left == right, 0.5, 1.0)[:, None]
 
 
 @lru_cache

@@ -11,7 +11,7 @@ an endless or a broken run             the number of steps is bounded and the ou
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
@@ -20,13 +20,13 @@ from typing import Any, final
 
 import numpy as np
 
-from taylor_verify.models.algebra import is_absent
 from taylor_verify.models.form import Form
 from taylor_verify.models.problem import Problem
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.taylor.cache import stored
+from taylor_verify.solvers.taylor.equations import equations
 from taylor_verify.solvers.taylor.numbers import arithmetic, unavailable
 from taylor_verify.solvers.taylor.way import Way
 from taylor_verify.solvers.trajectory import Outcome, Postponed, Trajectory
@@ -124,18 +124,6 @@ def compiled(
         "tol": zero if tolerance is None else numbers.number(rung.round(tolerance)),
     }
     return stored(hy.taylor_adaptive, system, **options)
-
-
-def equations(form: Form, coefficients: Sequence[Any]) -> list[tuple[Any, Any]]:
-    """Return the states of a form as heyoka's variables, each with its rate."""
-    import heyoka as hy
-
-    states = hy.make_vars(*form.states)
-    rates = form.rates(states, coefficients)
-    return [
-        (state, hy.expression(0.0) if is_absent(rate) else rate)
-        for state, rate in zip(states, rates, strict=True)
-    ]
 
 
 def pays(form: Form, rung: Rung, problem: Problem | None = None) -> bool:

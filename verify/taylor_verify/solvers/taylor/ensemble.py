@@ -27,7 +27,8 @@ from taylor_verify.models.problem import Problem
 from taylor_verify.models.rates import Linearised
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.solvers.taylor.cache import stored
-from taylor_verify.solvers.taylor.driver import compiled, equations, pays
+from taylor_verify.solvers.taylor.driver import compiled, pays
+from taylor_verify.solvers.taylor.equations import equations
 from taylor_verify.solvers.taylor.numbers import arithmetic, unavailable
 from taylor_verify.solvers.taylor.way import (
     LEAST_STEPS,

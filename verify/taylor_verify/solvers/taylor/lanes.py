@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from math import ceil
 from typing import Any, Final, Protocol
 
 import numpy as np
@@ -19,6 +20,7 @@ from taylor_verify.solvers.taylor.ensemble import batch_width, stepper
 from taylor_verify.solvers.taylor.way import (
     LEAST_STEPS,
     MOST_RADIANS,
+    ROWS_LOOKED_AT,
     SLACK,
     STEPS_PER_RADIAN,
     UNCUT,
@@ -31,7 +33,6 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # A lane goes again so often at most.
 _MOST_WAYS: Final = 16
-_MOST_LOOKS: Final = 12
 _RUNG: Final = rung("f64")
 # Straight-line code of so many states compiles in a second, once for a machine, and runs twice as fast.
 _STATES: Final = 13
@@ -182,7 +183,7 @@ class _Propagation:
         # Steps that were cut to the cap are left out of heyoka's longest.
         caps, uncut = self._cap / self._rates[whole], self._uncut[whole]
         longest = np.where((uncut > 0) & (uncut < UNCUT * caps), uncut, caps)
-        stride = self._rows.shape[2] // _MOST_LOOKS + 1
+        stride = ceil(self._rows.shape[2] / ROWS_LOOKED_AT)
         some = self._rows[:, whole, ::-stride]
         met = self._bodies.at(whole).grown(some, SLACK * self._cap / longest)
         has_grown = met != 0

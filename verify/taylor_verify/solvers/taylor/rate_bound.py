@@ -1,4 +1,4 @@
-"""A bound of the fastest rate of a form's motions, compiled, for the states of many bodies at once."""
+"""A bound of the fastest rate of a form's motions, compiled, for many states at once."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ from typing import Any, final
 import numpy as np
 
 from taylor_verify.models.form import Form
+from taylor_verify.models.problem import Problem
 from taylor_verify.models.rates import momenta
-from taylor_verify.solvers.taylor.driver import equations
+from taylor_verify.solvers.taylor.equations import equations
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -38,6 +39,25 @@ class RateBound:
         bounds = self.evaluate(inputs.reshape(len(inputs), -1))
         largest: Floats = bounds.reshape(len(bounds), *states.shape[1:]).max(axis=(0, 2))
         return largest
+
+
+@final
+class Look:
+    """The bound for one problem at ``count`` of its states, time and again."""
+
+    def __init__(self, problem: Problem, count: int) -> None:
+        self._bound = rate_bound(problem.form)
+        inputs = np.empty((self._bound.momenta + len(problem.parameters), count))
+        # What does not change is in its place.
+        inputs[self._bound.momenta :].T[:] = [float(value) for value in problem.parameters]
+        self._inputs, self._momenta = inputs, inputs[: self._bound.momenta]
+
+    def is_within(self, states: Any, rate: float) -> bool:
+        """Return True if the bound is not above ``rate`` at any row of the states; False proves nothing."""
+        self._momenta[:] = states.T[: len(self._momenta)]
+        bounds, square = self._bound.evaluate(self._inputs).ravel(), rate * rate
+        # The largest is NaN where one is.
+        return bool(bounds[bounds.argmax()] <= square * square)
 
 
 @lru_cache(maxsize=32)

@@ -80,7 +80,7 @@ class Trade:
 
     @property
     def of_one_body(self) -> Trade:
-        """The same without the points that solve many bodies side by side."""
+        """This trade without the points that solve many bodies side by side."""
         return replace(self, points=tuple(p for p in self.points if p.family != together(p.rung)))
 
     def document(self) -> dict[str, Any]:
