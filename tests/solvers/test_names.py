@@ -20,7 +20,7 @@ from taylor_verify.solvers.registry import solver_named
         ("taylor?bodies=1", r"expected a whole number from 2 to 4096, got '1' @ bodies"),
         ("taylor?bodies=2.5", r"expected a whole number from 2 to 4096, got '2.5' @ bodies"),
         ("taylor?bodies=", r"expected \?bodies=NUMBER after taylor, got none"),
-        ("taylor?bodies=8&code=optimised", r"expected bodies without code"),
+        ("taylor?bodies=8&code=optimised", r"expected bodies or code, got both .* @ code"),
         ("taylor?bodies=8&tol=0", r"expected a positive number, got '0' @ tol"),
         ("taylor:tol=1e-6", r"expected a solver"),
         ("scipy:extra:RK45", r"expected a method"),

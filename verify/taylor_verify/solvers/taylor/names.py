@@ -27,7 +27,7 @@ def named(name: str) -> Taylor | Neighbours:
     if "bodies" not in chosen:
         return Taylor(name, tolerance=allowed, is_optimised="code" in chosen)
     if "code" in chosen:
-        raise ValueError("expected bodies without code, which is optimised for them anyway @ code")
+        raise ValueError("expected bodies or code, got both (code of many is optimised) @ code")
     return Neighbours(name, chosen.whole("bodies", _FEWEST, _MOST), tolerance=allowed)
 
 

@@ -35,7 +35,7 @@ _RADIANS_APART: Final = 4
 _FEWEST_LOOKS, _MOST_LOOKS = 4, 24
 ROWS_LOOKED_AT: Final = 16
 # After so many looks at one way its bound is compiled, which takes as long as some thousand looks.
-_FEW_LOOKS: Final = 100
+_FEW_LOOKS: Final = 10
 # A regular orbit takes three to five steps in the time of one radian, a close passage some more. Beyond
 # this bound a run has gone astray.
 LEAST_STEPS, STEPS_PER_RADIAN = 1000, 64
@@ -166,7 +166,7 @@ class Way:
     def _is_within(self, states: Rows, rate: float) -> bool:
         """Return True if no row of the states has a faster rate.
 
-        Whoever looks a hundred times is timing a solver, and goes on: that is worth compiled code.
+        Whoever goes one way again and again is timing a solver: that is worth compiled code.
         """
         self._look_number += 1
         if self._look_number > _FEW_LOOKS:

@@ -35,10 +35,8 @@ YARDSTICK: Final = ("taylor", "f64")
 ROUNDS: Final = 3
 # The least duration of a measurement, in units of the clock's resolution: the clock errs by 1 % at most.
 _TIMES_RESOLUTION: Final = 100
-# The least duration in seconds, so that an interrupt of some microseconds does not matter.
-_LEAST_SECONDS: Final = 2e-3
-# The least duration for the yardstick, which enters all ratios of its round.
-_YARDSTICK_SECONDS: Final = 1e-2
+# The least duration in seconds: an interrupt does not matter then, nor what the turn before left in caches.
+_LEAST_SECONDS: Final = 1e-2
 # A setting that takes more seconds, with the start of its program, is solved only once in each process.
 _SLOWEST_IN_ROUNDS: Final = 0.2
 _MOST_SOLVES: Final = 1000
@@ -97,9 +95,8 @@ def measured(
         if (taken := solve(1, is_first=True)) is None:
             continue
         first[name], bodies[name] = taken, solver.bodies
-        is_unit = name == YARDSTICK
-        count = _count(taken, _YARDSTICK_SECONDS if is_unit else least)
-        if count or is_unit:
+        count = _count(taken, least)
+        if count or name == YARDSTICK:
             turns[name] = partial(solve, max(1, count))
     if YARDSTICK not in first:
         return {}
