@@ -398,8 +398,8 @@ def test_quantiles_are_sizes_that_occurred() -> None:
     assert quantiles is not None
     for share, size in (
         (0.5, quantiles.median),
-        (0.9, quantiles.ninety),
-        (0.99, quantiles.ninety_nine),
+        (0.9, quantiles.p90),
+        (0.99, quantiles.p99),
     ):
         exact = np.sort(drawn)[int(np.ceil(share * len(drawn))) - 1]
         assert size in drawn
@@ -414,7 +414,7 @@ def test_nan_is_beyond_every_number() -> None:
     quantiles = sizes.quantiles()
     assert quantiles is not None
     assert quantiles.largest is None
-    assert quantiles.ninety is not None
+    assert quantiles.p90 is not None
     assert Sizes().quantiles() is None
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import astuple
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
@@ -115,10 +116,6 @@ def _text(summary: SweepSummary) -> str:
 
 def _cells(spread: Spread) -> list[str]:
     ratio = spread.ratio
-    sizes = (
-        (ratio.median, ratio.ninety, ratio.ninety_nine, ratio.thousandth, ratio.largest)
-        if ratio is not None and spread.quantity != INITIAL
-        else ()
-    )
+    sizes = astuple(ratio) if ratio is not None and spread.quantity != INITIAL else ()
     shown = [figure(size) for size in sizes] or [""] * 5
     return [spread.quantity, str(spread.judged), *shown, str(spread.counts["fail"])]

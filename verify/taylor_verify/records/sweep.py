@@ -18,9 +18,9 @@ class Quantiles:
     """
 
     median: Size | None
-    ninety: Size | None
-    ninety_nine: Size | None
-    thousandth: Annotated[Size | None, about("A thousandth of all lie above it.")]
+    p90: Annotated[Size | None, about("A tenth of all lie above it.")]
+    p99: Annotated[Size | None, about("A hundredth of all lie above it.")]
+    p99_9: Annotated[Size | None, about("A thousandth of all lie above it.")]
     largest: Size | None
 
 

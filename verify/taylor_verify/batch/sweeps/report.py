@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterable, Mapping
+from dataclasses import fields
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Final
@@ -24,7 +25,7 @@ from taylor_verify.records.sweep import Quantiles, Spread, SweepSummary, WorstCa
 
 WORST: Final = "worst"
 PICTURES: Final = ("svg", "png")
-_NAMES: Final = ("median", "ninety", "ninety_nine", "thousandth", "largest")
+_NAMES: Final = tuple(each.name for each in fields(Quantiles))
 _HEADINGS: Final = ("median:", "90 %:", "99 %:", "99.9 %:", "largest:")
 SUMMARY_NAMES: Final = (
     *(f"{exceedance.STEM}.{kind}" for kind in ("md", "csv", "json", *PICTURES)),

@@ -25,9 +25,9 @@ def solve_together(
 ) -> list[Trajectory]:
     """Return the trajectory of each problem, in their order; ``tolerance`` is as in Taylor.
 
-    Problems on f64 with one form and as many samples share the work of each instruction: from some tens on,
-    one takes a half to a tenth of the time that it takes alone. Its numbers are rounded otherwise than
-    alone. The seconds of a trajectory are its share. All other problems are solved one by one.
+    Problems on f64 with one form and as many samples go side by side, several in each instruction. Among 64
+    of them, one takes two fifths to a ninth of the time that it takes alone, and is rounded otherwise. The
+    seconds of a trajectory are its share. All other problems are solved one by one.
     """
     alone = Taylor(tolerance=tolerance)
     answers: dict[int, Trajectory] = {}
