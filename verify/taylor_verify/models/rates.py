@@ -43,12 +43,14 @@ class Linearised:
     The rates of the momenta are quadratic in them, so that J(s) = J(0) + sum_k s_k dJ/ds_k exactly.
     Doubles suffice, because the rate is needed to some per cent only. The momenta do not depend on the
     attitude. The attitude turns at |omega|/2, which is linear in the momenta. The centre enters no rate.
+    ``doubles`` are the problem's parameters as such, from whoever has them.
     """
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: Problem, doubles: Floats | None = None) -> None:
         self._momenta, terms = _linearised(problem.form)
         n = self._momenta
-        parameters = np.array([1.0, *map(float, problem.parameters)])
+        given = map(float, problem.parameters) if doubles is None else doubles.tolist()
+        parameters = np.array([1.0, *given])
         values = terms.coefficients * parameters[terms.factors].prod(axis=0)
         entries = np.bincount(terms.places, values, (n * n + 4) * (n + 1)).reshape(-1, n + 1)
         # A row for the constant, and one for each momentum.

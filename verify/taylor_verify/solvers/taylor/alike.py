@@ -37,11 +37,12 @@ class Alike:
     def of(cls, problems: Sequence[Problem]) -> Alike:
         """Return problems on f64 as arrays; they must have one form, and as many samples."""
         numbers = arithmetic(problems[0].rung)
-        linearised = tuple(map(Linearised, problems))
+        parameters = [numbers.array(problem.parameters) for problem in problems]
+        linearised = tuple(map(Linearised, problems, parameters))
         starts = [numbers.array(problem.initial_momenta) for problem in problems]
         return cls(
             problems[0].form,
-            np.transpose([numbers.array(problem.parameters) for problem in problems]),
+            np.transpose(parameters),
             np.transpose(starts),
             np.array([numbers.times(problem.times) for problem in problems]),
             np.array([of.fastest(start) for of, start in zip(linearised, starts, strict=True)]),

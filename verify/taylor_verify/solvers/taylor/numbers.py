@@ -50,6 +50,9 @@ class Arithmetic:
         return self.scaled(value.numerator, 1 - value.denominator.bit_length())
 
     def array(self, values: Iterable[Fraction]) -> np.ndarray[Any, Any]:
+        if self.fp_type is float:
+            # A quotient of integers is rounded once, and is exact where a double holds it.
+            return np.array([value.numerator / value.denominator for value in values])
         return np.array([self.number(value) for value in values], dtype=self.fp_type)
 
     def times(self, times: Sequence[Fraction]) -> np.ndarray[Any, Any]:

@@ -35,7 +35,7 @@ _RADIANS_APART: Final = 4
 _FEWEST_LOOKS, _MOST_LOOKS = 4, 24
 ROWS_LOOKED_AT: Final = 16
 # After so many looks at one way its bound is compiled, which takes as long as some thousand looks.
-_FEW_LOOKS: Final = 10
+FEW_LOOKS: Final = 10
 # A regular orbit takes three to five steps in the time of one radian, a close passage some more. Beyond
 # this bound a run has gone astray.
 LEAST_STEPS, STEPS_PER_RADIAN = 1000, 64
@@ -78,7 +78,8 @@ class Way:
         self._parameters = numbers.array(problem.parameters)
         self._start = numbers.array(problem.initial_momenta)
         self._times = numbers.times(problem.times)
-        self._linearised = Linearised(problem)
+        is_double = self._parameters.dtype == float
+        self._linearised = Linearised(problem, self._parameters if is_double else None)
         self._look_number = 0
         self._look: Look | None = None
         self._rate = self._linearised.fastest(self._start)
@@ -169,7 +170,7 @@ class Way:
         Whoever goes one way again and again is timing a solver: that is worth compiled code.
         """
         self._look_number += 1
-        if self._look_number > _FEW_LOOKS:
+        if self._look_number > FEW_LOOKS:
             if self._look is None:
                 self._look = Look(self._problem, len(states))
             if self._look.is_within(states, rate):

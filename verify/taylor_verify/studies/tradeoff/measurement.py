@@ -221,7 +221,10 @@ def _timings(
 
 
 def _timing(scene: str, name: Name, every: Sequence[Measured]) -> TradeTiming:
-    """Return the time of a setting from its measurements in all processes."""
+    """Return the time of a setting from its measurements in all processes, in six digits.
+
+    They are a hundred times as many as repeat.
+    """
     inner = [times.inner for times in every if times.inner is not None]
     ratio = estimate(times.ratio for times in every)
     solver, rung = name
@@ -229,14 +232,19 @@ def _timing(scene: str, name: Name, every: Sequence[Measured]) -> TradeTiming:
         scene=scene,
         solver=solver,
         rung=rung,
-        seconds=estimate(times.seconds for times in every).median,
-        inner_seconds=estimate(inner).median if len(inner) == len(every) else None,
-        ratio=ratio.median,
-        low=ratio.low,
-        high=ratio.high,
+        seconds=_six(estimate(times.seconds for times in every).median),
+        inner_seconds=_six(estimate(inner).median) if len(inner) == len(every) else None,
+        ratio=_six(ratio.median),
+        low=None if ratio.low is None else _six(ratio.low),
+        high=None if ratio.high is None else _six(ratio.high),
         processes=len(every),
-        setup_seconds=max(times.setup for times in every),
+        setup_seconds=_six(max(times.setup for times in every)),
     )
+
+
+def _six(number: float) -> float:
+    """Return a number in six significant digits."""
+    return float(f"{number:.6g}")
 
 
 def _scene(trade: TradeOff) -> TradeScene:
