@@ -114,7 +114,7 @@ def _times(trades: Trades) -> str:
             leads = [_ahead(one), repaid, *([_ahead(many)] if TOGETHER in families else [])]
             times = [ours, _inner(best[TAYLOR]), *others]
             rows.append([name, str(digits), *leads, *times])
-    leads = ["ahead", "repaid after:", *(["ahead on many"] if TOGETHER in families else [])]
+    leads = ["ahead", "repaid after:", *(["ahead on many:"] if TOGETHER in families else [])]
     times = ["taylor:", "of which heyoka:", *(f"{_title(f)}:" for f in families[1:])]
     return table(["scene", "digits:", *leads, *times], rows)
 
@@ -137,14 +137,19 @@ def _ahead(reached: Sequence[TimedPoint]) -> str:
     """Return the fastest family in words, with its lead over the next peer, or over taylor."""
     if not reached:
         return "nobody"
-    first, name, other = reached[0], _title(reached[0].point.family), _next(reached)
+    first, name, other = reached[0], _name(reached[0]), _next(reached)
     if other is None:
         is_alone = _is_ours(first) or len(reached) == 1
         return f"{name}, alone" if is_alone else f"{bold(name)}: taylor does not reach them"
     if _overlap(first, other):
-        return f"level: {name} and {_title(other.point.family)}"
+        return f"level: {name} and {_name(other)}"
     lead = f"{other.timing.ratio / first.timing.ratio:.1f} times"
     return f"{name}, {lead}" if _is_ours(first) else f"{bold(name)}, {lead}"
+
+
+def _name(row: TimedPoint) -> str:
+    """Return the title of a family; the column says how many bodies there are."""
+    return "taylor" if row.point.family == TOGETHER else _title(row.point.family)
 
 
 def _next(reached: Sequence[TimedPoint]) -> TimedPoint | None:
