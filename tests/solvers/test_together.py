@@ -93,11 +93,11 @@ def test_a_tolerance_is_kept_side_by_side() -> None:
 
 
 def test_few_at_a_time_are_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What does not fit into the memory goes in parts, to the same last bit."""
+    """Problems that do not fit into the memory go in parts, to the same last bit."""
     problems = neighbours(problem_of("euler/generic"), 20)
     whole = solve_together(problems)
     samples, states = len(problems[0].times), len(problems[0].form.states)
-    monkeypatch.setattr(together, "_MOST_STATES", 3 * samples * states)
+    monkeypatch.setattr(together, "_MOST_NUMBERS", 3 * samples * states)
     assert all(
         apart(one, other) == 0 for one, other in zip(solve_together(problems), whole, strict=True)
     )

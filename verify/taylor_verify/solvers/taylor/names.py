@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Final
 
-from taylor_verify.solvers.options import options
+from taylor_verify.solvers.options import Options, options
 from taylor_verify.solvers.registry import TAYLOR
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.taylor.neighbours import Neighbours
@@ -21,9 +21,7 @@ def named(name: str) -> Taylor | Neighbours:
     code = chosen.values.get("code", _OPTIMISED)
     if code != _OPTIMISED:
         raise ValueError(f"expected {_OPTIMISED}, got {code!r:.60} @ code")
-    allowed = (
-        chosen.positive("tol", default="") if "tol" in chosen or name == f"{TAYLOR}?" else None
-    )
+    allowed = _tolerance(name, chosen)
     if "bodies" not in chosen:
         return Taylor(name, tolerance=allowed, is_optimised="code" in chosen)
     if "code" in chosen:
@@ -42,7 +40,10 @@ def tolerance(name: str) -> Fraction | None:
 
     Raises ValueError for a tolerance that is no positive number, and for a name of something else.
     """
-    chosen = options(name, [TAYLOR], _SETTINGS)
-    if "tol" not in chosen and (name == TAYLOR or "code" in chosen):
+    return _tolerance(name, options(name, [TAYLOR], _SETTINGS))
+
+
+def _tolerance(name: str, chosen: Options) -> Fraction | None:
+    if "tol" not in chosen and (name == TAYLOR or chosen.values):
         return None
     return chosen.positive("tol", default="")

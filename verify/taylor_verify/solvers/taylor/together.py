@@ -16,8 +16,8 @@ from taylor_verify.solvers.taylor.numbers import arithmetic
 from taylor_verify.solvers.trajectory import Outcome, Postponed, Trajectory
 
 _BATCHED: Final = "f64"
-# That many states at most are asked for together: a hundred megabytes.
-_MOST_STATES: Final = 2**20
+# That many numbers at most are asked for together: eight megabytes, and some copies.
+_MOST_NUMBERS: Final = 2**20
 
 
 def solve_together(
@@ -46,7 +46,7 @@ def _alike(problems: Sequence[Problem]) -> Iterator[list[int]]:
     for place, problem in enumerate(problems):
         groups[problem.rung.name, problem.form, len(problem.times)].append(place)
     for (_, form, samples), places in groups.items():
-        most = max(1, _MOST_STATES // (samples * len(form.states)))
+        most = max(1, _MOST_NUMBERS // (samples * len(form.states)))
         yield from (places[first : first + most] for first in range(0, len(places), most))
 
 
