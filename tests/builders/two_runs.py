@@ -14,7 +14,7 @@ from operator import mul
 
 from mpmath import libmp
 
-from taylor_verify.exact.enclosure.system import posed_exactly
+from taylor_verify.exact.enclosure.system import posed
 from taylor_verify.scenes.precision import floor_log2, power_of_two
 from taylor_verify.scenes.scene import Scene
 
@@ -54,7 +54,7 @@ class Equations:
 
 def equations(scene: Scene) -> Equations:
     """Those of the state and, where it is tracked, of a quaternion and of the way in body axes."""
-    system = posed_exactly(scene)
+    system = posed(scene)
     n, with_centre = system.size, "centre" in scene.track
     rates: list[Polynomial] = [
         polynomial(row, n) for row in system.equations.hessian.reshape(n, -1)

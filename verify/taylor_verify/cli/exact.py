@@ -11,7 +11,6 @@ from taylor_verify.cli.answer import PASS, UNDECIDED, Answer, WrongCall
 from taylor_verify.cli.console import Page, bold
 from taylor_verify.cli.inputs import read_number, read_scene
 from taylor_verify.cli.progress import working
-from taylor_verify.exact.ellipsoid import formed_to
 from taylor_verify.exact.printed import document
 from taylor_verify.exact.request import MOST_DIGITS
 from taylor_verify.exact.route import solution
@@ -29,7 +28,6 @@ def answer(options: argparse.Namespace) -> Answer:
     scene = read_scene(options.scene)
     try:
         with working(f"exact {scene.name}"):
-            scene = formed_to(scene, options.digits)
             content = document(scene, solution(scene, options.route), times, options.digits)
     except NoClosedForm as reason:
         content = {
@@ -57,7 +55,7 @@ def _text(content: Mapping[str, Any]) -> str:
             if name not in ("t", "radius", "absolute"):
                 _print_quantity(page, name, value)
         for name, size in row.get("absolute", {}).items():
-            page.line(f"  {name} cannot be told from zero: its size is at most {size}")
+            page.line(f"  {name}: no digit of a 0 is proven; its size is at most {size}")
     return page.text()
 
 

@@ -19,7 +19,6 @@ import numpy as np
 from mpmath import mp, mpf
 
 from taylor_verify.exact.elements import Elements, elements
-from taylor_verify.exact.ellipsoid import formed_to
 from taylor_verify.exact.printed import shortest_text
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution, Unsettled
@@ -53,7 +52,7 @@ def motion(scene: Scene, intervals: int = INTERVALS) -> Document:
     the motion cannot be computed to the digits of a picture.
     """
     whole = replace(scene, track=frozenset(TRACKED[scene.model]))
-    exact, orbit = solution(formed_to(whole, DIGITS)), orbit_of(scene)
+    exact, orbit = solution(whole), orbit_of(scene)
     body = scene.body
     shape, rotor = getattr(body, "ellipsoid", None), body.parts().get("rotor")
     # The route and the evidence below are those of the last call of `exact`.

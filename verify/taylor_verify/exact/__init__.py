@@ -62,11 +62,10 @@ def exact(
     The equations are Heinbockel (2.2.72) and Encyclopaedia Britannica, hydromechanics 48 (3), (4). The
     formulas of a closed form are named in exact.euler and exact.kirchhoff.
     """
-    from taylor_verify.exact.ellipsoid import formed_to
     from taylor_verify.exact.request import check_digits, exact_times
     from taylor_verify.exact.route import solution
     from taylor_verify.scenes.reading.reader import as_scene
 
     scene, digits = as_scene(scene), check_digits(digits)
     elapsed = [time - scene.clock.start for time in exact_times(times)]
-    return solution(formed_to(scene, digits), route).motion(elapsed, digits)
+    return solution(scene, route).motion(elapsed, digits)

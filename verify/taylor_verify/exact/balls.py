@@ -7,7 +7,7 @@ branch) is accepted when the balls exclude the other answer. Until then the prec
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import reduce
 from itertools import chain
@@ -19,6 +19,7 @@ from flint import arb, arb_mat, ctx, fmpq
 from mpmath import libmp, mp, mpf
 
 from taylor_verify.exact.solution import Solution, Time, Unsettled
+from taylor_verify.numbers.irrational import Irrational
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.tensors import Matrix
 
@@ -107,7 +108,8 @@ def _measured(enclosure: Enclosure, count: int) -> tuple[Motion, mpf]:
     candidates = row if beyond or not count else [row[doubles.max(axis=0).argmax()]]
     widest = reduce(max_or_nan, candidates, mpf(0))
     radii_of_quantities = {name: numbers for name, (numbers, _) in radii.items()}
-    return Motion(Midpoints(flat), row, radii_of_quantities), widest
+    errors = Converted(flat, radius)
+    return Motion(Converted(flat, midpoint), row, radii_of_quantities, errors), widest
 
 
 def _flat(rows: Sequence[Any], count: int) -> tuple[list[arb], tuple[int, ...]]:
@@ -120,18 +122,23 @@ def _flat(rows: Sequence[Any], count: int) -> tuple[list[arb], tuple[int, ...]]:
 
 
 @final
-class Midpoints(Mapping[str, np.ndarray[Any, Any]]):
-    """The midpoints of balls in mpmath, by quantity: converted when they are first asked for."""
+class Converted(Mapping[str, np.ndarray[Any, Any]]):
+    """The midpoints of balls, or their radii, in mpmath, by quantity: converted when first asked for."""
 
-    def __init__(self, balls: Mapping[str, tuple[list[arb], tuple[int, ...]]]) -> None:
+    def __init__(
+        self,
+        balls: Mapping[str, tuple[list[arb], tuple[int, ...]]],
+        number: Callable[[arb], mpf],
+    ) -> None:
         self._balls: dict[str, Any] = dict(balls)
+        self._number = number
         self._numbers: dict[str, np.ndarray[Any, Any]] = {}
 
     def __getitem__(self, name: str) -> np.ndarray[Any, Any]:
         if name not in self._numbers:
             balls, shape = self._balls[name]
             numbers = np.empty(len(balls), dtype=object)
-            numbers[:] = [midpoint(b) for b in balls]
+            numbers[:] = [self._number(b) for b in balls]
             self._numbers[name], self._balls[name] = numbers.reshape(shape), None
         return self._numbers[name]
 
@@ -218,10 +225,12 @@ def max_or_nan(a: mpf, b: mpf) -> mpf:
 # Between rationals, balls and mpmath.
 
 
-def ball(value: Fraction | int | arb) -> arb:
-    """The smallest ball about a rational at the ambient precision; a ball as it is."""
+def ball(value: Fraction | int | Irrational | arb) -> arb:
+    """A ball about an exact number, narrow at the ambient precision; a ball as it is."""
     if isinstance(value, arb):
         return value
+    if isinstance(value, Irrational):
+        return value.enclosure(ctx.prec) * 1
     return arb(fmpq(*value.as_integer_ratio()))
 
 
@@ -242,6 +251,16 @@ def ball_matrix(matrix: Matrix) -> arb_mat:
 def midpoint(value: arb) -> mpf:
     """The midpoint, exactly."""
     return _exactly(value.mid())
+
+
+def radius(value: arb) -> mpf:
+    """The radius, exactly."""
+    return _exactly(arb(value.rad()))
+
+
+def largest_size(value: arb) -> mpf:
+    """A bound of the magnitude, exactly."""
+    return _exactly(value.abs_upper())
 
 
 def upper(value: arb) -> mpf:

@@ -17,6 +17,7 @@ from taylor_verify.exact.damping import NOT_QUADRATIC, is_solved
 from taylor_verify.exact.element import Element, Elements
 from taylor_verify.exact.registry import function_at, kind_of
 from taylor_verify.exact.solution import NO_CLOSED_FORM
+from taylor_verify.exact.written import as_written
 from taylor_verify.scenes.scene import Scene
 
 __all__ = ["Element", "Elements", "elements"]
@@ -37,6 +38,7 @@ def elements(scene: Scene, digits: int = 15) -> Elements:
     Without a closed form there are only the elements that are exact without one. Raises
     exact.solution.Unsettled if the digits cannot be reached.
     """
+    scene = as_written(scene)
     if scene.body.damping:
         return _damped(scene, digits)
     result: Elements = function_at(f"{kind_of(scene.body).room}.elements:elements")(scene, digits)

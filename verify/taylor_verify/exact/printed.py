@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from decimal import MAX_EMAX, MIN_EMIN, ROUND_CEILING, ROUND_HALF_EVEN, Context, Decimal
 from fractions import Fraction
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
-from mpmath import mp
+from mpmath import mp, mpf
 
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NoClosedForm, Solution, Unsettled
+from taylor_verify.exact.written import as_written
+from taylor_verify.numbers.irrational import Irrational
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.precision import exact_value
 from taylor_verify.scenes.scene import Scene
 
+Array = np.ndarray[Any, Any]
+
+# Norms and radii are computed with so many bits, and shown with two digits.
+_BOUND_BITS: Final = 128
 # The motion has this many digits more than are printed, so that printing limits the accuracy.
 _SPARE_DIGITS = 3
 # An exponent is written below 10^-5, and where a plain number would need zeros after its last digit.
@@ -31,9 +38,10 @@ def document(
 ) -> dict[str, Any]:
     """Return the document of `exact --json`: a row for each time, given as its text and its exact value.
 
-    ``radius`` is the radius of Motion plus the rounding of the printed digits. A vector that cannot be
-    distinguished from zero is printed as zero; ``absolute`` bounds its size, and ``radius`` does not
-    count it. The row at the start is the initial state itself. If some times are not reached, ``because``
+    An entry has the digits that its own error bound proves, and is "0" where it proves none; ``absolute``
+    bounds the entries of a quantity that are zero for that reason. ``radius`` bounds the error of every
+    vector by its norm, the rounding of the printed digits included, except those that are zero throughout.
+    The row at the start is the initial state itself. If some times are not reached, ``because``
     says why, and ``rows`` has the other times.
     """
     elapsed = [time - scene.clock.start for _, time in times]
@@ -44,19 +52,25 @@ def document(
         motion = exact.motion(elapsed, digits + _SPARE_DIGITS)
     except Unsettled as doubt:
         motion, places, because = doubt.motion, doubt.places, f"undecided: {doubt} @ {scene.name}"
-    start = _start(scene)
+    start = _start(as_written(scene))
+    # Half a unit in the last digit of a text, which the text of zero would not need.
+    least = mpf(10) ** (1 - digits) / 2
     rows = []
     for k, place in enumerate(places):
         assert motion is not None
-        values = {
-            name: values[k] if elapsed[place] else start[name]
-            for name, values in motion.quantities.items()
+        printed = {
+            name: _printed(*_values(motion, name, k, start if not elapsed[place] else {}), digits)
+            for name in motion.quantities
         }
-        relative, absolute = _radii(motion, k)
+        texts = {name: vector.text for name, vector in printed.items()}
+        radius = max(least, *(vector.radius for vector in printed.values()))
+        absolute = {
+            name: _rounded_up(vector.absolute)
+            for name, vector in printed.items()
+            if vector.absolute
+        }
         rows.append(
-            {"t": times[place][0]}
-            | {name: _text(value, digits) for name, value in values.items()}
-            | {"radius": _printed_radius(relative, digits)}
+            {"t": times[place][0], **texts, "radius": _rounded_up(radius)}
             | ({"absolute": absolute} if absolute else {})
         )
     return {
@@ -69,26 +83,71 @@ def document(
     } | ({} if because is None else {"because": because})
 
 
-def _radii(motion: Motion, k: int) -> tuple[Fraction, dict[str, str]]:
-    """Return the relative radius of row k, and bounds of the size of vectors that are answered as zero."""
-    absolute = {
-        name: decimal_text(exact_value(radius[k]), 2, ROUND_CEILING)
-        for name, radius in motion.radii.items()
-        if radius[k] and not motion[name][k].any()
-    }
-    relative = [radius[k] for name, radius in motion.radii.items() if name not in absolute]
-    if not absolute:
-        return exact_value(motion.radius[k]), {}
-    return exact_value(max(relative, default=mp.zero)), absolute
+@dataclass(frozen=True)
+class _Printed:
+    """A vector or matrix as text, nested as it is shaped.
 
-
-def _printed_radius(radius: Fraction, digits: int) -> str:
-    """The radius with half a unit in the last printed digit of every entry, rounded up to two digits.
-
-    The entries printed are the midpoints, whose norm is at most 1 + radius by that of the vector.
+    ``radius`` bounds the error of the text by the norm of the true vector, the rounding of the digits
+    included; 0 where every entry is printed as zero. ``absolute`` bounds the norm of the entries that are
+    printed as zero because no digit of them is proven.
     """
-    printing = Fraction(1, 2 * 10 ** (digits - 1))
-    return decimal_text(radius + printing * (1 + radius), 2, ROUND_CEILING)
+
+    text: Any
+    radius: mpf
+    absolute: mpf
+
+
+def _values(motion: Motion, name: str, k: int, start: Mapping[str, Array]) -> tuple[Array, Array]:
+    """Return a quantity of row k and the errors of its entries; those at the start are exact."""
+    values = start.get(name, motion[name][k])
+    errors = motion.errors[name][k]
+    return values, 0 * errors if name in start else errors
+
+
+def _printed(values: Array, errors: Array, digits: int) -> _Printed:
+    """Return the text of a vector or matrix: of every entry the digits that its error leaves."""
+    with mp.workprec(_BOUND_BITS):
+        counts = [
+            _proven_digits(v, e, digits) for v, e in zip(values.flat, errors.flat, strict=True)
+        ]
+        texts = [_entry(v, n) if n else "0" for v, n in zip(values.flat, counts, strict=True)]
+        sizes = [abs(mp.convert(v)) for v in values.flat]
+        entries = list(zip(sizes, errors.flat, counts, strict=True))
+        hidden = _norm([size + error for size, error, n in entries if not n])
+        rounding = [size * mpf(10) ** (1 - n) / 2 + error for size, error, n in entries if n]
+        least = _norm([size - error for size, error, n in entries if n])
+        radius = _norm([*rounding, hidden]) / least if least else mpf(0)
+        text = np.array(texts, dtype=object).reshape(values.shape).tolist()
+        return _Printed(text, radius, hidden)
+
+
+def _proven_digits(value: Any, error: mpf, digits: int) -> int:
+    """Return how many digits of an entry its error proves, at most ``digits``; 0 for no digit.
+
+    The error is at most a twentieth of a unit in the last digit, so that the text is off by 0.55 units at
+    most.
+    """
+    if not value:
+        return 0
+    if not error:
+        return digits
+    if not mp.isfinite(error):
+        return 0
+    places = mp.floor(mp.log10(abs(value))) + 1
+    return max(0, min(digits, int(mp.floor(places - mp.log10(20 * error)))))
+
+
+def _norm(entries: Sequence[mpf]) -> mpf:
+    """The Frobenius norm, rounded upwards or downwards by far less than two digits show."""
+    return mp.norm(list(entries)) if entries else mpf(0)
+
+
+def _rounded_up(bound: mpf) -> str:
+    """The bound to two digits, rounded up; the margin covers the roundings that made it."""
+    with mp.workprec(_BOUND_BITS):
+        return decimal_text(
+            exact_value(bound * (1 + mp.ldexp(1, -_BOUND_BITS // 2))), 2, ROUND_CEILING
+        )
 
 
 def _start(scene: Scene) -> dict[str, np.ndarray[Any, Any]]:
@@ -132,17 +191,14 @@ def shortest_text(value: Fraction, digits: int) -> str:
     return f"{mantissa}{e}{exponent}"
 
 
-def _text(values: np.ndarray[Any, Any], digits: int) -> Any:
-    if values.ndim > 1:
-        return [_text(row, digits) for row in values]
-    return [_entry(value, digits) for value in values]
-
-
 def _entry(value: Any, digits: int) -> str:
     """The entry rounded once; on a separatrix it can be e^(-10^9), whose exact rational fills memory."""
     if isinstance(value, Fraction):
         return decimal_text(value, digits)
-    if value and abs(mp.mag(value)) > _LARGEST_RATIONAL:
+    if isinstance(value, Irrational):
+        with mp.workdps(digits + _SPARE_DIGITS):
+            value = mp.convert(value)
+    if abs(mp.mag(value)) > _LARGEST_RATIONAL:
         with mp.workdps(digits + _SPARE_DIGITS):
             return str(mp.nstr(value, digits, strip_zeros=False))
     return decimal_text(exact_value(value), digits)

@@ -17,7 +17,7 @@ from mpmath import mp
 
 from taylor_verify.exact import clocks
 from taylor_verify.exact.clocks import Floats
-from taylor_verify.exact.enclosure.system import posed_exactly
+from taylor_verify.exact.enclosure.system import posed
 from taylor_verify.exact.equations import Scaled
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.rows import cross_matrices
@@ -111,7 +111,7 @@ def _derivatives(
 @lru_cache(maxsize=16)
 def _flow(scene: Scene) -> Scaled:
     """The equations of a scene's state in its units."""
-    system, scale = posed_exactly(scene), _units(scene)
+    system, scale = posed(scene), _units(scene)
     # The clock of a manufactured motion is of size one.
     blocks = [*scale.blocks, *[0] * (len(system.blocks) - len(scale.blocks))]
     unit = [power_of_two(e) for e, span in zip(blocks, system.spans, strict=True) for _ in span]

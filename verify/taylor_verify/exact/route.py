@@ -13,6 +13,8 @@ from taylor_verify.exact.damping import NOT_QUADRATIC, Damped, is_solved
 from taylor_verify.exact.registry import function_at, kind_of
 from taylor_verify.exact.solution import NoClosedForm, Quantities, Solution, Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.exact.written import as_written
+from taylor_verify.numbers.irrational import Undecided
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.reading.faults import brief
 from taylor_verify.scenes.scene import Scene
@@ -68,8 +70,10 @@ def solution(scene: Scene, route: str | None = None) -> Solution:
     """The exact solution of a scene: balls where every tracked quantity has a closed form, else Taylor.
 
     With ``route="arb"`` or ``"mpmath"`` only a closed form is accepted, and NoClosedForm is raised
-    where it is missing; ``route="taylor"`` takes Taylor series in any case.
+    where it is missing; ``route="taylor"`` takes Taylor series in any case. A closed form is missing too
+    where its kind depends on an equality of irrational numbers that is neither proven nor refuted.
     """
+    scene = as_written(scene)
     if route == "taylor":
         return TaylorSolution(scene)
     if route in CLOSED_ROUTES:
@@ -92,7 +96,10 @@ def _closed_form(scene: Scene, route: str) -> Solution:
     module = f"{kind_of(scene.body).room}.closed"
     if scene.body.manufactured is not None:
         module = "taylor_verify.exact.manufactured"
-    closed: Solution = function_at(f"{module}:{_FUNCTIONS[route]}")(scene)
+    try:
+        closed: Solution = function_at(f"{module}:{_FUNCTIONS[route]}")(scene)
+    except Undecided as doubt:
+        raise NoClosedForm(f"the kind of motion is not decided: {doubt}") from doubt
     return closed
 
 

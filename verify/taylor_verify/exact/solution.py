@@ -120,16 +120,16 @@ class Settled(Solution):
                 radius = np.array(
                     [_largest(row) for row in zip(*radii.values(), strict=True)], dtype=object
                 )
-                worst = _largest(radius)
+                motion = Motion(better, radius, radii, _apart(poorer, better))
                 # Written so that a NaN is not agreement.
-                if worst <= mpf(10) ** -digits:
-                    return Motion(better, radius, radii)
+                if _largest(radius) <= mpf(10) ** -digits:
+                    return motion
             poorer, below, working = better, working, finer
         because = (
             f"two evaluations of the exact solution at {below} and {working} digits do not agree to "
             f"{digits} digits"
         )
-        raise Unsettled.beside(because, Motion(poorer, radius, radii), digits)
+        raise Unsettled.beside(because, motion, digits)
 
 
 def longest(elapsed: Iterable[Time]) -> Fraction:
@@ -141,8 +141,13 @@ def longest(elapsed: Iterable[Time]) -> Fraction:
 
 
 def beside(time: Time, number: Number) -> Number:
-    """Return what makes rationals fit to be combined with a time: nothing where it is rational too."""
-    return Fraction if isinstance(time, Fraction) else number
+    """Return a function that makes exact numbers fit to be combined with a time, which may be exact too."""
+    return unchanged if isinstance(time, Fraction) else number
+
+
+def unchanged(value: Any) -> Any:
+    """Return the value: the conversion of what needs none."""
+    return value
 
 
 def _differences(poorer: Quantities, better: Quantities) -> Quantities:
@@ -153,6 +158,11 @@ def _differences(poorer: Quantities, better: Quantities) -> Quantities:
         )
         for name, rows in better.items()
     }
+
+
+def _apart(poorer: Quantities, better: Quantities) -> Quantities:
+    """The distance of every component."""
+    return {name: np.abs(poorer[name] - values) for name, values in better.items()}
 
 
 def _largest(differences: Iterable[mpf]) -> mpf:

@@ -18,7 +18,7 @@ from flint import arb, ctx
 from mpmath import mp, mpf
 
 from taylor_verify.exact import clocks
-from taylor_verify.exact.balls import balls, midpoint, size, width
+from taylor_verify.exact.balls import balls, largest_size, midpoint, radius, size, width
 from taylor_verify.exact.enclosure.course import MOST_STEPS, Coarse, Course, Row, Unreached
 from taylor_verify.exact.enclosure.placing import Place
 from taylor_verify.exact.enclosure.system import System, posed
@@ -46,9 +46,10 @@ Times = Mapping[int, Fraction]
 
 @dataclass(frozen=True)
 class _Proven:
-    """A row: midpoints and radii of the tracked quantities, and the bits that the widest one lacks."""
+    """A row: midpoints, the errors of all components, radii, and the bits that the widest one lacks."""
 
     values: Mapping[str, Any]
+    errors: Mapping[str, Any]
     radii: Mapping[str, mpf]
     lacking: int
 
@@ -142,7 +143,7 @@ class _Enclosing(Solution):
         )
 
     def _measured(self, row: Row, target: int) -> _Proven:
-        values, radii, lacking = {}, {}, 0
+        values, errors, radii, lacking = {}, {}, {}, 0
         for name, (vector, largest) in self._vectors(row).items():
             balls = np.array(vector, dtype=object)
             radii[name], missing = _radius(list(balls.flat), largest, target)
@@ -150,8 +151,9 @@ class _Enclosing(Solution):
             has_digits = mp.isfinite(width(list(balls.flat)))
             middles = np.frompyfunc(midpoint, 1, 1)(balls)
             values[name] = middles if has_digits else np.full(balls.shape, mpf(0), dtype=object)
+            errors[name] = np.frompyfunc(radius if has_digits else largest_size, 1, 1)(balls)
             lacking = max(lacking, missing)
-        return _Proven(values, radii, lacking)
+        return _Proven(values, errors, radii, lacking)
 
     def _vectors(self, row: Row) -> dict[str, tuple[Any, float]]:
         """Return the tracked quantities as balls, with log2 of their largest sizes so far."""
@@ -171,9 +173,10 @@ class _Enclosing(Solution):
         frame = ["attitude"] * bool(track) + ["centre"] * ("centre" in track)
         names = [*kind_of(self.scene.body).moving, *frame]
         stacked = {n: np.array([row.values[n] for row in rows], dtype=object) for n in names}
+        errors = {n: np.array([row.errors[n] for row in rows], dtype=object) for n in names}
         radii = {n: np.array([row.radii[n] for row in rows], dtype=object) for n in names}
         widest = np.array([max(row.radii.values()) for row in rows], dtype=object)
-        return Motion(stacked, widest, radii)
+        return Motion(stacked, widest, radii, errors)
 
 
 @final

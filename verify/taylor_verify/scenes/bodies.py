@@ -9,14 +9,13 @@ from functools import cached_property
 from typing import Any, ClassVar, Final, Self, cast
 
 from taylor_verify.scenes import tensors
-from taylor_verify.scenes.ellipsoid import inverse_inertias
+from taylor_verify.scenes.ellipsoid import Inertias, inertias
 from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.motion import Impulse, Spin, State
 from taylor_verify.scenes.parts import FORCE, MOMENT, RATE, Dimension, Part, Parted, Shape, Value
+from taylor_verify.scenes.stand_in import stand_in
 from taylor_verify.scenes.tensors import ZERO_MATRIX, ZERO_VECTOR, Matrix, Vector
 
-# Irrational coefficients become rationals of so many bits: 120 digits.
-COEFFICIENT_BITS: Final = 400
 DAMPING: Final = Part("damping", Shape.NUMBER, RATE)
 
 
@@ -137,8 +136,8 @@ class ImmersedBody(Body):
 
     A (``linear``) and C (``angular``) are symmetric, the row of B (``coupling``) is the index of x,
     and [[A, B], [B^T, C]] is positive definite. ``force`` (X, Y, Z) and ``couple`` (L, M, N) are
-    constant in body axes. ``ellipsoid`` is the shape of a body that was given by it; the coefficients are
-    then rounded. Where there is a ``manufactured`` motion of (x, y), the loads are those
+    constant in body axes. ``ellipsoid`` is the shape of a body that was given by it; its coefficients are
+    irrational. Where there is a ``manufactured`` motion of (x, y), the loads are those
     that make it a motion of this body.
     """
 
@@ -266,9 +265,17 @@ class Ellipsoid:
     density: Fraction
     fluid_density: Fraction
 
-    def body(self, bits: int = COEFFICIENT_BITS) -> ImmersedBody:
-        """Return the body of the coefficients 1/(M + m_i) and 1/(I_i + j_i), rounded once to ``bits``."""
-        linear, angular = inverse_inertias(self.semi_axes, self.density, self.fluid_density, bits)
+    @property
+    def inertias(self) -> Inertias:
+        """Mass, inertia and what the fluid adds to them, exactly."""
+        return inertias(self.semi_axes, self.density, self.fluid_density)
+
+    def body(self) -> ImmersedBody:
+        """Return the body of the coefficients 1/(M + m_i) and 1/(I_i + j_i), which are irrational."""
+        linear, angular = (
+            tuple(stand_in(1 / inertia) for inertia in three)
+            for three in (self.inertias.masses, self.inertias.moments)
+        )
         return ImmersedBody(
             linear=tensors.diagonal(linear),
             coupling=ZERO_MATRIX,
@@ -278,7 +285,6 @@ class Ellipsoid:
 
 
 __all__ = [
-    "COEFFICIENT_BITS",
     "DAMPING",
     "ZERO_MATRIX",
     "ZERO_VECTOR",

@@ -110,12 +110,14 @@ class Motion:
     ``radius`` (n,) bounds the error of every vector and matrix of the row in the Frobenius norm, relative
     to the norm of the true one, on every route. A vector that a thousand bits more than were asked for do
     not distinguish from zero is zero here, and its bound is absolute. The radius is zero where the numbers
-    are exact. ``radii`` bounds the error of single quantities in the same way, where it is known.
+    are exact. ``radii`` bounds the error of single quantities in the same way, where it is known, and
+    ``errors`` that of every component, absolutely: shaped as the quantities are.
     """
 
     quantities: Mapping[str, np.ndarray[Any, Any]]
     radius: np.ndarray[Any, Any]
     radii: Mapping[str, np.ndarray[Any, Any]] = field(default_factory=dict)
+    errors: Mapping[str, np.ndarray[Any, Any]] = field(default_factory=dict)
 
     def __getitem__(self, quantity: str) -> np.ndarray[Any, Any]:
         return self.quantities[quantity]
@@ -126,6 +128,8 @@ class Motion:
 
     def at(self, rows: Sequence[int]) -> Motion:
         """Return the motion at some of its instants."""
-        quantities = {name: values[rows] for name, values in self.quantities.items()}
-        radii = {name: radius[rows] for name, radius in self.radii.items()}
-        return Motion(quantities, self.radius[rows], radii)
+        quantities, radii, errors = (
+            {name: values[rows] for name, values in by_name.items()}
+            for by_name in (self.quantities, self.radii, self.errors)
+        )
+        return Motion(quantities, self.radius[rows], radii, errors)

@@ -6,7 +6,7 @@ changes their units, moves them by a unit roundoff, or writes them down.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from enum import Enum, auto
 from fractions import Fraction
@@ -102,3 +102,12 @@ def entrywise(change: Callable[[Fraction], Any], value: Value) -> Value:
     if not isinstance(value, tuple):
         return change(value)
     return tuple([entrywise(change, entry) for entry in value])
+
+
+def numbers(value: Value) -> Iterator[Fraction]:
+    """Yield every number in a value."""
+    if isinstance(value, tuple):
+        for entry in value:
+            yield from numbers(entry)
+    else:
+        yield value

@@ -9,6 +9,7 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
+from taylor_verify.numbers.irrational import Irrational
 from taylor_verify.records.precisions import FORMATS, bits_of
 
 _LEAST_BITS = 24
@@ -140,8 +141,10 @@ def power_of_two(exponent: int) -> Fraction:
     return Fraction(1 << places) if places >= 0 else Fraction(1, 1 << -places)
 
 
-def floor_log2(value: Fraction) -> int:
+def floor_log2(value: Fraction | Irrational) -> int:
     """Return the largest e with 2^e <= |value|, for a value that is not zero."""
+    if isinstance(value, Irrational):
+        return value.floor_log2()
     numerator, denominator = abs(value.numerator), value.denominator
     estimate = numerator.bit_length() - denominator.bit_length()
     is_reached = denominator << max(estimate, 0) <= numerator << max(-estimate, 0)
@@ -190,9 +193,12 @@ def held_exactly(value: Fraction) -> Any:
     return mp.make_mpf(libmp.from_man_exp(value.numerator, 1 - value.denominator.bit_length()))
 
 
-def float_text(value: Fraction) -> str:
+def float_text(value: Fraction | Irrational) -> str:
     """Return a short decimal for messages, also where a double cannot hold the value."""
     from mpmath import libmp
+
+    if isinstance(value, Irrational):
+        value = value.near()
 
     return str(libmp.to_str(libmp.from_rational(value.numerator, value.denominator, 53), 6))
 

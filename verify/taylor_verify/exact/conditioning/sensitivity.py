@@ -32,7 +32,7 @@ from taylor_verify.exact.conditioning.inputs import (
     start_inputs,
 )
 from taylor_verify.exact.damping import is_solved
-from taylor_verify.exact.enclosure.system import posed_exactly
+from taylor_verify.exact.enclosure.system import posed
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.rows import cross_matrices, turned
 from taylor_verify.exact.solution import Quantities, Unsettled
@@ -247,7 +247,7 @@ def _places(motion: Quantities) -> list[str]:
 
 def _flow(scene: Scene, motion: Quantities) -> dict[str, Array]:
     """The right-hand sides of the equations of motion, R omega for the turning, and R U."""
-    equations = posed_exactly(scene).equations
+    equations = posed(scene).equations
     moving = [name for name in motion if name not in ("attitude", "centre")]
     z = np.concatenate([motion[name] for name in moving], axis=1)
     if z.shape[1] < len(equations.constant):

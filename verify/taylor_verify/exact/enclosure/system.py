@@ -2,42 +2,37 @@
 
 z' = c + q(z, z), with z = omega, or z = (x, y), and last the clock of a manufactured motion. The body's
 spin Omega = W z and, for a solid in a fluid, the velocity of its origin U = Y z are linear in z. All of
-it is exact, but for the coefficients of an ellipsoid, which are irrational: they enter as balls.
+it is exact; numbers become balls at the precision of the course.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-from flint import arb, arb_mat, ctx
+from flint import arb, arb_mat
 
 from taylor_verify.exact import clocks
 from taylor_verify.exact.balls import balls
-from taylor_verify.exact.enclosure import lamb
 from taylor_verify.exact.equations import Equations
 from taylor_verify.exact.registry import kind_of
-from taylor_verify.scenes.bodies import Ellipsoid, ImmersedBody
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Vector
 
 
 @dataclass(frozen=True)
 class System:
-    """Equations and the state at time zero, ``start``; exact but for the coefficients of a ``shape``.
+    """Equations and the state at time zero, ``start``, exactly.
 
-    ``blocks`` are the ends of the vectors that z is made of. Those in ``shaped`` each times one
-    coefficient of the shape are added to the ``equations``.
+    ``blocks`` are the ends of the vectors that z is made of.
     """
 
     equations: Equations
     blocks: tuple[int, ...]
     start: Vector
-    shape: Ellipsoid | None = None
-    shaped: tuple[Equations, ...] = ()
 
     @property
     def size(self) -> int:
@@ -51,20 +46,6 @@ class System:
 
 def posed(scene: Scene) -> System:
     """The equations of a scene's body, and where its motion begins."""
-    system, body = posed_exactly(scene), scene.body
-    if not isinstance(body, ImmersedBody) or body.ellipsoid is None:
-        return system
-
-    def driven(other: ImmersedBody) -> Equations:
-        return kind_of(body).equations(other).driven(body.manufactured)
-
-    without = driven(lamb.without_coefficients(body))
-    shaped = [driven(unit).minus(without) for unit in lamb.units(body, body.ellipsoid)]
-    return replace(system, equations=without, shape=body.ellipsoid, shaped=tuple(shaped))
-
-
-def posed_exactly(scene: Scene) -> System:
-    """The system of a scene with the rational coefficients that it has, for an ellipsoid as well."""
     body, kind = scene.body, kind_of(scene.body)
     start, motion = kind.state(scene.initial), body.manufactured
     ends = tuple(range(3, len(start) + 1, 3))
@@ -86,16 +67,8 @@ class Balls:
 
     @classmethod
     def of(cls, system: System) -> Balls:
-        """The balls at the ambient precision: exact numbers in the smallest ones."""
-        shape = system.shape
-        # Differences of nearly equal coefficients are to be as sharp as these.
-        with ctx.workprec(ctx.prec + (lamb.cancelled_bits(shape) if shape else 0)):
-            matrices = _matrices(system.equations)
-            factors = lamb.factors(shape) if shape else []
-            for factor, equations in zip(factors, system.shaped, strict=True):
-                parts = zip(matrices, _matrices(equations), strict=True)
-                matrices = [whole + part * factor for whole, part in parts]
-        return cls(*(matrix * 1 for matrix in matrices))
+        """The balls at the ambient precision: of exact numbers."""
+        return cls(*_matrices(system.equations))
 
     @cached_property
     def second(self) -> arb_mat:

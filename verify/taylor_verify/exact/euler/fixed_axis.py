@@ -18,7 +18,7 @@ from taylor_verify.exact.balls import ball, balls
 from taylor_verify.exact.euler.orbit import converted
 from taylor_verify.exact.euler.rotations import BallCourse, decades
 from taylor_verify.exact.frames import Frame, turn
-from taylor_verify.exact.solution import Number, Time, beside
+from taylor_verify.exact.solution import Number, Time, beside, unchanged
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.tensors import ZERO_VECTOR, Vector
 
@@ -41,7 +41,7 @@ class FixedAxis:
         like = beside(t, number)
         return [number(like(w) + like(a) * t) for w, a in zip(self._omega, self._gain, strict=True)]
 
-    def turned(self, t: Time, number: Number = Fraction) -> Any:
+    def turned(self, t: Time, number: Number = unchanged) -> Any:
         """|n| theta, likewise."""
         like = beside(t, number)
         return number(t * (like(self._pace) + like(self._bend) * t))

@@ -11,10 +11,11 @@ from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, Final
+from typing import Any, Final, cast
 
 import gmpy2
 
+from taylor_verify.numbers.irrational import Irrational
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.tensors import Matrix, Vector
 
@@ -166,9 +167,13 @@ class FreeSpin:
 # Polynomials of rationals by GMP, which takes a fifth of the time that Python's own take.
 
 
-def _quick(value: Fraction) -> Any:
+def _quick(value: Any) -> Any:
+    if isinstance(value, Irrational):
+        return value
     return gmpy2.mpq(value.numerator, value.denominator)
 
 
 def _exact(value: Any) -> Fraction:
+    if isinstance(value, Irrational):
+        return cast("Fraction", value)
     return Fraction(int(value.numerator), int(value.denominator))

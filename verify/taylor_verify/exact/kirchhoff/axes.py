@@ -153,13 +153,19 @@ def _pairs(matrix: Matrix) -> Sequence[tuple[Vector, Vector]]:
     return tuple(zip(matrix, tensors.transpose(matrix), strict=True))
 
 
-def _primitive(v: Vector) -> Vector:
-    """The shortest vector of whole numbers along v or against it, its first entry positive."""
-    scale = lcm(*(entry.denominator for entry in v))
-    whole = [int(entry * scale) for entry in v]
+def _primitive(v: Vector) -> Vector | None:
+    """The shortest vector of whole numbers along v or against it, its first entry positive.
+
+    None where no multiple of v is rational.
+    """
+    first = next(entry for entry in v if entry)
+    ratios = [entry / first for entry in v]
+    if not all(isinstance(ratio, Fraction) for ratio in ratios):
+        return None
+    scale = lcm(*(ratio.denominator for ratio in ratios))
+    whole = [int(ratio * scale) for ratio in ratios]
     shared = gcd(*whole)
-    first = next(entry for entry in whole if entry)
-    return tuple(Fraction(entry, shared if first > 0 else -shared) for entry in whole)
+    return tuple(Fraction(entry, shared) for entry in whole)
 
 
 def _shares(matrix: Matrix, n: Vector) -> tuple[Fraction, Fraction]:

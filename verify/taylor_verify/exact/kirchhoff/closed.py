@@ -29,7 +29,6 @@ from taylor_verify.exact.kirchhoff.screws import is_steady
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.kirchhoff.top import top, with_impulses
 from taylor_verify.exact.kirchhoff.turning import TurningBody
-from taylor_verify.exact.kirchhoff.vacuum import at_own_pace
 from taylor_verify.exact.kirchhoff.weber.course import WeberBalls
 from taylor_verify.exact.kirchhoff.weber.curve import REGIME as WEBER
 from taylor_verify.exact.kirchhoff.weber.curve import Curve, curve
@@ -74,7 +73,6 @@ def case(scene: Scene) -> Case:
         if solved is None:
             raise NoClosedForm("a force or a couple acts on the body")
         return solved
-    whole = at_own_pace(whole)
     for find in CASES:
         solved = find(whole)
         if solved is not None:

@@ -7,7 +7,7 @@ beside it, which of them are stable.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -17,7 +17,8 @@ from taylor_verify.exact.element import Element, Elements, described, settled
 from taylor_verify.exact.euler import elements as tops
 from taylor_verify.exact.euler.regime import FreeSpin
 from taylor_verify.exact.kirchhoff.closed import Case
-from taylor_verify.exact.kirchhoff.integrable import fourth_integral
+from taylor_verify.exact.kirchhoff.displaced import centred, symmetric_origin
+from taylor_verify.exact.kirchhoff.integrable import family_of
 from taylor_verify.exact.kirchhoff.pendulum import Pendulum
 from taylor_verify.exact.kirchhoff.plane import Plane
 from taylor_verify.exact.kirchhoff.reduced import Reduced
@@ -27,6 +28,7 @@ from taylor_verify.exact.kirchhoff.weber.curve import REGIME as WEBER
 from taylor_verify.exact.kirchhoff.weber.curve import Curve
 from taylor_verify.exact.kirchhoff.weber.enclosure import rates
 from taylor_verify.exact.solution import NO_CLOSED_FORM
+from taylor_verify.exact.written import held
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
@@ -62,9 +64,10 @@ _BALANCED: Final = (
     "moment of the impulses turn with the body."
 )
 _TOP: Final = (
-    "What is left is Euler's top of the inertia C^-1: y moves as its angular momentum H, Omega as its "
+    "What is left is Euler's top of the inertia C^-1: {y} moves as its angular momentum H, {Cy} as its "
     "omega, and x stands still in the space of the top."
 )
+_TURNED: Final = "x turns in the body as the space of the top does: {named} need not recur."
 _STRAIGHT: Final = "speed :: length/time :: of the origin, along a straight line :: |U|"
 _SCREW: Final = """
     turn_period :: time :: one turn about the axis of the screw :: 2 pi/|Omega|
@@ -104,20 +107,19 @@ _STORY: Final[Mapping[str, str]] = {
 def elements(scene: Scene, solved: Case | None, kind: str, digits: int) -> Elements:
     """The elements of a body that is not Clebsch's; ``found`` is the case of x and y, if they have one."""
     body, start = solid(scene)
-    fourth = fourth_integral(scene)
+    family = family_of(scene)
 
     def numbers(working: int) -> list[Element]:
-        own = [] if solved is None else _paced(solved.reduced, _own(solved, working))
+        own = [] if solved is None else _own(solved, working)
         return [*own, *conserved(body, start)]
 
-    unsolved = _UNSOLVED if fourth is None else _UNBUILT
-    sentences = [*(_top_story(solved, kind) or [_STORY.get(kind, unsolved)])]
+    unsolved = _UNSOLVED if family is None else _UNBUILT
+    sentences = [*(_top_story(scene, solved, kind) or [_STORY.get(kind, unsolved)])]
     sentences.append(_THREE if body.is_free else _BALANCED)
-    if fourth is not None:
-        sentences.append(
-            f"Conserved too: {fourth.name}, the fourth integral of {_FAMILIES[fourth.name]}."
-        )
-    return Elements(kind, settled(numbers, digits), (*sentences, *_screw_story(scene)))
+    if family is not None:
+        name, _ = family
+        sentences.append(f"Conserved too: {name}, the fourth integral of {_FAMILIES[name]}.")
+    return Elements(kind, settled(numbers, digits), (*sentences, *_screw_story(held(scene))))
 
 
 def _own(solved: Case, working: int) -> list[Element]:
@@ -129,23 +131,11 @@ def _own(solved: Case, working: int) -> list[Element]:
         case Curve() as curve:
             return _weber_rates(curve, working)
         case FreeSpin() as spin:
-            return tops.orbit(spin)
+            return [*map(_of_top, tops.orbit(spin))]
         case Impulse() as start:
             body, _ = solid(solved.reduced.scene)
             return _screw(*velocities(body, start))
     return []
-
-
-def _paced(reduced: Reduced, numbers: Iterable[Element]) -> list[Element]:
-    """Return the elements of a motion in the time of the scene."""
-    if reduced.pace is None:
-        return [*numbers]
-    k = reduced.pace(mp.convert)
-
-    def factor(unit: str) -> mpf:
-        return 1 / k if unit == "time" else k if unit.endswith("/time") else mpf(1)
-
-    return [replace(e, value=e.value * factor(e.unit)) for e in numbers]
 
 
 def _screw(U: Vector, Omega: Vector) -> list[Element]:
@@ -158,12 +148,26 @@ def _screw(U: Vector, Omega: Vector) -> list[Element]:
     return described(_SCREW, (period, advance, advance * period))
 
 
-def _top_story(solved: Case | None, kind: str) -> list[str]:
+def _of_top(element: Element) -> Element:
+    """Return an element of the top in words that leave Omega and the space axes of the solid alone."""
+    meaning = element.meaning.replace("in space axes", "in its space")
+    return replace(element, meaning=f"of the top: {meaning}")
+
+
+def _top_story(scene: Scene, solved: Case | None, kind: str) -> list[str]:
     """Sentences on a motion in which y is that of Euler's top; none on another."""
     if solved is None or not isinstance(solved.subject, FreeSpin):
         return []
+    body, start = solid(scene)
+    has_x = any(start.linear)
+    y = "y about that origin" if has_x and any(symmetric_origin(body)) else "y"
+    # B is b 1 about that origin, and Omega = b x + C y.
+    has_b = any(map(any, solid(centred(Reduced(scene)).scene)[0].coupling))
+    Cy, named = ("C y", "x and Omega = b x + C y") if has_x and has_b else ("Omega = C y", "x")
+    sentences = [_TOP.format(y=y, Cy=Cy)]
+    sentences += [_TURNED.format(named=named)] if has_x else []
     pathless = [] if kind != NO_CLOSED_FORM else ["The path of the origin has no closed form."]
-    return [_TOP, tops.story(solved.subject), *pathless]
+    return [*sentences, f"Of the top: {tops.story(solved.subject)}", *pathless]
 
 
 def recurring(

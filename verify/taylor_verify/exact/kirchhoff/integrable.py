@@ -163,10 +163,7 @@ def fourth_integral(scene: Scene) -> Fourth | None:
     Decided in the scene's own rationals, so that of a scene rounded to a rung what is left of a
     relation between its coefficients decides.
     """
-    body, start = solid(scene)
-    if not body.is_free or body.axis_of_symmetry is not None:
-        return None
-    family = diagonal_family(body) or _kovalevskaya_family(body, start)
+    family = family_of(scene)
     if family is None:
         return None
     name, coefficients = family
@@ -174,6 +171,14 @@ def fourth_integral(scene: Scene) -> Fourth | None:
     elapsed = scene.clock.elapsed
     span = elapsed[-1] if elapsed else Fraction(0)
     return Fourth(name, _terms(FORMULAS[name], coefficients), leak, span)
+
+
+def family_of(scene: Scene) -> Family | None:
+    """The family of a free body that has a fourth integral, or None."""
+    body, start = solid(scene)
+    if not body.is_free or body.axis_of_symmetry is not None:
+        return None
+    return diagonal_family(body) or _kovalevskaya_family(body, start)
 
 
 def diagonal_family(body: ImmersedBody) -> Family | None:
@@ -218,7 +223,7 @@ def _kovalevskaya_family(body: ImmersedBody, start: Impulse) -> Family | None:
 
 
 def _equal(values: Sequence[Fraction]) -> bool:
-    return len(set(values)) == 1
+    return all(value == values[0] for value in values[1:])
 
 
 def _centred(values: Sequence[Fraction]) -> list[Fraction]:

@@ -9,12 +9,13 @@ coefficients over sqrt(nu), as axes.py says: z = n.x, and F^2, FG and m1 are nu 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
 
 from taylor_verify.exact.kirchhoff.axes import UPRIGHT, Axes, body_about
+from taylor_verify.numbers.irrational import Irrational
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody
 from taylor_verify.scenes.motion import Impulse
@@ -90,6 +91,16 @@ class Nutation:
             return Fraction(0)
         pull = body.r * (self.FG * z - self.F2 * self.y3) / (self.F2 - z**2)
         return ((body.r - body.r_prime) * self.y3 - (body.q_prime - body.q) * z + pull) / nu
+
+    def near(self, bits: int) -> Nutation:
+        """Return the constants with rationals near the irrational ones, to so many bits."""
+
+        def rational(value: Fraction) -> Fraction:
+            return value.near(bits) if isinstance(value, Irrational) else value
+
+        of_body = Clebsch(*map(rational, astuple(self.body)))
+        names = ("z", "speed", "F2", "FG", "y3", "m1")
+        return replace(self, body=of_body, **{n: rational(getattr(self, n)) for n in names})
 
     @property
     def is_axial(self) -> bool:

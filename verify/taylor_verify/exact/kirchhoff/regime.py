@@ -12,8 +12,8 @@ from taylor_verify.exact.kirchhoff.quartic import (
     Nutation,
     RealRoots,
     derivative,
+    invariants,
     repeated_root,
-    sturm_chain,
     value,
 )
 from taylor_verify.exact.kirchhoff.solid import solid
@@ -23,6 +23,9 @@ from taylor_verify.scenes.precision import floor_log2, power_of_two
 from taylor_verify.scenes.scene import Scene
 
 _NARROWINGS: Final = 40
+# Rationals near irrational constants have eight times the digits asked for, and some more.
+_BITS_PER_DIGIT: Final = 27
+_MORE_BITS: Final = 256
 # The kind of motion by the sign of the curvature of f where its root is repeated.
 _BY_CURVATURE: Final = {1: "hyperbolic", 0: "algebraic", -1: "trigonometric"}
 
@@ -60,7 +63,9 @@ def regime(nutation: Nutation) -> str:
         return "steady"
     if len(f) < 4:
         return "trigonometric"
-    if len(sturm_chain(f)[-1]) > 1:
+    g2, g3 = invariants(f)
+    discriminant = g2**3 - 27 * g3**2
+    if not discriminant:
         root = repeated_root(f)
         if root is None:
             # Two repeated roots can only be the poles: f is a square, and f(+-F) <= 0.
@@ -69,7 +74,8 @@ def regime(nutation: Nutation) -> str:
         return _BY_CURVATURE[(curvature > 0) - (curvature < 0)]
     if len(f) == 4:
         return "cubic"
-    return "four-roots" if RealRoots(f).number == 4 else "two-roots"
+    # Of four different roots two are real, those between which x3 swings.
+    return "four-roots" if discriminant > 0 else "two-roots"
 
 
 @dataclass(frozen=True)
@@ -95,13 +101,16 @@ def turning_points(nutation: Nutation, digits: int) -> TurningPoints:
     """The turning points to ``digits`` significant digits of every difference.
 
     The smallest difference is not known beforehand: the roots are narrowed until it is large enough
-    beside what is left of their enclosures. Raises Unsettled if they do not come apart.
+    beside what is left of their enclosures. Of irrational constants rationals near them are taken: so these
+    roots prove nothing, and two precisions must agree. Raises Unsettled if they do not come apart.
     """
+    poles = nutation.touches_pole(1), nutation.touches_pole(-1)
+    nutation = nutation.near(_BITS_PER_DIGIT * digits + _MORE_BITS)
     roots = RealRoots(nutation.f)
     F_above = power_of_two(floor_log2(nutation.F2) // 2 + 1)
     width = F_above / 10**digits
     for _ in range(_NARROWINGS):
-        points = _arranged(nutation, roots, width)
+        points = _arranged(nutation, roots, width, poles)
         smallest = min(_allowances(nutation, points, width))
         if width * 10**digits <= smallest:
             return points
@@ -109,17 +118,20 @@ def turning_points(nutation: Nutation, digits: int) -> TurningPoints:
     raise Unsettled("the roots of the quartic of x3 do not come apart")
 
 
-def _arranged(nutation: Nutation, real: RealRoots, width: Fraction) -> TurningPoints:
+def _arranged(
+    nutation: Nutation, real: RealRoots, width: Fraction, poles: tuple[bool, bool]
+) -> TurningPoints:
     """The roots in the order of the formulas, with those that are known exactly put in."""
     roots = real.enclosed(width)
     lower = real.number_up_to(nutation.z) - 1
-    if nutation.speed == 0:  # a start at a turning point: that root is rational
+    if nutation.speed == 0:  # a start at a turning point
+        lower = min(range(len(roots)), key=lambda k: abs(roots[k] - nutation.z))
         roots[lower] = nutation.z
         if value(derivative(nutation.f), nutation.z) < 0:
             lower -= 1
     z1, z2 = roots[lower], roots[lower + 1]
-    at_top = _is_pole(nutation, roots, lower + 1, side=1)
-    at_bottom = _is_pole(nutation, roots, lower, side=-1)
+    at_top = poles[0] and _is_pole(nutation, roots, lower + 1, side=1)
+    at_bottom = poles[1] and _is_pole(nutation, roots, lower, side=-1)
     if len(nutation.f) == 5 and len(roots) == 2:
         pair = _complex_pair(nutation, z1, z2)
         return TurningPoints(z1, z2, None, None, pair, at_top, at_bottom)
@@ -131,9 +143,7 @@ def _arranged(nutation: Nutation, real: RealRoots, width: Fraction) -> TurningPo
 
 
 def _is_pole(nutation: Nutation, roots: list[Fraction], index: int, side: int) -> bool:
-    """Return True if this root is the pole side * F: a pole that is a root is the nearest one."""
-    if not nutation.touches_pole(side):
-        return False
+    """Return True if this root is the pole side * F, one of the roots: it is the nearest one."""
     distances = [
         abs(nutation.F2 - root**2) if side * root > 0 else nutation.F2 + root**2 for root in roots
     ]

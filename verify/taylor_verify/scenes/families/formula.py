@@ -35,7 +35,7 @@ _OPERATIONS: Final[Mapping[type[ast.operator], Callable[[Fraction, Fraction], Fr
 }
 
 
-class NoValue(ValueError):  # noqa: N818 (it names what happened to the formula)
+class NoValue(ValueError):
     """A formula without a value at this point; the text says what was expected and what came instead."""
 
 

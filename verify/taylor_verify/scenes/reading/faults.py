@@ -14,7 +14,7 @@ _LONGEST_SHOWN = 60
 _MOST_FAULTS = 100
 
 
-class Refused(Exception):  # noqa: N818 (it names what happened to the scene)
+class Refused(Exception):
     """A scene that cannot be asked of any solver.
 
     ``faults`` holds one line each, ``expected ..., got ... @ body.inertia[1]``, with the mend in

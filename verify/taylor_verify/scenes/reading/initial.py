@@ -4,33 +4,33 @@ Legend: ``linear_impulse`` x and ``angular_impulse`` y, or ``linear_velocity`` U
 ``angular_velocity`` Omega in their place; ``attitude`` is the quaternion of R, v_space = R v_body;
 ``centre`` is the body's origin in space.
 
-A degree is pi/180 of a radian, which is irrational. It is rounded once to 400 bits, and each rate is
-an exact multiple of that one rational: zero stays zero, and 2 deg/s is minus twice -1 deg/s exactly.
+A degree is pi/180 of a radian, which is irrational. Each rate is an exact multiple of pi: zero stays zero,
+and 2 deg/s is minus twice -1 deg/s exactly. scenes.stand_in says what a scene holds in its place.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
-from functools import cache
 from typing import Final
 
+from taylor_verify.numbers.irrational import PI
 from taylor_verify.scenes import tensors
-from taylor_verify.scenes.bodies import COEFFICIENT_BITS, Body, ImmersedBody
+from taylor_verify.scenes.bodies import Body, ImmersedBody
 from taylor_verify.scenes.motion import IDENTITY, State
 from taylor_verify.scenes.parts import Shape, Value
-from taylor_verify.scenes.precision import exact_value, rounded
 from taylor_verify.scenes.reading.faults import shown
 from taylor_verify.scenes.reading.table import Table, exact_number, quantity
+from taylor_verify.scenes.stand_in import STAND_IN_BITS, stand_in, written
 from taylor_verify.scenes.tensors import ZERO_VECTOR, Vector
 
 IMPULSES: Final = ("linear_impulse", "angular_impulse")
 VELOCITIES: Final = ("linear_velocity", "angular_velocity")
 _RADIANS: Final = "rad/s"
+_DEGREE: Final = PI / 180
 # A turn a minute is 360 degrees in 60 seconds.
 _DEGREES: Final = {"deg/s": 1, "rpm": 6}
 _UNITS: Final = f"{_RADIANS}, {' or '.join(_DEGREES)}"
-_GUARD_BITS: Final = 40
 
 
 def state(
@@ -86,12 +86,12 @@ def impulses(table: Table, body: Body | None) -> Vector | None:
     spin = _rates(table, VELOCITIES[1]) if VELOCITIES[1] in by_velocity else None
     if velocity is None or spin is None or not isinstance(body, ImmersedBody):
         return None
-    shape = f", of coefficients rounded to {COEFFICIENT_BITS} bits" if body.ellipsoid else ""
     table.note(
         "The start is given by velocities: the impulses (x, y) = M (U, Omega) are formed exactly from the "
-        f"inertia of this body{shape}."
+        "inertia of this body."
     )
-    return tensors.apply(body.mass_matrix, velocity + spin)
+    mass_matrix = tensors.inverse(written(body.energy_matrix))
+    return tuple(map(stand_in, tensors.apply(mass_matrix, written(velocity + spin))))
 
 
 def _attitude(table: Table) -> Vector | None:
@@ -118,20 +118,10 @@ def _rates(table: Table, key: str) -> Vector | None:
     vector = table.vector(key, number=_in_radians)
     if any(unit in _DEGREES for unit in units):
         table.note(
-            f"{table.path(key)} is given in {' and '.join(units)}, so the unit of time is the second. "
-            f"pi/180 is rounded to {COEFFICIENT_BITS} bits (120 digits), and each component is an exact "
-            "multiple of that rational: ratios of components are those written."
+            f"{table.path(key)} is given in {' and '.join(units)}, so the unit of time is the second. The "
+            f"exact motion is that of these angles; solvers get them with {STAND_IN_BITS} bits at most."
         )
     return vector
-
-
-@cache
-def degree() -> Fraction:
-    """Return pi/180, rounded once to 400 bits."""
-    from mpmath import mp
-
-    with mp.workprec(COEFFICIENT_BITS + _GUARD_BITS):
-        return rounded(exact_value(+mp.degree), COEFFICIENT_BITS)
 
 
 def _in_radians(value: object) -> Fraction:
@@ -145,5 +135,5 @@ def _in_radians(value: object) -> Fraction:
     if unit == _RADIANS:
         return exact_number(text)
     if unit in _DEGREES:
-        return exact_number(text) * _DEGREES[unit] * degree()
+        return stand_in(exact_number(text) * _DEGREES[unit] * _DEGREE)
     raise ValueError(f"an angular velocity in {_UNITS}")

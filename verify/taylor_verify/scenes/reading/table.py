@@ -30,7 +30,10 @@ _WITHOUT_UNIT = (
 )
 _FRACTION = re.compile(r"([+-]?[0-9]+)/([0-9]+)")
 _DECIMAL = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE]([+-]?[0-9]+))?")
-_QUANTITY = re.compile(r"([+-]?[0-9.][0-9./eE+-]*)\s*([^\W\d_\s].*|[°%].*)")
+# Neither 1e9/3 nor 0x10 is a number and a unit.
+_QUANTITY = re.compile(
+    r"([+-]?[0-9.][0-9./eE+-]*)(?![eE][+-]?[0-9])(?!(?<=0)[xXoObB][0-9a-fA-F])\s*([^\W\d_\s].*|[°%].*)"
+)
 
 T = TypeVar("T")
 Number = Callable[[object], Fraction]
@@ -259,12 +262,17 @@ def _from_text(text: str) -> Fraction:
     )
 
 
+def is_numeral(text: str) -> bool:
+    """Return True if text has the form of a number: digits, a decimal or a/b."""
+    return bool(_FRACTION.fullmatch(text) or _DECIMAL.fullmatch(text))
+
+
 def quantity(value: object) -> tuple[str, str] | None:
     """Return number and unit of text such as ``"2 deg/s"``; None for a bare number and any other text."""
     if not isinstance(value, str) or len(value) > _MOST_DIGITS:
         return None
     text = value.strip()
-    if _FRACTION.fullmatch(text) or _DECIMAL.fullmatch(text):
+    if is_numeral(text):
         return None
     parts = _QUANTITY.fullmatch(text)
     return (parts[1], parts[2].strip()) if parts else None

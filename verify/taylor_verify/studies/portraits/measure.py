@@ -30,7 +30,6 @@ from taylor_verify.draw.course import (
     span,
 )
 from taylor_verify.exact.elements import Elements
-from taylor_verify.exact.ellipsoid import formed_to
 from taylor_verify.exact.kirchhoff.closed import revolution
 from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.kirchhoff.reduced import Reduced
@@ -54,9 +53,8 @@ Document = dict[str, Any]
 def portrait(scene: Scene) -> Document:
     """Return the document of one shipped scene. Raises Unsettled if a number does not reach its digits."""
     text = find(scene.name).read_text(encoding="utf-8")
-    formed = formed_to(scene, DIGITS)
-    exact, orbit = solution(formed), orbit_of(scene)
-    values = document(formed, exact, _times(scene), DIGITS)
+    exact, orbit = solution(scene), orbit_of(scene)
+    values = document(scene, exact, _times(scene), DIGITS)
     explained = explanation(scene, _RUNG)
     return {
         "scene": scene.name,

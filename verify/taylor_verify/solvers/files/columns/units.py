@@ -17,8 +17,8 @@ from typing import Final
 from mpmath import mp
 
 from taylor_verify.records.quantities import GROUPS
-from taylor_verify.scenes.bodies import COEFFICIENT_BITS
 from taylor_verify.scenes.precision import exact_value
+from taylor_verify.scenes.stand_in import STAND_IN_BITS
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ OWN: Final = Unit(Fraction(1), "")
 
 
 def _of_pi(rational: Fraction) -> Fraction:
-    with mp.workprec(COEFFICIENT_BITS):
+    with mp.workprec(STAND_IN_BITS):
         return exact_value(mp.convert(rational) * mp.pi)
 
 

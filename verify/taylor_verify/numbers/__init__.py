@@ -1,0 +1,1 @@
+"""Numbers that are held exactly, and their enclosures."""
