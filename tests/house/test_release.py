@@ -64,6 +64,26 @@ def test_the_citation_is_one() -> None:
     assert all({"type", "title", "authors"} <= set(each) for each in cited["references"])
 
 
+def test_the_page_of_heinbockel_is_one() -> None:
+    """Wherever Euler's equations in Heinbockel's book have a page, it is page 210."""
+    named = re.compile(r"(?:Heinbockel|Euler's equations).{0,200}?\bpage (\d+)", re.DOTALL)
+    files = [ROOT / "CITATION.cff", *ROOT.glob("*.md"), *ROOT.glob("reports/*.md")]
+    files += [
+        f
+        for kind in ("md", "py")
+        for folder in ("docs", "verify")
+        for f in (ROOT / folder).rglob(f"*.{kind}")
+    ]
+    pages = {
+        str(file.relative_to(ROOT)): set(named.findall(file.read_text(encoding="utf-8")))
+        for file in files
+    }
+    pages = {name: page for name, page in pages.items() if page}
+    assert {"CITATION.cff", "reports/claims.md"} <= set(pages)
+    assert any(name.startswith("verify/") for name in pages)
+    assert set().union(*pages.values()) == {"210"}
+
+
 def test_the_classifiers_are_the_pythons_that_are_allowed() -> None:
     """requires-python, the classifiers and the workflow name the same versions."""
     metadata = project()["project"]
