@@ -16,7 +16,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from PIL import Image
 
 from taylor_verify.cli import main
-from taylor_verify.draw import mesh
+from taylor_verify.draw import mesh, momentum_sphere
 from taylor_verify.draw.caption import NotDrawn
 from taylor_verify.draw.course import motion
 from taylor_verify.draw.film import film
@@ -82,6 +82,54 @@ def shapes(axes: Axes) -> list[np.ndarray[Any, Any]]:
     lines = [line.get_xydata() for line in axes.lines if line.get_gid() in moves]
     solids = [patch.get_xy() for patch in axes.patches if patch.get_gid() in moves]
     return [np.asarray(points) for points in (*lines, *solids) if len(points)]
+
+
+@pytest.mark.parametrize(
+    ("scene", "words", "drawn"),
+    [
+        (
+            "euler/generic",
+            r"6 steady spins are marked, 2 of them unstable\.",
+            {"spin": 6, "separatrix": 4},
+        ),
+        ("euler/axisymmetric", r"2 steady spins .*, 0 .* a circle", {"spin": 2, "circle": 1}),
+        ("euler/spherical", "Every H is that of a steady spin", {}),
+        ("euler/gyrostat", r"4 steady spins are marked, 1 of them", {"spin": 4, "separatrix": 2}),
+    ],
+)
+def test_steady_spins_are_marked(scene: str, words: str, drawn: dict[str, int]) -> None:
+    """Each body has its steady spins on the sphere of H, and arcs of its separatrices from each saddle."""
+    with plotting():
+        picture = pictures(document(scene), ["momentum"])["momentum"]
+        assert re.search(words, picture.alt)
+        lines = picture.figure().axes[0].lines
+    gids = [str(line.get_gid()) for line in lines]
+    for name in ("spin", "separatrix", "circle"):
+        # An arc that goes behind the sphere is more than one line.
+        assert (gids.count(name) >= 1) == (name in drawn)
+        assert gids.count(name) >= drawn.get(name, 0)
+    assert gids.count("spin") == drawn.get("spin", 0)
+
+
+def test_spins_without_wheels_are_the_principal_axes() -> None:
+    """The unstable spins lie along the middle axis, and their separatrices have H^2 = 2T J2."""
+    sphere = momentum_sphere.series(document("euler/generic"))
+    middle = int(np.argsort(sphere.wheels.moments)[1])
+    unstable = [spin.momentum for spin in sphere.spins if not spin.stable]
+    assert np.abs(unstable) == pytest.approx(np.tile(np.eye(3)[middle] * sphere.size, (2, 1)))
+    assert sphere.saddles == pytest.approx([sphere.size**2 / 2 / sphere.wheels.moments[middle]])
+
+
+def test_a_body_whose_wheels_cancel_its_momentum_has_no_sphere(tmp_path: Path) -> None:
+    """H = I omega + h = 0 is no sphere, although nine digits of I omega leave a rounding."""
+    file = tmp_path / "cancelled.toml"
+    file.write_text(
+        'title = "H is 0"\nmodel = "euler"\n[body]\ninertia = [3, 2, 1]\nrotor = [-1, "-2/3", "-1/7"]\n'
+        '[initial]\nomega = ["1/3", "1/3", "1/7"]\n[time]\nend = 9\nsamples = 10\n',
+        encoding="utf-8",
+    )
+    with pytest.raises(NotDrawn, match="expected a body with momentum, got none"):
+        pictures(motion(load(file), 60), ["momentum"])
 
 
 def test_a_course_is_cut_where_the_body_turns_far() -> None:

@@ -2,7 +2,7 @@
 
 |H| and T are conserved, H = I omega + h with the momentum h of wheels. So H runs along a curve of equal T
 on a sphere in the body. The steady spins are where T is stationary: a spin is unstable at a saddle, and a
-separatrix goes through it.
+separatrix goes through it. With two equal moments a whole circle can be steady, with three every H.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from taylor_verify.draw.caption import NotDrawn, caption
-from taylor_verify.draw.spins import Wheels
+from taylor_verify.draw.spins import ZERO, Spin, Wheels
 from taylor_verify.draw.stage import START, Look, Stage
 from taylor_verify.draw.view import Ellipsoid, Numbers, View
 from taylor_verify.publish.pictures.palette import INK, PAPER
@@ -38,6 +38,7 @@ SEPARATRIX: Final[Look] = {"color": "#A83C00", "linewidth": 1.1, "gid": "separat
 _SPIN: Final[Look] = {"linestyle": "none", "markeredgecolor": INK, "markeredgewidth": 0.9}
 STABLE: Final[Look] = {**_SPIN, "marker": "o", "markersize": 5.5, "markerfacecolor": "#1C8578"}
 UNSTABLE: Final[Look] = {**_SPIN, "marker": "X", "markersize": 7, "markerfacecolor": "#E0714F"}
+CIRCLE: Final[Look] = {"color": "#1C8578", "linewidth": 1.6, "dashes": (1, 1.2), "gid": "circle"}
 _ROTOR: Final[Look] = {**_SPIN, "marker": "D", "markersize": 8, "markerfacecolor": PAPER}
 # Curves between neighbouring energies of steady spins.
 _LEVELS: Final = 5
@@ -52,21 +53,17 @@ _SAME: Final = 1e-6
 
 
 @dataclass(frozen=True)
-class Spin:
-    """A steady spin: its momentum in principal axes, and True if it is stable."""
-
-    momentum: Numbers
-    stable: bool
-
-
-@dataclass(frozen=True)
 class Series:
-    """The course of H in principal axes, the wheels, and every steady spin with this |H|."""
+    """The course of H in principal axes, the wheels, and every steady spin with this |H|.
+
+    ``circle`` has the points (n, 3) of a circle of steady spins; none where there is no circle.
+    """
 
     course: Numbers
     wheels: Wheels
     size: float
     spins: tuple[Spin, ...]
+    circle: Numbers
 
     @property
     def saddles(self) -> list[float]:
@@ -74,6 +71,18 @@ class Series:
         momenta = [spin.momentum for spin in self.spins if not spin.stable]
         energies = self.wheels.energy(np.array(momenta).reshape(-1, 3))
         return sorted({float(energy) for energy in energies})
+
+    @property
+    def words(self) -> str:
+        """A sentence on the steady spins; two are there at least, unless every H is one."""
+        if not self.spins and not self.wheels.rotor.any():
+            return "Every H is that of a steady spin: the moments agree to eight digits."
+        if not self.spins:
+            return "The steady spins are not marked: their digits do not come apart."
+        unstable = sum(not spin.stable for spin in self.spins)
+        marked = f"{len(self.spins)} steady spins are marked, {unstable} of them unstable"
+        beside = ", and a circle of steady spins: two moments agree to eight digits"
+        return f"{marked}{beside if len(self.circle) else ''}."
 
 
 def series(document: Document) -> Series:
@@ -91,14 +100,18 @@ def series(document: Document) -> Series:
     axes, moments = np.array(body["axes"]), np.array(body["principal_moments"])
     wheels = Wheels.of(moments, axes @ np.array(document["rotor"] or [0.0] * 3))
     momenta = (np.array(course["omega"]) @ axes.T) * moments + wheels.rotor
-    size = float(np.linalg.norm(momenta[0]))
-    if not size > 0:
+    size, of_wheels = float(np.linalg.norm(momenta[0])), float(np.linalg.norm(wheels.rotor))
+    # Where the wheels cancel the momentum of the body, only the rounding of the digits is left.
+    if not size > ZERO * of_wheels:
         raise NotDrawn(f"expected a body with momentum, got none @ {document['scene']}")
-    return Series(momenta, wheels, size, tuple(_spins(document, wheels, size)))
+    spins = _spins(document, wheels, size) if of_wheels else wheels.without_rotor(size)
+    # Beside a circle there are two spins; more of them belong to moments that are nearly equal.
+    circle = wheels.circle(size) if len(spins) == 2 else np.empty((0, 3))
+    return Series(momenta, wheels, size, tuple(spins), circle)
 
 
 def _spins(document: Document, wheels: Wheels, size: float) -> list[Spin]:
-    """Return the steady spins; rates and stability come from the elements of the orbit."""
+    """Return the steady spins with wheels; rates and stability come from the elements of the orbit."""
     numbers = {row["name"]: float(row["value"]) for row in document["analytic"]}
     spins: list[Spin] = []
     pending: list[Numbers] = []
@@ -114,10 +127,9 @@ def _spins(document: Document, wheels: Wheels, size: float) -> list[Spin]:
 def picture(document: Document) -> Picture:
     """Return the momentum sphere of one scene. Raises NotDrawn as `series` does."""
     sphere = series(document)
-    unstable = sum(not spin.stable for spin in sphere.spins)
     alt = (
         f"The momentum of {document['scene']} on the sphere |H| = {plain(sphere.size)} in the body, with "
-        f"curves of equal energy. {len(sphere.spins)} steady spins are marked, {unstable} of them unstable."
+        f"curves of equal energy. {sphere.words}"
     )
     title = f"Momentum sphere: {document['scene']}"
     return Picture(
@@ -128,18 +140,22 @@ def picture(document: Document) -> Picture:
 def _figure(sphere: Series, caption: str) -> Figure:
     surface = Ellipsoid((sphere.size,) * 3)
     stage = Stage.around(surface, _view(sphere), _STAGE, _HEIGHT)
-    for levels, zorder, look in ((_levels(sphere), 1.5, _LEVEL), (sphere.saddles, 2, SEPARATRIX)):
-        for lines in level_lines(sphere.wheels, sphere.size, levels):
+    levels = _levels(sphere)
+    for energies, zorder, look in ((levels, 1.5, _LEVEL), (sphere.saddles, 2, SEPARATRIX)):
+        for lines in level_lines(sphere.wheels, sphere.size, energies):
             for line in lines:
                 stage.line(line, zorder, look)
     stage.line(sphere.course, 3, _COURSE)
+    if len(sphere.circle):
+        stage.line(sphere.circle, 2, CIRCLE)
     for spin in sphere.spins:
         stage.mark(spin.momentum, STABLE if spin.stable else UNSTABLE, gid="spin")
     entries: list[Entry] = [(_COURSE, "H of this motion"), (START, "start")]
-    entries += [(_LEVEL, "equal energy T")]
+    entries += [(_LEVEL, "equal energy T")] if levels else []
     entries += [(SEPARATRIX, "separatrices")] if sphere.saddles else []
     entries += [(STABLE, "stable steady spin")] if any(s.stable for s in sphere.spins) else []
     entries += [(UNSTABLE, "unstable steady spin")] if sphere.saddles else []
+    entries += [(CIRCLE, "circle of steady spins")] if len(sphere.circle) else []
     if sphere.wheels.rotor.any():
         direction = sphere.wheels.rotor / np.linalg.norm(sphere.wheels.rotor)
         stage.mark(direction * sphere.size, _ROTOR, gid="wheels")

@@ -3,7 +3,8 @@
 Legend, principal axes: J moments, a = 1/J, h momentum of the wheels, G = I omega + h, N = |G|, and mu the
 rate omega.G/N^2, so that omega = mu G in a steady spin and G_i = h_i/(1 - mu J_i). A spin is stable if
 s^2 = -G.adj(K - mu) G < 0, K = I^-1. Between two poles a_i < mu < a_j the size f(mu) = N^2 is convex:
-two spins are born where it is least. All numbers are doubles, to be drawn.
+two spins are born where it is least. All numbers are doubles, to be drawn: moments that agree to eight
+digits count as equal.
 """
 
 from __future__ import annotations
@@ -24,8 +25,16 @@ _NEAREST: Final = 1e-9
 _FAR: Final = 1e6
 # Points on a branch.
 _DENSE: Final = 150
-# A component of h below this part of its size is zero: h is rounded to nine digits.
-_ZERO: Final = 1e-8
+# A component of h below this part of its size is zero: h is rounded to nine digits, as the moments are.
+ZERO: Final = 1e-8
+
+
+@dataclass(frozen=True)
+class Spin:
+    """A steady spin: its momentum in principal axes, and True if it is stable."""
+
+    momentum: Numbers
+    stable: bool
 
 
 @dataclass(frozen=True)
@@ -52,7 +61,7 @@ class Wheels:
     def of(cls, moments: Numbers, rotor: Numbers) -> Wheels:
         """Return the body with exact zeros where h has only the rounding of its digits."""
         size = np.linalg.norm(rotor)
-        return cls(moments, np.where(np.abs(rotor) > _ZERO * size, rotor, 0.0))
+        return cls(moments, np.where(np.abs(rotor) > ZERO * size, rotor, 0.0))
 
     @property
     def poles(self) -> Numbers:
@@ -83,11 +92,39 @@ class Wheels:
         """
         momentum = self.momentum(np.array([rate]))[0]
         axis = int(np.abs(1 - rate * self.moments).argmin())
-        if self.rotor[axis] or abs(1 - rate * self.moments[axis]) > _ZERO:
+        if self.rotor[axis] or abs(1 - rate * self.moments[axis]) > ZERO:
             return [momentum]
         along = np.zeros(3)
         along[axis] = np.sqrt(max(size**2 - float(momentum @ momentum), 0.0))
         return [momentum + along, momentum - along]
+
+    def without_rotor(self, size: float) -> list[Spin]:
+        """Return the steady spins of a body whose h is 0: two along the axis of each single moment."""
+        rates = [1 / moment for moment in self.moments if self._count(moment) == 1]
+        return [
+            Spin(G, bool(self.square(np.array([rate]), G[None])[0] < 0))
+            for rate in rates
+            for G in self.at(rate, size)
+        ]
+
+    def circle(self, size: float) -> Numbers:
+        """Return the circle of steady spins of this size, shape (n, 3); no points if there is none.
+
+        It goes round the axis of the third moment if two moments are equal and h is along that axis.
+        """
+        pair = [axis for axis in range(3) if self._count(self.moments[axis]) == 2]
+        if not pair or self.rotor[pair].any():
+            return np.empty((0, 3))
+        base = self.momentum(np.array([1 / self.moments[pair[0]]]))[0]
+        radius = np.sqrt(max(size**2 - float(base @ base), 0.0))
+        angle = np.linspace(0, 2 * np.pi, _DENSE)
+        plane = np.eye(3)[pair]
+        turning = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        return base + radius * turning @ plane if radius > 0 else np.empty((0, 3))
+
+    def _count(self, moment: float) -> int:
+        """Return how many of the three moments are equal to this one."""
+        return int(np.count_nonzero(np.abs(self.moments - moment) <= ZERO * moment))
 
     def births(self) -> list[float]:
         """Return each N where two more steady spins appear, in ascending order.
@@ -95,9 +132,7 @@ class Wheels:
         There are two of them, and fewer with equal moments.
         """
         low, middle, high = self.poles
-        pairs = [
-            pair for pair in ((low, middle), (middle, high)) if pair[1] > (1 + _ZERO) * pair[0]
-        ]
+        pairs = [pair for pair in ((low, middle), (middle, high)) if pair[1] > (1 + ZERO) * pair[0]]
         return sorted(float(np.sqrt(least(self.moments, self.rotor, *pair))) for pair in pairs)
 
     def branches(self, largest: float) -> list[Branch]:
@@ -125,7 +160,7 @@ class Wheels:
             return []
         along = np.sqrt(np.linspace(0, largest**2 - base @ base, _DENSE))
         momenta = base + np.multiply.outer(along, np.eye(3)[axis])
-        if np.count_nonzero(np.abs(1 - rate * self.moments) < _ZERO) > 1:
+        if self._count(self.moments[axis]) > 1:
             # A circle of spins: each is at the border of stability, and the circle as a whole is stable.
             return [Branch(momenta, stable=True)]
         return self._pieces(np.full(_DENSE, rate), momenta, largest)
