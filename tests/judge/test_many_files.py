@@ -458,7 +458,7 @@ def test_a_ci_tells_the_files_apart(
     ("words", "sentence"),
     [
         (["--steps", "0.1"], "expected a step for each of 2 files, got 1"),
-        (["--steps", "0.1,x"], "expected a number (an integer, a decimal or \"a/b\"), got 'x'"),
+        (["--steps", "0.1,x"], "expected a number such as 10, 1e9 or 1/3, got 'x' @ --steps"),
         (["--steps", "0.1,-1"], "expected a positive step, got '-1' @ --steps"),
         (["--steps", "0.1,0.1"], "expected steps no two of which are the same, got 0.1 again"),
         (["--picture", "a.gif"], "expected a file that ends in .svg, .pdf, .png, got 'a.gif'"),

@@ -32,6 +32,9 @@ SCENE = "euler/with-attitude"
 NAMES = {group: " ".join(names) for group, names in GROUPS.items()}
 
 
+MOMENTA = ("px", "py", "pz", "Lx", "Ly", "Lz")
+
+
 def made(names: str | Sequence[str], wanted: Mapping[str, str] | None = None) -> TrajectoryFile:
     """The trajectory in columns of these names, each with numbers of its own."""
     every = names.split() if isinstance(names, str) else names
@@ -60,6 +63,7 @@ def _file_of(spelling: Spelling) -> list[str]:
     names = list(spelling.keys)
     if spelling.group != "time":
         names = ["t", *names]
+    names += spelling.company
     return [*names, *COLUMNS["omega"]] if spelling.beside else names
 
 
@@ -127,6 +131,11 @@ def test_a_spelling_in_doubt_is_refused_with_what_to_write(spelling: Spelling) -
         ("t w x y z", "quaternion"),
         ("t px py pz", "centre"),
         ("t x y z", "centre"),
+        ("t px py pz Lx Ly", "centre"),
+        ("t px py pz Lx Ly Lz", "linear_impulse"),
+        ("t /body.px /body.py /body.pz /body.Lx /body.Ly /body.Lz", "linear_impulse"),
+        ("t Lx_Nms Ly_Nms Lz_Nms px_Ns py_Ns pz_Ns", "angular_impulse"),
+        ("t px py pz /leg.Lx /leg.Ly /leg.Lz", "centre"),
         ("t pose.pose.position.x pose.pose.position.y pose.pose.position.z", "centre"),
         ("t u v w p q r", "linear_velocity"),
         ("t twist.linear.x twist.linear.y twist.linear.z", "linear_velocity"),
@@ -407,6 +416,33 @@ def test_letters_alone_need_company(names: str) -> None:
     assert set(made("t u v w p q r x y z").groups) == {"omega", "linear_velocity", "centre"}
 
 
+def test_p_beside_L_is_a_momentum(tmp_path: Path) -> None:
+    """px py pz beside Lx Ly Lz are the impulses of a solid in a fluid, and the notes say so."""
+    letters = dict(zip(("x1", "x2", "x3", "y1", "y2", "y3"), MOMENTA, strict=True))
+    columns = exact_columns("kirchhoff/algebraic")
+    motion = {name: columns[name] for name in ("t", *letters)}
+    file = write_csv(tmp_path / "mine.csv", renamed(motion, letters))
+    judgement = file_judgement(file, "kirchhoff/algebraic")
+    assert {v.verdict for v in judgement.verdicts if v.quantity in ("impulse", "FG")} == {
+        Status.PASS
+    }
+    note = "`px` `py` `pz` taken as x1 x2 x3, linear momentum beside Lx Ly Lz"
+    assert note in judgement.notes
+    assert "`Lx` `Ly` `Lz` taken as y1 y2 y3, angular momentum beside px py pz" in judgement.notes
+
+
+def test_a_rigid_body_has_no_use_for_momenta(tmp_path: Path) -> None:
+    """px py pz and Lx Ly Lz beside omega are not compared with a rigid body, and are named."""
+    motion = {name: list(column) for name, column in exact_columns("euler/generic").items()}
+    motion |= dict.fromkeys(MOMENTA, motion["t"])
+    judgement = file_judgement(write_csv(tmp_path / "mine.csv", motion), "euler/generic")
+    assert {verdict.verdict for verdict in judgement.verdicts} == {Status.PASS}
+    for names, ours in (("`px` `py` `pz`", "x1 x2 x3"), ("`Lx` `Ly` `Lz`", "y1 y2 y3")):
+        assert any(note.startswith(f"{names} taken as {ours}") for note in judgement.notes)
+        assert any(note.startswith(f"{ours} not compared: ") for note in judgement.notes)
+    assert not any("c1" in note for note in judgement.notes)
+
+
 def test_a_name_of_any_length_is_read_at_once() -> None:
     """A million dots are no million paths, and blanks behind wx do not make it another name."""
     began = perf_counter()
@@ -545,6 +581,8 @@ def test_names_of_the_page_are_taken() -> None:
     for group, names in shown:
         company = "t" if group != "time" else "w1 w2 w3"
         company += " p q r" if names == "u v w" else ""
+        company += " Lx Ly Lz" if (group, names) == ("linear_impulse", "px py pz") else ""
+        company += " px py pz" if names == "Lx Ly Lz" else ""
         file = made(f"{company} {names}")
         assert group in file.groups or group == "time", names
         assert any(" taken as " + NAMES[group] in note for note in file.notes)

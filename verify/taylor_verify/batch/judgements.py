@@ -107,6 +107,7 @@ class Judgements(Sequence[Judgement]):
         others = [v for v in self.unexpected if v.verdict is not Status.PASS]
         lines = [f"{v.verdict}  {v.scene} {v.rung} {v.sentence}" for v in others]
         lines += [cause.line for cause in self.causes]
+        lines += [f"note: {note}" for note in self.notes]
         lines += [str(mismatch) for mismatch in self.agreement.mismatches]
         raise NotPassed("\n".join(lines) or "nothing was judged")
 
@@ -132,12 +133,23 @@ class Judgements(Sequence[Judgement]):
             document["left_out"] = [complete(one) for one in self.left_out]
         if self.causes:
             document["causes"] = [complete(cause) for cause in self.causes]
+        if self.notes:
+            document["notes"] = list(self.notes)
         return document
 
     @property
     def causes(self) -> tuple[LikelyCause, ...]:
         """The likely causes of what failed, each with its scene and rung."""
         return tuple(cause for judgement in self.judgements for cause in judgement.causes)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """The notes on the answers, each behind its scene and rung."""
+        return tuple(
+            f"{judgement.verdicts[0].scene} {judgement.verdicts[0].rung}: {note}"
+            for judgement in self.judgements
+            for note in judgement.notes
+        )
 
     @property
     def left_out(self) -> tuple[LeftOut, ...]:

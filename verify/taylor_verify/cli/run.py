@@ -9,6 +9,8 @@ from itertools import groupby
 from math import inf, isnan
 from typing import Final
 
+from rich.text import Text
+
 from taylor_verify.batch.comparison import Earlier
 from taylor_verify.batch.expectations import Agreement
 from taylor_verify.batch.judgements import Judgements
@@ -184,13 +186,15 @@ def _print_rows(page: Page, results: Judgements, explained: bool) -> None:
         print_sentence(page, verdict, place, _expected(verdict, agreement))
     for cause in () if is_few else causes:
         print_cause(page, cause, f"{cause.scene} {cause.rung}")
+    for note in results.notes:
+        page.line(Text("note", "yellow"), f": {note}")
     for mismatch in agreement.mismatches:
         page.line(bold("not as expected", "red"), f"  {mismatch}")
     if explained:
         for (scene, rung), rows in runs:
             page.line(bold(scene), f" in {rung} arithmetic")
             print_arithmetic(page, rows)
-    if explained or agreement.mismatches or (others and not is_few):
+    if explained or agreement.mismatches or results.notes or (others and not is_few):
         page.line()
 
 

@@ -47,14 +47,16 @@ class Judgement:
     """The verdicts of one run and the record of their numbers (None if there was nothing to compare).
 
     ``costs`` are processor seconds by stage: solving, the exact motion, the orbit's condition, ...
-    ``causes`` explain nearly all of the error of a failed quantity. The truth value of a judgement is
-    ``passed``.
+    ``causes`` explain nearly all of the error of a failed quantity. ``notes`` are sentences on the answer
+    itself, such as that its numbers are float32, and on what was not compared. The truth value of a
+    judgement is ``passed``.
     """
 
     verdicts: tuple[Verdict, ...]
     record: Record | None
     costs: Mapping[str, float] = field(default_factory=dict, kw_only=True)
     causes: tuple[LikelyCause, ...] = field(default=(), kw_only=True)
+    notes: tuple[str, ...] = field(default=(), kw_only=True)
 
     @property
     def passed(self) -> bool:
@@ -95,6 +97,7 @@ class Judgement:
             not_passed = [v for v in self.verdicts if v.verdict is not Status.PASS]
             lines = [f"{v.verdict}  {v.scene} {v.rung} {v.sentence}" for v in not_passed]
             lines += [cause.line for cause in self.causes]
+            lines += [f"note: {note}" for note in self.notes]
             raise NotPassed("\n".join(lines) or "nothing was judged")
 
 

@@ -173,6 +173,7 @@ class Answer:
     baseline: AgainstBaseline | None = None
     conventions: tuple[Convention, ...] = ()
     causes: tuple[LikelyCause, ...] = ()
+    notes: Annotated[Sentences, about("Facts about the answers of a run that failed.")] = ()
     file: FileRead | None = None
     step: Annotated[Size | None, about("The step that the integrator of the file took.")] = None
     step_from: Annotated[str, about("The source that states the step.")] = ""

@@ -52,14 +52,12 @@ _MOST_SPANS: Final = 100
 class FileJudgement(Judgement):
     """The verdicts on a file, its conventions and notes.
 
-    ``conventions`` are those that differ from the scene's, ``accepted`` is True if they were corrected,
-    ``notes`` are sentences on what was not compared and why.
+    ``conventions`` are those that differ from the scene's, ``accepted`` is True if they were corrected.
     """
 
     file: TrajectoryFile
     conventions: tuple[Finding, ...] = ()
     accepted: bool = False
-    notes: tuple[str, ...] = ()
 
     def document(self) -> dict[str, Any]:
         """Return the document that `check --json` prints."""
@@ -132,8 +130,8 @@ def judge_file(
         notes += () if stored is None else (stored.note,)
     left = () if accept_conventions else file_conventions.findings
     verdicts = with_file_kinds(judged.verdicts, file, rung, left)
-    of_file = (file, file_conventions.findings, accept_conventions, notes)
-    return FileJudgement(verdicts, judged.record, *of_file, causes=causes)
+    of_file = (file, file_conventions.findings, accept_conventions)
+    return FileJudgement(verdicts, judged.record, *of_file, causes=causes, notes=notes)
 
 
 def _judged(

@@ -7,13 +7,16 @@ the attitude by 4 u radians, and a conserved quantity by u times its gradient, w
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from math import inf, sqrt
 from typing import Final
 
+import numpy as np
+
 from taylor_verify.judge.conventions.fits import Finding
 from taylor_verify.judge.floor.arithmetic import truth_digits
+from taylor_verify.judge.judgement import Judgement
 from taylor_verify.records.error_kind import ErrorKind
 from taylor_verify.records.precisions import bits_of
 from taylor_verify.records.quantities import (
@@ -24,12 +27,16 @@ from taylor_verify.records.quantities import (
     UNIT_QUATERNION,
     changed_by,
 )
+from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.solvers.files.file import TrajectoryFile
+from taylor_verify.solvers.files.single_precision import are_single_precision
+from taylor_verify.solvers.trajectory import Trajectory
 
 # A file with this many digits less than the rung is truncated.
 _SPARE_DIGITS: Final = 2
+_SINGLE_BITS: Final = bits_of("f32")
 _VECTOR: Final = sqrt(3)
 _ATTITUDE: Final = 4.0
 # Both the row and the start of a conserved quantity are rounded.
@@ -57,13 +64,9 @@ class Storing:
 
 def storing(file: TrajectoryFile, rung: Rung) -> Storing | None:
     """Return the truncation of a file's numbers; None if they have all digits of the rung."""
-    bits = bits_of("f32")
-    if rung.bits > bits and file.is_single_precision:
-        note = (
-            f"every number is one of float32, where {rung.name} has {rung.bits} bits: what the "
-            "storing cut off counts as error; if float32 arithmetic made the file, judge it on f32"
-        )
-        return Storing(ErrorKind.SINGLE, 2.0**-bits, note)
+    if note := single_precision_note(rung, lambda: file.is_single_precision):
+        printed = 0.0 if file.digits is None else 0.5 * 10.0 ** (1 - file.digits)
+        return Storing(ErrorKind.SINGLE, 2.0**-_SINGLE_BITS + printed, note)
     digits, needed = file.digits, truth_digits(rung.bits, more=1)
     if digits is None or digits >= needed - _SPARE_DIGITS:
         return None
@@ -72,6 +75,26 @@ def storing(file: TrajectoryFile, rung: Rung) -> Storing | None:
         f"{rung.name} has {needed}: what the printing cut off counts as error"
     )
     return Storing(ErrorKind.PRINTED, 0.5 * 10.0 ** (1 - digits), note)
+
+
+def single_precision_note(rung: Rung, is_single: Callable[[], bool]) -> str:
+    """Return the note on an answer in float32 numbers; empty for others, and for a rung as narrow."""
+    if rung.bits <= _SINGLE_BITS or not is_single():
+        return ""
+    return (
+        f"every number is one of float32, where {rung.name} has {rung.bits} bits: what the storing cut off "
+        "counts as error; if float32 arithmetic made these numbers, judge them on f32 (--rung f32)"
+    )
+
+
+def with_note_of_answer(judged: Judgement, rung: Rung, answer: Trajectory) -> Judgement:
+    """Return the judgement of a solver's answer that failed, with a note if its numbers are float32."""
+    if not any(verdict.verdict is Status.FAIL for verdict in judged.verdicts):
+        return judged
+    doubles = [np.array(rows, dtype=float) for rows in answer.quantities.values()]
+    columns = [(column, column) for rows in doubles for column in rows.reshape(len(rows), -1).T]
+    note = single_precision_note(rung, lambda: are_single_precision(columns))
+    return replace(judged, notes=(*judged.notes, note)) if note else judged
 
 
 def with_file_kinds(

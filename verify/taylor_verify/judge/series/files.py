@@ -49,7 +49,6 @@ class FilesJudgement(Judgement):
     files: tuple[FileJudgement, ...]
     steps: tuple[FileStep | None, ...]
     order: tuple[Order, ...]
-    notes: tuple[str, ...]
 
     def document(self) -> dict[str, Any]:
         """Return the document that `check --json` prints for several files."""
@@ -104,7 +103,7 @@ def files_judgement(
     order = orders(whole) if len(whole) > 1 and not alike else ()
     notes = tuple(_notes(judged, known, short, alike, order))
     verdicts = tuple(verdict for judgement in judged for verdict in judgement.verdicts)
-    return FilesJudgement(verdicts, None, tuple(judged), known, order, notes)
+    return FilesJudgement(verdicts, None, tuple(judged), known, order, notes=notes)
 
 
 def judge_files(

@@ -21,7 +21,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
-from typing import Any, Final, final
+from typing import Any, final
 
 import numpy as np
 
@@ -33,12 +33,10 @@ from taylor_verify.solvers.files.columns.selection import select
 from taylor_verify.solvers.files.formats.column import Column, alike
 from taylor_verify.solvers.files.formats.reading import parted, read_table
 from taylor_verify.solvers.files.rows import Rows, check_numbers, written_digits
+from taylor_verify.solvers.files.single_precision import are_single_precision
 from taylor_verify.solvers.files.step import FileStep, step_inside
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
-
-# Numbers as narrow as this are small integers and simple fractions in any precision.
-_TELLING_BITS: Final = 18
 
 
 @final
@@ -79,14 +77,10 @@ class TrajectoryFile:
 
     @cached_property
     def is_single_precision(self) -> bool:
-        """True if every finite number is one of float32, and not by chance."""
-        values = np.concatenate([rows.doubles().ravel() for rows in self.groups.values()])
-        doubles = values[np.isfinite(values)]
-        with np.errstate(over="ignore"):
-            is_single = np.array_equal(doubles.astype(np.float32).astype(np.float64), doubles)
-        # A number of fewer bits is an integer when scaled to one bit less than is telling.
-        scaled = np.frexp(doubles)[0] * 2.0 ** (_TELLING_BITS - 1)
-        return is_single and bool(np.any(scaled % 1))
+        """True if every finite number is one of float32, or its decimal, and not by chance."""
+        return are_single_precision(
+            column for rows in self.groups.values() for column in rows.written()
+        )
 
     @property
     def finite(self) -> np.ndarray[Any, np.dtype[np.bool_]]:

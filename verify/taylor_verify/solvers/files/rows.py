@@ -89,6 +89,12 @@ class Rows(Sequence[tuple[Value, ...]]):
                 doubles[part.start : part.stop, i] = _doubles(entries)
         return doubles
 
+    def written(self) -> Iterator[tuple[Raw, Floats]]:
+        """Yield the entries of each column in the file's own unit, and the doubles nearest to them."""
+        for column in self._columns:
+            entries = _some(column, range(self._count))
+            yield entries, _doubles(entries)
+
     def as_mpf(self, places: Sequence[int], bits: int) -> Array:
         """Return some of the rows as numbers of mpmath, exact where a number has at most so many bits."""
         columns = [_as_mpf(entries, bits) for entries in self._some(places)]

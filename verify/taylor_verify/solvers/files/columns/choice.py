@@ -94,11 +94,26 @@ class Candidates:
     def of(self, group: str, chosen: Mapping[str, Choice]) -> list[Choice]:
         """Return every spelling all of whose names are there; each set of columns once."""
         choices: dict[tuple[Name, ...], Choice] = {}
-        for (spelling, _), cells in self.cells.items():
+        for (spelling, path), cells in self.cells.items():
             is_possible = spelling.beside in ("", *chosen) and not spelling.unless & self._keys
+            is_possible = is_possible and self.keeps_company(spelling, path)
             if spelling.group == group and is_possible and (whole := self._whole(spelling, cells)):
                 choices.setdefault(whole.names, whole)
         return list(choices.values())
+
+    def keeps_company(self, spelling: Spelling, path: str) -> bool:
+        """Return True if the company of a spelling stands behind its path, and what it shuns does not."""
+        if not spelling.company and not spelling.apart_from:
+            return True
+        there = {key for key, place in self._parts if place == path}
+        is_apart = not spelling.apart_from or not there.issuperset(spelling.apart_from)
+        return is_apart and there.issuperset(spelling.company)
+
+    @cached_property
+    def _parts(self) -> set[tuple[str, str]]:
+        """The names without a path and a unit, each with its path, of which some spelling knows."""
+        readings = (reading for name in self.free for reading in name.readings)
+        return {(r.spelling.keys[r.component], r.path) for r in readings}
 
     def _whole(self, spelling: Spelling, cells: Cells) -> Choice | None:
         ours, doubt = GROUPS[spelling.group], spelling.doubt

@@ -30,7 +30,8 @@ class Spelling:
     """Names of all components of a group; ``remark`` is said wherever it is taken.
 
     ``is_whole`` names have no path in front of them: the x of ``acceleration.x`` is no position. A spelling
-    is taken only ``beside`` another group, and not where a name of ``unless`` is in the file. One with a
+    is taken only ``beside`` another group, and not where a name of ``unless`` is in the file. It is taken
+    with all names of ``company`` behind the same path, and not with all names of ``apart_from``. One with a
     ``doubt`` is never taken: the doubt says why.
     """
 
@@ -40,6 +41,8 @@ class Spelling:
     is_whole: bool = False
     beside: str = ""
     unless: frozenset[str] = frozenset()
+    company: tuple[str, ...] = ()
+    apart_from: tuple[str, ...] = ()
     doubt: str = ""
 
 
@@ -70,7 +73,7 @@ _STEMS: Final = {
 }
 # Other names of all components, in our order.
 _WORDS: Final = {
-    "centre": ("px py pz", "xpos ypos zpos"),
+    "centre": ("xpos ypos zpos",),
     "omega": ("rollrate pitchrate yawrate", "rollspeed pitchspeed yawspeed"),
     "quaternion": (
         "qc q1 q2 q3",
@@ -89,6 +92,9 @@ _ATTITUDES: Final = "q quat quaternion orientation attitude att rotation"
 _MATRICES: Final = "r rot rotation rotationmatrix rotmat rmat orientation attitude attitudematrix"
 # A direction cosine matrix takes space to body as often as body to space.
 _COSINES: Final = "dcm directioncosinematrix c"
+# p is a position, but beside the angular momentum L it is the linear one.
+_P: Final = ("px", "py", "pz")
+_L: Final = ("lx", "ly", "lz")
 _DOUBT: Final = "the scalar is the first of them or the last, and the names do not say which"
 
 _TO_SPACE: Final = "body axes to space axes"
@@ -109,6 +115,9 @@ def _spellings() -> Iterator[Spelling]:
     for name in _TIMES.split():
         yield Spelling("time", (name,))
     yield Spelling("centre", _LETTERS, is_whole=True)
+    yield Spelling("centre", _P, apart_from=_L)
+    yield Spelling("linear_impulse", _P, "linear momentum beside Lx Ly Lz", company=_L)
+    yield Spelling("angular_impulse", _L, "angular momentum beside px py pz", company=_P)
     yield Spelling("omega", ("p", "q", "r"), _AXES["omega"], is_whole=True)
     velocity = "linear_velocity"
     yield Spelling(velocity, ("u", "v", "w"), _AXES[velocity], is_whole=True, beside="omega")

@@ -205,8 +205,10 @@ class _Chooser:
     def left_out(self) -> Iterator[str]:
         """Yield sentences about groups of which a part is there, and about columns that are ignored."""
         used = self.used
-        for (spelling, _), cells in self.candidates.cells.items():
+        for (spelling, path), cells in self.candidates.cells.items():
             if spelling.group in self.chosen or spelling.is_whole or len(cells) < 2:
+                continue
+            if not self.candidates.keeps_company(spelling, path):
                 continue
             lacking = [own for i, own in enumerate(GROUPS[spelling.group]) if i not in cells]
             present = [cells[i][0][0] for i in sorted(cells)]
