@@ -158,6 +158,19 @@ def test_a_worst_case_is_a_scene_that_runs(template: str, tmp_path: Path) -> Non
     assert {v.quantity: v.ratio for v in verdicts}[case.quantity] == case.ratio
 
 
+@pytest.mark.parametrize("family", ["satellites", "near-separatrix"])
+def test_run_repeats_the_worst_cases_of_bodies_judged_together(family: str, tmp_path: Path) -> None:
+    """The file of each worst case has the numbers that were judged: the same ratio, error and verdict."""
+    result = sweep(family, count=12, worst=4, jobs=1, out=tmp_path)
+    assert len(result.worst) == 4
+    for case in result.worst:
+        (verdict,) = (v for v in run(tmp_path / case.file).verdicts if v.quantity == case.quantity)
+        assert (verdict.ratio, verdict.max) == (case.ratio, case.max)
+        assert verdict.verdict is case.verdict
+    ratios = [case.ratio or 0.0 for case in result.worst]
+    assert ratios == sorted(ratios, reverse=True)
+
+
 def test_numbers_that_make_no_body_are_refused_rows(tmp_path: Path) -> None:
     """They are counted, undecided as a whole, and their reason is told; they are no worst case."""
     file = tmp_path / "some.toml"

@@ -41,6 +41,11 @@ _MOST_SAMPLES: Final = 4096
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 
+def judges_together(solver: str, rung: str) -> bool:
+    """Return True if some bodies of this solver and rung are judged together, with other roundings."""
+    return solver == TAYLOR and rung == _RUNG and not unavailable(rung_named(rung))
+
+
 def judged(scenes: Sequence[Scene], solver: str = TAYLOR, rung: str = _RUNG) -> list[list[Verdict]]:
     """Return the verdicts of each scene by a solver on a rung, in the order of the scenes.
 
@@ -48,7 +53,7 @@ def judged(scenes: Sequence[Scene], solver: str = TAYLOR, rung: str = _RUNG) -> 
     Raises ValueError for a name that is no solver or no rung.
     """
     together: dict[int, list[Verdict]] = {}
-    if solver == TAYLOR and rung == _RUNG and not unavailable(rung_named(rung)):
+    if judges_together(solver, rung):
         for group in _alike(scenes):
             for places, bodies in group.pieces():
                 # Values that are not finite stay within their body, and enter no verdict.

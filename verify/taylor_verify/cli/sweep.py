@@ -103,7 +103,7 @@ def _text(summary: SweepSummary) -> str:
     page.line(f"Errors over {floor}; a body fails above {summary.factor}.")
     page.line()
     if summary.worst:
-        page.line(bold("the worst cases"))
+        page.line(bold("the worst cases"), ", each with the numbers that `run` finds for its scene")
     for case in summary.worst[:_SHOWN]:
         # The arithmetic of a bound is long; `run --explain` on the scene shows it.
         size = case.because if case.ratio is None else f"{case.ratio:.3g}"

@@ -12,6 +12,7 @@ from taylor_verify.batch.store import package_digest
 from taylor_verify.batch.sweeps.questions import Question, Questions
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
+from taylor_verify.run import run
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.trajectory import Outcome
@@ -60,17 +61,43 @@ def judge(chunk: Chunk) -> Judged:
     asked = list(chunk.questions.questions(chunk.first, chunk.stop))
     scenes = [each.scene for each in asked if isinstance(each.scene, Scene)]
     answers = iter(_verdicts(scenes, chunk.solver, chunk.rung))
-    drawn = chunk.questions.drawn
+    rows = [
+        next(answers) if isinstance(question.scene, Scene) else [_refused(question, chunk)]
+        for question in asked
+    ]
+    columns = _columns(asked, rows, chunk.questions.drawn)
+    return Judged(chunk.number, len(asked), columns, package_digest())
+
+
+def judge_alone(questions: Questions, points: Sequence[int], solver: str, rung: str) -> Columns:
+    """Return the rows of the scenes with these numbers, each judged as `run` judges its file."""
+    asked = [question for point in points for question in questions.questions(point, point + 1)]
+    rows = [
+        _alone(question.scene, solver, rung)
+        for question in asked
+        if isinstance(question.scene, Scene)
+    ]
+    return _columns(asked, rows, questions.drawn)
+
+
+def _columns(
+    asked: Sequence[Question], rows: Sequence[Sequence[Verdict]], drawn: Sequence[str]
+) -> Columns:
     columns: Columns = {name: [] for name in (*COLUMNS, *(DRAWN + name for name in drawn))}
-    for question in asked:
-        is_scene = isinstance(question.scene, Scene)
-        rows = next(answers) if is_scene else [_refused(question, chunk)]
-        for verdict in rows:
+    for question, verdicts in zip(asked, rows, strict=True):
+        for verdict in verdicts:
             for name, value in _row(question, verdict):
                 columns[name].append(value)
         for name in drawn:
-            columns[DRAWN + name] += [question.drawn.get(name)] * len(rows)
-    return Judged(chunk.number, len(asked), columns, package_digest())
+            columns[DRAWN + name] += [question.drawn.get(name)] * len(verdicts)
+    return columns
+
+
+def _alone(scene: Scene, solver: str, rung: str) -> list[Verdict]:
+    try:
+        return list(run(scene, solver, rung).verdicts)
+    except Exception as error:
+        return [_broken(scene, solver, rung, error)]
 
 
 def _verdicts(scenes: Sequence[Scene], solver: str, rung: str) -> list[list[Verdict]]:

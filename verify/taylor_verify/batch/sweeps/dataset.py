@@ -101,20 +101,14 @@ class Dataset:
 
     def write(self, number: int, columns: Columns) -> None:
         """Write a part in one step. Raises OSError."""
-        import pyarrow
         from pyarrow import parquet
 
-        types = {name: getattr(pyarrow, kind)() for name, kind in COLUMNS.items()}
-        arrays = {
-            name: pyarrow.array(values, types.get(name, pyarrow.float64()))
-            for name, values in columns.items()
-        }
         content = BytesIO()
         parquet.write_table(
-            pyarrow.table(arrays),
+            table(columns),
             content,
             compression="zstd",
-            use_dictionary=[name for name in _REPEATED if name in arrays],
+            use_dictionary=[name for name in _REPEATED if name in columns],
         )
         replace_files(self.rows, {self._name(number): content.getvalue()})
 
@@ -140,6 +134,19 @@ class Dataset:
     @staticmethod
     def _name(number: int) -> str:
         return f"part-{number:06d}.parquet"
+
+
+def table(columns: Columns) -> Any:
+    """Return the rows as a table of pyarrow."""
+    import pyarrow
+
+    types = {name: getattr(pyarrow, kind)() for name, kind in COLUMNS.items()}
+    return pyarrow.table(
+        {
+            name: pyarrow.array(values, types.get(name, pyarrow.float64()))
+            for name, values in columns.items()
+        }
+    )
 
 
 def read_manifest(folder: Path) -> Manifest | None:

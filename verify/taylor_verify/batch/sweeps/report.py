@@ -99,7 +99,8 @@ def page(summary: SweepSummary) -> str:
         ),
     ]
     if summary.worst:
-        blocks += ["## The worst cases", _worst_table(summary.worst)]
+        words = "Each has the numbers that `run` finds for its scene."
+        blocks += ["## The worst cases", words, _worst_table(summary.worst)]
     return "\n\n".join([*blocks, traced(complete(summary.provenance))]) + "\n"
 
 
