@@ -1,27 +1,32 @@
-"""An ellipsoid is enclosed itself: its coefficients enter as balls about Lamb's integrals."""
+"""An ellipsoid is enclosed itself: its coefficients enter as balls about Lamb's numbers."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
+from typing import Any
 
 import pytest
 from builders.ellipsoids import quadrature
 from builders.scenes import one_instant, vector
 from builders.turns import by_turns
 from flint import arb, ctx
-from mpmath import mp, mpf
+from mpmath import mp
 
-from taylor_verify.exact.balls import ball
-from taylor_verify.exact.enclosure import lamb
-from taylor_verify.exact.enclosure.system import Balls, posed, posed_exactly
+from taylor_verify.exact.balls import ball, midpoint
+from taylor_verify.exact.enclosure.system import Balls, posed
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import _distance
-from taylor_verify.exact.taylor import TaylorSolution
-from taylor_verify.scenes.bodies import Ellipsoid, ImmersedBody
+from taylor_verify.exact.written import as_written
+from taylor_verify.numbers.irrational import Irrational
+from taylor_verify.scenes.bodies import Ellipsoid
 from taylor_verify.scenes.manufactured import Manufactured, Wave
 from taylor_verify.scenes.motion import Impulse
+from taylor_verify.scenes.parts import entrywise
+from taylor_verify.scenes.precision import exact_value
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.stand_in import StandIn
 
 SHAPES = {
     "triaxial": vector(3, 2, 1),
@@ -42,21 +47,28 @@ def shaped(name: str, fluid: int = 1) -> Scene:
     return one_instant(body, START, "attitude", "centre")
 
 
-def rounded(asked: Scene, bits: int) -> Scene:
-    """The scene of the rational body nearest to the ellipsoid."""
-    assert isinstance(asked.body, ImmersedBody)
-    assert asked.body.ellipsoid is not None
-    formed = replace(asked.body.ellipsoid.body(bits), ellipsoid=None)
-    return replace(asked, body=replace(formed, force=asked.body.force, couple=asked.body.couple))
+def with_numbers(scene: Scene, number: Callable[[Fraction], Fraction]) -> Scene:
+    """The scene of another body of rationals, in place of the numbers that its rationals stand for."""
+    return replace(scene, body=scene.body.changed(lambda _, part: entrywise(number, part)))
+
+
+def near(scene: Scene, bits: int) -> Scene:
+    """The scene of a rational body that is so many bits from the ellipsoid."""
+
+    def rational(number: Fraction) -> Fraction:
+        if not isinstance(number, StandIn):
+            return number
+        return exact_value(midpoint(number.exactly.enclosure(bits)))
+
+    return with_numbers(scene, rational)
 
 
 @pytest.mark.parametrize("name", SHAPES)
 def test_the_balls_contain_lambs_coefficients(name: str) -> None:
     """By a certified quadrature of Lamb's own integrands: along each axis the added mass."""
-    asked = shaped(name)
     axes = SHAPES[name]
     with ctx.workprec(100):
-        balls = Balls.of(posed(asked))
+        balls = Balls.of(posed(as_written(shaped(name))))
         volume = 4 * arb.pi() * ball(axes[0] * axes[1] * axes[2]) / 3
         for i in range(3):
             alpha = quadrature(axes, (i,))
@@ -66,66 +78,72 @@ def test_the_balls_contain_lambs_coefficients(name: str) -> None:
             assert balls.velocity[i, i].rel_accuracy_bits() > 90
 
 
+def equations(scene: Scene, bits: int) -> list[arb]:
+    with ctx.workprec(bits):
+        balls = Balls.of(posed(as_written(scene)))
+    matrices = balls.hessian, balls.spin, balls.velocity
+    return [entry for matrix in matrices for entry in matrix.entries()]
+
+
 @pytest.mark.parametrize("bits", by_turns([100, 60, 700]))
 @pytest.mark.parametrize("name", SHAPES)
 def test_every_equation_contains_that_of_a_sharper_body(name: str, bits: int) -> None:
-    """Each entry holds the one of the body formed to far more bits; what is zero is zero exactly."""
-    sharper = rounded(shaped(name), 2 * bits + 800)
-    with ctx.workprec(bits):
-        balls = Balls.of(posed(shaped(name)))
-    with ctx.workprec(2 * bits + 800):
-        exact = Balls.of(posed_exactly(sharper))
-    for one, other in (
-        (balls.hessian, exact.hessian),
-        (balls.spin, exact.spin),
-        (balls.velocity, exact.velocity),
-    ):
-        for got, true in zip(one.entries(), other.entries(), strict=True):
-            assert got.overlaps(true)
-            assert got.is_zero() == true.is_zero()
-            # Differences of nearly equal coefficients as well.
-            assert got.is_zero() or got.rel_accuracy_bits() >= bits - 8
+    """Each entry holds the one of the body to far more bits; what is zero is zero exactly."""
+    sharper = equations(near(shaped(name), 2 * bits + 800), 2 * bits + 800)
+    for enclosed, true in zip(equations(shaped(name), bits), sharper, strict=True):
+        assert enclosed.overlaps(true)
+        assert enclosed.is_zero() == true.is_zero()
+        # Differences of nearly equal coefficients as well.
+        assert enclosed.is_zero() or enclosed.rel_accuracy_bits() >= bits - 8
 
 
-def test_in_a_vacuum_no_mass_is_added() -> None:
-    """Then p is one number, and x x U is zero exactly."""
-    vacuum = shaped("triaxial", fluid=0)
-    assert isinstance(vacuum.body, ImmersedBody)
-    assert vacuum.body.ellipsoid is not None
-    # One coefficient p and three r.
-    assert len(lamb.units(vacuum.body, vacuum.body.ellipsoid)) == 4
-    motion = TaylorSolution(vacuum).motion([Fraction(2)], 20)
-    free = TaylorSolution(rounded(vacuum, 400)).motion([Fraction(2)], 20)
-    for name in motion.quantities:
-        assert _distance(motion[name][0], free[name][0]) <= mpf(10) ** -19
+def test_a_rounded_coefficient_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With numbers of 30 bits in place of their balls the equations are those of another body."""
+
+    def contains_the_body() -> bool:
+        pairs = zip(equations(shaped("triaxial"), 60), sharper, strict=True)
+        return all(enclosed.overlaps(true) for enclosed, true in pairs)
+
+    def coarse(number: Irrational, bits: int) -> Any:
+        with ctx.workprec(30):
+            return (+honest(number, bits)).mid()
+
+    sharper, honest = equations(near(shaped("triaxial"), 400), 400), Irrational.enclosure
+    assert contains_the_body()
+    monkeypatch.setattr(Irrational, "enclosure", coarse)
+    assert not contains_the_body()
+
+
+@pytest.mark.parametrize("fluid", [0, 1])
+def test_in_a_vacuum_no_mass_is_added(fluid: int) -> None:
+    """Then U is x by the mass, and x x U is zero exactly."""
+    hessian = Balls.of(posed(as_written(shaped("triaxial", fluid)))).hessian
+    products = [hessian[3 + i, 6 * j + k] for i in range(3) for j in range(3) for k in range(3)]
+    assert all(entry.is_zero() for entry in products) is (fluid == 0)
 
 
 @pytest.mark.parametrize("name", by_turns(SHAPES))
 def test_the_motion_is_that_of_the_ellipsoid_at_any_digits(name: str) -> None:
-    """At 150 digits the body that a scene is read with is another one; the enclosure is not of it."""
-    asked, later = shaped(name), [LATER[name]]
-    motion = TaylorSolution(asked).motion(later, 150)
-    finer = TaylorSolution(rounded(asked, 800)).motion(later, 160)
+    """At 150 digits it is not that of the rationals that a scene holds."""
+    scene, later = shaped(name), [LATER[name]]
+    motion = solution(scene, "taylor").motion(later, 150)
+    finer = solution(near(scene, 800), "taylor").motion(later, 160)
+    held = solution(with_numbers(scene, Fraction), "taylor").motion(later, 150)
     with mp.workdps(200):
         for quantity in motion.quantities:
             apart = _distance(motion[quantity][0], finer[quantity][0])
             assert apart <= 2 * motion.radius_of(quantity)[0]
-    as_read = TaylorSolution(rounded(asked, 400)).motion(later, 150)
-    with mp.workdps(200):
-        apart = _distance(motion["centre"][0], as_read["centre"][0])
+        apart = _distance(motion["centre"][0], held["centre"][0])
         # That body is another one: proven, as its balls lie apart.
-        assert apart > motion.radius[0] + as_read.radius[0]
+        assert apart > motion.radius[0] + held.radius[0]
 
 
 @pytest.mark.parametrize("name", ["prolate", "oblate", "sphere", "disc of revolution"])
-def test_the_closed_form_of_the_rounded_body_is_beside_the_enclosure(name: str) -> None:
-    """The closed forms are of the body of rationals: at 30 digits the 120 that it has are the same."""
-    asked, later = shaped(name), [3 * LATER[name]]
-    motion, closed = (
-        TaylorSolution(asked).motion(later, 30),
-        solution(asked, "arb").motion(later, 30),
-    )
-    with mp.workdps(60):
+def test_the_closed_form_is_of_the_same_body_as_the_enclosure(name: str) -> None:
+    """They overlap at 140 digits, more than the rationals of the scene have."""
+    scene, later = shaped(name), [3 * LATER[name]]
+    motion, closed = (solution(scene, route).motion(later, 140) for route in ("taylor", "arb"))
+    with mp.workdps(170):
         for quantity in motion.quantities:
             apart = _distance(motion[quantity][0], closed[quantity][0])
             assert apart <= (motion.radius[0] + closed.radius[0]) * 2
@@ -137,29 +155,10 @@ def test_loads_that_make_a_motion_are_those_of_the_ellipsoid() -> None:
     manufactured = Manufactured(vector(1, 0, "0.5", 0, 1, "0.25"), (wave,))
     body = replace(shaped("triaxial").body, manufactured=manufactured)
     start = Impulse(manufactured.start[:3], manufactured.start[3:])
-    asked = one_instant(body, start)
-    motion = TaylorSolution(asked).motion([Fraction(2)], 140)
-    chosen = solution(asked, "arb").motion([Fraction(2)], 150)
+    scene = one_instant(body, start)
+    motion = solution(scene, "taylor").motion([Fraction(2)], 140)
+    chosen = solution(scene, "arb").motion([Fraction(2)], 150)
     with mp.workdps(180):
         for quantity in motion.quantities:
             apart = _distance(motion[quantity][0], chosen[quantity][0])
             assert apart <= 2 * motion.radius[0]
-
-
-def test_coefficients_rounded_to_nothing_are_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The width of the balls counts: with their midpoints alone the motion leaves its balls."""
-
-    def contains_the_motion() -> bool:
-        with ctx.workprec(40):
-            balls = Balls.of(posed(shaped("triaxial")))
-        exact = Balls.of(posed_exactly(rounded(shaped("triaxial"), 400)))
-        pairs = zip(balls.spin.entries(), exact.spin.entries(), strict=True)
-        return all(got.overlaps(true) for got, true in pairs)
-
-    with ctx.workprec(400):
-        assert contains_the_motion()
-    honest = lamb.factors
-    monkeypatch.setattr(lamb, "factors", lambda shape: [f.mid() for f in honest(shape)])
-    monkeypatch.setattr(lamb, "cancelled_bits", lambda shape: 0)
-    with ctx.workprec(400):
-        assert not contains_the_motion()

@@ -14,9 +14,10 @@ from flint import arb, ctx
 from mpmath import mp, mpf
 
 from taylor_verify.exact import balls, taylor
-from taylor_verify.exact.printed import _printed_radius, document
+from taylor_verify.exact.printed import _printed, document
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import _distance
+from taylor_verify.scenes.precision import exact_value
 from taylor_verify.scenes.reading.reader import load
 
 ROUTES = ("arb", "mpmath", "taylor")
@@ -102,14 +103,16 @@ def test_both_routes_in_balls_measure_alike() -> None:
     assert taylor._radius([arb(0, 1e-30)], 0.0, 60)[1] > 0
 
 
-@pytest.mark.parametrize("radius", [Fraction(0), Fraction(1, 10**3), Fraction(1, 10**25)])
-def test_the_rounding_of_the_digits_is_in_the_printed_radius(radius: Fraction) -> None:
-    """The error of the midpoint and half a last digit of each entry, both by the norm of the truth."""
+@pytest.mark.parametrize("error", [0, mpf("1e-22"), mpf("1e-3")])
+def test_the_rounding_of_the_digits_is_in_the_printed_radius(error: mpf) -> None:
+    """The error of a midpoint and half a last digit of each entry, both by the norm of the truth."""
     digits = 20
-    # The truth is 1, and what is printed is as far from it as both allow.
-    midpoint = 1 + radius
-    printed_number = midpoint * (1 + Fraction(1, 2 * 10 ** (digits - 1)))
-    assert printed_number - 1 <= Fraction(_printed_radius(radius, digits))
+    # The truth is 1, and the midpoint is as far from it as its error allows.
+    printed = _printed(np.array([1 + error], dtype=object), np.array([error + mpf(0)]), digits)
+    assert abs(Fraction(printed.text[0]) - 1) <= exact_value(printed.radius)
+    figures = len(printed.text[0].replace(".", ""))
+    assert printed.radius <= 6 * mpf(10) ** -figures
+    assert printed.absolute == 0
 
 
 CANCELLING = """

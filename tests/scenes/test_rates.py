@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from typing import Any
 
 import pytest
 from flint import arb, ctx
@@ -10,13 +11,16 @@ from flint import arb, ctx
 from taylor_verify.exact.balls import ball
 from taylor_verify.exact.route import solution
 from taylor_verify.explain.explanation import explanation
-from taylor_verify.scenes.bodies import COEFFICIENT_BITS, ImmersedBody
+from taylor_verify.numbers.irrational import PI
+from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse, Spin
 from taylor_verify.scenes.reading.faults import Refused
-from taylor_verify.scenes.reading.initial import degree
 from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Vector, apply
+from taylor_verify.scenes.stand_in import STAND_IN_BITS, StandIn, written
+from taylor_verify.scenes.tensors import apply
+
+DEGREE = PI / 180
 
 
 def body(omega: str, inertia: str = "[1, 2, 3]") -> Scene:
@@ -27,35 +31,37 @@ def body(omega: str, inertia: str = "[1, 2, 3]") -> Scene:
     )
 
 
-def rate(omega: str) -> Vector:
+def rate(omega: str) -> Any:
+    """Return the angular velocity, its irrational numbers exactly."""
     initial = body(omega).initial
     assert isinstance(initial, Spin)
-    return initial.omega
+    return written(initial.omega)
 
 
-def test_a_degree_is_pi_over_180_to_400_bits() -> None:
-    """The rational has 400 bits, and is nearer to pi/180 than 2^-400 of it."""
-    assert degree().numerator.bit_length() <= COEFFICIENT_BITS
-    assert degree().denominator & (degree().denominator - 1) == 0
-    with ctx.workprec(2 * COEFFICIENT_BITS):
-        assert abs(ball(degree()) * 180 / arb.pi() - 1) <= arb(2) ** -COEFFICIENT_BITS
+def test_a_degree_is_held_to_400_bits() -> None:
+    """The rational has 400 bits, is within 2^-400 of pi/180, and carries that number."""
+    initial = body('["1 deg/s", 0, 0]').initial
+    assert isinstance(initial, Spin)
+    degree = initial.omega[0]
+    assert isinstance(degree, StandIn)
+    assert degree.exactly == DEGREE
+    assert degree.numerator.bit_length() <= STAND_IN_BITS
+    assert degree.denominator & (degree.denominator - 1) == 0
+    with ctx.workprec(2 * STAND_IN_BITS):
+        assert abs(ball(degree) * 180 / arb.pi() - 1) <= arb(2) ** -STAND_IN_BITS
 
 
 def test_zero_is_zero_and_ratios_are_those_written() -> None:
     """0, "0" and "0 deg/s" are 0; 2 to -1 stays 2 to -1; a fraction is exact as well."""
-    one = degree()
-    assert rate('["2 deg/s", "0", "-1 deg/s"]') == (2 * one, 0, -one)
-    assert rate('["1/3 deg/s", 0, "0 deg/s"]') == (one / 3, 0, 0)
-    assert rate('["2deg/s", "+2.0  deg/s", "0.2e1 deg/s"]') == (2 * one,) * 3
+    assert rate('["2 deg/s", "0", "-1 deg/s"]') == (2 * DEGREE, 0, -DEGREE)
+    assert rate('["1/3 deg/s", 0, "0 deg/s"]') == (DEGREE / 3, 0, 0)
+    assert rate('["2deg/s", "+2.0  deg/s", "0.2e1 deg/s"]') == (2 * DEGREE,) * 3
 
 
 def test_units_may_stand_beside_each_other() -> None:
     """A turn a minute is six degrees a second, and radians a second are the number itself."""
-    assert rate('["1 rpm", "6 deg/s", "0.1 rad/s"]') == (
-        6 * degree(),
-        6 * degree(),
-        Fraction(1, 10),
-    )
+    mixed = rate('["1 rpm", "6 deg/s", "0.1 rad/s"]')
+    assert mixed == (6 * DEGREE, 6 * DEGREE, Fraction(1, 10))
     assert body('["0.1 rad/s", "1 rad/s", 0]').notes == ()
 
 
@@ -84,14 +90,14 @@ def test_the_separatrix_is_met_exactly_in_degrees() -> None:
 
 
 def test_explain_says_how_degrees_were_formed() -> None:
-    """The shipped satellite is told with its unit, the bits, and what it means for ratios."""
+    """The shipped satellite is told with its unit, the exact motion, and the bits that a solver gets."""
     scene = load("euler/satellite-degrees")
     assert isinstance(scene.initial, Spin)
-    assert scene.initial.omega == (2 * degree(), 0, -degree())
+    assert written(scene.initial.omega) == (2 * DEGREE, 0, -DEGREE)
     (sentence,) = explanation(scene, "f64")["body"]
     assert "initial.omega is given in deg/s" in sentence
     assert "400 bits" in sentence
-    assert "exact multiple" in sentence
+    assert "The exact motion is that of these angles" in sentence
 
 
 def test_the_angular_velocity_of_a_vehicle_takes_units() -> None:
@@ -105,7 +111,8 @@ def test_the_angular_velocity_of_a_vehicle_takes_units() -> None:
     )
     assert isinstance(scene.body, ImmersedBody)
     assert isinstance(scene.initial, Impulse)
-    assert apply(scene.body.angular, scene.initial.angular) == (6 * degree(), 0, -degree())
+    velocity = apply(written(scene.body.angular), written(scene.initial.angular))
+    assert velocity == (6 * DEGREE, 0, -DEGREE)
     assert "given in rpm and deg/s" in scene.notes[0]
 
 

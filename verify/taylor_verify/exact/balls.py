@@ -19,7 +19,7 @@ from flint import arb, arb_mat, ctx, fmpq
 from mpmath import libmp, mp, mpf
 
 from taylor_verify.exact.solution import Solution, Time, Unsettled
-from taylor_verify.numbers.irrational import Irrational
+from taylor_verify.numbers.irrational import Irrational, Undecided
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.tensors import Matrix
 
@@ -67,7 +67,10 @@ class Enclosed(Solution):
         target = ceil(digits * log2(10))
         bits, last = target + _FIRST_GUARD_BITS, None
         for _ in range(attempts):
-            motion, widest = self._attempt(elapsed, bits)
+            try:
+                motion, widest = self._attempt(elapsed, bits)
+            except Undecided as doubt:
+                raise Unsettled(str(doubt)) from doubt
             last = motion or last
             missing = int(mp.mag(widest)) + target if mp.isfinite(widest) and widest else 0
             if not mp.isfinite(widest):
@@ -230,7 +233,7 @@ def ball(value: Fraction | int | Irrational | arb) -> arb:
     if isinstance(value, arb):
         return value
     if isinstance(value, Irrational):
-        return value.enclosure(ctx.prec) * 1
+        return value.around(ctx.prec) * 1
     return arb(fmpq(*value.as_integer_ratio()))
 
 

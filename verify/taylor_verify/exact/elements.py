@@ -18,6 +18,7 @@ from taylor_verify.exact.element import Element, Elements
 from taylor_verify.exact.registry import function_at, kind_of
 from taylor_verify.exact.solution import NO_CLOSED_FORM
 from taylor_verify.exact.written import as_written
+from taylor_verify.numbers.irrational import Undecided
 from taylor_verify.scenes.scene import Scene
 
 __all__ = ["Element", "Elements", "elements"]
@@ -41,7 +42,12 @@ def elements(scene: Scene, digits: int = 15) -> Elements:
     scene = as_written(scene)
     if scene.body.damping:
         return _damped(scene, digits)
-    result: Elements = function_at(f"{kind_of(scene.body).room}.elements:elements")(scene, digits)
+    try:
+        result: Elements = function_at(f"{kind_of(scene.body).room}.elements:elements")(
+            scene, digits
+        )
+    except Undecided as doubt:
+        return Elements(NO_CLOSED_FORM, (), (f"The kind of motion is not decided: {doubt}.",))
     return result
 
 

@@ -26,12 +26,12 @@ def _written(parted: P) -> P:
     return parted.changed(lambda _, value: written(value))
 
 
-def held(scene: Scene) -> Scene:
+def as_rationals(scene: Scene) -> Scene:
     """Return the scene with the rational that stands for it in place of every irrational number."""
-    return replace(scene, body=_held(scene.body), initial=_held(scene.initial))
+    return replace(scene, body=_as_rationals(scene.body), initial=_as_rationals(scene.initial))
 
 
-def _held(parted: P) -> P:
+def _as_rationals(parted: P) -> P:
     return parted.changed(lambda _, value: entrywise(stand_in, value))
 
 

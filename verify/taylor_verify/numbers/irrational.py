@@ -133,30 +133,30 @@ class Irrational:
         return self.sign != 0
 
     def __eq__(self, other: object) -> bool:
-        difference = self - other
+        difference = self.__sub__(other)
         return NotImplemented if difference is NotImplemented else not difference
 
     def __hash__(self) -> int:
         return hash((str(self.numerator_polynomial), str(self.denominator_polynomial)))
 
     def __lt__(self, other: Any) -> Any:
-        return _compared(self - other, lambda difference: difference < 0)
+        return _compared(self.__sub__(other), lambda difference: difference < 0)
 
     def __le__(self, other: Any) -> Any:
-        return _compared(self - other, lambda difference: difference <= 0)
+        return _compared(self.__sub__(other), lambda difference: difference <= 0)
 
     def __gt__(self, other: Any) -> Any:
-        return _compared(self - other, lambda difference: difference > 0)
+        return _compared(self.__sub__(other), lambda difference: difference > 0)
 
     def __ge__(self, other: Any) -> Any:
-        return _compared(self - other, lambda difference: difference >= 0)
+        return _compared(self.__sub__(other), lambda difference: difference >= 0)
 
     # Values.
 
     def enclosure(self, bits: int) -> arb:
         """Return a ball about the number with ``bits`` relative bits, so that it excludes zero.
 
-        Raises Undecided where far more bits do not exclude it.
+        Raises Undecided where far more bits do not exclude it; ``around`` has a ball in any case.
         """
         narrow = self._narrowest.get("ball")
         if narrow is not None and narrow.rel_accuracy_bits() >= bits:
@@ -170,6 +170,13 @@ class Irrational:
             guard *= 2
         raise Undecided(f"a difference of numbers with {self._named} in them may be zero, or not")
 
+    def around(self, bits: int) -> arb:
+        """Return a ball about the number as in ``enclosure``, or one that contains zero."""
+        try:
+            return self.enclosure(bits)
+        except Undecided:
+            return self._evaluated(self._most_bits)
+
     def near(self, bits: int = _NEAR_BITS) -> Fraction:
         """Return a rational that differs by less than 2^-bits of the number."""
         mantissa, exponent = self.enclosure(bits + 1).mid().man_exp()
@@ -179,8 +186,9 @@ class Irrational:
         """Return the largest e with 2^e <= |value|."""
         value, bits = abs(self), _SIGN_BITS
         while True:
-            ball = value.enclosure(bits)
-            low, high = (_exponent(end) for end in (ball.lower(), ball.upper()))
+            with ctx.workprec(bits + _FIRST_GUARD_BITS):
+                ball = value.enclosure(bits)
+                low, high = (_exponent(end) for end in (ball.lower(), ball.upper()))
             if low == high:
                 return low
             if bits > self._most_bits:
@@ -191,7 +199,9 @@ class Irrational:
         return float(self.near())
 
     def __int__(self) -> int:
-        return int(self.near())
+        whole = int(self.near())
+        # A number just below a whole one is near it.
+        return whole - self.sign if whole and abs(self) < abs(whole) else whole
 
     def _mpmath_(self, bits: int, rounding: str) -> Any:
         """Return the number as mpmath converts it, to the last bit or one beside it."""

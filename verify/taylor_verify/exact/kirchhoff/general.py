@@ -28,7 +28,7 @@ from taylor_verify.exact.kirchhoff.weber.curve import REGIME as WEBER
 from taylor_verify.exact.kirchhoff.weber.curve import Curve
 from taylor_verify.exact.kirchhoff.weber.enclosure import rates
 from taylor_verify.exact.solution import NO_CLOSED_FORM
-from taylor_verify.exact.written import held
+from taylor_verify.exact.written import as_rationals
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
@@ -119,7 +119,7 @@ def elements(scene: Scene, solved: Case | None, kind: str, digits: int) -> Eleme
     if family is not None:
         name, _ = family
         sentences.append(f"Conserved too: {name}, the fourth integral of {_FAMILIES[name]}.")
-    return Elements(kind, settled(numbers, digits), (*sentences, *_screw_story(held(scene))))
+    return Elements(kind, settled(numbers, digits), (*sentences, *_screw_story(as_rationals(scene))))
 
 
 def _own(solved: Case, working: int) -> list[Element]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
 from typing import Final
@@ -23,8 +23,8 @@ from taylor_verify.scenes.precision import floor_log2, power_of_two
 from taylor_verify.scenes.scene import Scene
 
 _NARROWINGS: Final = 40
-# Rationals near irrational constants have eight times the digits asked for, and some more.
-_BITS_PER_DIGIT: Final = 27
+# Rationals near irrational constants have four times the digits asked for, and some more.
+_BITS_PER_DIGIT: Final = 14
 _MORE_BITS: Final = 256
 # The kind of motion by the sign of the curvature of f where its root is repeated.
 _BY_CURVATURE: Final = {1: "hyperbolic", 0: "algebraic", -1: "trigonometric"}
@@ -105,7 +105,7 @@ def turning_points(nutation: Nutation, digits: int) -> TurningPoints:
     roots prove nothing, and two precisions must agree. Raises Unsettled if they do not come apart.
     """
     poles = nutation.touches_pole(1), nutation.touches_pole(-1)
-    nutation = nutation.near(_BITS_PER_DIGIT * digits + _MORE_BITS)
+    start, nutation = nutation.z, nutation.near(_BITS_PER_DIGIT * digits + _MORE_BITS)
     roots = RealRoots(nutation.f)
     F_above = power_of_two(floor_log2(nutation.F2) // 2 + 1)
     width = F_above / 10**digits
@@ -113,7 +113,9 @@ def turning_points(nutation: Nutation, digits: int) -> TurningPoints:
         points = _arranged(nutation, roots, width, poles)
         smallest = min(_allowances(nutation, points, width))
         if width * 10**digits <= smallest:
-            return points
+            # A start at a turning point is that point exactly, whatever the constants are.
+            at_start = {name: start for name in ("z1", "z2") if getattr(points, name) == nutation.z}
+            return replace(points, **at_start)
         width = min(smallest / 10**digits, width) / 16 if smallest > 0 else width / 10**digits
     raise Unsettled("the roots of the quartic of x3 do not come apart")
 

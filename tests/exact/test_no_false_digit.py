@@ -1,0 +1,300 @@
+"""No digit is printed that its number does not have: of irrational bodies, and of tiny components."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Final
+
+import numpy as np
+import pytest
+from builders.scenes import one_instant, vector
+from builders.turns import by_turns
+from flint import arb
+from mpmath import mp, mpf
+
+from taylor_verify.exact import printed as printing
+from taylor_verify.exact.elements import elements
+from taylor_verify.exact.printed import document
+from taylor_verify.exact.route import CLOSED_ROUTES, solution
+from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
+from taylor_verify.numbers.irrational import PI, Constant, Pi, generator
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import Clebsch, RigidBody
+from taylor_verify.scenes.motion import Impulse, Spin
+from taylor_verify.scenes.reading.reader import load, read
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.stand_in import stand_in
+
+ROUTES: Final = (*CLOSED_ROUTES, "taylor")
+NOT_VECTORS: Final = ("t", "radius", "absolute", "regime")
+SHIPPED: Final = (
+    "extremes/kirchhoff-unstable-spin-1e-40",
+    "extremes/kirchhoff-impulses-1e-150",
+    "extremes/kirchhoff-small-impulse-1e-30",
+    "extremes/kirchhoff-modulus-1e-30",
+    "extremes/kirchhoff-linear-1e20",
+    "extremes/kirchhoff-nearly-orthogonal",
+    "extremes/euler-modulus-1e-30",
+    "extremes/euler-separatrix-tail",
+    "extremes/euler-omega-1e-150",
+    "extremes/euler-ratio-1e12",
+)
+
+
+def scene(body: str, initial: str, track: str = "attitude") -> Scene:
+    model = "kirchhoff" if "ellipsoid" in body else "euler"
+    return read(
+        f'title = "x"\nmodel = "{model}"\ntrack = ["{track}"]\n[body]\n{body}\n[initial]\n{initial}\n'
+        "[time]\nend = 1\nsamples = 2\n",
+        "a test",
+    )
+
+
+def printed(asked: Scene, route: str | None, t: Fraction | int, digits: int) -> dict[str, Any]:
+    """Return the row of `exact --json` at a time."""
+    shown = document(asked, solution(asked, route), [("t", Fraction(t))], digits)
+    (row,) = shown["rows"]
+    return {**row, "regime": shown["regime"]}
+
+
+def vectors(row: dict[str, Any]) -> dict[str, list[str]]:
+    return {
+        name: np.ravel(np.array(value)).tolist()
+        for name, value in row.items()
+        if name not in NOT_VECTORS
+    }
+
+
+def unit(text: str) -> Fraction:
+    """One unit in the last digit of a number."""
+    mantissa, _, exponent = text.partition("e")
+    return Fraction(10) ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
+
+
+def check_digits(coarse: dict[str, Any], fine: dict[str, Any]) -> None:
+    """Every component is within a unit of its last digit; those that are "0" are within `absolute`."""
+    for name, texts in vectors(coarse).items():
+        true = [Fraction(text) for text in vectors(fine)[name]]
+        hidden = Fraction(0)
+        for text, value in zip(texts, true, strict=True):
+            if text == "0":
+                hidden += value**2
+            else:
+                assert abs(Fraction(text) - value) <= unit(text)
+        assert hidden <= Fraction(coarse.get("absolute", {}).get(name, 0)) ** 2
+
+
+PROLATE: Final = "ellipsoid = { semi_axes = [1, 1, 2], density = 1, fluid_density = 1 }"
+IMPULSES: Final = "linear_impulse = [1, 0, 2]\nangular_impulse = [0, 1, 1]"
+
+
+FAR: Final = {
+    "tumbling ever faster": ("-1", 250, "-3.48051347394571784958e108"),
+    "after very long": ("0", 10**110, "0.6743749450554305857989"),
+}
+
+
+@pytest.mark.parametrize(("damping", "t", "x1"), FAR.values(), ids=FAR)
+@pytest.mark.parametrize("route", CLOSED_ROUTES)
+def test_a_spheroid_keeps_its_digits(route: str, damping: str, t: int, x1: str) -> None:
+    """After 10^108 turns forty digits are the beginning of a hundred, and the routes agree.
+
+    The rationals of 120 digits that stand for its masses would leave a dozen.
+    """
+    body = scene(f"{PROLATE}\ndamping = {damping}", IMPULSES, "centre")
+    fine = printed(body, "arb", t, 100)
+    check_digits(printed(body, route, t, 40), fine)
+    assert abs(Fraction(fine["linear_impulse"][0]) - Fraction(x1)) <= unit(x1)
+
+
+ELLIPSOID: Final = "ellipsoid = { semi_axes = [4, 6, 9], density = 1, fluid_density = 0 }"
+ONES: Final = "[1, 1, 1]"
+# In degrees all is 57 times as slow.
+SPINS: Final = {"radians": (ONES, 440), "degrees": ('["1 deg/s", "1 deg/s", "1 deg/s"]', 25210)}
+
+
+def spinning(spin: str, track: str = "attitude") -> Scene:
+    return scene(ELLIPSOID, f"linear_velocity = [0, 0, 0]\nangular_velocity = {spin}", track)
+
+
+@pytest.mark.parametrize(("spin", "t"), SPINS.values(), ids=SPINS)
+@pytest.mark.parametrize("route", CLOSED_ROUTES)
+def test_an_ellipsoid_stays_on_the_separatrix(route: str, spin: str, t: int) -> None:
+    """It turns as the rigid body of moments 117, 97, 52 does, and ends up about its middle axis."""
+    row = printed(spinning(spin), route, t, 20)
+    rigid = printed(scene("inertia = [117, 97, 52]", f"omega = {spin}"), route, t, 60)
+    assert row["regime"] == rigid["regime"] == "separatrix"
+    check_digits({"attitude": row["attitude"]}, rigid)
+    y = row["angular_impulse"]
+    assert y[::2] == ["0", "0"]
+    assert 0 < Fraction(row["absolute"]["angular_impulse"]) <= abs(Fraction(y[1])) / 10**20
+    with mp.workdps(60):
+        # 4 pi/3 times 4 times 6 times 9 is the mass.
+        assert_equal([y[1]], [288 * mp.pi * 97 / 5 * mpf(rigid["omega"][1])], 20)
+
+
+@pytest.mark.parametrize(
+    ("t", "digits"), [(30, 130), pytest.param(440, 20, marks=pytest.mark.slow)]
+)
+def test_the_enclosure_stays_on_the_separatrix(t: int, digits: int) -> None:
+    """Taylor series, which know of no separatrix, print the same digits."""
+    body = spinning(ONES, "impulse")
+    row = printed(body, "taylor", t, digits)
+    assert row["regime"] == "separatrix"
+    # A sign and a point.
+    assert len(row["angular_impulse"][1]) == digits + 2
+    check_digits(row, printed(body, "arb", t, 3 * digits))
+
+
+# Independent motions: a body of revolution by hand.
+
+
+def assert_equal(texts: list[str], values: list[mpf], digits: int) -> None:
+    """Compare printed numbers with values: so many digits are printed, and all of them are right."""
+    for text, value in zip(texts, values, strict=True):
+        assert abs(mpf(text) - value) <= mpf(10) ** (1 - digits) * abs(value)
+
+
+def precession(H: list[mpf], across: mpf, along: mpf, t: mpf) -> list[mpf]:
+    """The angular momentum in body axes, by its moments of inertia across and along axis 3.
+
+    From H' = H x omega: H3 stays, and H1 + i H2 turns at the rate H3 (1/across - 1/along).
+    """
+    turn = H[2] * (1 / across - 1 / along) * t
+    c, s = mp.cos(turn), mp.sin(turn)
+    return [H[0] * c - H[1] * s, H[0] * s + H[1] * c, H[2]]
+
+
+DEGREES: Final = '["2 deg/s", "1 deg/s", "3 deg/s"]'
+
+
+@pytest.mark.parametrize("route", ROUTES)
+def test_degrees_have_a_hundred_and_fifty_digits(route: str) -> None:
+    """A body of revolution precesses as by hand; the rationals that stand for degrees have 120 digits."""
+    row = printed(scene("inertia = [2, 2, 3]", f"omega = {DEGREES}"), route, 100, 150)
+    with mp.workdps(400):
+        H = [factor * mp.pi / 180 for factor in (4, 2, 9)]
+        expected = precession(H, mpf(2), mpf(3), mpf(100))
+        moments = (2, 2, 3)
+        values = [entry / moment for entry, moment in zip(expected, moments, strict=True)]
+        assert_equal(row["omega"], values, 150)
+
+
+@pytest.mark.parametrize("route", ROUTES)
+def test_a_spheroid_in_degrees_has_two_hundred_digits(route: str) -> None:
+    """A prolate spheroid that does not move along precesses, with Lamb's added inertia, as by hand."""
+    start = f"linear_velocity = [0, 0, 0]\nangular_velocity = {DEGREES}"
+    row = printed(scene(PROLATE, start), route, 20, 200)
+    with mp.workdps(400):
+        e = mp.sqrt(3) / 2
+        # Lamb, art. 114: the alphas along and across the axis, for 1 - e^2 = 1/4.
+        along = (mp.atanh(e) - e) / (2 * e**3)
+        across = 1 / e**2 - mp.atanh(e) / (4 * e**3)
+        mass = 8 * mp.pi / 3
+        added = mass / 5 * 9 * (across - along) / (6 + 5 * (along - across))
+        moments = (mass + added, mass * 2 / 5)
+        H = [moments[i] * n * mp.pi / 180 for i, n in ((0, 2), (0, 1), (1, 3))]
+        assert_equal(row["angular_impulse"], precession(H, *moments, mpf(20)), 200)
+
+
+def test_velocities_of_an_ellipsoid_have_two_hundred_digits() -> None:
+    """Without a closed form too: two hundred digits are the beginning of three hundred."""
+    body = "ellipsoid = { semi_axes = [3, 2, 1], density = 1, fluid_density = 1 }"
+    start = f'linear_velocity = [1, 0, "1/3"]\nangular_velocity = {DEGREES}'
+    asked = scene(body, start, "centre")
+    row = printed(asked, None, Fraction(1, 2), 200)
+    assert row["regime"] == NO_CLOSED_FORM
+    check_digits(row, printed(asked, None, Fraction(1, 2), 300))
+
+
+# Tiny components.
+
+TINY: Final = "extremes/euler-unstable-axis-1e-40"
+ENTRY: Final = "6.2806133794736699933e-41"
+
+
+@pytest.mark.parametrize("route", ROUTES)
+def test_a_tiny_entry_of_the_attitude_is_right_or_zero(route: str) -> None:
+    """Beside entries of size one it may have no digit at twenty; at sixty it has some."""
+    coarse, fine = (printed(load(TINY), route, 1, digits) for digits in (20, 60))
+    assert fine["attitude"][0][1][:21] == ENTRY[:21]
+    assert coarse["attitude"][0][1] in (("0",) if route == "arb" else ("0", ENTRY))
+    assert ("absolute" in coarse) is ("0" in vectors(coarse)["attitude"])
+    check_digits(coarse, fine)
+
+
+@pytest.mark.parametrize("digits", [4, 20])
+@pytest.mark.parametrize("route", CLOSED_ROUTES)
+@pytest.mark.parametrize("name", by_turns([TINY, *SHIPPED], of=2))
+def test_every_printed_digit_is_right(name: str, route: str, digits: int) -> None:
+    """The digits are those of three times as many, in every component, however small it is."""
+    shipped = load(name)
+    instants = shipped.clock.elapsed
+    for t in (Fraction(1), instants[len(instants) // 2]):
+        check_digits(printed(shipped, route, t, digits), printed(shipped, route, t, 3 * digits))
+
+
+def test_digits_that_no_error_proves_are_caught(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where all digits are printed, whatever the error of a component, the comparison fails."""
+    fine = printed(load(TINY), "arb", 1, 60)
+    monkeypatch.setattr(printing, "_proven_digits", lambda value, error, digits: digits)
+    with pytest.raises(AssertionError):
+        check_digits(printed(load(TINY), "arb", 1, 20), fine)
+
+
+# Relations that nobody has proven.
+
+
+@dataclass(frozen=True)
+class Twin(Constant):
+    """The number pi under another name: no ball shows whether a number is it."""
+
+    def evaluated(self) -> arb:
+        return arb.pi()
+
+
+TWIN: Final = generator((Pi(), Twin()), 1)
+
+
+def top(w3: Any) -> Scene:
+    """A body on its separatrix, 2 w1^2 = 18 w3^2, if w3 is pi/3."""
+    spin = Spin(tuple(map(stand_in, (PI, Fraction(7, 3), w3))))
+    return one_instant(RigidBody(tensors.diagonal(vector(2, 3, 6))), spin, "attitude")
+
+
+def test_a_kind_of_motion_that_is_not_decided_has_no_closed_form() -> None:
+    """Then the motion is enclosed, whatever the answer is, and its digits are those of both."""
+    open_question, separatrix = top(TWIN / 3), top(PI / 3)
+    assert solution(separatrix).regime == "separatrix"
+    for route in CLOSED_ROUTES:
+        with pytest.raises(NoClosedForm, match="the kind of motion is not decided"):
+            solution(open_question, route)
+    chosen = solution(open_question)
+    assert (chosen.route, chosen.regime) == ("taylor", NO_CLOSED_FORM)
+    row = printed(open_question, None, 2, 150)
+    assert row["regime"] == NO_CLOSED_FORM
+    check_digits(row, printed(separatrix, "arb", 2, 200))
+
+
+def test_the_elements_of_an_undecided_motion_are_those_without_a_closed_form() -> None:
+    """No regime is guessed, and none is an error."""
+    assert elements(top(TWIN / 3)).regime == NO_CLOSED_FORM
+
+
+def test_a_body_that_may_be_a_sphere_is_enclosed() -> None:
+    """Differences of its coefficients may be zero: their balls contain zero, and the motion has digits."""
+
+    def solid(along: Any) -> Scene:
+        p, q = stand_in(PI), Fraction(0)
+        body = Clebsch(p, stand_in(along), q, q, Fraction(1), Fraction(2)).body()
+        return one_instant(body, Impulse(vector(1, 0, 1), vector(0, 1, 1)))
+
+    check_digits(printed(solid(TWIN), None, 1, 20), printed(solid(PI), "arb", 1, 60))
+
+
+def test_a_constant_that_cancels_decides_the_kind() -> None:
+    """A rational ratio is a closed form, also where the numbers have an unproven relation to pi."""
+    spin = Spin(tuple(map(stand_in, (TWIN, 3 * TWIN, TWIN / 3))))
+    body = RigidBody(tensors.diagonal(vector(2, 3, 6)))
+    assert solution(one_instant(body, spin, "attitude")).regime == "separatrix"
