@@ -128,14 +128,14 @@ def test_the_motion_is_that_of_the_ellipsoid_at_any_digits(name: str) -> None:
     scene, later = shaped(name), [LATER[name]]
     motion = solution(scene, "taylor").motion(later, 150)
     finer = solution(near(scene, 800), "taylor").motion(later, 160)
-    held = solution(with_numbers(scene, Fraction), "taylor").motion(later, 150)
+    coarse = solution(with_numbers(scene, Fraction), "taylor").motion(later, 150)
     with mp.workdps(200):
         for quantity in motion.quantities:
             apart = _distance(motion[quantity][0], finer[quantity][0])
             assert apart <= 2 * motion.radius_of(quantity)[0]
-        apart = _distance(motion["centre"][0], held["centre"][0])
+        apart = _distance(motion["centre"][0], coarse["centre"][0])
         # That body is another one: proven, as its balls lie apart.
-        assert apart > motion.radius[0] + held.radius[0]
+        assert apart > motion.radius[0] + coarse.radius[0]
 
 
 @pytest.mark.parametrize("name", ["prolate", "oblate", "sphere", "disc of revolution"])

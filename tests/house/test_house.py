@@ -114,10 +114,16 @@ def records_stand_alone(module: str, source: str) -> Iterator[str]:
 
 
 def scenes_stand_alone(module: str, source: str) -> Iterator[str]:
-    """scenes imports nothing of taylor_verify but scenes, and the names that all rooms share."""
+    """scenes imports nothing of taylor_verify but scenes, numbers, and the names that all rooms share."""
     if room(module) == "scenes":
         shared = ["taylor_verify.records.quantities", "taylor_verify.records.precisions"]
-        yield from _beyond(["taylor_verify.scenes", *shared], module, source)
+        yield from _beyond(["taylor_verify.scenes", "taylor_verify.numbers", *shared], module, source)
+
+
+def numbers_stand_alone(module: str, source: str) -> Iterator[str]:
+    """numbers imports nothing of taylor_verify but numbers: every room may compute with them."""
+    if room(module) == "numbers":
+        yield from _beyond(["taylor_verify.numbers"], module, source)
 
 
 def publish_reads_records(module: str, source: str) -> Iterator[str]:
@@ -200,7 +206,7 @@ _BODIES: Final = ("RigidBody", "ImmersedBody")
 # Types of bodies are named in the room of each, in the registry, and where ellipsoids are formed.
 _NAMES_BODIES: Final = (
     *("taylor_verify.exact.euler", "taylor_verify.exact.kirchhoff", "taylor_verify.exact.registry"),
-    *("taylor_verify.exact.ellipsoid", "taylor_verify.exact.enclosure.lamb"),
+    "taylor_verify.exact.ellipsoid",
     "taylor_verify.exact.enclosure.system",
 )
 
@@ -291,6 +297,7 @@ RULES: Final = (
     keeps_its_walls,
     records_stand_alone,
     scenes_stand_alone,
+    numbers_stand_alone,
     publish_reads_records,
     asks_the_registry,
     heyoka_has_its_place,
@@ -480,6 +487,12 @@ PLANTED = [
         "taylor_verify.scenes.reading.reader",
         "from taylor_verify.run import run",
         "taylor_verify.run",
+    ),
+    (
+        numbers_stand_alone,
+        "taylor_verify.numbers.irrational",
+        "from taylor_verify.scenes.precision import rounded",
+        "scenes",
     ),
     (
         publish_reads_records,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from math import ceil
 from typing import Final
 
@@ -15,6 +16,7 @@ from taylor_verify.exact.gyrostat.pencil import FreeGyrostat, Regime
 from taylor_verify.exact.gyrostat.spins import steady_spins
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.stand_in import stand_in
 
 _CONSERVED: Final = (
     "Conserved: T = omega.I omega/2 and |H|^2 with H = I omega + h; in space axes the vector H."
@@ -38,6 +40,11 @@ _STORY: Final[Mapping[Regime, str]] = {
         "1/t^2: rational functions of the time."
     ),
 }
+_CANCELLED: Final = (
+    "The wheels cancel the momentum of the body, H = 0: omega is constant, about any axis.",
+    "With H = 0 there is one steady spin, this motion. It is stable: |H| stays as small as a disturbance "
+    "makes it.",
+)
 _PENCIL: Final = "invariants of the pencil of |H|^2 and T"
 
 
@@ -48,8 +55,11 @@ def elements(scene: Scene, digits: int) -> Elements:
     except NoClosedForm:
         story = "A constant moment acts on a body with wheels: no closed form is built."
         return Elements(NO_CLOSED_FORM, (), (story,))
-    numbers = settled(lambda _: [*_numbers(free), *_conserved(free), *_spins(free)], digits)
-    return Elements(free.regime.value, numbers, (_STORY[free.regime], _count(free), _CONSERVED))
+    # Spins beside the motion: a start in degrees is rational there, rounded to 120 digits.
+    beside = replace(free, omega=tuple(map(stand_in, free.omega)))
+    numbers = settled(lambda _: [*_numbers(free), *_conserved(free), *_spins(beside)], digits)
+    sentences = (_STORY[free.regime], _count(beside)) if free.n else _CANCELLED
+    return Elements(free.regime.value, numbers, (*sentences, _CONSERVED))
 
 
 def _numbers(free: FreeGyrostat) -> list[Element]:
@@ -102,8 +112,9 @@ def _conserved(free: FreeGyrostat) -> list[Element]:
 
 def _spins(free: FreeGyrostat) -> list[Element]:
     """The steady spins with this |H|, and the growth or the frequency of a disturbance of each."""
-    elements = []
-    for k, spin in enumerate(steady_spins(free), start=1):
+    elements: list[Element] = []
+    # Without momentum a spin has no axis H about which its rate could be counted.
+    for k, spin in enumerate(steady_spins(free) if free.n else (), start=1):
         name, source = f"spin_{k}", "(I^-1 - mu) H = I^-1 h with |H| given"
         meaning = f"omega along H in steady spin number {k} with this |H|"
         elements.append(

@@ -13,6 +13,7 @@ from dataclasses import astuple, dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
+from typing import Any
 
 from taylor_verify.exact.kirchhoff.axes import UPRIGHT, Axes, body_about
 from taylor_verify.numbers.irrational import Irrational
@@ -100,7 +101,8 @@ class Nutation:
 
         of_body = Clebsch(*map(rational, astuple(self.body)))
         names = ("z", "speed", "F2", "FG", "y3", "m1")
-        return replace(self, body=of_body, **{n: rational(getattr(self, n)) for n in names})
+        constants: dict[str, Any] = {name: rational(getattr(self, name)) for name in names}
+        return replace(self, body=of_body, **constants)
 
     @property
     def is_axial(self) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
-from typing import Final
+from typing import Any, Final
 
 from taylor_verify.exact.kirchhoff.axes import clebsch_about
 from taylor_verify.exact.kirchhoff.quartic import (
@@ -114,7 +114,9 @@ def turning_points(nutation: Nutation, digits: int) -> TurningPoints:
         smallest = min(_allowances(nutation, points, width))
         if width * 10**digits <= smallest:
             # A start at a turning point is that point exactly, whatever the constants are.
-            at_start = {name: start for name in ("z1", "z2") if getattr(points, name) == nutation.z}
+            at_start: dict[str, Any] = {
+                name: start for name in ("z1", "z2") if getattr(points, name) == nutation.z
+            }
             return replace(points, **at_start)
         width = min(smallest / 10**digits, width) / 16 if smallest > 0 else width / 10**digits
     raise Unsettled("the roots of the quartic of x3 do not come apart")
