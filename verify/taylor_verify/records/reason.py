@@ -71,8 +71,9 @@ class Remark:
 class RoundoffFloor:
     """The error ``value`` that perfect rounding would leave; None stands for no finite number.
 
-    It is u x ``steps``^1/2 x ``growth`` where an orbit or a gradient carries the roundings, and u x
-    ``steps`` for the length of a quaternion, of which ``lengths`` says what was met; u = 2^-``bits``. With
+    It is u x (``steps`` x ``alike``)^1/2 x ``growth`` where an orbit or a gradient carries the roundings,
+    and u x ``steps`` for the length of a quaternion, of which ``lengths`` says what was met; u =
+    2^-``bits``. ``alike`` is the number of steps in a row that add nearly the same amount. With
     ``clock_work`` the roundings of the clock of a manufactured load are in it too. With ``velocities`` a
     solid's U and Omega were rounded, of which its impulses were made.
     """
@@ -82,6 +83,7 @@ class RoundoffFloor:
     bits: int = 0
     steps: int = 0
     growth: float | None = None
+    alike: int = 1
     clock_work: bool = False
     velocities: bool = False
     lengths: str = ""
@@ -104,14 +106,21 @@ class RoundoffFloor:
         matrix = (
             "the orbit's transition matrix" if self.carried is Carried.ORBIT else "the gradient"
         )
+        root, count = "sqrt(N)", f"sqrt({self.steps})"
+        if self.alike > 1:
+            root, count = "sqrt(N m)", f"sqrt({self.steps} x {self.alike})"
         return (
-            f"attainable = u sqrt(N) x growth = {u} x sqrt({self.steps}) x "
-            f"{_figure(self.growth, 3)} = {value}"
+            f"attainable = u {root} x growth = {u} x {count} x {_figure(self.growth, 3)} = {value}"
         ), (
             "in each step one rounding of every component x_i, u (|x_i| + h S_i) with S_i the terms "
-            "of its rate in magnitude, carried by "
-            f"{matrix}{_CLOCK_WORK if self.clock_work else ''}{_INERTIA if self.velocities else ''}"
+            f"of its rate in magnitude, carried by {matrix}{self._additions()}"
         )
+
+    def _additions(self) -> str:
+        """Return the clauses on what else is in the floor."""
+        repeated = _REPEATED.format(self.alike) if self.alike > 1 else ""
+        clock, inertia = _CLOCK_WORK * self.clock_work, _INERTIA * self.velocities
+        return f"{clock}{inertia}{repeated}"
 
 
 # Floors that are not made of steps, or are made of other floors.
@@ -127,6 +136,10 @@ _MEANINGS: Final = {
         "and one rounding of U itself"
     ),
 }
+_REPEATED: Final = (
+    "; each step adds nearly the same amount here, so over m = {} steps in a row roundings add up in "
+    "proportion to the number of steps"
+)
 _INERTIA: Final = (
     "; where one rounding of each component of U and Omega moves (x, y) = M (U, Omega) by more than "
     "u |x_i|, that takes its place, because the file has velocities"

@@ -9,6 +9,9 @@ the error on, so that after N steps
 
 For a conserved quantity its gradient replaces Phi, because the motion does not change an error of it. This
 is a model of independent roundings, not a bound; gates allow a factor for that.
+
+Where steps add nearly the same amount, their roundings are alike and not independent: the k-th step of
+such a run counts as 2k - 1 steps, so that k steps count as k^2 (judge.floor.repeats).
 """
 
 from __future__ import annotations
@@ -28,6 +31,7 @@ from taylor_verify.exact.damping import growths, without_damping
 from taylor_verify.exact.invariants import Invariant
 from taylor_verify.judge.errors.state import Errors
 from taylor_verify.judge.floor.magnitude import roundings
+from taylor_verify.judge.floor.repeats import with_repeats
 from taylor_verify.records.quantities import UNIT_QUATERNION
 from taylor_verify.records.reason import Carried, Reason, RoundoffFloor, shown
 from taylor_verify.scenes.instants import chosen, evenly
@@ -51,9 +55,9 @@ class Floor:
     """The terms of the roundoff floor of one run.
 
     The roundings of the steps between two times of the path count at the later time: ``steps_at[k]``
-    roundings of size u ``rounded[k]``, by component, in the path's units. ``carried`` is their
-    accumulated effect, by quantity, without the factor u. ``times`` are the times of the samples. With
-    ``velocities`` the solver rounds U and Omega.
+    roundings of size u ``rounded[k]``, by component, in the path's units. ``single`` is this size where
+    no rounding is like the one before it. ``carried`` is their accumulated effect, by quantity, without the
+    factor u. ``times`` are the times of the samples. With ``velocities`` the solver rounds U and Omega.
     """
 
     unit_roundoff: float
@@ -61,6 +65,7 @@ class Floor:
     orbit: Path
     steps_at: Floats
     rounded: Floats
+    single: Floats
     carried: Mapping[str, Floats]
     velocities: bool = False
 
@@ -106,9 +111,12 @@ class Floor:
         reached = self._path_times() <= self.times[worst]
         steps = max(1, round(float(np.sum(self.steps_at[reached]))))
         value = float(attainable[worst])
-        growth = shown(value / (self.unit_roundoff * steps**0.5))
+        alike = min(self._alike(reached), steps)
+        growth = shown(value / (self.unit_roundoff * (steps * alike) ** 0.5))
         bits = round(-log2(self.unit_roundoff))
-        return RoundoffFloor(carried, shown(value), bits, steps, growth, velocities=self.velocities)
+        return RoundoffFloor(
+            carried, shown(value), bits, steps, growth, alike=alike, velocities=self.velocities
+        )
 
     def lengths(self, excess: Floats) -> tuple[Errors, Floats, Reason]:
         """Return the errors of the length of quaternions, the attainable error, and its terms.
@@ -138,6 +146,14 @@ class Floor:
                 size = float(np.max(np.linalg.norm(rows, axis=1)))
                 shares.append(float(np.max(self.carried[block])) / (size or 1.0))
         return self.unit_roundoff * max(shares)
+
+    def _alike(self, reached: Any) -> int:
+        """Return the mean number of steps in a row with like roundings, in the component with most."""
+        both, single = (
+            np.sum(self.steps_at[reached, None] * rows[reached] ** 2, axis=0)
+            for rows in (self.rounded, self.single)
+        )
+        return max(1, round(float(np.max(both[single > 0] / single[single > 0], initial=1.0))))
 
     def _squares(self, block: str) -> Floats:
         """Return the sums of squared roundings of a block over the steps so far, by component."""
@@ -184,13 +200,15 @@ def floor(
     for conditioned in (asked, given):
         orbit = _orbit(conditioned)
         steps_at = _steps_at(orbit.elapsed, count)
-        rounded = roundings(given, orbit, bits, count, velocities)
+        single = roundings(given, orbit, bits, count, velocities)
+        rounded = with_repeats(single, orbit, steps_at, count, bits)
         result = Floor(
             unit_roundoff=float(unit_roundoff),
             times=np.array([abs(float(t)) for t in conditioned.clock.elapsed]),
             orbit=orbit,
             steps_at=steps_at,
             rounded=rounded,
+            single=single,
             carried=orbit.gathered(rounded * np.sqrt(steps_at)[:, None]),
             velocities=velocities,
         )

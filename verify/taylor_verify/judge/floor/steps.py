@@ -1,14 +1,15 @@
 """The number of steps that a gate counts: a solver's own count, or the plausible part of a claim.
 
-A gate grows with the square root of the steps, so a false claim of many steps would give a wide gate. The
-judge knows the samples, the radians of the orbit and the seconds that the answer took. It counts
+A gate grows with the square root of the steps, or in proportion to them where steps add the same amount.
+So a false claim of many steps would give a wide gate. The judge knows the samples, the radians of the orbit
+and the seconds that the answer took. It counts
 
     min(claim, WIDENING^2 (samples + STEPS_PER_RADIAN radians), STEPS_PER_SECOND seconds).
 
 The first limit allows a gate that is WIDENING times as wide as the gate of a method that resolves every
-sample and every hundredth of a radian. So 10^4 steps per radian count: as many as an RK4 of step 1e-4 takes
-on an orbit of one radian per unit of time. The second limit is what a processor can do: a step is some
-dozens of dependent operations.
+sample and every hundredth of a radian; WIDENING^2 times where steps add the same amount. So 10^4 steps per
+radian count: as many as an RK4 of step 1e-4 takes on an orbit of one radian per unit of time. The second
+limit is what a processor can do: a step is some dozens of dependent operations.
 """
 
 from __future__ import annotations
