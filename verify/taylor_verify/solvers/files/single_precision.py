@@ -10,8 +10,10 @@ fractions of powers of two are numbers of any precision, and count nothing.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from fractions import Fraction
 from math import floor, log10
 from typing import Any, Final
 
@@ -30,7 +32,6 @@ _ENOUGH: Final = 6.0
 _TELLING_BITS: Final = 18
 _DECIMAL: Final = re.compile(r"[+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?")
 _NO_DIGITS: Final = re.compile(r"[eE].*|[+.-]")
-_ROUNDOFF: Final = 2.0**-53
 
 
 def are_single_precision(columns: Iterable[Written]) -> bool:
@@ -52,16 +53,16 @@ def are_single_precision(columns: Iterable[Written]) -> bool:
 def _are_texts_of_float32(entries: Sequence[Any] | Floats, values: Floats) -> bool:
     """Return True if each finite number is a float32, rounded to the digits that are written."""
     with np.errstate(over="ignore", invalid="ignore"):
-        distances = np.abs(values - values.astype(np.float32).astype(np.float64))
-    return all(
-        distances[k] <= _half_unit(entries[k], float(values[k]))
-        for k in np.flatnonzero(np.isfinite(values) & (distances != 0)).tolist()
-    )
+        nearest = values.astype(np.float32).astype(np.float64)
+    others = np.flatnonzero(np.isfinite(values) & (nearest != values))
+    return all(_is_text_of(float(nearest[k]), entries[k]) for k in others.tolist())
 
 
-def _half_unit(entry: Any, value: float) -> float:
-    """Return half a unit in the last digit that is written, and the rounding of the double."""
-    return _unit(_digits(entry), value) / 2 + abs(value) * _ROUNDOFF
+def _is_text_of(number: float, entry: Any) -> bool:
+    """Return True if a decimal is this number, rounded to the digits that are written."""
+    written = Fraction(_decimal(entry))
+    unit = Fraction(10) ** (floor(log10(abs(written))) + 1 - len(_digits(entry)))
+    return math.isfinite(number) and abs(written - Fraction(number)) <= unit / 2
 
 
 def _unit(digits: str, value: float) -> float:
@@ -80,8 +81,11 @@ def _evidence(entries: Sequence[Any] | Floats, values: Floats) -> Iterator[tuple
 
 
 def _digits(entry: Any) -> str:
-    """Return the significant digits of a decimal, or of the shortest decimal of a binary number."""
+    """Return the significant digits of a number as it is written."""
+    return _NO_DIGITS.sub("", _decimal(entry)).lstrip("0")
+
+
+def _decimal(entry: Any) -> str:
+    """Return a decimal as it is written, or the shortest decimal of a binary number."""
     text = entry.strip() if isinstance(entry, str) else ""
-    if not _DECIMAL.fullmatch(text):
-        text = repr(float(exact(entry)))
-    return _NO_DIGITS.sub("", text).lstrip("0")
+    return text if _DECIMAL.fullmatch(text) else repr(float(exact(entry)))
