@@ -515,6 +515,17 @@ def test_a_call_that_cannot_be_read_ends_with_2(capsys: Captured, arguments: lis
     assert "usage: taylor-verify" in error
 
 
+@pytest.mark.parametrize("text", ["0x10", "1e9/3", "5s", "1/3/4", "10,", "one"])
+def test_a_time_that_is_no_number_is_answered_by_examples_of_numbers(
+    capsys: Captured, text: str
+) -> None:
+    """Neither hexadecimal digits nor a quotient of decimals is taken for a unit."""
+    assert main(["exact", "euler/rest", "--at", text]) == 2
+    (error,) = capsys.readouterr().err.splitlines()
+    got = repr(text.rpartition(",")[2])
+    assert error == (f"taylor-verify: expected a number such as 10, 1e9 or 1/3, got {got} @ --at")
+
+
 def test_an_error_nobody_foresaw_is_one_line_with_its_place(
     monkeypatch: pytest.MonkeyPatch, capsys: Captured, short: Path
 ) -> None:

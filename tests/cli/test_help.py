@@ -80,6 +80,8 @@ def test_a_verb_like_none_is_told_where_they_are(capsys: Captured) -> None:
         (["exact", "euler/rest", "euler/apollo", "--at", "1"], "got euler/apollo"),
         (["run", "euler/rest", "--jobs", "x"], "--jobs: expected a whole number, got 'x'"),
         (["run", "euler/rest", "--gate", "x"], "--gate: invalid choice: 'x'"),
+        (["exact", "euler/rest", "--at=--"], "expected a value, got -- @ --at"),
+        (["run", "euler/rest", "--tolerance=--"], "expected a value, got -- @ --tolerance"),
         (["check", "mine.csv"], "required: --scene"),
         (["draw"], "required: SCENE"),
     ],

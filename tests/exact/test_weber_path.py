@@ -16,7 +16,7 @@ from builders.webers import BODIES, built, by_turns, case, curve_of
 from flint import acb, arb, ctx
 from mpmath import mp, mpf
 
-from taylor_verify.exact.balls import ball, midpoint
+from taylor_verify.exact.balls import Undecidable, ball, midpoint
 from taylor_verify.exact.kirchhoff.closed import closed_form, enclosed
 from taylor_verify.exact.kirchhoff.solid import solid, velocities
 from taylor_verify.exact.kirchhoff.weber import course
@@ -184,6 +184,19 @@ def test_a_time_that_is_a_ball_is_answered_for_all_of_it() -> None:
                 assert all(wide.contains(narrow) for wide, narrow in pairs)
         # Rates of some 10, and what balls of theta functions lose beside their midpoints.
         assert max(float(entry.rad()) for entry in around["centre"]) <= 1e-17
+
+
+def test_a_ball_of_time_beyond_the_ellipse_of_its_panel_is_declined() -> None:
+    """The bound of phi' is that in the ellipse, which reaches 2/3 of a half-width beyond the panel."""
+    scene = whole("plain", "theta > 0")
+    body, _ = solid(scene)
+    with ctx.workprec(150):
+        frames = course.Frames(curve_of(scene), body, 150)
+        panel = course._panels(curve_of(scene), body, 1).until(Fraction(1, 100))[0]
+        end, half = ball(panel.end).mid(), ball(panel.half)
+        frames._reached(end + arb(0, half * 0.66))
+        with pytest.raises(Undecidable):
+            frames._reached(end + arb(0, half * 0.67))
 
 
 # The bound.

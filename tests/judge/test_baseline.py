@@ -7,6 +7,7 @@ import math
 from collections.abc import Iterable
 from itertools import product
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -337,7 +338,7 @@ def test_a_baseline_excuses_no_failure(
     monkeypatch.setattr(
         "taylor_verify.batch.judging.judge_all",
         lambda *_: [
-            type("Judged", (), {"verdicts": (failed,), "record": None, "costs": {}, "causes": ()})
+            SimpleNamespace(verdicts=(failed,), record=None, costs={}, causes=(), notes=())
         ],
     )
     baseline.write_text(json.dumps({"verdicts": [failed.row()]}), encoding="utf-8")

@@ -220,6 +220,10 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
         options, left = parser.parse_known_args(_with_times_attached(arguments))
     except argparse.ArgumentError as error:
         parser.error(_unknown_verb(arguments) if error.argument_name == _VERB else str(error))
+    # argparse makes an empty list of the value in --at=--.
+    for option, _, value in (word.partition("=") for word in arguments):
+        if option.startswith("--") and value == "--":
+            options.verb.error(f"expected a value, got -- @ {option}")
     if options.completion:
         options.act = partial(_complete, options.completion)
     scenes = getattr(options, "scenes", None)

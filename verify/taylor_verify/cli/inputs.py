@@ -12,7 +12,7 @@ from taylor_verify.cli.answer import WrongCall, wrong_calls
 from taylor_verify.cli.streams import say
 from taylor_verify.scenes.library import named
 from taylor_verify.scenes.precision import rung
-from taylor_verify.scenes.reading.table import exact_number
+from taylor_verify.scenes.reading.table import exact_number, is_numeral
 from taylor_verify.scenes.scene import Scene
 
 if TYPE_CHECKING:
@@ -52,6 +52,8 @@ def read_scenes(words: Sequence[str], warn: bool = True) -> list[Scene]:
 
 def read_number(text: str, option: str) -> Fraction:
     """Return the decimal or a/b of an option. Raises WrongCall for any other text."""
+    if not is_numeral(text.strip()):
+        raise WrongCall(f"expected a number such as 10, 1e9 or 1/3, got {text!r} @ {option}")
     try:
         return exact_number(text.strip())
     except ValueError as error:

@@ -13,9 +13,9 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, Final, final
+from typing import Final, final
 
-from flint import acb, arb, ctx, fmpq, fmpq_poly
+from flint import acb, arb, ctx
 
 from taylor_verify.exact.balls import Undecidable, ball, sign
 from taylor_verify.exact.line import BySeries, Line, OneByOne
@@ -68,14 +68,19 @@ def lattice(g2: Fraction, g3: Fraction) -> Lattice:
 
 
 def _rectangular(g2: Fraction, g3: Fraction, discriminant: Fraction) -> Periods:
-    """The lattice of three real roots e1 > e2 > e3, the closer two apart as the discriminant says."""
-    e3, e2, e1 = (root.real for root in _roots(g2, g3))
-    upper, lower, whole = e1 - e2, e2 - e3, e1 - e3
-    quarter = ball(discriminant).sqrt() / 4
-    if upper.mid() < lower.mid():
-        upper = quarter / (lower * whole)
-    else:
-        lower = quarter / (upper * whole)
+    """The lattice of three real roots e_k = (g2/3)^(1/2) cos(theta - 2 pi k/3), e1 > e2 > e3.
+
+    For 4 c^3 - 3 c is the cosine of three times the angle whose cosine is c: here of 3 theta, which lies
+    between 0 and pi, with the sine Delta^(1/2) and the cosine 27^(1/2) g3 but for a factor. Differences of
+    the roots are sines of theta, of pi/3 - theta and of their sum times g2^(1/2). Delta is exact, and no
+    ball loses bits however nearly two roots agree; nor e2, which is g3/(4 e1 e3).
+    """
+    sine, cosine = ball(discriminant).sqrt(), arb(27).sqrt() * ball(g3)
+    theta, rest = arb.atan2(sine, cosine) / 3, arb.atan2(sine, -cosine) / 3
+    size, turn = (ball(g2) / 3).sqrt(), arb.pi() / 3
+    e1, e3 = size * theta.cos(), -size * rest.cos()
+    e2 = ball(g3) / (4 * e1 * e3)
+    upper, lower, whole = (ball(g2).sqrt() * angle.sin() for angle in (rest, theta, theta + turn))
     across, along = whole.sqrt().agm(upper.sqrt()), whole.sqrt().agm(lower.sqrt())
     return Periods([acb(e) for e in (e1, e2, e3)], arb.pi() / across, acb(0, across / along))
 
@@ -84,23 +89,24 @@ def _rhombic(g2: Fraction, g3: Fraction, discriminant: Fraction) -> Periods:
     """The lattice of one real root e and a pair. With H^2 = 3 e^2 - g2/4 the parameters are 1/2 -+ 3e/4H.
 
     Their product is -Delta/(256 H^6), from which the smaller one comes without cancellation.
+
+    By Cardano |e| = c + w with c^3 = (|g3| + (-Delta/27)^(1/2))/8, a sum of positive numbers, and c w =
+    g2/12, whose size is at most half of c^2 + w^2. So e^2 - g2/4 = c^2 + w^2 - g2/12 and
+    H^2/3 = c^2 + w^2 + g2/12 lose two bits at most. The product of the pair is e^2 - g2/4 = g3/(4 e), and
+    the pair is -e/2 +- i (-Delta)^(1/2)/(8 H^2).
     """
-    roots = _roots(g2, g3)
-    e = next(root.real for root in roots if root.imag.is_zero())
-    pair = [acb(root) for root in roots if not root.imag.is_zero()]
-    H = (3 * e * e - ball(g2 / 4)).sqrt()
+    root = ball(-discriminant).sqrt()
+    c = ((abs(ball(g3)) + root / arb(27).sqrt()) / 8).root(3)
+    squares, product = c * c + (ball(g2) / (12 * c)) ** 2, ball(g2) / 12
+    e = ball(g3) / (4 * (squares - product))
+    H2 = 3 * (squares + product)
+    H, b = H2.sqrt(), root / (8 * H2)
     larger = arb(1) / 2 + abs(3 * e / (4 * H))
-    smaller = ball(-discriminant) / (256 * H**6 * larger)
+    smaller = ball(-discriminant) / (256 * H2**3 * larger)
     m, m_prime = (smaller, larger) if g3 >= 0 else (larger, smaller)  # e has the sign of g3
     real, imaginary = arb(1).agm(m_prime.sqrt()), arb(1).agm(m.sqrt())
-    return Periods([acb(e), *pair], arb.pi() / (real * H.sqrt()), acb(0.5, real / imaginary / 2))
-
-
-def _roots(g2: Fraction, g3: Fraction) -> list[acb]:
-    """The roots of 4 X^3 - g2 X - g3, isolated; the real ones first, in ascending order."""
-    rational = [fmpq(c.numerator, c.denominator) for c in (-g3, -g2, Fraction(0), Fraction(4))]
-    isolated: Any = fmpq_poly(rational).numer().complex_roots()
-    return [acb(root) for root, _ in isolated]
+    roots = [acb(e), acb(-e / 2, b), acb(-e / 2, -b)]
+    return Periods(roots, arb.pi() / (real * H.sqrt()), acb(0.5, real / imaginary / 2))
 
 
 @final

@@ -1,22 +1,21 @@
 """The principal frame of a body with three different moments, in balls.
 
-Legend: J1 > J2 > J3 the principal moments, p(x) = det(x - I), t = tr I/3 the mean moment, N = I - t
-the part of the tensor without trace and y_i = J_i - t its eigenvalues, the roots of the depressed
-cubic y^3 - s y - q with s = (tr^2 - 3 minors)/3 and q = det N. The roots are isolated from exact
-integer coefficients; gaps are differences of the y_i, the smaller of the two inner ones a quotient
-of disc^(1/2), which is exact: the mean moment never cancels, nor do two nearly equal moments.
+Legend: J1 > J2 > J3 the principal moments, N = I - t the part of the tensor without trace, with t = tr I/3
+the mean moment, and y_i = J_i - t its eigenvalues, the roots of p(y) = y^3 - s y - det N with s = (tr^2 - 3
+minors)/3. They are those of exact.spectrum: neither a small moment nor the gap of two nearly equal ones
+loses bits.
 """
 
 from __future__ import annotations
 
 from fractions import Fraction
-from math import lcm
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from flint import acb, arb, ctx, fmpz_poly
+from flint import arb, ctx
 
 from taylor_verify.exact.balls import Undecidable, ball, balls
 from taylor_verify.exact.euler.regime import FreeSpin
+from taylor_verify.exact.spectrum import Cubic
 from taylor_verify.scenes import tensors
 
 Axis = list[arb]  # three components in body axes
@@ -35,20 +34,14 @@ class PrincipalBalls(NamedTuple):
 def principal_balls(spin: FreeSpin) -> PrincipalBalls:
     """The frame of a body with three different moments, at the ambient precision of flint.
 
-    Raises Undecidable where the precision does not part two moments, or an eigenvector from zero.
+    Raises Undecidable where the precision does not part an eigenvector from zero.
     """
     if tensors.is_diagonal(spin.inertia):
         return _sorted_frame(tuple(spin.inertia[i][i] for i in range(3)))
     mean, square = spin.trace / 3, spin.spread / 3
-    low, middle, high = _real_roots((-spin.skewness / 27, -square, Fraction(0), Fraction(1)))
-    upper, lower, whole = high - middle, middle - low, high - low
-    root = ball(spin.discriminant).sqrt()
-    # Both are right; which one is narrower depends on which moments are nearly equal.
-    if upper.mid() < lower.mid():
-        upper = root / (lower * whole)
-    else:
-        lower = root / (upper * whole)
-    J3, J2, J1 = _real_roots((-spin.determinant, spin.minors, -spin.trace, Fraction(1)))
+    moments, (high, middle, low), (upper, lower, whole) = Cubic(
+        spin.trace, spin.minors, spin.determinant
+    ).spectrum()
     traceless = tuple(
         tuple(entry - (mean if i == j else 0) for j, entry in enumerate(row))
         for i, row in enumerate(spin.inertia)
@@ -56,7 +49,7 @@ def principal_balls(spin: FreeSpin) -> PrincipalBalls:
     squared = tensors.product(traceless, traceless)
     slopes = (high, upper * whole), (middle, -upper * lower), (low, lower * whole)
     axes = [_eigenvector(traceless, squared, y, slope, square) for y, slope in slopes]
-    return PrincipalBalls([J1, J2, J3], axes, upper, lower, whole)
+    return PrincipalBalls(moments, axes, upper, lower, whole)
 
 
 def _sorted_frame(diagonal: tensors.Vector) -> PrincipalBalls:
@@ -65,22 +58,6 @@ def _sorted_frame(diagonal: tensors.Vector) -> PrincipalBalls:
     J1, J2, J3 = (diagonal[n] for n in order)
     axes = [[arb(int(row == column)) for column in range(3)] for row in order]
     return PrincipalBalls(balls((J1, J2, J3)), axes, *balls((J1 - J2, J2 - J3, J1 - J3)))
-
-
-def _real_roots(coefficients: tuple[Fraction, ...]) -> list[arb]:
-    """The three real and different roots of a cubic, constant term first; smallest root first.
-
-    Isolating balls of about the ambient relative precision, from exact integer coefficients.
-    """
-    scale = lcm(*(c.denominator for c in coefficients))
-    cubic = fmpz_poly([int(c * scale) for c in coefficients])
-    # With multiplicities, which flint's type stubs leave out.
-    roots_and_counts: list[Any] = list(cubic.complex_roots())
-    # The roots of a symmetric tensor are real, and the caller knows that they differ.
-    roots = sorted((acb(root).real for root, _ in roots_and_counts), key=lambda root: root.mid())
-    if not (len(roots) == 3 and roots[0] < roots[1] < roots[2]):
-        raise Undecidable(f"three roots do not part at {ctx.prec} bits")
-    return roots
 
 
 def _eigenvector(

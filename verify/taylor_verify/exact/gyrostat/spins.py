@@ -9,13 +9,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import suppress
 from fractions import Fraction
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 from flint import arb, ctx, fmpq, fmpq_poly
 from mpmath import mp, mpf
 
 from taylor_verify.exact.balls import Undecidable, ball, balls, midpoint, sign
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
+from taylor_verify.exact.real_roots import real_roots
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.tensors import Matrix, Vector, cross, dot
@@ -71,10 +72,10 @@ def _spins(free: FreeGyrostat, precision: int) -> list[tuple[arb, arb]]:
     simple = regular
     while (common := simple.gcd(multiple)).degree() > 0:
         simple //= common
-    spins = [(mu, _regular(free, mu)) for mu in _real_roots(simple)]
-    for mu in _real_roots(axial // tangent):
+    spins = [(mu, _regular(free, mu)) for mu in real_roots(simple)]
+    for mu in real_roots(axial // tangent):
         spins += _axial(free, mu)
-    spins += [(mu, arb(0)) for border in (multiple, tangent) for mu in _real_roots(border)]
+    spins += [(mu, arb(0)) for border in (multiple, tangent) for mu in real_roots(border)]
     N, pace = ball(n).sqrt(), ball(free.trace)
     if not all(
         _is_narrow(mu, pace, precision) and _is_narrow(square, abs(square), precision)
@@ -153,11 +154,3 @@ def _value(coefficients: list[arb], mu: arb) -> arb:
 def _polynomial(*coefficients: Fraction) -> fmpq_poly:
     """The polynomial of these coefficients, the constant one first."""
     return fmpq_poly([fmpq(c.numerator, c.denominator) for c in coefficients])
-
-
-def _real_roots(polynomial: fmpq_poly) -> list[arb]:
-    """The distinct real roots."""
-    if polynomial.degree() < 1:
-        return []
-    roots: Any = polynomial.numer().complex_roots()
-    return [root.real for root, _ in roots if root.imag.is_zero()]

@@ -119,7 +119,9 @@ def elements(scene: Scene, solved: Case | None, kind: str, digits: int) -> Eleme
     if family is not None:
         name, _ = family
         sentences.append(f"Conserved too: {name}, the fourth integral of {_FAMILIES[name]}.")
-    return Elements(kind, settled(numbers, digits), (*sentences, *_screw_story(as_rationals(scene))))
+    return Elements(
+        kind, settled(numbers, digits), (*sentences, *_screw_story(as_rationals(scene)))
+    )
 
 
 def _own(solved: Case, working: int) -> list[Element]:

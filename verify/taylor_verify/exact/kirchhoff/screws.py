@@ -24,17 +24,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
-from typing import Any, Final
+from typing import Final
 
-from flint import arb, arb_mat, ctx, fmpq, fmpq_mat
+from flint import arb, arb_mat, ctx
 
 from taylor_verify.exact.balls import ball, ball_matrix
 from taylor_verify.exact.kirchhoff.solid import velocities
+from taylor_verify.exact.spectrum import Cubic
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix
 
 _FIRST_BITS: Final = 128
 # Beyond it a sign that is still open is taken for an equality.
@@ -120,23 +120,21 @@ def screws(body: ImmersedBody, F2: Fraction, turn: Fraction) -> tuple[Screw, ...
 
     None at all where two mu are equal: every axis across the third one is a screw then.
     """
-    A, B, C = (_rational(block) for block in (body.linear, body.coupling, body.angular))
-    less = B - _rational(tensors.diagonal((turn,) * 3))
-    to_y = -C.inv() * less.transpose()
-    S = A + less * to_y
-    polynomial = S.charpoly()
-    if polynomial.gcd(polynomial.derivative()).degree() > 0:
+    D = tuple(map(tensors.minus, tensors.diagonal((turn,) * 3), body.coupling))
+    to_y = tensors.product(tensors.inverse(body.angular), tensors.transpose(D))
+    S = tuple(map(tensors.minus, body.linear, tensors.product(D, to_y)))
+    cubic = Cubic.of(S)
+    if not cubic.discriminant > 0:
         return ()
     bits = _FIRST_BITS
     while True:
         with ctx.workprec(bits):
-            enclosed: list[Any] = polynomial.complex_roots()
-            roots = sorted((root.real for root, _ in enclosed), key=_middle)
-            axes = [_axis(arb_mat(S), roots[n - 1], roots[n - 2]) for n in range(3)]
-            energy = ball_matrix(body.energy_matrix)
+            low, middle, high = reversed(cubic.spectrum().values)
+            balls, energy, F = ball_matrix(S), ball_matrix(body.energy_matrix), ball(F2).sqrt()
+            pairs = (low, middle, high), (middle, high, low), (high, low, middle)
             three = [
-                _screw(energy, n * ball(F2).sqrt(), arb_mat(to_y), turn, mu, mu is roots[0])
-                for mu, n in zip(roots, axes, strict=True)
+                _screw(energy, _axis(balls, *others) * F, ball_matrix(to_y), turn, mu, mu is low)
+                for mu, *others in pairs
             ]
         if bits >= _MOST_BITS or Stability.UNDECIDED not in (s.stability for s in three):
             return tuple(three)
@@ -175,11 +173,7 @@ def _stability(c2: arb, c0: arb) -> Stability:
     return Stability.UNDECIDED
 
 
-# Small algebra, on rationals and on balls.
-
-
-def _rational(matrix: Matrix) -> fmpq_mat:
-    return fmpq_mat([[fmpq(entry.numerator, entry.denominator) for entry in row] for row in matrix])
+# Small algebra on balls.
 
 
 def _cross(v: arb_mat) -> arb_mat:

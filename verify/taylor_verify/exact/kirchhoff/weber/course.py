@@ -25,7 +25,14 @@ from flint import arb, arb_mat, ctx
 from taylor_verify.exact.balls import Enclosed, Enclosure, Undecidable, ball, ball_matrix, balls
 from taylor_verify.exact.kirchhoff.weber.curve import REGIME, Curve
 from taylor_verify.exact.kirchhoff.weber.enclosure import Quotients
-from taylor_verify.exact.kirchhoff.weber.panels import RHO, Integrands, Panel, Panels, exactly
+from taylor_verify.exact.kirchhoff.weber.panels import (
+    BEYOND,
+    RHO,
+    Integrands,
+    Panel,
+    Panels,
+    exactly,
+)
 from taylor_verify.exact.rotation import cross, rotation_matrix
 from taylor_verify.exact.solution import Time
 from taylor_verify.scenes import tensors
@@ -99,8 +106,8 @@ class Frames:
         number = next(k for k, panel in enumerate(panels) if abs(panel.end) >= abs(middle))
         panel, begin = panels[number], self._begins(side, panels, number)
         azimuth, rise = self._integral(panel, middle)
-        # The ellipse reaches beyond the panel by more than its half-width.
-        if not t.rad() <= ball(panel.half):
+        # The middle lies in the panel, and the bounds hold in its ellipse: the ball must not leave it.
+        if not t.rad() <= ball(panel.half * BEYOND):
             raise Undecidable
         spread = arb(0, 1) * t.rad()
         end = _End(

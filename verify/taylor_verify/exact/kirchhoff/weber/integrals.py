@@ -5,18 +5,19 @@ z = e_s + (e_{s+1} - e_s) sin^2 phi takes both end points out of w: there
 
     z^m dz/|w| = z^m dphi/sqrt(prod of |z - e_j| over the other three j),
 
-analytic about the whole interval. FLINT's acb.integral encloses its integral.
+analytic about the whole interval. Arb encloses its integral.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 from flint import acb, acb_mat, arb, arb_mat, ctx
 
 from taylor_verify.exact.balls import Undecidable, ball
+from taylor_verify.exact.integral import Integrand, integral
 from taylor_verify.exact.kirchhoff.weber.curve import Curve, Point
 from taylor_verify.exact.kirchhoff.weber.surd import Surd
 
@@ -88,10 +89,10 @@ def stretch(e: Sequence[arb], s: int, angle: arb) -> tuple[arb, arb]:
     return _integral(weight, angle), _integral(moment, angle)
 
 
-def _integral(integrand: Callable[[acb, bool], acb], angle: arb) -> arb:
+def _integral(integrand: Integrand, angle: arb) -> arb:
     """Integrate from 0, to an error that is small beside the integrand in the middle."""
     goal = abs(integrand(acb(angle / 2), False)) * arb(2) ** -ctx.prec
-    return acb.integral(integrand, 0, acb(angle), abs_tol=goal).real
+    return integral(integrand, acb(0), acb(angle), abs_tol=goal).real
 
 
 def _share(e: Sequence[arb], k: int, point: Point, to_turns: arb_mat) -> tuple[arb, arb]:

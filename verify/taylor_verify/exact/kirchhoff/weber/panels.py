@@ -45,6 +45,8 @@ from taylor_verify.scenes.precision import floor_log2, power_of_two
 
 RHO: Final = 3
 _ACROSS, _UP = Fraction(5, 3), Fraction(4, 3)
+# The way from an end of a panel to that of its ellipse, in half-widths.
+BEYOND: Final = _ACROSS - 1
 _BITS: Final = 64
 _DOUBLINGS: Final = 6
 _ARCS: Final = 8

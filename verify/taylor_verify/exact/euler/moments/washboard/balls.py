@@ -32,6 +32,7 @@ from taylor_verify.exact.euler.moments.washboard.turnings import (
     turnings,
 )
 from taylor_verify.exact.euler.rotations import BallCourse, RotationBalls
+from taylor_verify.exact.integral import integral
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.scenes.motion import Quaternion
 
@@ -176,7 +177,7 @@ class Turn:
     def _way(self, start: arb, stop: arb) -> arb:
         """The time from one exact place to another, which are at most a few teeth apart."""
         limit = _EVALUATIONS_PER_BIT * ctx.prec
-        way = acb.integral(self._integrand, acb(start), acb(stop), eval_limit=limit).real
+        way = integral(self._integrand, acb(start), acb(stop), eval_limit=limit).real
         # Written so that what is not finite is not narrow.
         if not way.rad() <= abs(way) * arb(2) ** (-ctx.prec // 2):
             raise Undecidable

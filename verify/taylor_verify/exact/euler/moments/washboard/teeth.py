@@ -27,6 +27,7 @@ from flint import acb, acb_poly, arb, ctx, fmpq
 
 from taylor_verify.exact.balls import Undecidable
 from taylor_verify.exact.euler.moments.washboard.speed import Swinging
+from taylor_verify.exact.integral import integral
 
 # The least term of the sum is about e^(-2 pi a), 9 bits for each 1 of a: at 6 bits it is not needed.
 _BITS_PER_TOOTH: Final = 6
@@ -48,7 +49,7 @@ class FarTeeth:
     def level(self, sigma: arb) -> arb:
         """L, to within a constant; raises Undecidable where the precision does not carry that far."""
         span = acb(sigma), acb(sigma + self.width)
-        summed = acb.integral(self._integrand, *span).real
+        summed = integral(self._integrand, *span).real
         # F/d is at least ``first`` on the tooth, and a^(1/2) times the term left out falls with a.
         error = self._rest * arb(self.first).sqrt() * self.width
         level = (summed + arb(0, error.upper())) / self._rise.sqrt()
