@@ -7,10 +7,12 @@ from dataclasses import dataclass
 from decimal import MAX_EMAX, MIN_EMIN, Context, Decimal
 from fractions import Fraction
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from taylor_verify.numbers.irrational import Irrational
 from taylor_verify.records.precisions import FORMATS, bits_of
+
+if TYPE_CHECKING:
+    from taylor_verify.numbers.irrational import Irrational
 
 _LEAST_BITS = 24
 # The errors in a verdict are doubles: 2^-1000 is one, and 2^-1075 would be rounded to zero.
@@ -143,7 +145,7 @@ def power_of_two(exponent: int) -> Fraction:
 
 def floor_log2(value: Fraction | Irrational) -> int:
     """Return the largest e with 2^e <= |value|, for a value that is not zero."""
-    if isinstance(value, Irrational):
+    if not isinstance(value, Fraction | int):
         return value.floor_log2()
     numerator, denominator = abs(value.numerator), value.denominator
     estimate = numerator.bit_length() - denominator.bit_length()
@@ -197,7 +199,7 @@ def float_text(value: Fraction | Irrational) -> str:
     """Return a short decimal for messages, also where a double cannot hold the value."""
     from mpmath import libmp
 
-    if isinstance(value, Irrational):
+    if not isinstance(value, Fraction | int):
         value = value.near()
 
     return str(libmp.to_str(libmp.from_rational(value.numerator, value.denominator, 53), 6))
