@@ -9,7 +9,7 @@ PIP = $(BIN)/python -m pip --disable-pip-version-check
 SOLVING = .venv/.solving
 INSTALLED = .venv/.installed
 
-.PHONY: help verify verify-all test test-all docs site test-site dist bench mutants reports paper traps
+.PHONY: help verify verify-all test test-all docs site test-site dist bench mutants reports paper
 .PHONY: release-data tradeoff engines check-reports lint clean
 
 help:  ## Print this list
@@ -72,13 +72,8 @@ mutants: $(INSTALLED)  ## Change single signs and constants of exact, judge and 
 
 reports: $(INSTALLED)  ## Rewrite what is published: reports/data, what is made from it, reports/reference and reports/claims.md
 	@$(BIN)/taylor-verify publish controls extremes > /dev/null
-	@$(MAKE) --no-print-directory traps > /dev/null
 	@$(BIN)/taylor-verify run --out reports
 	@$(BIN)/taylor-verify publish reference portraits enclosure gallery claims > /dev/null
-
-# A report to heyoka's authors, from the calls of its minimal scripts; no part of the package.
-traps: $(INSTALLED)  ## Measure the table of heyoka's traps anew (tests/traps)
-	@PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=tests:reports/upstream $(BIN)/python -m traps
 
 paper: $(INSTALLED)  ## Make the paper and its tables, PDF, LaTeX and CSV, in reports/paper
 	@$(BIN)/taylor-verify publish --paper > /dev/null

@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import Any
 
 # Settings are names of this file for Sphinx: those of all pages first.
-from taylor_verify.studies.site.conf import *  # noqa: F403
-from taylor_verify.studies.site.conf import extensions
-from taylor_verify.studies.site.links import relinked
+from taylor_verify_reports.studies.site.conf import *  # noqa: F403
+from taylor_verify_reports.studies.site.conf import extensions
+from taylor_verify_reports.studies.site.links import relinked
 
 HERE = Path(__file__).resolve().parent
 

@@ -22,8 +22,8 @@ from taylor_verify.batch.report import (
 from taylor_verify.batch.selection import select
 from taylor_verify.judge.judgement import NotPassed
 from taylor_verify.records.status import Status
-from taylor_verify.studies.extremes.measure import extremes_study
-from taylor_verify.studies.report import write_report
+from taylor_verify.report.folder import write_report
+from taylor_verify_reports.studies.extremes.measure import extremes_study
 
 SCENES = ["euler/rest", "euler/generic"]
 LONG = "extremes/euler-separatrix-long"

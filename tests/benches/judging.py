@@ -12,14 +12,15 @@ from typing import Final
 
 import numpy as np
 from builders.satellites import satellites
+from taylor_verify.batch.bodies import judged
+from taylor_verify.models.bodies import Bodies
+from taylor_verify.solvers.taylor.lanes import propagate
 
 from benches.ratio import Action, Ratio, Side, Target
 from benches.scenes import sampled
-from taylor_verify.batch.bodies import judged
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.files.judgement import judge_file
 from taylor_verify.judge.floor.arithmetic import truth_digits
-from taylor_verify.models.bodies import Bodies
 from taylor_verify.models.problem import pose
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.run import run
@@ -30,7 +31,6 @@ from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import read
 from taylor_verify.solvers.taylor.driver import Taylor
-from taylor_verify.solvers.taylor.lanes import propagate
 
 _RUNG: Final = rung("f64")
 # Random satellites are sampled so: some hundred radians.

@@ -6,6 +6,8 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Final
 
+from taylor_verify.solvers.taylor.neighbours import Neighbours, neighbours
+
 from benches.ratio import RESOLUTION, Action, Ratio, Side, Target
 from benches.scenes import sampled
 from taylor_verify.models.problem import Problem, pose
@@ -13,12 +15,11 @@ from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.taylor.driver import Taylor, compiled, pays
-from taylor_verify.solvers.taylor.neighbours import Neighbours, neighbours
 from taylor_verify.solvers.taylor.numbers import arithmetic
 from taylor_verify.solvers.taylor.way import FEW_LOOKS
 from taylor_verify.solvers.trajectory import Trajectory
-from taylor_verify.studies.tradeoff.document import BODIES
-from taylor_verify.studies.tradeoff.measurement import SCENES, UNTIL, scene_named
+from taylor_verify.tradeoff.document import BODIES
+from taylor_verify_reports.studies.tradeoff.measurement import SCENES, UNTIL, scene_named
 
 _RUNG: Final = rung("f64")
 _SAMPLES: Final = 10_000

@@ -1,4 +1,4 @@
-"""The exact motion: many instants at once, the second route, enclosures, derivatives."""
+"""The exact motion: many instants at once, the second route, enclosures."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from flint import ctx
 from benches.ratio import Action, Ratio, Side, Target
 from benches.scenes import tracking_all
 from taylor_verify.exact.balls import Enclosed
-from taylor_verify.exact.conditioning.sensitivity import sensitivity
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.scenes.reading.reader import load
@@ -31,7 +30,6 @@ _WHOLE: Final = ("euler/with-attitude", "kirchhoff/whole-motion")
 _ROUTES_INSTANTS, _ROUTES_DIGITS = 10, 50
 _ENCLOSED: Final = ("euler/constant-moment", "kirchhoff/auv-turn", "kirchhoff/general-body")
 _ENCLOSED_DIGITS: Final = 30
-_SENSITIVE_INSTANTS, _SENSITIVE_DIGITS, _MOTION_DIGITS = 10, 15, 40
 
 _FIVE: Final = Target(0.2, "sines and polynomials that all instants share: a fifth was asked for")
 _PAIR: Final = Target(1.0, "a proof is to cost no more than two runs that prove nothing")
@@ -80,15 +78,6 @@ def _enclosure_over_two_runs(name: str) -> tuple[Side, Side]:
     )
 
 
-def _derivatives_over_motion(name: str) -> tuple[Side, Side]:
-    scene = tracking_all(name)
-    times = [10 * k + Fraction(1, 7) for k in range(_SENSITIVE_INSTANTS)]
-    return (
-        Action(lambda _: sensitivity(scene, times, _SENSITIVE_DIGITS)),
-        Action(lambda _: solution(scene).motion(times, _MOTION_DIGITS)),
-    )
-
-
 def ratios() -> Iterator[Ratio]:
     """Yield what exact motions cost beside each other."""
     for name in _AT_ONCE:
@@ -113,12 +102,5 @@ def ratios() -> Iterator[Ratio]:
             f"the Taylor enclosure over two runs without a proof, to {_ENCLOSED_DIGITS} digits",
             partial(_enclosure_over_two_runs, name),
             _PAIR,
-            unit="motion",
-        )
-    for name in _WHOLE:
-        yield Ratio(
-            f"derivatives/{name}",
-            "all derivatives by start and body, over the exact motion alone; both from nothing",
-            partial(_derivatives_over_motion, name),
             unit="motion",
         )

@@ -25,31 +25,31 @@ from builders.studies.tradeoff import NUMBERS_MADE, TIMES_MADE
 from builders.studies.worst import worst_of
 from builders.verdicts import row
 from taylor_verify.batch.job import Job
-from taylor_verify.controls.defects import DEFECTS
 from taylor_verify.judge.judgement import Judgement
-from taylor_verify.publish.pictures.picture import save
+from taylor_verify.plotting.picture import save
 from taylor_verify.run import run
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.studies import figures, registry, report
-from taylor_verify.studies.claims.page import CLAIMS
-from taylor_verify.studies.controls import measure as sight
-from taylor_verify.studies.controls import study as controls
-from taylor_verify.studies.controls.document import CONTROLS, ControlsStudy
-from taylor_verify.studies.engines.entry import entry_list
-from taylor_verify.studies.engines.stored import write as write_board
-from taylor_verify.studies.extremes.page import EXTREMES
-from taylor_verify.studies.gallery import page as gallery
-from taylor_verify.studies.growth.page import GROWTH
-from taylor_verify.studies.growth.published import Entry, followed
-from taylor_verify.studies.portraits.measure import portrait
-from taylor_verify.studies.portraits.study import PORTRAITS
-from taylor_verify.studies.reach.page import REACH
-from taylor_verify.studies.reference import page as reference_files
-from taylor_verify.studies.reference.measure import reference
-from taylor_verify.studies.tradeoff.stored import write as write_tradeoff
-from taylor_verify.studies.worst import measure as worst_measure
-from taylor_verify.studies.worst.page import WORST
+from taylor_verify_reports.controls.defects import DEFECTS
+from taylor_verify_reports.studies import figures, registry, report
+from taylor_verify_reports.studies.claims.page import CLAIMS
+from taylor_verify_reports.studies.controls import measure as sight
+from taylor_verify_reports.studies.controls import study as controls
+from taylor_verify_reports.studies.controls.document import CONTROLS, ControlsStudy
+from taylor_verify_reports.studies.engines.entry import entry_list
+from taylor_verify_reports.studies.engines.stored import write as write_board
+from taylor_verify_reports.studies.extremes.page import EXTREMES
+from taylor_verify_reports.studies.gallery import page as gallery
+from taylor_verify_reports.studies.growth.page import GROWTH
+from taylor_verify_reports.studies.growth.published import Entry, followed
+from taylor_verify_reports.studies.portraits.measure import portrait
+from taylor_verify_reports.studies.portraits.study import PORTRAITS
+from taylor_verify_reports.studies.reach.page import REACH
+from taylor_verify_reports.studies.reference import page as reference_files
+from taylor_verify_reports.studies.reference.measure import reference
+from taylor_verify_reports.studies.tradeoff.stored import write as write_tradeoff
+from taylor_verify_reports.studies.worst import measure as worst_measure
+from taylor_verify_reports.studies.worst.page import WORST
 
 RUNGS: Final = ("f32", "f64", "f80", "f128", "mp237")
 # Three bodies in vacuum, of which one is loaded, and two in a fluid with their paths.
@@ -90,7 +90,7 @@ def portrait_without_run(scene: str) -> dict[str, Any]:
     """Return a portrait whose run is left out: the rest does not depend on it, and it takes longest."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(
-            "taylor_verify.studies.portraits.measure.explanation",
+            "taylor_verify_reports.studies.portraits.measure.explanation",
             lambda scene, rung: {"cost": {"seconds": 1.0}},
         )
         return portrait(load(scene))

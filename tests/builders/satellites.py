@@ -7,8 +7,8 @@ from fractions import Fraction
 from typing import Final
 
 import numpy as np
-
 from taylor_verify.models.bodies import Bodies, numbers
+
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.instants import EquallySpaced
 from taylor_verify.scenes.motion import Clock, Spin

@@ -13,30 +13,30 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import mp
 
-from taylor_verify.claims.check import All, Residual, measured, worse
-from taylor_verify.claims.claim import Claim, Verdict, examine
-from taylor_verify.claims.field import Element, Field
-from taylor_verify.claims.heinbockel.equations import rigid, unsymmetric
-from taylor_verify.claims.hydromechanics.algebraic import quartic, quartics
-from taylor_verify.claims.hydromechanics.clebsch import clebsch
-from taylor_verify.claims.hydromechanics.fourth import (
-    GENERIC,
-    SECOND_CASE,
-    STEKLOV,
-    SYMMETRIC,
-    integrals,
-)
-from taylor_verify.claims.hydromechanics.poles import leading_coefficients
-from taylor_verify.claims.hydromechanics.solid import loaded
-from taylor_verify.claims.hydromechanics.spins import tilted
-from taylor_verify.claims.setting import Exact, Numeric
-from taylor_verify.claims.trajectory import scene_of, trajectory
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.models.euler import heinbockel_moment
 from taylor_verify.models.kirchhoff import clebsch_rates, impulse_rates
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.tensors import dot, is_positive_definite
+from taylor_verify_reports.claims.check import All, Residual, measured, worse
+from taylor_verify_reports.claims.claim import Claim, Verdict, examine
+from taylor_verify_reports.claims.field import Element, Field
+from taylor_verify_reports.claims.heinbockel.equations import rigid, unsymmetric
+from taylor_verify_reports.claims.hydromechanics.algebraic import quartic, quartics
+from taylor_verify_reports.claims.hydromechanics.clebsch import clebsch
+from taylor_verify_reports.claims.hydromechanics.fourth import (
+    GENERIC,
+    SECOND_CASE,
+    STEKLOV,
+    SYMMETRIC,
+    integrals,
+)
+from taylor_verify_reports.claims.hydromechanics.poles import leading_coefficients
+from taylor_verify_reports.claims.hydromechanics.solid import loaded
+from taylor_verify_reports.claims.hydromechanics.spins import tilted
+from taylor_verify_reports.claims.setting import Exact, Numeric
+from taylor_verify_reports.claims.trajectory import scene_of, trajectory
 
 
 def triangle() -> Field:
@@ -276,7 +276,7 @@ def test_three_integrals_are_counted_for_every_body() -> None:
 def test_poles_have_the_exponents_that_the_integrals_give() -> None:
     """-1 belongs to the place of a pole and 2 to each of T, F^2, FG; the trace leaves two that add to 1."""
     np = pytest.importorskip("numpy")
-    from taylor_verify.claims.hydromechanics.poles import jacobian
+    from taylor_verify_reports.claims.hydromechanics.poles import jacobian
 
     leading = leading_coefficients(GENERIC)
     assert leading

@@ -10,15 +10,15 @@ import pytest
 from builders.studies.claims import ROWS, STUDY
 from builders.studies.stored import publish_document
 
-from taylor_verify.claims import ledger
-from taylor_verify.claims.claim import Claim, Verdict
-from taylor_verify.claims.document import ClaimResiduals
-from taylor_verify.claims.ledger import claims
-from taylor_verify.claims.numbers import CITED
 from taylor_verify.cli import main
-from taylor_verify.publish.page import MADE_BY
-from taylor_verify.studies.claims.page import CLAIMS, page
-from taylor_verify.studies.claims.study import STUDY as PUBLISHED
+from taylor_verify.words.page import MADE_BY
+from taylor_verify_reports.claims import ledger
+from taylor_verify_reports.claims.claim import Claim, Verdict
+from taylor_verify_reports.claims.document import ClaimResiduals
+from taylor_verify_reports.claims.ledger import claims
+from taylor_verify_reports.claims.numbers import CITED
+from taylor_verify_reports.studies.claims.page import CLAIMS, page
+from taylor_verify_reports.studies.claims.study import STUDY as PUBLISHED
 
 QUICK = "hydromechanics 49 (11)"
 KEYS = {"id", "statement", "verdict", "correction", "residual"}

@@ -8,10 +8,10 @@ from itertools import pairwise
 import pytest
 from builders.turns import by_turns
 
-from taylor_verify.claims.check import measured
-from taylor_verify.claims.claim import Claim, Verdict, examine
-from taylor_verify.claims.ledger import UnknownClaim, claims, find
-from taylor_verify.claims.numbers import CITED, IN_ORDER, NUMBERED, SENTENCES
+from taylor_verify_reports.claims.check import measured
+from taylor_verify_reports.claims.claim import Claim, Verdict, examine
+from taylor_verify_reports.claims.ledger import UnknownClaim, claims, find
+from taylor_verify_reports.claims.numbers import CITED, IN_ORDER, NUMBERED, SENTENCES
 
 LEDGER = claims()
 MUTATIONS = [(claim, name) for claim in LEDGER for name in claim.mutants]

@@ -19,12 +19,12 @@ from taylor_verify.check import check
 from taylor_verify.cli import main
 from taylor_verify.judge.baseline import decided_alone, hold
 from taylor_verify.judge.judgement import Judgement
-from taylor_verify.publish.ci.annotations import annotation_lines
-from taylor_verify.publish.ci.case import Remark
-from taylor_verify.publish.ci.junit import junit
-from taylor_verify.publish.ci.step_summary import step_summary
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status
+from taylor_verify.words.annotations import annotation_lines
+from taylor_verify.words.case import Remark
+from taylor_verify.words.junit import junit
+from taylor_verify.words.step_summary import step_summary
 
 Captured = pytest.CaptureFixture[str]
 

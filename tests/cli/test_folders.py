@@ -15,7 +15,7 @@ from builders.scenes import scene_file
 
 from taylor_verify.batch.lock import LOCK, Occupied, alone_in
 from taylor_verify.cli import main
-from taylor_verify.studies.registry import STUDIES
+from taylor_verify_reports.studies.registry import STUDIES
 
 Captured = pytest.CaptureFixture[str]
 
@@ -217,7 +217,7 @@ def test_a_picture_that_cannot_be_written_costs_no_judgement(
     rows = "t,w1,w2,w3\n0,1,0.4,0.3\n1,1,0.4,0.3\n"
     for h in ("0.1", "0.2"):
         Path(f"run_h{h}.csv").write_text(f"# h = {h}\n{rows}")
-    monkeypatch.setattr("taylor_verify.publish.pictures.picture.save_as", full)
+    monkeypatch.setattr("taylor_verify.plotting.picture.save_as", full)
     call = ["check", "run_h0.1.csv", "run_h0.2.csv", "--scene", str(short), "--partial"]
     assert main([*call, "--picture", "order.svg"]) == 2
     out, error = capsys.readouterr()

@@ -10,21 +10,21 @@ import numpy as np
 import pytest
 from builders.studies.stored import publish_document
 
-from taylor_verify.controls.answers import ANSWERS
-from taylor_verify.controls.defect import Defect
-from taylor_verify.controls.defects import DEFECTS
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.models.problem import pose
 from taylor_verify.records.quantities import GATE_FACTOR, INITIAL, UNIT_QUATERNION
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.studies import report
-from taylor_verify.studies.controls import page as controls
-from taylor_verify.studies.controls import proof
-from taylor_verify.studies.controls.document import CONTROLS, ControlsStudy, Sight
-from taylor_verify.studies.controls.measure import RUNG, Twins, sights, study
-from taylor_verify.studies.controls.study import STUDY
+from taylor_verify_reports.controls.answers import ANSWERS
+from taylor_verify_reports.controls.defect import Defect
+from taylor_verify_reports.controls.defects import DEFECTS
+from taylor_verify_reports.studies import report
+from taylor_verify_reports.studies.controls import page as controls
+from taylor_verify_reports.studies.controls import proof
+from taylor_verify_reports.studies.controls.document import CONTROLS, ControlsStudy, Sight
+from taylor_verify_reports.studies.controls.measure import RUNG, Twins, sights, study
+from taylor_verify_reports.studies.controls.study import STUDY
 
 NAMED = {defect.name: defect for defect in DEFECTS}
 STATE = {"omega", "impulse", "attitude", "centre"}

@@ -23,7 +23,7 @@ from taylor_verify.draw.film import film
 from taylor_verify.draw.moving import moving
 from taylor_verify.draw.page import page, quaternions
 from taylor_verify.draw.pictures import KINDS, pictures
-from taylor_verify.publish.pictures.picture import plotting
+from taylor_verify.plotting.picture import plotting
 from taylor_verify.scenes.reading.reader import load
 
 # One of each kind of body, and what it has.

@@ -13,9 +13,9 @@ from flint import arb, ctx
 
 from taylor_verify.exact.balls import balls
 from taylor_verify.exact.enclosure import placing
+from taylor_verify.exact.enclosure.coefficients import frame_series, state_series, value
 from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.exact.enclosure.placing import norm
-from taylor_verify.exact.enclosure.series import frame_series, state_series, value
 from taylor_verify.exact.enclosure.system import Balls, posed
 from taylor_verify.exact.rotation import conjugate, product, rotation_matrix, rotation_rows
 from taylor_verify.exact.taylor import TaylorSolution

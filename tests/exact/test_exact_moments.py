@@ -23,8 +23,8 @@ from taylor_verify.exact.elements import elements
 from taylor_verify.exact.euler import closed
 from taylor_verify.exact.euler.moments import erf, weber
 from taylor_verify.exact.euler.moments.kummer import KummerTurn
+from taylor_verify.exact.euler.moments.power_series import SeriesTurn
 from taylor_verify.exact.euler.moments.regime import Line, LoadedSpin
-from taylor_verify.exact.euler.moments.series import SeriesTurn
 from taylor_verify.exact.kirchhoff.solid import short_digits
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm, Unsettled

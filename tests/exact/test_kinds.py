@@ -11,7 +11,7 @@ from builders.scenes import IMPULSE, LOADED, MOMENT, OMEGA, SPIN, TENSOR
 
 from taylor_verify.exact.equations import Equations, exact
 from taylor_verify.exact.registry import KINDS, function_at, kind_of
-from taylor_verify.scenes.bodies import Clebsch, RigidBody
+from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.reading.reader import load
@@ -57,25 +57,3 @@ def test_what_is_imported_late_is_there(model: str) -> None:
     kind = kind_of(SAMPLES[model][0])
     late = ("closed:enclosed", "closed:closed_form", "elements:elements")
     assert all(callable(function_at(f"{kind.room}.{place}")) for place in late)
-
-
-@pytest.mark.parametrize("model", SAMPLES)
-def test_a_parameter_changes_the_body_alone(model: str) -> None:
-    """Each of them makes another body, whose own parameter moved back makes the first one again."""
-    body, _ = SAMPLES[model]
-    parameters = kind_of(body).parameters(body)
-    for j in range(len(parameters.components)):
-        other = parameters.changed(j, Fraction(1, 2**20))
-        assert other != body
-        assert kind_of(other).parameters(other).changed(j, Fraction(-1, 2**20)) == body
-
-
-def test_the_sizes_of_clebschs_coefficients_are_proportional_to_the_energy() -> None:
-    """Four times the energy makes the square of each size sixteen times as large; q lies below its size."""
-    six = tuple(Fraction(n, 7) for n in (20, 30, 5, -6, 11, 13))
-    squares, larger = (
-        kind_of(body).parameters(body).squares
-        for body in (Clebsch(*six).body(), Clebsch(*(4 * c for c in six)).body())
-    )
-    assert larger == tuple(16 * square for square in squares)
-    assert all(c * c <= square for c, square in zip(six, squares, strict=True))

@@ -14,7 +14,6 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.conditioning.condition import transition
 from taylor_verify.exact.conditioning.differences import derivatives
-from taylor_verify.exact.conditioning.sensitivity import sensitivity
 from taylor_verify.exact.rates import rates
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NoClosedForm
@@ -386,9 +385,3 @@ def test_there_are_four_scenes_of_each_model() -> None:
 def test_who_is_not_told_of_the_loads_is_not_asked(solver: str) -> None:
     """A solver that would answer for another problem is unavailable, and not wrong."""
     assert run(EULER, solver_named(solver), "f64").verdicts[0].verdict is Status.UNAVAILABLE
-
-
-def test_what_knows_no_time_refuses_a_manufactured_motion() -> None:
-    """Sensitivities have no clock for the loads, and say so."""
-    with pytest.raises(ValueError, match="manufactured"):
-        sensitivity(bare(EULER), [Fraction(1)])

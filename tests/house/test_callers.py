@@ -24,8 +24,8 @@ from taylor_verify.scenes.library import cases_directory
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.solvers.options import options
 from taylor_verify.solvers.registry import solver_named
-from taylor_verify.studies.tradeoff.recommendation import recommend
 from taylor_verify.testing.demand import demanded_rows
+from taylor_verify.tradeoff.recommendation import recommend
 
 SCENE = "euler/generic"
 FILE = cases_directory() / "euler" / "generic.toml"

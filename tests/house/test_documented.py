@@ -19,7 +19,6 @@ import pytest
 from builders.worked import DOCS, ROOT
 
 import taylor_verify
-from taylor_verify.claims.document import Verdict as ClaimVerdict
 from taylor_verify.cli.arguments import parse
 from taylor_verify.records import answers, reason
 from taylor_verify.records.error_kind import ErrorKind
@@ -27,6 +26,7 @@ from taylor_verify.scenes.library import cases_directory, names
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.reading.table import Table
+from taylor_verify_reports.claims.document import Verdict as ClaimVerdict
 
 PACKAGE = Path(taylor_verify.__file__).parent
 COMMAND_LINE = DOCS / "command-line.md"
@@ -202,7 +202,7 @@ CALLS = [name for name in taylor_verify.__all__ if name != "__version__"]
 # These return a dictionary, whose keys are those of --json.
 PLAIN = {"explain"}
 # The words of these stand in a table of docs/verdicts.md.
-WORDS_ELSEWHERE = {"taylor_verify.claims.document.Verdict"}
+WORDS_ELSEWHERE = {"taylor_verify_reports.claims.document.Verdict"}
 
 
 @pytest.mark.parametrize("call", CALLS)

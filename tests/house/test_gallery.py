@@ -12,7 +12,7 @@ import pytest
 from builders.notebooks import NOTEBOOKS, Output, cells, execute
 from builders.worked import ROOT
 
-from taylor_verify.studies.site.notebooks import notebook
+from taylor_verify_reports.studies.site.notebooks import notebook
 
 # One for each use that a newcomer asks for.
 NAMES = ("dzhanibekov", "engine", "falling-solid", "precision", "proof", "simulator")

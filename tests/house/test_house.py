@@ -117,7 +117,9 @@ def scenes_stand_alone(module: str, source: str) -> Iterator[str]:
     """scenes imports nothing of taylor_verify but scenes, numbers, and the names that all rooms share."""
     if room(module) == "scenes":
         shared = ["taylor_verify.records.quantities", "taylor_verify.records.precisions"]
-        yield from _beyond(["taylor_verify.scenes", "taylor_verify.numbers", *shared], module, source)
+        yield from _beyond(
+            ["taylor_verify.scenes", "taylor_verify.numbers", *shared], module, source
+        )
 
 
 def numbers_stand_alone(module: str, source: str) -> Iterator[str]:
@@ -177,7 +179,7 @@ def processes_have_their_place(module: str, source: str) -> Iterator[str]:
     placed = within(
         module,
         "taylor_verify.batch",
-        "taylor_verify.studies.tradeoff.cold",
+        "taylor_verify.tradeoff.cold",
         "taylor_verify.solvers.taylor.ensemble",
     )
     for target, line, for_types_only in imports(source):
@@ -461,7 +463,7 @@ PLANTED = [
     (
         keeps_its_walls,
         "taylor_verify.exact",
-        "import_module('taylor_verify.controls.signs')",
+        "import_module('taylor_verify_reports.controls.signs')",
         "controls",
     ),
     (
@@ -534,25 +536,25 @@ PLANTED = [
     ),
     (
         studies_stand_below_the_verbs,
-        "taylor_verify.studies.growth.study",
+        "taylor_verify_reports.studies.growth.study",
         "def f():\n from taylor_verify.cli.streams import say",
         "cli",
     ),
     (
         draw_stands_below_studies,
         "taylor_verify.draw.polhode",
-        "from taylor_verify.studies.portraits.study import PORTRAITS",
+        "from taylor_verify_reports.studies.portraits.study import PORTRAITS",
         "studies",
     ),
     (
         processes_have_their_place,
-        "taylor_verify.studies.portraits.measure",
+        "taylor_verify_reports.studies.portraits.measure",
         "from concurrent.futures import ProcessPoolExecutor",
         "ProcessPoolExecutor",
     ),
     (
         processes_have_their_place,
-        "taylor_verify.studies.worst.measure",
+        "taylor_verify_reports.studies.worst.measure",
         "import multiprocessing",
         "multiprocessing",
     ),
@@ -611,8 +613,8 @@ def test_every_rule_has_a_planted_fault() -> None:
             "taylor_verify.publish.plots",
             "if TYPE_CHECKING:\n from taylor_verify.scenes.scene import Scene",
         ),
-        ("taylor_verify.batch.report", "from taylor_verify.publish.ci.junit import junit"),
-        ("taylor_verify.batch.sweeps.report", "from taylor_verify.publish.cells import figure"),
+        ("taylor_verify.batch.report", "from taylor_verify.words.junit import junit"),
+        ("taylor_verify.batch.sweeps.report", "from taylor_verify.words.cells import figure"),
         ("taylor_verify.batch.cluster", "d = import_module('distributed')"),
         ("taylor_verify.batch.pool", "import multiprocessing"),
         (

@@ -15,8 +15,8 @@ import pytest
 from builders.turns import by_turns
 
 import taylor_verify
+import taylor_verify_reports
 from taylor_verify.batch.failure import Failed
-from taylor_verify.claims.claim import Finding
 from taylor_verify.cli import main
 from taylor_verify.explain.explanation import explanation
 from taylor_verify.models.problem import Problem
@@ -25,8 +25,9 @@ from taylor_verify.scenes.precision import Rung, rung
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
-from taylor_verify.studies.tradeoff.recommendation import recommend
-from taylor_verify.studies.tradeoff.setting import setting
+from taylor_verify.tradeoff.recommendation import recommend
+from taylor_verify.tradeoff.setting import setting
+from taylor_verify_reports.claims.claim import Finding
 
 NAMES = [name for name in taylor_verify.__all__ if name != "__version__"]
 FUNCTIONS = [getattr(taylor_verify, name) for name in NAMES]
@@ -93,7 +94,7 @@ def test_importing_the_package_imports_no_library_of_numbers() -> None:
     assert loaded.isdisjoint(slow)
     assert {name for name in loaded if name.startswith("taylor_verify.")} == {
         function.__module__ for function in FUNCTIONS
-    } | {"taylor_verify.records", "taylor_verify.records.version", "taylor_verify.studies"}
+    } | {"taylor_verify.records", "taylor_verify.records.version", "taylor_verify_reports.studies"}
 
 
 @pytest.mark.parametrize("function", FUNCTIONS, ids=NAMES)
@@ -229,8 +230,8 @@ def test_a_recommendation_has_the_arguments_of_its_room() -> None:
 
 def test_claims_returns_findings() -> None:
     """An id, or a part that ends one, gives the finding with its verdict; another one is refused."""
-    (finding,) = taylor_verify.claims("hydromechanics 49 (11)")
+    (finding,) = taylor_verify_reports.claims("hydromechanics 49 (11)")
     assert isinstance(finding, Finding)
     assert finding.is_as_recorded
     with pytest.raises(ValueError, match="expected the id of a claim"):
-        taylor_verify.claims("hydromechanics 99")
+        taylor_verify_reports.claims("hydromechanics 99")

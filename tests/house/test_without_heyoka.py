@@ -15,7 +15,7 @@ from builders.turns import by_turns
 
 import taylor_verify
 from taylor_verify.solvers.taylor.package import INSTALL
-from taylor_verify.studies.registry import STUDIES
+from taylor_verify_reports.studies.registry import STUDIES
 
 TESTS = Path(__file__).resolve().parents[1]
 HEYOKA = ("heyoka",)
@@ -64,7 +64,7 @@ for found in [run(SCENE), *run_many(["euler/rest", "euler/spherical"], rungs=["f
     "a trade-off": f"""
 from taylor_verify import tradeoff
 from taylor_verify.scenes.precision import rung
-from taylor_verify.studies.tradeoff.setting import setting
+from taylor_verify.tradeoff.setting import setting
 names = ["taylor", "geometric:splitting?step=1/4"]
 found = tradeoff("euler/spherical", [setting(n, rung("f64")) for n in names], repeats=1)
 absent, present = found.document()["points"]

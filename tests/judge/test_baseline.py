@@ -20,9 +20,9 @@ from taylor_verify.cli import main
 from taylor_verify.judge.baseline import decided_alone, hold, load
 from taylor_verify.judge.rounding_class import FACTOR, LEVEL, compare
 from taylor_verify.records.status import Status
+from taylor_verify.records.store import load as load_report
+from taylor_verify.records.store import write
 from taylor_verify.records.verdict import Verdict, exit_status
-from taylor_verify.studies.report import load as load_report
-from taylor_verify.studies.report import write
 
 Captured = pytest.CaptureFixture[str]
 

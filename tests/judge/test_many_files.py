@@ -21,8 +21,8 @@ from taylor_verify.cli import main
 from taylor_verify.judge.judgement import NotPassed
 from taylor_verify.judge.series.files import FilesJudgement
 from taylor_verify.models.problem import pose
-from taylor_verify.publish.pictures import order as order_picture
-from taylor_verify.publish.pictures.picture import plotting
+from taylor_verify.plotting import order as order_picture
+from taylor_verify.plotting.picture import plotting
 from taylor_verify.records.answers import Order, Stall
 from taylor_verify.records.schema import schema
 from taylor_verify.records.status import Status

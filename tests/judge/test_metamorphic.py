@@ -25,7 +25,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp
 
-from taylor_verify.controls.defects import DEFECTS, Defect
 from taylor_verify.judge.errors.state import largest, state_errors
 from taylor_verify.judge.floor.attainable import floor
 from taylor_verify.models.euler import euler_equations
@@ -43,6 +42,7 @@ from taylor_verify.scenes.tensors import ZERO_VECTOR, Matrix, Vector
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
+from taylor_verify_reports.controls.defects import DEFECTS, Defect
 
 # Images are formed and compared at this many bits, three times those of the finest rung used.
 BITS = 300

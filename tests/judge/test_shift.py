@@ -28,6 +28,8 @@ from taylor_verify.judge.judgement import judgement
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.records.reason import Kind
 from taylor_verify.records.status import Status
+from taylor_verify.records.store import load as load_report
+from taylor_verify.records.store import write
 from taylor_verify.run import run
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
@@ -37,8 +39,6 @@ from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.solver import Callback
 from taylor_verify.solvers.taylor.driver import Taylor
-from taylor_verify.studies.report import load as load_report
-from taylor_verify.studies.report import write
 
 Course = Callable[[float], Fraction]
 DIGITS = 25

@@ -24,12 +24,12 @@ from taylor_verify.cli import main
 from taylor_verify.judge.errors.state import Errors
 from taylor_verify.judge.gates import GATE_FACTOR, judge
 from taylor_verify.judge.tolerances import tolerances
-from taylor_verify.publish.page import counts
 from taylor_verify.records import store
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.records.reason import Carried, Cause, Reason, RoundoffFloor
 from taylor_verify.records.status import Status
 from taylor_verify.testing.plugin import SolverGate
+from taylor_verify.words.page import counts
 
 Captured = pytest.CaptureFixture[str]
 COARSE = "scipy:RK45?rtol=1e-6"

@@ -25,14 +25,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from taylor_verify.cli import main
-from taylor_verify.publish.ci import annotations, junit
-from taylor_verify.publish.ci.annotations import annotation_lines
-from taylor_verify.publish.ci.case import Remark, cases, sentence
-from taylor_verify.publish.ci.step_summary import step_summary
 from taylor_verify.records import schema, store
 from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status
+from taylor_verify.words import annotations, junit
+from taylor_verify.words.annotations import annotation_lines
+from taylor_verify.words.case import Remark, cases, sentence
+from taylor_verify.words.step_summary import step_summary
 
 ROOT = Path(__file__).resolve().parents[2]
 ACTION = ROOT / ".github" / "actions" / "verify" / "action.yml"

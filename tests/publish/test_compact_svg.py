@@ -12,10 +12,10 @@ from builders.studies.reach import study
 from hypothesis import given
 from hypothesis import strategies as st
 
-from taylor_verify.publish.pictures.compact_svg import compact
-from taylor_verify.publish.pictures.picture import plotting
-from taylor_verify.studies.reach import picture as digits_map
-from taylor_verify.studies.site.stage import smaller
+from taylor_verify.plotting.compact_svg import compact
+from taylor_verify.plotting.picture import plotting
+from taylor_verify_reports.studies.reach import picture as digits_map
+from taylor_verify_reports.studies.site.stage import smaller
 
 SVG = "{http://www.w3.org/2000/svg}"
 HEAD = '<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink">'

@@ -19,10 +19,9 @@ from hypothesis import strategies as st
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from taylor_verify.publish.pictures.palette import INK, QUIET, contrast, for_text, lightness
-from taylor_verify.publish.pictures.picture import Picture, plotting, save
-from taylor_verify.publish.pictures.ratio import Ratio
-from taylor_verify.publish.pictures.style import (
+from taylor_verify.plotting.palette import INK, QUIET, contrast, for_text, lightness
+from taylor_verify.plotting.picture import Picture, plotting, save
+from taylor_verify.plotting.style import (
     KINDS,
     PAGE_WIDTH,
     kind_of,
@@ -30,11 +29,12 @@ from taylor_verify.publish.pictures.style import (
     look_of_line,
     look_of_rung,
 )
-from taylor_verify.publish.pictures.wording import power_of_ten
+from taylor_verify.plotting.wording import power_of_ten
 from taylor_verify.records.precisions import bits_of, place_of_rung
-from taylor_verify.studies.prices import picture as prices
-from taylor_verify.studies.tradeoff.pictures import time_by_rung, trade
-from taylor_verify.studies.tradeoff.pictures.series import front_of, panels_of, series_of
+from taylor_verify.tradeoff.pictures import time_by_rung, trade
+from taylor_verify.tradeoff.pictures.series import front_of, panels_of, series_of
+from taylor_verify_reports.pictures.ratio import Ratio
+from taylor_verify_reports.studies.prices import picture as prices
 
 RUNGS = ("f32", "f64", "f80", "f128", "mp237")
 SVG = "{http://www.w3.org/2000/svg}"
@@ -209,7 +209,7 @@ def test_a_program_of_ones_own_borrows_no_look() -> None:
 def test_an_unknown_look_is_the_same_in_every_process() -> None:
     """Not even with another hash seed does an unknown name look different."""
     code = (
-        "from taylor_verify.publish.pictures.style import look_of;"
+        "from taylor_verify.plotting.style import look_of;"
         "print([look_of(f'solver {i}', 'f64') for i in range(9)])"
     )
     printed = {
@@ -312,8 +312,8 @@ def test_the_front_is_that_of_the_trade(crowded: dict) -> None:
 def test_the_front_agrees_with_the_judgement() -> None:
     """The front of a real trade-off, from its document alone, is the one that the trade names."""
     from taylor_verify.scenes.reading.reader import load
-    from taylor_verify.studies.tradeoff.setting import settings as all_settings
-    from taylor_verify.studies.tradeoff.trade_off import trade_off
+    from taylor_verify.tradeoff.setting import settings as all_settings
+    from taylor_verify.tradeoff.trade_off import trade_off
 
     scene = load("euler/generic")
     asked = [one for one in all_settings(scene, ["f32", "f64"]) if one.family.startswith("taylor")]
@@ -530,7 +530,7 @@ def test_alt_texts_need_no_matplotlib() -> None:
     rows = json.dumps(document(family("taylor f64", "f64", 0.01, 9.0)))
     code = (
         "import sys, json; sys.modules['matplotlib'] = None\n"
-        "from taylor_verify.studies.tradeoff.pictures import time_by_rung, trade\n"
+        "from taylor_verify.tradeoff.pictures import time_by_rung, trade\n"
         f"print([p.alt for p in trade.pictures(json.loads({rows!r}))])"
     )
     made = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -24,17 +24,17 @@ from taylor_verify.cli import main
 from taylor_verify.draw import axis_path, centre_path, polhode
 from taylor_verify.draw.stage import norm_of, scale
 from taylor_verify.draw.view import Ellipsoid, View, pieces
-from taylor_verify.publish.pictures import log_axes
-from taylor_verify.publish.pictures.palette import lightness
-from taylor_verify.publish.pictures.picture import Picture, plotting, save
+from taylor_verify.plotting import log_axes
+from taylor_verify.plotting.palette import lightness
+from taylor_verify.plotting.picture import Picture, plotting, save
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.studies.controls import picture as shifts
-from taylor_verify.studies.controls.document import CONTROLS
-from taylor_verify.studies.gallery import page as gallery
-from taylor_verify.studies.gallery.page import Stored
-from taylor_verify.studies.gallery.pictures import errors_over_time, potential
-from taylor_verify.studies.portraits.study import PORTRAITS
+from taylor_verify_reports.studies.controls import picture as shifts
+from taylor_verify_reports.studies.controls.document import CONTROLS
+from taylor_verify_reports.studies.gallery import page as gallery
+from taylor_verify_reports.studies.gallery.page import Stored
+from taylor_verify_reports.studies.gallery.pictures import errors_over_time, potential
+from taylor_verify_reports.studies.portraits.study import PORTRAITS
 
 RUNGS = ("f32", "f64", "f80", "f128", "mp237")
 FREE = ("euler/generic", "euler/with-attitude", "euler/separatrix", "euler/tennis-racket")

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from taylor_verify.publish.markdown import plain, prose, table
-from taylor_verify.publish.paper import formulas, images, latex, latex_table, pdf
+from taylor_verify.words.markdown import plain, prose, table
+from taylor_verify_reports.typesetting.paper import formulas, images, latex, latex_table, pdf
 
 # Signs that look like others are what it is about.
 HOSTILE = "a_b^c 50% #1 {x} \\y ~z & \"q\" 'r' <b> |v| $w$ @p * ` é – ²"  # noqa: RUF001

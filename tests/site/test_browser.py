@@ -32,7 +32,7 @@ KINDS = (
     "reports/tables/README.html",
     "reports/tables/controls.html",
     "reports/tables/tradeoff.html",
-    "reports/tables/traps.html",
+    "reports/upstream/traps.html",
 )
 SCENES = tuple(page for page in KINDS if page.startswith("reports/scenes/"))
 SCENE = "reports/scenes/kirchhoff-whole-motion.html"

@@ -17,7 +17,7 @@ from taylor_verify.records.json_text import converted
 from taylor_verify.records.quantities import INITIAL
 from taylor_verify.records.status import Status
 from taylor_verify.run import run
-from taylor_verify.studies.engines.entry import EntryList, entry_list
+from taylor_verify_reports.studies.engines.entry import EntryList, entry_list
 
 PAGE = (DOCS / "bring-your-engine.md").read_text(encoding="utf-8")
 

@@ -24,8 +24,8 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers import closed_form
 from taylor_verify.solvers.registry import solver_named
 from taylor_verify.solvers.trajectory import Outcome
-from taylor_verify.studies.tradeoff.accuracy import Truth
-from taylor_verify.studies.tradeoff.plain_doubles import cases, plain_doubles
+from taylor_verify.tradeoff.accuracy import Truth
+from taylor_verify_reports.studies.tradeoff.plain_doubles import cases, plain_doubles
 
 pytest.importorskip("scipy", reason="an optional extra: taylor-verify[scipy]")
 

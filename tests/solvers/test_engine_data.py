@@ -20,7 +20,7 @@ from taylor_verify.solvers.engines import python
 from taylor_verify.solvers.engines.engine import SCRIPTS, Engine, Outside, solve_together
 from taylor_verify.solvers.engines.script import read_script
 from taylor_verify.solvers.trajectory import Outcome
-from taylor_verify.studies.tradeoff.accuracy import Truths
+from taylor_verify.tradeoff.accuracy import Truths
 
 # RK4 in doubles, on I and omega as the question has them: its own error is beyond float32.
 TWIN = """\

@@ -20,7 +20,7 @@ from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.engines.engine import SCRIPTS
 from taylor_verify.solvers.process import protocol
 from taylor_verify.solvers.solver import Callback
-from taylor_verify.studies.tradeoff.accuracy import Truth
+from taylor_verify.tradeoff.accuracy import Truth
 
 
 @pytest.fixture

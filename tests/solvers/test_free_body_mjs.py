@@ -17,7 +17,7 @@ from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.engines.engine import SCRIPTS
 from taylor_verify.solvers.process import process
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
-from taylor_verify.studies.tradeoff.accuracy import Truth
+from taylor_verify.tradeoff.accuracy import Truth
 
 pytestmark = pytest.mark.skipif(not shutil.which("node"), reason="node is not installed")
 

@@ -16,7 +16,7 @@ from taylor_verify.solvers.engines.engine import prepare
 from taylor_verify.solvers.engines.launcher import NotMade
 from taylor_verify.solvers.registry import solver_named
 from taylor_verify.solvers.trajectory import Outcome
-from taylor_verify.studies.tradeoff.accuracy import Truth
+from taylor_verify.tradeoff.accuracy import Truth
 
 pytestmark = pytest.mark.slow
 

@@ -35,7 +35,7 @@ from taylor_verify.solvers.engines.script import scripts as read_scripts
 from taylor_verify.solvers.process import protocol
 from taylor_verify.solvers.registry import OUTSIDE, remarks, solver_named, solver_names
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
-from taylor_verify.studies.tradeoff.accuracy import Truth
+from taylor_verify.tradeoff.accuracy import Truth
 
 CHECKOUT = Path(__file__).resolve().parents[2]
 # Both models, each of the five states, backwards, loads, and instants that leave out the start.

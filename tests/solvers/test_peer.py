@@ -22,8 +22,8 @@ from taylor_verify.solvers.engines.peer import Peer, document
 from taylor_verify.solvers.engines.session import end_sessions, session
 from taylor_verify.solvers.straight_line import straight_line
 from taylor_verify.solvers.trajectory import Outcome
-from taylor_verify.studies.tradeoff.accuracy import Truth
-from taylor_verify.studies.tradeoff.measurement import PEERS
+from taylor_verify.tradeoff.accuracy import Truth
+from taylor_verify_reports.studies.tradeoff.measurement import PEERS
 
 # An integrator without a library: the classical method in steps that end on the samples.
 _SCRIPT = """

@@ -9,8 +9,8 @@ from builders.verdicts import MIXED, NAN, STOPPED, UNIT, passed, unscored
 
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.studies.accuracy import sheet as sheets
-from taylor_verify.studies.accuracy.attainable import attainable
+from taylor_verify.report import csv_tables as sheets
+from taylor_verify.report.attainable import attainable
 
 u = UNIT["f64"]
 # As a NaN is stored.

@@ -18,7 +18,7 @@ from taylor_verify.cli import main
 from taylor_verify.cli import publishing as command
 from taylor_verify.records import store
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.studies import archive, bulk
+from taylor_verify_reports.studies import archive, bulk
 
 SCENES = ("euler/rest", "euler/generic")
 Captured = pytest.CaptureFixture[str]

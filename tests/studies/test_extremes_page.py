@@ -15,12 +15,13 @@ from builders.studies.stored import publish_document
 from builders.verdicts import passed
 
 from taylor_verify.cli import main
-from taylor_verify.publish.page import MADE_BY
 from taylor_verify.records import store
 from taylor_verify.records.status import Status
-from taylor_verify.studies.extremes import page as extremes
-from taylor_verify.studies.extremes.study import STUDY
-from taylor_verify.studies.report import publish, write
+from taylor_verify.records.store import write
+from taylor_verify.words.page import MADE_BY
+from taylor_verify_reports.studies.extremes import page as extremes
+from taylor_verify_reports.studies.extremes.study import STUDY
+from taylor_verify_reports.studies.report import publish
 
 
 def lines(text: str, *words: str) -> list[str]:
@@ -183,7 +184,7 @@ def test_the_command_fails_at_a_mismatch(
         row = passed(scene, "f64", "omega", verdict=verdict)
         return [SimpleNamespace(verdicts=(row,))]
 
-    monkeypatch.setattr("taylor_verify.studies.extremes.measure.judge_all", answered)
+    monkeypatch.setattr("taylor_verify_reports.studies.extremes.measure.judge_all", answered)
     call = ["publish", "extremes", "--from", str(tmp_path), "--json"]
     assert main(call) == status
     captured = capsys.readouterr()

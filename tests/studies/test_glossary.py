@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 from builders.worked import DOCS
 
-from taylor_verify.studies.site.glossary import TERMS
+from taylor_verify_reports.studies.site.glossary import TERMS
 
 HEADINGS = re.findall(r"^## (.+)$", (DOCS / "glossary.md").read_text("utf-8"), re.MULTILINE)
-CONF = "from taylor_verify.studies.site.conf import *\n"
+CONF = "from taylor_verify_reports.studies.site.conf import *\n"
 INDEX = """\
 # A rung in a heading
 

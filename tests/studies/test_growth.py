@@ -10,8 +10,8 @@ import pytest
 from scipy import stats
 
 from taylor_verify.records.status import Status
-from taylor_verify.studies.growth.document import EXACT
-from taylor_verify.studies.growth.fit import (
+from taylor_verify_reports.studies.growth.document import EXACT
+from taylor_verify_reports.studies.growth.fit import (
     BIAS,
     BOUNDED,
     FALSE_ALARM,

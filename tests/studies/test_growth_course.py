@@ -18,11 +18,11 @@ from taylor_verify.scenes.precision import exact_value, rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.taylor.ensemble import Lane
 from taylor_verify.solvers.trajectory import Outcome
-from taylor_verify.studies.growth import checkpoint
-from taylor_verify.studies.growth.checkpoint import OfAnotherError, Progress
-from taylor_verify.studies.growth.errors import PHASE, certain_shifts, lane_errors
-from taylor_verify.studies.growth.experiment import course, experiment, numerical_versions
-from taylor_verify.studies.growth.question import Question
+from taylor_verify_reports.studies.growth import checkpoint
+from taylor_verify_reports.studies.growth.checkpoint import OfAnotherError, Progress
+from taylor_verify_reports.studies.growth.errors import PHASE, certain_shifts, lane_errors
+from taylor_verify_reports.studies.growth.experiment import course, experiment, numerical_versions
+from taylor_verify_reports.studies.growth.question import Question
 
 SHORT = 10**3.5
 
@@ -32,7 +32,7 @@ def question(name: str = "euler/about-max-axis", on: str = "f64", **changed: Any
 
 
 def several_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("taylor_verify.studies.growth.question.PIECE_PERIODS", 400)
+    monkeypatch.setattr("taylor_verify_reports.studies.growth.question.PIECE_PERIODS", 400)
 
 
 # The question

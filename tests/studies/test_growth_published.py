@@ -14,23 +14,23 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from taylor_verify.cli import main
-from taylor_verify.publish.pictures.picture import plotting
-from taylor_verify.publish.pictures.style import PAGE_WIDTH
+from taylor_verify.plotting.picture import plotting
+from taylor_verify.plotting.style import PAGE_WIDTH
 from taylor_verify.records.json_text import complete, converted
 from taylor_verify.records.provenance import Provenance
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.studies.growth import page as pages
-from taylor_verify.studies.growth import picture as diagram
-from taylor_verify.studies.growth import published
-from taylor_verify.studies.growth.document import Ensemble, GrowthOfQuantity, GrowthStudy
-from taylor_verify.studies.growth.errors import PHASE
-from taylor_verify.studies.growth.experiment import Experiment, QuantityGrowth, experiment
-from taylor_verify.studies.growth.fit import BIAS, Law, growth
-from taylor_verify.studies.growth.published import Entry
-from taylor_verify.studies.growth.question import Question
-from taylor_verify.studies.growth.study import STUDY
+from taylor_verify_reports.studies.growth import page as pages
+from taylor_verify_reports.studies.growth import picture as diagram
+from taylor_verify_reports.studies.growth import published
+from taylor_verify_reports.studies.growth.document import Ensemble, GrowthOfQuantity, GrowthStudy
+from taylor_verify_reports.studies.growth.errors import PHASE
+from taylor_verify_reports.studies.growth.experiment import Experiment, QuantityGrowth, experiment
+from taylor_verify_reports.studies.growth.fit import BIAS, Law, growth
+from taylor_verify_reports.studies.growth.published import Entry
+from taylor_verify_reports.studies.growth.question import Question
+from taylor_verify_reports.studies.growth.study import STUDY
 
 SHORT = 10**3.5
 
@@ -163,10 +163,10 @@ def test_a_run_that_was_stopped_goes_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Stopped between two pieces, the same command ends with the same numbers as one that was not."""
-    monkeypatch.setattr("taylor_verify.studies.growth.question.PIECE_PERIODS", 500)
+    monkeypatch.setattr("taylor_verify_reports.studies.growth.question.PIECE_PERIODS", 500)
     call = ["publish", "growth", "--periods", "3163", "--from"]
     assert main([*call, str(tmp_path / "whole")]) == 0
-    say = "taylor_verify.studies.growth.study.Pieces.__call__"
+    say = "taylor_verify_reports.studies.growth.study.Pieces.__call__"
 
     def stopped(_progress: object, _label: str, done: int, _of: int) -> None:
         if done == 5:

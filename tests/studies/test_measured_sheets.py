@@ -11,15 +11,15 @@ import pytest
 from builders import reports
 from builders.studies.prices import study as prices_study
 
-from taylor_verify.claims.document import ClaimResiduals, ClaimRow, ClaimsStudy, Verdict
 from taylor_verify.records.provenance import Provenance
-from taylor_verify.studies import registry, report
-from taylor_verify.studies.accuracy import page as tables
-from taylor_verify.studies.claims import page as claims
-from taylor_verify.studies.growth import page as growth
-from taylor_verify.studies.prices import page as prices
-from taylor_verify.studies.reach import page as reach
-from taylor_verify.studies.worst import page as worst
+from taylor_verify.report import tables
+from taylor_verify_reports.claims.document import ClaimResiduals, ClaimRow, ClaimsStudy, Verdict
+from taylor_verify_reports.studies import registry, report
+from taylor_verify_reports.studies.claims import page as claims
+from taylor_verify_reports.studies.growth import page as growth
+from taylor_verify_reports.studies.prices import page as prices
+from taylor_verify_reports.studies.reach import page as reach
+from taylor_verify_reports.studies.worst import page as worst
 
 
 @cache

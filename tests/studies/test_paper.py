@@ -13,11 +13,11 @@ import pytest
 from builders import reports
 
 from taylor_verify.cli import main
-from taylor_verify.publish.paper import images
-from taylor_verify.studies import bulk
-from taylor_verify.studies.paper import findings, pack
-from taylor_verify.studies.paper.sources import Sources, read
-from taylor_verify.studies.paper.table import tables
+from taylor_verify_reports.studies import bulk
+from taylor_verify_reports.studies.paper import findings, pack
+from taylor_verify_reports.studies.paper.sources import Sources, read
+from taylor_verify_reports.studies.paper.table import tables
+from taylor_verify_reports.typesetting.paper import images
 
 TEXT = (Path(pack.__file__).parent / "text.md").read_text(encoding="utf-8")
 

@@ -17,11 +17,11 @@ from taylor_verify.models.general import in_general_form
 from taylor_verify.models.problem import Problem
 from taylor_verify.scenes.precision import rung
 from taylor_verify.solvers.taylor.pace import Pace
-from taylor_verify.studies.prices import measure as prices
-from taylor_verify.studies.prices import page as page
-from taylor_verify.studies.prices.document import PricesStudy
-from taylor_verify.studies.prices.study import STUDY
-from taylor_verify.studies.prices.variants import variants
+from taylor_verify_reports.studies.prices import measure as prices
+from taylor_verify_reports.studies.prices import page as page
+from taylor_verify_reports.studies.prices.document import PricesStudy
+from taylor_verify_reports.studies.prices.study import STUDY
+from taylor_verify_reports.studies.prices.variants import variants
 
 F64 = rung("f64")
 NAMES = [variant.name for variant in variants()]

@@ -28,16 +28,17 @@ from builders.verdicts import (
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from taylor_verify.publish.cells import NOTHING, figure
-from taylor_verify.publish.markdown import code, prose
-from taylor_verify.publish.page import MADE_BY
 from taylor_verify.records import store
 from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import GRAVITY, Status
+from taylor_verify.records.store import load, write
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.studies.accuracy import page as tables
-from taylor_verify.studies.report import load, publish, write
+from taylor_verify.report import tables
+from taylor_verify.words.cells import NOTHING, figure
+from taylor_verify.words.markdown import code, prose
+from taylor_verify.words.page import MADE_BY
+from taylor_verify_reports.studies.report import publish
 
 
 @pytest.fixture
@@ -254,17 +255,17 @@ def test_publishing_imports_no_physics(report: Path) -> None:
     """
     program = (
         "import sys, taylor_verify; light = set(sys.modules);"
-        "from taylor_verify.studies.report import publish; publish(sys.argv[1]);"
+        "from taylor_verify_reports.studies.report import publish; publish(sys.argv[1]);"
         "print(*set(sys.modules) - light)"
     )
     ran = subprocess.run(
         [sys.executable, "-c", program, str(report)], capture_output=True, text=True, check=True
     )
     loaded = set(ran.stdout.split())
-    assert "taylor_verify.studies.accuracy.page" in loaded
+    assert "taylor_verify.report.tables" in loaded
     assert loaded.isdisjoint({"heyoka", "mpmath", "flint", "numpy", "gmpy2"})
     own = {name for name in loaded if name.startswith("taylor_verify.")}
-    rooms = {name.split(".")[1] for name in own - {"taylor_verify.claims.document"}}
+    rooms = {name.split(".")[1] for name in own - {"taylor_verify_reports.claims.document"}}
     assert rooms == {"publish", "records", "studies"}
     assert not [name for name in own if name.endswith((".measure", ".measurement"))]
 

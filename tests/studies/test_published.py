@@ -23,40 +23,40 @@ from builders.pages import results
 from builders.schema import violations
 from builders.verdicts import row as baseline_row
 
-from taylor_verify.claims.ledger import claims, examined
-from taylor_verify.claims.numbers import CITED
 from taylor_verify.judge import baseline
 from taylor_verify.judge.rounding_class import FACTOR, LEVEL, compare
-from taylor_verify.publish.page import MADE_BY
-from taylor_verify.publish.paper import images
-from taylor_verify.publish.pictures.picture import Picture, content
+from taylor_verify.plotting.picture import Picture, content
 from taylor_verify.records import store
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.replacement import first_line
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
+from taylor_verify.report.attainable import attainable
 from taylor_verify.scenes.library import EXTREMES, names
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.studies import registry, report
-from taylor_verify.studies.accuracy.attainable import attainable
-from taylor_verify.studies.bulk import patterns
-from taylor_verify.studies.claims import page as claims_page
-from taylor_verify.studies.controls import page as controls
-from taylor_verify.studies.controls.document import CONTROLS
-from taylor_verify.studies.enclosure.measure import SCENES, widths
-from taylor_verify.studies.enclosure.study import ENCLOSURE
-from taylor_verify.studies.engines import stored as board
-from taylor_verify.studies.extremes import page as extremes
-from taylor_verify.studies.gallery import page as gallery
-from taylor_verify.studies.growth import page as growth
-from taylor_verify.studies.paper.pack import pack
-from taylor_verify.studies.prices.page import PRICES
-from taylor_verify.studies.reach.page import REACH
-from taylor_verify.studies.reference import page as reference_files
-from taylor_verify.studies.site.builder import build
-from taylor_verify.studies.stored import Stored
-from taylor_verify.studies.tradeoff import stored as trades
-from taylor_verify.studies.worst.page import WORST
+from taylor_verify.words.page import MADE_BY
+from taylor_verify_reports.claims.ledger import claims, examined
+from taylor_verify_reports.claims.numbers import CITED
+from taylor_verify_reports.studies import registry, report
+from taylor_verify_reports.studies.bulk import patterns
+from taylor_verify_reports.studies.claims import page as claims_page
+from taylor_verify_reports.studies.controls import page as controls
+from taylor_verify_reports.studies.controls.document import CONTROLS
+from taylor_verify_reports.studies.enclosure.measure import SCENES, widths
+from taylor_verify_reports.studies.enclosure.study import ENCLOSURE
+from taylor_verify_reports.studies.engines import stored as board
+from taylor_verify_reports.studies.extremes import page as extremes
+from taylor_verify_reports.studies.gallery import page as gallery
+from taylor_verify_reports.studies.growth import page as growth
+from taylor_verify_reports.studies.paper.pack import pack
+from taylor_verify_reports.studies.prices.page import PRICES
+from taylor_verify_reports.studies.reach.page import REACH
+from taylor_verify_reports.studies.reference import page as reference_files
+from taylor_verify_reports.studies.site.builder import build
+from taylor_verify_reports.studies.stored import Stored
+from taylor_verify_reports.studies.tradeoff import stored as trades
+from taylor_verify_reports.studies.worst.page import WORST
+from taylor_verify_reports.typesetting.paper import images
 
 ROOT = Path(__file__).resolve().parents[2]
 REPORTS = ROOT / "reports"
@@ -147,7 +147,7 @@ def dead_links(page: Path) -> Iterator[str]:
 
 
 def test_no_other_test_reads_what_is_published() -> None:
-    """Tests of code make their data; scripts of reports/upstream and the traps are read where they lie.
+    """Tests of code make their data; the scripts about engines are read where they lie.
 
     Those in a browser look at the pages that `make test-site` has made, in a folder of their own.
     """
@@ -157,9 +157,8 @@ def test_no_other_test_reads_what_is_published() -> None:
         if file.parent.name != "site"
         and re.search(r"""(ROOT|\]) / "reports["/]""", file.read_text(encoding="utf-8"))
     }
-    traps = {"__main__.py", "test_traps.py"}
     board = {"test_published_board.py", "test_engine_findings.py"}
-    assert reading == {"test_published.py", "test_upstream.py"} | traps | board
+    assert reading == {"test_published.py"} | board
 
 
 # Current: what is published is what the code makes of the published data.

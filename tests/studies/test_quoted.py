@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from builders.verdicts import passed
 
-from taylor_verify.studies.accuracy import quoted
-from taylor_verify.studies.accuracy.quoted import BEGIN, END
+from taylor_verify_reports.studies.accuracy import quoted
+from taylor_verify_reports.studies.accuracy.quoted import BEGIN, END
 
 RUNGS = ("f32", "f64", "f80", "f128", "mp237")
 VERDICTS = [

@@ -19,9 +19,12 @@ from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.taylor.names import at_tolerance
-from taylor_verify.studies.reach import measure as reach
-from taylor_verify.studies.reach.document import ReachRow
-from taylor_verify.studies.reach.families import (
+from taylor_verify.tradeoff.attainability import least_error, left_out, narrowest
+from taylor_verify.tradeoff.recommendation import MARGIN, OutOfReach, recommend
+from taylor_verify.tradeoff.setting import setting
+from taylor_verify_reports.studies.reach import measure as reach
+from taylor_verify_reports.studies.reach.document import ReachRow
+from taylor_verify_reports.studies.reach.families import (
     FAMILIES,
     QUARTERS,
     Family,
@@ -29,9 +32,6 @@ from taylor_verify.studies.reach.families import (
     family_named,
     period_of,
 )
-from taylor_verify.studies.tradeoff.attainability import least_error, left_out, narrowest
-from taylor_verify.studies.tradeoff.recommendation import MARGIN, OutOfReach, recommend
-from taylor_verify.studies.tradeoff.setting import setting
 
 F32, F64, F80 = rung("f32"), rung("f64"), rung("f80")
 MEMBERS = [(one, value) for one in FAMILIES for value in one.values]

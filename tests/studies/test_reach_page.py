@@ -18,18 +18,18 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from taylor_verify.cli import main
-from taylor_verify.publish.cells import NOTHING
-from taylor_verify.publish.pictures.palette import TEXT_CONTRAST, contrast, lightness
-from taylor_verify.publish.pictures.picture import plotting
-from taylor_verify.publish.pictures.style import PAGE_WIDTH
+from taylor_verify.plotting.palette import TEXT_CONTRAST, contrast, lightness
+from taylor_verify.plotting.picture import plotting
+from taylor_verify.plotting.style import PAGE_WIDTH
 from taylor_verify.records import store
 from taylor_verify.records.json_text import complete
 from taylor_verify.records.replacement import replace_files
-from taylor_verify.studies.reach import measure as reach
-from taylor_verify.studies.reach import page as page
-from taylor_verify.studies.reach import picture as digits_map
-from taylor_verify.studies.reach.document import ReachRow, ReachStudy
-from taylor_verify.studies.reach.study import STUDY
+from taylor_verify.words.cells import NOTHING
+from taylor_verify_reports.studies.reach import measure as reach
+from taylor_verify_reports.studies.reach import page as page
+from taylor_verify_reports.studies.reach import picture as digits_map
+from taylor_verify_reports.studies.reach.document import ReachRow, ReachStudy
+from taylor_verify_reports.studies.reach.study import STUDY
 
 # The page
 

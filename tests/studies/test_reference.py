@@ -25,11 +25,11 @@ from taylor_verify.cli import main
 from taylor_verify.exact.printed import document
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
-from taylor_verify.publish.page import MADE_BY
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.studies.reference import page as reference_files
-from taylor_verify.studies.reference.measure import DIGITS, reference
+from taylor_verify.words.page import MADE_BY
+from taylor_verify_reports.studies.reference import page as reference_files
+from taylor_verify_reports.studies.reference.measure import DIGITS, reference
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -15,8 +15,8 @@ import pytest
 from builders import reports
 
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.studies.reference import page as reference_files
-from taylor_verify.studies.reference.measure import reference
+from taylor_verify_reports.studies.reference import page as reference_files
+from taylor_verify_reports.studies.reference.measure import reference
 
 MOMENTS = ("1", "2", "3")
 U = 2.0**-53

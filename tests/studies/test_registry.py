@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING
 import pytest
 
 from taylor_verify.cli import main
-from taylor_verify.publish.page import MADE_BY
-from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.plotting.picture import Picture
 from taylor_verify.records import store
 from taylor_verify.records.replacement import replace_files
-from taylor_verify.studies import bulk, registry
-from taylor_verify.studies.registry import STUDIES, UnknownStudy, find
-from taylor_verify.studies.stored import Stored
-from taylor_verify.studies.study import (
+from taylor_verify.words.page import MADE_BY
+from taylor_verify_reports.studies import bulk, registry
+from taylor_verify_reports.studies.registry import STUDIES, UnknownStudy, find
+from taylor_verify_reports.studies.stored import Stored
+from taylor_verify_reports.studies.study import (
     Bulk,
     Measured,
     NotMeasured,

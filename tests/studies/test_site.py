@@ -24,21 +24,21 @@ from hypothesis import strategies as st
 from markdown_it import MarkdownIt
 
 from taylor_verify.cli import main
-from taylor_verify.publish.mathml import inline, mathml
-from taylor_verify.publish.pictures.palette import PAPER, contrast
+from taylor_verify.plotting.palette import PAPER, contrast
 from taylor_verify.solvers.files.file import read
-from taylor_verify.studies.site import builder, conf, motion
-from taylor_verify.studies.site.builder import MADE_BY, build, contents
-from taylor_verify.studies.site.links import relinked
-from taylor_verify.studies.site.scene_page import scene_page
-from taylor_verify.studies.site.source import Report
-from taylor_verify.studies.site.stage import Stage
+from taylor_verify_reports.studies.site import builder, conf, motion
+from taylor_verify_reports.studies.site.builder import MADE_BY, build, contents
+from taylor_verify_reports.studies.site.links import relinked
+from taylor_verify_reports.studies.site.scene_page import scene_page
+from taylor_verify_reports.studies.site.source import Report
+from taylor_verify_reports.studies.site.stage import Stage
+from taylor_verify_reports.typesetting.mathml import inline, mathml
 
 # The paper of the theme where it is dark.
 DARK_PAPER = "#131416"
 # What WCAG 2.1 (1.4.11) asks of a line.
 LINE_CONTRAST = 3.0
-CONF = "from taylor_verify.studies.site.conf import *\n"
+CONF = "from taylor_verify_reports.studies.site.conf import *\n"
 INDEX = """\
 # Docs
 

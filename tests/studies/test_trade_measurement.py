@@ -23,19 +23,19 @@ from taylor_verify.solvers.engines.peer import Peer
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
-from taylor_verify.studies import report
-from taylor_verify.studies.tradeoff import measurement, rounds
-from taylor_verify.studies.tradeoff.cold import in_a_new_process
-from taylor_verify.studies.tradeoff.document import TradePoint, together
-from taylor_verify.studies.tradeoff.measurement import (
+from taylor_verify.tradeoff.cold import in_a_new_process
+from taylor_verify.tradeoff.document import TradePoint, together
+from taylor_verify.tradeoff.order_statistics import CONFIDENCE, coverage, estimate, place
+from taylor_verify.tradeoff.setting import setting as real_setting
+from taylor_verify_reports.studies import report
+from taylor_verify_reports.studies.tradeoff import measurement, rounds
+from taylor_verify_reports.studies.tradeoff.measurement import (
     PROCESSES,
     SCENES,
     published_settings,
     scene_named,
 )
-from taylor_verify.studies.tradeoff.order_statistics import CONFIDENCE, coverage, estimate, place
-from taylor_verify.studies.tradeoff.rounds import YARDSTICK, clock_resolution, measured
-from taylor_verify.studies.tradeoff.setting import setting as real_setting
+from taylor_verify_reports.studies.tradeoff.rounds import YARDSTICK, clock_resolution, measured
 
 # The median and its interval.
 

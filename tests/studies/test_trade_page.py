@@ -13,12 +13,19 @@ from pathlib import Path
 import pytest
 from builders.studies.tradeoff import NUMBERS_MADE, POINTS, SCENE, TIMES_MADE, point
 
-from taylor_verify.publish.cells import NOTHING
-from taylor_verify.studies.tradeoff.document import together
-from taylor_verify.studies.tradeoff.page import front, page, pictures
-from taylor_verify.studies.tradeoff.pictures.trade import floors_of
-from taylor_verify.studies.tradeoff.stored import NUMBERS, TIMINGS, TimedPoint, Trades, load, write
-from taylor_verify.studies.tradeoff.study import STUDY
+from taylor_verify.tradeoff.document import together
+from taylor_verify.tradeoff.pictures.trade import floors_of
+from taylor_verify.words.cells import NOTHING
+from taylor_verify_reports.studies.tradeoff.page import front, page, pictures
+from taylor_verify_reports.studies.tradeoff.stored import (
+    NUMBERS,
+    TIMINGS,
+    TimedPoint,
+    Trades,
+    load,
+    write,
+)
+from taylor_verify_reports.studies.tradeoff.study import STUDY
 
 
 @pytest.fixture(scope="module")

@@ -26,9 +26,9 @@ from taylor_verify.solvers.solver import Callback, Solver
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.taylor.names import at_tolerance
 from taylor_verify.solvers.trajectory import Trajectory
-from taylor_verify.studies.tradeoff.cold import cold
-from taylor_verify.studies.tradeoff.recommendation import recommend
-from taylor_verify.studies.tradeoff.setting import (
+from taylor_verify.tradeoff.cold import cold
+from taylor_verify.tradeoff.recommendation import recommend
+from taylor_verify.tradeoff.setting import (
     NOTHING,
     STEP,
     TOLERANCE,
@@ -38,7 +38,7 @@ from taylor_verify.studies.tradeoff.setting import (
     setting,
     settings,
 )
-from taylor_verify.studies.tradeoff.trade_off import trade_off
+from taylor_verify.tradeoff.trade_off import trade_off
 
 F64 = rung("f64")
 
@@ -239,7 +239,7 @@ def test_the_library_of_a_solver_is_imported_before_it_is_timed() -> None:
         "from taylor_verify.scenes.precision import rung\n"
         "from taylor_verify.scenes.reading.reader import load\n"
         "from taylor_verify.solvers.taylor import driver\n"
-        "from taylor_verify.studies.tradeoff.cold import first_solve\n"
+        "from taylor_verify.tradeoff.cold import first_solve\n"
         "def compiled(*_, **__): sys.exit('heyoka' not in sys.modules)\n"
         "driver.compiled = compiled\n"
         "assert 'heyoka' not in sys.modules\n"

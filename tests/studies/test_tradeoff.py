@@ -29,14 +29,14 @@ from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.taylor.names import at_tolerance
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
-from taylor_verify.studies.tradeoff.accuracy import Accuracy, Truth
-from taylor_verify.studies.tradeoff.attainability import least_error
-from taylor_verify.studies.tradeoff.point import Point, point
-from taylor_verify.studies.tradeoff.recommendation import MARGIN, OutOfReach, recommend, recommended
-from taylor_verify.studies.tradeoff.setting import Setting, settings
-from taylor_verify.studies.tradeoff.starts import STARTS, nearby
-from taylor_verify.studies.tradeoff.timing import Timed, cold_caches, timed
-from taylor_verify.studies.tradeoff.trade_off import (
+from taylor_verify.tradeoff.accuracy import Accuracy, Truth
+from taylor_verify.tradeoff.attainability import least_error
+from taylor_verify.tradeoff.point import Point, point
+from taylor_verify.tradeoff.recommendation import MARGIN, OutOfReach, recommend, recommended
+from taylor_verify.tradeoff.setting import Setting, settings
+from taylor_verify.tradeoff.starts import STARTS, nearby
+from taylor_verify.tradeoff.timing import Timed, cold_caches, timed
+from taylor_verify.tradeoff.trade_off import (
     front,
     front_sentences,
     request_sentences,

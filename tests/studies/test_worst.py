@@ -20,11 +20,11 @@ from taylor_verify.scenes import library
 from taylor_verify.scenes.families.family import Family
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.studies.study import NotMeasured
-from taylor_verify.studies.worst import measure
-from taylor_verify.studies.worst import page as worst
-from taylor_verify.studies.worst.measure import Candidate, SearchedFamily, searched_families
-from taylor_verify.studies.worst.study import STUDY
+from taylor_verify_reports.studies.study import NotMeasured
+from taylor_verify_reports.studies.worst import measure
+from taylor_verify_reports.studies.worst import page as worst
+from taylor_verify_reports.studies.worst.measure import Candidate, SearchedFamily, searched_families
+from taylor_verify_reports.studies.worst.study import STUDY
 
 FAMILIES = searched_families()
 KEPT = library.names(library.WORST)

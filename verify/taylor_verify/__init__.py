@@ -9,7 +9,6 @@
     explain(scene, rung)            the equations, the orbit and the terms of each bound
     tradeoff(scene)                 time against error for every setting
     recommend(scene, error)         the fastest setting that reaches an error, ready to run
-    claims(*ids)                    the ledger of both source texts, examined
 
 These are plain functions. The modules that they are imported from here import what they need when a
 function is called, so that `import taylor_verify` is quick. Some of those modules share the name of their
@@ -19,19 +18,17 @@ function: write `from taylor_verify.exact.route import solution`, never `taylor_
 # A module is imported before its function takes the name: Python sets a submodule as an attribute of
 # its package only once, when it is first imported.
 from taylor_verify.check import check
-from taylor_verify.claims import claims
 from taylor_verify.exact import exact
 from taylor_verify.explain import explain
 from taylor_verify.records.version import __version__
 from taylor_verify.run import run, solve
 from taylor_verify.run_many import run_many
 from taylor_verify.scenes import load
-from taylor_verify.studies.tradeoff import recommend, tradeoff
+from taylor_verify.tradeoff import recommend, tradeoff
 
 __all__ = [
     "__version__",
     "check",
-    "claims",
     "exact",
     "explain",
     "load",

@@ -22,6 +22,8 @@ def run(
     solver: Solver | str = "taylor",
     rung: Rung | str = "f64",
     tolerance: Tolerances | Tolerance = None,
+    *,
+    causes: bool = True,
 ) -> Judgement:
     """Solve one scene on one rung and judge the answer.
 
@@ -37,6 +39,9 @@ def run(
         The error that is allowed, in place of the bounds that follow from the arithmetic: a number for all
         quantities, or a number by quantity (``{"omega": 1e-8}``; the others keep their bounds). It is
         relative, and radians for the attitude.
+    causes
+        Whether the likely causes of failures are searched for. The search takes several times as long as
+        the rest, and changes no verdict.
 
     Returns
     -------
@@ -83,7 +88,8 @@ def run(
     seconds = perf_counter() - began
     judged = judgement(problem, solver, trajectory, seconds, asked)
     judged = with_initial(judged, float(problem.given.clock.start))
-    judged = with_causes(judged, problem, trajectory)
+    if causes:
+        judged = with_causes(judged, problem, trajectory)
     judged = with_note_of_answer(judged, rung, trajectory)
     return replace(judged, costs=total([costs.seconds, judged.costs]))
 

@@ -98,8 +98,8 @@ def run_many(
     from taylor_verify.batch.report import ReportNotWritten
     from taylor_verify.batch.selection import Selection, select
     from taylor_verify.judge.tolerances import tolerances
+    from taylor_verify.report.folder import write_report
     from taylor_verify.solvers.registry import solver_named
-    from taylor_verify.studies.report import write_report
 
     if faults := list(_faults(solver, jobs, executor, resume, out, progress)):
         raise ValueError("\n".join(faults))

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from taylor_verify.claims.check import Residual
-from taylor_verify.claims.claim import Claim
-from taylor_verify.claims.document import ClaimRow, ClaimsStudy
-from taylor_verify.claims.ledger import claims, examined
-from taylor_verify.claims.numbers import CITED
 from taylor_verify.records.provenance import Provenance
+from taylor_verify_reports.claims.check import Residual
+from taylor_verify_reports.claims.claim import Claim
+from taylor_verify_reports.claims.document import ClaimRow, ClaimsStudy
+from taylor_verify_reports.claims.ledger import claims, examined
+from taylor_verify_reports.claims.numbers import CITED
 
 
 def row(claim: Claim) -> ClaimRow:

@@ -6,8 +6,8 @@ from dataclasses import replace
 from functools import cache
 
 from taylor_verify.records.provenance import Machine
-from taylor_verify.studies.engines.answer import Answer, answered, row_of
-from taylor_verify.studies.engines.document import (
+from taylor_verify_reports.studies.engines.answer import Answer, answered, row_of
+from taylor_verify_reports.studies.engines.document import (
     STATES,
     Board,
     EngineRow,
@@ -15,8 +15,8 @@ from taylor_verify.studies.engines.document import (
     EnginesTimings,
     Standing,
 )
-from taylor_verify.studies.engines.entry import BoardScene, Entry, EntryList
-from taylor_verify.studies.engines.measure import board_of
+from taylor_verify_reports.studies.engines.entry import BoardScene, Entry, EntryList
+from taylor_verify_reports.studies.engines.measure import board_of
 
 SCENE = "engines/oblique"
 # An engine of fourth order, one of second order, and a plain solver.

@@ -7,7 +7,12 @@ from taylor_verify.records.answers import LeftOut
 from taylor_verify.records.provenance import Machine
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.studies.extremes.document import Expected, ExtremesStudy, ExtremeVerdict, Titled
+from taylor_verify_reports.studies.extremes.document import (
+    Expected,
+    ExtremesStudy,
+    ExtremeVerdict,
+    Titled,
+)
 
 WHY = "one roundoff grows to the size of the motion"
 VACUOUS = passed("extremes/long", "f64", "omega", verdict=Status.VACUOUS, bound=3.0)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from taylor_verify.records.provenance import SceneProvenance
-from taylor_verify.studies.reach import page as page
-from taylor_verify.studies.reach.document import ReachFamily, ReachRow, ReachStudy
+from taylor_verify_reports.studies.reach import page as page
+from taylor_verify_reports.studies.reach.document import ReachFamily, ReachRow, ReachStudy
 
 
 def row(value: str, name: str, *errors: float | None, why: str = "") -> ReachRow:

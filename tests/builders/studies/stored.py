@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from taylor_verify.studies.stored import Stored
-from taylor_verify.studies.study import Study
+from taylor_verify_reports.studies.stored import Stored
+from taylor_verify_reports.studies.study import Study
 
 
 def publish_document(

@@ -7,7 +7,7 @@ from math import log10
 from typing import Any
 
 from taylor_verify.records.standing import Standing
-from taylor_verify.studies.tradeoff.document import (
+from taylor_verify.tradeoff.document import (
     PlainDouble,
     TimingMachine,
     TimingMethod,

@@ -8,7 +8,7 @@ from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.families.draw import Draw
 from taylor_verify.scenes.families.family import Family, Variable
-from taylor_verify.studies.worst.measure import Candidate, FamilyResult, SearchedFamily
+from taylor_verify_reports.studies.worst.measure import Candidate, FamilyResult, SearchedFamily
 
 
 def verdict(ratio: float | None, status: Status = Status.PASS) -> Verdict:

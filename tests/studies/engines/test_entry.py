@@ -10,7 +10,7 @@ import pytest
 from taylor_verify.scenes.library import ENGINES, names
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.registry import solver_named
-from taylor_verify.studies.engines.entry import BoardScene, Entry, entry_list
+from taylor_verify_reports.studies.engines.entry import BoardScene, Entry, entry_list
 
 SCENES = (
     BoardScene("engines/oblique", sweep=True, shipped=True),

@@ -13,13 +13,13 @@ import pytest
 from builders.studies.engines import ENTRIES, SPINNER, answers, board
 
 from taylor_verify.solvers.engines.launcher import NotMade
-from taylor_verify.studies.engines import measure as measuring
-from taylor_verify.studies.engines import stored, trajectories
-from taylor_verify.studies.engines.answer import Answer, answered
-from taylor_verify.studies.engines.document import Standing
-from taylor_verify.studies.engines.entry import Asked, EntryList
-from taylor_verify.studies.engines.measure import answers_of, judged_again, measure
-from taylor_verify.studies.engines.unfinished import Unfinished
+from taylor_verify_reports.studies.engines import measure as measuring
+from taylor_verify_reports.studies.engines import stored, trajectories
+from taylor_verify_reports.studies.engines.answer import Answer, answered
+from taylor_verify_reports.studies.engines.document import Standing
+from taylor_verify_reports.studies.engines.entry import Asked, EntryList
+from taylor_verify_reports.studies.engines.measure import answers_of, judged_again, measure
+from taylor_verify_reports.studies.engines.unfinished import Unfinished
 
 
 @cache

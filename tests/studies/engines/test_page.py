@@ -19,15 +19,15 @@ from builders.studies.engines import (
     made_up,
 )
 
-from taylor_verify.publish.pictures.picture import content
-from taylor_verify.studies.engines import page, stored
-from taylor_verify.studies.engines.advice import advice
-from taylor_verify.studies.engines.document import EngineRow, Standing
-from taylor_verify.studies.engines.engine_page import pages
-from taylor_verify.studies.engines.entry import Entry, EntryList
-from taylor_verify.studies.engines.pictures import energy, sweeps, work
-from taylor_verify.studies.engines.ranking import digits, settings
-from taylor_verify.studies.engines.study import STUDY
+from taylor_verify.plotting.picture import content
+from taylor_verify_reports.studies.engines import page, stored
+from taylor_verify_reports.studies.engines.advice import advice
+from taylor_verify_reports.studies.engines.document import EngineRow, Standing
+from taylor_verify_reports.studies.engines.engine_page import pages
+from taylor_verify_reports.studies.engines.entry import Entry, EntryList
+from taylor_verify_reports.studies.engines.pictures import energy, sweeps, work
+from taylor_verify_reports.studies.engines.ranking import digits, settings
+from taylor_verify_reports.studies.engines.study import STUDY
 
 
 @pytest.fixture(autouse=True)

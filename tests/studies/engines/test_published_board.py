@@ -9,9 +9,9 @@ import pytest
 
 from taylor_verify.records.quantities import COLUMNS, state_groups
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.studies.engines import stored, trajectories
-from taylor_verify.studies.engines.document import Board, EngineRow
-from taylor_verify.studies.engines.replay import errors_of, judged
+from taylor_verify_reports.studies.engines import stored, trajectories
+from taylor_verify_reports.studies.engines.document import Board, EngineRow
+from taylor_verify_reports.studies.engines.replay import errors_of, judged
 
 REPORTS = Path(__file__).resolve().parents[3] / "reports"
 MEGABYTE = 1_000_000

@@ -16,7 +16,7 @@ from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 
 if TYPE_CHECKING:
-    from taylor_verify.publish.ci.case import Remark
+    from taylor_verify.words.case import Remark
 
 
 class ReportNotWritten(OSError):  # noqa: N818 (it names what happened to the report)
@@ -56,8 +56,8 @@ def write_junit(
     its row; where that comparison decides alone, what fails its own bound alone is none. The file is green
     only where the exit statuses are 0. Raises OSError.
     """
-    from taylor_verify.publish.ci.junit import junit
     from taylor_verify.records.replacement import replace_files
+    from taylor_verify.words.junit import junit
 
     place = Path(file)
     by_remarks = comparison is not None and comparison.decides
@@ -67,7 +67,7 @@ def write_junit(
 
 def remarks(results: Judgements | Judgement, comparison: Comparison | None = None) -> list[Remark]:
     """Return the remarks on rows for a CI, besides their verdicts: unexpected answers, and regressions."""
-    from taylor_verify.publish.ci.case import Remark
+    from taylor_verify.words.case import Remark
 
     remarked: list[Remark] = []
 

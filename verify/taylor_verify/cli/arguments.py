@@ -20,13 +20,15 @@ from functools import partial
 from importlib import import_module
 from typing import Any, Final, NoReturn
 
-from taylor_verify.cli import publishing
 from taylor_verify.cli.answer import Answer
 from taylor_verify.cli.completion import SHELLS
+from taylor_verify.cli.verbs import add, verbs
 from taylor_verify.records.version import __version__
 from taylor_verify.scenes.names import escaped
 
 _VERB: Final = "VERB"
+# What this distribution publishes is not on the first page of help.
+_OWN_PACKAGE: Final = "taylor-verify"
 # Words that count as rungs, even if misspelt: a scene with such a name is written ./f64.
 _RUNG_NAME = re.compile(r"(f|mp)\d*", re.IGNORECASE)
 _NEGATIVE_TIME = re.compile(r"-[\d.]")
@@ -170,6 +172,7 @@ what FAMILY  a shipped family (`taylor-verify list`), a template (a scene file i
 --points random|sobol  how the points are spread; default: what the template says, else random
 {_SOLVER}
 {_RUNG}
+{_TOLERANCE.strip()}
 --executor E [local]  local, or dask:ADDRESS of a dask scheduler; default: local
 --jobs N  the number of processes on this machine; default: one for each core
 --out DIR  write the rows (Parquet), a summary, a picture and the worst cases to DIR
@@ -193,20 +196,6 @@ files* FILE  trajectory files, read as `check` reads them: their errors are draw
 --accept-conventions  correct the conventions of the files before their errors are drawn, as in `check`
 """,
     ),
-    "claims": (
-        "check every numbered equation and every claim of the two source texts",
-        'claims "hydromechanics 49 (17)"',
-        """
-ids* ID  "heinbockel (2.2.70)", the number "(2.2.70)" alone, or a whole text, "hydromechanics 48"; default:
-  all statements
-""",
-    ),
-    # Its arguments are those of the studies.
-    "publish": (
-        "write what the project publishes: measure studies, or make pages of what is stored",
-        "publish growth --periods 1e4",
-        "",
-    ),
 }
 
 
@@ -215,7 +204,7 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
 
     Raises SystemExit for --help and for a wrong call.
     """
-    parser = _parser("publish" in arguments)
+    parser = _parser(arguments)
     try:
         options, left = parser.parse_known_args(_with_times_attached(arguments))
     except argparse.ArgumentError as error:
@@ -228,10 +217,9 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
         options.act = partial(_complete, options.completion)
     scenes = getattr(options, "scenes", None)
     files = getattr(options, "files", None)
-    studies = getattr(options, "studies", None)
-    if studies is not None:
-        # An option that is none is named by the verb, beside what there is: `--growth` was one.
-        options.studies, left = [*studies, *left], []
+    if hasattr(options, "unknown"):
+        # A verb of a plug-in may name an unknown word itself, beside what there is.
+        options.unknown, left = left, []
     if left and ((scenes is None and files is None) or any(word.startswith("-") for word in left)):
         options.verb.error(_unknown_words(left, options.verb))
     if scenes is not None:
@@ -247,8 +235,9 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
 def _unknown_verb(arguments: Sequence[str]) -> str:
     """Return the message for a first word that is no verb, with those that are near to it."""
     word = next(word for word in arguments if not word.startswith("-"))
+    known = [*_VERBS, *(verb.name for verb in verbs(_VERBS))]
     return (
-        f"expected a verb, got {word} ({_near(word, _VERBS, '`taylor-verify --help` names them')})"
+        f"expected a verb, got {word} ({_near(word, known, '`taylor-verify --help` names them')})"
     )
 
 
@@ -277,7 +266,7 @@ def _complete(shell: str, options: argparse.Namespace) -> Answer:
     from taylor_verify.cli.completion import completion
 
     del options
-    return completion(_parser(is_publishing=True), shell)
+    return completion(_parser([verb.name for verb in verbs(_VERBS)]), shell)
 
 
 def _with_times_attached(arguments: Sequence[str]) -> list[str]:
@@ -313,7 +302,8 @@ class _Parser(argparse.ArgumentParser):
         super().exit(status, message and escaped(message))
 
 
-def _parser(is_publishing: bool) -> argparse.ArgumentParser:
+def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
+    """Return the parser; verbs of other packages are loaded if they are among the words."""
     parser = _Parser(
         prog="taylor-verify",
         description="Find out how wrong a simulation is: of a rigid body, or of a solid in an ideal "
@@ -333,24 +323,37 @@ def _parser(is_publishing: bool) -> argparse.ArgumentParser:
         help=f"print the script by which a shell completes words: {', '.join(SHELLS)} (needs shtab)",
     )
     parser.set_defaults(act=_greet, verb=parser, json=False)
-    verbs = parser.add_subparsers(title="verbs", metavar=_VERB)
+    own = parser.add_subparsers(title="verbs", metavar=_VERB)
     for name, (what, example, arguments) in _VERBS.items():
-        verb = verbs.add_parser(
-            name,
-            help=what,
-            description=what[0].upper() + what[1:] + ".",
-            epilog=f"example: taylor-verify {example}",
-            allow_abbrev=False,
-        )
-        verb.add_argument("--json", action="store_true", help="print one JSON document on stdout")
-        verb.set_defaults(act=partial(_act, name), verb=verb)
+        verb = _verb_parser(own, name, what, example)
+        verb.set_defaults(act=partial(_act, name))
         for line in arguments.replace("\n  ", " ").split("\n"):
             if line:
                 _add(verb, line)
-        if name == "publish":
-            verb.set_defaults(act=publishing.publish)
-            publishing.add_options(verb, is_publishing)
+    for plugged in verbs(_VERBS):
+        if plugged.name in words:
+            add(_verb_parser(own, plugged.name, *plugged.described()), plugged)
+        elif plugged.package == _OWN_PACKAGE:
+            own.add_parser(plugged.name)
+        else:
+            own.add_parser(plugged.name, help=f"a verb of the package {plugged.package}")
     return parser
+
+
+def _verb_parser(
+    verbs: argparse._SubParsersAction[_Parser], name: str, what: str, example: str
+) -> argparse.ArgumentParser:
+    """Return the parser of a verb, with what every verb has."""
+    verb = verbs.add_parser(
+        name,
+        help=what,
+        description=what[:1].upper() + what[1:] + ".",
+        epilog=f"example: taylor-verify {example}" if example else None,
+        allow_abbrev=False,
+    )
+    verb.add_argument("--json", action="store_true", help="print one JSON document on stdout")
+    verb.set_defaults(verb=verb)
+    return verb
 
 
 def _act(name: str, options: argparse.Namespace) -> Answer:

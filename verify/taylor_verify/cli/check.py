@@ -138,7 +138,7 @@ def _picture(
     steps: Sequence[float] | None,
 ) -> Path | None:
     """Return the file of --picture, known to be possible before the work begins."""
-    from taylor_verify.publish.pictures.picture import ENDINGS
+    from taylor_verify.plotting.picture import ENDINGS
 
     if options.picture is None:
         return None
@@ -159,8 +159,8 @@ def _drawn(judged: FilesJudgement, path: Path | None) -> list[str]:
     """Draw the errors against the steps, and say where."""
     if path is None:
         return []
-    from taylor_verify.publish.pictures import order
-    from taylor_verify.publish.pictures.picture import save_as
+    from taylor_verify.plotting import order
+    from taylor_verify.plotting.picture import save_as
 
     if not any(order.has_points(one) for one in judged.order):
         return [f"no picture: no error above zero at a known step @ {path}"]

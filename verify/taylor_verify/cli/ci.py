@@ -16,12 +16,12 @@ from taylor_verify.cli.answer import WRONG_CALL, Answer, WrongCall, graver, wron
 from taylor_verify.cli.folders import not_written, writable_file
 from taylor_verify.cli.streams import tell_runner
 from taylor_verify.judge.judgement import Judgement
-from taylor_verify.publish.ci.annotations import annotation_lines
-from taylor_verify.publish.ci.step_summary import step_summary
 from taylor_verify.records.answers import AgainstBaseline
 from taylor_verify.records.json_text import complete
 from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.words.annotations import annotation_lines
+from taylor_verify.words.step_summary import step_summary
 
 # The variable that names the file for the summary of a step, set by GitHub's runner.
 _SUMMARY: Final = "GITHUB_STEP_SUMMARY"

@@ -69,17 +69,25 @@ def require_matplotlib(option: str) -> None:
 
 
 def read_tolerances(text: str | None, scenes: Iterable[Scene]) -> Tolerances:
-    """Return the tolerances that --tolerance asks for: one number for all, or one for each of some.
+    """Return the tolerances that --tolerance asks for, checked against some scenes.
 
     Raises WrongCall for what is none.
     """
-    from taylor_verify.judge.tolerances import NO_TOLERANCES, tolerances
+    from taylor_verify.judge.tolerances import tolerances
 
-    if text is None:
-        return NO_TOLERANCES
     with wrong_calls():
-        asked: Any = _by_name(text) if "=" in text else _tolerance(text)
-        return tolerances(asked, scenes, "--tolerance")
+        return tolerances(parse_tolerance(text), scenes, "--tolerance")
+
+
+def parse_tolerance(text: str | None) -> Any:
+    """Return the number for all quantities, or the numbers by name, in the text of --tolerance.
+
+    A text that is no number is returned as it is, for `tolerances` to refuse. Raises ValueError for names
+    that are not each given once.
+    """
+    if text is None:
+        return None
+    return _by_name(text) if "=" in text else _tolerance(text)
 
 
 def _by_name(text: str) -> dict[str, Any]:

@@ -17,11 +17,11 @@ from taylor_verify.batch.sweeps.sweep import sweep
 from taylor_verify.cli.answer import Answer, WrongCall, wrong_calls
 from taylor_verify.cli.console import Page, bold, print_table
 from taylor_verify.cli.folders import writable
-from taylor_verify.cli.inputs import known_rungs
+from taylor_verify.cli.inputs import known_rungs, parse_tolerance
 from taylor_verify.cli.progress import working
 from taylor_verify.cli.sentences import figure, print_end, status_text
 from taylor_verify.cli.streams import say
-from taylor_verify.publish.pictures.exceedance import STEM
+from taylor_verify.plotting.exceedance import STEM
 from taylor_verify.records.quantities import INITIAL
 from taylor_verify.records.sweep import Spread, SweepSummary
 
@@ -48,6 +48,8 @@ def answer(options: argparse.Namespace) -> Answer:
             "expected --jobs or --executor, which has its own number, got both @ --jobs"
         )
     began = monotonic()
+    with wrong_calls():
+        tolerance = parse_tolerance(options.tolerance)
     with (
         wrong_calls(" @ --executor", Unreachable),
         wrong_calls(" (--out)", Occupied),
@@ -65,6 +67,7 @@ def answer(options: argparse.Namespace) -> Answer:
             points=options.points,
             solver=options.solver,
             rung=rung,
+            tolerance=tolerance,
             executor=placed.executor,
             jobs=options.jobs,
             out=folder,
@@ -100,7 +103,7 @@ def _text(summary: SweepSummary) -> str:
     print_table(page.console, _HEADINGS, [_cells(each) for each in summary.quantities], keys=1)
     page.line()
     floor = "the roundoff floor, which perfect rounding would leave"
-    page.line(f"Errors over {floor}; a body fails above {summary.factor}.")
+    page.line(f"Errors over {floor}; a body fails above {summary.bound}.")
     page.line()
     if summary.worst:
         page.line(bold("the worst cases"), ", each with the numbers that `run` finds for its scene")
@@ -109,6 +112,8 @@ def _text(summary: SweepSummary) -> str:
         size = case.because if case.ratio is None else f"{case.ratio:.3g}"
         words = f"  {case.scene}  {case.quantity} {size}"
         page.line(status_text(case.verdict.value), f"{words}  {case.file}".rstrip())
+        for cause in case.causes:
+            page.line(f"likely cause: {cause}")
     page.line()
     print_end(page, [], f"bodies: {counts(summary)}", summary.exit_status, explained=True)
     return page.text()

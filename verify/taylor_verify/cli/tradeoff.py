@@ -30,10 +30,10 @@ from taylor_verify.records.replacement import replace_files
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines.engine import prepare
 from taylor_verify.solvers.engines.launcher import NotMade
-from taylor_verify.studies.tradeoff.cold import cold
-from taylor_verify.studies.tradeoff.document import label
-from taylor_verify.studies.tradeoff.recommendation import OutOfReach, check_target, recommended
-from taylor_verify.studies.tradeoff.setting import (
+from taylor_verify.tradeoff.cold import cold
+from taylor_verify.tradeoff.document import label
+from taylor_verify.tradeoff.recommendation import OutOfReach, check_target, recommended
+from taylor_verify.tradeoff.setting import (
     RUNGS,
     Setting,
     chosen,
@@ -41,8 +41,8 @@ from taylor_verify.studies.tradeoff.setting import (
     settings,
     toleranced,
 )
-from taylor_verify.studies.tradeoff.timing import cold_caches
-from taylor_verify.studies.tradeoff.trade_off import TradeOff, sound_points, trade_off
+from taylor_verify.tradeoff.timing import cold_caches
+from taylor_verify.tradeoff.trade_off import TradeOff, sound_points, trade_off
 
 _NOT_RUN = "not run"
 _HEADINGS = {
@@ -95,7 +95,7 @@ def answer(options: argparse.Namespace) -> Answer:
 
 def _draw(documents: Sequence[Mapping[str, Any]], place: Path) -> list[Path]:
     """Write the pictures of each scene and the document itself, whole or not at all."""
-    from taylor_verify.studies.tradeoff.pictures import trade
+    from taylor_verify.tradeoff.pictures import trade
 
     sound = [one for one in documents if any(row["standing"] == "sound" for row in one["points"])]
     drawn = [path for one in sound for path in trade.draw(one, place)]

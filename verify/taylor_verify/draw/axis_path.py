@@ -17,8 +17,8 @@ import numpy as np
 from taylor_verify.draw.caption import NotDrawn, caption
 from taylor_verify.draw.stage import END, START, Look, Stage, scale
 from taylor_verify.draw.view import Ellipsoid, Numbers, View
-from taylor_verify.publish.pictures.picture import Picture
-from taylor_verify.publish.pictures.wording import stem_of
+from taylor_verify.plotting.picture import Picture
+from taylor_verify.plotting.wording import stem_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

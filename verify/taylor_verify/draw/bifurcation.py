@@ -21,10 +21,10 @@ from taylor_verify.draw.caption import NotDrawn, caption
 from taylor_verify.draw.spins import Branch, Wheels, number
 from taylor_verify.draw.stage import Look
 from taylor_verify.draw.view import Numbers
-from taylor_verify.publish.pictures.palette import INK, QUIET
-from taylor_verify.publish.pictures.picture import Picture
-from taylor_verify.publish.pictures.sheet import Entry, sheet
-from taylor_verify.publish.pictures.wording import plain, stem_of
+from taylor_verify.plotting.palette import INK, QUIET
+from taylor_verify.plotting.picture import Picture
+from taylor_verify.plotting.sheet import Entry, sheet
+from taylor_verify.plotting.wording import plain, stem_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -19,11 +19,11 @@ from taylor_verify.draw.caption import NotDrawn, caption
 from taylor_verify.draw.solid import AXES, by_depth, draw_ellipsoid, draw_frame, reach
 from taylor_verify.draw.stage import END, START, Look, Stage, scale
 from taylor_verify.draw.view import Numbers, View
-from taylor_verify.publish.pictures.palette import FAINT, INK, QUIET
-from taylor_verify.publish.pictures.picture import Picture
-from taylor_verify.publish.pictures.sheet import Entry
-from taylor_verify.publish.pictures.style import SMALL
-from taylor_verify.publish.pictures.wording import stem_of
+from taylor_verify.plotting.palette import FAINT, INK, QUIET
+from taylor_verify.plotting.picture import Picture
+from taylor_verify.plotting.sheet import Entry
+from taylor_verify.plotting.style import SMALL
+from taylor_verify.plotting.wording import stem_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

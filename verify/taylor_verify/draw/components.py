@@ -15,11 +15,11 @@ import numpy as np
 
 from taylor_verify.draw.caption import NotDrawn, caption
 from taylor_verify.draw.view import Numbers
-from taylor_verify.publish.pictures.palette import INK, PAPER, QUIET
-from taylor_verify.publish.pictures.picture import Picture
-from taylor_verify.publish.pictures.sheet import Entry, sheet
-from taylor_verify.publish.pictures.style import SMALL
-from taylor_verify.publish.pictures.wording import stem_of
+from taylor_verify.plotting.palette import INK, PAPER, QUIET
+from taylor_verify.plotting.picture import Picture
+from taylor_verify.plotting.sheet import Entry, sheet
+from taylor_verify.plotting.style import SMALL
+from taylor_verify.plotting.wording import stem_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -17,12 +17,12 @@ import numpy as np
 
 from taylor_verify.draw.caption import NotDrawn, caption
 from taylor_verify.draw.view import Numbers
-from taylor_verify.publish.pictures.log_axes import powers_within, widened
-from taylor_verify.publish.pictures.palette import QUIET
-from taylor_verify.publish.pictures.picture import Picture
-from taylor_verify.publish.pictures.sheet import Entry, sheet
-from taylor_verify.publish.pictures.style import look_of_line
-from taylor_verify.publish.pictures.wording import plain, power_of_ten, stem_of
+from taylor_verify.plotting.log_axes import powers_within, widened
+from taylor_verify.plotting.palette import QUIET
+from taylor_verify.plotting.picture import Picture
+from taylor_verify.plotting.sheet import Entry, sheet
+from taylor_verify.plotting.style import look_of_line
+from taylor_verify.plotting.wording import plain, power_of_ten, stem_of
 from taylor_verify.records.quantities import STATES, is_conserved
 from taylor_verify.records.record import Record
 

@@ -16,9 +16,9 @@ from taylor_verify.draw.mesh import Face
 from taylor_verify.draw.moving import Moving
 from taylor_verify.draw.polhode import facing
 from taylor_verify.draw.view import Ellipsoid, Numbers, View, pieces
-from taylor_verify.publish.pictures.palette import INK, PAPER, QUIET
-from taylor_verify.publish.pictures.picture import plotting
-from taylor_verify.publish.pictures.style import SMALL
+from taylor_verify.plotting.palette import INK, PAPER, QUIET
+from taylor_verify.plotting.picture import plotting
+from taylor_verify.plotting.style import SMALL
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

@@ -16,10 +16,10 @@ from taylor_verify.draw.axis_path import momentum_of
 from taylor_verify.draw.caption import NotDrawn, caption
 from taylor_verify.draw.stage import END, START, Look, Stage, scale
 from taylor_verify.draw.view import Numbers, View
-from taylor_verify.publish.pictures.palette import QUIET
-from taylor_verify.publish.pictures.picture import Picture
-from taylor_verify.publish.pictures.sheet import Entry
-from taylor_verify.publish.pictures.wording import plain, stem_of
+from taylor_verify.plotting.palette import QUIET
+from taylor_verify.plotting.picture import Picture
+from taylor_verify.plotting.sheet import Entry
+from taylor_verify.plotting.wording import plain, stem_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -19,10 +19,10 @@ from taylor_verify.draw.caption import NotDrawn, caption
 from taylor_verify.draw.spins import ZERO, Spin, Wheels
 from taylor_verify.draw.stage import START, Look, Stage
 from taylor_verify.draw.view import Ellipsoid, Numbers, View
-from taylor_verify.publish.pictures.palette import INK, PAPER
-from taylor_verify.publish.pictures.picture import Picture
-from taylor_verify.publish.pictures.sheet import Entry
-from taylor_verify.publish.pictures.wording import plain, stem_of
+from taylor_verify.plotting.palette import INK, PAPER
+from taylor_verify.plotting.picture import Picture
+from taylor_verify.plotting.sheet import Entry
+from taylor_verify.plotting.wording import plain, stem_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -17,7 +17,7 @@ from taylor_verify.draw import (
     spheres,
 )
 from taylor_verify.draw.caption import NotDrawn
-from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.plotting.picture import Picture
 
 Document = Mapping[str, Any]
 

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from taylor_verify.draw.view import Ellipsoid, Numbers, View, pieces
-from taylor_verify.publish.pictures.palette import INK, PAPER, QUIET
-from taylor_verify.publish.pictures.sheet import Entry, Frame, add_axes, blank, draw_legend
-from taylor_verify.publish.pictures.style import PAGE_WIDTH, SMALL
+from taylor_verify.plotting.palette import INK, PAPER, QUIET
+from taylor_verify.plotting.sheet import Entry, Frame, add_axes, blank, draw_legend
+from taylor_verify.plotting.style import PAGE_WIDTH, SMALL
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -1,7 +1,7 @@
 """The truth: exact motions, conserved quantities and the condition of an orbit.
 
-How a motion changes with its start and its body: exact.conditioning.sensitivity. The room imports
-nothing of models, solvers or judge, because what it is compared with must not be part of it.
+The room imports nothing of models, solvers or judge, because what it is compared with must not be part
+of it.
 """
 
 from __future__ import annotations

@@ -6,16 +6,13 @@ A new kind is a folder with one class like exact.euler.rigid.Rigid, and one line
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
 from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
 from taylor_verify.exact.equations import Equations
 from taylor_verify.exact.invariant import Invariant
-from taylor_verify.exact.parameters import Parameters
 from taylor_verify.exact.units import Units
-from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.motion import State
@@ -44,11 +41,6 @@ class Kind(ABC, Generic[B, S]):
     Its module ``closed`` has the closed forms of a scene: ``enclosed`` in balls, ``closed_form`` in mpmath;
     each may raise NoClosedForm. Its module ``elements`` has ``elements`` (scene, digits) of the orbit.
     """
-
-    @property
-    def components(self) -> Mapping[str, tuple[str, ...]]:
-        """The names of the components of each quantity in z."""
-        return {name: COLUMNS[name] for name in self.moving}
 
     # The state and the equations.
 
@@ -111,9 +103,3 @@ class Kind(ABC, Generic[B, S]):
     @abstractmethod
     def sizes(self, scene: Scene, motion: Any) -> list[Array]:
         """The sizes (n,) at every row of a motion that the scales of the invariants are made of."""
-
-    # What a motion depends on.
-
-    @abstractmethod
-    def parameters(self, body: B) -> Parameters:
-        """The numbers of the body that a motion depends on."""

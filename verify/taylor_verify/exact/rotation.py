@@ -14,10 +14,9 @@ from flint import arb
 from taylor_verify.exact.balls import ball
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.motion import Quaternion
-from taylor_verify.scenes.pairs import Pairs
 from taylor_verify.scenes.tensors import Matrix
 
-Number = TypeVar("Number", Fraction, arb, Pairs)
+Number = TypeVar("Number", Fraction, arb)
 
 
 def cross(p: Sequence[Number], q: Sequence[Number]) -> list[Number]:

@@ -41,6 +41,13 @@ class Tolerances:
         name = "attitude" if quantity == UNIT_QUATERNION else quantity
         return dict(self.each).get(name, self.every)
 
+    @property
+    def text(self) -> str | None:
+        """The tolerances as `--tolerance` takes them; None without a tolerance."""
+        if self.every is not None:
+            return repr(self.every)
+        return ",".join(f"{name}={value!r}" for name, value in self.each) or None
+
 
 NO_TOLERANCES: Final = Tolerances()
 

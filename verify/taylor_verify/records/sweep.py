@@ -43,7 +43,10 @@ class Spread:
 
 @dataclass(frozen=True)
 class WorstCase:
-    """A body that came nearest to failing, or failed; ``file`` is its scene below the folder."""
+    """A body that came nearest to failing, or failed; ``file`` is its scene below the folder.
+
+    ``causes`` are the likely causes of its failures, each a sentence.
+    """
 
     point: int
     scene: str
@@ -52,6 +55,7 @@ class WorstCase:
     ratio: Annotated[Size | None, about("Error over attainable; null where there is no number.")]
     max: Size | None
     because: str = ""
+    causes: tuple[str, ...] = ()
     file: str = ""
     drawn: dict[str, float] = field(default_factory=dict)
 
@@ -60,7 +64,8 @@ class WorstCase:
 class SweepSummary:
     """The sweep of one family or folder by one solver.
 
-    ``bodies`` counts the bodies by the gravest of their verdicts.
+    ``bodies`` counts the bodies by the gravest of their verdicts. ``tolerance`` is what was asked for in
+    place of the bounds from the arithmetic, as `--tolerance` takes it; None if nothing was.
     """
 
     name: str
@@ -76,11 +81,17 @@ class SweepSummary:
     worst: tuple[WorstCase, ...]
     factor: int
     exit_status: int
+    tolerance: str | None = None
     lacks: Annotated[tuple[str, ...], about("Why nothing was judged, where nothing was.")] = ()
     refusals: Annotated[
         tuple[str, ...], about("Some of the reasons why drawn numbers make no body.")
     ] = ()
     provenance: Provenance = field(default_factory=Provenance)
+
+    @property
+    def bound(self) -> str:
+        """The size above which a body fails, in words: a multiple of the floor, or the tolerance."""
+        return str(self.factor) if self.tolerance is None else f"the tolerance {self.tolerance}"
 
     @property
     def passed(self) -> bool:

@@ -37,7 +37,7 @@ class Family(NamedTuple):
 
 _GEOMETRIC = "implicit-midpoint splitting moser-veselov preprocessed-moser-veselov lie-rk4"
 _SCIPY = "RK45 DOP853 Radau BDF LSODA"
-_TAYLOR = (TAYLOR, "taylor?tol=NUMBER", "taylor?code=optimised", "taylor?bodies=NUMBER")
+_TAYLOR = (TAYLOR, "taylor?tol=NUMBER", "taylor?code=optimised")
 _STEPPED = tuple(f"geometric:{method}?step=NUMBER" for method in _GEOMETRIC.split())
 _TOLERANT = tuple(f"scipy:{method}?rtol=NUMBER&atol=NUMBER" for method in _SCIPY.split())
 _ODEFUN = ("mpmath:odefun?tol=NUMBER&degree=NUMBER",)

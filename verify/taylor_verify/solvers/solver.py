@@ -42,8 +42,7 @@ class Solver(ABC):
     """Something that answers a problem with a trajectory and never raises for a failed run.
 
     ``name`` is the word of the command line; ``setting`` distinguishes two uses of one solver. A solver
-    that ``carries_velocities`` rounds U and Omega of a solid in a fluid, not the impulses. A solver that
-    solves several ``bodies`` at once states the seconds of one, its share.
+    that ``carries_velocities`` rounds U and Omega of a solid in a fluid, not the impulses.
     ``counts_steps`` is True for solvers whose steps are counted by code of this project. For all others
     the judge limits the claimed steps to a plausible number.
     """
@@ -52,7 +51,6 @@ class Solver(ABC):
     setting: str = ""
     carries_velocities: bool = False
     counts_steps: ClassVar[bool] = False
-    bodies: int = 1
 
     def problem(self, scene: Scene, rung: Rung) -> Problem:
         """Return the problem that the solver is asked, with the data that it takes, rounded once.

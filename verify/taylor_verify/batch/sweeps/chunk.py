@@ -6,10 +6,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
 
-from taylor_verify.batch.bodies import judged
 from taylor_verify.batch.failure import fault
 from taylor_verify.batch.store import package_digest
 from taylor_verify.batch.sweeps.questions import Question, Questions
+from taylor_verify.judge.tolerances import Tolerances
+from taylor_verify.records.reason import Cause, Reason, stated
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
@@ -42,6 +43,7 @@ class Chunk:
     questions: Questions
     solver: str
     rung: str
+    tolerances: Tolerances
 
     def __str__(self) -> str:
         return f"{self.questions.name}#{self.first} to #{self.stop - 1}"
@@ -56,28 +58,56 @@ class Judged(NamedTuple):
     package: str
 
 
+class Explained(NamedTuple):
+    """The likely causes of the failures of one scene, each a sentence."""
+
+    point: int
+    causes: tuple[str, ...]
+
+
 def judge(chunk: Chunk) -> Judged:
     """Solve and judge a chunk. A scene that breaks the code is an undecided row, and stops no other."""
     asked = list(chunk.questions.questions(chunk.first, chunk.stop))
-    scenes = [each.scene for each in asked if isinstance(each.scene, Scene)]
-    answers = iter(_verdicts(scenes, chunk.solver, chunk.rung))
-    rows = [
-        next(answers) if isinstance(question.scene, Scene) else [_refused(question, chunk)]
-        for question in asked
-    ]
+    rows = [_verdicts(question, chunk) for question in asked]
     columns = _columns(asked, rows, chunk.questions.drawn)
     return Judged(chunk.number, len(asked), columns, package_digest())
 
 
-def judge_alone(questions: Questions, points: Sequence[int], solver: str, rung: str) -> Columns:
-    """Return the rows of the scenes with these numbers, each judged as `run` judges its file."""
-    asked = [question for point in points for question in questions.questions(point, point + 1)]
-    rows = [
-        _alone(question.scene, solver, rung)
-        for question in asked
-        if isinstance(question.scene, Scene)
-    ]
-    return _columns(asked, rows, questions.drawn)
+def explain(chunk: Chunk) -> Explained:
+    """Solve and judge the one scene of a chunk again, and search the causes of its failures."""
+    (question,) = chunk.questions.questions(chunk.first, chunk.stop)
+    assert isinstance(question.scene, Scene)
+    try:
+        judged = run(question.scene, chunk.solver, chunk.rung, chunk.tolerances)
+    except Exception:
+        # Its row is undecided, and says what broke.
+        return Explained(chunk.first, ())
+    return Explained(chunk.first, tuple(cause.sentence for cause in judged.causes))
+
+
+def _verdicts(question: Question, chunk: Chunk) -> Sequence[Verdict]:
+    """Return the verdicts on a scene, without the causes of failures: a dataset has no place for them."""
+    if isinstance(question.scene, Refused):
+        refused = (
+            Outcome.NOT_REPRESENTABLE,
+            stated(Cause.NOT_POSED, "; ".join(question.scene.faults)),
+        )
+        return [_unjudged(question, chunk, Status.REFUSED, *refused)]
+    try:
+        return run(
+            question.scene, chunk.solver, chunk.rung, chunk.tolerances, causes=False
+        ).verdicts
+    except Exception as error:
+        broken = Outcome.RAISED, stated(Cause.UNFINISHED, fault(error))
+        return [_unjudged(question, chunk, Status.UNDECIDED, *broken)]
+
+
+def _unjudged(
+    question: Question, chunk: Chunk, status: Status, outcome: Outcome, reason: Reason
+) -> Verdict:
+    """Return the verdict on a scene as a whole."""
+    run_of = question.name, chunk.solver, chunk.rung, ""
+    return Verdict(*run_of, SCENE, status, outcome.value, reason=reason)
 
 
 def _columns(
@@ -91,43 +121,6 @@ def _columns(
         for name in drawn:
             columns[DRAWN + name] += [question.drawn.get(name)] * len(verdicts)
     return columns
-
-
-def _alone(scene: Scene, solver: str, rung: str) -> list[Verdict]:
-    try:
-        return list(run(scene, solver, rung).verdicts)
-    except Exception as error:
-        return [_broken(scene, solver, rung, error)]
-
-
-def _verdicts(scenes: Sequence[Scene], solver: str, rung: str) -> list[list[Verdict]]:
-    """Return the verdicts of every scene; one by one where something broke."""
-    try:
-        return judged(scenes, solver, rung) if scenes else []
-    except Exception as error:
-        if len(scenes) == 1:
-            return [[_broken(scenes[0], solver, rung, error)]]
-        return [verdicts for scene in scenes for verdicts in _verdicts([scene], solver, rung)]
-
-
-def _broken(scene: Scene, solver: str, rung: str, error: Exception) -> Verdict:
-    from taylor_verify.records.reason import Cause, stated
-
-    reason = stated(Cause.UNFINISHED, fault(error))
-    outcome = Outcome.RAISED.value
-    return Verdict(scene.name, solver, rung, "", SCENE, Status.UNDECIDED, outcome, reason=reason)
-
-
-def _refused(question: Question, chunk: Chunk) -> Verdict:
-    """Return the verdict on numbers that make no body."""
-    from taylor_verify.records.reason import Cause, stated
-
-    assert isinstance(question.scene, Refused)
-    reason = stated(Cause.NOT_POSED, "; ".join(question.scene.faults))
-    outcome, status = Outcome.NOT_REPRESENTABLE.value, Status.REFUSED
-    return Verdict(
-        question.name, chunk.solver, chunk.rung, "", SCENE, status, outcome, reason=reason
-    )
 
 
 def _row(question: Question, verdict: Verdict) -> Iterator[tuple[str, Any]]:

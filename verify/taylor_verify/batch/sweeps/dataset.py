@@ -41,7 +41,7 @@ _REPEATED: Final = ("scene", "quantity", "verdict", "outcome", "unit", "because"
 
 @dataclass(frozen=True)
 class Manifest:
-    """The question of a sweep: scenes, solver and rung, and the digests of the code that answers."""
+    """The question of a sweep: scenes, solver, rung, tolerance, and digests of the code that answers."""
 
     name: str
     digest: str
@@ -52,6 +52,7 @@ class Manifest:
     chunk: int
     solver: str
     rung: str
+    tolerance: str | None
     programs: tuple[str, ...]
     package: str
     versions: dict[str, str]
@@ -68,9 +69,13 @@ def _difference(name: str, mine: object, theirs: object) -> str:
     if name in _UNSEEN:
         expected, got = f"{_UNSEEN[name]} as in the sweep that is there", "another one"
     else:
-        expected = f"{_WORDS.get(name, name)} {mine} as in the sweep that is there"
-        got = str(theirs)
+        expected = f"{_WORDS.get(name, name)} {_word(mine)} as in the sweep that is there"
+        got = _word(theirs)
     return f"expected {expected}, got {got} @ resume {_MEND}"
+
+
+def _word(value: object) -> str:
+    return "none" if value is None else str(value)
 
 
 @dataclass(frozen=True)

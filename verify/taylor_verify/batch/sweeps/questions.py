@@ -92,6 +92,14 @@ class Drawn:
             else:
                 yield Question(number, name, scene, drawn)
 
+    def examples(self) -> Iterator[Scene]:
+        """Yield a scene with the quantities that all scenes have."""
+        for number in range(self.total):
+            (question,) = self.questions(number, number + 1)
+            if isinstance(question.scene, Scene):
+                yield question.scene
+                return
+
     def text(self, number: int) -> str:
         """Return the scene file of one number."""
         ((_, numbers),) = self._numbers(number, number + 1)
@@ -145,6 +153,10 @@ class Listed:
         for number in range(first, stop):
             scene = part.scenes[number - part.begin]
             yield Question(number, scene.name, scene, {})
+
+    def examples(self) -> Iterator[Scene]:
+        """Yield scenes that have between them all quantities."""
+        return map(load, self.files)
 
     def text(self, number: int) -> str:
         """Return the scene file of one number."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from importlib.util import find_spec
 from pathlib import Path
@@ -12,16 +12,16 @@ from typing import Any, Final
 
 from taylor_verify.batch.sweeps.questions import Questions
 from taylor_verify.batch.sweeps.summary import with_files
-from taylor_verify.publish.cells import NOTHING, figure
-from taylor_verify.publish.markdown import code, prose, table
-from taylor_verify.publish.page import traced
-from taylor_verify.publish.pictures import exceedance
-from taylor_verify.publish.pictures.picture import save
-from taylor_verify.publish.sheet import sheet
+from taylor_verify.plotting import exceedance
+from taylor_verify.plotting.picture import save
 from taylor_verify.records.json_text import complete
 from taylor_verify.records.replacement import first_line, replace_files
 from taylor_verify.records.status import Status
 from taylor_verify.records.sweep import Quantiles, Spread, SweepSummary, WorstCase
+from taylor_verify.words.cells import NOTHING, figure
+from taylor_verify.words.markdown import code, prose, table
+from taylor_verify.words.page import traced
+from taylor_verify.words.sheet import sheet
 
 WORST: Final = "worst"
 PICTURES: Final = ("svg", "png")
@@ -86,7 +86,7 @@ def page(summary: SweepSummary) -> str:
         *(f"Nothing was judged: {prose(lack)}." for lack in summary.lacks),
         *(f"Refused, for example: {prose(refusal)}." for refusal in summary.refusals),
         "The error over what perfect rounding would leave (the roundoff floor), of the rows that passed or "
-        f"failed; a body fails above {summary.factor}. "
+        f"failed; a body fails above {summary.bound}. "
         "A quantile is an error that occurred, at most a thousandth above the exact quantile.",
         table(
             ["quantity", "judged:", *_HEADINGS, "fail:", "undecided:"],
@@ -120,9 +120,12 @@ def _size(size: float | None) -> str:
     return "∞" if size is None else figure(size)
 
 
-def _worst_table(cases: Iterable[WorstCase]) -> str:
-    rows = [
-        [
+def _worst_table(cases: Sequence[WorstCase]) -> str:
+    headings = ["scene", "verdict", "quantity", "over attainable:", "error:", "because"]
+    is_explained = any(case.causes for case in cases)
+    rows = []
+    for case in cases:
+        row = [
             f"[{code(case.scene)}]({case.file})",
             case.verdict.value,
             code(case.quantity),
@@ -130,9 +133,8 @@ def _worst_table(cases: Iterable[WorstCase]) -> str:
             figure(case.max),
             prose(case.because),
         ]
-        for case in cases
-    ]
-    return table(["scene", "verdict", "quantity", "over attainable:", "error:", "because"], rows)
+        rows.append([*row, prose("; ".join(case.causes))] if is_explained else row)
+    return table([*headings, *(["likely cause"] if is_explained else [])], rows)
 
 
 def _row(spread: Spread) -> Mapping[str, Any]:
@@ -152,8 +154,9 @@ def _reason(summary: SweepSummary, case: WorstCase, questions: Questions) -> str
     """Return the comment that begins the scene of a worst case."""
     size = "no number" if case.ratio is None else f"{case.ratio:.3g}"
     drawn = f", seed {summary.seed}, {summary.points} points" if summary.seed is not None else ""
+    tolerance = "" if summary.tolerance is None else f" with the tolerance {summary.tolerance}"
     return (
-        f"{_REASON}{case.verdict} in {case.quantity} by {summary.solver} on {summary.rung}.\n"
+        f"{_REASON}{case.verdict} in {case.quantity} by {summary.solver} on {summary.rung}{tolerance}.\n"
         f"# Error over attainable: {size}. "
         f"Scene {case.scene} of a sweep of {summary.total}{drawn}.\n"
     )

@@ -10,9 +10,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.batch.bodies import judges_together
-from taylor_verify.batch.sweeps.chunk import DRAWN, judge_alone
-from taylor_verify.batch.sweeps.dataset import Dataset, table
+from taylor_verify.batch.sweeps.chunk import DRAWN
+from taylor_verify.batch.sweeps.dataset import Dataset
 from taylor_verify.batch.sweeps.questions import Questions
 from taylor_verify.batch.sweeps.sizes import Sizes
 from taylor_verify.judge.provenance import command, processor, versions
@@ -47,17 +46,13 @@ _GRAVITY_OF_WORDS: Final = {status.value: place for place, status in enumerate(G
 def summary(
     dataset: Dataset, questions: Questions, title: str = "", worst: int = WORST
 ) -> SweepSummary:
-    """Return the summary of a dataset that is finished, with so many of its worst cases.
-
-    A worst case has the numbers that `run` finds for its file: bodies that were judged together are judged
-    again, one by one.
-    """
+    """Return the summary of a dataset that is finished, with so many of its worst cases."""
     totals = _Totals(worst, questions.drawn)
     for part in dataset.tables([*_ROWS, *(DRAWN + name for name in questions.drawn)]):
         totals.add(part)
     asked = dataset.manifest
     made = Provenance(versions(), processor(), command())
-    result = SweepSummary(
+    return SweepSummary(
         name=asked.name,
         title=title,
         solver=asked.solver,
@@ -71,22 +66,11 @@ def summary(
         worst=tuple(case for _, case in totals.worst),
         factor=GATE_FACTOR,
         exit_status=totals.exit_status(),
+        tolerance=asked.tolerance,
         lacks=totals.lacks(),
         refusals=totals.refusals(),
         provenance=made,
     )
-    is_rounded_otherwise = judges_together(asked.solver, asked.rung)
-    return _judged_alone(result, questions) if is_rounded_otherwise else result
-
-
-def _judged_alone(result: SweepSummary, questions: Questions) -> SweepSummary:
-    """Return the summary with its worst cases as `run` judges them, ranked by these numbers."""
-    if not result.worst:
-        return result
-    points = [case.point for case in result.worst]
-    totals = _Totals(len(points), questions.drawn)
-    totals.add(table(judge_alone(questions, points, result.solver, result.rung)))
-    return replace(result, worst=tuple(case for _, case in totals.worst))
 
 
 class _Totals:
@@ -235,6 +219,14 @@ class _Rows:
 
     def _numbers(self, name: str) -> Array:
         return np.asarray(self._table.column(name).to_numpy(), dtype=float)
+
+
+def with_causes(result: SweepSummary, causes: Mapping[int, tuple[str, ...]]) -> SweepSummary:
+    """Return the summary with the causes of each worst case, by its point."""
+    return replace(
+        result,
+        worst=tuple(replace(case, causes=causes.get(case.point, ())) for case in result.worst),
+    )
 
 
 def with_files(result: SweepSummary, files: Mapping[int, str]) -> SweepSummary:

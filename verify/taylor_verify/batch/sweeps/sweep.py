@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import logging
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import Executor
 from contextlib import closing, contextmanager
+from dataclasses import dataclass
 from importlib.util import find_spec
 from os import PathLike
 from pathlib import Path
-from typing import Final
+from typing import Final, TypeVar
 
 from taylor_verify.batch.failure import Failed
 from taylor_verify.batch.judging import Interrupted
 from taylor_verify.batch.lock import alone_in
 from taylor_verify.batch.runs import run_stream
 from taylor_verify.batch.store import package_digest, program_digests
-from taylor_verify.batch.sweeps.chunk import Chunk, Judged, judge
+from taylor_verify.batch.sweeps.chunk import Chunk, Judged, explain, judge
 from taylor_verify.batch.sweeps.dataset import (
     MANIFEST,
     OWN_NAMES,
@@ -28,8 +29,10 @@ from taylor_verify.batch.sweeps.dataset import (
 )
 from taylor_verify.batch.sweeps.questions import Drawn, Questions, is_whole, questions
 from taylor_verify.batch.sweeps.report import SUMMARY_NAMES, write_summary
-from taylor_verify.batch.sweeps.summary import WORST, summary, with_files
+from taylor_verify.batch.sweeps.summary import WORST, summary, with_causes, with_files
 from taylor_verify.judge.provenance import packages
+from taylor_verify.judge.tolerances import Tolerance, Tolerances, tolerances
+from taylor_verify.records.status import Status
 from taylor_verify.records.sweep import SweepSummary
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.precision import rung as rung_named
@@ -38,11 +41,15 @@ from taylor_verify.solvers.registry import solver_named
 from taylor_verify.solvers.solver import Lack
 from taylor_verify.solvers.trajectory import Outcome
 
+Result = TypeVar("Result")
+
 AHEAD: Final = 64
 # Chunks are many enough to go round and to lose little by an end, and long enough to be worth a message.
 _CHUNKS: Final = 64
 _LEAST_CHUNK: Final = 4
 _LONGEST_CHUNK: Final = 1024
+# So many causes are found in the time in which other processes start.
+_MOST_EXPLAINED_HERE: Final = 10
 _MOST_WORST: Final = 1000
 _PROGRESS: Final = logging.getLogger("taylor_verify.progress")
 
@@ -55,6 +62,7 @@ def sweep(
     points: str | None = None,
     solver: str = "taylor",
     rung: str = "f64",
+    tolerance: Tolerances | Tolerance = None,
     executor: Executor | None = None,
     jobs: int | None = None,
     out: str | PathLike[str] | None = None,
@@ -72,7 +80,7 @@ def sweep(
     count, seed, points
         How many points are drawn, from which seed, and ``random`` or ``sobol``. Point k of a seed is the
         same however many are drawn. What is None is what the template says, else 100, 1 and ``random``.
-    solver, rung
+    solver, rung, tolerance
         As those of `run`.
     executor
         A `concurrent.futures.Executor` in place of processes of this machine. Only its ``submit`` is
@@ -110,7 +118,8 @@ def sweep(
     faults = list(_faults(jobs, worst, ahead, resume, out))
     try:
         asked = questions(str(what), count, seed, points)
-        manifest = _manifest(asked, solver, rung_named(rung))
+        tolerated = tolerances(tolerance, asked.examples())
+        manifest = _manifest(asked, solver, rung_named(rung), tolerated)
     except ValueError as error:
         raise ValueError("\n".join([*faults, str(error)])) from None
     if faults:
@@ -118,8 +127,9 @@ def sweep(
     with _folder(out) as folder, alone_in(folder):
         dataset = Dataset(folder, manifest)
         _begin(dataset, asked, resume)
+        work = _Work(dataset, asked, tolerated, executor, jobs, ahead)
         try:
-            _judge_all(dataset, asked, executor, jobs, ahead)
+            _judge_all(work)
         except Interrupted:
             if out is None:
                 # Nothing is left to go on from.
@@ -129,7 +139,8 @@ def sweep(
             if out is None:
                 raise
             raise Failed(f"{lost}; what was judged is stored: go on with --resume") from lost
-        written, _ = write_summary(folder, summary(dataset, asked, asked.title, worst), asked)
+        made = _explained(work, summary(dataset, asked, asked.title, worst))
+        written, _ = write_summary(folder, made, asked)
     # What was written into a folder that is gone has no file.
     return written if out is not None else with_files(written, {})
 
@@ -150,7 +161,7 @@ def _faults(
         yield "expected pyarrow (pip install 'taylor-verify[parquet]'), got none"
 
 
-def _manifest(asked: Questions, solver: str, rung: Rung) -> Manifest:
+def _manifest(asked: Questions, solver: str, rung: Rung, tolerated: Tolerances) -> Manifest:
     try:
         missing = solver_named(solver).unavailable(rung)
     except ValueError as error:
@@ -165,6 +176,7 @@ def _manifest(asked: Questions, solver: str, rung: Rung) -> Manifest:
         chunk=length,
         solver=solver,
         rung=rung.name,
+        tolerance=tolerated.text,
         programs=tuple(program_digests(solver)),
         package=package_digest(),
         versions=packages(),
@@ -201,10 +213,41 @@ def _begin(dataset: Dataset, asked: Questions, resume: bool) -> None:
     dataset.begin({TEMPLATE: asked.family.source} if isinstance(asked, Drawn) else {})
 
 
-def _judge_all(
-    dataset: Dataset, asked: Questions, executor: Executor | None, jobs: int | None, ahead: int
-) -> None:
+@dataclass(frozen=True)
+class _Work:
+    """The work of a sweep: its questions, and where they are answered."""
+
+    dataset: Dataset
+    asked: Questions
+    tolerances: Tolerances
+    executor: Executor | None
+    jobs: int | None
+    ahead: int
+
+    def chunk(self, number: int, first: int, stop: int) -> Chunk:
+        """Return the scenes with these numbers."""
+        manifest, part = self.dataset.manifest, self.asked.part(first, stop)
+        return Chunk(number, first, stop, part, manifest.solver, manifest.rung, self.tolerances)
+
+    def part(self, number: int) -> Chunk:
+        """Return the scenes of a part of the dataset."""
+        manifest = self.dataset.manifest
+        first = number * manifest.chunk
+        return self.chunk(number, first, min(first + manifest.chunk, manifest.total))
+
+    def results(
+        self, work: Callable[[Chunk], Result], chunks: Iterator[Chunk], is_little: bool
+    ) -> Generator[Result]:
+        """Return the results of chunks as they end; without an executor, ``is_little`` is done here."""
+        if self.executor is None and (is_little or self.jobs == 1):
+            return (work(chunk) for chunk in chunks)
+        options = {"workers": self.jobs, "ahead": self.ahead}
+        return run_stream(work, chunks, self.executor, raises=Failed, **options)
+
+
+def _judge_all(work: _Work) -> None:
     """Judge the chunks that are not there yet, and write each as it ends."""
+    dataset = work.dataset
     finished = dataset.finished()
     length, total = dataset.manifest.chunk, dataset.manifest.total
     done = sum(min(length, total - number * length) for number in finished)
@@ -212,16 +255,8 @@ def _judge_all(
     if not left:
         return
     _say(done, total)
-    chunks = (_chunk(dataset.manifest, asked, number) for number in left)
-    # One chunk, or one process, is this one.
-    is_here = executor is None and (len(left) == 1 or jobs == 1)
-    stream = (
-        (judge(chunk) for chunk in chunks)
-        if is_here
-        else run_stream(judge, chunks, executor, workers=jobs, ahead=ahead, raises=Failed)
-    )
     try:
-        with closing(stream) as answers:
+        with closing(work.results(judge, map(work.part, left), len(left) == 1)) as answers:
             for answer in answers:
                 _check_package(dataset, answer)
                 dataset.write(answer.chunk, answer.columns)
@@ -231,10 +266,13 @@ def _judge_all(
         raise Interrupted(done, total) from interrupt
 
 
-def _chunk(manifest: Manifest, asked: Questions, number: int) -> Chunk:
-    first = number * manifest.chunk
-    stop = min(first + manifest.chunk, manifest.total)
-    return Chunk(number, first, stop, asked.part(first, stop), manifest.solver, manifest.rung)
+def _explained(work: _Work, result: SweepSummary) -> SweepSummary:
+    """Return the summary with the likely causes of the worst cases that failed."""
+    points = [case.point for case in result.worst if case.verdict is Status.FAIL]
+    cases = (work.chunk(point, point, point + 1) for point in points)
+    is_little = len(points) <= _MOST_EXPLAINED_HERE
+    with closing(work.results(explain, cases, is_little)) as answers:
+        return with_causes(result, {answer.point: answer.causes for answer in answers})
 
 
 def _check_package(dataset: Dataset, answer: Judged) -> None:

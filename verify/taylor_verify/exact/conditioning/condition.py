@@ -26,7 +26,7 @@ import numpy as np
 from taylor_verify.exact.clocks import Floats
 from taylor_verify.exact.conditioning.differences import settled
 from taylor_verify.exact.conditioning.flow import Flow, Steps, products
-from taylor_verify.exact.conditioning.inputs import momentum
+from taylor_verify.exact.conditioning.momentum import momentum
 from taylor_verify.exact.conditioning.variation import integrated
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution

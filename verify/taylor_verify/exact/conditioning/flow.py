@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from taylor_verify.exact.clocks import Floats, standing, swing
-from taylor_verify.exact.conditioning.inputs import momentum
+from taylor_verify.exact.conditioning.momentum import momentum
 from taylor_verify.exact.equations import Scaled, exact, in_units
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.scenes.precision import floor_log2, power_of_two

@@ -13,7 +13,7 @@ from typing import Final
 
 from flint import arb, arb_mat, ctx
 
-from taylor_verify.exact.enclosure.series import Series, value
+from taylor_verify.exact.enclosure.coefficients import Series, value
 from taylor_verify.exact.enclosure.system import Balls, column, magnitudes
 from taylor_verify.exact.enclosure.tube import (
     BOUND_BITS,

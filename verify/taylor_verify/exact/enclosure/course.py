@@ -15,14 +15,14 @@ from flint import arb, ctx
 
 from taylor_verify.exact.balls import ball
 from taylor_verify.exact.enclosure.box import Box, Flow, carried, exponent, flow, within
-from taylor_verify.exact.enclosure.placing import Leg, Place, leg
-from taylor_verify.exact.enclosure.series import (
+from taylor_verify.exact.enclosure.coefficients import (
     Series,
     frame_series,
     scaled,
     state_series,
     value,
 )
+from taylor_verify.exact.enclosure.placing import Leg, Place, leg
 from taylor_verify.exact.enclosure.system import Balls, System, column, magnitudes
 from taylor_verify.exact.enclosure.tube import (
     BOUND_BITS,

@@ -34,7 +34,7 @@ from flint import arb, arb_mat, ctx
 
 from taylor_verify.exact.balls import balls
 from taylor_verify.exact.enclosure.box import Box, Flow
-from taylor_verify.exact.enclosure.series import Series, value
+from taylor_verify.exact.enclosure.coefficients import Series, value
 from taylor_verify.exact.enclosure.system import Balls, column, magnitudes
 from taylor_verify.exact.enclosure.tube import BOUND_BITS, Tube
 from taylor_verify.exact.rotation import product, rotation_rows

@@ -24,7 +24,7 @@ from typing import Final
 
 from flint import arb, arb_mat
 
-from taylor_verify.exact.enclosure.series import Series
+from taylor_verify.exact.enclosure.coefficients import Series
 from taylor_verify.exact.enclosure.system import Balls, column, magnitudes
 
 BOUND_BITS: Final = 64

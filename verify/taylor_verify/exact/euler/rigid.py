@@ -6,7 +6,6 @@ h is the momentum of wheels, zero for a body without them.
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 from typing import Final, TypeVar, final
@@ -18,7 +17,6 @@ from taylor_verify.exact.equations import Equations, cross, exact
 from taylor_verify.exact.euler.invariants import energy, momentum, space_momentum, whole
 from taylor_verify.exact.invariant import Array, Invariant
 from taylor_verify.exact.kind import Kind
-from taylor_verify.exact.parameters import Block, Parameters, entries
 from taylor_verify.exact.rows import applied, norms
 from taylor_verify.exact.units import Units, exponent, halved, largest
 from taylor_verify.scenes import tensors
@@ -44,10 +42,6 @@ class Rotating(Kind[B, Spin]):
     @abstractmethod
     def rotor(self, body: B) -> Vector:
         """Return h."""
-
-    @property
-    def components(self) -> Mapping[str, tuple[str, ...]]:
-        return {"omega": ("omega1", "omega2", "omega3")}
 
     def state(self, initial: Spin) -> Vector:
         return initial.omega
@@ -108,10 +102,6 @@ class Rotating(Kind[B, Spin]):
     def sizes(self, scene: Scene, motion: Motion) -> list[Array]:
         body: B = scene.body  # type: ignore[assignment]
         return [abs(energy(body).value(motion)), norms(whole(body, self.rotor(body), motion))]
-
-    def parameters(self, body: B) -> Parameters:
-        sides = body.inertia, body.inertia
-        return entries("inertia", body, [Block("I", "inertia", sides)])
 
 
 @final

@@ -29,9 +29,9 @@ from taylor_verify.exact.kirchhoff.screws import is_steady
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.kirchhoff.top import top, with_impulses
 from taylor_verify.exact.kirchhoff.turning import TurningBody
-from taylor_verify.exact.kirchhoff.weber.course import WeberBalls
 from taylor_verify.exact.kirchhoff.weber.curve import REGIME as WEBER
 from taylor_verify.exact.kirchhoff.weber.curve import Curve, curve
+from taylor_verify.exact.kirchhoff.weber.quotients import WeberBalls
 from taylor_verify.exact.kirchhoff.weber.sums import WeberSums
 from taylor_verify.exact.solution import NoClosedForm, Solution
 from taylor_verify.scenes.motion import Impulse
@@ -159,7 +159,10 @@ def turning(whole: Reduced) -> Case | None:
 
 
 def weber(whole: Reduced) -> Case | None:
-    """Weber's motion, less the common b; raises NoClosedForm for what is degenerate in his family."""
+    """The impulses of Weber's motion, less the common b.
+
+    Raises NoClosedForm for what is degenerate in his family, and where the attitude is tracked.
+    """
     reduced = centred(whole)
     body, _ = solid(reduced.scene)
     b = multiple(body.coupling)
@@ -169,13 +172,10 @@ def weber(whole: Reduced) -> Case | None:
     genus_two = curve(reduced.scene)
     if genus_two is None:
         return None
-    body, track = solid(reduced.scene)[0], whole.scene.track
+    if whole.scene.track:
+        raise NoClosedForm("attitude and centre of Weber's motion have no closed form")
     return Case(
-        WEBER,
-        reduced,
-        genus_two,
-        lambda: WeberBalls(genus_two, body, track),
-        lambda: WeberSums(genus_two, body, track),
+        WEBER, reduced, genus_two, lambda: WeberBalls(genus_two), lambda: WeberSums(genus_two)
     )
 
 

@@ -26,7 +26,7 @@ from taylor_verify.exact.kirchhoff.screws import Screw, Stability, is_steady, sc
 from taylor_verify.exact.kirchhoff.solid import solid, velocities
 from taylor_verify.exact.kirchhoff.weber.curve import REGIME as WEBER
 from taylor_verify.exact.kirchhoff.weber.curve import Curve
-from taylor_verify.exact.kirchhoff.weber.enclosure import rates
+from taylor_verify.exact.kirchhoff.weber.quotients import rates
 from taylor_verify.exact.solution import NO_CLOSED_FORM
 from taylor_verify.exact.written import as_rationals
 from taylor_verify.scenes import tensors
@@ -99,7 +99,7 @@ _STORY: Final[Mapping[str, str]] = {
     ),
     WEBER: (
         "x and y are functions of two angles that grow evenly, by theta functions of two variables "
-        "(Weber's case): there is no period. Attitude and path are integrals of such functions."
+        "(Weber's case): there is no period. Attitude and path have no closed form."
     ),
 }
 

@@ -5,7 +5,7 @@ x' = x x Omega + X and y' = y x Omega + x x U + L, with U = A x + B y and Omega 
 
 from __future__ import annotations
 
-from dataclasses import asdict, replace
+from dataclasses import replace
 from fractions import Fraction
 from typing import Final, final
 
@@ -18,11 +18,10 @@ from taylor_verify.exact.kind import Kind
 from taylor_verify.exact.kirchhoff.axes import clebsch_about
 from taylor_verify.exact.kirchhoff.integrable import fourth_integral
 from taylor_verify.exact.kirchhoff.invariants import F2, FG, X_SPACE, Y_SPACE, along, axial, energy
-from taylor_verify.exact.parameters import Block, Parameters, entries
 from taylor_verify.exact.rows import norms
 from taylor_verify.exact.units import Units, exponent, halved, largest, later
 from taylor_verify.scenes import tensors
-from taylor_verify.scenes.bodies import Clebsch, ImmersedBody
+from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse, Motion
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix, Vector
@@ -111,30 +110,3 @@ class Immersed(Kind[ImmersedBody, Impulse]):
         if "centre" in scene.track:
             result.append(y + norms(motion["centre"]) * x)
         return result
-
-    def parameters(self, body: ImmersedBody) -> Parameters:
-        """Clebsch's six coefficients, or all 21 of T."""
-        if body.clebsch is not None:
-            return _six(body, body.clebsch)
-        A, C = body.linear, body.angular
-        # T > 0 keeps the square of an entry below the product of the two on the diagonal.
-        blocks = [
-            Block("A", "linear", (A, A)),
-            Block("B", "coupling", (A, C), is_symmetric=False),
-            Block("C", "angular", (C, C)),
-        ]
-        return entries("energy", replace(body, ellipsoid=None), blocks)
-
-
-def _six(body: ImmersedBody, six: Clebsch) -> Parameters:
-    components = asdict(six)
-    names = tuple(components)
-
-    def changed(j: int, amount: Fraction) -> ImmersedBody:
-        other = replace(six, **{names[j]: components[names[j]] + amount})
-        return replace(other.body(body.force, body.couple), damping=body.damping)
-
-    p, p_prime, _, _, r, r_prime = components.values()
-    # q may be zero; T > 0 keeps q^2 below p r.
-    squares = (p * p, p_prime * p_prime, p * r, p_prime * r_prime, r * r, r_prime * r_prime)
-    return Parameters("clebsch", names, squares, changed)

@@ -234,14 +234,8 @@ def _check(problems: Sequence[Problem], tolerance: Fraction | None) -> None:
 
 
 @lru_cache(maxsize=32)
-def stepper(
-    form: Form,
-    rung: Rung,
-    tolerance: Fraction | None,
-    width: int,
-    straight: int = _LARGEST_STRAIGHT_LINE,
-) -> Any:
-    """Return one compiled integrator of so many lanes; straight-line code up to so many states."""
+def stepper(form: Form, rung: Rung, tolerance: Fraction | None, width: int) -> Any:
+    """Return one compiled integrator of so many lanes."""
     if width == 1:
         return compiled(form, rung, tolerance, pays(form, rung))
     import heyoka as hy
@@ -259,7 +253,7 @@ def stepper(
         time=empty(),
         pars=empty(len(form.parameters)),
         fp_type=numbers.fp_type,
-        compact_mode=len(system) > straight,
+        compact_mode=len(system) > _LARGEST_STRAIGHT_LINE,
         # heyoka takes 0 for the machine epsilon of the type.
         tol=numbers.number(Fraction(0) if tolerance is None else rung.round(tolerance)),
     )

@@ -1,4 +1,4 @@
-"""The names of heyoka's integrator: `taylor`, `taylor?tol=1e-9&code=optimised`, `taylor?bodies=64`."""
+"""The names of heyoka's integrator: `taylor`, `taylor?tol=1e-9&code=optimised`."""
 
 from __future__ import annotations
 
@@ -8,25 +8,18 @@ from typing import Final
 from taylor_verify.solvers.options import Options, options
 from taylor_verify.solvers.registry import TAYLOR
 from taylor_verify.solvers.taylor.driver import Taylor
-from taylor_verify.solvers.taylor.neighbours import Neighbours
 
 _SETTINGS: Final = ("tol", "code")
 _OPTIMISED: Final = "optimised"
-_FEWEST, _MOST = 2, 4096
 
 
-def named(name: str) -> Taylor | Neighbours:
+def named(name: str) -> Taylor:
     """Return the solver that such a name stands for; ValueError for any other name."""
-    chosen = options(name, [TAYLOR], (*_SETTINGS, "bodies"))
+    chosen = options(name, [TAYLOR], _SETTINGS)
     code = chosen.values.get("code", _OPTIMISED)
     if code != _OPTIMISED:
         raise ValueError(f"expected {_OPTIMISED}, got {code!r:.60} @ code")
-    allowed = _tolerance(name, chosen)
-    if "bodies" not in chosen:
-        return Taylor(name, tolerance=allowed, is_optimised="code" in chosen)
-    if "code" in chosen:
-        raise ValueError("expected bodies or code, got both (code of many is optimised) @ code")
-    return Neighbours(name, chosen.whole("bodies", _FEWEST, _MOST), tolerance=allowed)
+    return Taylor(name, tolerance=_tolerance(name, chosen), is_optimised="code" in chosen)
 
 
 def at_tolerance(text: str) -> Taylor:

@@ -21,8 +21,8 @@ from flint import acb, arb
 from taylor_verify.exact import rotation
 from taylor_verify.exact.balls import ball, balls
 from taylor_verify.exact.euler.moments.kummer import KummerTurn
+from taylor_verify.exact.euler.moments.power_series import SeriesTurn
 from taylor_verify.exact.euler.moments.regime import Line, LoadedSpin, MomentRegime
-from taylor_verify.exact.euler.moments.series import SeriesTurn
 from taylor_verify.exact.euler.rotations import BallCourse, RotationBalls
 from taylor_verify.scenes import motion, tensors
 

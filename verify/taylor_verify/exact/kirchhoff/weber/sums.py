@@ -15,20 +15,17 @@ import math
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, Final, final
+from typing import Final, final
 
 import numpy as np
 from mpmath import mp, mpf
 
-from taylor_verify.exact.frames import start_frame
 from taylor_verify.exact.kirchhoff.integrable import CYCLIC
 from taylor_verify.exact.kirchhoff.weber.characteristics import HALF_PERIODS, at_branches, of_pair
 from taylor_verify.exact.kirchhoff.weber.curve import REGIME, Curve
-from taylor_verify.exact.kirchhoff.weber.path import Path
 from taylor_verify.exact.kirchhoff.weber.quadrature import branch_points, narrowness, real_jacobian
 from taylor_verify.exact.kirchhoff.weber.riemann import Thetas
-from taylor_verify.exact.solution import SETTLING_STEP_DIGITS, Quantities, Settled, Time, longest
-from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.exact.solution import Quantities, Settled, Time, longest
 from taylor_verify.scenes.precision import exact_value
 
 _GUARD_DIGITS: Final = 12
@@ -43,50 +40,27 @@ _PLACES: Final = tuple(
 
 @final
 class WeberSums(Settled):
-    """A motion of Weber's case in mpmath."""
+    """The impulses of a motion of Weber's case in mpmath."""
 
     route = "mpmath"
     regime = REGIME
 
-    def __init__(self, curve: Curve, body: ImmersedBody, track: frozenset[str]) -> None:
-        self._curve, self._body, self._track = curve, body, track
-        self.by_quadrature = bool(track)
-        self._paths: dict[int, tuple[Sums, Path]] = {}
+    def __init__(self, curve: Curve) -> None:
+        self._curve = curve
+        self._sums: dict[int, Sums] = {}
 
     def evaluate(self, elapsed: Sequence[Time], digits: int) -> Quantities:
         narrow, faster = self._difficulty
         turns = len(str(math.ceil(faster * longest(elapsed))))
-        with mp.workdps(digits + _GUARD_DIGITS + narrow + turns):
-            series, path = self._set_up(digits)
-            rows = [self._row(series, path, t) for t in elapsed]
-            names = ("linear_impulse", "angular_impulse", *sorted(self._track))
-            return {name: _stacked([row[name] for row in rows], name) for name in names}
-
-    def _set_up(self, digits: int) -> tuple[Sums, Path]:
-        """The motion at the ambient precision, and its frames so far."""
-        if mp.dps not in self._paths:
-            series = Sums(self._curve)
-            # Panels of another width at every other precision that is compared.
-            wider = digits // SETTLING_STEP_DIGITS % 2
-            width = mpf(2 + wider) / (4 * mp.convert(self._difficulty[1]))
-            self._paths[mp.dps] = series, Path(series.at, self._body, self._curve.start, width)
-        return self._paths[mp.dps]
-
-    def _row(self, series: Sums, path: Path, t: Fraction) -> Mapping[str, Any]:
         start = self._curve.start
-        if t == 0:
-            return {
-                "linear_impulse": list(map(mp.convert, start.linear)),
-                "angular_impulse": list(map(mp.convert, start.angular)),
-                "attitude": start_frame(start.attitude),
-                "centre": list(map(mp.convert, start.centre)),
-            }
-        time = mp.convert(t)
-        x, y = series.at(time)
-        row: dict[str, Any] = {"linear_impulse": x, "angular_impulse": y}
-        if self._track:
-            row["attitude"], row["centre"] = path.at(time, x, y)
-        return row
+        with mp.workdps(digits + _GUARD_DIGITS + narrow + turns):
+            if mp.dps not in self._sums:
+                self._sums[mp.dps] = Sums(self._curve)
+            sums = self._sums[mp.dps]
+            given = tuple([mp.convert(entry) for entry in v] for v in (start.linear, start.angular))
+            rows = np.array([given if t == 0 else sums.at(t) for t in elapsed], dtype=object)
+            rows = rows.reshape(-1, 2, 3)
+            return {"linear_impulse": rows[:, 0], "angular_impulse": rows[:, 1]}
 
     @cached_property
     def _difficulty(self) -> tuple[int, Fraction]:
@@ -95,11 +69,6 @@ class WeberSums(Settled):
         with mp.workdps(_FEW_DIGITS + narrow):
             faster = max(abs(rate) for rate in real_jacobian(self._curve).rate)
             return narrow, exact_value(faster)
-
-
-def _stacked(rows: Sequence[Any], name: str) -> np.ndarray[Any, Any]:
-    shape = (-1, 3, 3) if name == "attitude" else (-1, 3)
-    return np.array(rows, dtype=object).reshape(shape)
 
 
 class Sums:

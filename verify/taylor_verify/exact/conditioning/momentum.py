@@ -1,0 +1,59 @@
+"""The initial momentum of a motion, moved one component at a time in exact rationals."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from taylor_verify.exact.registry import kind_of
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.precision import floor_log2, power_of_two
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Matrix, Vector
+
+
+@dataclass(frozen=True)
+class Momentum:
+    """The initial momentum in body axes: H, or the impulses x and y as one vector of six.
+
+    ``units`` are powers of two near the size of each component, so that what is moved by parts of them
+    stays a short rational.
+    """
+
+    scene: Scene
+    value: Vector
+    units: Vector
+
+    def moved(self, j: int, amount: Fraction) -> Scene:
+        """The scene with component j greater by this amount, exactly."""
+        kind, body, initial = kind_of(self.scene.body), self.scene.body, self.scene.initial
+        greater = tuple(entry + amount * (i == j) for i, entry in enumerate(self.value))
+        state = kind.of_momentum(body, greater)
+        return replace(self.scene, initial=kind.with_state(initial, state))
+
+
+def momentum(scene: Scene) -> Momentum:
+    """Return the initial momentum of a scene."""
+    kind, body = kind_of(scene.body), scene.body
+    value = kind.momentum(body, kind.state(scene.initial))
+    return Momentum(scene, value, _block_units(value, kind.momentum_energy(body)))
+
+
+def _block_units(z: Vector, energy: Matrix) -> Vector:
+    """For each component of a momentum, a power of two near the size of its block.
+
+    A block that is zero takes the size that would hold the kinetic energy, 2T = z . energy z; 1 in a body
+    at rest.
+    """
+    twice_energy = tensors.dot(z, tensors.apply(energy, z))
+    units: Vector = ()
+    for first in range(0, len(z), 3):
+        block = z[first : first + 3]
+        trace = sum((energy[i][i] for i in range(first, first + 3)), Fraction(0))
+        units += (_near(tensors.dot(block, block) or twice_energy / trace or Fraction(1)),) * 3
+    return units
+
+
+def _near(square: Fraction) -> Fraction:
+    """A power of two near the root of a positive number."""
+    return power_of_two(floor_log2(square) // 2)

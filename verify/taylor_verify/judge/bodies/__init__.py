@@ -1,1 +1,0 @@
-"""Many free rigid bodies judged at once, in arrays of float64."""

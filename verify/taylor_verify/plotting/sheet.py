@@ -1,0 +1,150 @@
+"""Figure as wide as a page: the places of its panels and its legend, in inches."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from textwrap import fill
+from typing import TYPE_CHECKING, Any, Final
+
+from taylor_verify.plotting.palette import QUIET
+from taylor_verify.plotting.style import PAGE_WIDTH, SMALL
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+# Style of a line or mark, and its meaning.
+Entry = tuple[dict[str, Any], str]
+
+# Margins of a panel for numbers and the name of an axis.
+LEFT: Final = 0.66
+RIGHT: Final = 0.08
+HEADING: Final = 0.26
+BELOW: Final = 0.46
+HEIGHT: Final = 2.35
+# Height of a family's line in the strip above a panel.
+STRIP: Final = 0.15
+# Height of a line of the legend, and of the space below.
+_LINE: Final = 0.2
+_FOOT: Final = 0.06
+# Entries in a line of the legend, and the space between its lines.
+_ABREAST: Final = 4
+_SPACING: Final = 0.8
+# Letters in a line of a note beside a panel, and the width of a letter in inches.
+_NARROW: Final = 38
+_LETTER: Final = 0.055
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Place of a panel, in inches from the lower left corner of the figure."""
+
+    left: float
+    low: float
+    width: float
+    height: float
+
+
+def sheet(
+    count: int, entries: Sequence[Entry], note: str = "", height: float = HEIGHT
+) -> tuple[Figure, list[Axes]]:
+    """Return a figure with ``count`` panels, two in a row, and its legend."""
+    frames, total = frames_of([0] * count, foot_of(entries, note), height)
+    figure = blank(total)
+    draw_legend(figure, entries, note, free_place(frames))
+    return figure, [add_axes(figure, frame) for frame in frames]
+
+
+def blank(height: float) -> Figure:
+    """Return an empty figure, in which a pixel is a point during the layout."""
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(PAGE_WIDTH, height), dpi=72)
+
+
+def add_axes(figure: Figure, frame: Frame) -> Axes:
+    """Return new axes in this place."""
+    width, height = figure.get_size_inches()
+    return figure.add_axes(
+        (frame.left / width, frame.low / height, frame.width / width, frame.height / height)
+    )
+
+
+def frames_of(
+    strips: Sequence[int], foot: float, height: float = HEIGHT
+) -> tuple[list[Frame], float]:
+    """Return the place of each panel below its strip of lines, and the height of the figure.
+
+    The headings of a row are on one line. A panel with a lower strip is higher by the difference.
+    """
+    across = min(2, len(strips))
+    width = PAGE_WIDTH / across - LEFT - RIGHT
+    rows = [list(strips[i : i + across]) for i in range(0, len(strips), across)]
+    heights = [HEADING + STRIP * max(row) + height + BELOW for row in rows]
+    # The legend is in a free place beside the last panel, else at the foot.
+    top = total = sum(heights) + (0.0 if _leaves_a_place(len(strips)) else foot)
+    frames = []
+    for row, whole in zip(rows, heights, strict=True):
+        for column, lines in enumerate(row):
+            left = LEFT + column * (width + LEFT + RIGHT)
+            frames.append(
+                Frame(left, top - whole + BELOW, width, height + STRIP * (max(row) - lines))
+            )
+        top -= whole
+    return frames, total
+
+
+def free_place(frames: Sequence[Frame]) -> Frame | None:
+    """Return the free place beside the last panel, if that is alone in its row."""
+    if not _leaves_a_place(len(frames)):
+        return None
+    last, right = frames[-1], frames[1]
+    return Frame(right.left, last.low, last.width, last.height)
+
+
+def _leaves_a_place(count: int) -> bool:
+    return count > 1 and count % 2 == 1
+
+
+def foot_of(entries: Sequence[Entry], note: str) -> float:
+    """Return the height of a legend at the foot."""
+    return _FOOT + _LINE * (_lines(entries) + bool(note))
+
+
+def _lines(entries: Sequence[Entry]) -> int:
+    return max(-(-len(entries) // _ABREAST), 1)
+
+
+def draw_legend(
+    figure: Figure, entries: Sequence[Entry], note: str = "", free: Frame | None = None
+) -> None:
+    """Draw the legend in a free place with one entry in each line, else in full lines at the foot.
+
+    The note, which is a sentence, is below.
+    """
+    from matplotlib.lines import Line2D
+
+    width, height = figure.get_size_inches()
+    left, top = LEFT, foot_of(entries, note)
+    if free:
+        left, top = free.left, free.low + free.height
+    if entries:
+        figure.legend(
+            [Line2D([], [], **drawn) for drawn, _ in entries],
+            [name for _, name in entries],
+            loc="upper left",
+            bbox_to_anchor=(left / width, top / height),
+            # As few lines as the page's width allows, of about the same length.
+            ncols=1 if free else -(-len(entries) // _lines(entries)),
+            frameon=False,
+            fontsize=SMALL,
+            borderpad=0,
+            borderaxespad=0,
+            columnspacing=1.4,
+            handlelength=1.8,
+            labelspacing=_SPACING,
+        )
+    below = top - _LINE * (len(entries) if free else _lines(entries))
+    words = fill(note, min(_NARROW, int(free.width / _LETTER))) if free else note
+    figure.text(left / width, below / height, words, size=SMALL, color=QUIET, va="top")

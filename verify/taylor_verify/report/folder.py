@@ -1,0 +1,63 @@
+"""Report folder of a run: ``data``, then tables and a front page made from ``data`` alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from os import PathLike, fspath
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from taylor_verify.records import store
+from taylor_verify.records.replacement import first_line, replace_files
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.report import csv_tables, tables
+from taylor_verify.report.attainable import attainable
+from taylor_verify.report.front import front
+from taylor_verify.words.page import MADE_BY
+
+if TYPE_CHECKING:
+    from taylor_verify.batch.judgements import Judgements
+    from taylor_verify.words.entry import Page
+
+FRONT: Final = "README.md"
+GATES: Final[Mapping[str, Callable[[Sequence[Verdict]], str]]] = {
+    "tables/gates.md": tables.gates,
+    "tables/gates.csv": csv_tables.gates,
+}
+"""Makers of the tables with the reason of every verdict, by their paths."""
+TABLES: Final[Mapping[str, Callable[[Sequence[Verdict]], str]]] = {
+    "tables/accuracy.md": tables.accuracy,
+    "tables/accuracy.csv": csv_tables.accuracy,
+    "tables/attainable.md": attainable,
+    "tables/attainable.csv": csv_tables.attainable,
+    "tables/conserved.md": tables.conserved,
+    "tables/conserved.csv": csv_tables.conserved,
+    **GATES,
+}
+"""Makers of all tables of verdicts, by their paths."""
+
+
+def write_report(folder: str | PathLike[str], results: Judgements) -> list[Path]:
+    """Write verdicts, records, tables and a front page of results, as `taylor-verify run --out DIR` does.
+
+    Returns the files written. They replace the files of an earlier run, all of them or none. Raises OSError
+    for a folder that cannot be written, and ValueError for two different records of one run.
+    """
+    place = Path(fspath(folder))
+    stored = store.write(place, results.verdicts, results.records)
+    verdicts = store.load(place)
+    with store.expecting("what `run --out` writes", place / store.FOLDER):
+        texts = {path: make(verdicts) for path, make in TABLES.items()}
+    return [*stored, *replace_files(place, {**texts, **index(place, verdicts)})]
+
+
+def index(place: Path, verdicts: Sequence[Verdict], besides: Iterable[Page] = ()) -> dict[str, str]:
+    """Return the index of the tables and the front page, which link the pages ``besides`` too.
+
+    A README.md that this program did not make is not among them.
+    """
+    besides = list(besides)
+    texts = {f"tables/{FRONT}": tables.readme(verdicts, besides)}
+    if not (place / FRONT).exists() or first_line(place / FRONT) == MADE_BY:
+        texts[FRONT] = front(verdicts, besides)
+    return texts

@@ -1,1 +1,0 @@
-"""Published studies, one folder each: measure, document, page, picture."""

@@ -1,0 +1,231 @@
+"""Figures of a trade-off: a panel for each group of families, and a strip for failures.
+
+In a work-precision diagram x is the work (seconds, evaluations, steps), y the error, both logarithmic:
+further down and to the left is better. Lines join only neighbouring sound settings of one family.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Final
+
+from taylor_verify.plotting.log_axes import Limits, number_axes, widened
+from taylor_verify.plotting.named import Named
+from taylor_verify.plotting.palette import INK, PAPER, QUIET, for_text
+from taylor_verify.plotting.sheet import (
+    STRIP,
+    Entry,
+    Frame,
+    add_axes,
+    blank,
+    draw_legend,
+    foot_of,
+    frames_of,
+    free_place,
+    sheet,
+)
+from taylor_verify.plotting.style import SMALL
+from taylor_verify.records.standing import Standing
+from taylor_verify.tradeoff.pictures.series import Panel, Series, Spot, front_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+# Margins for names, as parts of the panel: left and right, below and above.
+_MARGINS_X: Final = (0.06, 0.16)
+_MARGINS_Y: Final = (0.09, 0.09)
+_DIAGONAL: Final[Mapping[str, Any]] = {"color": QUIET, "linewidth": 0.8}
+
+
+def work_precision(
+    panels: Sequence[Panel],
+    x_name: str,
+    y_name: str,
+    floors: Mapping[str, float],
+    bars: bool,
+    note: str,
+) -> Figure:
+    """Return the whole figure: the panels row by row, the meaning of the marks below.
+
+    ``floors`` are the attainable errors by rung, each drawn in panels with taylor on that rung. ``bars`` is
+    True to draw the spread of times. ``note`` is a text below the marks.
+    """
+    from taylor_verify.plotting.labels import write_names
+
+    front = front_of(series for panel in panels for series in panel.drawn)
+    strips = [[series for series in panel.drawn if series.border] for panel in panels]
+    entries = _legend(panels, has_bars=bars, has_floors=bool(floors))
+    frames, height = frames_of([len(strip) for strip in strips], foot_of(entries, note))
+    figure = blank(height)
+    shared = _limits_x(p for p in panels if p.yardstick)
+    for panel, strip, frame in zip(panels, strips, frames, strict=True):
+        axes = add_axes(figure, frame)
+        # The panels with the yardstick have one axis, so that they can be compared. The panel of taylor on
+        # all rungs has its own axis, because its times are near each other.
+        x_limits = shared if panel.yardstick else _limits_x([panel])
+        own = {rung: floors[rung] for rung in panel.ladder if rung in floors}
+        y_limits = widened([*(spot.y for spot in panel.sound), *own.values()], *_MARGINS_Y)
+        axes.set(xscale="log", yscale="log", xlim=x_limits, ylim=y_limits)
+        axes.set(xlabel=x_name, ylabel=y_name)
+        number_axes(axes)
+        stairs = _stairs(front, axes)
+        # The front is a thin line behind everything else.
+        axes.plot(*zip(*stairs, strict=True), color=QUIET, linewidth=0.6, zorder=1, gid="front")
+        for rung, floor in own.items():
+            colour = panel.ladder[rung]
+            axes.axhline(floor, color=colour, linewidth=0.6, dashes=(1, 2), gid="floor")
+        for series in panel.drawn:
+            _draw_series(axes, series, bars)
+            _draw_exact(axes, series)
+        spread = [((s.x, s.y), (s.x * s.spread, s.y)) for s in panel.sound] if bars else []
+        write_names(axes, _names_of(panel), [stairs, *spread])
+        top = _draw_strip(figure, frame, panel, strip, x_limits) if strip else axes
+        top.set_title(panel.heading, pad=4)
+    draw_legend(figure, entries, note, free_place(frames))
+    return figure
+
+
+def digits_achieved(panels: Sequence[Panel]) -> Figure:
+    """Return the figure of digits requested against digits achieved, equal on the diagonal."""
+    from matplotlib.ticker import MaxNLocator
+
+    from taylor_verify.plotting.labels import write_names
+
+    figure, places = sheet(len(panels), [(dict(_DIAGONAL), "achieved as asked; above it, more")])
+    for panel, axes in zip(panels, places, strict=True):
+        most_x, most_y = max(s.x for s in panel.sound), max(s.y for s in panel.sound)
+        axes.set(xlim=(0, most_x * 1.22), ylim=(-0.03 * most_y, max(most_y * 1.12, 4)))
+        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+        axes.set(xlabel="digits asked for, \N{MINUS SIGN}log₁₀ tolerance", ylabel="digits achieved")
+        axes.grid(visible=True)
+        axes.set_title(panel.heading, pad=4)
+        most = min(axes.get_xlim()[1], axes.get_ylim()[1])
+        diagonal = [(0.0, 0.0), (most, most)]
+        axes.plot(*zip(*diagonal, strict=True), gid="diagonal", zorder=1, **_DIAGONAL)
+        for series in panel.drawn:
+            _draw_series(axes, series, bars=False)
+        write_names(axes, _names_of(panel), [diagonal])
+    return figure
+
+
+def _draw_series(axes: Axes, series: Series, bars: bool) -> None:
+    """Draw a line through each sequence of sound settings of a family, and bars for the spread of times."""
+    look = series.look
+    for piece in series.pieces:
+        x, y = [spot.x for spot in piece], [spot.y for spot in piece]
+        if bars:
+            beyond = [[0.0] * len(piece), [spot.x * (spot.spread - 1) for spot in piece]]
+            axes.errorbar(
+                x, y, xerr=beyond, fmt="none", ecolor=look.colour, elinewidth=0.5, alpha=0.6
+            )
+        # Thick lines below thin ones.
+        axes.plot(x, y, gid=series.family, zorder=4 - look.width / 10, **look.line)
+
+
+def _draw_exact(axes: Axes, series: Series) -> None:
+    """Mark answers without any error at the lower border."""
+    look = {**series.look.line, "linestyle": "none", "marker": "v"}
+    place = axes.get_xaxis_transform()
+    for spot in series.spots:
+        if spot.is_exact:
+            axes.plot([spot.x], [0.0], transform=place, clip_on=False, gid="exact", **look)
+
+
+def _names_of(panel: Panel) -> list[Named]:
+    """Return the lines of a panel with their names."""
+    return [
+        Named(
+            panel.label(series),
+            series.look.colour,
+            [[(s.x, s.y) for s in p] for p in series.pieces],
+        )
+        for series in panel.drawn
+    ]
+
+
+def _stairs(front: Sequence[Spot], axes: Axes) -> list[tuple[float, float]]:
+    """Return the corners of the front; settings above and to the right of it are beaten."""
+    level = max(axes.get_ylim()[1], front[0].y)
+    corners = []
+    # The yardstick is in several panels, and counts once.
+    for x, y in dict.fromkeys((spot.x, spot.y) for spot in front):
+        corners += [(x, level), (x, y)]
+        level = y
+    return [*corners, (max(axes.get_xlim()[1], front[-1].x), level)]
+
+
+def _draw_strip(
+    figure: Figure, frame: Frame, panel: Panel, strip: Sequence[Series], limits: Limits
+) -> Axes:
+    """Draw a strip above the panel, with a line for each family with failures, each mark at its work."""
+    above = Frame(frame.left, frame.low + frame.height, frame.width, STRIP * len(strip))
+    axes = add_axes(figure, above)
+    axes.set(xscale="log", xlim=limits, ylim=(len(strip) - 0.5, -0.5), yticks=[])
+    axes.tick_params(which="both", bottom=False, labelbottom=False)
+    axes.set_facecolor("#F4F4F4")
+    axes.set_ylabel("no answer", rotation=0, ha="right", va="center", size=SMALL, color=QUIET)
+    axes.spines["left"].set_visible(False)
+    axes.spines["bottom"].set_visible(False)
+    for line, series in enumerate(strip):
+        colour = series.look.colour
+        for spot in series.border:
+            is_hollow = spot.row["standing"] == Standing.FALSE
+            axes.plot(
+                [spot.x],
+                [line],
+                linestyle="none",
+                marker=series.look.marker if is_hollow else "x",
+                markersize=4.5,
+                markerfacecolor=PAPER if is_hollow else colour,
+                markeredgecolor=colour,
+                markeredgewidth=1.0,
+                gid=spot.row["standing"],
+                clip_on=False,
+            )
+        _name_in_strip(axes, panel.label(series), series, line, limits)
+    return axes
+
+
+def _name_in_strip(axes: Axes, name: str, series: Series, line: int, limits: Limits) -> None:
+    """Write a name right of the last mark if the first one is in the left half, else left of the first."""
+    taken = [spot.x for spot in series.border]
+    after = min(taken) < (limits[0] * limits[1]) ** 0.5
+    axes.annotate(
+        name,
+        (max(taken) if after else min(taken), line),
+        (5 if after else -5, 0),
+        textcoords="offset points",
+        ha="left" if after else "right",
+        va="center_baseline",
+        color=for_text(series.look.colour),
+        size=SMALL,
+    )
+
+
+def _legend(panels: Sequence[Panel], has_bars: bool, has_floors: bool) -> list[Entry]:
+    """Return the legend of the marks that occur."""
+    spots = [spot for panel in panels for series in panel.drawn for spot in series.spots]
+    standings = {spot.row["standing"] for spot in spots if spot.is_at_the_border}
+    has_exact = any(spot.is_exact for spot in spots)
+    dotted, mark = (0, (1, 2)), {"linestyle": "none", "markersize": 4.5, "markeredgecolor": INK}
+    every: list[tuple[bool, dict[str, Any], str]] = [
+        (True, {"color": QUIET, "linewidth": 0.8}, "Pareto front"),
+        (has_bars, {"color": QUIET, "linewidth": 0.5, "marker": "|"}, "best to slowest repeat"),
+        (has_floors, {"color": INK, "linewidth": 0.6, "linestyle": dotted}, "attainable"),
+        (
+            Standing.FALSE in standings,
+            {**mark, "marker": "o", "markerfacecolor": PAPER},
+            "false success",
+        ),
+        (Standing.FAILED in standings, {**mark, "marker": "x"}, "failed"),
+        (has_exact, {**mark, "marker": "v", "markerfacecolor": INK}, "no error seen"),
+    ]
+    return [(look, name) for occurs, look, name in every if occurs]
+
+
+def _limits_x(panels: Iterable[Panel]) -> Limits:
+    """Return the limits of the work in the panels, with room for names."""
+    spots = [spot for panel in panels for series in panel.drawn for spot in series.spots]
+    sound = [x for s in spots if s.is_sound for x in (s.x, s.x * s.spread)]
+    return widened([*sound, *(s.x for s in spots if s.is_at_the_border)], *_MARGINS_X)

@@ -1,0 +1,145 @@
+"""Times of each setting in rounds of random order, with the first solve timed separately.
+
+A time is the solver's own propagation, as its trajectory states it. The first solve of a setting compiles,
+imports and fills caches. Later solves are repeated in rounds of random order, so that disturbances of the
+machine do not always hit the same setting.
+"""
+
+from __future__ import annotations
+
+import os
+import random
+import tempfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from time import perf_counter
+from typing import Final
+
+from taylor_verify.models.problem import Problem
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
+from taylor_verify.tradeoff.setting import Setting
+
+REPEATS: Final = 5
+SEED: Final = 1
+# If a setting takes more seconds, finer ones of its family are not run. Every setting is repeated once, and
+# then only while all its solves have taken fewer seconds together.
+PATIENCE: Final = 2.0
+_HEYOKA_CACHE: Final = "HEYOKA_CACHE_DIR"
+
+# The explanation that stands with all times.
+WHAT_IS_TIMED: Final = (
+    "the solver's own propagation; taylor runs compiled equations and looks for its longest step in "
+    "Python, with bodies=N a time is the share of one of them, scipy calls straight-line equations in "
+    "Python, geometric and odefun are Python throughout, a program of one's own is timed as it states "
+    "itself, and those of other libraries state a later propagation than their first, on the "
+    "processor's clock where their process stays"
+)
+
+Clock = Callable[[], float]
+
+
+@dataclass(frozen=True)
+class Timed:
+    """The first answer of a setting, and the times of its later solves in seconds.
+
+    ``first`` is the whole time of the first solve. ``seconds`` is empty for a run that failed. ``inner`` is
+    the part of the best time that another library's compiled integrator took, if known.
+    """
+
+    setting: Setting
+    trajectory: Trajectory
+    first: float
+    seconds: tuple[float, ...] = ()
+    inner: float | None = None
+
+    @property
+    def best(self) -> float | None:
+        """The shortest time; None for a run that failed."""
+        return min(self.seconds, default=None)
+
+    @property
+    def spread(self) -> float | None:
+        """The slowest time over the fastest."""
+        return max(self.seconds) / self.best if self.best else None
+
+
+def timed(
+    problems: Mapping[Setting, Problem | str],
+    repeats: int,
+    seed: int,
+    clock: Clock = perf_counter,
+    patience: float = PATIENCE,
+) -> list[Timed]:
+    """Solve every setting once, and those that finished ``repeats`` times more; return all in their order.
+
+    A text in place of a problem is the reason why a setting cannot run. Without repeats there is only the
+    first time, which is enough to measure errors. A setting is not run, and its answer says so, if a
+    coarser setting of its family took more than ``patience`` seconds.
+    """
+    firsts = _first_solves(problems, clock, patience)
+    finished = [first for first in firsts if first.trajectory.outcome is Outcome.FINISHED]
+    # Only the seconds of each solve are stored, because whole answers would fill the memory.
+    again: dict[Setting, list[tuple[float, float | None]]] = {
+        first.setting: [] for first in finished
+    }
+    spent = {first.setting: first.trajectory.seconds for first in finished}
+    posed = {key: problem for key, problem in problems.items() if not isinstance(problem, str)}
+    order = random.Random(seed)
+    for _ in range(repeats):
+        settings = [s for s, made in again.items() if not made or spent[s] <= patience]
+        order.shuffle(settings)
+        for setting in settings:
+            solved = setting.solver.solve(posed[setting])
+            again[setting].append((solved.seconds, solved.inner_seconds))
+            spent[setting] += solved.seconds
+    return [
+        _with_times(first, again[first.setting]) if first.setting in again else first
+        for first in firsts
+    ]
+
+
+def _with_times(first: Timed, again: Sequence[tuple[float, float | None]]) -> Timed:
+    """Return the answer with the times of its later solves, or of its only one."""
+    solves = again or [(first.trajectory.seconds, first.trajectory.inner_seconds)]
+    _, inner = min(solves, key=lambda solve: solve[0])
+    return replace(first, seconds=tuple(seconds for seconds, _ in solves), inner=inner)
+
+
+def _first_solves(
+    problems: Mapping[Setting, Problem | str], clock: Clock, patience: float
+) -> list[Timed]:
+    """Return the first answer of every setting, or the reason why it was not run."""
+    solves: list[Timed] = []
+    # Families whose finer settings are not run.
+    slow: set[str] = set()
+    for setting, problem in problems.items():
+        if isinstance(problem, str) or setting.family in slow:
+            coarser = f"a coarser setting took more than {patience:g} s"
+            because = problem if isinstance(problem, str) else coarser
+            nothing = Trajectory(Outcome.NOT_STARTED, detail=because)
+            solves.append(Timed(setting, nothing, first=0.0))
+            continue
+        began = clock()
+        trajectory = setting.solver.solve(problem)
+        solves.append(Timed(setting, trajectory, first=clock() - began))
+        if not trajectory.seconds <= patience:
+            slow.add(setting.family)
+    return solves
+
+
+@contextmanager
+def cold_caches() -> Iterator[None]:
+    """Give heyoka an empty cache, so that systems are compiled anew, and remove it afterwards.
+
+    Code that this process has compiled before stays in memory; a cold start needs a process of its own.
+    """
+    before = os.environ.get(_HEYOKA_CACHE)
+    with tempfile.TemporaryDirectory() as empty:
+        os.environ[_HEYOKA_CACHE] = empty
+        try:
+            yield
+        finally:
+            del os.environ[_HEYOKA_CACHE]
+            if before is not None:
+                os.environ[_HEYOKA_CACHE] = before

@@ -1,0 +1,1 @@
+"""Verdicts in words and tables: JUnit, GitHub, Markdown, CSV."""

@@ -1,0 +1,1 @@
+"""Pictures of studies that no user of taylor_verify draws."""

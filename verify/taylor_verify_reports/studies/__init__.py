@@ -1,0 +1,1 @@
+"""Measurements that are published, each with its document, its page and its pictures."""

@@ -1,0 +1,1 @@
+"""The pages of accuracy by scene and rung."""

@@ -1,0 +1,106 @@
+"""The study of accuracy: tables of the verdicts on the standard set on every rung."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Final
+
+from taylor_verify.records import store
+from taylor_verify.records.replacement import replace_files
+from taylor_verify.records.runs import Run
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.report.folder import GATES, TABLES
+from taylor_verify_reports.studies.study import Bulk, Measured, Progress, Published, Study
+
+_SOLVER: Final = "taylor"
+# A run that was never judged has no record.
+_UNJUDGED: Final = (Status.REFUSED, Status.UNAVAILABLE)
+
+Verdicts = Sequence[Verdict]
+
+
+def _measure(folder: Path, progress: Progress) -> Measured:
+    """Run the standard set on every rung, as `run --out` does."""
+    from taylor_verify.batch.judgements import Judgements
+    from taylor_verify.batch.judging import judge_all
+    from taylor_verify.batch.selection import select
+
+    selection = select()
+    with progress.jobs() as bar:
+        judgements = tuple(judge_all(selection.jobs(_SOLVER), bar))
+    results = Judgements(judgements, selection, _SOLVER)
+    written = store.write(folder, results.verdicts, results.records)
+    return Measured(written, status=results.exit_status)
+
+
+def _find(folder: Path) -> Verdicts | None:
+    return store.load(folder) if (folder / store.FOLDER / store.VERDICTS).exists() else None
+
+
+# Files that the repository leaves out: records with every sample, and tables with the reason of every
+# verdict.
+
+
+def _gates_lacking(report: Published) -> list[tuple[str, str]]:
+    """Return path and text of each table of gates that is missing or outdated."""
+    lacking = []
+    for name, make in GATES.items():
+        file, text = report.folder / name, make(report.verdicts)
+        if not file.exists() or file.read_text(encoding="utf-8") != text:
+            lacking.append((name, text))
+    return lacking
+
+
+def _runs_lacking(report: Published) -> tuple[Run, ...]:
+    """Return the runs without a record; all runs if the records belong to other verdicts."""
+    data = report.folder / store.FOLDER
+    own = [run for run in report.runs if run.solver == _SOLVER and not run.setting]
+    judged = [run for run in own if any(v.verdict not in _UNJUDGED for v in run.verdicts)]
+    if not store.has_own_records(report.folder):
+        return tuple(judged)
+    names = [store.record_name(run.scene, run.solver, run.rung) for run in judged]
+    return tuple(run for run, name in zip(judged, names, strict=True) if not (data / name).exists())
+
+
+def _add_records(folder: Path, lacking: Sequence[Run], progress: Progress) -> tuple[Path, ...]:
+    """Run the published runs once more to write their records."""
+    from taylor_verify.batch.job import Job
+    from taylor_verify.batch.judging import judge_all
+
+    rungs: dict[str, list[str]] = {}
+    for run in lacking:
+        rungs.setdefault(run.scene, []).append(run.rung)
+    jobs = [Job(scene, _SOLVER, tuple(own)) for scene, own in rungs.items()]
+    with progress.jobs() as bar:
+        results = judge_all(jobs, bar)
+    return store.add_records(
+        folder, [result.record for result in results if result.record is not None]
+    )
+
+
+STUDY: Final = Study(
+    name="accuracy",
+    title="the errors of the standard set on every rung, beside what is attainable",
+    duration="two minutes, all cores",
+    measure=_measure,
+    find=_find,
+    page=lambda verdicts, folder: TABLES["tables/accuracy.md"](verdicts),
+    sheet=TABLES["tables/accuracy.csv"],
+    beside={path: make for path, make in TABLES.items() if "accuracy" not in path},
+    bulk=(
+        Bulk(
+            what="tables of gates",
+            patterns=tuple(GATES),
+            lacking=_gates_lacking,
+            make=lambda folder, lacking, progress: replace_files(folder, dict(lacking)),
+        ),
+        Bulk(
+            what="records of runs",
+            patterns=("data/records/",),
+            lacking=_runs_lacking,
+            make=_add_records,
+        ),
+    ),
+)

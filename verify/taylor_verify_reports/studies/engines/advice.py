@@ -1,0 +1,206 @@
+"""The advice of the board: sentences whose names and numbers are computed from the stored rows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import groupby
+from math import isfinite
+from typing import Final
+
+from taylor_verify.words.cells import figure
+from taylor_verify.words.markdown import bold, prose
+from taylor_verify_reports.studies.engines.document import Board, EngineRow
+from taylor_verify_reports.studies.engines.entry import EntryList
+from taylor_verify_reports.studies.engines.ranking import (
+    EngineSetting,
+    Score,
+    best_of,
+    newest,
+    settings,
+)
+
+# Accuracy that suffices for most uses: a milliradian, or a thousandth of omega.
+ENOUGH: Final = 1e-3
+# An error of this size means that the motion is lost.
+LOST: Final = 0.05
+# A setting gets a warning if another one of its engine has an error this many times smaller.
+FAR_WORSE: Final = 10.0
+# A warning of too small steps is given if they increase the error by more than this factor.
+WORSE_BELOW: Final = 2.0
+
+
+def advice(board: Board, entries: EntryList) -> list[str]:
+    """Return sentences that tell a user what to take and what to avoid, the most useful first.
+
+    They follow from the rows of the ``board``. ``entries`` is the list of engines, which names the scenes
+    of the advice.
+    """
+    names = {row.name: row.title for row in entries.entry}
+    plain = {row.name for row in entries.entry if row.plain}
+    every, scenes = settings(board.study), advised(board, entries)
+    engines = [setting for setting in newest(every) if setting.engine not in plain]
+    shipped = [setting for setting in newest(every, shipped=True) if setting.engine not in plain]
+    return [
+        *_take(board, engines, scenes, names),
+        *_never(engines, scenes, names),
+        *_as_shipped(engines, shipped, names, entries),
+        *_too_fine(engines, scenes, names),
+    ]
+
+
+def advised(board: Board, entries: EntryList) -> list[str]:
+    """Return the scenes of the advice that were measured."""
+    measured = {row.scene for row in board.study.rows if row.is_judged}
+    return [scene for scene in entries.advised if scene in measured]
+
+
+def error(size: float) -> str:
+    """Return an error in three digits, or the word for one that is no finite number."""
+    return figure(size) if isfinite(size) else "beyond every number"
+
+
+def named(setting: EngineSetting, names: dict[str, str]) -> str:
+    """Return the name of an engine with its version and its settings; ``names`` has the engines' titles."""
+    words = f" with {prose(setting.words)}" if setting.words else ""
+    return f"{bold(prose(f'{names[setting.engine]} {setting.version}'.strip()))}{words}"
+
+
+def _take(
+    board: Board, engines: Sequence[EngineSetting], scenes: Sequence[str], names: dict[str, str]
+) -> Iterator[str]:
+    """Yield the most accurate setting, and the cheapest of those that suffice for most uses."""
+    scores = [score for setting in engines for score in setting.scores(scenes)]
+    if (best := best_of(scores)) is None:
+        return
+    yield (
+        f"For free rotation take {named(best.setting, names)}{_step(best)}: omega and attitude are "
+        f"right to {figure(best.error)} on all of {_listed(scenes)}, the most that an engine reaches here."
+    )
+    paced = [
+        (pace, score)
+        for score in scores
+        if score.error <= ENOUGH and (pace := board.pace(score.row))
+    ]
+    if paced:
+        pace, cheap = min(paced, key=lambda pair: pair[0])
+        yield (
+            f"Where {ENOUGH} is enough, {named(cheap.setting, names)}{_step(cheap)} is the "
+            f"cheapest: {figure(1e6 * pace)} microseconds for each second of the motion."
+        )
+
+
+def _never(
+    engines: Sequence[EngineSetting], scenes: Sequence[str], names: dict[str, str]
+) -> Iterator[str]:
+    """Yield warnings of methods that lose the motion, and of engines whose methods all lose it."""
+    methods, whole_engines = [], []
+    for engine, group in groupby(engines, key=lambda setting: setting.engine):
+        own = [best for setting in group if (best := best_of(setting.scores(scenes))) is not None]
+        lost = [best for best in own if best.error >= LOST]
+        sound = best_of(best for best in own if best.error < LOST)
+        if not lost:
+            continue
+        least = min(lost, key=lambda best: best.error)
+        name = bold(prose(f"{names[engine]} {least.setting.version}".strip()))
+        if sound is None:
+            whole_engines.append(
+                f"{name} ({figure(least.error)}, drift of the energy {_energy(least)})"
+            )
+        elif sound.error * FAR_WORSE <= least.error:
+            words = _either([prose(best.setting.words) for best in lost])
+            better = f"{prose(sound.setting.words)} has {figure(sound.error)}"
+            methods.append(f"{name} with {words} (least error {figure(least.error)}; {better})")
+    if methods:
+        yield f"Never {'; '.join(methods)}."
+    if whole_engines:
+        listed = "; ".join(whole_engines)
+        yield f"Not for free rotation, with the least error at any step measured here: {listed}."
+
+
+def _energy(score: Score) -> str:
+    return figure(score.row.errors.get("T"))
+
+
+def _either(words: Sequence[str]) -> str:
+    """Return the words as a list in a sentence, with "or" before the last one."""
+    *others, last = words
+    return f"{', '.join(others)} or {last}" if others else last
+
+
+def _as_shipped(
+    engines: Sequence[EngineSetting],
+    shipped: Sequence[EngineSetting],
+    names: dict[str, str],
+    entries: EntryList,
+) -> Iterator[str]:
+    """Yield a warning of engines that are far worse as shipped than with the board's settings."""
+    warnings = []
+    for engine, group in groupby(shipped, key=lambda setting: setting.engine):
+        pairs = [(row, like(row, engines, entries)) for setting in group for row in setting.rows]
+        ratios = [
+            (row.worst / usual.worst, row, usual)
+            for row, usual in pairs
+            if row.is_judged and usual and usual.worst > 0
+        ]
+        ratio, row, usual = max(ratios, key=lambda compared: compared[0], default=(0.0, None, None))
+        if row is None or usual is None or ratio < FAR_WORSE:
+            continue
+        warning = next((e.warning for e in entries.entry if e.name == engine and e.warning), "")
+        without = f" without {warning}" if warning else " as it is shipped"
+        warnings.append(
+            f"{bold(prose(names[engine]))}{without} ({error(row.worst)}, not {figure(usual.worst)})"
+        )
+    if warnings:
+        yield f"Never {'; '.join(warnings)}."
+
+
+def like(row: EngineRow, engines: Sequence[EngineSetting], entries: EntryList) -> EngineRow | None:
+    """Return the judged row that differs from ``row``, a run as shipped, in the board's settings alone.
+
+    The result is None if there is none.
+    """
+    defaults = {
+        word
+        for entry in entries.entry
+        if entry.name == row.engine
+        for word in (entry.shipped or {}).values()
+    }
+    variant = ", ".join(word for word in row.variant.split(", ") if word not in defaults)
+    wanted = _identity(replace(row, variant=variant))
+    rows = (other for setting in engines for other in setting.rows if other.is_judged)
+    return next((other for other in rows if _identity(other) == wanted), None)
+
+
+def _identity(row: EngineRow) -> tuple[str, ...]:
+    """Return the fields that distinguish the runs of the board."""
+    return row.engine, row.version, row.variant, row.scene, row.value, row.rung
+
+
+def _too_fine(
+    engines: Sequence[EngineSetting], scenes: Sequence[str], names: dict[str, str]
+) -> Iterator[str]:
+    """Yield a warning of engines whose smallest step is not their best."""
+    steps = []
+    for engine, group in groupby(engines, key=lambda setting: setting.engine):
+        best = best_of(score for setting in group for score in setting.scores(scenes))
+        if best is None or not best.value or best.error >= LOST or best.setting.knob != "step":
+            continue
+        finest = best.setting.scores(scenes)[-1]
+        if finest.error > WORSE_BELOW * best.error:
+            growth = f"{figure(best.error)} becomes {error(finest.error)} with {finest.value}"
+            steps.append(f"{best.value} in {bold(prose(names[engine]))} ({growth})")
+    if steps:
+        yield f"No smaller step than {', '.join(steps)}."
+
+
+def _step(score: Score) -> str:
+    """Return the step with the words that join it to a setting; empty for a solver without a step."""
+    if not score.value:
+        return ""
+    knob = score.setting.knob
+    return f" and a step of {score.value}" if knob == "step" else f" and {knob} {score.value}"
+
+
+def _listed(scenes: Sequence[str]) -> str:
+    return ", ".join(f"`{scene}`" for scene in scenes)

@@ -1,0 +1,173 @@
+"""Answer of a run of the board: its row, its trajectory and its time."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib.metadata import PackageNotFoundError, version
+from typing import Any, Final
+
+import numpy as np
+
+from taylor_verify.models.problem import Problem
+from taylor_verify.records.json_text import complete, parsed
+from taylor_verify.records.store import laid_out
+from taylor_verify.run import posed, solve
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.solvers.engines.engine import PREFIX, Outside, engines, solve_together
+from taylor_verify.solvers.registry import solver_named
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
+from taylor_verify_reports.studies.engines.document import EngineRow, Standing
+from taylor_verify_reports.studies.engines.entry import Asked
+from taylor_verify_reports.studies.engines.replay import States, errors_of, judged, states_of
+
+_STANDINGS: Final = {
+    Outcome.FINISHED: Standing.JUDGED,
+    Outcome.NO_PACKAGE: Standing.UNAVAILABLE,
+    Outcome.NO_FORMAT: Standing.UNAVAILABLE,
+    Outcome.UNSUITED: Standing.UNSUITED,
+}
+_MOST_CHARACTERS: Final = 300
+# A pinned requirement of pip or npm: numpy==2.4.6, @scope/name@1.0.0.
+_PINNED: Final = re.compile(r"(.+?)(?:==|@)(\d[^@=]*)")
+
+
+@dataclass(frozen=True)
+class Answer:
+    """A row, the seconds of its propagation, and its states (samples, columns); None without states."""
+
+    row: EngineRow
+    seconds: float = 0.0
+    states: States | None = None
+
+    def to_bytes(self) -> bytes:
+        """Return the answer as JSON, in which every float has all its bits."""
+        states = None if self.states is None else self.states.tolist()
+        kind = "" if self.states is None else self.states.dtype.str
+        stored = _Stored(complete(self.row), self.seconds, kind, states)
+        return laid_out(complete(stored)).encode()
+
+    @classmethod
+    def from_bytes(cls, content: bytes) -> Answer:
+        """Return the answer from its JSON. Raises ValueError for any other content."""
+        stored = parsed(content, _Read)
+        states = None if stored.states is None else np.array(stored.states, dtype=stored.kind)
+        return cls(stored.row, stored.seconds, states)
+
+
+@dataclass(frozen=True)
+class _Stored:
+    """The written form of an answer; ``kind`` is NumPy's name of the float type, empty without states."""
+
+    row: Mapping[str, Any]
+    seconds: float
+    kind: str
+    states: list[list[float]] | None
+
+
+@dataclass(frozen=True)
+class _Read:
+    """The form of an answer that is read."""
+
+    row: EngineRow
+    seconds: float
+    kind: str = ""
+    states: list[list[float]] | None = None
+
+
+def answered(asked: Sequence[Asked]) -> list[Answer]:
+    """Run an engine in one version and precision on several scenes, and judge its answers."""
+    trajectories = _trajectories(asked)
+    return [_judged(run, answer) for run, answer in zip(asked, trajectories, strict=True)]
+
+
+def _trajectories(asked: Sequence[Asked]) -> list[Trajectory]:
+    """Return the trajectories of runs; the script of an environment answers all of them in one process."""
+    solvers = [solver_named(run.solver) for run in asked]
+    problems = [
+        posed(load(run.scene), solver, rung(run.rung))
+        for run, solver in zip(asked, solvers, strict=True)
+    ]
+    # A problem that cannot be posed is a trajectory that says so.
+    trajectories = {
+        k: problem for k, problem in enumerate(problems) if isinstance(problem, Trajectory)
+    }
+    pairs = {
+        k: (solver, problem)
+        for k, (solver, problem) in enumerate(zip(solvers, problems, strict=True))
+        if isinstance(solver, Outside) and isinstance(problem, Problem)
+    }
+    if pairs:
+        trajectories |= zip(pairs, solve_together([*pairs.values()]), strict=True)
+    return [
+        trajectories.get(k) or solve(run.scene, run.solver, run.rung) for k, run in enumerate(asked)
+    ]
+
+
+def _judged(asked: Asked, trajectory: Trajectory) -> Answer:
+    """Return the answer of a run: its row has the errors that the judge measures."""
+    standing = _STANDINGS.get(trajectory.outcome, Standing.FAILED)
+    if standing is not Standing.JUDGED:
+        return Answer(row_of(asked, standing, detail=_reason(trajectory)))
+    states, steps = states_of(load(asked.scene), trajectory), trajectory.steps
+    errors = errors_of(judged(asked.scene, asked.rung, asked.solver, states, steps))
+    bits = 8 * states.dtype.itemsize
+    row = row_of(asked, standing, steps=steps, bits=bits, detail=trajectory.detail, **vars(errors))
+    return Answer(row, trajectory.seconds, states)
+
+
+def row_of(asked: Asked, standing: Standing, **numbers: Any) -> EngineRow:
+    """Return the row of a run; ``numbers`` are further fields of EngineRow."""
+    return EngineRow(
+        engine=asked.entry.name,
+        version=version_of(asked),
+        variant=asked.variant,
+        knob=asked.entry.knob,
+        value=asked.value,
+        scene=asked.scene,
+        rung=asked.rung,
+        solver=asked.solver,
+        standing=standing,
+        made_of=made_of(asked.scene, asked.entry.solver),
+        shipped=asked.shipped,
+        **numbers,
+    )
+
+
+def version_of(asked: Asked) -> str:
+    """Return the version of an engine: the one asked for, pinned in its script, or installed."""
+    if asked.version or not asked.entry.package:
+        return asked.version or _pinned(asked.entry.solver)
+    try:
+        return version(asked.entry.package)
+    except PackageNotFoundError:
+        return ""
+
+
+@cache
+def made_of(scene: str, solver: str) -> str:
+    """Return the digest of a scene and of the engine's script; another digest marks an outdated run."""
+    digest = hashlib.sha256(load(scene).digest.encode())
+    if solver.startswith(PREFIX):
+        engine = engines()[solver.removeprefix(PREFIX)]
+        digest.update(engine.script.path.read_bytes())
+    return digest.hexdigest()[:12]
+
+
+def _pinned(solver: str) -> str:
+    """Return the version of its package that an engine's script requires; empty if there is none."""
+    engine = engines().get(solver.removeprefix(PREFIX)) if solver.startswith(PREFIX) else None
+    for requirement in engine.script.requirements if engine else ():
+        pinned = _PINNED.fullmatch(requirement)
+        if engine and pinned and pinned[1] == engine.script.package:
+            return pinned[2]
+    return ""
+
+
+def _reason(trajectory: Trajectory) -> str:
+    outcome = trajectory.outcome.value
+    return f"{outcome}: {trajectory.detail}"[:_MOST_CHARACTERS] if trajectory.detail else outcome

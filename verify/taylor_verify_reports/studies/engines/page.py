@@ -1,0 +1,310 @@
+"""The page of the engine board: first advice to users, then the tables and pictures behind it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import groupby
+from math import inf
+from pathlib import Path
+from typing import Any, Final
+
+from taylor_verify.plotting.picture import Picture
+from taylor_verify.words.cells import NOTHING, figure
+from taylor_verify.words.markdown import bullets, code, prose, table
+from taylor_verify.words.page import made_with, whole
+from taylor_verify.words.sheet import sheet as csv_sheet
+from taylor_verify_reports.studies import figures
+from taylor_verify_reports.studies.engines.advice import advice, like
+from taylor_verify_reports.studies.engines.document import Board, EngineRow
+from taylor_verify_reports.studies.engines.engine_page import place
+from taylor_verify_reports.studies.engines.entry import FILE, EntryList, entry_list
+from taylor_verify_reports.studies.engines.findings import findings
+from taylor_verify_reports.studies.engines.pictures import energy, sweeps, work
+from taylor_verify_reports.studies.engines.ranking import (
+    EngineSetting,
+    best_of_each,
+    digits,
+    newest,
+    settings,
+)
+from taylor_verify_reports.studies.engines.stored import ENGINES, TIMINGS, TRAJECTORIES
+
+_WHAT: Final = (
+    "Each engine turns a free body, and its answer is compared with the exact motion of the same "
+    "numbers. Energy and angular momentum are compared too, although they do not show whether the "
+    "body is in the right place. The authors of this page sell no engine. Every trajectory behind "
+    "these tables is stored, and anybody can judge it again."
+)
+_LEGEND: Final = (
+    "*omega* is the largest error of all samples relative to the largest omega, *attitude* the largest "
+    "angle in radians, *energy* and *H in space* the largest relative drift.",
+    "*order* is the observed order of the error over the steps, of omega and of the attitude; a dash "
+    "means that the steps show no order.",
+    "*time* is the time of the engine's own calls for a second of the motion, in microseconds, "
+    "without starting and compiling. It comes from a single run beside another one on the same "
+    "machine: only its order of magnitude is reliable.",
+    "*best step* is the coarsest of the steps with the least error. Steps are decimal, and every sample is "
+    "at a whole number of steps.",
+    "Adapters switch off sleeping, damping and caps on the velocity if an engine has them. The table "
+    "*as shipped* shows the engines without these changes.",
+)
+_FAIRNESS: Final = (
+    "The first row of every trajectory is the start of the scene, from an oblique attitude. It proves "
+    "that axes, order of the quaternion and units are right. The column *start* of the "
+    "[sheet](engines.csv) has its error.",
+    "Every engine gets the same numbers, each rounded once to the precision of its arithmetic, and is "
+    "compared with the exact motion of the rounded numbers.",
+    "An engine that takes principal moments alone is given the principal axes of `engines/full-tensor`, "
+    "and its answer is turned back; the remark on its page says so. In space that is the motion of "
+    "`engines/oblique`.",
+    "A surprising finding is published only with a second demonstration that does not use our "
+    "adapter: the engine's own data, its source or its changelog, and a short script that runs with "
+    "the engine alone.",
+)
+_OBJECT: Final = (
+    "A row that is unfair to an engine is a fault of this project. Please report the row, and the call of "
+    "the engine that would do better: "
+    '`taylor-verify run SCENE --solver "outside:NAME?..."` of the engine\'s page shows it as we see it.',
+    "A better adapter is one file, `cases/README.md` says how (To add an engine); a new setting or "
+    "version is a word in the engine's row of `verify/taylor_verify_reports/studies/engines/entries.toml`.",
+    "An engine of your own needs no adapter here to be judged: `docs/bring-your-engine.md`.",
+)
+
+
+def page(board: Board, folder: Path) -> str:
+    """Return the whole page, with the pictures that are in ``folder``/figures."""
+    entries = _entries(board)
+    every = settings(board.study)
+    return whole(
+        "The engine board",
+        bullets(advice(board, entries)) or "No engine is measured yet.",
+        _WHAT,
+        "## What each engine achieves",
+        _best(board, entries, every),
+        bullets(_LEGEND),
+        figures.shown(folder, pictures(board)),
+        *_scenes(board, entries, every),
+        *_as_shipped(board, entries, every),
+        *_unavailable(board.study.rows),
+        "## Fairness",
+        bullets(_FAIRNESS),
+        *findings(folder),
+        "## To object, and to send a better adapter",
+        bullets(_OBJECT),
+        "## To remake this",
+        bullets(_remake(board)),
+    )
+
+
+def pictures(board: Board) -> list[Picture]:
+    """Return the pictures of the board: energy and motion, error against time, step and version."""
+    entries = _entries(board)
+    return [picture for kind in (energy, work, sweeps) for picture in kind.pictures(board, entries)]
+
+
+def _entries(board: Board) -> EntryList:
+    """Return the entry list. Raises ValueError for rows of an engine that is not in the list."""
+    entries = entry_list()
+    stored = dict.fromkeys(row.engine for row in board.study.rows)
+    if unknown := [name for name in stored if name not in entries.engines]:
+        raise ValueError(
+            f"expected engines of {FILE.name}, got {', '.join(unknown)}: `publish engines` leaves their "
+            f"rows out @ {ENGINES.name}"
+        )
+    return entries
+
+
+def _best(board: Board, entries: EntryList, every: Sequence[EngineSetting]) -> str:
+    """Return a table of the engines, each with its best setting on the first scene of the advice."""
+    scene = entries.advised[0]
+    titles, rows = {row.name: row.title for row in entries.entry}, []
+    for best in best_of_each(every, scene):
+        engine = best.setting.engine
+        name = f"[{prose(titles.get(engine, engine))}]({place(engine).removeprefix('tables/')})"
+        rows.append(
+            [f"{name} {best.setting.version}".strip(), *cells(board, best.setting, best.row)]
+        )
+    if not rows:
+        return "Nothing was judged."
+    return f"On {code(scene)}, each engine with its best setting:\n\n{table(COLUMNS, rows)}"
+
+
+COLUMNS: Final = (
+    "engine",
+    "setting",
+    "best step:",
+    "omega:",
+    "attitude:",
+    "order:",
+    "energy:",
+    "time:",
+)
+
+
+def cells(board: Board, setting: EngineSetting, row: EngineRow) -> list[str]:
+    """Return the cells of a row of `COLUMNS` after the name of its engine."""
+    orders = [setting.order(row.scene, name) for name in ("omega", "attitude")]
+    order_cells = [f"{o.order:.1f}" if o and o.order is not None else NOTHING for o in orders]
+    pace = board.pace(row)
+    return [
+        prose(setting.words) or NOTHING,
+        _knob(row),
+        figure(row.errors.get("omega")),
+        figure(row.errors.get("attitude")),
+        ", ".join(order_cells),
+        figure(row.errors.get("T")),
+        figure(None if pace is None else 1e6 * pace),
+    ]
+
+
+def _knob(row: EngineRow) -> str:
+    if not row.value:
+        return NOTHING
+    return row.value if row.knob == "step" else f"{row.knob} {row.value}"
+
+
+def _scenes(board: Board, entries: EntryList, every: Sequence[EngineSetting]) -> Iterator[str]:
+    """Yield a section for each scene: every engine with its best setting there."""
+    titles = {row.name: row.title for row in entries.entry}
+    for scene in dict.fromkeys(row.scene for row in board.study.rows):
+        rows = []
+        for engine, group in groupby(newest(every), key=lambda setting: setting.engine):
+            best_rows = [row for setting in group if (row := setting.best(scene)) is not None]
+            best = min(best_rows, key=lambda row: row.worst, default=None)
+            if best is not None:
+                rows.append(_scene_row(best, titles.get(engine, engine)))
+        if rows:
+            states = (
+                ("omega", "attitude") if "omega" in _states(board, scene) else ("impulse", "centre")
+            )
+            space = "H in space:" if "omega" in states else "momentum in space:"
+            numbers = (*(f"{name}:" for name in states), "energy:", space, "digits:")
+            yield f"## {scene}"
+            yield table(["engine", "setting", "best step:", *numbers, "cause"], rows)
+
+
+def _scene_row(row: EngineRow, title: str) -> list[str]:
+    is_rotation = "omega" in row.floors
+    names = (
+        ("omega", "attitude", "T", "H_space")
+        if is_rotation
+        else ("impulse", "centre", "T", "x_space")
+    )
+    words = ", ".join(filter(None, [row.variant, row.rung if row.rung != "f64" else ""]))
+    return [
+        prose(title),
+        prose(words) or NOTHING,
+        _knob(row),
+        *(figure(row.errors.get(name)) for name in names),
+        f"{digits(row.worst):.1f}",
+        prose(row.cause) or NOTHING,
+    ]
+
+
+def _states(board: Board, scene: str) -> set[str]:
+    """Return the state quantities that were judged on a scene."""
+    return {name for row in board.study.rows if row.scene == scene for name in row.floors}
+
+
+def _as_shipped(board: Board, entries: EntryList, every: Sequence[EngineSetting]) -> Iterator[str]:
+    """Yield the table of the engines as shipped beside the settings of the board."""
+    titles, rows, usual = {row.name: row.title for row in entries.entry}, [], newest(every)
+    for setting in newest(every, shipped=True):
+        for row in setting.rows:
+            other = like(row, usual, entries)
+            if row.is_judged:
+                rows.append(
+                    [
+                        prose(titles.get(setting.engine, setting.engine)),
+                        prose(other.variant if other else row.variant) or NOTHING,
+                        code(row.scene.rpartition("/")[2]),
+                        row.value,
+                        *(figure(row.errors.get(name)) for name in ("omega", "attitude", "T")),
+                        figure(other.worst if other and other.worst < inf else None),
+                        prose(row.cause) or NOTHING,
+                    ]
+                )
+    if rows:
+        columns = [
+            "engine",
+            "setting",
+            "scene",
+            "step:",
+            "omega:",
+            "attitude:",
+            "energy:",
+            "set by us:",
+            "cause",
+        ]
+        yield "## As shipped"
+        yield (
+            "Sleeping, damping and caps are left as an engine ships them; *set by us* is the error with "
+            "what the adapter sets, at the same step."
+        )
+        yield table(columns, rows)
+
+
+def _unavailable(rows: Iterable[EngineRow]) -> Iterator[str]:
+    """Yield a section of the runs without numbers, with a line for each engine, version and reason."""
+    lost = {
+        (row.engine, row.version, row.standing, row.detail): row
+        for row in rows
+        if not row.is_judged
+    }
+    if lost:
+        yield "## Without a number"
+        yield bullets(
+            f"{code(row.solver)} on {code(row.scene)}: {row.standing}, {prose(row.detail)}"
+            for row in lost.values()
+        )
+
+
+def _remake(board: Board) -> list[str]:
+    machine, count = board.timings.machine, sum(row.is_judged for row in board.study.rows)
+    return [
+        "`make engines` runs what is not stored yet, and `make engines ENGINE=mujoco` one engine again; "
+        "with `taylor-verify publish engines --anew` everything is run. It may be killed, and goes on.",
+        f"`taylor-verify publish engines --rejudge` runs nothing: it judges the {count} stored "
+        f"trajectories again, in [trajectories.npz](../{TRAJECTORIES}), and writes "
+        f"[engines.json](../{ENGINES.name}) and this page. Errors are the same on every machine.",
+        f"Times are in [engines-timings.json](../{TIMINGS.name}), {board.timings.workers} runs at a time "
+        f"on {prose(machine.processor)}; no number but a time depends on the machine.",
+        f"The [sheet](engines.csv) has every run. {made_with(board.study.versions)}",
+    ]
+
+
+def sheet(board: Board) -> str:
+    """Return a row for every run, with every quantity."""
+    quantities = dict.fromkeys(name for row in board.study.rows for name in row.errors)
+    names = [
+        "engine",
+        "version",
+        "variant",
+        "knob",
+        "value",
+        "scene",
+        "rung",
+        "shipped",
+        "standing",
+        "steps",
+        "start",
+        *quantities,
+        "microseconds",
+        "cause",
+        "array",
+        "place",
+        "solver",
+    ]
+    return csv_sheet(names, (_sheet_row(board, row) for row in board.study.rows))
+
+
+def _sheet_row(board: Board, row: EngineRow) -> dict[str, Any]:
+    pace = board.pace(row)
+    return {
+        **vars(row),
+        **row.errors,
+        "array": row.array if row.is_judged else "",
+        "microseconds": None if pace is None else f"{1e6 * pace:.3g}",
+        "standing": row.standing.value,
+        "shipped": "yes" if row.shipped else "no",
+    }

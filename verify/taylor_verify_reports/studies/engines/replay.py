@@ -1,0 +1,119 @@
+"""Judgement of stored trajectories, without running an engine; it is the same on every machine."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from math import isfinite
+from typing import Any, Final, final
+
+import numpy as np
+from mpmath import mp
+
+from taylor_verify.judge.causes.answers import with_causes
+from taylor_verify.judge.initial import with_initial
+from taylor_verify.judge.judgement import Judgement, judgement
+from taylor_verify.models.problem import Problem
+from taylor_verify.records.answers import LikelyCause
+from taylor_verify.records.quantities import INITIAL, state_groups
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.scenes.precision import rung as rung_named
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.registry import solver_named
+from taylor_verify.solvers.solver import Solver, columns
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
+from taylor_verify_reports.studies.engines.document import STATES
+
+States = np.ndarray[Any, Any]
+
+# Digits of a stored error.
+_DIGITS: Final = 4
+
+
+@final
+@dataclass(frozen=True)
+class Stored(Solver):
+    """Solver that returns a stored trajectory of shape (samples, n), with the columns of `columns`."""
+
+    name: str
+    states: States
+    steps: int
+    setting: str = ""
+
+    def solve(self, problem: Problem) -> Trajectory:
+        """Return the stored trajectory as the answer to ``problem``."""
+        layout = columns(problem)
+        ends = np.cumsum([width for _, width in layout])[:-1]
+        # A float32 becomes a float64 without a change of its value.
+        numbers = np.array([[mp.mpf(float(v)) for v in row] for row in self.states], dtype=object)
+        parts = np.split(numbers, ends, axis=1)
+        quantities = {name: part for (name, _), part in zip(layout, parts, strict=True)}
+        return Trajectory(Outcome.FINISHED, quantities, steps=self.steps)
+
+
+@dataclass(frozen=True)
+class Errors:
+    """The numbers of a judgement that the board shows; see `document.EngineRow`."""
+
+    start: float | None
+    errors: dict[str, float]
+    floors: dict[str, float]
+    cause: str
+
+
+def states_of(scene: Scene, trajectory: Trajectory) -> States:
+    """Return a trajectory as an array (samples, columns): float32 if that changes no number, else float64.
+
+    A number that is no double is rounded; no engine here has any.
+    """
+    parts = [trajectory.quantities[name] for name in state_groups(scene.model, scene.track)]
+    doubles = np.array(
+        [[float(v) for part in parts for v in part[k]] for k in range(len(parts[0]))]
+    )
+    with np.errstate(over="ignore", under="ignore"):
+        singles = doubles.astype(np.float32)
+    return singles if np.array_equal(singles.astype(float), doubles) else doubles
+
+
+def judged(scene: str, rung: str, solver: str, states: States, steps: int) -> Judgement:
+    """Return the judgement of stored states, with the likely causes of what failed.
+
+    The problem has the data as the solver rounds them. The count of steps has no time limit, so that the
+    judgement is the same on every machine.
+    """
+    problem = solver_named(solver).problem(load(scene), rung_named(rung))
+    stored = Stored(solver, states, steps)
+    trajectory = stored.solve(problem)
+    result = with_initial(judgement(problem, stored, trajectory), float(problem.given.clock.start))
+    return with_causes(result, problem, trajectory)
+
+
+def errors_of(result: Judgement) -> Errors:
+    """Return the numbers of a judgement that the board stores."""
+    verdicts = {verdict.quantity: verdict for verdict in result.verdicts}
+    first = verdicts.pop(INITIAL, None)
+    return Errors(
+        start=None if first is None else _short(first.max),
+        errors={name: e for name, v in verdicts.items() if (e := _short(v.max)) is not None},
+        floors={
+            name: a
+            for name, v in verdicts.items()
+            if name in STATES and (a := _short(v.attainable)) is not None
+        },
+        cause=_cause(result.causes, verdicts.values()),
+    )
+
+
+def _cause(causes: Iterable[LikelyCause], verdicts: Iterable[Verdict]) -> str:
+    """Return the name of the cause that explains most of an error; the main quantity's comes first."""
+    order = [verdict.quantity for verdict in verdicts]
+    ordered = sorted(causes, key=lambda cause: (order.index(cause.quantity), cause.leaves))
+    return ordered[0].name if ordered else ""
+
+
+def _short(value: float | None) -> float | None:
+    """Return an error in four digits; None if it is no finite number."""
+    if value is None or not isfinite(value):
+        return None
+    return float(f"{value:.{_DIGITS - 1}e}")

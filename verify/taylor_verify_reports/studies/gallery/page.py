@@ -1,0 +1,239 @@
+"""Gallery: pictures of some motions and of their errors, made from stored data alone.
+
+Its data are data/portraits (the motion), data/records (the errors of a run), reference/NAME.csv (the
+exact motion at its samples) and data/controls.json (broken solvers). The page is figures/README.md.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from pathlib import Path
+from typing import Any, Final
+
+from taylor_verify.draw import axis_path, centre_path, polhode
+from taylor_verify.plotting.picture import Picture
+from taylor_verify.records import store
+from taylor_verify.records.file_names import of_scene
+from taylor_verify.records.precisions import place_of_rung
+from taylor_verify.records.quantities import COLUMNS
+from taylor_verify.words.markdown import code, prose
+from taylor_verify.words.page import whole
+from taylor_verify_reports.studies.controls import picture as shifts
+from taylor_verify_reports.studies.controls.document import CONTROLS
+from taylor_verify_reports.studies.gallery.pictures import errors_over_time, potential
+from taylor_verify_reports.studies.portraits.study import PORTRAITS
+from taylor_verify_reports.studies.reference import page as reference_files
+
+_SOLVER: Final = "taylor"
+# The rung whose samples are marked on a polhode.
+_RUNG: Final = "f64"
+
+_WHAT: Final = (
+    "Every picture is drawn from the data beside this folder, by `taylor-verify publish gallery`, as "
+    "SVG and as PDF. Portraits, records and the PDF are made and not committed: `taylor-verify publish "
+    "--missing` makes the data, `--paper` the PDF. Lengths, times and impulses are in the scene's own "
+    "units. The motions are exact, to more digits than any picture shows; an error is that of the Taylor "
+    "driver of this suite, against the exact motion of the same rounded data."
+)
+_ELSEWHERE: Final = (
+    "Other pictures of this folder stand beside their numbers: speed against accuracy in "
+    "[tradeoff](../tables/tradeoff.md), the digits that each precision leaves in "
+    "[reach](../tables/reach.md), drift over decades of time in [growth](../tables/growth.md), the "
+    "cost of each option in [prices](../tables/prices.md)."
+)
+
+Document = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A picture with its heading, its caption, and the files that it is made from, below the report."""
+
+    heading: str
+    picture: Picture
+    caption: str
+    sources: tuple[str, ...]
+
+    def block(self) -> str:
+        """Return the picture with its caption and its data, in Markdown."""
+        sources = ", ".join(map(_named, self.sources))
+        stem, alt = self.picture.stem, prose(self.picture.alt)
+        return f"![{alt}]({stem}.svg)\n\n{self.caption} Data: {sources}."
+
+
+def _named(source: str) -> str:
+    """Return a link to a file of data, or its name if the repository does not hold it."""
+    is_made = source.startswith((PORTRAITS.folder, f"{store.FOLDER}/{store.RECORDS}"))
+    return code(source) if is_made else f"[{Path(source).name}](../{source})"
+
+
+@dataclass(frozen=True)
+class Stored:
+    """The data of a report folder that the pictures need.
+
+    Raises FileNotFoundError for missing files, and ValueError for files that hold something else.
+    """
+
+    folder: Path
+
+    def portrait(self, scene: str) -> Document:
+        """Return the portrait of a scene."""
+        return store.read_document(self.folder / PORTRAITS.name(scene))
+
+    def record(self, scene: str, rung: str) -> Document:
+        """Return the record of the run of a scene on a rung."""
+        return store.read_document(self.folder / record_name(scene, rung))
+
+    def rungs(self, scene: str) -> list[str]:
+        """Return the rungs on which the scene was run, in the order of the ladder."""
+        stem = f"{of_scene(scene)}.{_SOLVER}"
+        files = (self.folder / store.FOLDER / store.RECORDS).glob(f"{stem}.*.json")
+        names = [file.name.removeprefix(f"{stem}.").removesuffix(".json") for file in files]
+        return sorted(names, key=place_of_rung)
+
+    def samples(self, scene: str, columns: Sequence[str]) -> list[list[float]]:
+        """Return the exact motion as a row of the columns for each instant of the scene."""
+        file = self.folder / reference_name(scene)
+        with file.open(encoding="utf-8", newline="") as lines:
+            return [[float(row[column]) for column in columns] for row in csv.DictReader(lines)]
+
+
+def record_name(scene: str, rung: str) -> str:
+    """Return the path of the record of a run, below the report folder."""
+    return f"{store.FOLDER}/{store.record_name(scene, _SOLVER, rung)}"
+
+
+def reference_name(scene: str) -> str:
+    """Return the path of the exact motion of a scene, below the report folder."""
+    return f"{reference_files.FOLDER}/{of_scene(scene)}.csv"
+
+
+def gallery(folder: Path) -> list[Shown]:
+    """Return every picture of the gallery. Raises FileNotFoundError and ValueError as `Stored` does."""
+    with store.expecting("data of the gallery", folder / store.FOLDER):
+        return list(shown(Stored(folder)))
+
+
+def shown(stored: Stored) -> Iterator[Shown]:
+    """Yield every picture of the gallery, scene by scene."""
+    for scene, kinds in _SCENES:
+        portrait = stored.portrait(scene)
+        for kind in kinds:
+            yield Shown(f"{scene}: {prose(portrait['title'])}", *kind(stored, portrait))
+    yield Shown("Clebsch's body: where the axial impulse may go", *_quartics(stored))
+    yield Shown("Errors split in lateness and the rest", *_shifts(stored))
+
+
+def page(pictures: Sequence[Shown]) -> str:
+    """Return the page of all pictures below their headings."""
+    blocks = []
+    for heading, group in groupby(pictures, key=lambda entry: entry.heading):
+        blocks += [f"## {heading}", *(entry.block() for entry in group)]
+    title = "Pictures of motions and of their errors"
+    return whole(title, _WHAT, *blocks, "## Elsewhere", _ELSEWHERE)
+
+
+# The kinds of pictures.
+
+# A picture, its caption, and the files that it is made from.
+Made = tuple[Picture, str, tuple[str, ...]]
+
+
+def _polhode(stored: Stored, portrait: Document) -> Made:
+    scene = portrait["scene"]
+    caption = (
+        f"{code(scene)}: the angular velocity on its ellipsoid of inertia. The line is the exact "
+        f"course, the marks are the samples of {_SOLVER} on {_RUNG}, coloured by their error in units "
+        "of u; dashed the separatrices. Repeated turns overlap, with later marks above earlier ones."
+    )
+    samples, record = stored.samples(scene, COLUMNS["omega"]), stored.record(scene, _RUNG)
+    picture = polhode.picture(portrait, samples, record)
+    sources = (PORTRAITS.name(scene), record_name(scene, _RUNG), reference_name(scene))
+    return picture, caption, sources
+
+
+def _axis(stored: Stored, portrait: Document) -> Made:
+    path = axis_path.series(portrait)
+    still = "" if path.fixed is None else f"; the cross is the direction of its {path.fixed_name}"
+    caption = (
+        f"{code(portrait['scene'])}: where body axis {path.axis} points in space, from light to dark with "
+        f"time, on the unit sphere{still}."
+    )
+    return axis_path.picture(portrait), caption, (PORTRAITS.name(portrait["scene"]),)
+
+
+def _path(stored: Stored, portrait: Document) -> Made:
+    path = centre_path.series(portrait)
+    caption = (
+        f"{code(portrait['scene'])}: the path of the body's origin through the fluid, with its projections "
+        f"on three walls; the short lines are body axis {path.axis} at equal intervals of time."
+    )
+    return centre_path.picture(portrait), caption, (PORTRAITS.name(portrait["scene"]),)
+
+
+def _errors(stored: Stored, portrait: Document) -> Made:
+    scene = portrait["scene"]
+    rungs = stored.rungs(scene)
+    if not rungs:
+        raise FileNotFoundError(2, "no such file", stored.folder / record_name(scene, _RUNG))
+    caption = (
+        f"{code(scene)}: the largest error of {_SOLVER} up to each time on {', '.join(rungs)}, in units of "
+        "the rung's own roundoff u. Dashed, through the middle of all: the powers of time that random "
+        "roundings leave on regular orbits, 1/2 for a conserved quantity, 3/2 for state and attitude. Near "
+        "an unstable motion the state's error grows faster for a while, whatever the rung."
+    )
+    records = [stored.record(scene, rung) for rung in rungs]
+    picture = errors_over_time.picture(scene, records, portrait["course"]["t"][0])
+    return picture, caption, tuple(record_name(scene, rung) for rung in rungs)
+
+
+def _quartics(stored: Stored) -> Made:
+    caption = (
+        "The quartic X3 of Clebsch's body, whose root the axial impulse follows: x3'^2 = r^2 X3(x3). "
+        "The body swings between two simple roots; it only approaches a double root, like an "
+        "exponential, and a triple one like 1/t^2. With two real roots the other two are a complex "
+        "pair."
+    )
+    picture = potential.picture([stored.portrait(scene) for scene in QUARTICS], "kirchhoff")
+    return picture, caption, tuple(PORTRAITS.name(scene) for scene in QUARTICS)
+
+
+def _shifts(stored: Stored) -> Made:
+    caption = (
+        "Solvers that were broken on purpose: the largest error of each, and the rest after the best "
+        "shift of time. The shift of a sound run is as random as its roundings, and is not stored. A "
+        "body read half a millisecond early has a large error and almost no rest: every conserved "
+        "quantity is right. If the second mark lies on the first, the motion is wrong, or only some "
+        "of its samples are late."
+    )
+    verdicts = CONTROLS.load(stored.folder).verdicts
+    return shifts.picture(verdicts, "controls"), caption, (CONTROLS.name,)
+
+
+_SCENES: Final[tuple[tuple[str, tuple[Callable[[Stored, Document], Made], ...]], ...]] = (
+    ("euler/generic", (_polhode, _errors)),
+    ("euler/with-attitude", (_polhode, _axis, _errors)),
+    ("euler/separatrix", (_polhode, _errors)),
+    ("euler/tennis-racket", (_polhode, _errors)),
+    ("kirchhoff/whole-motion", (_axis, _path, _errors)),
+    ("kirchhoff/through-the-pole", (_axis, _path, _errors)),
+    ("kirchhoff/falling-away", (_axis, _path, _errors)),
+    ("manufactured/kirchhoff-path", (_path,)),
+    ("manufactured/euler-resonance", (_errors,)),
+)
+QUARTICS: Final = (
+    "kirchhoff/whole-motion",
+    "kirchhoff/two-real-roots",
+    "kirchhoff/falling-away",
+    "kirchhoff/half-turn",
+    "kirchhoff/algebraic",
+    "kirchhoff/ellipsoid-disc",
+)
+
+
+def scenes() -> tuple[str, ...]:
+    """Return the scenes of the gallery."""
+    return tuple(scene for scene, _ in _SCENES)

@@ -1,0 +1,149 @@
+"""Question of an ensemble: a scene and starts near it, at a few instants in each decade of time."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from itertools import pairwise
+from math import ceil, floor, log10, pi
+from typing import Any, Final
+
+from taylor_verify.exact.elements import elements
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.models.rates import Linearised
+from taylor_verify.scenes.motion import Clock
+from taylor_verify.scenes.precision import Rung, hexadecimal
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.registry import TAYLOR
+from taylor_verify.solvers.taylor.names import tolerance
+from taylor_verify.tradeoff.starts import nearby
+
+# A hundred periods are thousands of steps. Then roundings have become a random walk, and oscillations
+# within a period are small beside it.
+FIRST_PERIODS: Final = 100
+INSTANTS_PER_DECADE: Final = 2
+# The gate needs early instants besides the late ones.
+LEAST_PERIODS: Final = 10**3.5
+MOST_PERIODS: Final = 1e9
+# Periods between two checkpoints. They are part of the question, because a step ends at each checkpoint.
+PIECE_PERIODS: Final = 100_000
+
+_LEAST_LANES: Final = 2
+# A number of periods that is short by this part counts as reached.
+_SLACK: Final = 1e-6
+
+
+@dataclass(frozen=True)
+class Question:
+    """A scene and ``lanes`` - 1 starts near its own, drawn from ``seed``, followed for ``periods`` periods.
+
+    ``solver`` is a name of heyoka's integrator, with its tolerance if it has one. Raises ValueError for a
+    body with loads or damping, for too few or too many periods, for fewer than two lanes, and for another
+    solver.
+    """
+
+    scene: Scene
+    rung: Rung
+    periods: float
+    lanes: int = 16
+    solver: str = TAYLOR
+    seed: int = 1
+
+    def __post_init__(self) -> None:
+        if not self.scene.body.is_free:
+            raise ValueError(
+                "expected a free body, whose conserved quantities are conserved, got loads "
+                f"@ {self.scene.name}"
+            )
+        if self.scene.body.damping:
+            # A motion in tau = (1 - e^{-ct})/c has no decades of periods: for c > 0 it ends at
+            # tau = 1/c, and for c < 0 a power of tau is an exponential of the time.
+            fate = "dies away" if self.scene.body.damping > 0 else "speeds up"
+            raise ValueError(
+                "expected a motion that recurs, whose errors grow as powers of the time, got one that "
+                f"{fate} as e^(-c t) under damping @ {self.scene.name}"
+            )
+        if not self.periods >= LEAST_PERIODS * (1 - _SLACK):
+            raise ValueError(
+                f"expected at least {LEAST_PERIODS:.0f} periods, got {self.periods:g} @ periods"
+            )
+        if not self.periods <= MOST_PERIODS:
+            raise ValueError(
+                f"expected at most {MOST_PERIODS:g} periods, got {self.periods:g} @ periods"
+            )
+        if not self.lanes >= _LEAST_LANES:
+            raise ValueError(f"expected at least {_LEAST_LANES} lanes, got {self.lanes} @ lanes")
+        tolerance(self.solver)
+
+    @property
+    def tolerance(self) -> Fraction | None:
+        """The tolerance of the solver; None for the rung's own."""
+        return tolerance(self.solver)
+
+    @cached_property
+    def period(self) -> float:
+        """The period of the orbit in the scene's unit of time.
+
+        If the orbit has none, it is that of the fastest linear rate at the start.
+        """
+        period = elements(self.scene).get("period")
+        if period is not None:
+            return float(period.value)
+        problem = pose(self.scene, self.rung)
+        rate = Linearised(problem).fastest([float(value) for value in problem.initial_momenta])
+        return 2 * pi / rate * float(problem.units.time)
+
+    @cached_property
+    def counts(self) -> tuple[float, ...]:
+        """The instants, in periods: equally many in each decade."""
+        first = round(INSTANTS_PER_DECADE * log10(FIRST_PERIODS))
+        last = floor(INSTANTS_PER_DECADE * log10(self.periods * (1 + _SLACK)))
+        return tuple(10 ** (k / INSTANTS_PER_DECADE) for k in range(first, last + 1))
+
+    @cached_property
+    def problems(self) -> tuple[Problem, ...]:
+        """The problem of every lane at the instants; that of the first lane has the scene's own start."""
+        start = self.scene.clock.start
+        clock = Clock(start, tuple(start + Fraction(n * self.period) for n in self.counts))
+        scenes = [self.scene, *nearby(self.scene, self.seed, self.lanes - 1)]
+        return tuple(pose(replace(scene, clock=clock), self.rung) for scene in scenes)
+
+    @cached_property
+    def pieces(self) -> tuple[tuple[tuple[Fraction, ...], bool], ...]:
+        """The ends of the pieces: the time of every lane in its own units, and True if it is an instant."""
+        stops: list[tuple[tuple[Fraction, ...], bool]] = []
+        instants = [*zip(*(problem.times for problem in self.problems), strict=True)]
+        start = (Fraction(0),) * len(self.problems)
+        for k, (count, after) in enumerate(pairwise((0.0, *self.counts))):
+            before = instants[k - 1] if k else start
+            parts = ceil((after - count) / PIECE_PERIODS)
+            for part in range(1, parts):
+                share = Fraction(part, parts)
+                ends = zip(before, instants[k], strict=True)
+                stops.append((tuple(self.rung.round(a + share * (b - a)) for a, b in ends), False))
+            stops.append((instants[k], True))
+        return tuple(stops)
+
+    def document(self) -> dict[str, Any]:
+        """Return the question as JSON holds it, with a digest of all exact numbers of the problems."""
+        return {
+            "scene": self.scene.name,
+            "digest": self.scene.digest,
+            "solver": self.solver,
+            "rung": self.rung.name,
+            "periods": self.counts[-1],
+            "lanes": self.lanes,
+            "seed": self.seed,
+            "fingerprint": self._fingerprint(),
+        }
+
+    def _fingerprint(self) -> str:
+        digest = hashlib.sha256()
+        for problem in self.problems:
+            numbers = (*problem.parameters, *problem.initial_momenta, *problem.times)
+            digest.update(" ".join([*problem.form.text(), *map(hexadecimal, numbers)]).encode())
+        for stops, _ in self.pieces:
+            digest.update(" ".join(map(hexadecimal, stops)).encode())
+        return digest.hexdigest()

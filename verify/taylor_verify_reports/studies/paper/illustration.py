@@ -1,0 +1,77 @@
+"""Pictures of the paper, taken from the studies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from taylor_verify.plotting.picture import Picture
+from taylor_verify.words.markdown import code
+from taylor_verify_reports.studies.engines import page as engines_page
+from taylor_verify_reports.studies.paper.caption import ENGINES, TRADEOFF, Caption
+from taylor_verify_reports.studies.paper.sources import Sources
+from taylor_verify_reports.studies.reach import page as reach_page
+from taylor_verify_reports.studies.tradeoff import page as tradeoff_page
+
+
+@dataclass(frozen=True)
+class Illustration:
+    """A picture with its caption; ``width`` is in per cent of the width of the text."""
+
+    name: str
+    picture: Picture
+    caption: Caption
+    width: int = 100
+
+    @property
+    def markdown(self) -> str:
+        """The picture as a block of Markdown."""
+        return f"![{self.caption.markdown}]({self.picture.stem}.pdf){{width={self.width}%}}"
+
+
+def pictures(sources: Sources) -> list[Illustration]:
+    """Return all pictures, in the order of the paper. Raises ValueError for a study without a picture."""
+    return [make(sources) for make in (_engines, _reach, _trade)]
+
+
+def _engines(sources: Sources) -> Illustration:
+    words = (
+        f"Largest error of omega and attitude on {code(sources.engine_scene)} against the time for a "
+        "second of the motion: each engine at the best of its settings, a point for every step."
+    )
+    machine = sources.board.timings.machine.processor
+    picture = _named("engines-time", engines_page.pictures(sources.board), "engines")
+    return Illustration("engines", picture, Caption(words, ENGINES, machine))
+
+
+def _reach(sources: Sources) -> Illustration:
+    words = (
+        "Digits that are left beside an unstable motion, over the distance $d$ from it and the number of "
+        "periods, in each number format: achieved, and beside it the floor."
+    )
+    data, machine = (reach_page.REACH.name,), sources.reach.provenance.processor
+    picture = _first(reach_page.pictures(sources.reach), "reach")
+    return Illustration("reach", picture, Caption(words, data, machine))
+
+
+def _trade(sources: Sources) -> Illustration:
+    picture = _first(tradeoff_page.pictures(sources.trades), "tradeoff")
+    scene = code(sources.trades.short[0].scene)
+    words = (
+        f"Error against time of a solve on {scene}, every solver at every setting. A *rung* is a number "
+        "format."
+    )
+    machine = sources.trades.times.machine.processor
+    return Illustration("tradeoff", picture, Caption(words, TRADEOFF, machine), width=90)
+
+
+def _named(stem: str, pictures: Sequence[Picture], study: str) -> Picture:
+    """Return the picture with this stem. Raises ValueError if there is none."""
+    return _first([picture for picture in pictures if picture.stem == stem], study)
+
+
+def _first(pictures: Sequence[Picture], study: str) -> Picture:
+    """Return the first picture of a study. Raises ValueError if there is none."""
+    if not pictures:
+        raise ValueError(f"expected a picture of what `publish {study}` has stored, got none")
+    return pictures[0]

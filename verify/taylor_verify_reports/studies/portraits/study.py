@@ -1,0 +1,49 @@
+"""The study of the portraits: the data of the page and the pictures of each shipped scene."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from taylor_verify.records import store
+from taylor_verify_reports.studies.stored import SceneDocuments
+from taylor_verify_reports.studies.study import Bulk, Measured, Progress, Study
+
+# Separators without blanks make the rows of numbers shorter.
+PORTRAITS: Final = SceneDocuments(
+    f"{store.FOLDER}/portraits", "taylor-verify publish; do not edit", (",", ":")
+)
+
+
+def _measure(folder: Path, progress: Progress) -> Measured:
+    from taylor_verify.scenes.library import names
+
+    return Measured(PORTRAITS.write(folder, _portraits(names(), progress)))
+
+
+def _add(folder: Path, scenes: Sequence[str], progress: Progress) -> list[Path]:
+    return PORTRAITS.add(folder, _portraits(scenes, progress))
+
+
+def _portraits(scenes: Sequence[str], progress: Progress) -> list[dict[str, Any]]:
+    from taylor_verify.batch.documents import documents
+    from taylor_verify_reports.studies.portraits.measure import portrait
+
+    return documents(portrait, scenes, progress.counting(len(scenes)))
+
+
+STUDY: Final = Study[None](
+    name="portraits",
+    title="what each shipped scene is and how it moves, as data for pages and pictures",
+    duration="a minute, all cores",
+    measure=_measure,
+    bulk=(
+        Bulk(
+            what="portraits of scenes",
+            patterns=(f"{PORTRAITS.folder}/",),
+            lacking=lambda report: report.outdated_scenes(PORTRAITS.folder),
+            make=_add,
+        ),
+    ),
+)

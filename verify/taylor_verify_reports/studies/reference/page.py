@@ -1,0 +1,103 @@
+"""Exact trajectories as CSV and JSON files, with a page on how to read them.
+
+NAME.csv      a heading line and a row for every sample time, in decimal text
+NAME.json     the same columns as arrays of strings, and the scene; no page links to it, because it
+              is not in the repository
+README.md     columns, conventions, tolerances
+example.cpp   a program that compares a trajectory with a reference
+example.rs    a program that integrates a body and compares its motion with a reference
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from taylor_verify.records import file_names
+from taylor_verify.records.replacement import first_line, replace_files
+from taylor_verify.words.markdown import code, table
+from taylor_verify.words.page import MADE_BY
+from taylor_verify_reports.studies.stored import SceneDocuments
+
+FOLDER: Final = "reference"
+
+TRAJECTORIES: Final = SceneDocuments(FOLDER, "taylor-verify publish --reference; do not edit")
+EXAMPLES: Final = ("example.cpp", "example.rs")
+_TEMPLATES: Final = Path(__file__).with_name("templates")
+_SHEET: Final = re.compile(r"\[csv\]\(([^()/]+\.csv)\)")
+_ROUTES: Final = {"mpmath": "closed form", "taylor": "Taylor"}
+
+Document = Mapping[str, Any]
+"""Row of a scene: ``columns`` (a list of decimal texts by name), and the other keys of its JSON."""
+
+
+def write(folder: Path, documents: Sequence[Document]) -> list[Path]:
+    """Write ``folder``/reference, in place of an earlier one, and return the files written.
+
+    Files of scenes that no longer exist are removed; files of another maker stay. Raises OSError; the
+    folder then stays as it was.
+    """
+    examples = {name: (_TEMPLATES / name).read_text(encoding="utf-8") for name in EXAMPLES}
+    beside = {
+        **{f"{_stem(document)}.csv": _sheet(document["columns"]) for document in documents},
+        **examples,
+        "README.md": _readme(documents, examples),
+    }
+    texts = TRAJECTORIES.texts(map(_flat, documents))
+    texts |= {f"{FOLDER}/{name}": text for name, text in beside.items()}
+    stale = [*TRAJECTORIES.own(folder), *_own_sheets(folder / FOLDER)]
+    return list(replace_files(folder, texts, stale=stale))
+
+
+def add_json(folder: Path, documents: Iterable[Document]) -> list[Path]:
+    """Write the JSON files alone, beside existing files, and return them. Raises OSError."""
+    return TRAJECTORIES.add(folder, map(_flat, documents))
+
+
+def _flat(document: Document) -> dict[str, Any]:
+    """Return a document with its columns as keys of their own."""
+    others = {name: value for name, value in document.items() if name != "columns"}
+    return {**others, **document["columns"]}
+
+
+def _stem(document: Document) -> str:
+    return file_names.of_scene(str(document["scene"]))
+
+
+def _sheet(columns: Mapping[str, Sequence[str]]) -> str:
+    """Return columns as CSV, without quotation marks and comments."""
+    lines = [columns.keys(), *zip(*columns.values(), strict=True)]
+    return "".join(",".join(cells) + "\n" for cells in lines)
+
+
+def _readme(documents: Iterable[Document], examples: Mapping[str, str]) -> str:
+    columns = ["scene", "regime", "route", "columns", "rows:", "file"]
+    text = (_TEMPLATES / "reference.md").read_text(encoding="utf-8")
+    filled = text.replace("{{scenes}}", table(columns, [_row(document) for document in documents]))
+    for name, program in examples.items():
+        # The page quotes the programs from their files.
+        filled = filled.replace(f"{{{{{name}}}}}", program.rstrip())
+    return f"{MADE_BY}\n{filled}"
+
+
+def _row(document: Document) -> list[str]:
+    columns, stem = document["columns"], _stem(document)
+    vectors = dict.fromkeys(name[0] for name in columns if name not in {"t", "radius"})
+    return [
+        code(document["scene"]),
+        document["regime"],
+        _ROUTES.get(document["route"], document["route"]),
+        " ".join(code(vector) for vector in vectors),
+        str(len(columns["t"])),
+        f"[csv]({stem}.csv)",
+    ]
+
+
+def _own_sheets(target: Path) -> list[Path]:
+    """Return the CSV files that the page made by this program links to."""
+    page = target / "README.md"
+    if not page.exists() or first_line(page) != MADE_BY:
+        return []
+    return [target / name for name in _SHEET.findall(page.read_text(encoding="utf-8"))]

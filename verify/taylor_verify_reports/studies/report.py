@@ -1,0 +1,72 @@
+"""Folder of what is published: the pages of every study, and the index of them all."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from taylor_verify.records import store
+from taylor_verify.records.replacement import first_line, replace_files
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.report.folder import index
+from taylor_verify.words.entry import Page
+from taylor_verify.words.page import MADE_BY
+from taylor_verify_reports.studies.accuracy import quoted
+from taylor_verify_reports.studies.registry import STUDIES, others
+
+_PAGES_OF_NO_STUDY = (
+    Page("tables/traps.md", "a plain heyoka call against the driver of this suite"),
+    Page("upstream/README.md", "what to report to heyoka's authors, each in a few lines that run"),
+    Page(
+        "upstream/engines/README.md",
+        "what to report to the authors of engines, each in a script that runs",
+    ),
+)
+
+
+def publish(folder: Path | str) -> list[Path]:
+    """Make ``folder``/tables and its front page from ``folder``/data; return the files written.
+
+    Tables that are no longer made are removed. Files that this program did not make stay, even a README.md.
+    Raises OSError for files that cannot be read or written, and ValueError for files that hold something
+    else.
+    """
+    place = Path(folder)
+    verdicts = store.load(place)
+    texts = {name: text for study in STUDIES for name, text in study.pages(place).items()}
+    texts |= index(place, verdicts, entries(place, texts))
+    written = replace_files(place, texts, stale=_own_tables(place / "tables"))
+    return [*written, *_requote(place, verdicts)]
+
+
+def publish_index(folder: Path | str) -> list[Path]:
+    """Make the front page, the index of the tables and the quoted blocks of other pages again.
+
+    Returns the files written. Raises the errors of `publish`.
+    """
+    place = Path(folder)
+    verdicts = store.load(place)
+    texts = index(place, verdicts, entries(place))
+    return [*replace_files(place, texts), *_requote(place, verdicts)]
+
+
+def entries(place: Path, made: Collection[str] = ()) -> list[Page]:
+    """Return the pages beside the tables of runs that exist or are about to be ``made``."""
+
+    def is_there(path: str) -> bool:
+        return path in made or (place / path).exists()
+
+    pages = (*(Page(study.path, study.title) for study in others()), *_PAGES_OF_NO_STUDY)
+    return [replace(page, has_sheet=is_there(page.sheet)) for page in pages if is_there(page.path)]
+
+
+def _requote(place: Path, verdicts: Sequence[Verdict]) -> tuple[Path, ...]:
+    """Make the quoted blocks of the pages beside the report again."""
+    return replace_files(place.resolve().parent, quoted.requoted(place, verdicts))
+
+
+def _own_tables(target: Path) -> list[Path]:
+    """Return the Markdown files that this program made, each with its CSV."""
+    own = [file for file in target.glob("*.md") if first_line(file) == MADE_BY]
+    return own + [file.with_suffix(".csv") for file in own]

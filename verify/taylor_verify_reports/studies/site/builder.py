@@ -1,0 +1,122 @@
+"""Builder of the whole site: docs, report and scenes, made by Sphinx from one source folder."""
+
+from __future__ import annotations
+
+import os
+import re
+import warnings
+from importlib import resources
+from importlib.util import find_spec
+from io import StringIO
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Final
+
+from taylor_verify.batch.pool import available_cores
+from taylor_verify.records.replacement import first_line, replace_files
+from taylor_verify_reports.studies.site.pages import staged
+
+MADE_BY: Final = "<!-- made by taylor-verify publish --site; do not edit -->"
+FRONT: Final = "index.html"
+
+_SCRIPT: Final = "plotly.min.js"
+# Modules that the site needs; their packages have these names with hyphens.
+_NEEDED: Final = (
+    "sphinx",
+    "myst_nb",
+    "ipykernel",
+    "furo",
+    "sphinx_copybutton",
+    "latex2mathml",
+    "matplotlib",
+    "plotly",
+)
+# Patterns of pages; other Markdown is copied as files.
+_PAGES: Final = ["index.md", "docs/**", "reports/**"]
+# Tables have tens of thousands of code spans and cells. Shorter HTML for them saves a tenth of the site.
+_SHORTER: Final = {
+    r'<code class="docutils literal notranslate"><span class="pre">([^<]*)</span></code>': (
+        r'<code class="literal">\1</code>'
+    ),
+    r'<tr class="row-(?:even|odd)">': "<tr>",
+    r"(<td[^>]*>)<p>([^<]*)</p></td>": r"\1\2</td>",
+}
+# Endings of files of Sphinx and the theme that no page needs.
+_UNNEEDED: Final = (".buildinfo", ".inv", ".map")
+
+
+def build(folder: Path, target: Path) -> list[Path]:
+    """Make the site of the report in ``folder``, in place of an earlier one in ``target``.
+
+    The site has the pages of docs if the folder lies in a checkout. Returns the files written. Raises
+    ImportError without Sphinx or another package that it needs, OSError for files that cannot be read or
+    written, and ValueError for invalid data, for pages with a fault, and for a target with other files.
+    """
+    stale = _earlier(target)
+    return list(replace_files(target, contents(folder), stale=stale))
+
+
+def contents(folder: Path) -> dict[str, str | bytes]:
+    """Return every file of the site by its path. Raises the errors of `build`."""
+    for module in _NEEDED:
+        if find_spec(module) is None:
+            package = module.replace("_", "-")
+            raise ImportError(f"expected {package}, got no such package", name=package)
+    stage = staged(folder)
+    with TemporaryDirectory(prefix="taylor-verify-site-") as place:
+        source, made = Path(place, "source"), Path(place, "made")
+        replace_files(source, stage.files)
+        _run_sphinx(source, made, stage.docs or Path(__file__).parent)
+        files = [file for file in sorted(made.rglob("*")) if file.is_file()]
+        site = {
+            file.relative_to(made).as_posix(): _content(file)
+            for file in files
+            if not file.name.endswith(_UNNEEDED)
+        }
+    # A page loads Plotly's script when a picture of a motion comes into view.
+    plotly = resources.files("plotly") / "package_data" / _SCRIPT
+    return {**site, f"_static/{_SCRIPT}": plotly.read_bytes()}
+
+
+def _run_sphinx(source: Path, target: Path, settings: Path) -> None:
+    """Build all pages. Raises a ValueError with Sphinx's warnings, because each is a fault of a page."""
+    from sphinx.application import Sphinx
+    from sphinx.util.docutils import docutils_namespace, patch_docutils
+
+    messages = StringIO()
+    with warnings.catch_warnings(), patch_docutils(settings), docutils_namespace():
+        # Python's own warnings, about calls between Sphinx and its extensions, are no faults of pages.
+        warnings.simplefilter("ignore")
+        app = Sphinx(
+            srcdir=source,
+            confdir=settings,
+            outdir=target,
+            doctreedir=source.parent / "doctrees",
+            buildername="html",
+            confoverrides={"include_patterns": _PAGES},
+            status=None,
+            warning=messages,
+            parallel=available_cores(),
+        )
+        app.build()
+    if faults := messages.getvalue().replace(f"{source.resolve()}{os.sep}", ""):
+        lines = re.sub(r"\x1b\[[\d;]*m", "", faults).strip().replace("\n", "; ")
+        raise ValueError(f"expected pages without a fault, got {lines}")
+
+
+def _content(file: Path) -> str | bytes:
+    """Return the content of a file; a page is shortened, and begins with the name of its maker."""
+    if file.suffix != ".html":
+        return file.read_bytes()
+    text = file.read_text(encoding="utf-8")
+    for long, short in _SHORTER.items():
+        text = re.sub(long, short, text)
+    return f"{MADE_BY}\n{text}"
+
+
+def _earlier(target: Path) -> list[Path]:
+    """Return the files of an earlier site. Raises ValueError for a folder with other files."""
+    files = [file for file in target.rglob("*") if file.is_file()] if target.exists() else []
+    if files and not ((target / FRONT).exists() and first_line(target / FRONT) == MADE_BY):
+        raise ValueError(f"expected a folder that is empty or has an earlier site, got {target}")
+    return files

@@ -1,0 +1,183 @@
+"""Pages that only the site has: the front, the list of scenes, each scene, and all gates."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Final
+
+from taylor_verify.batch.pool import LocalPool, available_cores
+from taylor_verify.plotting.picture import Picture, content
+from taylor_verify.records.file_names import of_scene
+from taylor_verify.records.runs import Run, gravest
+from taylor_verify.records.verdict import summary
+from taylor_verify.words.cells import NOTHING, judged, main_error, ratio, verdict_table, worst
+from taylor_verify.words.markdown import code, prose, table
+from taylor_verify_reports.studies.gallery.pictures import errors_over_time, potential
+from taylor_verify_reports.studies.site.extension import SCENES
+from taylor_verify_reports.studies.site.scene_page import drawing_of, made_with, scene_page, shown
+from taylor_verify_reports.studies.site.source import Document, Report
+from taylor_verify_reports.studies.site.stage import FRONT, REPORTS, Stage, docs_beside, smaller
+
+_GATES: Final = f"{REPORTS}/tables/gates.md"
+# Fewer pictures are drawn in this process, because to start others takes as long as some drawings.
+_MANY: Final = 20
+# The scene of the errors on the front page.
+_EXAMPLE: Final = "euler/generic"
+_FRONT: Final = (Path(__file__).parent / "front.md").read_text(encoding="utf-8")
+_SCENES: Final = (
+    "A scene is one motion, given in exact numbers. A number is the largest error of the main quantity, "
+    "relative to its size: the angular velocity of a rigid body, the impulse of a solid in a fluid. *Over "
+    "attainable* is the largest of all state quantities and rungs; near 1, a solver does all that its "
+    "arithmetic allows. [Gates](tables/gates.md) has every quantity with its bound."
+)
+_WHAT: Final = (
+    "Every quantity that was compared, and its bound. The reason of each bound is on the page of its "
+    "scene."
+)
+_COLUMNS: Final = (
+    "scene",
+    "rung",
+    "quantity",
+    "max:",
+    "at t:",
+    "bound:",
+    "over attainable:",
+    "verdict",
+)
+
+
+def staged(folder: Path) -> Stage:
+    """Return a stage with every page of the site and the files that pages link to.
+
+    Raises OSError for files that cannot be read, and ValueError for files that hold something else.
+    """
+    report, stage = Report(folder), Stage(folder, docs_beside(folder))
+    pictures = {
+        scene: _pictures_of(scene, report.portrait(scene) or {}, report.records(scene))
+        for scene in report.scenes
+    }
+    drawings = _drawn(
+        [
+            picture
+            for drawn in pictures.values()
+            for picture in drawn
+            if not report.has(drawing_of(picture))
+        ]
+    )
+    stage.files |= {f"{SCENES}/{name}": svg for name, svg in drawings.items()}
+    stage.add_pages(
+        {
+            f"{SCENES}.md": _scenes(report),
+            _GATES: _gates(report),
+            **{
+                f"{SCENES}/{of_scene(scene)}.md": scene_page(scene, report, drawn)
+                for scene, drawn in pictures.items()
+            },
+            FRONT: _front(report, stage, pictures.get(_EXAMPLE, ())),
+        }
+    )
+    return stage
+
+
+def _pictures_of(scene: str, portrait: Document, records: Mapping[str, Document]) -> list[Picture]:
+    """Return the static pictures of a scene: errors over time, and the quartic of its orbit."""
+    runs, pictures = list(records.values()), []
+    if errors_over_time.panels_of(errors_over_time.series(runs)):
+        pictures.append(errors_over_time.picture(scene, runs))
+    if portrait.get("potential"):
+        pictures.append(potential.picture([portrait], scene))
+    return pictures
+
+
+def _drawn(pictures: Sequence[Picture]) -> dict[str, str]:
+    """Return the SVG of each picture by the name of its file; many are drawn on all cores."""
+    names = [f"{picture.stem}.svg" for picture in pictures]
+    if len(pictures) < _MANY:
+        return dict(zip(names, map(_svg, pictures), strict=True))
+    with LocalPool(available_cores()) as pool:
+        return dict(zip(names, pool.map(_svg, pictures), strict=True))
+
+
+def _svg(picture: Picture) -> str:
+    """Return a picture as SVG; a function of the module, so that other processes can be sent it."""
+    return smaller(content(picture, "svg").decode())
+
+
+def _front(report: Report, stage: Stage, pictures: Sequence[Picture]) -> str:
+    pages = [f"{SCENES}.md", _GATES, *stage.report_pages]
+    return _FRONT.format(
+        counts=_counts(report.runs),
+        by_rung=_table_by_rung(report),
+        picture="\n\n".join(shown(report, picture, REPORTS) for picture in pictures),
+        blind=_blind(report),
+        made_with=made_with(report),
+        pages="\n".join(sorted({p.removesuffix(".md") for p in pages}, key=_reading_order)),
+        docs=stage.toctrees(),
+    )
+
+
+def _table_by_rung(report: Report) -> str:
+    """Return the table of rungs on the front page of the report; empty without that page."""
+    blocks = report.read("README.md").split("\n\n")
+    return next((block for block in blocks if block.startswith("| rung")), "")
+
+
+def _reading_order(page: str) -> tuple[int, str]:
+    """Return the key by which pages are sorted: the front page, the scenes, then by depth and name."""
+    first = (f"{REPORTS}/README", SCENES)
+    return (first.index(page) if page in first else 2 + page.count("/"), page)
+
+
+def _counts(runs: Sequence[Run]) -> str:
+    """Return a table of the numbers of scenes, runs and verdicts; a zero stands only for pass and fail."""
+    verdicts = [verdict for run in runs for verdict in run.verdicts]
+    by_status = summary(verdicts).items()
+    counts = {
+        "scenes": len({run.scene for run in runs}),
+        "runs": len(runs),
+        "verdicts": len(verdicts),
+        **{name: count for name, count in by_status if count or name in ("pass", "fail")},
+    }
+    return table([f"{name}:" for name in counts], [list(map(str, counts.values()))])
+
+
+def _blind(report: Report) -> str:
+    """Return the number of broken solvers that the conserved quantities do not see, in words."""
+    finished = [s for s in report.sights if s.is_finished and s.seen_by]
+    unseen = [s for s in finished if not any(s.is_seen_by(name) for name in s.conserved)]
+    energy = [s for s in finished if s.is_missed_by("T")]
+    if not finished:
+        return "Only a comparison with the exact motion does."
+    return (
+        f"Of {len(finished)} solvers that were broken on purpose and ran to their end, "
+        f"{len(energy)} pass the gate of the energy and {len(unseen)} pass that of every "
+        "conserved quantity their scene has. The comparison with the exact motion sees them all."
+    )
+
+
+def _scenes(report: Report) -> str:
+    rungs = (f"{rung}:" for rung in report.rungs)
+    columns = ["scene", "what it is", "regime", *rungs, "over attainable:", "verdict"]
+    rows = [_scene_row(report, scene) for scene in report.scenes]
+    return f"# Scenes\n\n{_SCENES}\n\n{table(columns, rows)}\n"
+
+
+def _scene_row(report: Report, scene: str) -> list[str]:
+    """Return the row of a scene in the list of scenes."""
+    runs = {run.rung: run for run in report.runs_of(scene) if run.solver == "taylor"}
+    about = report.portrait(scene) or next(iter(report.records(scene).values()), {})
+    most = worst(verdict for run in runs.values() for verdict in run.state)
+    return [
+        code(scene),
+        *(prose(str(about.get(key, ""))) for key in ("title", "regime")),
+        *(main_error(runs.get(rung)) for rung in report.rungs),
+        ratio(most) if most else NOTHING,
+        judged(gravest(v for run in runs.values() for v in run.verdicts)),
+    ]
+
+
+def _gates(report: Report) -> str:
+    """Return the page with all verdicts in one searchable table."""
+    verdicts = [verdict for run in report.runs for verdict in run.verdicts]
+    return f"# Gates\n\n{_WHAT}\n\n{verdict_table(_COLUMNS, verdicts)}\n"

@@ -1,0 +1,355 @@
+"""Page of speed against accuracy, made from the stored measurement alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from math import isclose, log10
+from pathlib import Path
+from typing import Final
+
+from taylor_verify.plotting.picture import Picture
+from taylor_verify.records.precisions import place_of_rung
+from taylor_verify.records.standing import Standing
+from taylor_verify.tradeoff.document import PlainDouble, TradePoint
+from taylor_verify.tradeoff.pareto import pareto
+from taylor_verify.tradeoff.pictures import trade as of_one_scene
+from taylor_verify.words.cells import NOTHING, figure
+from taylor_verify.words.markdown import bold, bullets, code, prose, table
+from taylor_verify.words.page import whole
+from taylor_verify.words.sheet import sheet as csv_sheet
+from taylor_verify_reports.pictures.ratio import Ratio
+from taylor_verify_reports.studies import figures
+from taylor_verify_reports.studies.tradeoff import time_by_rung
+from taylor_verify_reports.studies.tradeoff.peers import DIGITS, TAYLOR, peer_sections
+from taylor_verify_reports.studies.tradeoff.stored import TimedPoint, Trade, Trades, cheapest
+from taylor_verify_reports.studies.tradeoff.timing_method import (
+    how_it_was_timed,
+    remake,
+    what_is_timed,
+)
+
+_NOT_REACHED: Final = "not reached"
+_RIVALS: Final = ("scipy DOP853", "scipy LSODA", "scipy RK45", "scipy Radau", "scipy BDF")
+_GEOMETRIC: Final = "geometric "
+_CLOSED_FORM: Final = "closed-form ellipj"
+_ASKED: Final = (1e-3, 1e-6, 1e-9, 1e-12)
+
+_WHAT: Final = (
+    "This page compares all solvers on the same four scenes, at many settings, and each answer with "
+    "the exact motion. A time is given as a multiple of that of the *yardstick*, the Taylor "
+    "integrator of heyoka in float64 at its own tolerance, in the same minute on the same machine; "
+    "the error is the largest of everything that the scene tracks, at all its samples."
+)
+_PLAIN_DOUBLES: Final = (
+    "Omega of a free body is Jacobi's sn, cn and dn of time, and SciPy has them: `closed-form:ellipj` is "
+    "that in float64, written with care. 1 - m is exact here and 0 on the separatrix; the error is "
+    "relative to the largest |omega|. Beside it the integrator, where the motion is short enough for it."
+)
+_WHY_DOUBLES_FAIL: Final = (
+    "**Long times.** The argument u = lam t + u0 is rounded to 2^-53 of itself, and so is lam: a "
+    "phase error of some 1e-16 lam |t|. The error grows in proportion to time, although no step was "
+    "taken; at t = 1e15 u is known to a tenth, and the answer is an arbitrary point of the right "
+    "orbit.",
+    "**Near the separatrix.** m is a double near 1, so that 1 - m is known to 1e-16: its relative "
+    "error is 1e-16/(1 - m), and the period depends on its logarithm. The error shows where an orbit "
+    "waits at the middle axis. Below 1 - m = 1e-10 SciPy's `ellipj` takes series about m = 1 that "
+    "hold within the first quarter of a period only. Beyond it they grow like an exponential, and the "
+    "answer may be larger than the motion by any factor, without a warning.",
+    "**On it** the answer depends on the last bit of m. It is right if m happens to be 1, which may "
+    "fail if the principal axes are computed in doubles.",
+    "**About the middle axis** the phase is infinite and the answer no number, although the motion is "
+    "the simplest of all.",
+    "Equal moments, a moment of force, a body at rest, an attitude, a fluid: it refuses them, because "
+    "it is not made for them.",
+    "The exact route of this suite has the same functions with 1 - m formed in rationals and as much "
+    "precision as the answer needs: none of these orbits is difficult for it.",
+)
+
+
+def page(trades: Trades, folder: Path) -> str:
+    """Return the whole page, with the pictures that are in ``folder``/figures."""
+    return whole(
+        "Speed against accuracy",
+        _WHAT,
+        "## What so many digits cost",
+        "The cheapest measured setting whose error leaves at least this number of digits: its time "
+        f"over that of the yardstick, the interval in brackets, and the tolerance. *{_NOT_REACHED}* "
+        "means that no measured setting leaves so many. A ratio below 1 is faster than the yardstick, "
+        "whose digits are in the first line of each scene. If the intervals of neighbouring "
+        "tolerances overlap, chance decides which one is the cheapest.",
+        _by_digits(trades),
+        "## Beside compiled integrators of other libraries",
+        *peer_sections(trades),
+        "## What a wider number costs",
+        "Taylor at each rung's own tolerance: time over that in float64, and the digits that are "
+        "left. *attainable* are the digits that would be left by rounding the state once for each "
+        "sample.",
+        _by_rung(trades),
+        figures.shown(folder, _of_rungs(trades.short)),
+        "## Asked for and achieved",
+        "A tolerance bounds the solver's estimate of the error of one step, and not the error of the "
+        "answer. The table has the digits that were left at each tolerance:",
+        _by_request(trades),
+        "## In pictures",
+        *(figures.shown(folder, _of_trade(trade)) for trade in trades.short),
+        "## The front",
+        "The settings in float64, one body at a time, that no other beats in both time and error, the "
+        "fastest first.",
+        *(_front(trade) for trade in trades.short),
+        "## Geometric integrators",
+        "Fixed steps, in the scene's unit of time. They conserve their quantities to the last bits: "
+        "all of them the momentum in space, the midpoint and Moser and Veselov's the energy too. With "
+        "splitting the energy oscillates, with lie-rk4 it drifts. Conservation is no accuracy. "
+        "*drift* is the largest of all conserved quantities, with its name.",
+        _geometric(trades),
+        "## What failed, and what was not run",
+        "None of these is on a front, and none has a number above.",
+        _failures(trades),
+        "## The closed form in plain doubles",
+        _PLAIN_DOUBLES,
+        _doubles(trades.numbers.plain_doubles),
+        bullets(_WHY_DOUBLES_FAIL),
+        "## What is timed",
+        what_is_timed(),
+        "## How it was timed, and where",
+        bullets(how_it_was_timed(trades)),
+        "## To remake this",
+        remake(trades),
+    )
+
+
+def pictures(trades: Trades) -> list[Picture]:
+    """Return the pictures of every short scene, and the picture of all rungs."""
+    return [
+        *(picture for trade in trades.short for picture in _of_trade(trade)),
+        *_of_rungs(trades.short),
+    ]
+
+
+def _of_trade(trade: Trade) -> list[Picture]:
+    """Return the pictures of one scene; none if no setting is sound."""
+    trade = trade.of_one_body
+    return of_one_scene.pictures(trade.document()) if trade.sound else []
+
+
+def _of_rungs(trades: Sequence[Trade]) -> list[Picture]:
+    """Return the picture of taylor's time at each rung's own tolerance, a line for each scene."""
+    rows = [
+        Ratio(trade.scene, row.point.rung, row.timing.ratio, row.timing.low, row.timing.high)
+        for trade in trades
+        for row in trade.sound
+        if row.point.solver == "taylor"
+    ]
+    return [time_by_rung.picture("published", rows)] if rows else []
+
+
+# The cost of digits.
+
+
+def _by_digits(trades: Trades) -> str:
+    columns = ["scene", "solver", *(f"{digits} digits:" for digits in DIGITS)]
+    rows = []
+    for trade in trades.short:
+        yardstick = _yardstick(trade, trades.numbers.yardstick)
+        rows.append([code(trade.scene), yardstick, *[""] * len(DIGITS)])
+        ran = {p.family for p in trade.points if p.standing is not Standing.NOT_RUN}
+        for family in (TAYLOR, *_RIVALS, _CLOSED_FORM):
+            if family in ran:
+                own = [row for row in trade.sound if row.point.family == family]
+                rows.append(["", _family(family), *(_cheapest(own, digits) for digits in DIGITS)])
+    return table(columns, rows)
+
+
+def _yardstick(trade: Trade, name: str) -> str:
+    """Return the error of the yardstick on this scene, and its share in heyoka's compiled code."""
+    row = next((row for row in trade.sound if row.point.label == name), None)
+    if row is None:
+        return f"*{prose(name)}*: no sound answer"
+    inner, seconds = row.timing.inner_seconds, row.timing.seconds
+    part = f", {inner / seconds:.0%} of its time in heyoka itself" if inner else ""
+    return f"*{prose(name)} = 1*: {_digits(row.point)}{part}"
+
+
+def _digits(point: TradePoint, exact: str = "exact") -> str:
+    """Return the digits that were left, or the word ``exact`` for all."""
+    return exact if point.achieved_digits is None else f"{point.achieved_digits:.1f} digits"
+
+
+def _cheapest(rows: Iterable[TimedPoint], digits: int) -> str:
+    """Return ratio, interval and tolerance of the fastest setting that leaves these digits."""
+    best = cheapest(rows, digits)
+    if best is None:
+        return _NOT_REACHED
+    is_tolerance = best.point.asked == "tolerance" and best.point.requested
+    return f"{_ratio(best)}{f' @ {best.point.requested:.0e}' if is_tolerance else ''}"
+
+
+def _ratio(row: TimedPoint) -> str:
+    timing = row.timing
+    interval = f" [{figure(timing.low)}, {figure(timing.high)}]" if timing.low is not None else ""
+    return f"{bold(figure(timing.ratio))}{interval}"
+
+
+# Rungs and requests.
+
+
+def _by_rung(trades: Trades) -> str:
+    rungs = {p.rung for p in trades.numbers.points if _is_own_tolerance(p)}
+    ladder = sorted(rungs, key=place_of_rung)
+    rows = []
+    for trade in trades.short:
+        own = {row.point.rung: row for row in trade.sound if _is_own_tolerance(row.point)}
+        cells = [
+            f"{_ratio(own[rung])}, {_digits(own[rung].point)}" if rung in own else NOTHING
+            for rung in ladder
+        ]
+        rows.append([code(trade.scene), *cells])
+        if floors := trade.about.attainable:
+            least = [floors.get(rung) for rung in ladder]
+            cells = [f"{-log10(e):.1f} digits" if e and e < 1 else NOTHING for e in least]
+            rows.append(["*attainable*", *cells])
+    return table(["scene", *(f"{rung}:" for rung in ladder)], rows)
+
+
+def _is_own_tolerance(point: TradePoint) -> bool:
+    """Return True for taylor at the tolerance of the rung."""
+    return point.solver == "taylor" and not point.setting
+
+
+def _by_request(trades: Trades) -> str:
+    columns = ["scene", "solver", *(f"{-log10(asked):.0f} asked for:" for asked in _ASKED)]
+    rows = []
+    for trade in trades.short:
+        for family in dict.fromkeys(p.family for p in trade.points if p.asked == "tolerance"):
+            own = [p for p in trade.points if p.family == family]
+            cells = [_achieved(own, asked) for asked in _ASKED]
+            if any(cell != NOTHING for cell in cells):
+                rows.append([code(trade.scene), _family(family), *cells])
+    return table(columns, rows)
+
+
+def _achieved(points: Iterable[TradePoint], asked: float) -> str:
+    """Return the digits that were left, or a word for an answer that is not sound."""
+    for p in points:
+        if p.requested is not None and isclose(p.requested, asked):
+            if p.standing is not Standing.SOUND:
+                return p.standing.value
+            return NOTHING if p.achieved_digits is None else f"{p.achieved_digits:.1f}"
+    return NOTHING
+
+
+# The front, the geometric integrators, the failures.
+
+
+def front(rows: Iterable[TimedPoint]) -> list[TimedPoint]:
+    """Return the settings that no other beats in both ratio and error, the fastest first."""
+    return pareto(rows, lambda row: (row.timing.ratio, row.error))
+
+
+def _front(trade: Trade) -> str:
+    doubles = [row for row in trade.of_one_body.sound if row.point.rung == "f64"]
+    integrators = [row for row in doubles if row.point.family != _CLOSED_FORM]
+    parts = [f"{code(trade.scene)}:", bullets(map(_front_line, front(doubles)))]
+    if len(integrators) != len(doubles):
+        parts += ["And of the integrators alone:", bullets(map(_front_line, front(integrators)))]
+    return "\n\n".join(parts)
+
+
+def _front_line(row: TimedPoint) -> str:
+    name = code(row.point.label.removesuffix(f" {row.point.rung}"))
+    return f"{_digits(row.point, 'every digit')}: {name}, {_ratio(row)} times the yardstick"
+
+
+def _geometric(trades: Trades) -> str:
+    columns = ["scene", "integrator", "step:", "time:", "largest error:", "drift:", "of"]
+    rows = [
+        [
+            code(trade.scene),
+            row.point.family.removeprefix(_GEOMETRIC),
+            figure(row.point.requested),
+            _ratio(row),
+            figure(row.point.error),
+            figure(row.point.drift),
+            code(row.point.drifting),
+        ]
+        for trade in trades.trades
+        for row in trade.sound
+        if row.point.family.startswith(_GEOMETRIC)
+    ]
+    return table(columns, rows)
+
+
+def _failures(trades: Trades) -> str:
+    """Return a table of the points that are not sound, or were not timed in every process."""
+    rows = []
+    for trade in trades.trades:
+        compared = [row.point for row in trade.sound]
+        for p in trade.points:
+            if p not in compared:
+                is_sound = p.standing is Standing.SOUND
+                standing = "sound, and not timed" if is_sound else prose(p.standing.value)
+                rows.append([code(trade.scene), code(p.label), standing, prose(p.because)])
+    columns = ["scene", "setting", "what it is", "because"]
+    return table(columns, rows) if rows else "Nothing."
+
+
+def _family(family: str) -> str:
+    return prose(family.removesuffix(" f64").replace("scipy ", "SciPy "))
+
+
+# The closed form in plain doubles.
+
+
+def _doubles(rows: Iterable[PlainDouble]) -> str:
+    """Return a table of the cases; a false success is bold, any other outcome in its own words."""
+    lines = []
+    for row in rows:
+        error = figure(row.error)
+        claims = {Standing.SOUND: "success", Standing.FALSE: bold("success, falsely")}
+        is_wrong = row.error is not None and row.standing is not Standing.SOUND
+        lines.append(
+            [
+                prose(row.what),
+                figure(row.end),
+                figure(row.m_prime),
+                bold(error) if is_wrong else error,
+                figure(row.error_beside),
+                claims.get(row.standing, prose(row.outcome)),
+            ]
+        )
+    columns = ["orbit", "until t:", "1 - m:", "error:", "taylor f64:", "what it claims"]
+    return table(columns, lines)
+
+
+# The sheet.
+
+
+_FIELDS: Final = (
+    "scene",
+    "solver",
+    "setting",
+    "rung",
+    "family",
+    "asked",
+    "requested",
+    "achieved_digits",
+    "error",
+    "drift",
+    "drifting",
+    "steps",
+    "evaluations",
+    "seconds",
+    "inner_seconds",
+    "ratio",
+    "low",
+    "high",
+    "processes",
+    "standing",
+    "outcome",
+    "because",
+)
+
+
+def sheet(trades: Trades) -> str:
+    """Return a CSV row for every scene and setting, with every digit."""
+    return csv_sheet(_FIELDS, (row for trade in trades.trades for row in trade.rows))

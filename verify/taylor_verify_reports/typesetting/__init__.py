@@ -1,0 +1,1 @@
+"""Mathematics and paper in their own formats: MathML, LaTeX, Typst."""
