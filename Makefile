@@ -9,7 +9,7 @@ PIP = $(BIN)/python -m pip --disable-pip-version-check
 SOLVING = .venv/.solving
 INSTALLED = .venv/.installed
 
-.PHONY: help verify verify-all test test-all docs site test-site dist bench mutants reports paper
+.PHONY: help verify verify-all test test-all docs site test-site dist bench reports paper
 .PHONY: release-data tradeoff engines check-reports lint clean
 
 help:  ## Print this list
@@ -65,11 +65,6 @@ dist: $(INSTALLED)  ## Build wheel and sdist into dist, and check what is in the
 	@$(BIN)/uvx --quiet check-wheel-contents@0.6.3 dist/taylor_verify-*.whl
 	@$(BIN)/uvx --quiet pyroma@5.0.1 --min 8 dist/taylor_verify-*.tar.gz
 
-# At the lowest priority, for an hour or more: first which tests run which line (a stop loses one file of
-# tests), then COUNT mutants of SEED, or those of a LINE.
-mutants: $(INSTALLED)  ## Change single signs and constants of exact, judge and claims: do the tests notice?
-	@PYTHONPATH=tests $(BIN)/python -m mutants $(if $(COUNT),--count $(COUNT)) $(if $(SEED),--seed $(SEED)) $(if $(LINE),--line $(LINE))
-
 reports: $(INSTALLED)  ## Rewrite what is published: reports/data, what is made from it, reports/reference and reports/claims.md
 	@$(BIN)/taylor-verify publish controls extremes > /dev/null
 	@$(BIN)/taylor-verify run --out reports
@@ -98,10 +93,11 @@ engines: $(INSTALLED)  ## Measure the engine board: what is not stored, or all o
 check-reports: $(SOLVING)  ## Run part of what is published anew: has a number left its rounding class?
 	@$(BIN)/taylor-verify run --rung f32 f64 f80 --against reports
 
-lint: $(INSTALLED)  ## Check style and types only
+lint: $(INSTALLED)  ## Check style, types and who imports whom only
 	@$(BIN)/ruff check
 	@$(BIN)/ruff format --check
 	@$(BIN)/mypy
+	@$(BIN)/lint-imports --no-cache --no-logo
 
 clean:  ## Remove the environment, the caches and the local reports
 	rm -rf .venv .hypothesis .mypy_cache .pytest_cache .ruff_cache dist docs/_build reports/local reports/site

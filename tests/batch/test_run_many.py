@@ -407,7 +407,7 @@ def test_a_report_that_cannot_be_written_costs_no_results(
     def full(*_: Any) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("taylor_verify_reports.studies.report.write", full)
+    monkeypatch.setattr("taylor_verify.records.store.write", full)
     with pytest.raises(ReportNotWritten, match="No space left") as raised:
         taylor_verify.run_many(["euler/rest"], out=tmp_path / "out")
     assert raised.value.results.passed

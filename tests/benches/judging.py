@@ -1,82 +1,72 @@
-"""Judgements: bodies by hundreds beside single ones, and rows of a file beside their exact motion."""
+"""Judgements: bodies of a sweep, and rows of a file beside their exact motion."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Iterator
 from fractions import Fraction
 from functools import partial
+from itertools import count
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Final
 
-import numpy as np
-from builders.satellites import satellites
-from taylor_verify.batch.bodies import judged
-from taylor_verify.models.bodies import Bodies
-from taylor_verify.solvers.taylor.lanes import propagate
-
 from benches.ratio import Action, Ratio, Side, Target
 from benches.scenes import sampled
+from taylor_verify.batch.sweeps.chunk import Chunk, judge
+from taylor_verify.batch.sweeps.questions import questions
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.files.judgement import judge_file
 from taylor_verify.judge.floor.arithmetic import truth_digits
+from taylor_verify.judge.tolerances import Tolerances
 from taylor_verify.models.problem import pose
 from taylor_verify.records.quantities import COLUMNS
-from taylor_verify.run import run
-from taylor_verify.scenes.instants import EquallySpaced
-from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import read
-from taylor_verify.solvers.taylor.driver import Taylor
+from taylor_verify.solvers.registry import solver_named
 
 _RUNG: Final = rung("f64")
-# Random satellites are sampled so: some hundred radians.
-_CLOCK: Final = Clock(Fraction(0), EquallySpaced(Fraction(0), Fraction(1), 101))
-_TOGETHER, _UNJUDGED, _ALONE = 300, 1000, 8
-# One of its satellites, as many as usual, takes the chain by itself: it costs as much as a hundred others.
-_SEED: Final = 6
+# SciPy takes a sixth of the time of a body so, and passes the one tolerance and fails the other.
+_SOLVER: Final = "scipy:DOP853?rtol=1e-6&atol=1e-9"
+PASSING, FAILING = 1e-1, 1e-12
+_BODIES: Final = 8
 _ROWS: Final = 1000
 _FILES: Final = ("euler/generic", "euler/with-attitude", "kirchhoff/whole-motion")
 # A clock that is slow by a millionth: shifts of time and conventions are sought too.
 _SLOW: Final = 1 + Fraction(1, 10**6)
 
-_JUDGED: Final = Target(1 / 500, "500 bodies a second and core: 100,000 in three minutes")
-_SOLVED: Final = Target(1 / 15_000, "15,000 bodies a second and core, as heyoka's batch allows")
+_FAILS: Final = Target(
+    1.3, "a failing body needs its numbers for the table: what explains them is for the worst ones"
+)
+_PASSES: Final = Target(1 / 60, "60 bodies a second and core: 100,000 in half an hour")
 
 
-def _drawn(bodies: int, tracks_attitude: bool = False) -> list[Scene]:
-    """Return the satellites of every round: read anew, for a scene remembers what was made of it."""
-    drawn = satellites(bodies, _SEED, tracks_attitude)
-    return [replace(scene, clock=_CLOCK) for scene in drawn]
+def chunks(tolerance: float) -> Iterator[Chunk]:
+    """Yield chunks of satellites, always new ones: what was made of a scene is known for a while."""
+    drawn = questions("satellites", 10**6)
+    for number in count():
+        first, stop = number * _BODIES, (number + 1) * _BODIES
+        yield Chunk(number, first, stop, drawn, _SOLVER, _RUNG.name, Tolerances(tolerance))
 
 
-def _judged_over_runs(tracks_attitude: bool) -> tuple[Side, Side]:
-    def runs(scenes: Sequence[Scene]) -> object:
-        return [run(scene, "taylor", "f64") for scene in scenes]
-
-    return (
-        Action(judged, partial(_drawn, _TOGETHER, tracks_attitude), _TOGETHER),
-        Action(runs, partial(_drawn, _ALONE, tracks_attitude), _ALONE),
-    )
+def _swept(tolerance: float) -> Action:
+    return Action(judge, partial(next, chunks(tolerance)), _BODIES)
 
 
-def _lanes_over_solves() -> tuple[Side, Side]:
-    draw = np.random.default_rng(1)
-    inertia = draw.uniform(0.2, 2, (3, _UNJUDGED))
-    inertia = inertia.sum(axis=0) - inertia
-    omega = draw.normal(size=(3, _UNJUDGED))
-    times = np.tile(np.arange(101.0), (_UNJUDGED, 1))
+def _passing_over_solve() -> tuple[Side, Side]:
+    solver = solver_named(_SOLVER)
 
-    def solves(scenes: Sequence[Scene]) -> object:
-        return [Taylor().solve(pose(scene, _RUNG)) for scene in scenes]
+    def solve(chunk: Chunk) -> object:
+        asked = chunk.questions.questions(chunk.first, chunk.stop)
+        scenes = [each.scene for each in asked if isinstance(each.scene, Scene)]
+        return [solver.solve(pose(scene, _RUNG)) for scene in scenes]
 
-    return (
-        Action(lambda _: propagate(Bodies.of(inertia, omega, times)), units=_UNJUDGED),
-        Action(solves, partial(_drawn, _ALONE), _ALONE),
-    )
+    return _swept(PASSING), Action(solve, partial(next, chunks(PASSING)), _BODIES)
+
+
+def _failing_over_passing() -> tuple[Side, Side]:
+    return _swept(FAILING), _swept(PASSING)
 
 
 def write(scene: Scene, path: Path, clock: Fraction) -> None:
@@ -106,20 +96,19 @@ def _file_over_motion(name: str, clock: Fraction) -> tuple[Side, Side]:
 def ratios() -> Iterator[Ratio]:
     """Yield what judgements cost."""
     yield Ratio(
-        "bodies/solved",
-        f"one of {_UNJUDGED:,} satellites in heyoka's batch, over one that is posed and solved by itself",
-        _lanes_over_solves,
-        limit=_SOLVED,
+        "sweep/passing",
+        "a satellite of a sweep that SciPy solves and that passes, over drawing, posing and solving it",
+        _passing_over_solve,
+        limit=_PASSES,
         unit="body",
     )
-    for tracks_attitude in (False, True):
-        yield Ratio(
-            f"bodies/judged{'-with-attitude' if tracks_attitude else ''}",
-            f"one of {_TOGETHER} satellites that are judged together, over one by the whole chain",
-            partial(_judged_over_runs, tracks_attitude),
-            limit=None if tracks_attitude else _JUDGED,
-            unit="body",
-        )
+    yield Ratio(
+        "sweep/failing",
+        "a satellite of a sweep that fails, over the same kind that passes",
+        _failing_over_passing,
+        _FAILS,
+        unit="body",
+    )
     asked = [(name, Fraction(1)) for name in _FILES] + [(_FILES[0], _SLOW)]
     for name, clock in asked:
         yield Ratio(

@@ -18,7 +18,7 @@ from taylor_verify.scenes.reading.reader import load
 _SCENE: Final = "euler/generic"
 _FAMILY: Final = "satellites"
 _FEW_SAMPLES, _MANY_SAMPLES = 10_000, 100_000
-_FEW_BODIES, _MANY_BODIES = 200, 2_000
+_FEW_BODIES, _MANY_BODIES = 100, 1_000
 _STATUS: Final = Path("/proc/self/status")
 
 _SAMPLES: Final = Target(

@@ -6,8 +6,6 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Final
 
-from taylor_verify.solvers.taylor.neighbours import Neighbours, neighbours
-
 from benches.ratio import RESOLUTION, Action, Ratio, Side, Target
 from benches.scenes import sampled
 from taylor_verify.models.problem import Problem, pose
@@ -17,8 +15,6 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.taylor.driver import Taylor, compiled, pays
 from taylor_verify.solvers.taylor.numbers import arithmetic
 from taylor_verify.solvers.taylor.way import FEW_LOOKS
-from taylor_verify.solvers.trajectory import Trajectory
-from taylor_verify.tradeoff.document import BODIES
 from taylor_verify_reports.studies.tradeoff.measurement import SCENES, UNTIL, scene_named
 
 _RUNG: Final = rung("f64")
@@ -34,10 +30,6 @@ _SHORT_SOLVE: Final = Target(
     "what is made for a problem and one look at its rate are a part of the shortest ways",
 )
 _POSED: Final = Target(3e-4, "0.3 ms for moments and a spin: as long as some of the shortest ways")
-_TOGETHER: Final = Target(
-    0.5,
-    "four lanes or eight share an instruction; half of that goes to lanes that wait for others",
-)
 _FIRST: Final = Target(
     2.0,
     "what is made once for a body costs no more than its way; compiling would be a hundred ways",
@@ -107,17 +99,6 @@ def _first_over_second(name: str) -> tuple[Side, Side]:
     return Action(Taylor().solve, lambda: pose(load(name), _RUNG)), known
 
 
-def _together_over_alone(name: str) -> tuple[Side, Side]:
-    problems = neighbours(pose(load(name), _RUNG), BODIES)
-
-    def alone() -> list[Trajectory]:
-        return [Taylor().solve(problem) for problem in problems]
-
-    among = Neighbours(f"taylor?bodies={BODIES}", BODIES)
-    beside = Action(lambda _: among.solve(problems[0]), units=BODIES)
-    return beside, Action(lambda _: alone(), units=BODIES)
-
-
 def ratios() -> Iterator[Ratio]:
     """Yield what the driver adds to heyoka, in the order of the trade-off's scenes."""
     for name in (*_SHORT, *_LONG):
@@ -134,14 +115,6 @@ def ratios() -> Iterator[Ratio]:
             "the first solve of a body whose equations are compiled, over a further one",
             partial(_first_over_second, name),
             _FIRST,
-            unit="solve",
-        )
-    for name in _SHORT:
-        yield Ratio(
-            f"together/{name}",
-            f"{BODIES} bodies that start near each other, side by side, over one after the other",
-            partial(_together_over_alone, name),
-            _TOGETHER,
             unit="solve",
         )
     for name in _SHORT:

@@ -395,7 +395,7 @@ def test_reports_that_fail_at_the_end_cost_no_results(
     def full(*_: Any) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("taylor_verify_reports.studies.report.write", full)
+    monkeypatch.setattr("taylor_verify.records.store.write", full)
     assert main(["run", str(short), "--out", str(tmp_path / "out")]) == 2
     out, error = capsys.readouterr()
     assert "3 pass" in out

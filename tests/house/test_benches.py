@@ -12,6 +12,7 @@ import pytest
 from benches import __main__ as bench
 from benches import commands, history
 from benches.history import Row, has_moved, keep, last
+from benches.judging import FAILING, PASSING, chunks
 from benches.propagation import plain
 from benches.ratio import LEAST_SECONDS, Action, Ratio, Side, Target
 from benches.registry import RATIOS
@@ -20,6 +21,7 @@ from benches.suite import Measured, add, summary
 from benches.table import remarks, table
 from rich.console import Console
 
+from taylor_verify.batch.sweeps.chunk import judge
 from taylor_verify.models.problem import pose
 from taylor_verify.scenes.library import find
 from taylor_verify.scenes.precision import rung
@@ -343,6 +345,14 @@ def test_names_are_single_and_fit_into_a_command_line() -> None:
     names = [ratio.name for ratio in RATIOS]
     assert len(set(names)) == len(names)
     assert all("/" in name and len(name.split()) == 1 for name in names)
+
+
+@pytest.mark.parametrize(("tolerance", "status"), [(PASSING, "pass"), (FAILING, "fail")])
+def test_satellites_of_the_two_tolerances_pass_and_fail(tolerance: float, status: str) -> None:
+    """Every body of a chunk has the status that its ratio names."""
+    columns = judge(next(chunks(tolerance))).columns
+    of_omega = zip(columns["quantity"], columns["verdict"], strict=True)
+    assert {verdict for quantity, verdict in of_omega if quantity == "omega"} == {status}
 
 
 @pytest.mark.parametrize("name", ["euler/with-attitude", "kirchhoff/general-body"])

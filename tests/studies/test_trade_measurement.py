@@ -24,7 +24,7 @@ from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.tradeoff.cold import in_a_new_process
-from taylor_verify.tradeoff.document import TradePoint, together
+from taylor_verify.tradeoff.document import TradePoint
 from taylor_verify.tradeoff.order_statistics import CONFIDENCE, coverage, estimate, place
 from taylor_verify.tradeoff.setting import setting as real_setting
 from taylor_verify_reports.studies import report
@@ -115,10 +115,9 @@ class Paced(Solver):
     seconds: float
     outcome: Outcome = Outcome.FINISHED
     setting: str = ""
-    bodies: int = 1
 
     def solve(self, problem: Problem) -> Trajectory:
-        seconds = self.machine.take(self.name, self.seconds) / self.bodies
+        seconds = self.machine.take(self.name, self.seconds)
         return Trajectory(self.outcome, seconds=seconds, inner_seconds=seconds / 2)
 
 
@@ -132,8 +131,7 @@ def machine(monkeypatch: pytest.MonkeyPatch) -> Machine:
             return replace(real_setting(*_taylor()), solver=Paced(made, name, 0.02))
         word, _, seconds = name.partition(":")
         outcome = Outcome.NON_FINITE if word == "broken" else Outcome.FINISHED
-        bodies = 10 if word == "ten" else 1
-        solver = Paced(made, name, float(seconds), outcome, bodies=bodies)
+        solver = Paced(made, name, float(seconds), outcome)
         return replace(real_setting(*_taylor()), solver=solver)
 
     monkeypatch.setattr(rounds, "setting", made_up)
@@ -208,19 +206,6 @@ def test_what_is_dear_is_solved_once(
     assert 0.3 / 0.02 / 1.01**6 <= one.ratio <= 0.3 / 0.02
 
 
-@pytest.mark.parametrize("slowest", [1e9, -1.0])
-def test_each_of_many_bodies_has_its_share(
-    machine: Machine, scene: Scene, monkeypatch: pytest.MonkeyPatch, slowest: float
-) -> None:
-    """A solve of ten bodies takes ten times the seconds of each, in rounds and where it is solved once."""
-    monkeypatch.setattr(rounds, "_SLOWEST_IN_ROUNDS", slowest)
-    ratios = measured(scene, names("one:0.4", "ten:0.4"), 1, 3, 1e-9, machine.clock)
-    one, ten = (ratios[name] for name in names("one:0.4", "ten:0.4"))
-    for whole, share in ((one.seconds, ten.seconds), (one.ratio, ten.ratio)):
-        assert whole / share == pytest.approx(10, rel=0.3)
-    assert ten.inner == pytest.approx(ten.seconds / 2)
-
-
 def test_the_resolution_is_the_smallest_step_of_the_clock() -> None:
     """The resolution of a clock that ticks in quarters is a quarter."""
     asked = 0
@@ -255,7 +240,7 @@ def test_the_compiled_integrators_of_other_libraries_are_known() -> None:
     extra = set(published_settings(scene, with_outside=True)) - set(published_settings(scene))
     peers = {one for one in extra if isinstance(one.solver, Peer)}
     assert len(peers) == len(measurement.PEERS) * len(measurement._FOR_THE_COLUMNS)
-    assert {one.family for one in extra - peers} == {"taylor f64 optimised", together("f64")}
+    assert {one.family for one in extra - peers} == {"taylor f64 optimised"}
 
 
 def test_a_scene_beyond_its_end_has_the_solvers_of_the_columns_alone() -> None:
@@ -265,7 +250,7 @@ def test_a_scene_beyond_its_end_has_the_solvers_of_the_columns_alone() -> None:
     assert (scene.name, scene.body, scene.initial) == (name, shipped.body, shipped.initial)
     assert (scene.clock.instants[0], scene.clock.instants[-1]) == (0, 1600)
     families = {one.family for one in published_settings(scene, with_outside=True)}
-    ours = {"taylor f64", "taylor f64 optimised", together("f64")}
+    ours = {"taylor f64", "taylor f64 optimised"}
     assert families == ours | {f"outside {peer}" for peer in measurement.PEERS}
 
 

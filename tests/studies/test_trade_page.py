@@ -13,10 +13,9 @@ from pathlib import Path
 import pytest
 from builders.studies.tradeoff import NUMBERS_MADE, POINTS, SCENE, TIMES_MADE, point
 
-from taylor_verify.tradeoff.document import together
 from taylor_verify.tradeoff.pictures.trade import floors_of
 from taylor_verify.words.cells import NOTHING
-from taylor_verify_reports.studies.tradeoff.page import front, page, pictures
+from taylor_verify_reports.studies.tradeoff.page import front, page
 from taylor_verify_reports.studies.tradeoff.stored import (
     NUMBERS,
     TIMINGS,
@@ -135,29 +134,6 @@ def test_a_peer_that_is_ahead_repays_its_set_up(tmp_path: Path) -> None:
     table = section(page(loaded, tmp_path), "Beside compiled integrators of other libraries")
     six = line(table, "`euler/generic`", " 6 |")
     assert six[2:4] == ["**cvode-bdf**, 4.0 times", "5.00e3 solves"]
-
-
-def test_many_bodies_are_compared_apart(tmp_path: Path) -> None:
-    """A time that many bodies share is ahead on many, and in no comparison of one body at a time."""
-    many = point("taylor?tol=1e-9&bodies=64", 1e-10, family=together("f64"))
-    peer = "outside:cvode-bdf?rtol=1e-9&atol=1e-9"
-    yardstick = next(one for one in TIMES_MADE.timings if one.solver == "taylor")
-    of_many = replace(yardstick, solver=many.solver, ratio=0.1, low=0.1, high=0.1)
-    timings = [
-        replace(one, ratio=0.2, low=0.2, high=0.2) if one.solver == peer else one
-        for one in TIMES_MADE.timings
-    ]
-    numbers = replace(NUMBERS_MADE, points=(*POINTS, many))
-    write(tmp_path, numbers, replace(TIMES_MADE, timings=(*timings, of_many)))
-    loaded = load(tmp_path)
-    assert loaded is not None
-    text = page(loaded, tmp_path)
-    table = section(text, "Beside compiled integrators of other libraries")
-    six = line(table, "`euler/generic`", " 6 |")
-    assert (six[2], six[4]) == ("**cvode-bdf**, 4.0 times", "taylor, 2.0 times")
-    assert "bodies=64" not in section(text, "The front")
-    assert "bodies=64" not in section(text, "What so many digits cost")
-    assert all("bodies" not in picture.alt for picture in pictures(loaded))
 
 
 def test_without_peers_the_page_says_how_to_measure_them(tmp_path: Path) -> None:

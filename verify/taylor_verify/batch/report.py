@@ -12,6 +12,7 @@ from taylor_verify.batch.judgements import Judgements
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.judge.rounding_class import Departure
 from taylor_verify.records import store
+from taylor_verify.records.answers import LikelyCause
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 
@@ -65,6 +66,18 @@ def write_junit(
     replace_files(place.parent, {place.name: text})
 
 
+def _explained(results: Judgements | Judgement, cause: LikelyCause) -> list[Verdict]:
+    """Return the failed rows of the quantity whose error a likely cause explains."""
+    run = (cause.scene, cause.rung)
+    return [
+        verdict
+        for verdict in shown_verdicts(results)
+        if verdict.verdict is Status.FAIL
+        and verdict.quantity == cause.quantity
+        and (not cause.scene or (verdict.scene, verdict.rung) == run)
+    ]
+
+
 def remarks(results: Judgements | Judgement, comparison: Comparison | None = None) -> list[Remark]:
     """Return the remarks on rows for a CI, besides their verdicts: unexpected answers, and regressions."""
     from taylor_verify.words.case import Remark
@@ -86,6 +99,10 @@ def remarks(results: Judgements | Judgement, comparison: Comparison | None = Non
         if results.unjudged and results.exit_status:
             for verdict in results.verdicts:
                 remark(verdict, Status.UNDECIDED, "nothing was judged")
+    if comparison is None or not comparison.decides:
+        for cause in results.causes:
+            for verdict in _explained(results, cause):
+                remark(verdict, Status.FAIL, f"likely cause: {cause.sentence}")
     if comparison is not None:
         for failure in comparison.failures:
             remark(failure, Status.FAIL, f"regression: {failure}")

@@ -47,6 +47,7 @@ from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.columns.request import request
 from taylor_verify.solvers.files.file import TrajectoryFile, read
+from taylor_verify.words.opening import opening
 
 _NUMBERS: Final = (
     "quantity",
@@ -185,6 +186,7 @@ def _text_of_one(
     span = f"from t = {float(times[0]):g} to t = {float(times[-1]):g}"
     page.line(bold(judged.file.name), f": {extent} {span}")
     page.line(f"judged as an answer to {scene} in {rung} arithmetic")
+    page.indented("", opening(judged.verdicts, judged.causes))
     _print_conventions(page, judged)
     page.line()
     for verdict in judged.verdicts:
@@ -214,7 +216,8 @@ def _print_conventions(page: Page, judged: FileJudgement) -> None:
         how = ", and was corrected" if judged.accepted else ", and was judged as it stands"
     page.line()
     page.line(bold(f"the file departs from the scene's conventions{how}", "yellow"))
-    page.indented("  ", *(finding.sentence for finding in judged.conventions))
+    for finding in judged.conventions:
+        page.indented("note: ", finding.sentence)
     if is_certain and not judged.accepted:
         page.line("  (--accept-conventions corrects this and judges the rest)")
 

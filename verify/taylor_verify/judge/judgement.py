@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -33,6 +33,7 @@ from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
+from taylor_verify.words.opening import cause_lines
 
 if TYPE_CHECKING:
     import pandas
@@ -80,8 +81,14 @@ class Judgement:
         return f"<{type(self).__name__} of {run}: {word}; {counts(self.verdicts)}>"
 
     def __str__(self) -> str:
-        """Return the sentences of all quantities, one per line."""
-        return "\n".join([repr(self)[1:-1], *(verdict.sentence for verdict in self.verdicts)])
+        """Return how it ended, a line for each quantity, the likely causes and the notes."""
+        return "\n".join([repr(self)[1:-1], *self._lines(self.verdicts)])
+
+    def _lines(self, verdicts: Iterable[Verdict]) -> list[str]:
+        """Return the lines about some verdicts, the likely causes and the notes."""
+        sentences = [verdict.sentence for verdict in verdicts]
+        notes = [f"note: {note}" for note in self.notes]
+        return [*sentences, *cause_lines(self.causes), *notes]
 
     def _repr_html_(self) -> str:
         headings = ("quantity", "verdict", "largest error", "allowed", "unit")
@@ -89,16 +96,14 @@ class Judgement:
             (v.quantity, v.verdict.value, _short(v.max), _short(v.bound), v.unit)
             for v in self.verdicts
         )
-        return html_table(repr(self)[1:-1], headings, rows, [v.sentence for v in self.verdicts])
+        return html_table(repr(self)[1:-1], headings, rows, self._lines(self.verdicts))
 
     def raise_for_failure(self) -> None:
         """Raise NotPassed, an AssertionError, unless the judgement passed."""
         if not self.passed:
             not_passed = [v for v in self.verdicts if v.verdict is not Status.PASS]
             lines = [f"{v.verdict}  {v.scene} {v.rung} {v.sentence}" for v in not_passed]
-            lines += [cause.line for cause in self.causes]
-            lines += [f"note: {note}" for note in self.notes]
-            raise NotPassed("\n".join(lines) or "nothing was judged")
+            raise NotPassed("\n".join([*lines, *self._lines(())]) or "nothing was judged")
 
 
 def _short(value: float | None) -> str:

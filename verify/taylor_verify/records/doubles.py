@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 _DIGITS: Final = 4
 # As many numbers are changed at once: what that takes beside them stays small.
 _PIECE: Final = 2**17
+# So few are written out sooner than they are counted.
+_FEW: Final = 256
 
 
 @final
@@ -66,6 +68,8 @@ def four_digits(values: Iterable[float]) -> Doubles:
     import numpy as np
 
     exact = np.array(values if isinstance(values, np.ndarray | Doubles) else list(values), float)
+    if len(exact) <= _FEW:
+        return Doubles(_written(value) for value in exact.tolist())
     for first in range(0, len(exact), _PIECE):
         piece = exact[first : first + _PIECE]
         piece[:] = _in_four_digits(piece)
@@ -87,5 +91,9 @@ def _in_four_digits(exact: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
     texts = [float(f"{int(code.real)}e{int(code.imag)}") for code in unique]
     rounded[is_clear] = np.array(texts, dtype=float)[places]
     others = np.flatnonzero(~is_clear)
-    rounded[others] = [float(f"{value:.{_DIGITS}g}") for value in exact[others].tolist()]
+    rounded[others] = [_written(value) for value in exact[others].tolist()]
     return rounded
+
+
+def _written(value: float) -> float:
+    return float(f"{value:.{_DIGITS}g}")

@@ -11,6 +11,7 @@ from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.reading.faults import brief
 from taylor_verify.solvers.trajectory import Outcome
+from taylor_verify.words.opening import cause_lines, opening
 
 Only = str | Collection[str] | None
 
@@ -67,8 +68,9 @@ def report(judgement: Judgement, demanded: Sequence[Verdict]) -> str:
     some, record = judgement.verdicts[0], judgement.record
     unmet = [verdict for verdict in demanded if not is_met(verdict)]
     lines = [
+        opening(demanded, judgement.causes),
         f"{some.solver} on {some.scene}, {some.rung}: "
-        f"{len(unmet)} of {len(demanded)} judged quantities are no pass"
+        f"{len(unmet)} of {len(demanded)} judged quantities are no pass",
     ]
     against = ""
     if record is not None:
@@ -83,7 +85,8 @@ def report(judgement: Judgement, demanded: Sequence[Verdict]) -> str:
     for verdict in filter(is_met, demanded):
         sizes = f"{_short(verdict.max)} <= {_short(verdict.bound)}{_unit(verdict)}"
         lines.append(f"{verdict.quantity}: pass, {sizes}")
-    return "\n".join([*lines, *_hints(demanded)])
+    # A likely cause says more than the pattern of passes and fails.
+    return "\n".join([*lines, *(cause_lines(judgement.causes) or _hints(demanded))])
 
 
 def _reasons(verdict: Verdict, against: str) -> Iterator[tuple[str, str]]:

@@ -14,13 +14,6 @@ from taylor_verify.records.standing import Standing
 Number = float | None
 # Text between the name of a shipped scene and a later time until which the scene is followed.
 UNTIL: Final = " until t = "
-# Published settings of taylor on so many bodies side by side, of which each has a share of the time.
-BODIES: Final = 64
-
-
-def together(rung: str, bodies: int = BODIES) -> str:
-    """Return the family of taylor on so many bodies side by side."""
-    return f"taylor {rung}, {bodies} bodies"
 
 
 def label(solver: str, setting: str, rung: str) -> str:

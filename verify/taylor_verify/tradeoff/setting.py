@@ -18,8 +18,7 @@ from taylor_verify.solvers.engines.peer import Peer
 from taylor_verify.solvers.registry import CLOSED_FORM, PROCESS, TAYLOR, solver_named
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.taylor.driver import Taylor
-from taylor_verify.solvers.taylor.neighbours import Neighbours
-from taylor_verify.tradeoff.document import label, together
+from taylor_verify.tradeoff.document import label
 
 RUNGS: Final = tuple(FORMATS)
 # Every third power of ten. A rung has those above its own tolerance, which is twice its roundoff.
@@ -148,12 +147,9 @@ def setting(name: str, rung: Rung) -> Setting:
     solver = solver_named(name)
     if isinstance(solver, Outside) and solver.engine.script.about.serves:
         solver = Peer(solver)
-    if isinstance(solver, Taylor | Neighbours):
+    if isinstance(solver, Taylor):
         tolerance = 2 * rung.unit_roundoff if solver.tolerance is None else solver.tolerance
-        if isinstance(solver, Neighbours):
-            family = together(rung.name, solver.bodies)
-        else:
-            family = f"taylor {rung.name}{' optimised' if solver.is_optimised else ''}"
+        family = f"taylor {rung.name}{' optimised' if solver.is_optimised else ''}"
         return Setting(solver, rung, float(tolerance), TOLERANCE, family)
     if name.startswith(PROCESS):
         # The options of a command that set its accuracy are unknown.

@@ -30,7 +30,7 @@ _HEYOKA_CACHE: Final = "HEYOKA_CACHE_DIR"
 # The explanation that stands with all times.
 WHAT_IS_TIMED: Final = (
     "the solver's own propagation; taylor runs compiled equations and looks for its longest step in "
-    "Python, with bodies=N a time is the share of one of them, scipy calls straight-line equations in "
+    "Python, scipy calls straight-line equations in "
     "Python, geometric and odefun are Python throughout, a program of one's own is timed as it states "
     "itself, and those of other libraries state a later propagation than their first, on the "
     "processor's clock where their process stays"

@@ -13,16 +13,14 @@ from taylor_verify_reports.studies.claims.study import STUDY as CLAIMS
 from taylor_verify_reports.studies.controls.study import STUDY as CONTROLS
 from taylor_verify_reports.studies.enclosure.study import STUDY as ENCLOSURE
 from taylor_verify_reports.studies.engines.study import STUDY as ENGINES
-from taylor_verify_reports.studies.extremes.study import STUDY as EXTREMES
 from taylor_verify_reports.studies.gallery.study import STUDY as GALLERY
 from taylor_verify_reports.studies.growth.study import STUDY as GROWTH
+from taylor_verify_reports.studies.hard.study import STUDY as HARD
 from taylor_verify_reports.studies.portraits.study import STUDY as PORTRAITS
 from taylor_verify_reports.studies.prices.study import STUDY as PRICES
-from taylor_verify_reports.studies.reach.study import STUDY as REACH
 from taylor_verify_reports.studies.reference.study import STUDY as REFERENCE
 from taylor_verify_reports.studies.study import Study
 from taylor_verify_reports.studies.tradeoff.study import STUDY as TRADEOFF
-from taylor_verify_reports.studies.worst.study import STUDY as WORST
 
 STUDIES: Final[list[Study[Any]]] = [
     ACCURACY,
@@ -30,10 +28,8 @@ STUDIES: Final[list[Study[Any]]] = [
     TRADEOFF,
     ENGINES,
     PRICES,
-    REACH,
+    HARD,
     GROWTH,
-    EXTREMES,
-    WORST,
     CLAIMS,
     ENCLOSURE,
     PORTRAITS,

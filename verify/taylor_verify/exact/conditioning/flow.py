@@ -111,12 +111,18 @@ class Flow:
         """The rate at which volume grows: the trace of J, to which the quadratic terms add nothing."""
         return float(np.trace(self.equations.linear))
 
-    def free(self, z: Floats) -> Floats:
-        """z' (..., d) at z (..., d) without loads: J counts half, and its linear part whole."""
-        return applied(self.jacobian(z) + self.equations.linear, z) / 2
+    def free(self, z: Floats, jacobian: Floats | None = None) -> Floats:
+        """z' (..., d) at z (..., d) without loads: J counts half, and its linear part whole.
+
+        ``jacobian`` is J at z, where it is known.
+        """
+        J = self.jacobian(z) if jacobian is None else jacobian
+        return applied(J + self.equations.linear, z) / 2
 
     def load(self, clock: Floats) -> Floats:
         """The constant load, and the one that a manufactured motion takes."""
+        if not self.waves.any():
+            return self.equations.constant
         z, rate = clock @ self.waves.T, clock @ self.turning.T @ self.waves.T
         constant = self.equations.constant
         load: Floats = constant + rate - self.free(z)

@@ -56,9 +56,7 @@ def integrated(
     digits, which is enough unless errors shrink again after they grew.
     """
     for parts in (1, _PARTS):
-        points = [elapsed[0]]
-        for begin, end in pairwise(elapsed):
-            points += [begin + (end - begin) * Fraction(k, parts) for k in range(1, parts + 1)]
+        points = _refined(elapsed, parts)
         truth = solution(scene).motion(points, _TRUTH_DIGITS + more_digits)
         with np.errstate(all="ignore"):  # what overflows is not finite, and then there is no answer
             parts_of_steps = _steps(scene, flow, points, truth, is_rough)
@@ -70,6 +68,16 @@ def integrated(
                 )
                 return Steps(steps, products(steps), momentum[::parts], centre[::parts])
     return None
+
+
+def _refined(elapsed: Sequence[Fraction], parts: int) -> list[Fraction]:
+    """Return these times, and others that divide each span between them into so many equal parts."""
+    if parts == 1:
+        return list(elapsed)
+    points = [elapsed[0]]
+    for begin, end in pairwise(elapsed):
+        points += [begin + (end - begin) * Fraction(k, parts) for k in range(1, parts + 1)]
+    return points
 
 
 def _steps(
@@ -135,9 +143,13 @@ class _Arcs(NamedTuple):
 
     def of(self, whole: Floats) -> _Arcs:
         """Return the arcs whose numbers, shaped as these, are in the rows of an array."""
-        ends = np.cumsum([prod(part.shape[1:]) for part in self])[:-1]
-        columns = zip(np.split(whole, ends, axis=1), self, strict=True)
-        return _Arcs(*(column.reshape(len(whole), *part.shape[1:]) for column, part in columns))
+        count, first, parts = len(whole), 0, list[Floats]()
+        for part in self:
+            shape = part.shape[1:]
+            last = first + prod(shape)
+            parts.append(whole[:, first:last].reshape(count, *shape))
+            first = last
+        return _Arcs(*parts)
 
 
 def _followed(flow: Flow, arcs: _Arcs, spans: Floats, is_rough: bool) -> _Arcs | None:
@@ -176,7 +188,7 @@ def _rates(flow: Flow, at: _Arcs) -> _Arcs:
         shift = R @ (flow.equations.velocity @ at.by_momentum) - cross_matrices(speed) @ at.turn
     return _Arcs(
         clock=at.clock @ flow.turning.T,
-        momentum=flow.load(at.clock) + flow.free(at.momentum),
+        momentum=flow.load(at.clock) + flow.free(at.momentum, jacobian),
         attitude=R @ cross_matrices(at.momentum @ flow.equations.spin.T),
         by_momentum=jacobian @ at.by_momentum,
         turn=turn,

@@ -105,7 +105,7 @@ _STORY: Final[Mapping[str, str]] = {
 
 
 def elements(scene: Scene, solved: Case | None, kind: str, digits: int) -> Elements:
-    """The elements of a body that is not Clebsch's; ``found`` is the case of x and y, if they have one."""
+    """The elements of a body that is not Clebsch's; ``solved`` is the case of x and y, if they have one."""
     body, start = solid(scene)
     family = family_of(scene)
 
@@ -114,7 +114,8 @@ def elements(scene: Scene, solved: Case | None, kind: str, digits: int) -> Eleme
         return [*own, *conserved(body, start)]
 
     unsolved = _UNSOLVED if family is None else _UNBUILT
-    sentences = [*(_top_story(scene, solved, kind) or [_STORY.get(kind, unsolved)])]
+    known = kind if solved is None else solved.regime
+    sentences = [*(_top_story(scene, solved, kind) or [_STORY.get(known, unsolved)])]
     sentences.append(_THREE if body.is_free else _BALANCED)
     if family is not None:
         name, _ = family

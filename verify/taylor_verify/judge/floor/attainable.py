@@ -19,7 +19,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from math import log2
 from typing import Any
 
@@ -76,7 +76,7 @@ class Floor:
             for part, scale in errors.parts.items()
         ]
         attainable: Floats = self.unit_roundoff * np.max(parts, axis=0)
-        return larger_neighbour(attainable, self._path_times(), self.times)
+        return larger_neighbour(attainable, self._path_times, self.times)
 
     @property
     def nodes(self) -> list[int]:
@@ -90,7 +90,7 @@ class Floor:
         """
         nodes, scene = self.nodes, self.orbit.scene
         elapsed = [scene.clock.elapsed[k] for k in nodes]
-        ends = np.searchsorted(self._path_times(), self.times[nodes], side="right")
+        ends = np.searchsorted(self._path_times, self.times[nodes], side="right")
         injected = np.zeros(len(nodes))
         with precision():
             (whole,) = to_mpfr(np.array([mp.convert(scale)], dtype=object))
@@ -108,7 +108,7 @@ class Floor:
     def terms(self, attainable: Floats, errors: Errors, carried: Carried) -> RoundoffFloor:
         """Return the terms of the floor at the sample of the largest error."""
         worst = int(np.argmax(errors.doubles))
-        reached = self._path_times() <= self.times[worst]
+        reached = self._path_times <= self.times[worst]
         steps = max(1, round(float(np.sum(self.steps_at[reached]))))
         value = float(attainable[worst])
         alike = min(self._alike(reached), steps)
@@ -165,6 +165,7 @@ class Floor:
             rows = rows * factors.astype(float)[:, None]
         return np.cumsum(self.steps_at[:, None] * rows**2, axis=0)
 
+    @cached_property
     def _path_times(self) -> Floats:
         return np.array([abs(float(t)) for t in self.orbit.elapsed])
 

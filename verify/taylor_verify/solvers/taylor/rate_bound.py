@@ -1,4 +1,4 @@
-"""A bound of the fastest rate of a form's motions, compiled, for many states at once."""
+"""A bound of the fastest rate of a form's motions, compiled, for many states of one motion at once."""
 
 from __future__ import annotations
 
@@ -13,8 +13,6 @@ from taylor_verify.models.problem import Problem
 from taylor_verify.models.rates import momenta
 from taylor_verify.solvers.taylor.equations import equations
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
-
 
 @final
 @dataclass(frozen=True)
@@ -26,19 +24,6 @@ class RateBound:
 
     momenta: int
     evaluate: Any
-
-    def fourth_powers(self, states: Floats, parameters: Floats) -> Floats:
-        """Return a number (n) for each body that the fourth power of no rate at its states exceeds.
-
-        ``states`` (s, n, m) are some of each body, and ``parameters`` (p, n). Where a state is not finite,
-        the number is not either.
-        """
-        inputs = np.empty((self.momenta + len(parameters), *states.shape[1:]))
-        inputs[: self.momenta] = states[: self.momenta]
-        inputs[self.momenta :] = parameters[:, :, None]
-        bounds = self.evaluate(inputs.reshape(len(inputs), -1))
-        largest: Floats = bounds.reshape(len(bounds), *states.shape[1:]).max(axis=(0, 2))
-        return largest
 
 
 @final

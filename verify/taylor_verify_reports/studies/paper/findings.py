@@ -14,9 +14,8 @@ from taylor_verify.words.markdown import prose
 from taylor_verify_reports.studies.controls.proof import conserving
 from taylor_verify_reports.studies.engines.advice import LOST
 from taylor_verify_reports.studies.engines.ranking import Score
+from taylor_verify_reports.studies.hard.document import ReachFamily, last_value, most_periods
 from taylor_verify_reports.studies.paper.sources import Sources
-from taylor_verify_reports.studies.reach.document import ReachFamily
-from taylor_verify_reports.studies.reach.page import last_value, most_periods
 from taylor_verify_reports.studies.tradeoff.peers import OUTSIDE, TAYLOR
 from taylor_verify_reports.studies.tradeoff.stored import TimedPoint, Trade, cheapest
 
@@ -91,8 +90,8 @@ def accuracy(sources: Sources) -> str:
 
 def reach(sources: Sources) -> str:
     """Return the reach of float64 in periods, and near an unstable motion, in words."""
-    rows = [row for row in sources.reach.rows if row.rung == _RUNG]
-    families = sources.reach.families
+    rows = [row for row in sources.hard.reach if row.rung == _RUNG]
+    families = sources.hard.families
     long = next((family for family in families if not family.symbol), None)
     near = next((family for family in families if family.symbol == "d"), None)
     words = []

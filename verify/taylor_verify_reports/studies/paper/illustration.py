@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.words.markdown import code
 from taylor_verify_reports.studies.engines import page as engines_page
+from taylor_verify_reports.studies.hard import page as hard_page
+from taylor_verify_reports.studies.hard.document import HARD
 from taylor_verify_reports.studies.paper.caption import ENGINES, TRADEOFF, Caption
 from taylor_verify_reports.studies.paper.sources import Sources
-from taylor_verify_reports.studies.reach import page as reach_page
 from taylor_verify_reports.studies.tradeoff import page as tradeoff_page
 
 
@@ -46,12 +47,13 @@ def _engines(sources: Sources) -> Illustration:
 
 def _reach(sources: Sources) -> Illustration:
     words = (
-        "Digits that are left beside an unstable motion, over the distance $d$ from it and the number of "
-        "periods, in each number format: achieved, and beside it the floor."
+        "Digits that are left beside an unstable motion after one period, over the distance $d$ from it, "
+        "in each number format: achieved, and dashed the floor."
     )
-    data, machine = (reach_page.REACH.name,), sources.reach.provenance.processor
-    picture = _first(reach_page.pictures(sources.reach), "reach")
-    return Illustration("reach", picture, Caption(words, data, machine))
+    picture = _first(hard_page.pictures(sources.hard), "hard")
+    return Illustration(
+        "reach", picture, Caption(words, (HARD.name,), sources.hard.machine.processor)
+    )
 
 
 def _trade(sources: Sources) -> Illustration:

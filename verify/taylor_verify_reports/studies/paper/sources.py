@@ -17,8 +17,7 @@ from taylor_verify_reports.studies.engines import stored as engines
 from taylor_verify_reports.studies.engines.document import Board
 from taylor_verify_reports.studies.engines.entry import Entry, EntryList, entry_list
 from taylor_verify_reports.studies.engines.ranking import Score, best_of_each, settings
-from taylor_verify_reports.studies.reach.document import ReachStudy
-from taylor_verify_reports.studies.reach.page import REACH
+from taylor_verify_reports.studies.hard.document import HARD, HardStudy
 from taylor_verify_reports.studies.tradeoff import stored as tradeoff
 from taylor_verify_reports.studies.tradeoff.stored import Trades
 
@@ -26,7 +25,7 @@ from taylor_verify_reports.studies.tradeoff.stored import Trades
 _FILES: Final = {
     "controls": CONTROLS.name,
     "engines": engines.ENGINES.name,
-    "reach": REACH.name,
+    "hard": HARD.name,
     "tradeoff": tradeoff.NUMBERS.name,
 }
 
@@ -38,7 +37,7 @@ class Sources:
     verdicts: tuple[Verdict, ...]
     controls: ControlsStudy
     board: Board
-    reach: ReachStudy
+    hard: HardStudy
     trades: Trades
 
     @cached_property
@@ -101,4 +100,4 @@ def read(folder: Path) -> Sources:
     board, trades = engines.find(folder), tradeoff.load(folder)
     assert board is not None
     assert trades is not None
-    return Sources(verdicts, CONTROLS.load(folder), board, REACH.load(folder), trades)
+    return Sources(verdicts, CONTROLS.load(folder), board, HARD.load(folder), trades)

@@ -15,11 +15,12 @@ from taylor_verify_reports.studies.accuracy import quoted
 from taylor_verify_reports.studies.controls import page as controls_page
 from taylor_verify_reports.studies.controls.document import CONTROLS
 from taylor_verify_reports.studies.engines import page as engines_page
+from taylor_verify_reports.studies.hard import page as hard_page
+from taylor_verify_reports.studies.hard import picture
+from taylor_verify_reports.studies.hard.document import HARD
 from taylor_verify_reports.studies.paper.caption import ENGINES, TRADEOFF, VERDICTS, Caption
 from taylor_verify_reports.studies.paper.findings import REACHED
 from taylor_verify_reports.studies.paper.sources import Sources
-from taylor_verify_reports.studies.reach.document import ReachFamily, ReachRow
-from taylor_verify_reports.studies.reach.page import REACH, cell, last_value, most_periods
 from taylor_verify_reports.studies.tradeoff.peers import DIGITS, OUTSIDE, TAYLOR, TITLES
 from taylor_verify_reports.studies.tradeoff.stored import Trade, cheapest
 
@@ -108,32 +109,21 @@ def _reach(sources: Sources) -> Table:
         "number of periods, or the parameter that leads to the extreme, after one period. An arrow "
         f"stands behind the last value that was tried, {NOTHING} where there is no value."
     )
-    study = sources.reach
-    rungs = list(dict.fromkeys(rung for family in study.families for rung in family.rungs))
-    own: dict[tuple[str, str], list[ReachRow]] = {}
-    for row in study.rows:
-        own.setdefault((row.family, row.rung), []).append(row)
-    rows = []
-    for family in study.families:
-        reached = (_reached(family, own.get((family.name, rung), ())) for rung in rungs)
-        title = prose(family.title.replace("^2", "²"))
-        rows.append([title, family.symbol or "periods", *reached])
+    lines = picture.lines(sources.hard)
+    rungs = list(dict.fromkeys(line.rung for line in lines))
+    far = {(line.family.name, line.rung): hard_page.far(line, REACHED) for line in lines}
+    rows = [
+        [
+            prose(family.title.replace("^2", "²")),
+            family.symbol or "periods",
+            *(far.get((family.name, rung), NOTHING) for rung in rungs),
+        ]
+        for family in sources.hard.families
+    ]
     headings = ["motion", "varied", *(f"{rung}:" for rung in rungs)]
-    return Table("reach", headings, rows, Caption(words, (REACH.name,), study.provenance.processor))
-
-
-def _reached(family: ReachFamily, rows: Sequence[ReachRow]) -> str:
-    """Return how far a rung reaches in a family: the last value after one period, or the most periods."""
-    if not rows:
-        return NOTHING
-    value: str | int | None
-    last: str | int
-    if family.symbol:
-        value, last = last_value(rows, 1, REACHED), family.values[-1]
-    else:
-        (row,) = rows
-        value, last = most_periods(row, REACHED), max(row.periods, default=0)
-    return cell(value, last)
+    return Table(
+        "reach", headings, rows, Caption(words, (HARD.name,), sources.hard.machine.processor)
+    )
 
 
 def _trade(sources: Sources) -> Table:

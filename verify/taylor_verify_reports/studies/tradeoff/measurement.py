@@ -31,7 +31,6 @@ from taylor_verify.solvers.engines.session import end_sessions
 from taylor_verify.solvers.registry import TAYLOR
 from taylor_verify.tradeoff.cold import in_a_new_process
 from taylor_verify.tradeoff.document import (
-    BODIES,
     UNTIL,
     TimingMachine,
     TradeNumbers,
@@ -182,8 +181,6 @@ def published_settings(scene: Scene, with_outside: bool = False) -> Iterator[Set
     if with_outside:
         for tolerance in _FOR_THE_COLUMNS:
             yield setting(f"{TAYLOR}?tol={tolerance}&code=optimised", f64)
-        for tolerance in _FOR_THE_COLUMNS:
-            yield setting(f"{TAYLOR}?tol={tolerance}&bodies={BODIES}", f64)
         yield from outside(["f64"], PEERS, _FOR_THE_COLUMNS)
 
 

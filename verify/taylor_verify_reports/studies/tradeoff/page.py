@@ -93,8 +93,7 @@ def page(trades: Trades, folder: Path) -> str:
         "## In pictures",
         *(figures.shown(folder, _of_trade(trade)) for trade in trades.short),
         "## The front",
-        "The settings in float64, one body at a time, that no other beats in both time and error, the "
-        "fastest first.",
+        "The settings in float64 that no other beats in both time and error, the fastest first.",
         *(_front(trade) for trade in trades.short),
         "## Geometric integrators",
         "Fixed steps, in the scene's unit of time. They conserve their quantities to the last bits: "
@@ -128,7 +127,6 @@ def pictures(trades: Trades) -> list[Picture]:
 
 def _of_trade(trade: Trade) -> list[Picture]:
     """Return the pictures of one scene; none if no setting is sound."""
-    trade = trade.of_one_body
     return of_one_scene.pictures(trade.document()) if trade.sound else []
 
 

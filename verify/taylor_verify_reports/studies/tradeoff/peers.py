@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Final
 
-from taylor_verify.tradeoff.document import BODIES, UNTIL, together
+from taylor_verify.tradeoff.document import UNTIL
 from taylor_verify.words.cells import NOTHING, figure
 from taylor_verify.words.markdown import bold, bullets, code, prose, table
 from taylor_verify_reports.studies.tradeoff.stored import TimedPoint, Trade, Trades, cheapest
@@ -17,7 +17,6 @@ DIGITS: Final = (6, 9, 12)
 OUTSIDE: Final = "outside "
 TAYLOR: Final = "taylor f64"
 OPTIMISED: Final = "taylor f64 optimised"
-TOGETHER: Final = together("f64")
 _NOT_REACHED: Final = "not reached"
 _NONE: Final = (
     "Not measured: `taylor-verify publish tradeoff --outside` does, and makes their environments."
@@ -28,16 +27,14 @@ _WHAT: Final = (
     "with all others in every round. All have the same equations, generated from one form, and the "
     "same samples, and are compared with the same exact motion. A cell is the processor's time of the "
     "cheapest tolerance, of all powers of ten from 1e-5 to 1e-15, that leaves this number of digits, "
-    "over that of the yardstick. *ahead* is the fastest on one body, with its lead: over the next peer "
+    "over that of the yardstick. *ahead* is the fastest, with its lead: over the next peer "
     "if the fastest is taylor, else over taylor. They are *level* if the intervals of the two overlap. A "
     "peer that is ahead compiles for longer, for one body. It is behind until that is *repaid*, after so "
-    "many solves of this body in one process. *ahead on many* is the same for a body of many, where "
-    f"taylor solves {BODIES} side by side."
+    "many solves of this body in one process."
 )
 # Headings of the columns by family; a family that is missing here has its own name as heading.
 TITLES: Final = {
     OPTIMISED: "taylor, optimised code",
-    TOGETHER: f"taylor, {BODIES} bodies",
     "outside dop853": "DOP853 in numba",
     "outside cyrk-dop853": "CyRK DOP853",
     "outside cvode-adams": "SUNDIALS CVODE",
@@ -52,9 +49,6 @@ _HOW: Final = (
     "diffrax is compiled as a whole by XLA (`jit`).",
     "The time of taylor includes its driver's work in Python around heyoka's compiled steps.",
     "Optimised code is `taylor?code=optimised`: it compiles for seconds, and is read from disk later.",
-    f"{BODIES} bodies are `taylor?bodies={BODIES}`: the body, whose error is compared, beside others that "
-    "start near it, several in each instruction of the processor. The time is the share of one. The "
-    "peers solve one body after the other; what vectors would gain for them was not measured.",
 )
 _SET_UP: Final = (
     "The times above exclude the set-up: the processor's seconds before the first solve of a process, "
@@ -77,13 +71,13 @@ def _peers(trade: Trade) -> list[str]:
 
 
 def _is_ours(row: TimedPoint) -> bool:
-    return row.point.family in (TAYLOR, OPTIMISED, TOGETHER)
+    return row.point.family in (TAYLOR, OPTIMISED)
 
 
 def _families(trades: Trades) -> list[str]:
     """Return the families of the columns: taylor, those with a title in their order, and others."""
     points = [point for trade in trades.trades for point in trade.points]
-    others = (OUTSIDE, OPTIMISED, TOGETHER)
+    others = (OUTSIDE, OPTIMISED)
     asked = dict.fromkeys(p.family for p in points if p.family.startswith(others))
     known = [family for family in TITLES if family in asked]
     return [TAYLOR, *known, *(family for family in asked if family not in known)]
@@ -108,15 +102,14 @@ def _times(trades: Trades) -> str:
             best = {f: cheapest(_of_family(trade, f), digits) for f in families}
             ours, *others = (_cell(best[f], bool(_of_family(trade, f))) for f in families)
             name = code(trade.scene) if digits == DIGITS[0] else ""
-            many = sorted((row for row in best.values() if row), key=lambda row: row.timing.ratio)
-            one = [row for row in many if row.point.family != TOGETHER]
-            repaid = _repaid(one, partial(_longest, trades, trade.scene))
-            leads = [_ahead(one), repaid, *([_ahead(many)] if TOGETHER in families else [])]
+            reached = sorted(
+                (row for row in best.values() if row), key=lambda row: row.timing.ratio
+            )
+            repaid = _repaid(reached, partial(_longest, trades, trade.scene))
             times = [ours, _inner(best[TAYLOR]), *others]
-            rows.append([name, str(digits), *leads, *times])
-    leads = ["ahead", "repaid after:", *(["ahead on many:"] if TOGETHER in families else [])]
+            rows.append([name, str(digits), _ahead(reached), repaid, *times])
     times = ["taylor:", "of which heyoka:", *(f"{_title(f)}:" for f in families[1:])]
-    return table(["scene", "digits:", *leads, *times], rows)
+    return table(["scene", "digits:", "ahead", "repaid after:", *times], rows)
 
 
 def _cell(row: TimedPoint | None, is_there: bool) -> str:
@@ -137,19 +130,14 @@ def _ahead(reached: Sequence[TimedPoint]) -> str:
     """Return the fastest family in words, with its lead over the next peer, or over taylor."""
     if not reached:
         return "nobody"
-    first, name, other = reached[0], _name(reached[0]), _next(reached)
+    first, name, other = reached[0], _title(reached[0].point.family), _next(reached)
     if other is None:
         is_alone = _is_ours(first) or len(reached) == 1
         return f"{name}, alone" if is_alone else f"{bold(name)}: taylor does not reach them"
     if _overlap(first, other):
-        return f"level: {name} and {_name(other)}"
+        return f"level: {name} and {_title(other.point.family)}"
     lead = f"{other.timing.ratio / first.timing.ratio:.1f} times"
     return f"{name}, {lead}" if _is_ours(first) else f"{bold(name)}, {lead}"
-
-
-def _name(row: TimedPoint) -> str:
-    """Return the title of a family; the column says how many bodies there are."""
-    return "taylor" if row.point.family == TOGETHER else _title(row.point.family)
 
 
 def _next(reached: Sequence[TimedPoint]) -> TimedPoint | None:

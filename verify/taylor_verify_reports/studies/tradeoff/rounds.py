@@ -44,7 +44,7 @@ _MOST_SOLVES: Final = 1000
 
 @dataclass(frozen=True)
 class Measured:
-    """The times of one setting in one process: medians of its rounds, per body and solve.
+    """The times of one setting in one process: medians of its rounds, per solve.
 
     ``ratio`` is the seconds over the yardstick's in the same round. ``inner`` is the part of the seconds in
     another library's compiled integrator, if known. ``setup`` is the time before the first solve, mainly
@@ -86,7 +86,6 @@ def measured(
     """
     least = max(_LEAST_SECONDS, _TIMES_RESOLUTION * (resolution or clock_resolution()))
     first: dict[Name, _Taken] = {}
-    bodies: dict[Name, int] = {}
     turns: dict[Name, Callable[[], _Taken | None]] = {}
     for name in dict.fromkeys([YARDSTICK, *names]):
         rung = rung_named(name[1])
@@ -94,7 +93,7 @@ def measured(
         solve = partial(_solved, solver, pose(scene, rung), clock)
         if (taken := solve(1, is_first=True)) is None:
             continue
-        first[name], bodies[name] = taken, solver.bodies
+        first[name] = taken
         count = _count(taken, least)
         if count or name == YARDSTICK:
             turns[name] = partial(solve, max(1, count))
@@ -103,9 +102,7 @@ def measured(
     later = dict(zip(turns, in_rounds([*turns.values()], rounds, seed), strict=True))
     unit = later[YARDSTICK]
     return {
-        name: _summed(first[name], later.get(name, []), unit, bodies[name])
-        for name in names
-        if name in first
+        name: _summed(first[name], later.get(name, []), unit) for name in names if name in first
     }
 
 
@@ -132,19 +129,16 @@ def in_rounds(turns: Sequence[Callable[[], Answer]], rounds: int, seed: int) -> 
 
 
 def _summed(
-    first: _Taken, later: Sequence[_Taken | None], unit: Sequence[_Taken | None], bodies: int
+    first: _Taken, later: Sequence[_Taken | None], unit: Sequence[_Taken | None]
 ) -> Measured:
-    """Return the medians over the rounds; a setting that was solved once has that one time.
-
-    Each of the ``bodies`` of a solve has the same share of it.
-    """
+    """Return the medians over the rounds; a setting that was solved once has that one time."""
     rounds = [(a, b.seconds) for a, b in zip(later, unit, strict=False) if a and b]
     rounds = rounds or [(first, median(b.seconds for b in unit if b))]
     inner = [taken.inner for taken, _ in rounds if taken.inner is not None]
     return Measured(
-        seconds=median(taken.seconds for taken, _ in rounds) / bodies,
-        ratio=median(taken.seconds / seconds for taken, seconds in rounds) / bodies,
-        inner=median(inner) / bodies if len(inner) == len(rounds) else None,
+        seconds=median(taken.seconds for taken, _ in rounds),
+        ratio=median(taken.seconds / seconds for taken, seconds in rounds),
+        inner=median(inner) if len(inner) == len(rounds) else None,
         setup=first.setup,
     )
 
@@ -169,7 +163,7 @@ def _solved(
     if isinstance(solver, Peer):
         return _Taken(seconds=stated[0], inner=None, waited=stated[0], setup=compiling[0])
     # The first solve may compile, and states the time of its propagation separately.
-    seconds = min(spent, solver.bodies * sum(stated)) if is_first else spent
+    seconds = min(spent, sum(stated)) if is_first else spent
     # The part in a compiled integrator is known as time on the clock, and is scaled to processor time.
     known = [part for part in inner if part is not None]
     share = sum(known) / sum(stated) if len(known) == count and sum(stated) else None

@@ -7,7 +7,7 @@ tradeoff-timings.json   seconds, ratios and intervals of one machine, which are 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
@@ -19,7 +19,6 @@ from taylor_verify.tradeoff.document import (
     TradeScene,
     TradeTiming,
     TradeTimings,
-    together,
 )
 from taylor_verify_reports.studies.stored import Stored
 
@@ -77,11 +76,6 @@ class Trade:
             {**complete(p), **{name: getattr(self._timing(p), name, None) for name in _TIMES}}
             for p in self.points
         ]
-
-    @property
-    def of_one_body(self) -> Trade:
-        """This trade without the points that solve many bodies side by side."""
-        return replace(self, points=tuple(p for p in self.points if p.family != together(p.rung)))
 
     def document(self) -> dict[str, Any]:
         """Return the stored part of the document of `tradeoff --json` for one scene."""

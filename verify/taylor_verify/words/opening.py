@@ -1,0 +1,41 @@
+"""The sentence with which every report begins: the verdict, the likely cause, the worst row."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import inf
+
+from taylor_verify.records.answers import LikelyCause
+from taylor_verify.records.status import GRAVITY, Status, gravest
+from taylor_verify.records.verdict import Verdict
+
+
+def opening(verdicts: Sequence[Verdict], causes: Sequence[LikelyCause] = ()) -> str:
+    """Return one sentence: the gravest status, the names of likely causes, and the worst row."""
+    if not verdicts:
+        return "nothing was judged"
+    status = gravest(verdict.verdict for verdict in verdicts)
+    names = " or ".join(dict.fromkeys(cause.name for cause in causes))
+    cause = f", likely cause: {names}" if names else ""
+    return f"{status.value}{cause}; {_of_worst(worst(verdicts))}"
+
+
+def worst(verdicts: Sequence[Verdict]) -> Verdict:
+    """Return the row of the gravest status whose error is largest beside its bound."""
+    return min(verdicts, key=lambda verdict: (GRAVITY.index(verdict.verdict), -_excess(verdict)))
+
+
+def cause_lines(causes: Sequence[LikelyCause]) -> list[str]:
+    """Return a line for each likely cause, with its run in front if it names one."""
+    return [cause.line for cause in causes]
+
+
+def _excess(verdict: Verdict) -> float:
+    if verdict.max is None or verdict.max != verdict.max:
+        return inf
+    return verdict.max / verdict.bound if verdict.bound else verdict.max
+
+
+def _of_worst(verdict: Verdict) -> str:
+    where = "nearest to its bound" if verdict.verdict is Status.PASS else "worst"
+    return f"{where}: {verdict.sentence}"

@@ -1,1 +1,0 @@
-"""The hardest scenes, and the verdicts expected of each."""

@@ -1,0 +1,330 @@
+"""Page of the hard scenes, made from the stored document alone.
+
+A verdict other than `pass` is either expected, with a reason, or a mismatch. The page lists mismatches in
+its summary, and every verdict other than `pass` with its reason.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+from itertools import zip_longest
+from pathlib import Path
+from typing import Any, Final
+
+from taylor_verify.plotting.picture import Picture
+from taylor_verify.records.json_text import complete, plain
+from taylor_verify.records.runs import Run, gravest, runs
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.report import csv_tables as sheets
+from taylor_verify.words.cells import NOTHING, figure, judged, peak, reason, word, worst_ratio
+from taylor_verify.words.markdown import bold, bullets, code, prose
+from taylor_verify.words.page import counts, roundoffs, traced, whole
+from taylor_verify.words.sheet import sheet as csv_sheet
+from taylor_verify_reports.studies import figures
+from taylor_verify_reports.studies.columns import Columns, lay_out
+from taylor_verify_reports.studies.hard.document import (
+    ACHIEVED,
+    ATTAINABLE,
+    HARD,
+    ExtremeVerdict,
+    HardStudy,
+    ReachRow,
+    Search,
+    WorstOfFamily,
+    last_value,
+    most_periods,
+)
+from taylor_verify_reports.studies.hard.picture import Line, lines, picture
+
+_FOLDER: Final = "extremes/"
+# Mark after the last value that was tried, beyond which the reach may extend.
+_LAST: Final = " \N{RIGHTWARDS ARROW}"
+
+_WHAT: Final = (
+    "These scenes are extreme: beside a separatrix and on it, with moments nearly equal or far apart, "
+    "sizes near the ends of the number range, many periods, and the worst scenes that a search has "
+    "found. The right verdict is not always *pass*. If rounding alone may change a motion by its own "
+    "size, the right verdict is *vacuous*. The right verdict of each scene is written down "
+    "beforehand, with its reason, and a mismatch in either direction is a fail."
+)
+_LEGEND: Final = (
+    "*state* is the main quantity, the angular velocity or the impulse: *max, mean @ t of the max*, "
+    "in u, or a word for a missing number.",
+    "*over attainable* is the largest of all quantities of the scene, with the name of the quantity; "
+    "a gate allows ten.",
+    "*verdict* is the gravest of all quantities. *as expected* counts the quantities with the "
+    "expected verdict; a mismatch is bold.",
+)
+_WORST: Final = (
+    "A gate allows {factor} times the attainable error, which is the error that independent roundings "
+    "of every component leave. How near does a sound solver come to this bound? In each family "
+    "{runs} runs are spent on a population of points that moves by differential evolution. The Taylor "
+    "driver answers every scene on {rung}, and the largest *error over attainable* of all its "
+    "gates counts. Vacuous gates do not count. The worst scene of every family is stored in exact "
+    "numbers, and is one of the scenes above."
+)
+_REACH: Final = (
+    "How far does each precision keep 3, 6 or 12 digits: for many periods, and beside an unstable "
+    "motion? The Taylor integrator runs at the rung's own tolerance; the digits left are those of the "
+    "largest error up to then, compared with the exact motion of the same rounded data."
+)
+_REACH_LEGEND: Final = (
+    "*3, 6, 12 digits* are the last values at which this number of digits is left, as at all easier "
+    "values: the number of *periods*, or the distance *d* from the unstable motion after one period. "
+    f"{_LAST.strip()} marks the last value that was tried: the reach may be longer. {NOTHING} means "
+    "that there is no value.",
+    "*attainable* is the same value for the judge's floor: the effect on the orbit of one rounding of "
+    "every component in every step. It is a model of random roundings, and no bound.",
+    "Periods are those of omega or of the impulses, and the instants are their quarters. Only omega "
+    "or the impulses are compared, except in the motion that names the attitude.",
+)
+
+
+def page(study: HardStudy, folder: Path) -> str:
+    """Return the whole page, with the pictures that are in ``folder``/figures."""
+    by_model: dict[str, list[Run]] = {}
+    for run in runs(study.verdicts):
+        by_model.setdefault(run.model, []).append(run)
+    return whole(
+        "Hard scenes",
+        _WHAT,
+        counts(study.verdicts),
+        _summary(study),
+        bullets([*_LEGEND, roundoffs(study.verdicts)]),
+        *(
+            f"## {model or 'Without a state'}\n\n{lay_out(_scene_columns(study), own)}"
+            for model, own in by_model.items()
+        ),
+        "## No pass, and why",
+        _not_passed(study),
+        _left_out(study),
+        *_found(study),
+        *_reached(study, folder),
+        "## To remake this",
+        "`taylor-verify publish hard` runs all scenes on float64, follows the families on every rung, and "
+        f"writes [hard.json](../{HARD.name}), this page and its pictures. [hard.csv](hard.csv) has every "
+        "quantity of every scene, [hard-reach.csv](hard-reach.csv) every number of periods. `taylor-verify "
+        "run extremes` prints the verdicts and fails at a mismatch; with `--rung` it runs the scenes on "
+        "others. The expectations are in `cases/extremes/EXPECTED.toml`.",
+        traced({"versions": study.versions, **plain(study.machine)}),
+    )
+
+
+# Verdicts.
+
+
+def _summary(study: HardStudy) -> str:
+    """Return the number of expected verdicts, and all mismatches in full."""
+    others = [verdict for verdict in study.verdicts if verdict.verdict is not Status.PASS]
+    met = sum(verdict.is_met for verdict in others)
+    counted = f"{met} of {len(others)} verdicts other than pass were expected."
+    if not study.mismatches:
+        return counted
+    faults = bullets(map(prose, study.mismatches))
+    return f"{counted} {bold(f'{len(study.mismatches)} mismatches')}:\n\n{faults}"
+
+
+def _scene_columns(study: HardStudy) -> Columns[Run]:
+    return (
+        ("scene", lambda run: _short(run.scene)),
+        ("rung", lambda run: run.rung),
+        ("what it is", lambda run: prose(study.titles.get(run.scene, ""))),
+        ("state:", lambda run: _state(run.state[0] if run.state else run.verdicts[0])),
+        ("over attainable:", lambda run: worst_ratio(filter(_is_compared, run.verdicts))),
+        ("verdict", lambda run: judged(gravest(run.verdicts))),
+        ("as expected:", _met),
+    )
+
+
+def _is_compared(verdict: Verdict) -> bool:
+    return verdict.verdict in (Status.PASS, Status.FAIL)
+
+
+def _short(scene: str) -> str:
+    return code(scene.removeprefix(_FOLDER))
+
+
+def _met(run: Run) -> str:
+    met = sum(isinstance(row, ExtremeVerdict) and row.is_met for row in run.verdicts)
+    counted = f"{met} of {len(run.verdicts)}"
+    return counted if met == len(run.verdicts) else bold(counted)
+
+
+def _state(verdict: Verdict) -> str:
+    """Return the error with the verdict unless that is a pass; a word if the error is no number."""
+    if verdict.max is None:
+        return bold(prose(word(verdict)))
+    text = prose(peak(verdict))
+    return text if verdict.verdict is Status.PASS else f"{text} {judged(verdict.verdict)}"
+
+
+_REASONS: Final[Columns[ExtremeVerdict]] = (
+    ("scene", lambda row: _short(row.scene)),
+    ("quantity", lambda row: code(row.quantity)),
+    ("verdict", lambda row: judged(row.verdict)),
+    ("expected", lambda row: _expected(row)),
+    ("bound:", lambda row: figure(row.bound)),
+    ("why", lambda row: prose((row.expected.why if row.expected else "") or reason(row))),
+)
+
+
+def _not_passed(study: HardStudy) -> str:
+    """Return a line for every verdict other than pass, beside the expected one."""
+    rows = [row for row in study.verdicts if row.verdict is not Status.PASS or not row.is_met]
+    return lay_out(_REASONS, rows) if rows else "Every answer is a pass."
+
+
+def _expected(verdict: ExtremeVerdict) -> str:
+    expected = verdict.expected.verdict.value if verdict.expected else NOTHING
+    return expected if verdict.is_met else bold(expected)
+
+
+def _left_out(study: HardStudy) -> str:
+    lines = [f"{code(run.scene)}, {run.rung}: {prose(run.why)}" for run in study.left_out]
+    return f"Not run:\n\n{bullets(lines)}" if lines else ""
+
+
+# The search.
+
+
+_FAMILY: Final[Columns[WorstOfFamily]] = (
+    ("family", lambda row: prose(row.what)),
+    ("scenes:", lambda row: str(row.judged)),
+    ("error over attainable:", lambda row: figure(row.ratio)),
+    ("in", lambda row: code(row.quantity)),
+    ("its error:", lambda row: figure(row.max)),
+    ("verdict", lambda row: row.verdict.value),
+    ("stored as", lambda row: code(row.scene)),
+)
+
+
+def _found(study: HardStudy) -> list[str]:
+    search: Search | None = study.search
+    if search is None or not study.worst:
+        return []
+    families = sorted(study.worst, key=lambda row: -row.ratio)
+    count = sum(row.judged for row in families)
+    return [
+        "## The worst that a search has found",
+        _WORST.format(factor=search.factor, rung=code(search.rung), runs=search.runs),
+        f"Of {count} scenes the worst is {code(families[0].scene)}: "
+        f"{figure(families[0].ratio)} in {code(families[0].quantity)}.",
+        lay_out(_FAMILY, families),
+        f"`taylor-verify publish hard --runs {search.runs} --seed {search.seed}` searches again and "
+        f"replaces the scenes. Other scenes may be worse. {traced(complete(search.provenance))}",
+    ]
+
+
+# The reach.
+
+
+def far(line: Line, digits: int, key: str = ACHIEVED) -> str:
+    """Return the last value or the most periods at which so many digits are left."""
+    if not line.rows:
+        return NOTHING
+    if line.family.symbol:
+        return cell(last_value(line.rows, 1, digits, key), line.family.values[-1])
+    return cell(most_periods(line.rows[0], digits, key), line.rows[0].periods[-1])
+
+
+_HOW_FAR: Final[Columns[Line]] = (
+    ("motion", lambda line: prose(line.family.title)),
+    ("varied", lambda line: line.family.symbol or "periods"),
+    ("rung", lambda line: line.rung),
+    *((f"{n} digits:", partial(far, digits=n)) for n in (3, 6, 12)),
+    ("attainable, 6:", partial(far, digits=6, key=ATTAINABLE)),
+)
+
+
+def cell(value: str | int | None, last: str | int) -> str:
+    """Return the value as a cell, with a mark if it is the ``last`` that was tried."""
+    if value is None:
+        return NOTHING
+    return f"{value}{_LAST}" if value == last else str(value)
+
+
+def pictures(study: HardStudy) -> list[Picture]:
+    """Return the picture of the reach; none if no family of distances was run."""
+    try:
+        return [picture(study)]
+    except ValueError:
+        return []
+
+
+def _reached(study: HardStudy, folder: Path) -> list[str]:
+    if not study.reach:
+        return []
+    return [
+        "## How far each precision carries",
+        _REACH,
+        bullets([*_REACH_LEGEND, *_exceptions(study.reach)]),
+        lay_out(_HOW_FAR, lines(study)),
+        figures.shown(folder, pictures(study)),
+    ]
+
+
+def _exceptions(rows: Sequence[ReachRow]) -> Iterator[str]:
+    """Yield what the tables do not say: the errors over the floors, and the runs without numbers."""
+    ratios = sorted(
+        error / least
+        for row in rows
+        for error, least in zip(row.errors, row.floors, strict=False)
+        if error is not None and least and least <= 0.1
+    )
+    if ratios:
+        yield (
+            f"Error over attainable, if the attainable error leaves a digit: {figure(ratios[-1])} at most, "
+            f"with a median of {figure(ratios[len(ratios) // 2])} over {len(ratios)} errors."
+        )
+    blurred = sum(not row.errors for row in rows)
+    yield (
+        f"{len(rows)} runs. In {blurred} of them the rung could not represent the motion: the rounded "
+        "numbers belong to another orbit, or the machine does not have the rung."
+    )
+    for row in rows:
+        # A run that ended early has no number, like one that was lost.
+        if row.errors and row.why:
+            yield f"{row.family} {row.value}, {row.rung}: {prose(row.why)}. It counts as lost."
+
+
+# The sheets.
+
+
+def sheet(study: HardStudy) -> str:
+    """Return a CSV row for every quantity of every scene."""
+
+    def expected(verdict: Verdict) -> dict[str, Any]:
+        assert isinstance(verdict, ExtremeVerdict)
+        wanted = verdict.expected
+        return {
+            "title": study.titles.get(verdict.scene),
+            "expected": wanted.verdict.value if wanted else None,
+            "why_expected": wanted.why if wanted else None,
+            "as_expected": "yes" if verdict.is_met else "no",
+        }
+
+    # The reasons of the bounds are long texts, and hard.json has them.
+    return sheets.gates(study.verdicts, expected, without=("because", "scene_sha256"))
+
+
+_OF_RUN: Final = ("family", "value", "rung", "steps", "why")
+_OF_PERIODS: Final = ("periods", "error", "attainable", "lost")
+
+
+def reach_sheet(study: HardStudy) -> str:
+    """Return a CSV row for every number of periods, or one with the reason if nothing was run."""
+    lines = (line for row in study.reach for line in _periods(row))
+    return csv_sheet((*_OF_RUN[:3], *_OF_PERIODS, *_OF_RUN[3:]), lines)
+
+
+def _periods(row: ReachRow) -> Iterator[dict[str, Any]]:
+    """Yield the rows of a run. A missing error means that the motion was lost."""
+    own = {name: getattr(row, name) for name in _OF_RUN}
+    if not row.errors:
+        yield own
+        return
+    for periods, error, floor in zip_longest(row.periods, row.errors, row.floors):
+        lost = "yes" if error is None else "no"
+        yield {**own, **dict(zip(_OF_PERIODS, (periods, error, floor, lost), strict=True))}

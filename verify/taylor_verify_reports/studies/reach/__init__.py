@@ -1,1 +1,0 @@
-"""The reach of each precision in periods and in extreme values."""

@@ -1,1 +1,0 @@
-"""The worst scene of each family, found by a search."""
