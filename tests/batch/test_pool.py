@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from builders.processes import PATIENCE
 
 from taylor_verify.batch.pool import LocalPool, WorkerLost
 
@@ -93,7 +94,7 @@ def test_what_cannot_be_pickled_is_an_error_with_a_text(
     pool: LocalPool, work: Any, argument: tuple[str, ...], text: str
 ) -> None:
     """A result or an error that cannot come back neither loses the process nor hangs."""
-    error = pool.submit(work, *argument).exception(timeout=20)
+    error = pool.submit(work, *argument).exception(timeout=PATIENCE)
     assert error is not None
     assert text in str(error)
     assert pool.submit(len, "abc").result() == 3
@@ -102,7 +103,7 @@ def test_what_cannot_be_pickled_is_an_error_with_a_text(
 def test_work_that_cannot_be_sent_is_an_error(pool: LocalPool) -> None:
     """A lambda cannot be pickled, and its future says so."""
     with pytest.raises(Exception, match="lambda"):
-        pool.submit(lambda: 1).result(timeout=20)
+        pool.submit(lambda: 1).result(timeout=PATIENCE)
     assert pool.submit(len, "abc").result() == 3
 
 
@@ -128,11 +129,13 @@ if __name__ == "__main__":
 
 
 @pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="needs masks of signals")
-def test_a_worker_is_deaf_from_its_start(tmp_path: Path) -> None:
+def test_a_worker_is_deaf_to_interrupts_from_its_start(tmp_path: Path) -> None:
     """Workers inherit a mask of interrupts, which their parent has no more when they are started."""
     script = tmp_path / "masks.py"
     script.write_text(_MASKS)
-    done = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=60)
+    done = subprocess.run(
+        [sys.executable, script], capture_output=True, text=True, timeout=PATIENCE
+    )
     assert done.stdout.split() == ["True", "True", "False"], done.stderr
 
 
@@ -157,9 +160,19 @@ def test_a_lost_process_is_told_in_a_sentence(work: Any, argument: int, text: st
     """Its own future has the reason; nobody waits for an answer that cannot come."""
     with LocalPool(1) as pool:
         for _ in range(2):
-            error = pool.submit(work, argument).exception(timeout=20)
+            error = pool.submit(work, argument).exception(timeout=PATIENCE)
             assert isinstance(error, WorkerLost)
             assert text in str(error)
+
+
+def test_a_lost_process_costs_its_own_work_alone() -> None:
+    """Another worker's result arrives; executors with one pipe for all would fail both."""
+    with LocalPool(2) as pool:
+        # Long enough for both to be under way.
+        other = pool.submit(time.sleep, 3)
+        lost = pool.submit(end, signal.SIGKILL)
+        assert isinstance(lost.exception(timeout=PATIENCE), WorkerLost)
+        assert other.result(timeout=PATIENCE) is None
 
 
 def test_terminate_ends_workers_in_the_middle(tmp_path: Any) -> None:
@@ -171,8 +184,8 @@ def test_terminate_ends_workers_in_the_middle(tmp_path: Any) -> None:
     time.sleep(0.8)
     began = time.monotonic()
     pool.terminate()
-    # The aim is a second; the machine may be busy.
-    assert time.monotonic() - began < 5
+    # Half the time of the work.
+    assert time.monotonic() - began < 30
     assert isinstance(futures[1].exception(timeout=0), WorkerLost)
     assert all(future.cancelled() for future in waiting)
     assert set(multiprocessing.active_children()) <= before

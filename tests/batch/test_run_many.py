@@ -116,7 +116,7 @@ def test_a_scene_made_in_memory_runs_in_other_processes(tmp_path: Path) -> None:
     ]
 
 
-def test_a_run_with_an_executor_goes_on_where_it_was(
+def test_an_interrupted_run_with_an_executor_goes_on_where_it_was(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, alone: list[Judgement]
 ) -> None:
     """The caller stores each run that ended before an interrupt, and does not run it again."""

@@ -17,6 +17,7 @@ from typing import Any
 
 import pytest
 from builders.executor import Backwards
+from builders.processes import PATIENCE
 
 from taylor_verify.batch.failure import Failed
 from taylor_verify.batch.runs import run_all
@@ -95,7 +96,9 @@ def test_threads_of_one_process_take_turns() -> None:
 
 @pytest.mark.parametrize("error", [ValueError("broken"), KeyboardInterrupt()])
 @pytest.mark.parametrize("of_work", [True, False], ids=["in the work", "in this thread"])
-def test_an_error_cancels_what_has_not_begun(error: BaseException, of_work: bool) -> None:
+def test_an_error_or_an_interrupt_cancels_what_has_not_begun(
+    error: BaseException, of_work: bool
+) -> None:
     """It is raised as it is, from the work or from the caller's own function."""
     started: list[int] = []
     first_has_ended = threading.Event()
@@ -103,7 +106,7 @@ def test_an_error_cancels_what_has_not_begun(error: BaseException, of_work: bool
     def work(one: int) -> int:
         started.append(one)
         if one:
-            first_has_ended.wait(20)
+            first_has_ended.wait(PATIENCE)
         elif of_work:
             raise error
         return one

@@ -7,11 +7,11 @@ import pickle
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 from typing import Any
 
 import pytest
+from builders.processes import PATIENCE, interruptible, wait_until
 
 from taylor_verify.batch import judging
 from taylor_verify.batch import store as module
@@ -268,7 +268,7 @@ def test_an_interrupt_within_a_result_is_no_deadlock(tmp_path: Path, later: str)
     script = tmp_path / "interrupted.py"
     script.write_text(_IN_THE_MIDDLE)
     command = [sys.executable, str(script), str(tmp_path / "mark"), later]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=30, check=False)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, check=False)
     assert done.stdout == "interrupted\n", done.stderr
 
 
@@ -278,20 +278,20 @@ def test_an_interrupted_run_goes_on_where_it_was(tmp_path: Path) -> None:
     environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}
     command = [sys.executable, "-m", "taylor_verify", "run", *SCENES, "--rung", "f64", "--json"]
     place = tmp_path / "taylor-verify" / "unfinished"
-    with subprocess.Popen(
-        command,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        env=environment,
-        start_new_session=True,
-    ) as working:
-        deadline = time.monotonic() + 60
-        while not files(place) and time.monotonic() < deadline:
-            time.sleep(0.01)
+    with interruptible():
+        working = subprocess.Popen(
+            command,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            env=environment,
+            start_new_session=True,
+        )
+    with working:
+        wait_until(lambda: files(place) or working.poll() is not None)
         os.killpg(working.pid, signal.SIGINT)
         try:
-            out, error = working.communicate(timeout=10)
+            out, error = working.communicate(timeout=PATIENCE)
         except subprocess.TimeoutExpired:
             os.killpg(working.pid, signal.SIGKILL)
             raise

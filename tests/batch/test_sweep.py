@@ -8,52 +8,32 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 from builders.executor import Backwards
-from pyarrow import dataset
+from builders.processes import wait_until
+from builders.sweeps import FAILING, SOLVER, TEMPLATE, rows, swept
 
-from taylor_verify.batch import bodies
 from taylor_verify.batch.cluster import Placed, executor_named
 from taylor_verify.batch.failure import Failed
 from taylor_verify.batch.judging import Interrupted
 from taylor_verify.batch.sweeps import chunk as chunks
 from taylor_verify.batch.sweeps import sweep as sweeping
 from taylor_verify.batch.sweeps.chunk import COLUMNS
-from taylor_verify.batch.sweeps.sizes import Sizes
 from taylor_verify.batch.sweeps.sweep import sweep
 from taylor_verify.cli import main
+from taylor_verify.judge.judgement import Judgement
 from taylor_verify.records.status import Status
-from taylor_verify.records.sweep import SweepSummary
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.scene import Scene
 
-# It needs no compiler, and passes. Of fixed steps the same bodies fail, for causes that take long to name.
-SOLVER = "closed-form:ellipj"
-FAILING = "geometric:splitting?step=0.05"
-TEMPLATE = """
-title = "Small"
-model = "euler"
-[sweep]
-seed = 5
-[sweep.numbers]
-g = { grid = [0.5, 1] }
-[body]
-inertia = [{ uniform = [1, 2] }, 2, 3]
-[initial]
-omega = [{ formula = "g" }, 1, { uniform = [-1, 1] }]
-[time]
-end = 1
-samples = 3
-"""
 WORDS = ["--solver", SOLVER, "--count", "10", "--jobs", "1"]
 
 
@@ -64,40 +44,28 @@ def template(tmp_path: Path) -> str:
     return str(file)
 
 
-def rows(folder: Path) -> list[dict[str, Any]]:
-    """Every row of a dataset, in the order of its parts."""
-    table: list[dict[str, Any]] = dataset.dataset(folder / "verdicts").to_table().to_pylist()
-    return table
-
-
 def parts(folder: Path) -> dict[str, bytes]:
     return {file.name: file.read_bytes() for file in sorted((folder / "verdicts").glob("*"))}
 
 
-def swept(template: str, out: Path, **options: Any) -> SweepSummary:
-    asked: dict[str, Any] = {"count": 10, "solver": SOLVER, "jobs": 1, **options}
-    return sweep(template, out=out, **asked)
-
-
-def invented(scenes: Sequence[Scene], solver: str, rung: str) -> list[list[Verdict]]:
-    """A verdict on each scene that follows from its first moment, and takes no time."""
-    return [
-        [
-            Verdict(
-                *(scene.name, solver, rung, "", quantity, Status.PASS, "reached"),
-                max=float(scene.body.parts()["inertia"][0][0]),
-                ratio=float(scene.body.parts()["inertia"][0][0]),
-            )
-            for quantity in ("omega", "T")
-        ]
-        for scene in scenes
-    ]
+def invented(scene: Scene, solver: str, rung: str, *_: Any, **__: Any) -> Judgement:
+    """A judgement of a scene that follows from its first moment, and takes no time."""
+    moment = float(scene.body.parts()["inertia"][0][0])
+    verdicts = (
+        Verdict(
+            *(scene.name, solver, rung, "", quantity, Status.PASS, "reached"),
+            max=moment,
+            ratio=moment,
+        )
+        for quantity in ("omega", "T")
+    )
+    return Judgement(tuple(verdicts), None)
 
 
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """Rows that are invented, for what is asked of the cuts and not of the numbers."""
-    monkeypatch.setattr(chunks, "judged", invented)
+    monkeypatch.setattr(chunks, "run", invented)
 
 
 class Later(Executor):
@@ -158,19 +126,6 @@ def test_a_worst_case_is_a_scene_that_runs(template: str, tmp_path: Path) -> Non
     assert {v.quantity: v.ratio for v in verdicts}[case.quantity] == case.ratio
 
 
-@pytest.mark.parametrize("family", ["satellites", "near-separatrix"])
-def test_run_repeats_the_worst_cases_of_bodies_judged_together(family: str, tmp_path: Path) -> None:
-    """The file of each worst case has the numbers that were judged: the same ratio, error and verdict."""
-    result = sweep(family, count=12, worst=4, jobs=1, out=tmp_path)
-    assert len(result.worst) == 4
-    for case in result.worst:
-        (verdict,) = (v for v in run(tmp_path / case.file).verdicts if v.quantity == case.quantity)
-        assert (verdict.ratio, verdict.max) == (case.ratio, case.max)
-        assert verdict.verdict is case.verdict
-    ratios = [case.ratio or 0.0 for case in result.worst]
-    assert ratios == sorted(ratios, reverse=True)
-
-
 def test_numbers_that_make_no_body_are_refused_rows(tmp_path: Path) -> None:
     """They are counted, undecided as a whole, and their reason is told; they are no worst case."""
     file = tmp_path / "some.toml"
@@ -188,12 +143,12 @@ def test_a_scene_that_breaks_the_code_stops_no_other(
 ) -> None:
     """Its row is undecided and says what broke; the others of its chunk are judged."""
 
-    def broken(scenes: Any, solver: str, rung: str) -> Any:
-        if any(scene.name == "small#3" for scene in scenes):
+    def broken(scene: Scene, *given: Any, **options: Any) -> Judgement:
+        if scene.name == "small#3":
             raise ArithmeticError("on purpose")
-        return bodies.judged(scenes, solver, rung)
+        return run(scene, *given, **options)
 
-    monkeypatch.setattr(chunks, "judged", broken)
+    monkeypatch.setattr(chunks, "run", broken)
     result = swept(template, tmp_path / "out")
     assert result.bodies["undecided"] == 1
     (row,) = (row for row in rows(tmp_path / "out") if row["point"] == 3)
@@ -251,9 +206,7 @@ def test_a_killed_sweep_goes_on(template: str, tmp_path: Path) -> None:
     out = tmp_path / "out"
     words = [sys.executable, "-m", "taylor_verify", "sweep", template, *WORDS]
     process = subprocess.Popen([*words, "--out", str(out)], stderr=subprocess.DEVNULL)
-    end = time.monotonic() + 60
-    while time.monotonic() < end and len(list(out.glob("verdicts/part*"))) < 2:
-        time.sleep(0.005)
+    wait_until(lambda: len(list(out.glob("verdicts/part*"))) >= 2)
     process.send_signal(signal.SIGKILL)
     process.wait()
     assert main(["sweep", template, *WORDS, "--out", str(out), "--resume"]) == 0
@@ -398,39 +351,6 @@ def test_json_is_one_document(template: str, capsys: pytest.CaptureFixture[str])
     assert {case["file"] for case in document["worst"]} == {""}
 
 
-# Quantiles.
-
-
-def test_quantiles_are_sizes_that_occurred() -> None:
-    """Counted in parts, each quantile is at most a thousandth above the exact one; the largest is exact."""
-    drawn = np.exp(np.random.default_rng(1).normal(0, 3, 5000))
-    sizes = Sizes()
-    for part in np.array_split(drawn, 7):
-        sizes.add(part)
-    quantiles = sizes.quantiles()
-    assert quantiles is not None
-    for share, size in (
-        (0.5, quantiles.median),
-        (0.9, quantiles.p90),
-        (0.99, quantiles.p99),
-    ):
-        exact = np.sort(drawn)[int(np.ceil(share * len(drawn))) - 1]
-        assert size in drawn
-        assert exact <= size <= exact * 1.001
-    assert quantiles.largest == drawn.max()
-
-
-def test_nan_is_beyond_every_number() -> None:
-    """One NaN among a hundred is the largest, and no number."""
-    sizes = Sizes()
-    sizes.add(np.array([*np.linspace(0, 1, 99), np.nan]))
-    quantiles = sizes.quantiles()
-    assert quantiles is not None
-    assert quantiles.largest is None
-    assert quantiles.p90 is not None
-    assert Sizes().quantiles() is None
-
-
 # Dask.
 
 
@@ -442,7 +362,8 @@ def test_where_nobody_answers_there_is_one_clear_error(
     monkeypatch.setattr("taylor_verify.batch.cluster._PATIENCE", 0.5)
     began = time.monotonic()
     assert main(["sweep", template, "--executor", "dask:tcp://127.0.0.1:9"]) == 2
-    assert time.monotonic() - began < 10
+    # Less than the time that dask waits by itself.
+    assert time.monotonic() - began < 25
     *_, last = capsys.readouterr().err.splitlines()
     assert (
         "expected the address of a dask scheduler that answers within 0.5 s, such as dask:" in last

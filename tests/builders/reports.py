@@ -19,14 +19,13 @@ import pytest
 
 from builders.studies.claims import STUDY
 from builders.studies.engines import board_with, made_up
-from builders.studies.extremes import study as extremes_study
-from builders.studies.reach import study as reach_study
+from builders.studies.hard import study as hard_study
 from builders.studies.tradeoff import NUMBERS_MADE, TIMES_MADE
-from builders.studies.worst import worst_of
 from builders.verdicts import row
 from taylor_verify.batch.job import Job
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.plotting.picture import save
+from taylor_verify.records import store
 from taylor_verify.run import run
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.reading.reader import load
@@ -38,18 +37,15 @@ from taylor_verify_reports.studies.controls import study as controls
 from taylor_verify_reports.studies.controls.document import CONTROLS, ControlsStudy
 from taylor_verify_reports.studies.engines.entry import entry_list
 from taylor_verify_reports.studies.engines.stored import write as write_board
-from taylor_verify_reports.studies.extremes.page import EXTREMES
 from taylor_verify_reports.studies.gallery import page as gallery
 from taylor_verify_reports.studies.growth.page import GROWTH
 from taylor_verify_reports.studies.growth.published import Entry, followed
+from taylor_verify_reports.studies.hard.document import HARD
 from taylor_verify_reports.studies.portraits.measure import portrait
 from taylor_verify_reports.studies.portraits.study import PORTRAITS
-from taylor_verify_reports.studies.reach.page import REACH
 from taylor_verify_reports.studies.reference import page as reference_files
 from taylor_verify_reports.studies.reference.measure import reference
 from taylor_verify_reports.studies.tradeoff.stored import write as write_tradeoff
-from taylor_verify_reports.studies.worst import measure as worst_measure
-from taylor_verify_reports.studies.worst.page import WORST
 
 RUNGS: Final = ("f32", "f64", "f80", "f128", "mp237")
 # Three bodies in vacuum, of which one is loaded, and two in a fluid with their paths.
@@ -101,7 +97,8 @@ def write_runs(place: Path, runs: Iterable[tuple[str, str]]) -> None:
     results = [result_of(scene, rung) for scene, rung in runs]
     verdicts = [verdict for result in results for verdict in result.verdicts]
     records = [result.record for result in results if result.record is not None]
-    report.write(place, verdicts, records)
+    store.write(place, verdicts, records)
+    report.publish(place)
 
 
 def write_remade(place: Path, monkeypatch: pytest.MonkeyPatch, errors: Mapping[str, float]) -> None:
@@ -111,7 +108,8 @@ def write_remade(place: Path, monkeypatch: pytest.MonkeyPatch, errors: Mapping[s
         for scene in ("euler/generic", "euler/full-tensor")
         for quantity in ("omega", "T", "H2")
     ]
-    report.write(place, made, [])
+    store.write(place, made, [])
+    report.publish(place)
 
     def judged(jobs: list[Job], *_: Any) -> list[Any]:
         scenes = {job.name for job in jobs}
@@ -197,7 +195,7 @@ def _write_measured(place: Path) -> None:
     """Write the studies that the paper tells of, beside the verdicts."""
     write_controls(place)
     write_tradeoff(place, NUMBERS_MADE, TIMES_MADE)
-    REACH.write(place, reach_study())
+    HARD.write(place, hard_study())
     errors = {"omega": 1e-5, "attitude": 1e-4, "T": 1e-9}
     board = [made_up(one, errors) for one in entry_list().entry if one.name in ("cannon", "havok")]
     write_board(place, board_with(*chain.from_iterable(board)), b"")
@@ -220,8 +218,6 @@ def small() -> Path:
     write_portraits(place, SCENES)
     _write_measured(place)
     GROWTH.write(place, followed([_ENSEMBLE], None, lambda label, done, of: None))
-    WORST.write(place, worst_measure.study([worst_of("euler-a", 1.5)], 60, 3))
-    EXTREMES.write(place, extremes_study())
     CLAIMS.write(place, STUDY)
     save(registry.pictures(place), place / figures.FOLDER, ["svg"])
     report.publish(place)

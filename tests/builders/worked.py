@@ -31,6 +31,7 @@ from typing import Any, Final
 
 import pytest
 
+from builders.processes import PATIENCE
 from taylor_verify.cli import main
 
 ROOT: Final = Path(__file__).resolve().parents[2]
@@ -209,7 +210,7 @@ class Desk:
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
-            timeout=120,
+            timeout=PATIENCE,
         )
         self.status = done.returncode
         return done.stdout

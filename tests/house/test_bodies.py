@@ -15,7 +15,7 @@ from taylor_verify.scenes.motion import State
 
 PACKAGE: Final = Path(taylor_verify.__file__).parent
 # Elsewhere a solver, a control, a reader or a study may be made for one kind of body, and asks for it.
-ROOMS: Final = ("batch", "cli", "judge", "models", "publish", "records", "testing")
+ROOMS: Final = ("batch", "cli", "judge", "models", "plotting", "records", "testing", "words")
 # The one file of these rooms that is made for a kind: its equations are those of free rigid bodies.
 MADE_FOR_ONE: Final = PACKAGE / "models" / "bodies.py"
 KINDS: Final = {kind.__name__ for base in (Body, State) for kind in base.__subclasses__()}

@@ -247,7 +247,7 @@ def test_no_test_module_is_imported() -> None:
 
 
 @pytest.mark.parametrize(
-    "source", ["from test_reach import row", "import test_reach", "from reach.test_page import row"]
+    "source", ["from test_hard import row", "import test_hard", "from hard.test_page import row"]
 )
 def test_an_import_of_a_test_module_is_named(source: str) -> None:
     """The fault names the module that is imported, and the file that imports it."""

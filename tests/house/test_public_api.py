@@ -33,7 +33,6 @@ NAMES = [name for name in taylor_verify.__all__ if name != "__version__"]
 FUNCTIONS = [getattr(taylor_verify, name) for name in NAMES]
 PROMISED = {
     *("load", "exact", "solve", "run", "run_many", "check", "explain", "tradeoff", "recommend"),
-    "claims",
 }
 SCENES = ("euler/spherical", "euler/rest")
 
@@ -71,7 +70,7 @@ def test_no_module_takes_the_name_of_a_function() -> None:
 
 @pytest.mark.parametrize(
     "first",
-    by_turns(["exact.route", "judge.judgement", "run", "check", "cli", "claims.ledger", "explain"]),
+    by_turns(["exact.route", "judge.judgement", "run", "check", "cli", "explain"]),
 )
 def test_a_function_is_one_whatever_module_was_imported_first(first: str) -> None:
     """The functions can be called after an import of any module, in either form of import."""
@@ -79,10 +78,10 @@ def test_a_function_is_one_whatever_module_was_imported_first(first: str) -> Non
         f"import taylor_verify.{first}\nimport taylor_verify, taylor_verify.exact.solution\n"
         "scene = taylor_verify.load('euler/generic')\n"
         "assert taylor_verify.exact(scene, [0, '1/2'], 20)['omega'].shape == (2, 3)\n"
-        "from taylor_verify import check, claims, exact, explain, load, run\n"
+        "from taylor_verify import check, exact, explain, load, run\n"
         "from taylor_verify.exact import exact as same\n"
         "assert exact is taylor_verify.exact is same and run is taylor_verify.run\n"
-        "assert callable(check) and callable(claims) and callable(explain) and callable(load)\n"
+        "assert callable(check) and callable(explain) and callable(load)\n"
     )
     program(script)
 
@@ -94,7 +93,7 @@ def test_importing_the_package_imports_no_library_of_numbers() -> None:
     assert loaded.isdisjoint(slow)
     assert {name for name in loaded if name.startswith("taylor_verify.")} == {
         function.__module__ for function in FUNCTIONS
-    } | {"taylor_verify.records", "taylor_verify.records.version", "taylor_verify_reports.studies"}
+    } | {"taylor_verify.records", "taylor_verify.records.version"}
 
 
 @pytest.mark.parametrize("function", FUNCTIONS, ids=NAMES)

@@ -71,7 +71,7 @@ absent, present = found.document()["points"]
 assert (absent["standing"], present["standing"]) == ("not run", "sound")
 assert {INSTALL!r} in absent["because"]
 """,
-    "the ledger": "from taylor_verify import claims; assert claims('hydromechanics 49 (11)')",
+    "the ledger": "from taylor_verify_reports import claims; assert claims('hydromechanics 49 (11)')",
 }
 
 

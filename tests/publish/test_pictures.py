@@ -32,10 +32,10 @@ from taylor_verify.plotting.style import (
 from taylor_verify.plotting.wording import power_of_ten
 from taylor_verify.records.precisions import bits_of, place_of_rung
 from taylor_verify.tradeoff.pictures import trade
-from taylor_verify_reports.studies.tradeoff import time_by_rung
 from taylor_verify.tradeoff.pictures.series import front_of, panels_of, series_of
 from taylor_verify_reports.pictures.ratio import Ratio
 from taylor_verify_reports.studies.prices import picture as prices
+from taylor_verify_reports.studies.tradeoff import time_by_rung
 
 RUNGS = ("f32", "f64", "f80", "f128", "mp237")
 SVG = "{http://www.w3.org/2000/svg}"
@@ -531,8 +531,8 @@ def test_alt_texts_need_no_matplotlib() -> None:
     rows = json.dumps(document(family("taylor f64", "f64", 0.01, 9.0)))
     code = (
         "import sys, json; sys.modules['matplotlib'] = None\n"
-        "from taylor_verify.tradeoff.pictures import trade
-from taylor_verify_reports.studies.tradeoff import time_by_rung\n"
+        "from taylor_verify.tradeoff.pictures import trade\n"
+        "from taylor_verify_reports.studies.tradeoff import time_by_rung\n"
         f"print([p.alt for p in trade.pictures(json.loads({rows!r}))])"
     )
     made = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -13,7 +13,7 @@ from taylor_verify.scenes.reading.clock import MOST_SAMPLES
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import MOST_BYTES, load, read
 
-# What a scene of a hundred kilobytes may take: a second where the machine is busy.
+# Seconds of the processor that a scene of a hundred kilobytes may take.
 PATIENCE = 5.0
 INSTANTS = '["0.5", 1, 2]'
 
@@ -79,9 +79,9 @@ def test_instants_are_no_more_than_samples() -> None:
 )
 def test_keys_of_many_parts_are_refused_at_once(key: str) -> None:
     """The reader of TOML takes the square of their number in time and memory; it is not asked."""
-    began = time.perf_counter()
+    began = time.process_time()
     (fault,) = refusal(f"{LISTED_INSTANTS}\n{key}\n").faults
-    assert time.perf_counter() - began <= PATIENCE
+    assert time.process_time() - began <= PATIENCE
     assert fault.startswith("expected a key of at most 16 parts, got more @ hostile, line ")
 
 
@@ -112,9 +112,9 @@ def test_deep_nesting_is_refused(deep: str) -> None:
 )
 def test_numbers_of_a_million_digits_are_refused(number: str) -> None:
     """A number that is too long is refused before anything is built of it, in a short sentence."""
-    began = time.perf_counter()
+    began = time.process_time()
     fault = str(refusal(LISTED_INSTANTS.replace(INSTANTS, f"[{number}]")))
-    assert time.perf_counter() - began <= PATIENCE
+    assert time.process_time() - began <= PATIENCE
     assert len(fault) <= 300
 
 
@@ -128,9 +128,9 @@ def test_numbers_of_a_million_digits_are_refused(number: str) -> None:
 )
 def test_the_refusal_of_many_faults_is_short(extra: str) -> None:
     """A hundred faults are told, each cut short; a million would be read by nobody."""
-    began = time.perf_counter()
+    began = time.process_time()
     fault = refusal(f"{extra}{LISTED_INSTANTS}")
-    assert time.perf_counter() - began <= PATIENCE
+    assert time.process_time() - began <= PATIENCE
     assert len(fault.faults) <= 101
     assert len(str(fault)) <= 30_000
 

@@ -26,7 +26,7 @@ from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix, Vector
 
-# What a file of ten megabytes may take where the machine is busy, in seconds.
+# Seconds of the processor that a file of ten megabytes may take.
 PATIENCE = 20.0
 
 Captured = pytest.CaptureFixture[str]
@@ -497,9 +497,9 @@ def test_a_deep_and_a_large_file_are_refused(tmp_path: Path) -> None:
 def test_text_between_many_elements_is_read_once(tmp_path: Path) -> None:
     """Ten megabytes of text with a hundred thousand elements in it take seconds, not hours."""
     content = f"<robot>{'x' * 10**7}{'<a/>y' * 10**5}</robot>"
-    start = time.monotonic()
+    start = time.process_time()
     assert "expected a link" in str(refusal(tmp_path, content))
-    assert time.monotonic() - start < PATIENCE
+    assert time.process_time() - start < PATIENCE
 
 
 def test_a_pipe_is_never_opened(tmp_path: Path) -> None:

@@ -385,7 +385,7 @@ def test_the_search_finds_pages(reader: Reader) -> None:
         "separatrix", Keys.ENTER
     )
     links = "return Array.from(document.querySelectorAll('#search-results li a')).map(a => a.href)"
-    for place in ("docs/method.html", "scenes/euler-separatrix.html", "reports/tables/reach.html"):
+    for place in ("docs/method.html", "scenes/euler-separatrix.html", "reports/tables/hard.html"):
         reader.until(
             lambda at=place: at in "\n".join(reader.run(links)), f"{place} among the found"
         )

@@ -13,6 +13,7 @@ from typing import Any
 
 import heyoka as hy
 import pytest
+from builders.processes import PATIENCE
 from builders.turns import by_turns
 
 from taylor_verify.models.problem import pose
@@ -191,7 +192,7 @@ def test_processes_that_meet_one_damage_warn_once(folder: Path, tmp_path: Path) 
         subprocess.Popen([*command, *order], stderr=subprocess.PIPE, text=True)
         for order in (scenes, scenes[::-1])
     ]
-    stderr = "".join(process.communicate(timeout=120)[1] for process in both)
+    stderr = "".join(process.communicate(timeout=PATIENCE)[1] for process in both)
     assert [process.returncode for process in both] == [0, 0]
     assert stderr.count("\n") == 1
     assert "damaged compiled code is set aside" in stderr

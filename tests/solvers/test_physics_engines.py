@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from builders.oblique import oblique
 from builders.other_equations import has_other_equations
+from builders.processes import PATIENCE
 
 from taylor_verify.models.problem import pose
 from taylor_verify.records.quantities import INITIAL, STATES
@@ -155,7 +156,7 @@ def test_what_an_engine_prints_is_not_in_the_answer() -> None:
         capture_output=True,
         text=True,
         check=True,
-        timeout=60,
+        timeout=PATIENCE,
     )
     assert len(json.loads(done.stdout)["w1"]) == 5
     for noise in ("noise of Python", "noise of C", "noise at the end"):

@@ -8,11 +8,11 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from builders.processes import PATIENCE, interruptible, wait_until
 from builders.programs import is_alive
 from builders.scenes import THREE_INSTANTS
 
@@ -103,7 +103,7 @@ def test_processes_that_left_the_session_end_with_the_run(
     program: Path, hidden: Path, ending: str, outcome: Outcome
 ) -> None:
     """When the answer is there, nothing of the program is running any more."""
-    trajectory = solve(program, HIDES + ending, limit=5 if ending == HANG else 60)
+    trajectory = solve(program, HIDES + ending, limit=10 if ending == HANG else PATIENCE)
     assert trajectory.outcome is outcome
     assert "could not be ended" not in trajectory.detail
     assert len(numbers(hidden)) == 2
@@ -114,18 +114,13 @@ def test_an_interrupt_ends_them(program: Path, hidden: Path) -> None:
     """Ctrl-C is heard at once, and nothing is left when it has been."""
 
     def interrupt() -> None:
-        deadline = time.monotonic() + 60
-        while len(numbers(hidden)) < 2 and time.monotonic() < deadline:
-            time.sleep(0.01)
+        wait_until(lambda: len(numbers(hidden)) == 2)
         os.kill(os.getpid(), signal.SIGINT)
 
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    threading.Thread(target=interrupt, daemon=True).start()
-    try:
+    with interruptible():
+        threading.Thread(target=interrupt, daemon=True).start()
         with pytest.raises(KeyboardInterrupt):
             solve(program, HIDES + HANG)
-    finally:
-        signal.signal(signal.SIGINT, before)
     assert len(numbers(hidden)) == 2
     assert not any(map(is_alive, numbers(hidden)))
 
@@ -138,17 +133,11 @@ def test_the_death_of_the_caller_ends_them(
     program.write_text(HIDES + HANG)
     script = f"from taylor_verify.run import run\nrun('euler/rest', {name(program)!r})\n"
     with subprocess.Popen([sys.executable, "-c", script]) as caller:
-        deadline = time.monotonic() + 60
-        while len(numbers(hidden)) < 2 and time.monotonic() < deadline:
-            assert caller.poll() is None
-            time.sleep(0.01)
+        wait_until(lambda: len(numbers(hidden)) == 2 or caller.poll() is not None)
         caller.send_signal(number)
-        assert caller.wait(30) == -number
-    deadline = time.monotonic() + 30
-    while any(map(is_alive, numbers(hidden))) and time.monotonic() < deadline:
-        time.sleep(0.01)
+        assert caller.wait(PATIENCE) == -number
     assert len(numbers(hidden)) == 2
-    assert not any(map(is_alive, numbers(hidden)))
+    wait_until(lambda: not any(map(is_alive, numbers(hidden))))
 
 
 def test_other_children_of_the_caller_are_left_alone(program: Path, hidden: Path) -> None:
@@ -168,10 +157,7 @@ def test_a_program_that_kills_its_supervisor_is_ended_and_told(program: Path) ->
     assert trajectory.outcome is Outcome.CRASHED
     assert conversation._UNKNOWN in trajectory.detail
     (pid,) = numbers(Path(f"{program}.pids"))
-    deadline = time.monotonic() + 30
-    while is_alive(pid) and time.monotonic() < deadline:
-        time.sleep(0.01)
-    assert not is_alive(pid)
+    wait_until(lambda: not is_alive(pid))
 
 
 def supervised_by(folder: Path, changes: str, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -194,7 +180,7 @@ def test_a_system_that_cannot_says_so(
 ) -> None:
     """The session ends where nobody adopts orphans, and the detail says what may be left."""
     supervised_by(program.parent, "sys.platform = 'other'", monkeypatch)
-    trajectory = solve(program, HIDES + ending, limit=5 if ending == HANG else 60)
+    trajectory = solve(program, HIDES + ending, limit=10 if ending == HANG else PATIENCE)
     assert trajectory.outcome is outcome
     assert conversation._UNKNOWN in trajectory.detail
     assert all(map(is_alive, numbers(hidden)))
@@ -231,5 +217,6 @@ assert os.environ["PYTHONPATH"] == "of the user's own"
 assert sorted(os.listdir("/proc/self/fd"))[:4] == ["0", "1", "2", "3"]  # the last is the list itself
 assert not os.path.exists("/proc/self/fd/4")
 """
-    trajectory = solve(program, QUESTION + sees + TELL)
+    with interruptible():
+        trajectory = solve(program, QUESTION + sees + TELL)
     assert trajectory.outcome is Outcome.FINISHED, trajectory.detail

@@ -13,6 +13,7 @@ from typing import Any
 import heyoka as hy
 import numpy as np
 import pytest
+from builders.processes import PATIENCE, interruptible
 from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import mp
@@ -492,7 +493,7 @@ def test_a_callback_changes_no_number(monkeypatch: pytest.MonkeyPatch, name: str
         assert np.array_equal(heard.quantities[quantity], values)
 
 
-def test_an_interrupt_is_heard_within_a_second_of_a_long_run() -> None:
+def test_an_interrupt_is_heard_in_the_middle_of_a_long_run() -> None:
     """A stretch of minutes, to one far sample, ends with KeyboardInterrupt where it is."""
     program = (
         "import sys\n"
@@ -508,19 +509,20 @@ def test_an_interrupt_is_heard_within_a_second_of_a_long_run() -> None:
         "print('posed', flush=True)\n"
         "Taylor().solve(problem)\n"
     )
-    with subprocess.Popen(
-        [sys.executable, "-c", program],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    ) as running:
+    with interruptible():
+        running = subprocess.Popen(
+            [sys.executable, "-c", program],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+    with running:
         assert running.stdout is not None
         assert running.stdout.readline() == "posed\n"
         time.sleep(1.5)
         running.send_signal(signal.SIGINT)
-        # A second is the aim; the machine may be busy.
         try:
-            _, error = running.communicate(timeout=10)
+            _, error = running.communicate(timeout=PATIENCE)
         finally:
             running.kill()
     assert running.returncode != 0

@@ -159,7 +159,7 @@ def test_publish_writes_data_picture_and_page(
 
 
 @pytest.mark.usefixtures("one_short_entry")
-def test_a_run_that_was_stopped_goes_on(
+def test_an_interrupted_run_goes_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Stopped between two pieces, the same command ends with the same numbers as one that was not."""

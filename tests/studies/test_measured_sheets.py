@@ -18,8 +18,6 @@ from taylor_verify_reports.studies import registry, report
 from taylor_verify_reports.studies.claims import page as claims
 from taylor_verify_reports.studies.growth import page as growth
 from taylor_verify_reports.studies.prices import page as prices
-from taylor_verify_reports.studies.reach import page as reach
-from taylor_verify_reports.studies.worst import page as worst
 
 
 @cache
@@ -61,20 +59,6 @@ def test_growth_has_a_row_for_every_exponent() -> None:
         assert cells["gate"] == (row.gate.verdict.value if row.gate else "")
 
 
-def test_reach_has_a_row_for_every_number_of_periods() -> None:
-    """An error that is missing says `lost`; a run that was not made has one row with its reason."""
-    stored = reach.REACH.load(measured_report())
-    rows, lines = stored.rows, read(reach.sheet(stored))
-    assert len(lines) == sum(len(row.periods) if row.errors else 1 for row in rows)
-    made = [cells for cells in lines if cells["periods"]]
-    assert {cells["lost"] for cells in made} == {"yes", "no"}
-    assert all((cells["error"] == "") == (cells["lost"] == "yes") for cells in made)
-    assert all(cells["why"] for cells in lines if not cells["periods"])
-    first = rows[0]
-    errors = [number(cells["error"]) for cells in lines[: len(first.periods)]]
-    assert tuple(errors) == first.errors
-
-
 def test_prices_have_a_row_for_every_variant_and_rung() -> None:
     """A row has both intervals; the price at equal error stands in the rows of f64 alone."""
     study = prices.PRICES.load(measured_report())
@@ -87,15 +71,6 @@ def test_prices_have_a_row_for_every_variant_and_rung() -> None:
     ratios = {c["variant"]: number(c["ratio_at_equal_error"]) for c in lines if c["rung"] == "f64"}
     assert {name: ratios[name] for name in equal} == equal
     assert {c["ratio_at_equal_error"] for c in lines if c["rung"] != "f64"} <= {""}
-
-
-def test_worst_has_a_row_for_every_family() -> None:
-    """A row has the family's scene and ratio."""
-    study = worst.WORST.load(measured_report())
-    lines = read(worst.sheet(study))
-    assert [(c["family"], number(c["ratio"]), c["scene"]) for c in lines] == [
-        (row.name, row.ratio, row.scene) for row in study.families
-    ]
 
 
 def test_claims_have_a_row_for_every_entry() -> None:
@@ -119,12 +94,12 @@ def test_claims_have_a_row_for_every_entry() -> None:
     assert cells["mutations"] == "one; two"
 
 
-@pytest.mark.parametrize("name", ["growth", "prices", "reach", "worst"])
+@pytest.mark.parametrize("name", ["growth", "prices", "hard"])
 def test_what_is_remade_is_page_and_sheet(name: str) -> None:
     """`publish` makes both of what is stored, and the end of the page says what made it, and where."""
     (study,) = registry.find([name])
     pages = study.pages(measured_report())
-    assert set(pages) == {study.path, f"tables/{name}.csv"}
+    assert {study.path, f"tables/{name}.csv"} <= set(pages)
     end = "".join(pages[study.path].split("\n## ")[-2:])
     assert "heyoka 7." in end or "Made with unknown versions" in end
     assert "`taylor-verify publish" in end
@@ -133,8 +108,8 @@ def test_what_is_remade_is_page_and_sheet(name: str) -> None:
 def test_the_index_links_to_the_sheets_that_are_there(tmp_path: Path) -> None:
     """A page with a sheet has a link to it, one without has none."""
     made = {"tables/growth.md", "tables/growth.csv", "claims.md", "tables/claims.csv"}
-    besides = report.entries(tmp_path, {*made, "tables/worst.md"})
+    besides = report.entries(tmp_path, {*made, "tables/hard.md"})
     text = tables.readme([], besides)
     assert "| [growth.md](growth.md)       | [csv](growth.csv) |" in text
     assert "| [../claims.md](../claims.md) | [csv](claims.csv) |" in text
-    assert "[csv](worst.csv)" not in text
+    assert "[csv](hard.csv)" not in text

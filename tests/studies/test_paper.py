@@ -69,9 +69,9 @@ def fewer_verdicts(sources: Sources) -> Sources:
 def worse_reach(sources: Sources) -> Sources:
     rows = tuple(
         replace(row, errors=tuple(None if e is None else 1e8 * e for e in row.errors))
-        for row in sources.reach.rows
+        for row in sources.hard.reach
     )
-    return replace(sources, reach=replace(sources.reach, rows=rows))
+    return replace(sources, hard=replace(sources.hard, reach=rows))
 
 
 def slower_rivals(sources: Sources) -> Sources:
@@ -175,7 +175,7 @@ def test_a_report_without_a_study_has_no_paper(
     before = sorted(tmp_path.rglob("*"))
     assert main(["publish", "--paper", "--from", str(tmp_path)]) == 2
     errors = capsys.readouterr().err
-    assert "expected what `publish controls engines reach tradeoff` writes" in errors
+    assert "expected what `publish controls engines hard tradeoff` writes" in errors
     assert [file for file in sorted(tmp_path.rglob("*")) if file not in before] == []
     assert bulk.missing(tmp_path, {}).renderings == ()
 

@@ -45,17 +45,15 @@ from taylor_verify_reports.studies.controls.document import CONTROLS
 from taylor_verify_reports.studies.enclosure.measure import SCENES, widths
 from taylor_verify_reports.studies.enclosure.study import ENCLOSURE
 from taylor_verify_reports.studies.engines import stored as board
-from taylor_verify_reports.studies.extremes import page as extremes
 from taylor_verify_reports.studies.gallery import page as gallery
 from taylor_verify_reports.studies.growth import page as growth
+from taylor_verify_reports.studies.hard.document import HARD
 from taylor_verify_reports.studies.paper.pack import pack
 from taylor_verify_reports.studies.prices.page import PRICES
-from taylor_verify_reports.studies.reach.page import REACH
 from taylor_verify_reports.studies.reference import page as reference_files
 from taylor_verify_reports.studies.site.builder import build
 from taylor_verify_reports.studies.stored import Stored
 from taylor_verify_reports.studies.tradeoff import stored as trades
-from taylor_verify_reports.studies.worst.page import WORST
 from taylor_verify_reports.typesetting.paper import images
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -206,12 +204,10 @@ def test_data_are_laid_out_as_the_code_writes_them() -> None:
     [
         growth.GROWTH,
         growth.LONG,
-        REACH,
+        HARD,
         PRICES,
-        WORST,
         ENCLOSURE,
         CONTROLS,
-        extremes.EXTREMES,
         claims_page.CLAIMS,
         trades.NUMBERS,
         trades.TIMINGS,
@@ -235,8 +231,8 @@ def test_every_scene_is_published_as_it_is_now() -> None:
 
 def test_every_extreme_is_published_as_it_is_now() -> None:
     """Each extreme that is run is there with the digest of its text."""
-    published = {v.scene: v.provenance["scene"] for v in extremes.EXTREMES.load(REPORTS).verdicts}
-    left_out = {row.scene for row in extremes.EXTREMES.load(REPORTS).left_out}
+    published = {v.scene: v.provenance["scene"] for v in HARD.load(REPORTS).verdicts}
+    left_out = {row.scene for row in HARD.load(REPORTS).left_out}
     assert published == {name: load(name).digest for name in published}
     assert set(names(EXTREMES)) - left_out <= set(published)
 

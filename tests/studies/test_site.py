@@ -367,7 +367,7 @@ def on_chord(one: tuple[float, ...], other: tuple[float, ...], part: float) -> l
 
 def test_markdown_links_lead_within_the_site(tmp_path: Path) -> None:
     """A folder leads to its index, a file comes along, what is not there gets no link."""
-    for name in ("tables/README.md", "claims.md", "data/worst.json"):
+    for name in ("tables/README.md", "claims.md", "data/hard.json"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text("# A title\n", encoding="utf-8")
     stage = Stage(tmp_path, None)
@@ -375,7 +375,7 @@ def test_markdown_links_lead_within_the_site(tmp_path: Path) -> None:
         "[a](../claims.md#errata)": "[a](../claims.md#errata)",
         "[a](README.md)": "[a](README.md)",
         "[a](../tables)": "[a](README.md)",
-        "[a](../data/worst.json)": "[a](../data/worst.json)",
+        "[a](../data/hard.json)": "[a](../data/hard.json)",
         "[claims](https://a.b/c.md)": "[claims](https://a.b/c.md)",
         "[a](../../verify/taylor_verify/run.py)": "a",
         "[a](../data/none.json)": "a",
@@ -383,7 +383,7 @@ def test_markdown_links_lead_within_the_site(tmp_path: Path) -> None:
     for markdown, text in expected.items():
         stage.add_pages({"reports/tables/x.md": markdown})
         assert stage.files["reports/tables/x.md"] == text
-    assert stage.files["reports/data/worst.json"] == b"# A title\n"
+    assert stage.files["reports/data/hard.json"] == b"# A title\n"
 
 
 def test_a_heading_keeps_its_words_and_its_link() -> None:
@@ -500,11 +500,11 @@ def test_the_pages_of_parts_stand_below_their_page(tmp_path: Path) -> None:
     """The navigation has the board, and the page of each engine under it; another page is its own."""
     tables = tmp_path / "tables"
     tables.mkdir()
-    for name in ("engines", "engines-mujoco", "engines-drake", "extremes"):
+    for name in ("engines", "engines-mujoco", "engines-drake", "hard"):
         (tables / f"{name}.md").write_text(f"# {name}\n", encoding="utf-8")
     stage = Stage(tmp_path, None)
     stage.add_pages({})
-    assert stage.report_pages == ["reports/tables/engines", "reports/tables/extremes"]
+    assert stage.report_pages == ["reports/tables/engines", "reports/tables/hard"]
     board = str(stage.files["reports/tables/engines.md"])
     assert board.endswith("```{toctree}\n:hidden:\n\nengines-drake\nengines-mujoco\n```\n")
-    assert "toctree" not in str(stage.files["reports/tables/extremes.md"])
+    assert "toctree" not in str(stage.files["reports/tables/hard.md"])

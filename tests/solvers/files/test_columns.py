@@ -7,7 +7,7 @@ import random
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
-from time import perf_counter
+from time import process_time
 
 import pytest
 from builders.trajectories import MATRIX, Columns, exact_columns, file_judgement, write_csv
@@ -445,11 +445,11 @@ def test_a_rigid_body_has_no_use_for_momenta(tmp_path: Path) -> None:
 
 def test_a_name_of_any_length_is_read_at_once() -> None:
     """A million dots are no million paths, and blanks behind wx do not make it another name."""
-    began = perf_counter()
+    began = process_time()
     strange = ["." * 10**6 + "wx", "wx" + " " * 10**5 + "b", "wx" * 10**5, "[" * 10**6]
     file = made(["t", "w1", "w2", "w3", *strange])
     assert set(file.groups) == {"omega"}
-    assert perf_counter() - began < 5
+    assert process_time() - began < 5
 
 
 def test_what_is_ignored_is_named_once() -> None:

@@ -125,3 +125,13 @@ def cross(left: Matrix, right: Matrix) -> Exact:
                         hessian[i, a, b] += sign * p * q
                         hessian[i, b, a] += sign * p * q
     return hessian
+
+
+def mapped(matrix: Exact, hessian: Exact) -> Exact:
+    """The second derivatives of a matrix times a quadratic form."""
+    image = np.full((len(matrix), *hessian.shape[1:]), Fraction(0), dtype=object)
+    # Most entries are zero, and a product of rationals is dear.
+    for k, a, b in zip(*np.nonzero(hessian), strict=True):
+        for i in np.flatnonzero(matrix[:, k]):
+            image[i, a, b] += matrix[i, k] * hessian[k, a, b]
+    return image

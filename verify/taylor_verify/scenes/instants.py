@@ -74,8 +74,9 @@ class EquallySpaced(Instants):
         self.first, self.step = first, step
 
     def __getitem__(self, place: Any) -> Any:
-        # A single number is formed alone, without the others.
-        if isinstance(place, int) and -len(self) <= place < len(self):
+        # A single number is formed alone, unless the others are there.
+        is_alone = "_numbers" not in vars(self)
+        if is_alone and isinstance(place, int) and -len(self) <= place < len(self):
             return self._at(place % len(self))
         return super().__getitem__(place)
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 from taylor_verify.models.form import Form
@@ -40,6 +41,14 @@ def lines(form: Form) -> Lines:
 
 def straight_line(form: Form, parameters: Sequence[Any]) -> Rates:
     """Return ``rates(t, state)`` in the arithmetic of the parameters and the state; t is not looked at."""
+    bound, constants = _bound(form)
+    rates: Rates = bound(*parameters, *constants)
+    return rates
+
+
+@lru_cache(maxsize=32)
+def _bound(form: Form) -> tuple[Callable[..., Rates], tuple[Any, ...]]:
+    """Return the function from parameters and constants to the rates of a form, and its constants."""
     code, (states, names) = lines(form), _names(form)
     text = [
         f"def bound({_listed([*names, *map(Symbol, code.constants)])}):",
@@ -52,8 +61,7 @@ def straight_line(form: Form, parameters: Sequence[Any]) -> Rates:
     made: dict[str, Any] = {}
     # The text is made of the names s0, p0, c0, t0, ... and of + - * / alone.
     exec("\n".join(text), made)
-    rates: Rates = made["bound"](*parameters, *code.constants.values())
-    return rates
+    return made["bound"], tuple(code.constants.values())
 
 
 def _names(form: Form) -> tuple[list[Symbol], list[Symbol]]:

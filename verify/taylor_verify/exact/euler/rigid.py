@@ -10,10 +10,8 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Final, TypeVar, final
 
-import numpy as np
-
 from taylor_verify.exact import clocks
-from taylor_verify.exact.equations import Equations, cross, exact
+from taylor_verify.exact.equations import Equations, cross, exact, mapped
 from taylor_verify.exact.euler.invariants import energy, momentum, space_momentum, whole
 from taylor_verify.exact.invariant import Array, Invariant
 from taylor_verify.exact.kind import Kind
@@ -56,7 +54,7 @@ class Rotating(Kind[B, Spin]):
         """omega' = K M + K(h x omega) + K((I omega) x omega) - c omega."""
         K = exact(body.inverse_inertia)
         linear = K @ exact(tensors.cross_matrix(self.rotor(body)))
-        turned = np.tensordot(K, cross(body.inertia, _ONE), 1)
+        turned = mapped(K, cross(body.inertia, _ONE))
         undamped = Equations(K @ exact(body.moment), linear, turned, exact(_ONE), _NO_VELOCITY)
         return undamped.damped(body.damping)
 

@@ -41,7 +41,7 @@ _WHAT: Final = (
 _ELSEWHERE: Final = (
     "Other pictures of this folder stand beside their numbers: speed against accuracy in "
     "[tradeoff](../tables/tradeoff.md), the digits that each precision leaves in "
-    "[reach](../tables/reach.md), drift over decades of time in [growth](../tables/growth.md), the "
+    "[hard scenes](../tables/hard.md), drift over decades of time in [growth](../tables/growth.md), the "
     "cost of each option in [prices](../tables/prices.md)."
 )
 

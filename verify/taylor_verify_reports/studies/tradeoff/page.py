@@ -245,7 +245,7 @@ def front(rows: Iterable[TimedPoint]) -> list[TimedPoint]:
 
 
 def _front(trade: Trade) -> str:
-    doubles = [row for row in trade.of_one_body.sound if row.point.rung == "f64"]
+    doubles = [row for row in trade.sound if row.point.rung == "f64"]
     integrators = [row for row in doubles if row.point.family != _CLOSED_FORM]
     parts = [f"{code(trade.scene)}:", bullets(map(_front_line, front(doubles)))]
     if len(integrators) != len(doubles):

@@ -1,4 +1,4 @@
-"""The reach of each precision: exact families, the judge's own numbers, what recommend makes of it."""
+"""The reach of each precision: exact families, and the judge's own numbers."""
 
 from __future__ import annotations
 
@@ -16,62 +16,51 @@ from taylor_verify.exact.elements import elements
 from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.taylor.names import at_tolerance
-from taylor_verify.tradeoff.attainability import least_error, left_out, narrowest
-from taylor_verify.tradeoff.recommendation import MARGIN, OutOfReach, recommend
-from taylor_verify.tradeoff.setting import setting
-from taylor_verify_reports.studies.reach import measure as reach
-from taylor_verify_reports.studies.reach.document import ReachRow
-from taylor_verify_reports.studies.reach.families import (
-    FAMILIES,
+from taylor_verify_reports.studies.hard import reach
+from taylor_verify_reports.studies.hard.document import ReachRow
+from taylor_verify_reports.studies.hard.members import (
+    FOLLOWED,
     QUARTERS,
-    Family,
+    Followed,
     at_quarters,
-    family_named,
     period_of,
 )
 
-F32, F64, F80 = rung("f32"), rung("f64"), rung("f80")
-MEMBERS = [(one, value) for one in FAMILIES for value in one.values]
 # One of each family, the most extreme.
-EXTREMES = [(one, one.values[-1]) for one in FAMILIES]
+EXTREMES = [(one, [*one.members][-1]) for one in FOLLOWED]
 
 
-def short(name: str, far: Mapping[str, int]) -> Family:
+def named(name: str) -> Followed:
+    return next(one for one in FOLLOWED if one.name == name)
+
+
+def short(name: str, far: Mapping[str, int]) -> Followed:
     """The family on these rungs alone, for so many periods."""
-    return replace(family_named(name), most_periods=dict(far))
+    return replace(named(name), most_periods=dict(far))
 
 
-def measured(one: Family, value: str, *names: str) -> dict[str, ReachRow]:
+def measured(one: Followed, value: str, *names: str) -> dict[str, ReachRow]:
     return {r.rung: r for r in reach.reaches(one, value, map(rung, names or one.most_periods))}
 
 
 # The families
 
 
-def test_names_are_there_once() -> None:
-    """A family is found by its name, no two members have one label, and a wrong name is refused."""
-    labels = [one.label(value) for one, value in MEMBERS]
-    assert len(set(labels)) == len(labels) == len(reach.members())
-    assert all(family_named(one.name).values == one.values for one in FAMILIES)
-    with pytest.raises(ValueError, match=r"expected one of the families .*, got 'comets'"):
-        family_named("comets")
-
-
-def test_values_lead_to_the_extreme() -> None:
-    """They are exact, positive and strictly monotonic: away from one, where nothing is extreme."""
-    for one in FAMILIES:
-        sizes = [abs(log10(Fraction(value))) for value in one.values]
-        assert all(Fraction(value) > 0 for value in one.values)
-        assert sizes == sorted(set(sizes))
+def test_values_lead_to_the_unstable_motion() -> None:
+    """The distances of a family fall strictly, and each is that of the scene."""
+    for one in FOLLOWED[3:]:
+        sizes = [log10(Fraction(value)) for value in one.members]
+        assert sizes == sorted(set(sizes), reverse=True)
+    start = named("unstable-axis").members["1e-40"].initial
+    assert start.omega[0] == Fraction(1, 10**40)
 
 
 @pytest.mark.parametrize(("one", "value"), EXTREMES, ids=lambda x: getattr(x, "name", x))
-def test_every_family_is_periodic_and_free(one: Family, value: str) -> None:
+def test_every_family_is_periodic_and_free(one: Followed, value: str) -> None:
     """The most extreme member of a family has a period with the elements' digits, and no loads."""
-    scene = one.scene(value)
+    scene = one.members[value]
     assert scene.body.is_free
     exact = elements(scene, 30)["period"].value
     with mp.workdps(30):
@@ -82,14 +71,14 @@ def test_every_family_is_periodic_and_free(one: Family, value: str) -> None:
 def test_the_separatrix_is_as_far_as_it_says(value: str) -> None:
     """1 - k^2 of the member d is d, to as many digits as d has before its square counts."""
     d = Fraction(value)
-    m_prime = elements(family_named("separatrix").scene(value), 30)["m_prime"].value
+    m_prime = elements(named("separatrix").members[value], 30)["m_prime"].value
     with mp.workdps(30):
         assert abs(m_prime / mp.convert(d) - 1) <= mp.convert(d)
 
 
 def test_instants_are_the_quarters_of_the_periods_named() -> None:
     """Four for each number of periods, the last of them its end; exact, and rising."""
-    scene = at_quarters(family_named("unstable-axis").scene("1e-6"), (1, 3, 10))
+    scene = at_quarters(named("unstable-axis").members["1e-6"], (1, 3, 10))
     period, instants = period_of(scene), scene.clock.elapsed
     assert [t / period for t in instants[QUARTERS - 1 :: QUARTERS]] == [1, 3, 10]
     assert [t / period for t in instants[QUARTERS : 2 * QUARTERS]] == [
@@ -112,13 +101,13 @@ def test_an_orbit_without_a_period_is_refused() -> None:
 
 @pytest.mark.parametrize(
     ("name", "value"),
-    [("euler-attitude", "1"), ("unstable-axis", "1e-4"), ("added-mass", "1e5")],
+    [("euler-attitude", "1"), ("unstable-axis", "1e-4"), ("unstable-spin", "1e-2")],
 )
 def test_errors_and_floors_are_the_judges(name: str, value: str) -> None:
     """The error is the largest that the judge finds in the same run; so is the attainable one there."""
     one = short(name, {"f64": 3})
     row = measured(one, value)["f64"]
-    asked = at_quarters(one.scene(value), row.periods)
+    asked = at_quarters(one.members[value], row.periods)
     states = {"omega", "impulse", "attitude"}
     verdicts = [
         v for v in taylor_verify.run(asked, Taylor(), "f64").verdicts if v.quantity in states
@@ -175,13 +164,12 @@ def test_what_is_lost_is_not_followed(axis: dict[str, dict[str, ReachRow]]) -> N
     ("name", "value", "why"),
     [
         ("separatrix", "1e-10", "rounded to f32, the orbit is a separatrix one"),
-        ("nearly-singular", "1e-14", "rounded to f32, T is not positive definite"),
-        ("nearly-spherical", "1e-8", "rounded to f32"),
+        ("homoclinic", "1e-14", "rounded to f32"),
     ],
 )
 def test_another_orbit_is_not_followed(name: str, value: str, why: str) -> None:
     """A row has a reason in place of errors if its rounded data have another orbit."""
-    row = measured(family_named(name), value, "f32")["f32"]
+    row = measured(named(name), value, "f32")["f32"]
     assert row.errors == row.floors == ()
     assert why in row.why
 
@@ -198,7 +186,7 @@ def test_a_coarse_solver_reaches_less(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_nan_is_lost_for_ever() -> None:
     """The largest of numbers with a NaN among them is NaN, from there on; JSON has null for it."""
-    errors = reach._up_to(np.array([1e-9] * 5 + [nan] + [1e-9] * 6))
+    errors = reach.up_to(np.array([1e-9] * 5 + [nan] + [1e-9] * 6))
     assert errors[0] == 1e-9
     assert all(error != error for error in errors[1:])
     row = reach.stored(ReachRow("a", "1", "f64", (1, 3, 10), errors, errors, 9, ""))
@@ -208,72 +196,5 @@ def test_nan_is_lost_for_ever() -> None:
 def test_the_precision_of_mpmath_is_left_as_it_was() -> None:
     """A measurement works at its own precision."""
     before = mp.prec
-    measured(short("thin-rod", {"f32": 1}), "1e2")
+    measured(short("euler-periods", {"f32": 1}), "1")
     assert mp.prec == before
-
-
-# What recommend makes of it
-
-
-@pytest.fixture(scope="module")
-def generic() -> Scene:
-    whole = load("euler/generic")
-    return replace(whole, clock=replace(whole.clock, instants=whole.clock.instants[:6]))
-
-
-def test_the_least_error_is_below_what_is_measured(generic: Scene) -> None:
-    """A floor of one rounding a sample is no more than that of the steps that the solver takes."""
-    for name in ("f32", "f64"):
-        least = least_error(generic, rung(name))
-        (_, omega, *_) = taylor_verify.run(generic, Taylor(), name).verdicts
-        assert least is not None
-        assert 0 < least <= omega.attainable * GATE_FACTOR
-        assert omega.max <= GATE_FACTOR * omega.attainable
-
-
-def test_a_rung_that_cannot_reach_it_is_not_measured(generic: Scene) -> None:
-    """Single precision is left out at 1e-10 with the reason in words, and double is recommended."""
-    asked = [setting("taylor", F32), setting("taylor", F64)]
-    recommendation = recommend(generic, 1e-10, asked)
-    assert recommendation.rung == F64
-    (reason,) = recommendation.left_out
-    assert "on f32 rounding alone leaves" in reason
-    assert reason in recommendation.sentence
-    assert recommendation.document()["left_out"] == [reason]
-
-
-def test_a_rung_is_left_out_by_its_own_floor(generic: Scene) -> None:
-    """A rung is left out if its floor is the judge's factor times the target, and measured below that."""
-    least = least_error(generic, F64)
-    assert least is not None
-    assert left_out(generic, [F64], 0.99 * least / GATE_FACTOR).keys() == {F64}
-    assert left_out(generic, [F64], 1.01 * least / GATE_FACTOR) == {}
-    assert recommend(generic, 1e-3, [setting("taylor", F32)]).left_out == ()
-
-
-def test_the_narrowest_precision_is_named(generic: Scene) -> None:
-    """The text of the error names the narrowest rung whose floor reaches the target."""
-    target = 1e-30
-    with pytest.raises(OutOfReach) as caught:
-        recommend(generic, target, [setting("taylor", F64)])
-    precision = narrowest(generic, target / MARGIN)
-    assert precision is not None
-    wide, least = precision
-    assert least <= target / MARGIN
-    assert (
-        f"the narrowest precision on which rounding alone leaves so little is {wide.name}"
-        in str(caught.value)
-    )
-    assert narrowest(generic, 1e-5)[0] in (F32, F64)
-    assert least_error(generic, F80) > target / MARGIN
-
-
-def test_no_precision_reaches_below_the_widest(generic: Scene) -> None:
-    """A floor in proportion to the roundoff is above 1e-305 with a thousand bits: none is named."""
-    assert narrowest(generic, 1e-305) is None
-
-
-def test_what_computes_elsewhere_is_measured_anyway(generic: Scene) -> None:
-    """A solver that works on wider numbers than it answers on is not judged by the floor of these."""
-    with pytest.raises(OutOfReach, match="most accurate"):
-        recommend(generic, 1e-25, [setting("mpmath:odefun?tol=1e-6", F64)])

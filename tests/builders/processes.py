@@ -1,0 +1,34 @@
+"""Processes of tests: an interrupt that they hear, and waiting that no loaded machine cuts short."""
+
+from __future__ import annotations
+
+import signal
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Final
+
+# Seconds after which a test gives up; only a fault takes so long, however busy the machine is.
+PATIENCE: Final = 120.0
+
+
+@contextmanager
+def interruptible() -> Iterator[None]:
+    """Let this process and those that it starts hear an interrupt.
+
+    Whoever runs the tests in the background, or some runners, ignore it, and a child inherits that.
+    """
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def wait_until(condition: Callable[[], object], seconds: float = PATIENCE) -> None:
+    """Wait until a condition holds; an error if that takes longer."""
+    deadline = time.monotonic() + seconds
+    while not condition():
+        if time.monotonic() > deadline:
+            raise TimeoutError(f"expected the condition to hold within {seconds:g} seconds")
+        time.sleep(0.01)

@@ -1,0 +1,357 @@
+"""The page of the hard scenes: verdicts and mismatches, the worst of each family, the reach."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from math import inf, nan
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from builders.studies.hard import (
+    ALL,
+    DRIFT,
+    FORESEEN,
+    MISMATCH,
+    REACH,
+    VACUOUS,
+    WHY,
+    row,
+    study,
+)
+from builders.studies.stored import publish_document
+from builders.verdicts import passed
+from hypothesis import given
+from hypothesis import strategies as st
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+from taylor_verify.cli import main
+from taylor_verify.plotting.picture import plotting
+from taylor_verify.plotting.style import PAGE_WIDTH
+from taylor_verify.records import store
+from taylor_verify.records.status import Status
+from taylor_verify.records.store import write
+from taylor_verify.words.cells import NOTHING
+from taylor_verify.words.page import MADE_BY
+from taylor_verify_reports.studies.hard import page as pages
+from taylor_verify_reports.studies.hard import picture as diagram
+from taylor_verify_reports.studies.hard import reach, search
+from taylor_verify_reports.studies.hard.document import HARD, last_value, most_periods
+from taylor_verify_reports.studies.hard.study import STUDY
+from taylor_verify_reports.studies.report import publish
+
+
+def lines(text: str, *words: str) -> list[str]:
+    return [
+        line for line in text.splitlines() if line.startswith("|") and all(w in line for w in words)
+    ]
+
+
+@pytest.fixture
+def page(tmp_path: Path) -> str:
+    publish_document(tmp_path, STUDY, HARD, study())
+    return (tmp_path / STUDY.path).read_text(encoding="utf-8")
+
+
+# The document
+
+
+def test_what_is_stored_reads_back(tmp_path: Path) -> None:
+    """Verdicts without their seconds, expectations, titles, worst and reach are the same again."""
+    publish_document(tmp_path, STUDY, HARD, study())
+    loaded = HARD.load(tmp_path)
+    stored = [
+        replace(v, seconds=None, provenance={"scene": f"digest of {v.scene}"})
+        for v in study().verdicts
+    ]
+    assert loaded == replace(study(), verdicts=tuple(stored))
+    assert [verdict.expected for verdict in loaded.verdicts] == list(FORESEEN.values())
+    assert [verdict.is_met for verdict in loaded.verdicts] == [True, True, True, False]
+    assert loaded.titles["extremes/long"] == "Title of extremes/long"
+
+
+def test_a_row_that_was_compared_with_nothing_is_no_mismatch(tmp_path: Path) -> None:
+    """A rung that the machine lacks is no mismatch, in the file and on the page."""
+    absent = passed("extremes/near", "f32", "omega", verdict=Status.UNAVAILABLE)
+    publish_document(tmp_path, STUDY, HARD, study((absent,), ()))
+    (stored,) = store.read_document(tmp_path / HARD.name)["verdicts"]
+    assert stored["expected"] is None
+    (verdict,) = HARD.load(tmp_path).verdicts
+    assert verdict.expected is None
+    assert verdict.is_met
+
+
+def test_rows_that_are_none_are_refused(tmp_path: Path) -> None:
+    """A file with something else in it is a ValueError that names the file."""
+    file = tmp_path / HARD.name
+    file.parent.mkdir()
+    file.write_text('{"verdicts": [{"scene": "a"}], "versions": {}}', encoding="utf-8")
+    with pytest.raises(ValueError, match=r"expected a key .*hard\.json"):
+        STUDY.pages(tmp_path)
+
+
+def test_publish_remakes_it_from_the_data_alone(tmp_path: Path) -> None:
+    """The page is remade with the tables of a run, and linked from both; without data there is none."""
+    write(tmp_path, [passed("euler/a", "f64", "omega")], [])
+    publish(tmp_path)
+    assert not (tmp_path / STUDY.path).exists()
+    paths = publish_document(tmp_path, STUDY, HARD, study())
+    assert {path.suffix for path in paths} == {".json", ".md", ".csv", ".svg", ".pdf"}
+    texts = {p: p.read_bytes() for p in paths if p.suffix in (".md", ".csv")}
+    for path in texts:
+        path.unlink()
+    publish(tmp_path)
+    assert {path: path.read_bytes() for path in texts} == texts
+    assert "](tables/hard.md)" in (tmp_path / "README.md").read_text(encoding="utf-8")
+    index = (tmp_path / "tables" / "README.md").read_text(encoding="utf-8")
+    assert "[hard.md](hard.md)" in index
+    assert "[csv](hard.csv)" in index
+
+
+# Verdicts
+
+
+def test_a_scene_is_a_line_with_its_worst(page: str) -> None:
+    """The line has title, max and mean with the time, the largest ratio, and the count of expected rows."""
+    (line,) = lines(page, "`near`")
+    for part in ("Title of extremes/near", "3.00, 2.00 @ 7", "0.750 (`T`)", "| pass", "2 of 2"):
+        assert part in line
+
+
+def test_an_answer_that_is_no_pass_has_its_reason(page: str) -> None:
+    """The verdict is bold in its cell, and listed below with the expected verdict and the reason."""
+    line, reason = lines(page, "`long`")
+    assert "3.00, 2.00 @ 7 **vacuous**" in line
+    assert "1 of 1" in line
+    assert "| **vacuous** | vacuous" in reason
+    assert WHY in reason
+    assert "3.00" in reason
+
+
+def test_a_mismatch_stands_out(page: str) -> None:
+    """The cell has the failure, its count is bold, and the page begins with the sentence."""
+    line, reason = lines(page, "`vast`")
+    assert "**fail**" in line
+    assert "**0 of 1**" in line
+    assert "**refused**" in reason
+    assert "1 of 2 verdicts other than pass were expected. **1 mismatches**:" in page
+    assert MISMATCH in page
+
+
+def test_a_pass_that_was_not_expected_is_told_too(tmp_path: Path) -> None:
+    """A row that was foreseen to be vacuous and passed is a mismatch, with its reason."""
+    lucky = replace(VACUOUS, verdict=Status.PASS)
+    publish_document(tmp_path, STUDY, HARD, study((lucky,), ("a mismatch",)))
+    (_, reason) = lines((tmp_path / STUDY.path).read_text(encoding="utf-8"), "`long`")
+    assert "| pass" in reason
+    assert "**vacuous**" in reason
+
+
+def test_what_was_not_run_and_what_made_it_are_told(page: str) -> None:
+    """A run that is left out has its reason; versions, processor and command end the page."""
+    assert "`extremes/endless`, mp237: it takes a week" in page
+    end = page.rpartition("## ")[2]
+    for part in ("heyoka 7.13.0", "Machine: A chip", "By `taylor-verify run`", "extremes"):
+        assert part in end
+    assert page.splitlines()[0] == MADE_BY
+
+
+def test_the_sheet_has_every_quantity(tmp_path: Path) -> None:
+    """A row for each verdict with every digit, what was expected and whether it came."""
+    publish_document(tmp_path, STUDY, HARD, study())
+    text = (tmp_path / "tables/hard.csv").read_text(encoding="utf-8")
+    cells = {(r["scene"], r["quantity"]): r for r in csv.DictReader(text.splitlines())}
+    assert set(cells) == {(v.scene, v.quantity) for v in ALL}
+    assert float(cells["extremes/near", "T"]["max"]) == DRIFT.max
+    impulse = cells["extremes/vast", "impulse"]
+    assert (impulse["max"], impulse["expected"], impulse["as_expected"]) == (
+        "fail",
+        "refused",
+        "no",
+    )
+    assert cells["extremes/long", "omega"]["why_expected"] == WHY
+
+
+@pytest.mark.parametrize(
+    ("verdict", "status"), [(Status.PASS, 0), (Status.VACUOUS, 1), (Status.FAIL, 1)]
+)
+def test_the_command_fails_at_a_mismatch(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    verdict: Status,
+    status: int,
+) -> None:
+    """All extremes of float64 are run; a mismatch is written too, and is status 1; the search stays."""
+    scene = "extremes/euler-needle"
+    asked: list[str] = []
+
+    def answered(jobs: list[Any], *_: Any) -> list[Any]:
+        asked.extend(job.name for job in jobs)
+        return [SimpleNamespace(verdicts=(passed(scene, "f64", "omega", verdict=verdict),))]
+
+    def followed(finished: Callable[[str], None]) -> Any:
+        finished("axis 1e-1")
+        return REACH
+
+    monkeypatch.setattr("taylor_verify_reports.studies.hard.measure.judge_all", answered)
+    monkeypatch.setattr(reach, "measure", followed)
+    HARD.write(tmp_path, study())
+    call = ["publish", "hard", "--from", str(tmp_path), "--json"]
+    assert main(call) == status
+    captured = capsys.readouterr()
+    assert str(tmp_path / STUDY.path) in json.loads(captured.out)["written"]
+    assert {scene, "extremes/worst/euler-gaps"} < set(asked)
+    stored = HARD.load(tmp_path)
+    assert len(stored.mismatches) == status
+    assert (stored.reach, stored.search, stored.worst) == (REACH, study().search, study().worst)
+    assert (f"got {verdict.value} @ {scene} f64 omega" in captured.err) == bool(status)
+    assert "axis 1e-1" in captured.err
+
+
+# The worst
+
+
+def test_the_worst_family_stands_first(tmp_path: Path, page: str) -> None:
+    """Families stand in the order of their ratios, those of the stored rows alone."""
+    assert page.index("worst/euler-b") < page.index("worst/euler-a")
+    assert "Of 14 scenes the worst is `extremes/worst/euler-b`: 2.50 in `omega`." in page
+    assert "--runs 60 --seed 3" in page
+    first, second = study().worst
+    changed = replace(study(), worst=(replace(first, ratio=7.75), second))
+    text = pages.page(changed, tmp_path)
+    assert text.index("worst/euler-a") < text.index("worst/euler-b")
+    assert "7.75" in text
+
+
+def test_a_search_replaces_the_stored_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """`publish hard --runs` stores the new worst rows, and the scenes beside the shipped ones."""
+    from builders.studies.hard import worst_of
+
+    from taylor_verify.scenes import library
+    from taylor_verify_reports.studies.hard import measure
+
+    cases, asked = tmp_path / "cases", []
+
+    def searched(runs: int, seed: int, finished: Callable[[str], None]) -> list[Any]:
+        asked.append((runs, seed))
+        return [worst_of("euler-c", 4.5)]
+
+    nothing = SimpleNamespace(exit_status=0)
+    monkeypatch.setattr(search, "search_all", searched)
+    monkeypatch.setattr(library, "cases_directory", lambda: cases)
+    monkeypatch.setattr(measure, "extremes", lambda progress: nothing)
+    monkeypatch.setattr(measure, "study", lambda results, rows: study(mismatches=()))
+    monkeypatch.setattr(reach, "measure", lambda finished: ())
+    place = tmp_path / "out"
+    assert main(["publish", "hard", "--runs", "40", "--seed", "2", "--from", str(place)]) == 0
+    stored = HARD.load(place)
+    assert asked == [(40, 2)]
+    assert [one.name for one in stored.worst] == ["euler-c"]
+    assert stored.search is not None
+    assert (stored.search.runs, stored.search.seed) == (40, 2)
+    text = (cases / library.WORST / "euler-c.toml").read_text(encoding="utf-8")
+    assert text == worst_of("euler-c", 4.5).scene_text
+
+
+# The reach
+
+
+def of_rung(name: str) -> list[Any]:
+    return [one for one in REACH if one.rung == name]
+
+
+def test_the_last_value_and_the_most_periods() -> None:
+    """An error of exactly 10^-n leaves n digits; a value behind one that fails does not count."""
+    f32, f64 = of_rung("f32"), of_rung("f64")
+    assert last_value(f32, 1, 6) == "1e-1"
+    assert last_value(f32, 1, 3) == "1e-2"
+    assert last_value(f32, 10, 3) == "1e-1"
+    assert last_value(f64, 10, 12) == "1e-1"
+    assert last_value(f64, 1, 12) == "1e-3"
+    assert most_periods(f32[0], 12) is None
+    assert most_periods(f32[2], 3) is None
+    assert most_periods(f64[1], 6) == 100
+    assert most_periods(f64[2], 12) == 1
+
+
+ERRORS = st.lists(st.floats(0, 10) | st.sampled_from([None, nan, 1e-3, 1e-6, 1e-12]), min_size=3)
+
+
+@given(st.lists(ERRORS.map(lambda errors: errors[:3]), min_size=1, max_size=6), st.integers(1, 15))
+def test_a_reach_is_of_all_that_is_easier(table: list[list[float]], digits: int) -> None:
+    """Every error up to the returned value is small enough, and the next one is not."""
+    rows = [replace(row(str(k), "f64"), errors=tuple(e)) for k, e in enumerate(table)]
+    last = last_value(rows, 10, digits)
+    count = 0 if last is None else int(last) + 1
+    good = [errors[1] is not None and errors[1] <= 10.0**-digits for errors in table]
+    assert all(good[:count])
+    assert not any(good[count : count + 1])
+
+
+def test_each_rung_has_its_reach(page: str) -> None:
+    """The cells have the last values with a mark at the end of the tried ones, and the ended run a line."""
+    cells = [[cell.strip() for cell in line.split("|")[1:-1]] for line in page.splitlines()]
+    assert ["a body beside something", "d", "f32", "1e-2", "1e-1", NOTHING, "1e-1"] in cells
+    last = "1e-3 \N{RIGHTWARDS ARROW}"
+    assert ["a body beside something", "d", "f64", last, last, last, last] in cells
+    assert "figures/hard-reach.svg" in page
+    assert "axis 1e-2, f32: the run stopped: too many steps. It counts as lost." in page
+    assert "6 runs. In 1 of them the rung could not represent the motion" in page
+
+
+def test_a_family_of_periods_has_the_most_periods() -> None:
+    """A family without a symbol counts periods."""
+    (axis,) = study().families
+    long = diagram.Line(replace(axis, symbol=""), "f64", [row("1", "f64", 1e-14, 1e-8, 1e-2)])
+    assert [pages.far(long, digits) for digits in (1, 6, 12)] == [
+        "100 \N{RIGHTWARDS ARROW}",
+        "10",
+        "1",
+    ]
+
+
+def test_the_sheet_of_the_reach_has_a_row_for_every_number_of_periods() -> None:
+    """An error that is missing says `lost`; a run that was not made has one row with its reason."""
+    cells = list(csv.DictReader(pages.reach_sheet(study()).splitlines()))
+    assert len(cells) == sum(len(one.periods) if one.errors else 1 for one in REACH)
+    made = [line for line in cells if line["periods"]]
+    assert {line["lost"] for line in made} == {"yes", "no"}
+    assert all((line["error"] == "") == (line["lost"] == "yes") for line in made)
+    assert all(line["why"] for line in cells if not line["periods"])
+    assert [float(line["error"]) for line in cells[:3]] == list(REACH[0].errors)
+
+
+def test_each_rung_is_a_line_beside_its_floor() -> None:
+    """Digits achieved and attainable stand over the distance; a value without a run has no point."""
+    (picture,) = pages.pictures(study())
+    with plotting():
+        figure = picture.figure()
+        everything = figure.get_tightbbox(FigureCanvasAgg(figure).get_renderer())
+    drawn = {line.get_gid(): line for line in figure.axes[0].get_lines()}
+    assert list(drawn["f32"].get_xdata()) == [1e-1, 1e-2]
+    assert list(drawn["f32"].get_ydata()) == pytest.approx([6, 3])
+    assert list(drawn["f32 floors"].get_ydata()) == pytest.approx([7, 4])
+    assert list(drawn["f64"].get_ydata()) == pytest.approx([14, 13, 12])
+    assert everything.x0 >= 0
+    assert everything.y0 >= 0
+    assert everything.x1 <= PAGE_WIDTH
+    assert "a body beside something, f32: six digits up to 1e-1" in picture.alt
+
+
+@given(st.floats(0.01, 70))
+def test_digits_left(digits: float) -> None:
+    """An error of 10^-n leaves n digits; what is no number, or 1 and more, leaves none."""
+    assert diagram.digits_left(10.0**-digits) == pytest.approx(digits)
+    assert {diagram.digits_left(error) for error in (None, nan, inf, 1.0, 7.0)} == {0.0}
+
+
+def test_a_picture_of_nothing_is_refused() -> None:
+    """A study without runs of a family has no picture."""
+    assert pages.pictures(replace(study(), reach=())) == []
+    with pytest.raises(ValueError, match="expected runs of a family, got none @ reach"):
+        diagram.picture(replace(study(), reach=()))

@@ -1,0 +1,155 @@
+"""The search for the worst: its scenes pass, are reproducible, and are published unchanged."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+from builders.studies.hard import searched_family, verdict, worst_of
+from hypothesis import HealthCheck, example, given, settings, target
+from hypothesis import strategies as st
+
+from taylor_verify.cli import main
+from taylor_verify.records.quantities import GATE_FACTOR
+from taylor_verify.records.status import Status
+from taylor_verify.run import run
+from taylor_verify.scenes import library
+from taylor_verify.scenes.families.family import Family
+from taylor_verify.scenes.families.library import family
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify_reports.studies.hard import search as hunt
+from taylor_verify_reports.studies.hard.search import SEARCHED, Candidate, search
+from taylor_verify_reports.studies.hard.study import store_scenes
+from taylor_verify_reports.studies.study import NotMeasured
+
+STORED = library.names(library.WORST)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SEARCHED)
+@given(st.data())
+@settings(max_examples=12, deadline=None, suppress_health_check=list(HealthCheck))
+def test_searched_for_the_worst_the_sound_driver_passes(name: str, data: st.DataObject) -> None:
+    """Led by error over attainable, a search finds no scene at which a gate fails."""
+    searched = family(name)
+    cube = st.lists(st.floats(0, 1), min_size=searched.free, max_size=searched.free)
+    (candidate,) = hunt.candidates_at(searched, [data.draw(cube)])
+    if candidate is not None:
+        target(candidate.ratio)
+        assert candidate.verdict.verdict is Status.PASS
+
+
+def test_a_searched_family_is_judged() -> None:
+    """A point of a shipped family has the verdict with the largest ratio of all that count."""
+    searched, place = family("euler-gaps"), (0.5,) * family("euler-gaps").free
+    (candidate,) = hunt.candidates_at(searched, [place])
+    verdicts = run(searched.scene(place), "taylor", "f64").verdicts
+    assert candidate is not None
+    assert candidate.ratio == max(v.ratio or 0 for v in verdicts if hunt.counts(v))
+
+
+def _peaks(searched: Family, points: Sequence[Sequence[float]]) -> list[Candidate | None]:
+    """A smooth hill with its top, 5, at 0.7 everywhere."""
+    distances = [sum((value - 0.7) ** 2 for value in place) ** 0.5 for place in points]
+    return [
+        Candidate(tuple(place), verdict(5 - away))
+        for place, away in zip(points, distances, strict=True)
+    ]
+
+
+def test_a_search_climbs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The search goes from its first places to the top of a hill, in five dimensions too."""
+    monkeypatch.setattr(hunt, "candidates_at", _peaks)
+    result = search(searched_family("euler-hill", 5), "hills", 2000, 1)
+    # A cloud of as many places comes no nearer than some 0.1.
+    assert result.worst.ratio >= 5 - 0.05
+
+
+@pytest.mark.parametrize("runs", [10, 77, 400])
+def test_a_budget_is_a_number_of_runs(monkeypatch: pytest.MonkeyPatch, runs: int) -> None:
+    """No more runs are made than were asked for, and less than a generation is left over."""
+    monkeypatch.setattr(hunt, "candidates_at", _peaks)
+    result = search(searched_family("euler-hill", 3), "hills", runs, 1)
+    assert runs * 0.6 < result.judged <= runs
+
+
+def test_a_search_can_be_repeated(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every place follows from seed and family; another seed has others."""
+    asked: list[list[float]] = []
+
+    def noted(searched: Family, points: Sequence[Sequence[float]]) -> list[Candidate | None]:
+        asked.extend(map(list, points))
+        return _peaks(searched, points)
+
+    monkeypatch.setattr(hunt, "candidates_at", noted)
+    rounds = []
+    for seed in (1, 1, 2):
+        asked.clear()
+        search(searched_family("euler-hill", 2), "hills", 60, seed)
+        rounds.append([*asked])
+    assert rounds[0] == rounds[1]
+    assert rounds[0][0] != rounds[2][0]
+
+
+def test_a_family_without_a_judged_scene_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The search raises an error that names a family without a gate that is not vacuous."""
+    monkeypatch.setattr(hunt, "candidates_at", lambda searched, points: [None] * len(points))
+    with pytest.raises(NotMeasured, match="euler-nothing"):
+        search(searched_family("euler-nothing"), "nothing", 20, 1)
+
+
+@example(None)
+@given(st.sampled_from([float("nan"), float("inf"), None]))
+def test_a_gate_without_a_number_is_the_worst_of_all(ratio: float | None) -> None:
+    """A NaN cannot hide from the search: it counts as infinitely bad."""
+    assert Candidate((), verdict(ratio, Status.FAIL)).ratio == float("inf")
+
+
+def test_vacuous_gates_do_not_count() -> None:
+    """A vacuous gate cannot be the worst, whatever its ratio."""
+    assert not hunt.counts(verdict(1e9, Status.VACUOUS))
+    assert hunt.counts(verdict(1e9, Status.FAIL))
+
+
+# What was found.
+
+
+@pytest.mark.parametrize("name", STORED)
+def test_the_worst_that_was_found_still_passes(name: str) -> None:
+    """Every gate on the worst that was found passes or asks nothing, and the file says why it is there."""
+    text = library.find(name).read_text(encoding="utf-8")
+    assert text.startswith("# Why: of ")
+    assert load(name).name == name
+    verdicts = run(name, "taylor", "f64").verdicts
+    assert {v.verdict for v in verdicts} <= {Status.PASS, Status.VACUOUS}
+    assert any(v.ratio is not None and 0 < v.ratio <= GATE_FACTOR for v in verdicts)
+
+
+def test_the_worst_runs_with_the_extremes() -> None:
+    """The folder holds one scene for each family and nothing else, and `run extremes` runs them."""
+    assert sorted(STORED) == sorted(f"extremes/worst/{name}" for name in SEARCHED)
+    assert set(STORED) <= set(library.named(library.EXTREMES))
+
+
+def test_scene_file_says_why_it_is_there() -> None:
+    """The text of the worst begins with its reason, and is the family's text besides."""
+    text = worst_of("euler-thing", 3.25).scene_text
+    assert text.startswith("# Why: of things")
+    assert "3.25 in omega" in text
+    assert text.endswith('title = "0.25"\n')
+
+
+def test_old_scenes_make_room(tmp_path: Path) -> None:
+    """Scenes of an earlier search are removed when a new one has ended."""
+    store_scenes(tmp_path, {"one": "1\n", "two": "2\n"})
+    store_scenes(tmp_path, {"two": "3\n"})
+    assert {p.name: p.read_text(encoding="utf-8") for p in tmp_path.iterdir()} == {
+        "two.toml": "3\n"
+    }
+
+
+def test_a_wrong_budget_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    """No runs are a wrong call, which changes nothing."""
+    assert main(["publish", "hard", "--runs", "0"]) == 2
+    assert "expected a whole number of at least 10, got 0 @ --runs" in capsys.readouterr().err
