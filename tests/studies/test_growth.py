@@ -10,6 +10,7 @@ import pytest
 from scipy import stats
 
 from taylor_verify.records.status import Status
+from taylor_verify.records.student import student
 from taylor_verify_reports.studies.growth.document import EXACT
 from taylor_verify_reports.studies.growth.fit import (
     BIAS,
@@ -25,7 +26,6 @@ from taylor_verify_reports.studies.growth.fit import (
     exponent,
     gate,
     growth,
-    student,
     word,
 )
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Final
 
 LOCK: Final = ".taylor-verify.lock"
-# The place in the file of the holder's number: on Windows nobody else can read the first byte, which is locked.
+# Where in the file its holder is named: on Windows the first byte is locked, and nobody else reads it.
 _NAME_AT: Final = 1
 
 

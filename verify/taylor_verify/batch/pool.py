@@ -2,8 +2,9 @@
 
 A thread waits for each process, on a pipe of their own. A process that is lost, or ended in the middle of
 a result, is the end of its pipe and blocks nobody, and its work alone is lost. The executors of
-`concurrent.futures` and loky have one pipe for all. They wait for ever for the rest of a result whose
-process was ended, and fail all work for a lost process without a word on which was its own.
+`concurrent.futures` and loky have one pipe for all: a lost process fails all work, without a word on which
+was its own. Their workers print tracebacks if Ctrl-C comes while they start, and go on with their work when
+their parent is killed.
 """
 
 from __future__ import annotations

@@ -17,6 +17,7 @@ from taylor_verify.records.error_kind import ErrorKind
 from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.records.reason import Kind
 from taylor_verify.records.status import Status
+from taylor_verify.records.student import student
 from taylor_verify.records.verdict import Verdict
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
@@ -43,7 +44,7 @@ _FEWEST_IN_A_QUARTER: Final = 5
 _FROM: Final = 1 / 32
 _PARTS: Final = 5
 _FEWEST_IN_A_PART: Final = 3
-_STUDENT: Final = 3.182  # three degrees of freedom
+_LEVEL: Final = 0.95
 _CLEAR: Final = 0.2
 # A slower growth than this cannot be distinguished from none.
 _LEAST_POWER: Final = 0.3
@@ -125,7 +126,7 @@ def power_of_time(elapsed: Floats, errors: Floats) -> float | None:
         points.append((float(np.mean(np.log(elapsed[inside]))), float(np.log(size))))
     x, y = np.transpose(points)
     (slope, _), covariance = np.polyfit(x, y, 1, cov=True)
-    half = _STUDENT * float(covariance[0, 0]) ** 0.5
+    half = student(_PARTS - 2, _LEVEL) * float(covariance[0, 0]) ** 0.5
     is_clear = isfinite(slope) and half <= _CLEAR
     return round(slope, 3) if is_clear and slope >= _LEAST_POWER else None
 

@@ -16,6 +16,8 @@ from itertools import pairwise
 from math import fsum, isfinite, log, sqrt
 from typing import Final
 
+from taylor_verify.records.student import student
+
 # An error must be this many times the roundoff floor to be free of rounding.
 CLEAR: Final = 10.0
 # An error beyond this multiple of the floor is not caused by rounding on this rung.
@@ -27,8 +29,8 @@ SAME: Final = 0.25
 _FEWEST: Final = 3
 # Errors that fall more slowly than this order have stopped falling.
 _STALLED: Final = 0.5
-# Student's t for 95 % and 1 to 8 degrees of freedom; for more, the value of 8.
-_STUDENT: Final = (12.71, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306)
+# The probability that an interval contains the order.
+_LEVEL: Final = 0.95
 
 
 @dataclass(frozen=True)
@@ -192,8 +194,7 @@ def _slope(points: Sequence[_Point]) -> tuple[float, float]:
     slope = fsum(a * b for a, b in zip(x, y, strict=True)) / square
     freedom = len(points) - 2
     scatter = fsum((b - slope * a) ** 2 for a, b in zip(x, y, strict=True)) / freedom
-    student = _STUDENT[min(freedom, len(_STUDENT)) - 1]
-    return slope, student * sqrt(scatter / square)
+    return slope, student(freedom, _LEVEL) * sqrt(scatter / square)
 
 
 def _centred(values: Sequence[float]) -> list[float]:

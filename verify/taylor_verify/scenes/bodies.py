@@ -68,6 +68,19 @@ class Body(Parted):
         loads = (self.part(part) for part in self.PARTS if part.is_load)
         return self.manufactured is None and not any(any(load) for load in loads)
 
+    @property
+    def others(self) -> frozenset[str]:
+        """The names of the parts that are neither energy nor load nor damping, such as ``rotor``.
+
+        Each adds terms of its own to the equations of motion.
+        """
+        return frozenset(p.name for p in self.PARTS if not (p.is_energy or p.is_load))
+
+    @property
+    def is_plain(self) -> bool:
+        """True if the energy alone moves the body: no loads, no damping, nothing else that acts."""
+        return self.is_free and not self.damping and not self.others
+
     def with_motion(self, motion: Manufactured | None) -> Self:
         """Return the same body with this manufactured motion, or with none."""
         changed: Self = replace(cast("Any", self), manufactured=motion)
@@ -110,7 +123,7 @@ class RigidBody(Body):
     STATE = Spin
     ENERGY = "the inertia tensor"
     PARTS = (
-        Part("inertia", Shape.SYMMETRIC, Dimension(1, 2, 0)),
+        Part("inertia", Shape.SYMMETRIC, Dimension(1, 2, 0), is_energy=True),
         Part("moment", Shape.VECTOR, MOMENT, is_load=True),
     )
 
@@ -154,9 +167,9 @@ class ImmersedBody(Body):
     STATE = Impulse
     ENERGY = "T"
     PARTS = (
-        Part("linear", Shape.SYMMETRIC, Dimension(-1, 0, 0)),
-        Part("coupling", Shape.MATRIX, Dimension(-1, -1, 0)),
-        Part("angular", Shape.SYMMETRIC, Dimension(-1, -2, 0)),
+        Part("linear", Shape.SYMMETRIC, Dimension(-1, 0, 0), is_energy=True),
+        Part("coupling", Shape.MATRIX, Dimension(-1, -1, 0), is_energy=True),
+        Part("angular", Shape.SYMMETRIC, Dimension(-1, -2, 0), is_energy=True),
         Part("force", Shape.VECTOR, FORCE, is_load=True),
         Part("couple", Shape.VECTOR, MOMENT, is_load=True),
     )

@@ -32,7 +32,7 @@ class Gyrostat(Body):
     STATE = Spin
     ENERGY = "the inertia tensor"
     PARTS = (
-        Part("inertia", Shape.SYMMETRIC, Dimension(1, 2, 0)),
+        Part("inertia", Shape.SYMMETRIC, Dimension(1, 2, 0), is_energy=True),
         Part("rotor", Shape.VECTOR, MOMENTUM),
         Part("moment", Shape.VECTOR, MOMENT, is_load=True),
     )

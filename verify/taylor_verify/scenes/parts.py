@@ -53,7 +53,7 @@ class Part:
     """Named quantity of a body or a state.
 
     ``name`` is the word of documents and files, ``attribute`` the name in Python where that is another.
-    A body with a load that is not zero is not free.
+    A body with a load that is not zero is not free. The energy is made of the parts that are ``is_energy``.
     """
 
     name: str
@@ -61,6 +61,7 @@ class Part:
     dimension: Dimension
     is_load: bool = False
     attribute: str = ""
+    is_energy: bool = False
 
     @property
     def key(self) -> str:

@@ -241,8 +241,9 @@ class _Work:
         """Return the results of chunks as they end; without an executor, ``is_little`` is done here."""
         if self.executor is None and (is_little or self.jobs == 1):
             return (work(chunk) for chunk in chunks)
-        options = {"workers": self.jobs, "ahead": self.ahead}
-        return run_stream(work, chunks, self.executor, raises=Failed, **options)
+        return run_stream(
+            work, chunks, self.executor, workers=self.jobs, ahead=self.ahead, raises=Failed
+        )
 
 
 def _judge_all(work: _Work) -> None:

@@ -96,9 +96,10 @@ def _steps(
     n, d = z.shape
     R = truth.quantities.get("attitude", np.empty((n, 0, 3))).astype(float)
     clock = clocks.floats(scene.body.manufactured, points)
-    nothing = np.zeros((n - 1, R.shape[1], d))
+    turn = np.zeros((n - 1, R.shape[1], d))
+    shift = turn if len(flow.equations.velocity) else turn[:, :0]
     identity = np.tile(np.eye(d), (n - 1, 1, 1))
-    arcs = _Arcs(clock[:-1], z[:-1], R[:-1], identity, nothing, nothing)
+    arcs = _Arcs(clock[:-1], z[:-1], R[:-1], identity, turn, shift)
     spans = np.diff([float(t / flow.time) for t in points])
     reached = _followed(flow, arcs, spans, is_rough)
     if reached is None or not _arrive(reached, z[1:], np.exp(flow.expansion * spans)):
@@ -126,7 +127,8 @@ class _Arcs(NamedTuple):
     """The ends of n arcs: w (n, m), z (n, d), R (n, 3, 3), and what errors of z at their starts became.
 
     ``by_momentum`` (n, d, d) are the derivatives of z, ``turn`` and ``shift`` (n, 3, d) those of theta
-    and c. Where no attitude is tracked, R, ``turn`` and ``shift`` have no rows.
+    and c. Where no attitude is tracked, R, ``turn`` and ``shift`` have no rows, and for a rigid body
+    ``shift`` has none.
     """
 
     clock: Floats
@@ -181,9 +183,8 @@ def _followed(flow: Flow, arcs: _Arcs, spans: Floats, is_rough: bool) -> _Arcs |
 def _rates(flow: Flow, at: _Arcs) -> _Arcs:
     jacobian, R = flow.jacobian(at.momentum), at.attitude
     turn = R @ (flow.equations.spin @ at.by_momentum)
-    if not len(flow.equations.velocity) or not turn.shape[1]:
-        shift = np.zeros_like(turn)
-    else:
+    shift = at.shift
+    if shift.shape[1]:
         speed = applied(R, at.momentum @ flow.equations.velocity.T)
         shift = R @ (flow.equations.velocity @ at.by_momentum) - cross_matrices(speed) @ at.turn
     return _Arcs(

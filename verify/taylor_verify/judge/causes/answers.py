@@ -31,6 +31,7 @@ from taylor_verify.solvers.trajectory import Trajectory
 if TYPE_CHECKING:
     from taylor_verify.solvers.files.file import TrajectoryFile
 
+NOT_LOOKED_FOR: Final = "likely causes are not looked for: this body has terms of motion, or loads, that the search does not know"
 _DIGITS: Final = 20
 _MOST_ROWS: Final = 4096
 # If the range of float64 or a matrix decomposition fails, no cause is named.
@@ -57,6 +58,8 @@ def with_causes(judged: Judgement, problem: Problem, trajectory: Trajectory) -> 
     if not any(verdict.verdict is Status.FAIL for verdict in judged.verdicts):
         return judged
     scene, causes = problem.scene, tuple[LikelyCause, ...]()
+    if not Equations.are_known(problem.given.body):
+        return replace(judged, notes=(*judged.notes, NOT_LOOKED_FOR))
     with np.errstate(all="ignore"), suppress(*_NO_CAUSE):
         causes = likely_causes(_of_trajectory(problem, trajectory, judged.verdicts), scene)
     named = (replace(cause, scene=scene.name, rung=problem.rung.name) for cause in causes)

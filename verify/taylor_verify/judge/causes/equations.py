@@ -14,10 +14,10 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes.flow import Floats, bilinear
-from taylor_verify.scenes.bodies import Body, ImmersedBody, RigidBody
-from taylor_verify.scenes.gyrostat import Gyrostat
+from taylor_verify.scenes.bodies import Body
 
-_KNOWN: Final = (RigidBody, Gyrostat, ImmersedBody)
+# Parts of a body, beside its energy, its loads and its damping, that have terms here.
+_WITH_TERMS: Final = frozenset({"rotor"})
 
 
 @dataclass(frozen=True)
@@ -40,8 +40,8 @@ class Equations:
 
     @staticmethod
     def are_known(body: Body) -> bool:
-        """Return True if this kind of body has equations here and its loads are constant."""
-        return type(body) in _KNOWN and body.manufactured is None
+        """Return True if every part of the body has its terms here, and its loads are constant."""
+        return body.others <= _WITH_TERMS and body.manufactured is None
 
     @classmethod
     def of(cls, body: Body) -> Equations:

@@ -12,7 +12,8 @@ from typing import Any, Final
 import numpy as np
 
 from taylor_verify.exact.solution import Unsettled
-from taylor_verify.judge.causes.answers import causes_of_file
+from taylor_verify.judge.causes.answers import NOT_LOOKED_FOR, causes_of_file
+from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.conventions.fits import Conventions, Finding
 from taylor_verify.judge.conventions.search import conventions, is_far
 from taylor_verify.judge.conventions.worlds import World
@@ -126,6 +127,7 @@ def judge_file(
     causes: tuple[LikelyCause, ...] = ()
     if any(verdict.verdict is Status.FAIL for verdict in judged.verdicts):
         causes = causes_of_file(compared, rung, file_conventions, judged)
+        notes += () if Equations.are_known(scene.body) else (NOT_LOOKED_FOR,)
         stored = storing(file, rung)
         notes += () if stored is None else (stored.note,)
     left = () if accept_conventions else file_conventions.findings

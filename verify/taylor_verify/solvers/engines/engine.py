@@ -17,7 +17,6 @@ from tempfile import TemporaryDirectory
 from typing import Final, final
 
 from taylor_verify.models.problem import Problem, pose, pose_as_stored
-from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines.launcher import NotMade, Tell
@@ -159,8 +158,7 @@ class Outside(Solver):
         body = problem.given.body
         if body.manufactured is not None:
             return f"{self.name} is made for constant loads, and not for a manufactured motion"
-        is_plain = body.is_free and not body.damping and not isinstance(body, Gyrostat)
-        if not (self.engine.script.about.loads or is_plain):
+        if not (self.engine.script.about.loads or body.is_plain):
             return f"{self.name} is made for free bodies without wheels and without damping"
         return ""
 

@@ -4,26 +4,32 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from fractions import Fraction
 from math import sqrt
-from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
-from taylor_verify.judge.provenance import versions
 from taylor_verify.records.json_text import complete, converted
 from taylor_verify.solvers.taylor.ensemble import Ensemble as Lanes
-from taylor_verify_reports.studies.growth import checkpoint
-from taylor_verify_reports.studies.growth.checkpoint import Progress
+from taylor_verify.solvers.taylor.ensemble import Lane
 from taylor_verify_reports.studies.growth.document import Ensemble, GrowthOfQuantity
 from taylor_verify_reports.studies.growth.errors import lane_errors
 from taylor_verify_reports.studies.growth.fit import Floats, Growth, growth
 from taylor_verify_reports.studies.growth.question import Question
 
-# The packages that the numbers of an experiment depend on.
-_NUMERICAL = ("taylor-verify", "heyoka", "numpy")
-
 # A function that is called after each piece with the number of finished pieces and of all pieces.
 Finished = Callable[[int, int], None]
+
+# The state of one lane at one instant and its steps so far; None for a lane that ended before.
+Sample = tuple[tuple[Fraction, ...], int] | None
+
+
+class Course(NamedTuple):
+    """The lanes at the end, and their samples: ``samples[k][i]`` is lane i at instant k."""
+
+    lanes: tuple[Lane, ...]
+    samples: tuple[tuple[Sample, ...], ...]
 
 
 @dataclass(frozen=True)
@@ -85,45 +91,22 @@ class Experiment:
         return converted(complete(row), GrowthOfQuantity)
 
 
-def course(
-    question: Question, file: Path | None = None, finished: Finished = lambda done, total: None
-) -> Progress:
-    """Follow all lanes of a question to the end, from the checkpoint in ``file`` if there is one.
-
-    The result is the same to the last bit, however often the run was stopped and continued. Raises
-    ValueError for a checkpoint of another question, and OSError if a checkpoint cannot be written.
-    """
-    asked, made_with = question.document(), numerical_versions()
+def course(question: Question, finished: Finished = lambda done, total: None) -> Course:
+    """Follow all lanes of a question to the end. Raises ValueError for lanes that do not fit together."""
     ensemble = Lanes(question.problems, question.tolerance)
-    progress = checkpoint.read(file, asked, made_with) if file else None
-    progress = progress or Progress(0, ensemble.start())
-    for until, is_instant in question.pieces[progress.pieces :]:
-        lanes = ensemble.advance(progress.lanes, until)
-        samples = progress.samples
+    lanes, samples = ensemble.start(), list[tuple[Sample, ...]]()
+    for done, (until, is_instant) in enumerate(question.pieces, start=1):
+        lanes = ensemble.advance(lanes, until)
         if is_instant:
-            samples += (
-                tuple((lane.state, lane.steps) if lane.goes_on else None for lane in lanes),
-            )
-        progress = Progress(progress.pieces + 1, lanes, samples)
-        if file:
-            checkpoint.write(file, asked, made_with, progress)
-        finished(progress.pieces, len(question.pieces))
-    return progress
+            states = ((lane.state, lane.steps) if lane.goes_on else None for lane in lanes)
+            samples.append(tuple(states))
+        finished(done, len(question.pieces))
+    return Course(lanes, tuple(samples))
 
 
-def numerical_versions() -> dict[str, str]:
-    """Return the versions of the packages that the numbers of an experiment depend on."""
-    return {name: versions()[name] for name in _NUMERICAL}
-
-
-def experiment(
-    question: Question, file: Path | None = None, finished: Finished = lambda done, total: None
-) -> Experiment:
-    """Follow an ensemble and measure the growth of its errors; ``file`` is its checkpoint.
-
-    Raises the errors of `course`.
-    """
-    end = course(question, file, finished)
+def experiment(question: Question, finished: Finished = lambda done, total: None) -> Experiment:
+    """Follow an ensemble and measure the growth of its errors. Raises the errors of `course`."""
+    end = course(question, finished)
     by_lane = [
         lane_errors(problem, [sample and sample[0] for sample in samples], question.period)
         for problem, *samples in zip(question.problems, *end.samples, strict=True)

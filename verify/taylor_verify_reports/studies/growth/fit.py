@@ -17,14 +17,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from functools import cache
-from math import isfinite, isnan, nan, sqrt, tan
+from math import isfinite, isnan, nan, sqrt
 from typing import Any, Final
 
 import mpmath
 import numpy as np
 
 from taylor_verify.records.status import Status
+from taylor_verify.records.student import student
 from taylor_verify_reports.studies.growth.document import EXACT
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
@@ -263,7 +263,7 @@ def covariance_of(law: Law, times: Floats) -> Floats:
     return values
 
 
-# Two distributions, written here because the judging code does not depend on SciPy.
+# A distribution, written here because the judging code does not depend on SciPy.
 
 
 def chi_square_tail(value: float, freedom: int) -> float:
@@ -271,15 +271,3 @@ def chi_square_tail(value: float, freedom: int) -> float:
     if not value >= 0:
         return nan
     return float(mpmath.gammainc(freedom / 2, value / 2, regularized=True))
-
-
-@cache
-def student(freedom: int, level: float) -> float:
-    """Return the t for which Student's variable is between -t and t with probability ``level``."""
-
-    def excess(theta: mpmath.mpf) -> mpmath.mpf:
-        within = mpmath.betainc(0.5, freedom / 2, 0, mpmath.sin(theta) ** 2, regularized=True)
-        return within - level
-
-    # With t = sqrt(freedom) tan(theta) the root lies in a bounded interval of theta.
-    return sqrt(freedom) * tan(mpmath.findroot(excess, (0, mpmath.pi / 2), solver="bisect"))

@@ -10,14 +10,13 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.plotting.picture import Picture
 from taylor_verify.records.json_text import complete
 from taylor_verify.records.status import Status
 from taylor_verify.words.cells import NOTHING, figure, judged
-from taylor_verify.words.markdown import bold, bullets, code, prose, table
+from taylor_verify.words.markdown import bold, bullets, code, prose
 from taylor_verify.words.page import made_on, whole
 from taylor_verify.words.sheet import sheet as csv_sheet
-from taylor_verify_reports.studies import figures
+from taylor_verify_reports.studies.columns import Columns, lay_out
 from taylor_verify_reports.studies.growth.document import (
     EXACT,
     Ensemble,
@@ -25,7 +24,6 @@ from taylor_verify_reports.studies.growth.document import (
     GrowthStudy,
     Number,
 )
-from taylor_verify_reports.studies.growth.picture import picture
 from taylor_verify_reports.studies.stored import Stored
 
 GROWTH: Final = Stored(GrowthStudy, "growth")
@@ -68,10 +66,9 @@ _LEANING: Final = (
 )
 _REMAKE: Final = (
     "`taylor-verify publish growth` repeats the measurement, and writes "
-    f"[growth.json](../{GROWTH.name}), the picture and this page. It takes minutes on all cores. It "
-    "may be stopped, and continues from there when it is started again.",
+    f"[growth.json](../{GROWTH.name}) and this page. It takes minutes on all cores.",
     "`taylor-verify publish growth --long` follows the long run of 100 million periods in the same "
-    "way, in a thousand pieces of some seconds.",
+    "way, in an hour or more.",
     "Roundings differ between processors, and so do the last digits here. The exponents are the same "
     "within their intervals.",
 )
@@ -90,15 +87,14 @@ def find(folder: Path) -> GrowthStudy | None:
     return GrowthStudy(runs, left_out, stored[0].provenance)
 
 
-def page(study: GrowthStudy, folder: Path) -> str:
-    """Return the whole page, with the picture if it is in ``folder``/figures."""
+def page(study: GrowthStudy) -> str:
+    """Return the whole page."""
     runs = study.runs
     return whole(
         "How errors grow with time",
         _WHAT,
         _gates(runs),
         bullets(prose(f"Left out: {line}.") for line in study.left_out),
-        figures.shown(folder, pictures(study)),
         bullets(_LEGEND),
         *(block for run in runs for block in _section(run)),
         "## The gate",
@@ -108,14 +104,6 @@ def page(study: GrowthStudy, folder: Path) -> str:
         "## To remake this",
         bullets([*_REMAKE, made_on(study.provenance)]),
     )
-
-
-def pictures(study: GrowthStudy) -> list[Picture]:
-    """Return all ensembles in one picture; none if no error is above zero."""
-    try:
-        return [picture(study.runs)]
-    except ValueError:
-        return []
 
 
 def _gates(runs: Iterable[Ensemble]) -> str:
@@ -133,37 +121,29 @@ def _gates(runs: Iterable[Ensemble]) -> str:
 def _section(run: Ensemble) -> list[str]:
     lost = bold(f" {run.lost} of them did not reach the end.") if run.lost else ""
     first, last = (f"{count:.3g}".replace("e+0", "e") for count in (run.counts[0], run.counts[-1]))
-    columns = [
-        "quantity",
-        "rms, first:",
-        "rms, last:",
-        "walks:",
-        "exponent:",
-        "word",
-        "late",
-        "no worse than a walk",
-    ]
-    rows = [
-        [
-            code(row.quantity),
-            figure(row.rms[0]),
-            figure(row.rms[-1]),
-            figure(row.in_walks),
-            _interval(row.word, row.exponent, row.low, row.high),
-            prose(row.word),
-            _interval(row.late_word, *row.late),
-            f"{judged(row.gate.verdict)}, chance {figure(row.gate.chance)}"
-            if row.gate
-            else NOTHING,
-        ]
-        for row in run.quantities
-    ]
     return [
         f"## {_name(run)}",
         f"{prose(run.why.capitalize())}. {run.lanes} starts from {first} to {last} periods of "
         f"{figure(run.period)} each, {figure(run.steps[-1])} steps.{lost}",
-        table(columns, rows),
+        lay_out(_QUANTITY, run.quantities),
     ]
+
+
+_QUANTITY: Final[Columns[GrowthOfQuantity]] = (
+    ("quantity", lambda row: code(row.quantity)),
+    ("rms, first:", lambda row: figure(row.rms[0])),
+    ("rms, last:", lambda row: figure(row.rms[-1])),
+    ("walks:", lambda row: figure(row.in_walks)),
+    ("exponent:", lambda row: _interval(row.word, row.exponent, row.low, row.high)),
+    ("word", lambda row: prose(row.word)),
+    ("late", lambda row: _interval(row.late_word, *row.late)),
+    ("no worse than a walk", lambda row: _gate(row)),
+)
+
+
+def _gate(row: GrowthOfQuantity) -> str:
+    gate = row.gate
+    return f"{judged(gate.verdict)}, chance {figure(gate.chance)}" if gate else NOTHING
 
 
 def _interval(word: str, value: Number, low: Number, high: Number) -> str:
@@ -195,33 +175,10 @@ def _name(run: Ensemble) -> str:
 
 
 _SHEET: Final = (
-    "scene",
-    "solver",
-    "rung",
-    "quantity",
-    "starts",
-    "lost",
-    "period",
-    "periods_first",
-    "periods_last",
-    "steps_last",
-    "rms_first",
-    "rms_last",
-    "in_walks",
-    "exponent",
-    "low",
-    "high",
-    "word",
-    "late",
-    "late_low",
-    "late_high",
-    "late_word",
-    "level",
-    "gate",
-    "law",
-    "chance",
-    "false_alarm",
-    "scene_sha256",
+    *("scene", "solver", "rung", "quantity", "starts", "lost", "period"),
+    *("periods_first", "periods_last", "steps_last", "rms_first", "rms_last", "in_walks"),
+    *("exponent", "low", "high", "word", "late", "late_low", "late_high", "late_word", "level"),
+    *("gate", "law", "chance", "false_alarm", "scene_sha256"),
 )
 
 

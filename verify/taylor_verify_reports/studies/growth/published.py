@@ -1,11 +1,10 @@
-"""Published ensembles, and the long one; the measurement of each can be stopped and continued."""
+"""Published ensembles, and the long one."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 from typing import Final
 
 from taylor_verify.judge.provenance import command, processor, versions
@@ -39,12 +38,6 @@ class Entry:
     def label(self) -> str:
         """The name of the ensemble in messages."""
         return f"{self.scene} {self.solver} {self.rung}"
-
-    @property
-    def file(self) -> str:
-        """The name of the checkpoint's file."""
-        plain = "".join(c if c.isalnum() or c in ".-" else "-" for c in self.label)
-        return f"growth-{plain}-{self.periods:.0e}.json"
 
 
 PUBLISHED: Final = (
@@ -81,16 +74,11 @@ Finished = Callable[[str, int, int], None]
 
 
 def followed(
-    entries: Sequence[Entry],
-    checkpoints: Path | None,
-    finished: Finished,
-    most: float | None = None,
+    entries: Sequence[Entry], finished: Finished, most: float | None = None
 ) -> GrowthStudy:
     """Follow the ensembles of the entries; those whose rung this machine lacks are named as left out.
 
-    ``checkpoints`` is the folder for the checkpoints, and ``most`` the most periods of an ensemble. Raises
-    ValueError for too few periods and for a checkpoint of another question, and OSError for one that cannot
-    be written.
+    ``most`` is the most periods of an ensemble. Raises ValueError for too few periods.
     """
     runs: list[Ensemble] = []
     left_out: list[str] = []
@@ -98,7 +86,6 @@ def followed(
         if missing := unavailable(rung(entry.rung)):
             left_out.append(f"{entry.label}: {missing}")
             continue
-        file = checkpoints / entry.file if checkpoints else None
-        result = experiment(entry.question(most), file, partial(finished, entry.label))
+        result = experiment(entry.question(most), partial(finished, entry.label))
         runs.append(result.ensemble(entry.why))
     return GrowthStudy(tuple(runs), tuple(left_out), Provenance(versions(), processor(), command()))

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
 from math import ceil, floor, log10, pi
-from typing import Any, Final
+from typing import Final
 
 from taylor_verify.exact.elements import elements
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.models.rates import Linearised
 from taylor_verify.scenes.motion import Clock
-from taylor_verify.scenes.precision import Rung, hexadecimal
+from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.registry import TAYLOR
 from taylor_verify.solvers.taylor.names import tolerance
@@ -27,7 +26,7 @@ INSTANTS_PER_DECADE: Final = 2
 # The gate needs early instants besides the late ones.
 LEAST_PERIODS: Final = 10**3.5
 MOST_PERIODS: Final = 1e9
-# Periods between two checkpoints. They are part of the question, because a step ends at each checkpoint.
+# Most periods of a piece. Pieces are part of the question, because a step ends at the end of each.
 PIECE_PERIODS: Final = 100_000
 
 _LEAST_LANES: Final = 2
@@ -125,25 +124,3 @@ class Question:
                 stops.append((tuple(self.rung.round(a + share * (b - a)) for a, b in ends), False))
             stops.append((instants[k], True))
         return tuple(stops)
-
-    def document(self) -> dict[str, Any]:
-        """Return the question as JSON holds it, with a digest of all exact numbers of the problems."""
-        return {
-            "scene": self.scene.name,
-            "digest": self.scene.digest,
-            "solver": self.solver,
-            "rung": self.rung.name,
-            "periods": self.counts[-1],
-            "lanes": self.lanes,
-            "seed": self.seed,
-            "fingerprint": self._fingerprint(),
-        }
-
-    def _fingerprint(self) -> str:
-        digest = hashlib.sha256()
-        for problem in self.problems:
-            numbers = (*problem.parameters, *problem.initial_momenta, *problem.times)
-            digest.update(" ".join([*problem.form.text(), *map(hexadecimal, numbers)]).encode())
-        for stops, _ in self.pieces:
-            digest.update(" ".join(map(hexadecimal, stops)).encode())
-        return digest.hexdigest()

@@ -11,28 +11,21 @@ from taylor_verify_reports.studies.growth import page
 from taylor_verify_reports.studies.growth.page import GROWTH, LONG
 from taylor_verify_reports.studies.study import Measured, NotMeasured, Option, Progress, Study
 
-# A part of the report folder that is neither published nor committed.
-_CHECKPOINTS: Final = "local/growth"
 _SECONDS_BETWEEN_REPORTS: Final = 10.0
 
 
 def _measure(
     folder: Path, progress: Progress, periods: float | None = None, long: bool = False
 ) -> Measured:
-    """Follow the published ensembles, or the long one alone; continue a stopped run."""
+    """Follow the published ensembles, or the long one alone."""
     from taylor_verify_reports.studies.growth import published
 
     entries = published.LONG if long else published.PUBLISHED
-    checkpoints = folder / _CHECKPOINTS
     try:
-        study = published.followed(entries, checkpoints, Pieces(progress.say), periods)
+        study = published.followed(entries, Pieces(progress.say), periods)
     except ValueError as error:
         raise NotMeasured(str(error)) from error
-    written = (LONG if long else GROWTH).write(folder, study)
-    # Until the results are stored, the measurement can be continued.
-    for entry in entries:
-        (checkpoints / entry.file).unlink(missing_ok=True)
-    return Measured(written)
+    return Measured((LONG if long else GROWTH).write(folder, study))
 
 
 def _periods(text: str) -> float:
@@ -67,9 +60,8 @@ STUDY: Final = Study(
     duration="ten minutes, all cores; with --long an hour or more",
     measure=_measure,
     find=page.find,
-    page=page.page,
+    page=lambda study, folder: page.page(study),
     sheet=page.sheet,
-    draw=page.pictures,
     options=(
         Option("periods", "follow no ensemble for more than N periods", _periods),
         Option("long", "follow only the ensemble of 100 million periods"),

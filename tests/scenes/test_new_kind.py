@@ -1,0 +1,69 @@
+"""A kind of body that nobody knows yet: rooms ask it, and none takes it for one that they know."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+import taylor_verify
+from taylor_verify.judge.causes.answers import NOT_LOOKED_FOR, with_causes
+from taylor_verify.judge.causes.equations import Equations
+from taylor_verify.scenes.bodies import Body, RigidBody
+from taylor_verify.scenes.gyrostat import Gyrostat
+from taylor_verify.scenes.parts import NUMBER, Part, Shape
+from taylor_verify.scenes.tensors import Vector, diagonal
+from taylor_verify.solvers.registry import solver_named
+
+INERTIA = diagonal((Fraction(1), Fraction(2), Fraction(3)))
+
+
+@dataclass(frozen=True)
+class SprungBody(RigidBody):
+    """A dummy: a rigid body with a part that is neither energy nor load."""
+
+    spring: Vector = (Fraction(1), Fraction(0), Fraction(0))
+
+    PARTS = (*RigidBody.PARTS, Part("spring", Shape.VECTOR, NUMBER))
+
+
+BODIES = {
+    "rigid": (RigidBody(INERTIA), True, True),
+    "damped": (RigidBody(INERTIA, damping=Fraction(1)), False, True),
+    "under a moment": (RigidBody(INERTIA, (Fraction(1),) * 3), False, True),
+    "with wheels": (Gyrostat(INERTIA, (Fraction(1),) * 3), False, True),
+    "of a new kind": (SprungBody(INERTIA), False, False),
+}
+
+
+@pytest.mark.parametrize(("body", "is_plain", "is_known"), BODIES.values(), ids=BODIES)
+def test_a_body_answers_for_itself(body: Body, is_plain: bool, is_known: bool) -> None:
+    """It is plain if its energy alone moves it; causes are searched for if every part has its terms."""
+    assert body.is_plain is is_plain
+    assert Equations.are_known(body) is is_known
+
+
+def test_an_engine_for_plain_bodies_does_not_take_a_new_kind() -> None:
+    """It says so, instead of answering another question."""
+    engine: Any = solver_named("outside:mujoco")
+    about = replace(engine.engine.script.about, loads=False)
+    asked = SimpleNamespace(name="it", engine=SimpleNamespace(script=SimpleNamespace(about=about)))
+    problem = SimpleNamespace(given=SimpleNamespace(model="euler", body=SprungBody(INERTIA)))
+    assert "free bodies without wheels" in type(engine).unsuited(asked, problem)
+    problem.given.body = RigidBody(INERTIA)
+    assert type(engine).unsuited(asked, problem) == ""
+
+
+def test_causes_that_are_not_looked_for_are_told() -> None:
+    """A failed answer about a new kind of body has a note in place of silence."""
+    scene = taylor_verify.load("euler/generic")
+    judged = taylor_verify.check(
+        scene, lambda problem: [problem.given.initial.omega] * len(problem.times)
+    )
+    given = SimpleNamespace(body=SprungBody(INERTIA))
+    problem: Any = SimpleNamespace(scene=scene, given=given)
+    judged = with_causes(replace(judged, notes=()), problem, SimpleNamespace())  # type: ignore[arg-type]
+    assert judged.notes == (NOT_LOOKED_FOR,)
