@@ -217,7 +217,7 @@ def small() -> Path:
     write_runs(place, product(SCENES, ("f64", "mp237")))
     write_portraits(place, SCENES)
     _write_measured(place)
-    GROWTH.write(place, followed([_ENSEMBLE], None, lambda label, done, of: None))
+    GROWTH.write(place, followed([_ENSEMBLE], lambda label, done, of: None))
     CLAIMS.write(place, STUDY)
     save(registry.pictures(place), place / figures.FOLDER, ["svg"])
     report.publish(place)

@@ -27,10 +27,6 @@ FRAME = (Fraction(1), Fraction(-2), Fraction(1, 3), Fraction(2))
 PLACE = (Fraction(1), Fraction(-2), Fraction(1, 3))
 
 
-# A path of Weber's kind costs as much as all the others together.
-LONG = ("kirchhoff/weber", "kirchhoff/weber-path")
-
-
 @cache
 def free_forms() -> list[str]:
     """The shipped scenes without loads and wheels that have a closed form."""
@@ -73,8 +69,7 @@ def at_numbers(inner: Solution) -> Solution:
 @pytest.mark.parametrize(
     ("name", "route"),
     # By turns a form has one route, the other, and none.
-    by_turns(product((name for name in free_forms() if name not in LONG), ["arb", "mpmath"]))
-    + [pytest.param(*case, marks=pytest.mark.slow) for case in product(LONG, ["arb", "mpmath"])],
+    by_turns(product(free_forms(), ["arb", "mpmath"])),
 )
 def test_a_ball_of_a_rational_gives_the_motion_at_the_rational(name: str, route: str) -> None:
     """They agree within both radii before the start, at it and beyond the end, with attitude and centre."""

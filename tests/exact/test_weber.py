@@ -17,18 +17,18 @@ from builders.webers import BODIES, built, by_turns, case, curve_of
 from flint import ctx
 from mpmath import mp, mpf
 
+from taylor_verify.exact import integral
 from taylor_verify.exact.balls import midpoint
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.kirchhoff import closed
 from taylor_verify.exact.kirchhoff.integrable import fourth_integral
-from taylor_verify.exact.kirchhoff.solid import solid
-from taylor_verify.exact.kirchhoff.weber import enclosure
+from taylor_verify.exact.kirchhoff.weber import quotients
 from taylor_verify.exact.kirchhoff.weber.characteristics import HALF_PERIODS
-from taylor_verify.exact.kirchhoff.weber.course import WeberBalls
 from taylor_verify.exact.kirchhoff.weber.curve import curve
+from taylor_verify.exact.kirchhoff.weber.quotients import WeberBalls
 from taylor_verify.exact.kirchhoff.weber.sums import Sums
 from taylor_verify.exact.route import solution
-from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
+from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm, Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.models.problem import pose
 from taylor_verify.records.precisions import LADDER
@@ -207,6 +207,42 @@ def test_beside_a_degenerate_curve_the_balls_still_hold() -> None:
         assert apart(truth, motion) <= 2 * mpf(10) ** -30
 
 
+@pytest.mark.parametrize("route", ["arb", "mpmath"])
+def test_attitude_and_path_have_no_closed_form(route: str) -> None:
+    """The whole answer is Taylor's where they are tracked, and its impulses lie in the balls of Weber's."""
+    scene, times = load("kirchhoff/weber-path"), [Fraction(4)]
+    with pytest.raises(NoClosedForm, match="attitude and centre of Weber's motion"):
+        solution(scene, route)
+    whole = solution(scene)
+    assert (whole.regime, whole.route) == (NO_CLOSED_FORM, "taylor")
+    impulses = solution(replace(scene, track=frozenset()), route).motion(times, 20)
+    motion = whole.motion(times, 20)
+    with mp.workdps(30):
+        for name in impulses.quantities:
+            difference = mp.norm(list(impulses[name][0] - motion[name][0]))
+            assert difference <= 2 * mpf(10) ** -20 * mp.norm(list(motion[name][0]))
+
+
+def test_the_elements_of_the_whole_motion_keep_the_two_rates() -> None:
+    """Where the attitude is tracked the regime is no closed form, and numbers and sentences stay."""
+    whole, impulses = elements(load("kirchhoff/weber-path")), elements(shipped())
+    assert (whole.regime, impulses.regime) == (NO_CLOSED_FORM, "weber")
+    assert whole.numbers == impulses.numbers
+    assert whole.sentences == impulses.sentences
+
+
+def test_series_answer_where_no_integral_does(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Periods to so many bits would take hours: the enclosure answers, and the regime stays."""
+    monkeypatch.setattr(integral, "_MOST_BITS", 100)
+    exact = solution(shipped())
+    assert exact.route == "arb"
+    motion = exact.motion([Fraction(1, 3)], 40)
+    assert (exact.regime, exact.route) == ("weber", "taylor")
+    assert motion.radius.max() <= mpf(10) ** -40
+    with pytest.raises(Unsettled, match="would take hours"):
+        solution(shipped(), "arb").motion([Fraction(1, 3)], 40)
+
+
 def test_a_motion_in_a_plane_stays_the_pendulums() -> None:
     """A body of the family whose x stays in a plane of it: a pendulum, and no curve of genus two."""
     scene = built(vector(1, "1/2", 0), vector(0, 0, "1/3"), *BODIES["theta > 0"], Fraction(0))
@@ -244,7 +280,7 @@ def test_a_wrong_theta_characteristic_is_seen(monkeypatch: pytest.MonkeyPatch, o
     truth = TaylorSolution(scene).motion(TIMES[1:], 20)
     broken = list(HALF_PERIODS)
     broken[own] = HALF_PERIODS[other]
-    monkeypatch.setattr(enclosure, "HALF_PERIODS", tuple(broken))
+    monkeypatch.setattr(quotients, "HALF_PERIODS", tuple(broken))
     with mp.workdps(30):
         wrong = apart(truth, midpoints(scene))
         # The right one among the five shows that the comparison lets through what it should.
@@ -256,7 +292,7 @@ def midpoints(scene: Scene) -> Motion:
     """What the balls say at one precision, however wide they are."""
     spectral_curve = curve_of(scene)
     with ctx.workprec(200):
-        rows = WeberBalls(spectral_curve, solid(scene)[0], scene.track).enclose(TIMES[1:], 200)
+        rows = WeberBalls(spectral_curve).enclose(TIMES[1:], 200)
     centre = np.frompyfunc(midpoint, 1, 1)
     quantities = {name: centre(np.array(balls, dtype=object)) for name, balls in rows.items()}
     return Motion(quantities, np.zeros(len(TIMES) - 1))

@@ -60,7 +60,7 @@ TEST_ROOMS: Final = (
 # Functions of libraries, which take a flag without a name.
 UNNAMED_FLAGS: Final = re.compile(r"set_\w+|Parse|Rotation|integrand|c_numba_cysolve_ivp")
 # Keys of published JSON.
-KEYS: Final = frozenset({("Convention", "found"), ("DefectRow", "told"), ("TrapCase", "said")})
+KEYS: Final = frozenset({("Convention", "found"), ("DefectRow", "told")})
 
 
 def folder_of(room: str) -> Path:

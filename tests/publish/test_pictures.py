@@ -4,7 +4,7 @@ import json
 import subprocess
 import sys
 from base64 import b64decode
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import combinations, pairwise
 from math import inf, log10, nan
@@ -34,7 +34,6 @@ from taylor_verify.records.precisions import bits_of, place_of_rung
 from taylor_verify.tradeoff.pictures import trade
 from taylor_verify.tradeoff.pictures.series import front_of, panels_of, series_of
 from taylor_verify_reports.pictures.ratio import Ratio
-from taylor_verify_reports.studies.prices import picture as prices
 from taylor_verify_reports.studies.tradeoff import time_by_rung
 
 RUNGS = ("f32", "f64", "f80", "f128", "mp237")
@@ -448,7 +447,7 @@ def assert_all_is_on_the_page(figure: Figure) -> None:
 def test_two_drawings_are_the_same_bytes(tmp_path: Path) -> None:
     """Drawn twice, in another order and with other settings of the user, every file is the same."""
     rows = family("taylor f64", "f64", 0.01, 9.0) + family("scipy RK45", "f64", 0.05, 4.0)
-    made = [trade.pictures(document(rows))[0], priced()]
+    made = [trade.pictures(document(rows))[0], by_rung()]
     first = save(made, tmp_path / "a")
     with matplotlib.rc_context({"font.size": 20, "lines.linewidth": 9, "svg.hashsalt": "other"}):
         save(reversed(made), tmp_path / "b")
@@ -485,7 +484,7 @@ def test_a_file_is_text_without_a_date(tmp_path: Path) -> None:
 
 def test_a_notebook_shows_a_picture_with_its_words(tmp_path: Path) -> None:
     """A notebook shows the published SVG with its alternative text."""
-    picture = priced()
+    picture = by_rung()
     (svg,) = save([picture], tmp_path, ["svg"])
     html = ElementTree.fromstring(picture._repr_html_())
     (image,) = html.iter("img")
@@ -498,7 +497,7 @@ def test_a_notebook_shows_a_picture_with_its_words(tmp_path: Path) -> None:
 def test_settings_of_the_user_stay(tmp_path: Path) -> None:
     """Drawing leaves matplotlib's settings as they were."""
     before = dict(matplotlib.rcParams)
-    save([priced()], tmp_path)
+    save([by_rung()], tmp_path)
     assert dict(matplotlib.rcParams) == before
 
 
@@ -508,9 +507,9 @@ def test_a_picture_that_fails_leaves_the_old_files(tmp_path: Path) -> None:
     def broken() -> Figure:
         raise ZeroDivisionError
 
-    save([priced()], tmp_path)
+    save([by_rung()], tmp_path)
     before = {path: path.read_bytes() for path in tmp_path.iterdir()}
-    sound = replace(priced(), figure=lambda: Figure())
+    sound = replace(by_rung(), figure=lambda: Figure())
     with pytest.raises(ZeroDivisionError):
         save([sound, Picture("broken", "", "", broken)], tmp_path)
     assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
@@ -522,7 +521,7 @@ def test_without_matplotlib_the_error_says_what_to_install(
     """The error is one sentence with the name of the extra, and no file is written."""
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     with pytest.raises(ImportError, match=r"pip install 'taylor-verify\[plots\]'"):
-        save([priced()], tmp_path / "there")
+        save([by_rung()], tmp_path / "there")
     assert not (tmp_path / "there").exists()
 
 
@@ -567,12 +566,6 @@ def test_uncounted_work_makes_no_picture() -> None:
 # Ratios
 
 
-PRICES = (
-    Ratio("omega", "f64", 1.0, 1.0, 1.2),
-    Ratio("attitude", "f64", 2.1),
-    Ratio("omega", "f32", 0.8, 0.7, 1.1),
-    Ratio("attitude", "mp237", 214.0, 200.0, 290.0),
-)
 TIMES_BY_RUNG = tuple(
     Ratio(label, rung, factor * (bits_of(rung) / 53) ** 2)
     for label, factor in (("euler", 1), ("kirchhoff", 1.3))
@@ -580,36 +573,15 @@ TIMES_BY_RUNG = tuple(
 )
 
 
-def priced(ratios: Sequence[Ratio] = PRICES) -> Picture:
-    return prices.picture("euler/generic", "omega on f64", ratios)
-
-
-def test_a_bar_ends_at_its_ratio() -> None:
-    """Bars reach from 1 to their ratios, cheaper ones to the left, with the number beside."""
-    with plotting():
-        (axes,) = priced().figure().axes
-    ends = [{bar.get_x(), bar.get_x() + bar.get_width()} for bar in axes.patches]
-    for own_ends, one in zip(ends, PRICES, strict=True):
-        assert min(own_ends) == pytest.approx(min(1, one.ratio), rel=1e-15)
-        assert max(own_ends) == pytest.approx(max(1, one.ratio), rel=1e-15)
-    numbers = [text.get_text() for text in axes.texts if text.get_gid() == "number"]
-    assert [float(text.split()[0]) for text in numbers] == [1.0, 2.1, 0.8, 214.0]
-
-
-def test_numbers_of_bars_are_on_the_page() -> None:
-    """Neither the names on the left nor the numbers on the right are cut off."""
-    long = replace(PRICES[3], label="attitude, centre, force and couple", ratio=288.0)
-    with plotting():
-        figure = priced([*PRICES, long]).figure()
-        everything = figure.get_tightbbox(FigureCanvasAgg(figure).get_renderer())
-    assert everything.x0 >= 0
-    assert everything.x1 <= PAGE_WIDTH
+def by_rung() -> Picture:
+    """The picture of two scenes."""
+    return time_by_rung.picture("two scenes", TIMES_BY_RUNG)
 
 
 def test_time_is_drawn_by_bits() -> None:
     """The ratios of each label make one line from the shortest rung to the longest."""
     with plotting():
-        figure = time_by_rung.picture("two scenes", TIMES_BY_RUNG).figure()
+        figure = by_rung().figure()
         (axes,) = figure.axes
     assert_names_are_apart(figure)
     for label, factor in (("euler", 1), ("kirchhoff", 1.3)):
@@ -635,13 +607,13 @@ def test_time_is_drawn_by_bits() -> None:
 def test_a_ratio_that_is_none_is_refused(ratios: list[Ratio], message: str) -> None:
     """The error names the place of an empty text, an invalid number or a ratio outside its range."""
     with pytest.raises(ValueError, match=message):
-        priced(ratios)
+        time_by_rung.picture("two scenes", ratios)
 
 
 def test_every_fault_is_said_at_once() -> None:
     """Two faulty ratios give two lines."""
     with pytest.raises(ValueError, match=r"ratios\[0\]\.ratio\n.*ratios\[1\]\.rung"):
-        priced([Ratio("a", "f64", 0), Ratio("b", "", 1)])
+        time_by_rung.picture("two scenes", [Ratio("a", "f64", 0), Ratio("b", "", 1)])
 
 
 def test_a_rung_without_bits_is_refused() -> None:

@@ -1,11 +1,9 @@
-"""An ensemble over many periods: stopped and continued, with signed errors, judged and published."""
+"""An ensemble over many periods: its instants, its pieces, and signed errors."""
 
 from __future__ import annotations
 
-import os
 from fractions import Fraction
 from math import pi
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,12 +14,8 @@ from taylor_verify.exact.route import solution
 from taylor_verify.models.problem import Problem
 from taylor_verify.scenes.precision import exact_value, rung
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.solvers.taylor.ensemble import Lane
-from taylor_verify.solvers.trajectory import Outcome
-from taylor_verify_reports.studies.growth import checkpoint
-from taylor_verify_reports.studies.growth.checkpoint import OfAnotherError, Progress
 from taylor_verify_reports.studies.growth.errors import PHASE, certain_shifts, lane_errors
-from taylor_verify_reports.studies.growth.experiment import course, experiment, numerical_versions
+from taylor_verify_reports.studies.growth.experiment import course, experiment
 from taylor_verify_reports.studies.growth.question import Question
 
 SHORT = 10**3.5
@@ -82,100 +76,17 @@ def test_what_cannot_be_followed_is_refused(changed: dict[str, Any], message: st
         question(**changed)
 
 
-# Checkpoints
-
-
-class LeftError(Exception):
-    """Somebody stopped the run."""
-
-
 @pytest.mark.parametrize("on", ["f64", "f80"])
-def test_a_run_that_is_taken_up_again_is_the_same(
-    on: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Stopped after every single piece and resumed from its file, it ends the same to the last bit."""
+def test_the_end_of_a_piece_is_no_sample(on: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each piece is reported as it ends, and samples are those of the instants alone."""
     several_pieces(monkeypatch)
-    asked, file = question(on=on, lanes=3), tmp_path / "folder" / "run.json"
-    whole = course(asked)
-
-    def leave(done: int, of: int) -> None:
-        if done < of:
-            raise LeftError
-
-    for _ in range(len(asked.pieces) - 1):
-        with pytest.raises(LeftError):
-            course(asked, file, leave)
-    resumed = course(asked, file, leave)
-    assert resumed.samples == whole.samples
-    assert resumed.lanes == whole.lanes
-    # What is done is not done again.
-    assert course(asked, file, leave).samples == whole.samples
-
-
-def test_a_checkpoint_holds_everything(tmp_path: Path) -> None:
-    """Lanes that live, are lost, or stand at awkward numbers are read as they were written."""
-    third = rung("f64").round(Fraction(1, 3))
-    lanes = (
-        Lane(Fraction(7), (third, Fraction(0), -third), 0.1, 12),
-        Lane(Fraction(1, 2**40), (Fraction(2) ** 300,), 1e300, 3, Outcome.NON_FINITE),
-    )
-    samples = (((lanes[0].state, 5), None), ((lanes[0].state, 9), None))
-    progress = Progress(4, lanes, samples)
-    file = tmp_path / "run.json"
-    checkpoint.write(file, {"scene": "a"}, {"heyoka": "1"}, progress)
-    assert checkpoint.read(file, {"scene": "a"}, {"heyoka": "1"}) == progress
-    assert checkpoint.read(tmp_path / "none.json", {}, {}) is None
-
-
-@pytest.mark.parametrize(
-    ("changed", "made_with", "message"),
-    [
-        ({"seed": 2}, {}, "expected a checkpoint with seed 2, got 1; remove"),
-        ({"lanes": 5}, {}, "expected a checkpoint with lanes 5, got 4"),
-        ({"solver": "taylor?tol=1e-12"}, {}, "with solver taylor.tol=1e-12, got taylor;"),
-        ({"name": "euler/generic"}, {}, "with scene euler/generic, got euler/about-max-axis"),
-        ({}, {"heyoka": "0.0"}, r"with heyoka 0\.0, got"),
-    ],
-)
-def test_a_checkpoint_of_something_else_is_refused(
-    changed: dict[str, Any], made_with: dict[str, str], message: str, tmp_path: Path
-) -> None:
-    """Another start, ensemble, setting, scene or version is named, and nothing is computed."""
-    file, asked = tmp_path / "run.json", question()
-    progress = Progress(0, (Lane(Fraction(0), (Fraction(1),)),) * 4)
-    checkpoint.write(file, asked.document(), numerical_versions(), progress)
-    other, versions = question(**changed).document(), numerical_versions() | made_with
-    with pytest.raises(OfAnotherError, match=message):
-        checkpoint.read(file, other, versions)
-
-
-def test_one_changed_digit_is_found(tmp_path: Path) -> None:
-    """A file that was edited, cut off or is something else is no checkpoint."""
-    file = tmp_path / "run.json"
-    checkpoint.write(file, {}, {}, Progress(1, (Lane(Fraction(3), (Fraction(5),)),)))
-    text = file.read_text(encoding="utf-8")
-    for broken in (text.replace("0x5p", "0x7p"), text[: len(text) // 2], "[]", "{}"):
-        assert broken != text
-        file.write_text(broken, encoding="utf-8")
-        with pytest.raises(ValueError, match="expected a checkpoint of `publish growth`"):
-            checkpoint.read(file, {}, {})
-
-
-def test_a_checkpoint_that_cannot_be_finished_leaves_the_last(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """What goes wrong in writing leaves the earlier file whole."""
-    file, early = tmp_path / "run.json", Progress(1, (Lane(Fraction(3), (Fraction(5),)),))
-    checkpoint.write(file, {}, {}, early)
-
-    def full(_descriptor: int) -> None:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(os, "fsync", full)
-    with pytest.raises(OSError, match="No space"):
-        checkpoint.write(file, {}, {}, Progress(2, early.lanes))
-    monkeypatch.undo()
-    assert checkpoint.read(file, {}, {}) == early
+    asked, ended = question(on=on, lanes=3), list[tuple[int, int]]()
+    followed = course(asked, lambda done, of: ended.append((done, of)))
+    count = len(asked.pieces)
+    assert ended == [(done, count) for done in range(1, count + 1)]
+    assert len(followed.samples) == len(asked.counts) < count
+    for sample, lane in zip(followed.samples[-1], followed.lanes, strict=True):
+        assert sample == (lane.state, lane.steps)
 
 
 # Errors

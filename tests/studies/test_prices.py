@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from random import Random
@@ -17,9 +17,9 @@ from taylor_verify.models.general import in_general_form
 from taylor_verify.models.problem import Problem
 from taylor_verify.scenes.precision import rung
 from taylor_verify.solvers.taylor.pace import Pace
-from taylor_verify_reports.studies.prices import measure as prices
+from taylor_verify.words.cells import NOTHING
 from taylor_verify_reports.studies.prices import page as page
-from taylor_verify_reports.studies.prices.document import PricesStudy
+from taylor_verify_reports.studies.prices.document import PRICES, PricesStudy
 from taylor_verify_reports.studies.prices.study import STUDY
 from taylor_verify_reports.studies.prices.variants import variants
 
@@ -75,43 +75,43 @@ def test_the_barest_form_costs_one(measured: PricesStudy) -> None:
     """The ratio of the barest form to itself is 1 in every round, so that its interval is exactly 1."""
     for row in measured.rows:
         if row.variant == row.against:
-            assert row.step_ratio == row.time_ratio == (1.0, 1.0, 1.0)
+            assert row.step_ratio == (1.0, 1.0, 1.0)
 
 
 def test_rows_count_what_is_built(measured: PricesStudy) -> None:
-    """States and operations are those of the form, and the error is one of the rung's roundings."""
+    """States and operations are those of the form, and the interval holds the median."""
     for row in measured.rows:
         form = named(row.variant).posed(F64).form
         assert row.states == len(form.states)
         assert {k: getattr(row, k) for k in ("sums", "products", "quotients")} == form.operations()
         median, low, high = row.step_ratio
         assert 0 < low <= median <= high
-        # Scores of periods, each some roundings long: a thousand units, and no coarser number.
-        assert row.error <= 1000 * 2.0**-53
-
-
-def test_equal_error_is_read_between_two_tolerances() -> None:
-    """Equal error is read on a straight line in logarithms; outside the row, or beside NaN, nowhere."""
-    e = prices._EQUAL_ERROR
-    halfway = prices._cost_at_equal_error([100 * e, e / 100], [1.0, 4.0])
-    assert halfway is not None
-    assert math.isclose(halfway, 2.0, rel_tol=1e-12)
-    assert prices._cost_at_equal_error([100 * e, 10 * e], [1.0, 4.0]) is None
-    assert prices._cost_at_equal_error([math.nan, e / 100], [1.0, 4.0]) is None
 
 
 def test_page_is_made_of_what_was_stored(tmp_path: Path, measured: PricesStudy) -> None:
-    """The page has every row, is the same when made again, and needs a measurement."""
+    """The page has every variant, is the same when made again, and needs a measurement."""
     assert STUDY.pages(tmp_path) == {}
-    stored, *drawn, made, flat = publish_document(tmp_path, STUDY, page.PRICES, measured)
-    assert {file.suffix for file in drawn} == {".svg", ".pdf"}
+    stored, made, flat = publish_document(tmp_path, STUDY, PRICES, measured)
     text = made.read_text(encoding="utf-8")
     sheet = flat.read_text(encoding="utf-8")
     assert STUDY.pages(tmp_path) == {STUDY.path: text, "tables/prices.csv": sheet}
-    assert page.PRICES.load(tmp_path) == measured
+    assert PRICES.load(tmp_path) == measured
     for row in measured.rows:
-        assert f"| {row.variant} " in text
-    assert "attitude and centre" in text
+        (line,) = [one for one in text.splitlines() if one.startswith(f"| {row.variant} ")]
+        cells = [cell.strip() for cell in line.split("|")]
+        assert cells[2:4] == [str(row.states), str(row.operations)]
     stored.write_text('{"rows": 3}', encoding="utf-8")
     with pytest.raises(ValueError, match=r"expected a list, got 3 @ rows @ .*prices\.json"):
         STUDY.pages(tmp_path)
+
+
+def test_each_rung_has_its_column(measured: PricesStudy) -> None:
+    """A variant has its ratio under each rung on which it was measured, and a dash under the others."""
+    bare, other, *_ = measured.rows
+    wide = replace(bare, rung="f128", order=40)
+    rows = (bare, replace(other, step_ratio=(2.0, 1.5, 2.5)), wide)
+    text = page.page(replace(measured, rows=rows))
+    (line,) = [one for one in text.splitlines() if one.startswith(f"| {other.variant} ")]
+    cells = [cell.strip() for cell in line.split("|")]
+    assert cells[4:6] == ["2.00 [1.50, 2.50]", NOTHING]
+    assert "The order of a step is 20 on f64, 40 on f128." in text

@@ -49,7 +49,7 @@ from taylor_verify_reports.studies.gallery import page as gallery
 from taylor_verify_reports.studies.growth import page as growth
 from taylor_verify_reports.studies.hard.document import HARD
 from taylor_verify_reports.studies.paper.pack import pack
-from taylor_verify_reports.studies.prices.page import PRICES
+from taylor_verify_reports.studies.prices.document import PRICES
 from taylor_verify_reports.studies.reference import page as reference_files
 from taylor_verify_reports.studies.site.builder import build
 from taylor_verify_reports.studies.stored import Stored

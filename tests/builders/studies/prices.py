@@ -7,7 +7,6 @@ from functools import cache
 import pytest
 
 from taylor_verify_reports.studies.prices import measure as prices
-from taylor_verify_reports.studies.prices import page as page
 from taylor_verify_reports.studies.prices.document import PricesStudy
 from taylor_verify_reports.studies.prices.variants import Variant, variants
 

@@ -39,7 +39,8 @@ class CarriedBalls(Enclosed):
     def __init__(
         self, inner: Enclosed, back: Back, regime: str, clock: Clock | None = None
     ) -> None:
-        self.regime, self.by_quadrature = regime, inner.by_quadrature
+        self.regime = regime
+        self.by_quadrature, self.by_periods = inner.by_quadrature, inner.by_periods
         self._inner, self._back, self._clock = inner, back, clock
 
     def enclose(self, elapsed: Sequence[Time], bits: int) -> Enclosure:

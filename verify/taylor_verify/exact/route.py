@@ -29,18 +29,20 @@ CLOSED_ROUTES: Final = tuple(_FUNCTIONS)
 
 
 @final
-class CheaperSolution(Solution):
-    """A closed form by quadratures, or Taylor series where its integrals are hard: both in balls.
+class QuickerSolution(Solution):
+    """A closed form with integrals, or Taylor series where the integrals are hard: both in balls.
 
-    Beside a crest of its potential a bead all but stops, and its integrals take hundreds of bits, while
-    the motion itself is as easy as any other. ``route`` is the one that answered last.
+    The closed form is asked first, whatever the span. For up to 100 instants and 100 digits of the shipped
+    scenes it takes at most 0.2 s more than Taylor series on a short span, and on a hundred spans the series
+    take twenty times as long and more. But beside a crest of its potential a bead all but stops, and
+    its integrals take hundreds of bits, while the motion itself is as easy as any other; and no integral
+    is made to more than ten thousand bits. ``route`` is the one that answered last.
     """
-
-    by_quadrature = True
 
     def __init__(self, closed: Enclosed, series: TaylorSolution) -> None:
         self._closed, self._series = closed, series
         self.regime, self.route = closed.regime, closed.route
+        self.by_quadrature = closed.by_quadrature
 
     def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:
         """The motion by the closed form at few precisions, else by few steps, else by the closed form."""
@@ -60,7 +62,9 @@ class CheaperSolution(Solution):
         raise partial
 
     def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
-        """The midpoints of the motion; series lose no digits beside another orbit, so they come first."""
+        """The midpoints of the motion; series lose no digits beside another orbit, where each costs one."""
+        if not self.by_quadrature:
+            return self.motion(elapsed, digits).quantities
         with suppress(Unsettled):
             return self._series.evaluate(elapsed, digits)
         return self._closed.evaluate(elapsed, digits)
@@ -85,8 +89,8 @@ def solution(scene: Scene, route: str | None = None) -> Solution:
         closed = _closed_form(scene, "arb")
     except NoClosedForm:
         return TaylorSolution(scene)
-    if closed.by_quadrature and isinstance(closed, Enclosed):
-        return CheaperSolution(closed, TaylorSolution(scene, _FEW_STEPS))
+    if isinstance(closed, Enclosed) and (closed.by_quadrature or closed.by_periods):
+        return QuickerSolution(closed, TaylorSolution(scene, _FEW_STEPS))
     return closed
 
 

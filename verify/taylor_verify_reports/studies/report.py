@@ -16,7 +16,7 @@ from taylor_verify_reports.studies.accuracy import quoted
 from taylor_verify_reports.studies.registry import STUDIES, others
 
 _PAGES_OF_NO_STUDY = (
-    Page("tables/traps.md", "a plain heyoka call against the driver of this suite"),
+    Page("upstream/traps.md", "a plain heyoka call against the driver of this suite"),
     Page("upstream/README.md", "what to report to heyoka's authors, each in a few lines that run"),
     Page(
         "upstream/engines/README.md",

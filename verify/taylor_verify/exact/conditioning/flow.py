@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -119,9 +120,13 @@ class Flow:
         J = self.jacobian(z) if jacobian is None else jacobian
         return applied(J + self.equations.linear, z) / 2
 
+    @cached_property
+    def _is_driven(self) -> bool:
+        return bool(self.waves.any())
+
     def load(self, clock: Floats) -> Floats:
         """The constant load, and the one that a manufactured motion takes."""
-        if not self.waves.any():
+        if not self._is_driven:
             return self.equations.constant
         z, rate = clock @ self.waves.T, clock @ self.turning.T @ self.waves.T
         constant = self.equations.constant

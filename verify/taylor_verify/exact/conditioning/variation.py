@@ -141,7 +141,7 @@ class _Arcs(NamedTuple):
     @property
     def whole(self) -> Floats:
         """All numbers of an arc in a row, (n, columns)."""
-        return np.hstack([part.reshape(len(part), prod(part.shape[1:])) for part in self])
+        return np.concatenate([part.reshape(len(part), prod(part.shape[1:])) for part in self], 1)
 
     def of(self, whole: Floats) -> _Arcs:
         """Return the arcs whose numbers, shaped as these, are in the rows of an array."""

@@ -40,9 +40,8 @@ _WHAT: Final = (
 )
 _ELSEWHERE: Final = (
     "Other pictures of this folder stand beside their numbers: speed against accuracy in "
-    "[tradeoff](../tables/tradeoff.md), the digits that each precision leaves in "
-    "[hard scenes](../tables/hard.md), drift over decades of time in [growth](../tables/growth.md), the "
-    "cost of each option in [prices](../tables/prices.md)."
+    "[tradeoff](../tables/tradeoff.md), and the digits that each precision leaves in "
+    "[hard scenes](../tables/hard.md)."
 )
 
 Document = Mapping[str, Any]

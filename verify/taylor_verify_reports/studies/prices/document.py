@@ -1,10 +1,12 @@
-"""The computing time of each option of a scene, as a multiple of that of the simplest form."""
+"""The operations of each option of a scene, and its time as a multiple of that of the simplest form."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 from taylor_verify.records.provenance import SceneProvenance
+from taylor_verify_reports.studies.stored import Stored
 
 # A median, and the ends of its interval, which are None if there were too few rounds.
 Interval = tuple[float, float | None, float | None]
@@ -12,11 +14,10 @@ Interval = tuple[float, float | None, float | None]
 
 @dataclass(frozen=True)
 class PriceRow:
-    """A variant on a rung: the size of its equations, and the cost of a step and of a unit of time.
+    """A variant on a rung: the size of its equations, and the time of a step.
 
-    ``against`` names the variant whose cost is the unit of ``step_ratio`` and ``time_ratio``. ``states``,
-    ``parameters``, ``sums``, ``products`` and ``quotients`` are numbers in one evaluation, ``order`` is
-    that of a step. ``microseconds`` is the time of a step, and ``error`` the largest relative error.
+    ``against`` names the variant whose step is the unit of ``step_ratio``. ``states``, ``sums``,
+    ``products`` and ``quotients`` are numbers in one evaluation, ``order`` is that of a step.
     """
 
     rung: str
@@ -24,38 +25,25 @@ class PriceRow:
     against: str
     what: str
     states: int
-    parameters: int
     sums: int
     products: int
     quotients: int
     order: int
-    steps_per_time: float
     step_ratio: Interval
-    time_ratio: Interval
-    microseconds: float
-    error: float | None
 
-
-@dataclass(frozen=True)
-class PriceAtEqualError:
-    """The time of a variant over that of the variant ``against`` at the same achieved error.
-
-    ``ratio`` is None if no measured tolerances enclose that error.
-    """
-
-    variant: str
-    against: str
-    ratio: float | None
+    @property
+    def operations(self) -> int:
+        """The number of operations of one evaluation."""
+        return self.sums + self.products + self.quotients
 
 
 @dataclass(frozen=True)
 class PriceMethod:
-    """The rounds by rung, the least duration of a measurement, and the error of the comparison."""
+    """The rounds by rung, and the least duration of a measurement."""
 
     rounds: dict[str, int]
     seed: int
     least_seconds: float
-    equal_error: float
 
 
 @dataclass(frozen=True)
@@ -63,6 +51,8 @@ class PricesStudy:
     """All variants on all rungs."""
 
     rows: tuple[PriceRow, ...]
-    equal: tuple[PriceAtEqualError, ...]
     method: PriceMethod
     provenance: SceneProvenance
+
+
+PRICES: Final = Stored(PricesStudy, "prices")

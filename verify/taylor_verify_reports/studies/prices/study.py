@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Final
 
 from taylor_verify_reports.studies.prices import page
-from taylor_verify_reports.studies.prices.page import PRICES
+from taylor_verify_reports.studies.prices.document import PRICES
 from taylor_verify_reports.studies.study import Measured, Progress, Study
 
 
@@ -22,7 +22,6 @@ STUDY: Final = Study(
     duration="minutes, a quiet machine",
     measure=_measure,
     find=PRICES.find,
-    page=page.page,
+    page=lambda study, folder: page.page(study),
     sheet=page.sheet,
-    draw=page.pictures,
 )

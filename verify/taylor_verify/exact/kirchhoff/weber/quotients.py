@@ -53,6 +53,7 @@ class WeberBalls(Enclosed):
     """The impulses of a motion of Weber's case in balls."""
 
     regime = REGIME
+    by_periods = True
 
     def __init__(self, curve: Curve) -> None:
         self._curve = curve
