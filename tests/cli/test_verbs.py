@@ -71,8 +71,10 @@ def test_a_broken_verb_is_named_in_one_line(
 
 @pytest.mark.usefixtures("plugged")
 def test_nobody_takes_our_verbs(capsys: pytest.CaptureFixture[str]) -> None:
-    """A verb of a name that is taken is left out, with a line, and ours answers."""
+    """A verb of a name that is taken is left out, help says so in a line, and ours answers."""
     assert main(["run", "euler/rest"]) == 0
+    with pytest.raises(SystemExit):
+        main(["--help"])
     assert "the verb run of plugged is left out" in capsys.readouterr().err
 
 

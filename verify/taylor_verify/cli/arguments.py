@@ -330,7 +330,9 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
         for line in arguments.replace("\n  ", " ").split("\n"):
             if line:
                 _add(verb, line)
-    for plugged in verbs(_VERBS):
+    first = next((word for word in words if not word.startswith("-")), "")
+    # The packages of this environment are asked for verbs only if none of ours is called: that takes time.
+    for plugged in verbs(_VERBS) if first not in _VERBS else ():
         if plugged.name in words:
             add(_verb_parser(own, plugged.name, *plugged.described()), plugged)
         elif plugged.package == _OWN_PACKAGE:

@@ -16,11 +16,13 @@ import argparse
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from functools import partial
-from importlib.metadata import EntryPoint, entry_points
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from taylor_verify.cli.answer import PASS, Answer, WrongCall
 from taylor_verify.cli.streams import say
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 GROUP: Final = "taylor_verify.verbs"
 
@@ -69,6 +71,8 @@ class Verb:
 
 def verbs(taken: Collection[str]) -> Iterator[Verb]:
     """Yield the verbs of other packages, each name once; one that is ``taken`` is named on stderr."""
+    from importlib.metadata import entry_points
+
     known = set(taken)
     for entry in sorted(entry_points(group=GROUP), key=lambda entry: entry.name):
         verb = Verb(entry)

@@ -15,7 +15,7 @@ from taylor_verify.records.reason import AskedTolerance, Cause, Reason, shown
 from taylor_verify.records.status import Status
 
 # The truth must be at least this many times narrower than the bound.
-TRUTH_SHARE = 16
+_TRUTH_SHARE = 16
 # The answer zero has an error of one, so a bound of one or more forbids nothing.
 _VACUOUS = 1.0
 _TOO_FINE = (
@@ -71,7 +71,7 @@ def judge(
         )
         reason = reason.with_remark(Cause.VACUOUS, far)
     if status is Status.UNDECIDED:
-        wide = f"the truth is wider than 1/{TRUTH_SHARE} of the bound"
+        wide = f"the truth is wider than 1/{_TRUTH_SHARE} of the bound"
         reason = reason.with_remark(Cause.WIDE_TRUTH, wide)
     return Finding(
         status=status,
@@ -98,7 +98,7 @@ def _status(errors: Errors, bounds: Floats) -> Status:
     if asked < len(bounds):
         # The samples before the floor reached the motion's size can still fail.
         return Status.VACUOUS if within[:asked].all() else Status.FAIL
-    if not (errors.widths * TRUTH_SHARE <= bounds).all():
+    if not (errors.widths * _TRUTH_SHARE <= bounds).all():
         return Status.UNDECIDED
     return Status.PASS if within.all() else Status.FAIL
 

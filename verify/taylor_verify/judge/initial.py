@@ -93,11 +93,11 @@ def _remark(quantity: str, error: float, finding: Finding, start: float) -> str:
     if not error <= finding.bound:
         return f"{_row(start)}, is not the scene's initial state: {off}"
     if finding.is_rounding or finding.tolerance is None:
-        return right_start(start)
-    return f"{right_start(start)} to within the tolerance: {off}"
+        return _right_start(start)
+    return f"{_right_start(start)} to within the tolerance: {off}"
 
 
-def right_start(start: float) -> str:
+def _right_start(start: float) -> str:
     """Return the sentence on a correct start."""
     return f"{_row(start)}, is the scene's initial state"
 

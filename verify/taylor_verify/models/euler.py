@@ -32,7 +32,7 @@ def momentum_rate(H: Terms, K: Sequence[Terms], M: Terms) -> list[Any]:
     itself the rate would be a difference of large numbers.
     """
     if all(is_absent(K[i][j]) for i in range(3) for j in range(3) if i != j):
-        return add(principal_rate(H, differences(K)), M)
+        return add(_principal_rate(H, differences(K)), M)
     # K - K33 1 is again a symmetric tensor: the body without a spherical part.
     deviation = [
         [minus(K[i][j], K[2][2]) if i == j else K[i][j] for j in range(3)] for i in range(3)
@@ -47,7 +47,7 @@ def differences(K: Sequence[Terms]) -> list[Any]:
     return [minus(k3, k2), minus(k1, k3), minus(k2, k1)]
 
 
-def principal_rate(H: Terms, D: Terms, summed: int | None = None) -> list[Any]:
+def _principal_rate(H: Terms, D: Terms, summed: int | None = None) -> list[Any]:
     """Return H x K H in principal axes, with three products of the state instead of six.
 
     The difference at the index ``summed``, if there is one, is minus the sum of the two others.
@@ -72,10 +72,10 @@ def turning(H: Terms, deviation: Sequence[Terms]) -> list[Any]:
 
 def euler_equations(n: Named) -> dict[str, Any]:
     """Return H' = H x K H + M, and the rate of the attitude where it is tracked."""
-    return with_frame(n, momentum_rate(n.vector("H"), n.symmetric("K"), n.vector("M")))
+    return _with_frame(n, momentum_rate(n.vector("H"), n.symmetric("K"), n.vector("M")))
 
 
-def with_frame(n: Named, H_rate: list[Any]) -> dict[str, Any]:
+def _with_frame(n: Named, H_rate: list[Any]) -> dict[str, Any]:
     """Return the rates of H, and that of the attitude where it is tracked."""
     omega = angular_velocity(n.vector("H"), n.symmetric("K"))
     return labelled("H", H_rate) | frame_rates(n, omega, U=None)
@@ -96,7 +96,7 @@ class PrincipalEuler:
         for i in self.formed:
             D[i - 1] = differences(K)[i - 1]
         place = None if self.summed is None else self.summed - 1
-        return with_frame(n, add(principal_rate(H, D, place), n.vector("M")))
+        return _with_frame(n, add(_principal_rate(H, D, place), n.vector("M")))
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ class TensorEuler:
         for i in (1, 2):
             difference = minus(K[i - 1][i - 1], K[2][2]) if i in self.formed else n[f"D{i}{i}"]
             deviation[i - 1][i - 1] = difference
-        return with_frame(n, add(turning(H, deviation), n.vector("M")))
+        return _with_frame(n, add(turning(H, deviation), n.vector("M")))
 
 
 # The form of the text.

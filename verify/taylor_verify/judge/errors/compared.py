@@ -31,7 +31,7 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 Shifts = tuple[Fraction, ...]
 
 # A sum of a dozen products of float64 has a rounding error of up to this part of its terms.
-FLOAT_NOISE: Final = 2.0**-48
+_FLOAT_NOISE: Final = 2.0**-48
 # Many shifts are tested on a few samples, to a few digits.
 _SEARCH_SAMPLES: Final = 16
 _SEARCH_DIGITS: Final = 15
@@ -97,7 +97,7 @@ class Shifted:
     def neglects(self, step: Floats) -> float:
         """Return the effect of a further shift that first order neglects, in ``size``."""
         bend = np.linalg.norm(self.acceleration, axis=1) * step**2 * self.size / 2
-        noise = FLOAT_NOISE * np.linalg.norm(self.velocity, axis=1) * np.abs(step)
+        noise = _FLOAT_NOISE * np.linalg.norm(self.velocity, axis=1) * np.abs(step)
         return float(np.max(bend + noise))
 
     def moved(self, step: Floats) -> Shifts:

@@ -17,16 +17,16 @@ import numpy as np
 from taylor_verify.judge.errors.compared import Compared, Floats, Shifted
 
 # The neglected part must be at most this part of the remaining error.
-NEGLIGIBLE: Final = 1 / 16
+_NEGLIGIBLE: Final = 1 / 16
 # A sample at which the motion is slower than this part of its fastest speed shows no time.
-AT_REST: Final = 1e-3
+_AT_REST: Final = 1e-3
 # Convergence is quadratic: 2^-4 becomes 2^-237 in six evaluations; the others serve a poor start.
 _EVALUATIONS: Final = 10
 _HALVINGS: Final = 3
 # The iteration ends if an evaluation leaves more than this part of the error before it.
 _PROGRESS: Final = 0.9
 # Beyond this error (relative, or radians) first order may have the wrong direction.
-FAR: Final = 0.1
+_FAR: Final = 0.1
 # The search: this many steps of half a radian of the fastest turn, in each direction.
 _SEARCH_STEPS: Final = 16
 _SEARCH_STEP: Final = 0.5
@@ -57,7 +57,7 @@ def single(fit: Shifted, times: Floats) -> Floats:
 
 def moving(fit: Shifted) -> np.ndarray[Any, np.dtype[np.bool_]]:
     """Return True for the samples at which the motion is fast enough to show the time."""
-    return fit.weight > AT_REST**2 * np.max(fit.weight)
+    return fit.weight > _AT_REST**2 * np.max(fit.weight)
 
 
 def fitted(compared: Compared, fit: Shifted, course: Course) -> Shifted:
@@ -89,7 +89,7 @@ def _by_first_order(compared: Compared, fit: Shifted, step: Floats) -> Shifted |
     """Return the fit after a further shift, or None where first order neglects too much of it."""
     better = fit.with_first_order(step)
     left = max(float(np.max(np.abs(better.error))), compared.doubt / fit.size)
-    return better if fit.neglects(fit.more + step) <= NEGLIGIBLE * left else None
+    return better if fit.neglects(fit.more + step) <= _NEGLIGIBLE * left else None
 
 
 def _closer(compared: Compared, fit: Shifted, step: Floats) -> Shifted | None:
@@ -107,7 +107,7 @@ def best_start(compared: Compared, fit: Shifted, course: Course) -> Shifted:
     For a periodic motion many shifts are equally good. The smallest shift is taken among those whose
     error equals the least, up to the error that half the distance between two of them can cause.
     """
-    is_far = np.max(np.abs(fit.error)) * fit.size > FAR
+    is_far = np.max(np.abs(fit.error)) * fit.size > _FAR
     if not is_far or not fit.rate:
         return fit
     times = compared.run.times

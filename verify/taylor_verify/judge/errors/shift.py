@@ -32,13 +32,13 @@ Places = np.ndarray[Any, np.dtype[np.bool_]]
 # along its orbit, by about as much as across it, so removing a half or two thirds proves nothing.
 LEAVES: Final = 0.1
 # At most this part of the samples, and at least one, may be without the shift that the others share;
-STRAYS: Final = 0.1
+_STRAYS: Final = 0.1
 # a shift explains nothing if fewer samples than this share it.
-FEWEST: Final = 3
+_FEWEST: Final = 3
 # A stray is this many times further off than the median sample.
-UNUSUAL: Final = 10.0
+_UNUSUAL: Final = 10.0
 # The Theil-Sen line uses all pairs of at most this many samples.
-MOST_PAIRED: Final = 201
+_MOST_PAIRED: Final = 201
 # The square of this is still a double. No shift of time causes larger errors or NaN.
 _LARGEST_ERROR: Final = 2**500
 
@@ -200,7 +200,7 @@ class _Fits:
 def _without_strays(compared: Compared, single: Shifted) -> Iterator[_Fits]:
     """Yield the fits of the samples that share a robust course, constant or linear in t."""
     moving = courses.moving(single)
-    if np.count_nonzero(moving) < FEWEST:
+    if np.count_nonzero(moving) < _FEWEST:
         return
     for robust in (_median, _theil_sen):
         course = robust(single.shift, moving, np.array(compared.run.instants))
@@ -224,10 +224,10 @@ def strays_from(course: Floats, shifts: Floats, speed: Floats, across: Floats) -
     error that a unit shift causes.
     """
     off = np.hypot((shifts - course) * speed, across)
-    is_off = (off > LEAVES * np.abs(course) * speed) & (off > UNUSUAL * np.median(off))
+    is_off = (off > LEAVES * np.abs(course) * speed) & (off > _UNUSUAL * np.median(off))
     strays = tuple(int(k) for k in np.flatnonzero(is_off))
-    few = max(1, int(STRAYS * len(off)))
-    return strays if len(strays) <= min(few, len(off) - FEWEST) else ()
+    few = max(1, int(_STRAYS * len(off)))
+    return strays if len(strays) <= min(few, len(off) - _FEWEST) else ()
 
 
 def _median(shifts: Floats, moving: Places, times: Floats) -> Floats:
@@ -237,7 +237,7 @@ def _median(shifts: Floats, moving: Places, times: Floats) -> Floats:
 def _theil_sen(shifts: Floats, moving: Places, times: Floats) -> Floats:
     """Return the line whose slope is the median slope between all pairs of samples."""
     places = np.flatnonzero(moving)
-    chosen = places[evenly(len(places), MOST_PAIRED)]
+    chosen = places[evenly(len(places), _MOST_PAIRED)]
     first, second = np.triu_indices(len(chosen), 1)
     t, c = times[chosen], shifts[chosen]
     gaps = t[second] - t[first]

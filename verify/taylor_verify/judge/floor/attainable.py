@@ -43,7 +43,7 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # The gradient of a conserved quantity is as smooth as the motion: more nodes than this do not change two
 # digits of the sum over the steps.
-MOST_NODES = 41
+_MOST_NODES = 41
 # Below this floor the rounding of the scene's data does not change the orbit's condition noticeably.
 _SAME_ORBIT = 1e-3
 # A length is written in full if six digits show that it is not 1.
@@ -81,7 +81,7 @@ class Floor:
     @property
     def nodes(self) -> list[int]:
         """Samples at which the gradients of conserved quantities are evaluated."""
-        return evenly(len(self.times), MOST_NODES)
+        return evenly(len(self.times), _MOST_NODES)
 
     def of_gradients(self, invariant: Invariant, at_nodes: Motion, scale: Any) -> Floats:
         """Return the attainable drift at every sample, over the ``scale`` of the invariant.
@@ -240,7 +240,7 @@ def looked_at(scene: Scene) -> list[int]:
 @lru_cache(maxsize=8)
 def condition(scene: Scene) -> Path:
     """Return the transition matrices along the scene's orbit, between evenly chosen samples."""
-    return transition(scene, chosen(scene.clock.elapsed, MOST_NODES))
+    return transition(scene, chosen(scene.clock.elapsed, _MOST_NODES))
 
 
 def _steps_at(elapsed: Sequence[Fraction], steps: int) -> Floats:

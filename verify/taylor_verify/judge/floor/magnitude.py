@@ -41,9 +41,9 @@ from taylor_verify.scenes.scene import Scene
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # Root mean square of the components of a unit quaternion.
-COMPONENT: Final = 0.5
+_COMPONENT: Final = 0.5
 # A change of a unit quaternion turns the frame by twice as much, in radians.
-ANGLE: Final = 2.0
+_ANGLE: Final = 2.0
 # The largest size of a cosine or sine.
 _WAVE: Final = np.ones(1)
 _QUATERNION: Final = ("e0", "e1", "e2", "e3")
@@ -105,7 +105,7 @@ def roundings(given: Scene, path: Path, bits: int, steps: int, velocities: bool 
     columns = []
     for block in path.blocks:
         if block == "attitude":
-            turn = ANGLE * np.sqrt(sum(rounded[name] ** 2 for name in _QUATERNION))
+            turn = _ANGLE * np.sqrt(sum(rounded[name] ** 2 for name in _QUATERNION))
             columns += [turn / np.sqrt(3.0)] * 3
         else:
             unit = float(_unit(problem, block) / path.units[block])
@@ -142,7 +142,7 @@ def _sizes(problem: Problem, path: Path) -> dict[str, Floats]:
         rows = np.abs(path.momentum[:, 3 * k : 3 * k + 3]) * unit
         sizes |= dict(zip(_COMPONENTS[block], rows.T, strict=True))
     if "attitude" in path.blocks:
-        sizes |= {name: np.full(len(path.elapsed), COMPONENT) for name in _QUATERNION}
+        sizes |= {name: np.full(len(path.elapsed), _COMPONENT) for name in _QUATERNION}
     if "centre" in path.blocks:
         length = problem.units.centre
         start = np.array([float(c / length) for c in problem.given.initial.parts()["centre"]])

@@ -82,7 +82,7 @@ class Ensemble:
         self._numbers = arithmetic(rung)
         self._linearised = [Linearised(problem) for problem in problems]
         width = batch_width(rung)
-        first = stepper(form, rung, tolerance, width)
+        first = _stepper(form, rung, tolerance, width)
         lanes = range(len(problems))
         self._groups = [lanes[i : i + width] for i in lanes[::width]]
         # They share their code; each has a state of its own, for they run at the same time.
@@ -234,7 +234,7 @@ def _check(problems: Sequence[Problem], tolerance: Fraction | None) -> None:
 
 
 @lru_cache(maxsize=32)
-def stepper(form: Form, rung: Rung, tolerance: Fraction | None, width: int) -> Any:
+def _stepper(form: Form, rung: Rung, tolerance: Fraction | None, width: int) -> Any:
     """Return one compiled integrator of so many lanes."""
     if width == 1:
         return compiled(form, rung, tolerance, pays(form, rung))

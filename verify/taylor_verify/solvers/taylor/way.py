@@ -28,12 +28,12 @@ _LONGEST_STEP, _LONGEST_OF_HIGH_ORDER, _HIGH_ORDER = 0.5, 1.0, 40
 # heyoka is called once, since each call cuts a step short. If the rate, looked at afterwards, says that a
 # step was longer than this factor allows, the way is gone again with looks so many radians apart, no more
 # and no less often than this: a call leads from each to the next, and the fastest rate so far counts.
-SLACK: Final = 1.25
+_SLACK: Final = 1.25
 # Steps of which the longest is shorter than this part of the cap were not cut to it.
-UNCUT: Final = 0.9
+_UNCUT: Final = 0.9
 _RADIANS_APART: Final = 4
 _FEWEST_LOOKS, _MOST_LOOKS = 4, 24
-ROWS_LOOKED_AT: Final = 16
+_ROWS_LOOKED_AT: Final = 16
 # After so many looks at one way its bound is compiled, which takes as long as some thousand looks.
 FEW_LOOKS: Final = 10
 # A regular orbit takes three to five steps in the time of one radian, a close passage some more. Beyond
@@ -154,14 +154,14 @@ class Way:
             outcome = Outcome.NON_FINITE
         # Steps that were cut to the cap are left out of heyoka's longest.
         step = float(uncut)
-        longest = step if 0 < step < UNCUT * cap else cap
+        longest = step if 0 < step < _UNCUT * cap else cap
         return Ran(outcome, rows, longest, int(steps), seconds)
 
     def _was_too_fast(self, ran: Ran, rate: float) -> bool:
         """Return True where the rate has grown, and steps were too long for it or ran out for it."""
-        some = ran.rows[:: -ceil(len(ran.rows) / ROWS_LOOKED_AT)]
+        some = ran.rows[:: -ceil(len(ran.rows) / _ROWS_LOOKED_AT)]
         if ran.outcome is Outcome.FINISHED:
-            return not self._is_within(some, SLACK * self._longest / ran.longest)
+            return not self._is_within(some, _SLACK * self._longest / ran.longest)
         return self._linearised.fastest(some) > rate
 
     def _is_within(self, states: Rows, rate: float) -> bool:
