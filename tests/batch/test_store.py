@@ -297,7 +297,7 @@ def test_an_interrupted_run_goes_on_where_it_was(tmp_path: Path) -> None:
             raise
     if working.returncode == 0:
         pytest.skip("the run was over before it could be interrupted")
-    assert working.returncode == 130
+    assert working.returncode == 130, error
     assert out == ""
     assert "of 4 scenes are finished and kept, no report is written" in error or (
         error == "taylor-verify: interrupted\n"

@@ -36,6 +36,11 @@ def rows(folder: Path) -> list[dict[str, Any]]:
     return table
 
 
+def parts(folder: Path) -> dict[str, bytes]:
+    """Return the bytes of every part of a dataset, by name."""
+    return {file.name: file.read_bytes() for file in sorted((folder / "verdicts").glob("*"))}
+
+
 def swept(template: str, out: Path, **options: Any) -> SweepSummary:
     """Return the summary of a sweep of ten points in this process, unless options say otherwise."""
     asked: dict[str, Any] = {"count": 10, "solver": SOLVER, "jobs": 1, **options}

@@ -51,7 +51,7 @@ def shipped() -> Scene:
 
 
 # Every start, the bodies by turns; the other pairs are slow.
-PAIRS = by_turns(0)
+PAIRS = by_turns()
 
 
 @pytest.mark.parametrize(("body", "start"), PAIRS)

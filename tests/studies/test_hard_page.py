@@ -22,6 +22,7 @@ from builders.studies.hard import (
     WHY,
     row,
     study,
+    worst_of,
 )
 from builders.studies.stored import publish_document
 from builders.verdicts import passed
@@ -35,13 +36,14 @@ from taylor_verify.plotting.style import PAGE_WIDTH
 from taylor_verify.records import store
 from taylor_verify.records.status import Status
 from taylor_verify.records.store import write
+from taylor_verify.scenes import library
 from taylor_verify.words.cells import NOTHING
 from taylor_verify.words.page import MADE_BY
+from taylor_verify_reports.studies.hard import measure, reach, search
 from taylor_verify_reports.studies.hard import page as pages
 from taylor_verify_reports.studies.hard import picture as diagram
-from taylor_verify_reports.studies.hard import reach, search
-from taylor_verify_reports.studies.hard.document import HARD, last_value, most_periods
-from taylor_verify_reports.studies.hard.study import STUDY
+from taylor_verify_reports.studies.hard.document import HARD, last_value
+from taylor_verify_reports.studies.hard.study import STUDY, store_scenes
 from taylor_verify_reports.studies.report import publish
 
 
@@ -83,15 +85,6 @@ def test_a_row_that_was_compared_with_nothing_is_no_mismatch(tmp_path: Path) -> 
     (verdict,) = HARD.load(tmp_path).verdicts
     assert verdict.expected is None
     assert verdict.is_met
-
-
-def test_rows_that_are_none_are_refused(tmp_path: Path) -> None:
-    """A file with something else in it is a ValueError that names the file."""
-    file = tmp_path / HARD.name
-    file.parent.mkdir()
-    file.write_text('{"verdicts": [{"scene": "a"}], "versions": {}}', encoding="utf-8")
-    with pytest.raises(ValueError, match=r"expected a key .*hard\.json"):
-        STUDY.pages(tmp_path)
 
 
 def test_publish_remakes_it_from_the_data_alone(tmp_path: Path) -> None:
@@ -229,54 +222,29 @@ def test_the_worst_family_stands_first(tmp_path: Path, page: str) -> None:
 
 
 def test_a_search_replaces_the_stored_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """`publish hard --runs` stores the new worst rows, and the scenes beside the shipped ones."""
-    from builders.studies.hard import worst_of
-
-    from taylor_verify.scenes import library
-    from taylor_verify_reports.studies.hard import measure
-
-    cases, asked = tmp_path / "cases", []
+    """`publish hard --runs` stores the new worst rows, and its scenes in place of the shipped ones."""
+    shipped, asked = tmp_path / "cases" / library.WORST, []
 
     def searched(runs: int, seed: int, finished: Callable[[str], None]) -> list[Any]:
         asked.append((runs, seed))
         return [worst_of("euler-c", 4.5)]
 
-    nothing = SimpleNamespace(exit_status=0)
+    store_scenes(shipped, {"euler-old": "1\n"})
     monkeypatch.setattr(search, "search_all", searched)
-    monkeypatch.setattr(library, "cases_directory", lambda: cases)
-    monkeypatch.setattr(measure, "extremes", lambda progress: nothing)
+    monkeypatch.setattr(library, "cases_directory", lambda: tmp_path / "cases")
+    monkeypatch.setattr(measure, "extremes", lambda progress: SimpleNamespace(exit_status=0))
     monkeypatch.setattr(measure, "study", lambda results, rows: study(mismatches=()))
     monkeypatch.setattr(reach, "measure", lambda finished: ())
-    place = tmp_path / "out"
-    assert main(["publish", "hard", "--runs", "40", "--seed", "2", "--from", str(place)]) == 0
-    stored = HARD.load(place)
-    assert asked == [(40, 2)]
-    assert [one.name for one in stored.worst] == ["euler-c"]
+    assert main(["publish", "hard", "--runs", "40", "--seed", "2", "--from", str(tmp_path)]) == 0
+    stored = HARD.load(tmp_path)
     assert stored.search is not None
-    assert (stored.search.runs, stored.search.seed) == (40, 2)
-    text = (cases / library.WORST / "euler-c.toml").read_text(encoding="utf-8")
-    assert text == worst_of("euler-c", 4.5).scene_text
+    assert asked == [(40, 2)] == [(stored.search.runs, stored.search.seed)]
+    assert [one.name for one in stored.worst] == ["euler-c"]
+    texts = {file.name: file.read_text(encoding="utf-8") for file in shipped.iterdir()}
+    assert texts == {"euler-c.toml": worst_of("euler-c", 4.5).scene_text}
 
 
 # The reach
-
-
-def of_rung(name: str) -> list[Any]:
-    return [one for one in REACH if one.rung == name]
-
-
-def test_the_last_value_and_the_most_periods() -> None:
-    """An error of exactly 10^-n leaves n digits; a value behind one that fails does not count."""
-    f32, f64 = of_rung("f32"), of_rung("f64")
-    assert last_value(f32, 1, 6) == "1e-1"
-    assert last_value(f32, 1, 3) == "1e-2"
-    assert last_value(f32, 10, 3) == "1e-1"
-    assert last_value(f64, 10, 12) == "1e-1"
-    assert last_value(f64, 1, 12) == "1e-3"
-    assert most_periods(f32[0], 12) is None
-    assert most_periods(f32[2], 3) is None
-    assert most_periods(f64[1], 6) == 100
-    assert most_periods(f64[2], 12) == 1
 
 
 ERRORS = st.lists(st.floats(0, 10) | st.sampled_from([None, nan, 1e-3, 1e-6, 1e-12]), min_size=3)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 
 import pytest
 from builders.studies.hard import searched_family, verdict, worst_of
@@ -20,7 +19,6 @@ from taylor_verify.scenes.families.library import family
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify_reports.studies.hard import search as hunt
 from taylor_verify_reports.studies.hard.search import SEARCHED, Candidate, search
-from taylor_verify_reports.studies.hard.study import store_scenes
 from taylor_verify_reports.studies.study import NotMeasured
 
 STORED = library.names(library.WORST)
@@ -138,15 +136,6 @@ def test_scene_file_says_why_it_is_there() -> None:
     assert text.startswith("# Why: of things")
     assert "3.25 in omega" in text
     assert text.endswith('title = "0.25"\n')
-
-
-def test_old_scenes_make_room(tmp_path: Path) -> None:
-    """Scenes of an earlier search are removed when a new one has ended."""
-    store_scenes(tmp_path, {"one": "1\n", "two": "2\n"})
-    store_scenes(tmp_path, {"two": "3\n"})
-    assert {p.name: p.read_text(encoding="utf-8") for p in tmp_path.iterdir()} == {
-        "two.toml": "3\n"
-    }
 
 
 def test_a_wrong_budget_is_refused(capsys: pytest.CaptureFixture[str]) -> None:

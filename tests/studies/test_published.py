@@ -85,7 +85,7 @@ def is_bulk(path: str) -> bool:
 
 @cache
 def verdicts() -> tuple[Verdict, ...]:
-    return report.load(REPORTS)
+    return store.load(REPORTS)
 
 
 def text_of(path: str) -> str:

@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 import taylor_verify
 from taylor_verify.cli import main
 from taylor_verify.models.problem import Problem
+from taylor_verify.records import store
 from taylor_verify.records.standing import Standing
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
@@ -27,7 +28,6 @@ from taylor_verify.tradeoff.cold import in_a_new_process
 from taylor_verify.tradeoff.document import TradePoint
 from taylor_verify.tradeoff.order_statistics import CONFIDENCE, coverage, estimate, place
 from taylor_verify.tradeoff.setting import setting as real_setting
-from taylor_verify_reports.studies import report
 from taylor_verify_reports.studies.tradeoff import measurement, rounds
 from taylor_verify_reports.studies.tradeoff.measurement import (
     PROCESSES,
@@ -320,7 +320,7 @@ def test_the_verb_writes_data_and_page(
     page = tmp_path / "tables" / "tradeoff.md"
     before = page.read_text(encoding="utf-8")
     page.unlink()
-    report.write(tmp_path, taylor_verify.run("euler/rest").verdicts, [])
+    store.write(tmp_path, taylor_verify.run("euler/rest").verdicts, [])
     assert main(["publish", "--from", str(tmp_path)]) == 0
     assert page.read_text(encoding="utf-8") == before
     assert "tables/tradeoff.md" in (tmp_path / "README.md").read_text(encoding="utf-8")

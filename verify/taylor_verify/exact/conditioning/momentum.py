@@ -40,7 +40,7 @@ def momentum(scene: Scene) -> Momentum:
 
 
 def _block_units(z: Vector, energy: Matrix) -> Vector:
-    """For each component of a momentum, a power of two near the size of its block.
+    """Powers of two near the size of the block of each component of a momentum.
 
     A block that is zero takes the size that would hold the kinetic energy, 2T = z . energy z; 1 in a body
     at rest.

@@ -10,13 +10,11 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.records.json_text import complete
 from taylor_verify.records.status import Status
 from taylor_verify.words.cells import NOTHING, figure, judged
 from taylor_verify.words.markdown import bold, bullets, code, prose
 from taylor_verify.words.page import made_on, whole
-from taylor_verify.words.sheet import sheet as csv_sheet
-from taylor_verify_reports.studies.columns import Columns, lay_out
+from taylor_verify_reports.studies.columns import Columns, csv_sheet, lay_out
 from taylor_verify_reports.studies.growth.document import (
     EXACT,
     Ensemble,
@@ -174,33 +172,32 @@ def _name(run: Ensemble) -> str:
 # The sheet.
 
 
-_SHEET: Final = (
-    *("scene", "solver", "rung", "quantity", "starts", "lost", "period"),
-    *("periods_first", "periods_last", "steps_last", "rms_first", "rms_last", "in_walks"),
-    *("exponent", "low", "high", "word", "late", "late_low", "late_high", "late_word", "level"),
-    *("gate", "law", "chance", "false_alarm", "scene_sha256"),
-)
-
-
 def sheet(study: GrowthStudy) -> str:
     """Return a CSV row for every quantity of every ensemble: its exponent with interval, and its gate."""
-    return csv_sheet(_SHEET, (_grown(run, row) for run in study.runs for row in run.quantities))
+    return csv_sheet(_grown(run, row) for run in study.runs for row in run.quantities)
 
 
 def _grown(run: Ensemble, row: GrowthOfQuantity) -> dict[str, Any]:
     late, late_low, late_high = row.late
     return {
-        **complete(run),
-        **complete(row),
+        "scene": run.scene,
+        "solver": run.solver,
+        "rung": run.rung,
+        "quantity": row.quantity,
         "starts": run.lanes,
+        "lost": run.lost,
+        "period": run.period,
         "periods_first": run.counts[0],
         "periods_last": run.counts[-1],
         "steps_last": run.steps[-1],
         "rms_first": row.rms[0],
         "rms_last": row.rms[-1],
+        **{name: getattr(row, name) for name in ("in_walks", "exponent", "low", "high", "word")},
         "late": late,
         "late_low": late_low,
         "late_high": late_high,
+        "late_word": row.late_word,
+        "level": row.level,
         "gate": row.gate.verdict.value if row.gate else None,
         **{name: getattr(row.gate, name, None) for name in ("law", "chance", "false_alarm")},
         "scene_sha256": run.digest,

@@ -21,9 +21,8 @@ from taylor_verify.report import csv_tables as sheets
 from taylor_verify.words.cells import NOTHING, figure, judged, peak, reason, word, worst_ratio
 from taylor_verify.words.markdown import bold, bullets, code, prose
 from taylor_verify.words.page import counts, roundoffs, traced, whole
-from taylor_verify.words.sheet import sheet as csv_sheet
 from taylor_verify_reports.studies import figures
-from taylor_verify_reports.studies.columns import Columns, lay_out
+from taylor_verify_reports.studies.columns import Columns, csv_sheet, lay_out
 from taylor_verify_reports.studies.hard.document import (
     ACHIEVED,
     ATTAINABLE,
@@ -100,7 +99,7 @@ def page(study: HardStudy, folder: Path) -> str:
         "## No pass, and why",
         _not_passed(study),
         _left_out(study),
-        *_found(study),
+        *_worst(study),
         *_reached(study, folder),
         "## To remake this",
         "`taylor-verify publish hard` runs all scenes on float64, follows the families on every rung, and "
@@ -200,7 +199,7 @@ _FAMILY: Final[Columns[WorstOfFamily]] = (
 )
 
 
-def _found(study: HardStudy) -> list[str]:
+def _worst(study: HardStudy) -> list[str]:
     search: Search | None = study.search
     if search is None or not study.worst:
         return []
@@ -309,22 +308,24 @@ def sheet(study: HardStudy) -> str:
     return sheets.gates(study.verdicts, expected, without=("because", "scene_sha256"))
 
 
-_OF_RUN: Final = ("family", "value", "rung", "steps", "why")
-_OF_PERIODS: Final = ("periods", "error", "attainable", "lost")
-
-
 def reach_sheet(study: HardStudy) -> str:
     """Return a CSV row for every number of periods, or one with the reason if nothing was run."""
-    lines = (line for row in study.reach for line in _periods(row))
-    return csv_sheet((*_OF_RUN[:3], *_OF_PERIODS, *_OF_RUN[3:]), lines)
+    return csv_sheet(line for row in study.reach for line in _periods(row))
 
 
 def _periods(row: ReachRow) -> Iterator[dict[str, Any]]:
     """Yield the rows of a run. A missing error means that the motion was lost."""
-    own = {name: getattr(row, name) for name in _OF_RUN}
-    if not row.errors:
-        yield own
-        return
-    for periods, error, floor in zip_longest(row.periods, row.errors, row.floors):
+    periods = row.periods if row.errors else (None,)
+    for count, error, floor in zip_longest(periods, row.errors, row.floors):
         lost = "yes" if error is None else "no"
-        yield {**own, **dict(zip(_OF_PERIODS, (periods, error, floor, lost), strict=True))}
+        yield {
+            "family": row.family,
+            "value": row.value,
+            "rung": row.rung,
+            "periods": count,
+            "error": error,
+            "attainable": floor,
+            "lost": lost if row.errors else None,
+            "steps": row.steps,
+            "why": row.why,
+        }

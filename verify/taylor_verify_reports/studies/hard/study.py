@@ -31,16 +31,16 @@ def _measure(folder: Path, progress: Progress, runs: int = 0, seed: int = 1) -> 
         from taylor_verify.scenes.library import WORST, cases_directory
         from taylor_verify_reports.studies.hard.search import SEARCHED, search_all
 
-        found = search_all(runs, seed, progress.counting(len(SEARCHED)))
-        search, worst = measure.searched(runs, seed), tuple(one.row() for one in found)
-        texts = {one.family.name: one.scene_text for one in found}
+        results = search_all(runs, seed, progress.counting(len(SEARCHED)))
+        search, worst = measure.searched(runs, seed), tuple(one.row() for one in results)
+        texts = {one.family.name: one.scene_text for one in results}
         shipped = store_scenes(cases_directory() / WORST, texts)
     with progress.jobs() as job_progress:
-        results = measure.extremes(job_progress)
+        judgements = measure.extremes(job_progress)
     rows = reach.measure(progress.counting(len(reach.members())))
-    study = replace(measure.study(results, rows), search=search, worst=worst)
+    study = replace(measure.study(judgements, rows), search=search, worst=worst)
     written = [*HARD.write(folder, study), *shipped]
-    return Measured(written, study.mismatches, results.exit_status)
+    return Measured(written, study.mismatches, judgements.exit_status)
 
 
 def store_scenes(folder: Path, scenes: Mapping[str, str]) -> list[Path]:

@@ -10,8 +10,7 @@ from taylor_verify.records.json_text import complete
 from taylor_verify.words.cells import NOTHING, figure
 from taylor_verify.words.markdown import bullets, prose
 from taylor_verify.words.page import made_on, whole
-from taylor_verify.words.sheet import sheet as csv_sheet
-from taylor_verify_reports.studies.columns import Columns, lay_out
+from taylor_verify_reports.studies.columns import Columns, csv_sheet, lay_out
 from taylor_verify_reports.studies.prices.document import PRICES, PriceRow, PricesStudy
 
 # The models by the variant of their simplest form.
@@ -105,17 +104,12 @@ def _method(study: PricesStudy) -> list[str]:
 # The sheet.
 
 
-_SHEET: Final = (
-    *("rung", "variant", "against", "states", "sums", "products", "quotients", "order"),
-    *("step_ratio", "step_low", "step_high", "what"),
-)
-
-
 def sheet(study: PricesStudy) -> str:
     """Return a CSV row for every variant and rung."""
-    return csv_sheet(_SHEET, map(_priced, study.rows))
+    return csv_sheet(map(_priced, study.rows))
 
 
 def _priced(row: PriceRow) -> dict[str, Any]:
     median, low, high = row.step_ratio
-    return {**complete(row), "step_ratio": median, "step_low": low, "step_high": high}
+    ratio = {"step_ratio": median, "step_low": low, "step_high": high}
+    return {**complete(row), **ratio}
