@@ -1,1 +1,1 @@
-"""What a run leaves in a folder: tables and a front page made of its verdicts."""
+"""Tables and a front page that a run leaves in a folder, made of its verdicts."""

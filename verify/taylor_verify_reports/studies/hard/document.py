@@ -20,31 +20,13 @@ from taylor_verify_reports.studies.stored import Stored
 
 @dataclass(frozen=True)
 class Expected:
-    """An expected verdict, and the reason for it unless it is a pass."""
+    """The verdict that is expected of a row of a scene other than a pass, and the reason."""
 
+    scene: str
+    rung: str
+    quantity: str
     verdict: Status
     why: str
-
-
-@dataclass(frozen=True)
-class ExtremeVerdict(Verdict):
-    """A verdict beside the expected one; None if nothing is expected of this row."""
-
-    expected: Expected | None = None
-
-    @property
-    def is_met(self) -> bool:
-        """True unless the verdict differs from the expected one."""
-        return self.expected is None or self.expected.verdict is self.verdict
-
-    @classmethod
-    def of(cls, verdict: Verdict, expected: Expected | None) -> ExtremeVerdict:
-        """Return a verdict with the expected one."""
-        return cls(**vars(verdict), expected=expected)
-
-    def row(self) -> dict[str, Any]:
-        """Return the row as JSON holds it."""
-        return {**super().row(), "expected": complete(self.expected)}
 
 
 @dataclass(frozen=True)
@@ -133,10 +115,11 @@ class HardStudy:
     machine: Machine
     scenes: tuple[Titled, ...]
     left_out: tuple[LeftOut, ...]
+    expected: tuple[Expected, ...]
     mismatches: tuple[str, ...]
     families: tuple[ReachFamily, ...]
     reach: tuple[ReachRow, ...]
-    verdicts: tuple[ExtremeVerdict, ...]
+    verdicts: tuple[Verdict, ...]
     search: Search | None = None
     worst: tuple[WorstOfFamily, ...] = field(default=())
 
@@ -144,6 +127,21 @@ class HardStudy:
     def titles(self) -> dict[str, str]:
         """The title of each scene."""
         return {titled.scene: titled.title for titled in self.scenes}
+
+    @cached_property
+    def _expected(self) -> dict[tuple[str, str, str], Expected]:
+        return {(row.scene, row.rung, row.quantity): row for row in self.expected}
+
+    def expectation(self, verdict: Verdict) -> Expected | None:
+        """Return what is expected of a row; None if that is a pass, or nothing."""
+        return self._expected.get((verdict.scene, verdict.rung, verdict.quantity))
+
+    def is_met(self, verdict: Verdict) -> bool:
+        """Return True for a row that is as expected, and for one that this machine could not run."""
+        wanted = self.expectation(verdict)
+        if wanted is None:
+            return verdict.verdict in (Status.PASS, Status.UNAVAILABLE)
+        return wanted.verdict is verdict.verdict
 
     def reach_of(self, family: str, rung: str) -> list[ReachRow]:
         """Return the rows of a family on a rung, the easiest value first."""

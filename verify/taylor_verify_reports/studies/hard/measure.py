@@ -15,7 +15,6 @@ from taylor_verify.records.status import Status
 from taylor_verify.scenes.library import EXTREMES
 from taylor_verify_reports.studies.hard.document import (
     Expected,
-    ExtremeVerdict,
     HardStudy,
     ReachRow,
     Search,
@@ -40,18 +39,21 @@ def study(results: Judgements, reach: Iterable[ReachRow] = ()) -> HardStudy:
     Raises ValueError for verdicts of different versions.
     """
     agreement, verdicts = results.agreement, results.verdicts
-    expected = {row: Expected(Status(e.verdict), e.why) for row, e in agreement.expected.items()}
+    expected = (
+        Expected(*row, Status(wanted.verdict), wanted.why)
+        for row, wanted in agreement.expected.items()
+        if wanted.verdict != Status.PASS
+    )
     return HardStudy(
         versions=store.versions(verdicts),
         machine=Machine(**store.machine(verdicts[0])) if verdicts else Machine(),
         scenes=tuple(Titled(scene.name, scene.title) for scene in results.selection.scenes_run),
         left_out=results.left_out,
+        expected=tuple(expected),
         mismatches=tuple(str(mismatch) for mismatch in agreement.mismatches),
         families=tuple(family.described() for family in FOLLOWED),
         reach=tuple(reach),
-        verdicts=tuple(
-            ExtremeVerdict.of(v, expected.get((v.scene, v.rung, v.quantity))) for v in verdicts
-        ),
+        verdicts=verdicts,
     )
 
 

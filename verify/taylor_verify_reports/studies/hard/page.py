@@ -27,7 +27,6 @@ from taylor_verify_reports.studies.hard.document import (
     ACHIEVED,
     ATTAINABLE,
     HARD,
-    ExtremeVerdict,
     HardStudy,
     ReachRow,
     Search,
@@ -117,7 +116,7 @@ def page(study: HardStudy, folder: Path) -> str:
 def _summary(study: HardStudy) -> str:
     """Return the number of expected verdicts, and all mismatches in full."""
     others = [verdict for verdict in study.verdicts if verdict.verdict is not Status.PASS]
-    met = sum(verdict.is_met for verdict in others)
+    met = sum(map(study.is_met, others))
     counted = f"{met} of {len(others)} verdicts other than pass were expected."
     if not study.mismatches:
         return counted
@@ -133,7 +132,7 @@ def _scene_columns(study: HardStudy) -> Columns[Run]:
         ("state:", lambda run: _state(run.state[0] if run.state else run.verdicts[0])),
         ("over attainable:", lambda run: worst_ratio(filter(_is_compared, run.verdicts))),
         ("verdict", lambda run: judged(gravest(run.verdicts))),
-        ("as expected:", _met),
+        ("as expected:", partial(_met, study)),
     )
 
 
@@ -145,8 +144,8 @@ def _short(scene: str) -> str:
     return code(scene.removeprefix(_FOLDER))
 
 
-def _met(run: Run) -> str:
-    met = sum(isinstance(row, ExtremeVerdict) and row.is_met for row in run.verdicts)
+def _met(study: HardStudy, run: Run) -> str:
+    met = sum(map(study.is_met, run.verdicts))
     counted = f"{met} of {len(run.verdicts)}"
     return counted if met == len(run.verdicts) else bold(counted)
 
@@ -159,25 +158,31 @@ def _state(verdict: Verdict) -> str:
     return text if verdict.verdict is Status.PASS else f"{text} {judged(verdict.verdict)}"
 
 
-_REASONS: Final[Columns[ExtremeVerdict]] = (
-    ("scene", lambda row: _short(row.scene)),
-    ("quantity", lambda row: code(row.quantity)),
-    ("verdict", lambda row: judged(row.verdict)),
-    ("expected", lambda row: _expected(row)),
-    ("bound:", lambda row: figure(row.bound)),
-    ("why", lambda row: prose((row.expected.why if row.expected else "") or reason(row))),
-)
-
-
 def _not_passed(study: HardStudy) -> str:
     """Return a line for every verdict other than pass, beside the expected one."""
-    rows = [row for row in study.verdicts if row.verdict is not Status.PASS or not row.is_met]
-    return lay_out(_REASONS, rows) if rows else "Every answer is a pass."
+    columns: Columns[Verdict] = (
+        ("scene", lambda row: _short(row.scene)),
+        ("quantity", lambda row: code(row.quantity)),
+        ("verdict", lambda row: judged(row.verdict)),
+        ("expected", lambda row: _expected(study, row)),
+        ("bound:", lambda row: figure(row.bound)),
+        ("why", lambda row: prose(_why(study, row) or reason(row))),
+    )
+    rows = [
+        row for row in study.verdicts if row.verdict is not Status.PASS or not study.is_met(row)
+    ]
+    return lay_out(columns, rows) if rows else "Every answer is a pass."
 
 
-def _expected(verdict: ExtremeVerdict) -> str:
-    expected = verdict.expected.verdict.value if verdict.expected else NOTHING
-    return expected if verdict.is_met else bold(expected)
+def _expected(study: HardStudy, verdict: Verdict) -> str:
+    wanted = study.expectation(verdict)
+    expected = wanted.verdict if wanted else Status.PASS
+    return expected.value if study.is_met(verdict) else bold(expected.value)
+
+
+def _why(study: HardStudy, verdict: Verdict) -> str:
+    wanted = study.expectation(verdict)
+    return wanted.why if wanted else ""
 
 
 def _left_out(study: HardStudy) -> str:
@@ -295,13 +300,12 @@ def sheet(study: HardStudy) -> str:
     """Return a CSV row for every quantity of every scene."""
 
     def expected(verdict: Verdict) -> dict[str, Any]:
-        assert isinstance(verdict, ExtremeVerdict)
-        wanted = verdict.expected
+        wanted = study.expectation(verdict)
         return {
             "title": study.titles.get(verdict.scene),
-            "expected": wanted.verdict.value if wanted else None,
-            "why_expected": wanted.why if wanted else None,
-            "as_expected": "yes" if verdict.is_met else "no",
+            "expected": (wanted.verdict if wanted else Status.PASS).value,
+            "why_expected": _why(study, verdict),
+            "as_expected": "yes" if study.is_met(verdict) else "no",
         }
 
     # The reasons of the bounds are long texts, and hard.json has them.
