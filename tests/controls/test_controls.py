@@ -12,6 +12,7 @@ from builders.studies.stored import publish_document
 
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.models.problem import pose
+from taylor_verify.records import store
 from taylor_verify.records.quantities import GATE_FACTOR, INITIAL, UNIT_QUATERNION
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.precision import rung
@@ -245,7 +246,7 @@ def test_report_remakes_the_table_from_what_is_stored(tmp_path: Path) -> None:
     made = publish_document(tmp_path, STUDY, CONTROLS, study([sight_of("one-ulp-over")]))
     assert [path.name for path in made] == ["controls.json", "controls.md", "controls.csv"]
     before = made[1].read_text(encoding="utf-8")
-    report.write(tmp_path, sight_of("one-ulp-over").sound.values(), [])
+    store.write(tmp_path, sight_of("one-ulp-over").sound.values(), [])
     report.publish(tmp_path)
     assert made[1].read_text(encoding="utf-8") == before
     for page in ("README.md", "tables/README.md"):
@@ -293,7 +294,7 @@ def test_a_page_whose_table_has_no_rows_keeps_it(tmp_path: Path) -> None:
     """Where no controls are stored, the table between the marks stays as it is."""
     page = f"{controls.BEGIN}\n\na table\n\n{controls.END}\n"
     (tmp_path / "README.md").write_text(page, encoding="utf-8")
-    report.write(tmp_path / "reports", sight_of("one-ulp-over").sound.values(), [])
+    store.write(tmp_path / "reports", sight_of("one-ulp-over").sound.values(), [])
     report.publish(tmp_path / "reports")
     assert (tmp_path / "README.md").read_text(encoding="utf-8") == page
 

@@ -133,13 +133,13 @@ def test_every_key_of_an_answer_is_documented(part: type) -> None:
 
 
 def exceptions() -> set[str]:
-    """Every exception of the package that has a public name, as it is imported.
+    """Every exception of both packages that has a public name, as it is imported.
 
     They are read from the sources: to import all of these would take seconds.
     """
     kinds = [
         (".".join(file.relative_to(PACKAGE.parent).with_suffix("").parts), name, base)
-        for file in PACKAGE.rglob("*.py")
+        for file in PACKAGE.parent.rglob("*.py")
         if "outside" not in file.parts
         for name, base in re.findall(r"^class ([A-Z]\w+)\((\w+)\):", file.read_text("utf-8"), re.M)
     ]

@@ -1,4 +1,4 @@
-"""What this project publishes: claims of the source texts, studies, pages, pictures, site and paper.
+"""Publications of this project: claims of the source texts, studies, pages, pictures, site, paper.
 
     claims(*ids)    the ledger of both source texts, examined
 
