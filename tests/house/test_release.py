@@ -118,6 +118,14 @@ def test_publishing_has_a_group_of_its_own() -> None:
     assert {"include-group": "publishing"} in groups["dev"]
 
 
+def test_the_extra_of_the_second_package_is_that_group() -> None:
+    """`reports` has what the site and the paper need, in the same versions; selenium is for tests alone."""
+    project_table = project()["project"]["optional-dependencies"]
+    group = project()["dependency-groups"]["publishing"]
+    plots = project_table["plots"]
+    assert sorted(project_table["reports"]) == sorted({*group, *plots} - {"selenium>=4.20"})
+
+
 # The workflows.
 
 
