@@ -31,8 +31,11 @@ def cause_lines(causes: Sequence[LikelyCause]) -> list[str]:
 
 
 def _excess(verdict: Verdict) -> float:
+    """Return what decides the row: the error over the tolerance, or else over the roundoff floor."""
     if verdict.max is None or verdict.max != verdict.max:
         return inf
+    if verdict.tolerance is None and verdict.ratio is not None:
+        return verdict.ratio
     return verdict.max / verdict.bound if verdict.bound else verdict.max
 
 
