@@ -15,10 +15,10 @@ import pytest
 from builders import reports
 
 from taylor_verify.cli import main
-from taylor_verify_reports.verbs import publish as command
 from taylor_verify.records import store
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify_reports.studies import archive, bulk
+from taylor_verify_reports.verbs import publish as command
 
 SCENES = ("euler/rest", "euler/generic")
 Captured = pytest.CaptureFixture[str]

@@ -31,7 +31,9 @@ from taylor_verify.solvers.trajectory import Trajectory
 if TYPE_CHECKING:
     from taylor_verify.solvers.files.file import TrajectoryFile
 
-NOT_LOOKED_FOR: Final = "likely causes are not looked for: this body has terms of motion, or loads, that the search does not know"
+NOT_LOOKED_FOR: Final = (
+    "likely causes are not looked for: this body has terms or loads that the search does not know"
+)
 _DIGITS: Final = 20
 _MOST_ROWS: Final = 4096
 # If the range of float64 or a matrix decomposition fails, no cause is named.
