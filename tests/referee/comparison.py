@@ -118,8 +118,8 @@ def _wrong(
         )
     if has_others and not _exact(absolute) <= coarsest:
         return "its bound as a zero is too large to say anything"
-    held = _is_below(abs(known.value), known.error, _exact(absolute))
-    return None if held else "larger than the bound that is printed"
+    is_bounded = _is_below(abs(known.value), known.error, _exact(absolute))
+    return None if is_bounded else "larger than the bound that is printed"
 
 
 def _is_zero(known: Known, coarsest: Any) -> bool:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from math import ceil
 from typing import Final
 
@@ -15,8 +14,8 @@ from taylor_verify.exact.gyrostat.jacobi import Azimuth, Swing, digits_beside_mu
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat, Regime
 from taylor_verify.exact.gyrostat.spins import steady_spins
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
+from taylor_verify.exact.written import as_rationals
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.stand_in import stand_in
 
 _CONSERVED: Final = (
     "Conserved: T = omega.I omega/2 and |H|^2 with H = I omega + h; in space axes the vector H."
@@ -56,7 +55,7 @@ def elements(scene: Scene, digits: int) -> Elements:
         story = "A constant moment acts on a body with wheels: no closed form is built."
         return Elements(NO_CLOSED_FORM, (), (story,))
     # Spins beside the motion: a start in degrees is rational there, rounded to 120 digits.
-    beside = replace(free, omega=tuple(map(stand_in, free.omega)))
+    beside, _ = free_gyrostat(as_rationals(scene))
     numbers = settled(lambda _: [*_numbers(free), *_conserved(free), *_spins(beside)], digits)
     sentences = (_STORY[free.regime], _count(beside)) if free.n else _CANCELLED
     return Elements(free.regime.value, numbers, (*sentences, _CONSERVED))

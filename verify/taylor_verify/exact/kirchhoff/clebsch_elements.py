@@ -25,7 +25,6 @@ from taylor_verify.exact.kirchhoff.jacobi import NutatingBody
 from taylor_verify.exact.kirchhoff.quartic import (
     Nutation,
     derivative,
-    invariants,
     value,
 )
 from taylor_verify.exact.kirchhoff.regime import nutation_of, regime, turning_points
@@ -213,7 +212,7 @@ def discriminant(nutation: Nutation) -> Fraction:
     Between -1 and 1, unchanged by scaling z or t; above zero four roots of f are real (or three of
     a cubic), below zero two.
     """
-    g2, g3 = invariants(nutation.f)
+    g2, g3 = nutation.invariants
     return (g2**3 - 27 * g3**2) / (abs(g2) ** 3 + 27 * g3**2)
 
 

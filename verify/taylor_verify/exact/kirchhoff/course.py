@@ -20,7 +20,6 @@ from taylor_verify.exact.kirchhoff.quartic import (
     Nutation,
     Polynomial,
     derivative,
-    invariants,
     value,
 )
 from taylor_verify.exact.lattice import Lattice, lattice
@@ -69,7 +68,7 @@ class Course(ABC):
         # Products of rationals, so that what is zero is zero exactly.
         self._half_b2, self._twice_b3 = ball(b[2] / 2), ball(2 * b[3])
         self._half_b4_a0, self._b4_b1 = ball(b[4] * b[0] / 2), ball(b[4] * b[1])
-        g2, g3 = invariants(nutation.f)
+        g2, g3 = nutation.invariants
         self.lattice: Lattice = lattice(g2, g3)
         self._half_g2 = ball(g2 / 2)
         self.z, self.speed = ball(nutation.z), ball(nutation.speed)

@@ -75,6 +75,11 @@ class Nutation:
         return stripped(tensors.scaled(1 / self.axes.nu, of_body))
 
     @cached_property
+    def invariants(self) -> tuple[Fraction, Fraction]:
+        """g2 and g3 of f: long products where the constants are irrational."""
+        return invariants(self.f)
+
+    @cached_property
     def solid(self) -> ImmersedBody:
         """The body in the axes of the scene."""
         return body_about(self.body, self.axes.n)

@@ -1,4 +1,4 @@
-"""The kind of motion of Clebsch's body, and its turning points, decided in exact rationals."""
+"""The kind of motion of Clebsch's body, and its turning points, decided in exact numbers."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from taylor_verify.exact.kirchhoff.quartic import (
     Nutation,
     RealRoots,
     derivative,
-    invariants,
     repeated_root,
     value,
 )
@@ -45,7 +44,7 @@ def nutation_of(scene: Scene) -> tuple[Nutation, Impulse]:
 
 
 def regime(nutation: Nutation) -> str:
-    """Return the word for the motion, decided in rationals.
+    """Return the word for the motion, decided in exact numbers.
 
     - rest: no impulse at all;
     - euler-top: x = 0, and y turns about axis 3 at a constant rate;
@@ -63,7 +62,7 @@ def regime(nutation: Nutation) -> str:
         return "steady"
     if len(f) < 4:
         return "trigonometric"
-    g2, g3 = invariants(f)
+    g2, g3 = nutation.invariants
     discriminant = g2**3 - 27 * g3**2
     if not discriminant:
         root = repeated_root(f)
