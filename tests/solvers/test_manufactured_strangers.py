@@ -122,7 +122,7 @@ def test_every_key_occurs_once_and_is_documented(name: str) -> None:
     assert {key: text.count(f'"{key}":') for key in keys} == dict.fromkeys(keys, 1)
     assert protocol.__doc__
     assert keys <= set(re.findall(r"\w+", protocol.__doc__))
-    assert document["protocol"] == protocol.VERSION_WITH_WAVES
+    assert document["protocol"] == protocol.VERSIONS["manufactured"]
     assert asked(pose(load("euler/constant-moment"), F64))["protocol"] == protocol.VERSION
 
 

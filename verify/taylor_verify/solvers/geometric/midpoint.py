@@ -14,7 +14,7 @@ Integration, 2nd ed. (2006), IV.2.1 for the quadratic invariants.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, final
+from typing import final
 
 from taylor_verify.solvers.geometric.fixed_step import Body, FixedStep, Step, Stepped
 from taylor_verify.solvers.geometric.newton import midpoint_columns, root
@@ -36,8 +36,7 @@ class ImplicitMidpoint(FixedStep):
     """The implicit midpoint rule for any tensor; with a constant moment T and |H|^2 are not conserved."""
 
     name: str = "geometric:implicit-midpoint"
-    takes_moment: ClassVar[bool] = True
-    takes_wheels: ClassVar[bool] = True
+    takes = ("moment", "rotor")
 
     def stepping(self, body: Body, H: Vector, h: float) -> Step:
         del H

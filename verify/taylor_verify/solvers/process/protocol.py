@@ -83,30 +83,25 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
-from typing import Any
+from typing import Any, Final
 
 import gmpy2
 
 from taylor_verify.models.problem import Problem
 from taylor_verify.models.registry import mechanics
 from taylor_verify.records.quantities import COLUMNS
-from taylor_verify.scenes.bodies import Body, ImmersedBody
-from taylor_verify.scenes.gyrostat import Gyrostat
+from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.parts import Value
 from taylor_verify.scenes.precision import Rung, double_text, hexadecimal
 from taylor_verify.solvers.solver import columns
 from taylor_verify.solvers.values import exact, named_once
 
-VERSION = 1
-# Versions let a program refuse questions that it does not know: loads that change with time,
-VERSION_WITH_WAVES = 2
-# wheels,
-VERSION_WITH_WHEELS = 3
-# and damping.
-VERSION_WITH_DAMPING = 4
+# The version of a question, and those of what acts besides constant loads: a program can refuse them.
+VERSION: Final = 1
+VERSIONS: Final = {"manufactured": 2, "rotor": 3, "damping": 4}
 
 # A time is read from a decimal, formed as start + k dt and printed again: three roundings, plus one.
 _TIME_ROUNDINGS = 4
@@ -164,12 +159,10 @@ def question(problem: Problem) -> dict[str, Any]:
 
 
 def _version(body: Body) -> int:
-    """Return the version of the protocol that a program has to know for this body."""
-    if body.damping:
-        return VERSION_WITH_DAMPING
-    if isinstance(body, Gyrostat):
-        return VERSION_WITH_WHEELS
-    return VERSION if body.manufactured is None else VERSION_WITH_WAVES
+    """Return the version that a program has to know for this body; one that no program knows for others."""
+    unknown = max(VERSIONS.values()) + 1
+    acting = set(body.acting) - set(body.load_names())
+    return max((VERSIONS.get(name, unknown) for name in acting), default=VERSION)
 
 
 def column_names(problem: Problem) -> list[str]:
@@ -182,12 +175,12 @@ def _data(problem: Problem) -> dict[str, Any]:
     body, initial, clock = given.body, given.initial, given.clock
     derived = mechanics(body).derived(body, initial)
     numbers: dict[str, dict[str, Any]] = {
-        "body": _merged(body.parts(), derived.get("body", {})),
+        "body": {
+            **_merged(body.parts(), derived.get("body", {})),
+            **problem.scene.body.description,
+        },
         "initial": _merged(initial.parts(), derived.get("initial", {})),
     }
-    shape = problem.scene.body
-    if isinstance(shape, ImmersedBody) and (ellipsoid := shape.ellipsoid):
-        numbers["body"] |= asdict(ellipsoid)
     if body.manufactured is not None:
         # The motion of what a program integrates: of H = I omega, or of x and y as it stands.
         motion = mechanics(body).change(body).motion_of_momenta(body.manufactured)
