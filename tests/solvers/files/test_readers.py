@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 from collections.abc import Mapping
 from fractions import Fraction
@@ -15,6 +16,7 @@ from builders.lacking import lacking
 from builders.recordings import CLOCK, OMEGA, QUATERNION, WRITERS, Columns
 from builders.trajectories import columns_at, write_csv
 from builders.turns import by_turns
+from builders.worked import DOCS
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from mcap.writer import CompressionType
@@ -107,6 +109,13 @@ def test_every_suffix_has_a_reader_and_is_named(tmp_path: Path) -> None:
     with pytest.raises(Refused) as refused:
         read(tmp_path / "run.xlsx")
     assert all(suffix in str(refused.value) for suffix in FORMATS)
+
+
+def test_every_suffix_is_documented() -> None:
+    """The page of formats has a row that names each suffix, and the readers' own names of packages."""
+    page = (DOCS / "formats.md").read_text(encoding="utf-8")
+    rows = [line.split("|")[1] for line in page.splitlines() if line.startswith("| `.")]
+    assert set(re.findall(r"`(\.\w+)`", " ".join(rows))) == set(FORMATS)
 
 
 def test_formats_name_what_they_need(tmp_path: Path) -> None:
