@@ -110,18 +110,6 @@ def test_the_command_line_lists_them_all() -> None:
         assert solver_named(name).name == name
 
 
-def test_what_cannot_be_had_says_why() -> None:
-    """An engine that nothing can install is there by name, is not started, and says why."""
-    without = [one for one in engines().values() if one.script.about.unavailable]
-    assert without
-    for one in without:
-        solver = solver_named(f"outside:{one.name}")
-        assert solver.unavailable(rung("f64")) == one.unavailable == one.script.about.unavailable
-        assert solver.solve(problem()).outcome is Outcome.NOT_STARTED
-        with pytest.raises(NotMade):
-            prepare(one.name)
-
-
 # The scripts.
 
 
@@ -154,8 +142,6 @@ def pythons(requirement: str) -> list[str]:
 def test_a_script_has_the_methods_it_names(file: Path) -> None:
     """The methods of the metadata are those of the script, and it loads no library to begin with."""
     about = read_script(file).about
-    if about.unavailable:
-        return
     tree = ast.parse(file.read_text())
     tables = [
         ast.literal_eval(node.value)
@@ -195,7 +181,7 @@ def test_a_list_says_what_each_is(monkeypatch: pytest.MonkeyPatch) -> None:
             if usage.partition("?")[0].endswith(f":{name}")
         ]
         assert remark
-        assert ("unavailable" in remark) is name.startswith("numbalsoda")
+        assert "unavailable" not in remark
     monkeypatch.setattr(python, "_uv", lambda: None)
     assert "pip install 'taylor-verify[engines]'" in remarks()[engines()["cvode-bdf"].usage]
 
@@ -208,7 +194,7 @@ def sibling(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[str], Any]]:
     """Imports a module as the scripts do, from their own folder."""
     monkeypatch.syspath_prepend(str(SCRIPTS))
     yield import_module
-    for name in ("equations", "question", "rk4"):
+    for name in ("equations", "question"):
         sys.modules.pop(name, None)
 
 
@@ -249,17 +235,16 @@ def test_the_equations_of_the_scripts_lead_to_the_exact_motion(
             "among w1 w2 w3 q0 q1 q2 q3, got s1 @ columns",
         ),
         ({"model": "gyrostat"}, "expected the model euler or kirchhoff, got gyrostat"),
+        ({"manufactured": {}}, "expected constant loads, got a manufactured motion"),
     ],
 )
 def test_a_question_beyond_the_equations_is_refused_in_a_sentence(
     changed: dict[str, Any], fault: str, sibling: Callable[[str], Any]
 ) -> None:
-    """A state quantity or a model that the scripts do not know is named, by each reader of questions."""
+    """A state quantity or a model that the scripts do not know is named."""
     document = {**protocol.question(problem()), **changed}
     with pytest.raises(SystemExit, match=fault):
         sibling("question").read(document)
-    with pytest.raises(SystemExit, match=fault):
-        sibling("rk4").known_columns(document)
 
 
 def error(asked: Problem, answer: protocol.Answer) -> float:
@@ -288,9 +273,8 @@ def test_the_first_propagation_is_what_compiles(sibling: Callable[[str], Any]) -
 
 
 def ready(setting: str) -> list[Engine]:
-    """The engines that can be had here and have this setting."""
-    every = [one for one in engines().values() if not one.script.about.unavailable]
-    return [one for one in every if setting in one.script.about.settings]
+    """The engines that have this setting."""
+    return [one for one in engines().values() if setting in one.script.about.settings]
 
 
 @pytest.mark.slow

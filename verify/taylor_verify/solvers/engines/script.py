@@ -14,7 +14,6 @@ models = ["euler", "kirchhoff"]        optional
 loads = false                          optional: takes no constant loads and no wheels
 data = "tensor"                        optional: takes I and omega as they stand; else I^-1 and I omega
 serves = true                          optional: answers many questions in one process (service.py)
-unavailable = "..."                    optional: why nothing can install it
 [tool.taylor-verify.methods]           optional: each method is a solver, with its title
 bdf = "BDF, order 1 to 5"
 [tool.taylor-verify.settings]          optional: each with its default
@@ -56,7 +55,6 @@ class About(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     loads: bool = True
     data: Literal["inverse", "tensor"] = "inverse"
     serves: bool = False
-    unavailable: str = ""
     methods: Mapping[str, str] = {}
     settings: Mapping[str, float | str | list[str]] = {}
 

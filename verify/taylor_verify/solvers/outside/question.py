@@ -227,6 +227,8 @@ COLUMNS = {
 def read(scene: Any) -> Question:
     """Return the question in a document; raises Unsuited if it asks for what is not computed."""
     body, initial, clock = scene["body"], scene["initial"], scene["time"]
+    if "manufactured" in scene:
+        raise Unsuited("expected constant loads, got a manufactured motion")
     columns = scene["columns"][1:]
     if scene["model"] not in COLUMNS:
         raise Unsuited(f"expected the model {' or '.join(COLUMNS)}, got {scene['model']}")
