@@ -18,7 +18,6 @@ from taylor_verify.scenes.reading.reader import read
 from taylor_verify.solvers.engines import engine, python
 from taylor_verify.solvers.engines.engine import engines, named, prepare
 from taylor_verify.solvers.engines.launcher import NotMade
-from taylor_verify.solvers.engines.script import read_script
 from taylor_verify.solvers.registry import solver_named
 from taylor_verify.solvers.trajectory import Outcome
 
@@ -312,21 +311,3 @@ def test_a_uv_that_cannot_be_started_is_told(
     uv.chmod(0o700)
     with pytest.raises(NotMade, match="uv: exit status 3"):
         prepare("tiny-still")
-
-
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("print(1)\n", "expected one block of script metadata, got 0"),
-        ("# /// script\n# a = 1\n# ///\nprint(1)\n" * 2, "got 2"),
-        ("# /// script\n# a = \n# ///\n", "expected TOML"),
-        ("# /// script\n# [tool.taylor-verify]\n# titel = 1\n# ///\n", "unknown field `titel`"),
-        ("# /// script\n# dependencies = []\n# ///\n", "missing required field `title`"),
-    ],
-)
-def test_metadata_that_is_none_is_refused(tmp_path: Path, text: str, words: str) -> None:
-    """A script has one block of metadata, it is TOML, and its table has known keys alone."""
-    file = tmp_path / "with_script.py"
-    file.write_text(text)
-    with pytest.raises(ValueError, match=f"{words}.* @ with_script.py"):
-        read_script(file)

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import json
 import math
-import re
 import shlex
 import shutil
 import subprocess
-from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
@@ -25,7 +23,6 @@ import taylor_verify
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.floor.inputs import _numbers, _with_factors
 from taylor_verify.models.problem import Problem, adopt, pose
-from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.scenes import library
@@ -88,44 +85,6 @@ def test_the_waves_that_are_told_are_the_motion(name: str, on: str) -> None:
         assert max(abs(p - q) for p, q in zip(known, values, strict=True)) <= mpf(10) ** -58
     cosines = zip(waves["constant_part"], *waves["cosines"], strict=True)
     assert [sum(column) for column in cosines] == begin
-
-
-@pytest.mark.parametrize("on", LADDER)
-def test_a_program_that_reads_the_hexadecimal_floats_has_the_exact_motion(on: str) -> None:
-    """Frequencies and coefficients of the waves are numbers of the rung: hex and text are equal."""
-    for name in (EULER, KIRCHHOFF):
-        waves = asked(pose(load(name), rung(on)))["manufactured"]
-        for key in ("frequencies", "cosines", "sines"):
-            texts, hexes = flat(waves[key]["text"]), flat(waves[key]["hex"])
-            for text, digits in zip(texts, hexes, strict=True):
-                assert Fraction(text) == from_hex(digits)
-
-
-def flat(entry: Any) -> Iterator[str]:
-    if isinstance(entry, list):
-        for part in entry:
-            yield from flat(part)
-    else:
-        yield entry
-
-
-def from_hex(text: str) -> Fraction:
-    match = re.fullmatch(r"(-?)0x([0-9a-f]+)p([+-]\d+)", text)
-    assert match
-    return (-1 if match[1] else 1) * int(match[2], 16) * Fraction(2) ** int(match[3])
-
-
-@pytest.mark.parametrize("name", [EULER, KIRCHHOFF])
-def test_every_key_occurs_once_and_is_documented(name: str) -> None:
-    """As in any question, so that a program may search the text; and the number says that there is more."""
-    document = asked(pose(load(name), F64))
-    text = json.dumps(document)
-    keys = set(re.findall(r'"(\w+)":', text)) - {"text", "hex"}
-    assert {key: text.count(f'"{key}":') for key in keys} == dict.fromkeys(keys, 1)
-    assert protocol.__doc__
-    assert keys <= set(re.findall(r"\w+", protocol.__doc__))
-    assert document["protocol"] == protocol.VERSIONS["manufactured"]
-    assert asked(pose(load("euler/constant-moment"), F64))["protocol"] == protocol.VERSION
 
 
 # Programs that answer.

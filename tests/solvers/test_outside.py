@@ -15,15 +15,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from builders.other_equations import has_other_equations
 from builders.programs import imported_tops
 from builders.scenes import THREE_INSTANTS
 from packaging.specifiers import SpecifierSet
 
 from taylor_verify.models.problem import Problem, pose
-from taylor_verify.records.quantities import INITIAL, STATES
-from taylor_verify.records.status import Status
-from taylor_verify.run import run
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import load, read
@@ -148,9 +144,9 @@ def test_a_script_has_the_methods_it_names(file: Path) -> None:
         for node in tree.body
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "METHODS"
     ]
-    # One without methods is a single solver.
-    table = tables[0] if about.methods else {}
-    assert list(about.methods) == list(table)
+    # Where there is no table, the words of the methods are the library's own.
+    (table,) = tables or [about.methods]
+    assert list(about.methods) == list(table), f"other methods in METHODS than above @ {file.name}"
     siblings = {file.stem for file in SCRIPTS.glob("*.py")}
     for node in tree.body:
         if isinstance(node, ast.Import):
@@ -272,14 +268,13 @@ def test_the_first_propagation_is_what_compiles(sibling: Callable[[str], Any]) -
 # The libraries themselves, where their environments are.
 
 
-def ready(setting: str) -> list[Engine]:
-    """The engines that have this setting."""
-    return [one for one in engines().values() if setting in one.script.about.settings]
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("scene", ["euler/backward", "kirchhoff/whole-motion"])
-@pytest.mark.parametrize("one", ready("rtol"), ids=lambda one: one.name)
+@pytest.mark.parametrize(
+    "one",
+    [one for one in engines().values() if "rtol" in one.script.about.settings],
+    ids=lambda one: one.name,
+)
 def test_a_library_keeps_near_its_tolerance(
     one: Engine, scene: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -306,71 +301,51 @@ def test_a_library_keeps_near_its_tolerance(
     assert errors[1e-9] <= errors[1e-6] / 10
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("one", ready("step"), ids=lambda one: one.name)
-def test_an_engine_begins_with_the_start_and_comes_nearer_with_the_step(
-    one: Engine, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The first row is the state that the engine was given, with an oblique attitude, and half the step
-    leaves an error of half the size at most, but where the engine has other equations."""
-    monkeypatch.setenv("UV_OFFLINE", "1")
-    try:
-        prepare(one.name)
-    except NotMade as reason:
-        pytest.skip(str(reason))
-    about = one.script.about
-    scene = load(
-        "euler/with-attitude" if "euler" in about.models else "kirchhoff/ellipsoid-triaxial"
-    )
-    on = rung(about.rungs[-1])
-    errors = []
-    for step in (2.0**-6, 2.0**-7):
-        verdicts = {
-            v.quantity: v for v in run(scene, f"outside:{one.name}?step={step}", on).verdicts
-        }
-        assert verdicts[INITIAL].verdict is Status.PASS
-        errors.append(max(v.max or 0 for v in verdicts.values() if v.quantity in STATES))
-    # The first order is half the error.
-    assert (errors[1] <= 0.6 * errors[0]) is not has_other_equations(one.name)
-
-
-def written(folder: Path, metadata: str) -> Path:
-    """A script of the folder with this block."""
-    lines = "\n".join(f"# {line}".rstrip() for line in metadata.splitlines())
+def written(folder: Path, *blocks: str) -> Path:
+    """A script of the folder with these blocks of metadata."""
+    lines = [
+        f"# {line}".rstrip() for text in blocks for line in f"/// script\n{text}\n///".splitlines()
+    ]
     file = folder / "with_mine.py"
-    file.write_text(f"# /// script\n{lines}\n# ///\n", encoding="utf-8")
+    file.write_text("\n".join([*lines, ""]), encoding="utf-8")
     return file
 
 
+TITLED = '[tool.taylor-verify]\ntitle = "x"\n'
+
+
 @pytest.mark.parametrize(
-    ("metadata", "fault"),
+    ("blocks", "fault"),
     [
+        ([], "expected one block of script metadata, got 0"),
+        (["a = 1", "a = 1"], "expected one block of script metadata, got 2"),
+        (["a = "], "expected TOML in the metadata"),
+        (["[tool.taylor-verify]\ntitel = 1"], "unknown field `titel`"),
+        (["dependencies = []"], "missing required field `title`"),
         (
-            'dependencies = ["six"]',
+            ['dependencies = ["six"]\n' + TITLED],
             "expected a dependency pinned with ==, got 'six' @ with_mine.py",
         ),
-        (
-            'dependencies = ["six==1.0"]\n[tool.taylor-verify]\ntitle = "x"\npackage = "seven"',
-            "expected a package among the dependencies, got 'seven' @ with_mine.py",
+        *(
+            (
+                [f'dependencies = ["six==1.0"]\n{TITLED}{key}'],
+                "expected a package among the dependencies, got 'seven' @ with_mine.py",
+            )
+            for key in ('package = "seven"', 'alike = ["seven"]')
         ),
         (
-            'dependencies = ["six==1.0"]\n[tool.taylor-verify]\ntitle = "x"\nalike = ["seven"]',
-            "expected a package among the dependencies, got 'seven' @ with_mine.py",
-        ),
-        (
-            '[tool.taylor-verify]\ntitle = "x"\nsettings = {step = -1.0}',
+            [TITLED + "settings = {step = -1.0}"],
             "expected a positive number or words for the setting step, got -1.0 @ with_mine.py",
         ),
         (
-            '[tool.taylor-verify]\ntitle = "x"\nsettings = {step = "stp"}',
+            [TITLED + 'settings = {step = "stp"}'],
             "expected an earlier setting for step to follow, got 'stp' @ with_mine.py",
         ),
     ],
 )
-def test_a_script_that_is_wrong_is_refused(metadata: str, fault: str, tmp_path: Path) -> None:
+def test_a_script_that_is_wrong_is_refused(blocks: list[str], fault: str, tmp_path: Path) -> None:
     """Each fault is one line with its file, and reading the folder tells all of them."""
-    about = "" if "tool" in metadata else '\n[tool.taylor-verify]\ntitle = "x"'
-    file = written(tmp_path, f"{metadata}{about}")
+    file = written(tmp_path, *blocks)
     with pytest.raises(ValueError, match=re.escape(fault)):
         read_script(file)
     with pytest.raises(Refused, match=re.escape(fault)):
@@ -379,7 +354,7 @@ def test_a_script_that_is_wrong_is_refused(metadata: str, fault: str, tmp_path: 
 
 def test_a_script_without_a_library_has_no_version(tmp_path: Path) -> None:
     """A program of the standard library alone is an engine too, and no version of it can be asked for."""
-    script = read_script(written(tmp_path, '[tool.taylor-verify]\ntitle = "x"'))
+    script = read_script(written(tmp_path, TITLED))
     assert script.package == ""
     with pytest.raises(ValueError, match=r"expected no version: with_mine\.py has no library"):
         script.at_version("1.0")

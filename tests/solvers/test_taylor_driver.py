@@ -10,7 +10,6 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
-import heyoka as hy
 import numpy as np
 import pytest
 from builders.processes import PATIENCE, interruptible
@@ -184,25 +183,6 @@ def test_slow_numbers_go_their_way_once(
     assert rungs.count(name) == ways
 
 
-def test_heyoka_alone_is_silently_wrong_there() -> None:
-    """The same start without the step cap ends in success and is wrong by more than 10^-9."""
-    flip = 40 * math.log(10) / math.sqrt(1 / 3)
-    w = hy.make_vars("a", "b", "c")
-    system = [
-        (w[0], -hy.par[0] * w[1] * w[2]),
-        (w[1], hy.par[1] * w[2] * w[0]),
-        (w[2], -hy.par[2] * w[0] * w[1]),
-    ]
-    plain = hy.taylor_adaptive(system, [1e-40, 1.0, 0.0], pars=[1.0, 1.0, 1 / 3])
-    outcome, *_ = plain.propagate_until(flip)
-    # The inertia 1, 2, 3 leaves w1' = -w2 w3, w2' = w3 w1, w3' = -w1 w2/3.
-    scene = spinning((Fraction(1, 10**40), Fraction(1), Fraction(0)), Fraction(flip))
-    exact = solution(scene).motion([Fraction(flip)], 20)["omega"][0]
-    error = max(abs(float(a) - b) for a, b in zip(exact, plain.state, strict=True))
-    assert outcome == hy.taylor_outcome.time_limit
-    assert error > 1e-9
-
-
 @pytest.mark.parametrize("name", LADDER)
 def test_error_falls_with_the_rung(name: str) -> None:
     """Each rung's error is some hundred of its own units of roundoff, no coarser rung's (trap T1)."""
@@ -271,12 +251,6 @@ def test_runs_are_repeatable_whatever_ran_before() -> None:
 def _answer(problem: Problem) -> object:
     """The sound answer as doubles, in the columns of a callback."""
     return Taylor().solve(problem).quantities["omega"].astype(float)
-
-
-def test_callback_is_judged_like_any_solver() -> None:
-    """A callable that returns states passes where its numbers are right."""
-    verdicts = run("euler/generic", Callback(_answer), "f64").verdicts
-    assert {v.verdict for v in verdicts} == {Status.PASS}
 
 
 def test_callback_of_the_wrong_shape_or_that_raises_is_not_scored() -> None:

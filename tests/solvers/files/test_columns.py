@@ -161,12 +161,6 @@ def test_blanks_and_a_mark_at_the_beginning_of_a_name_are_no_part_of_it() -> Non
     assert set(made(["\ufefftime", " wx", "wy ", '"wz"']).groups) == {"omega"}
 
 
-def test_scalar_last_in_the_file_is_no_matter_of_order() -> None:
-    """qx qy qz qw are what their names say, and the verdict says no convention."""
-    file = made("t qx qy qz qw")
-    assert file.groups["quaternion"][0] == tuple(map(Fraction, (40, 10, 20, 30)))
-
-
 # Files are judged alike.
 
 
@@ -275,12 +269,6 @@ def test_each_column_has_its_own_unit() -> None:
     degree = in_brackets("deg/s", "omega")
     assert degree is not None
     assert file.groups["omega"][0] == (10 * degree.factor, 20, 30)
-
-
-def test_rate_names_with_a_unit() -> None:
-    """Roll rate, pitch rate and yaw rate in degrees are body rates."""
-    file = made(["time_s", "roll rate [deg/s]", "pitch rate [deg/s]", "yaw rate [deg/s]"])
-    assert "taken as w1 w2 w3, body axes, in degrees per unit of time" in "\n".join(file.notes)
 
 
 @pytest.mark.parametrize(
@@ -530,12 +518,6 @@ def test_a_cell_that_is_no_number_is_told_how_to_be_one(
         read(file)
     (fault,) = refused.value.faults
     assert fault == f"expected {expected}, got {cell!r} @ {file}, row 1, column w2"
-
-
-def test_a_byte_order_mark_is_no_part_of_the_first_name(tmp_path: Path) -> None:
-    """UTF-8 with a mark is read as UTF-8."""
-    (tmp_path / "mine.csv").write_bytes("\ufefft,wx,wy,wz\n0,1,2,3\n".encode())
-    assert read(tmp_path / "mine.csv").times == (0,)
 
 
 # The command.
