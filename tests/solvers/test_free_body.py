@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import json
 import math
-import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from fractions import Fraction
-from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -17,25 +15,19 @@ from builders.oblique import BACKWARDS, oblique
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.solvers.engines.engine import SCRIPTS
 from taylor_verify.solvers.process import protocol
 from taylor_verify.solvers.solver import Callback
 from taylor_verify.tradeoff.accuracy import Truth
 
 
 @pytest.fixture
-def shared(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
-    """The module as the scripts import it, from their own folder."""
-    monkeypatch.syspath_prepend(str(SCRIPTS))
-    yield import_module("free_body")
-    for name in ("free_body", "equations", "question"):
-        sys.modules.pop(name, None)
+def shared(sibling: Callable[[str], Any]) -> Any:
+    return sibling("free_body")
 
 
 @pytest.fixture
-def immersed(shared: Any) -> Iterator[Any]:
-    yield import_module("immersed_body")
-    sys.modules.pop("immersed_body", None)
+def immersed(sibling: Callable[[str], Any]) -> Any:
+    return sibling("immersed_body")
 
 
 def asked(problem: Problem, shared: Any) -> Any:

@@ -9,20 +9,19 @@ import shutil
 import sys
 import threading
 import tomllib
-from collections.abc import Callable, Iterator
-from importlib import import_module
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 from builders.programs import imported_tops
-from builders.scenes import THREE_INSTANTS
+from builders.scenes import three_instants
 from packaging.specifiers import SpecifierSet
 
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.faults import Refused
-from taylor_verify.scenes.reading.reader import load, read
+from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.engines import python
 from taylor_verify.solvers.engines.engine import SCRIPTS, Engine, engines, named, prepare
 from taylor_verify.solvers.engines.launcher import NotMade
@@ -41,10 +40,6 @@ SCENES = [
     *("kirchhoff/constant-loads", "kirchhoff/screw", "kirchhoff/listed-times"),
     *("euler/damped", "kirchhoff/damped"),
 ]
-
-
-def problem(on: str = "f64") -> Problem:
-    return pose(read(THREE_INSTANTS, "short"), rung(on))
 
 
 # Their names.
@@ -185,15 +180,6 @@ def test_a_list_says_what_each_is(monkeypatch: pytest.MonkeyPatch) -> None:
 # What they share: the reading of the question, the equations, the writing of the answer.
 
 
-@pytest.fixture
-def sibling(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[str], Any]]:
-    """Imports a module as the scripts do, from their own folder."""
-    monkeypatch.syspath_prepend(str(SCRIPTS))
-    yield import_module
-    for name in ("equations", "question"):
-        sys.modules.pop(name, None)
-
-
 @pytest.mark.parametrize("scene", SCENES)
 def test_the_equations_of_the_scripts_lead_to_the_exact_motion(
     scene: str, sibling: Callable[[str], Any]
@@ -238,7 +224,7 @@ def test_a_question_beyond_the_equations_is_refused_in_a_sentence(
     changed: dict[str, Any], fault: str, sibling: Callable[[str], Any]
 ) -> None:
     """A state quantity or a model that the scripts do not know is named."""
-    document = {**protocol.question(problem()), **changed}
+    document = {**protocol.question(three_instants()), **changed}
     with pytest.raises(SystemExit, match=fault):
         sibling("question").read(document)
 
@@ -303,11 +289,9 @@ def test_a_library_keeps_near_its_tolerance(
 
 def written(folder: Path, *blocks: str) -> Path:
     """A script of the folder with these blocks of metadata."""
-    lines = [
-        f"# {line}".rstrip() for text in blocks for line in f"/// script\n{text}\n///".splitlines()
-    ]
+    texts = (f"# /// script\n{block}\n///".replace("\n", "\n# ") for block in blocks)
     file = folder / "with_mine.py"
-    file.write_text("\n".join([*lines, ""]), encoding="utf-8")
+    file.write_text("".join(f"{text}\nprint(1)\n" for text in texts), encoding="utf-8")
     return file
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Callable, Iterator
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -98,19 +97,12 @@ def test_a_peer_is_asked_the_problem_that_heyoka_is_asked(scene: str, fake: Made
     assert Truth(problem).accuracy(trajectory).worst <= 1e-5
 
 
-def test_the_code_of_a_peer_is_the_code_of_this_process() -> None:
+def test_the_code_of_a_peer_is_the_code_of_this_process(sibling: Callable[[str], Any]) -> None:
     """Read back from the document, the lines give the rates of the form to the last bit."""
     problem = posed("kirchhoff/whole-motion")
     asked = json.loads(json.dumps(document(problem)))
-    sys.path.insert(0, str(SCRIPTS))
-    try:
-        service, question = import_module("service"), import_module("question")
-        read = service._read(asked)
-        rates = question.equations_of(read)(read.state, read.parameters)
-    finally:
-        sys.path.remove(str(SCRIPTS))
-        for name in ("service", "question", "equations"):
-            sys.modules.pop(name, None)
+    read = sibling("service")._read(asked)
+    rates = sibling("question").equations_of(read)(read.state, read.parameters)
     parameters = [float(value) for value in problem.parameters]
     expected = straight_line(problem.form, parameters)(0.0, read.state)
     assert list(rates) == expected

@@ -5,8 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
-from importlib import import_module
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -30,17 +29,6 @@ from taylor_verify.solvers.registry import solver_named
 STEP = 1 / 32
 # Settings that exclude each other: the explicit methods of Exudyn have no constraint.
 BESIDE = {"coordinates=EulerParameters": "integrator=GeneralizedAlpha"}
-
-
-@pytest.fixture
-def sibling(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[str], Any]]:
-    """Imports a script as it imports its siblings, from their own folder."""
-    monkeypatch.syspath_prepend(str(SCRIPTS))
-    loaded = set(sys.modules)
-    yield import_module
-    for name in set(sys.modules) - loaded:
-        if str(getattr(sys.modules[name], "__file__", "")).startswith(str(SCRIPTS)):
-            del sys.modules[name]
 
 
 def each_setting() -> list[str]:

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from builders.scenes import THREE_INSTANTS
+from builders.scenes import THREE_INSTANTS, three_instants
 from builders.turns import by_turns
 from hypothesis import given
 from hypothesis import strategies as st
@@ -54,11 +54,6 @@ ROUNDED_ONCE = {
     *("linear_impulse", "angular_impulse", "centre", "frequencies", "cosines", "sines"),
 }
 ALSO_ROUNDED = {"inertia", "omega", "start", "times", "constant_part"}
-
-
-def problem(on: str = "f64", samples: int = 3) -> Problem:
-    text = THREE_INSTANTS.replace("samples = 3", f"samples = {samples}")
-    return pose(read(text, "short"), rung(on))
 
 
 # The question.
@@ -155,7 +150,7 @@ def answer(of: Problem, **changes: Any) -> bytes:
 )
 def test_a_number_is_taken_as_its_form_says(on: str, written: str, exact: Fraction) -> None:
     """A number in quotes is exact; a bare one is a double on f32 and f64, and exact on wider rungs."""
-    asked = problem(on)
+    asked = three_instants(on)
     text = answer(asked, w2=[0, 0, "HERE"]).replace(b'"HERE"', written.encode())
     assert protocol.read(text, asked).states[2][1] == exact
 
@@ -163,7 +158,7 @@ def test_a_number_is_taken_as_its_form_says(on: str, written: str, exact: Fracti
 @given(st.floats(allow_nan=False, allow_infinity=False))
 def test_hexadecimal_and_shortest_decimal_of_a_double_are_the_double(value: float) -> None:
     """The double that a program held is judged, whether it prints %a or a decimal that is enough."""
-    asked = problem()
+    asked = three_instants()
     response = protocol.read(answer(asked, w1=[value.hex()] * 3, w3=[value] * 3), asked)
     assert response.states[0][0] == response.states[0][2] == value
 
@@ -207,7 +202,7 @@ MISANSWERS = [
 @pytest.mark.parametrize(("given_back", "words"), MISANSWERS, ids=range(len(MISANSWERS)))
 def test_a_wrong_answer_is_told_with_its_place(given_back: Any, words: str) -> None:
     """Whatever is not the answer asked for is refused, in words that say what and where."""
-    asked = problem()
+    asked = three_instants()
     text = answer(asked, **given_back) if isinstance(given_back, dict) else given_back
     with pytest.raises(protocol.Misanswer, match=re.escape(words)):
         protocol.read(text, asked)
@@ -216,7 +211,7 @@ def test_a_wrong_answer_is_told_with_its_place(given_back: Any, words: str) -> N
 @pytest.mark.parametrize("value", [math.nan, math.inf, None, "nan", "-Infinity", 10**400])
 def test_what_is_not_finite_is_told_with_its_place(value: Any) -> None:
     """NaN, an infinity, null and what overflows a double are not finite, in every spelling."""
-    asked = problem()
+    asked = three_instants()
     with pytest.raises(protocol.NotFinite, match=re.escape("@ w2[1]")):
         protocol.read(answer(asked, w2=[0, value, 0]), asked)
 
@@ -255,7 +250,7 @@ def program(folder: Path, text: str) -> str:
 
 
 def solve(folder: Path, text: str, limit: float = 60, samples: int = 3) -> Trajectory:
-    return Process(program(folder, text), time_limit=limit).solve(problem(samples=samples))
+    return Process(program(folder, text), time_limit=limit).solve(three_instants(samples=samples))
 
 
 def test_a_sound_program_is_heard(tmp_path: Path) -> None:
@@ -266,7 +261,7 @@ def test_a_sound_program_is_heard(tmp_path: Path) -> None:
     assert (trajectory.steps, trajectory.detail) == (7, "")
     assert [float(v) for v in trajectory.quantities["omega"][2]] == [
         float(v)
-        for v in problem().given.initial.omega  # type: ignore[union-attr]
+        for v in three_instants().given.initial.omega  # type: ignore[union-attr]
     ]
 
 
@@ -329,7 +324,7 @@ def test_a_program_that_fails_has_its_outcome(
 
 def test_a_program_that_is_not_there_is_told() -> None:
     """A command that cannot be started is an outcome of its own."""
-    trajectory = Process("process:./no-such-simulator --fast").solve(problem())
+    trajectory = Process("process:./no-such-simulator --fast").solve(three_instants())
     assert trajectory.outcome is Outcome.NOT_STARTED
     assert trajectory.detail == "./no-such-simulator: No such file or directory"
 
@@ -374,7 +369,7 @@ def test_neither_side_waits_for_the_other(tmp_path: Path) -> None:
 
 def test_a_question_need_not_be_read(tmp_path: Path) -> None:
     """A program that knows the answer is not made to read, and a broken pipe is no fault of it."""
-    text = f"import sys; sys.stdin.close(); print({answer(problem(samples=3)).decode()!r})"
+    text = f"import sys; sys.stdin.close(); print({answer(three_instants(samples=3)).decode()!r})"
     assert solve(tmp_path, text).outcome is Outcome.FINISHED
     # Here the question is larger than the pipe.
     trajectory = solve(tmp_path, text, samples=3_000)
@@ -479,6 +474,6 @@ def test_the_example_in_c_passes_every_gate(rk4_in_c: str) -> None:
 
 def test_the_example_in_c_refuses_what_it_cannot_do(rk4_in_c: str) -> None:
     """A step that is not positive ends it with a word on stderr, which the outcome repeats."""
-    trajectory = named(f"{rk4_in_c} 0").solve(problem())
+    trajectory = named(f"{rk4_in_c} 0").solve(three_instants())
     assert trajectory.outcome is Outcome.CRASHED
     assert trajectory.detail == "exit status 1; stderr: rk4: expected a positive step"
