@@ -5,6 +5,7 @@ step or null for that of the FMU; `names`, lists of variables of the FMU in plac
 `fixed`, what is built into the FMU and not set. Three names for a matrix are its diagonal; the name of an
 array of the FMU stands for its entries. An index counts from 1, that of a quaternion from 0.
 `docs/formats.md` has the table of names: what is set before the run, and what is read at each time.
+
 fmpy's own `simulate_fmu` samples at one interval alone, and a scene has its samples anywhere.
 
 Of what says the same, inertia and inverse_inertia, omega_start and angular_momentum_start, one is enough.
