@@ -47,7 +47,6 @@ class ClosedForm(Solver):
     """Omega of a free body with three distinct principal moments, by Jacobi's functions in float64."""
 
     name: str
-    setting: str = ""
 
     def unavailable(self, rung: Rung) -> str:
         return unavailable(self.name, rung)

@@ -97,7 +97,6 @@ class Callback(Solver):
 
     answer: Callable[[Problem], Any]
     name: str = "callback"
-    setting: str = ""
 
     def solve(self, problem: Problem) -> Trajectory:
         began = perf_counter()

@@ -136,7 +136,6 @@ class Outside(Solver):
     block: str
     settings: tuple[tuple[str, str], ...]
     time_limit: float = process.DEFAULT_LIMIT
-    setting: str = ""
 
     def unavailable(self, rung: Rung) -> str:
         rungs = self.engine.script.about.rungs

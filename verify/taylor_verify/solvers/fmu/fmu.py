@@ -51,7 +51,6 @@ class Fmu(Solver):
     file: Path
     settings: str
     time_limit: float = process.DEFAULT_LIMIT
-    setting: str = ""
 
     def unavailable(self, rung: Rung) -> str:
         if reason := float64_alone(self.name, rung):

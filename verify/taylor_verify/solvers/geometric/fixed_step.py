@@ -86,7 +86,6 @@ class FixedStep(Solver):
 
     step: Fraction
     name: str
-    setting: str = ""
     counts_steps = True
 
     # What may act on a body besides its energy, by the names of `acting`.

@@ -27,7 +27,6 @@ class Plain(Solver):
     """heyoka by itself, in doubles, for problems in principal axes that ask for omega alone."""
 
     name: str = "plain heyoka"
-    setting: str = ""
     counts_steps = True
 
     def unavailable(self, rung: Rung) -> str:
