@@ -31,12 +31,11 @@ from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers import registry
-from taylor_verify.solvers.geometric import fixed_step, midpoint, moser_veselov
+from taylor_verify.solvers.geometric import fixed_step, implicit
 from taylor_verify.solvers.geometric.fixed_step import Body, FixedStep, Step
+from taylor_verify.solvers.geometric.implicit import ImplicitMidpoint, MoserVeselov
 from taylor_verify.solvers.geometric.methods import METHODS
 from taylor_verify.solvers.geometric.methods import named as geometric
-from taylor_verify.solvers.geometric.midpoint import ImplicitMidpoint
-from taylor_verify.solvers.geometric.moser_veselov import MoserVeselov
 from taylor_verify.solvers.geometric.vectors import Quaternion, Vector
 from taylor_verify.solvers.registry import solver_named
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
@@ -314,14 +313,14 @@ def test_a_reversed_sign_is_an_error_of_the_size_of_the_motion(name: str) -> Non
 
 def test_the_frame_has_a_term_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without the multiple of 1 in the modified tensor omega keeps its fourth order, not the attitude."""
-    whole = moser_veselov._modified
+    whole = implicit._modified
 
     def scaled_alone(K: Any, m: Vector, h: float) -> Any:
         modified = whole(K, m, h)
         factor = (modified[1][1] - modified[0][0]) / (K[1][1] - K[0][0])
         return tuple(tuple(factor * entry for entry in row) for row in K)
 
-    monkeypatch.setattr(moser_veselov, "_modified", scaled_alone)
+    monkeypatch.setattr(implicit, "_modified", scaled_alone)
     make = method("preprocessed-moser-veselov")
     convergence = sweep(PRINCIPAL, solving(make), STEPS)
     assert convergence.reason.startswith("omega is 4th order, attitude 2nd, ")
@@ -329,7 +328,7 @@ def test_the_frame_has_a_term_of_its_own(monkeypatch: pytest.MonkeyPatch) -> Non
 
 def test_an_equation_not_solved_shows_in_T(monkeypatch: pytest.MonkeyPatch) -> None:
     """The midpoint rule left at its first guess is an explicit method, and drifts."""
-    monkeypatch.setattr(midpoint, "root", lambda system, guess: (guess, 1))
+    monkeypatch.setattr(implicit, "root", lambda system, guess: (guess, 1))
     by_quantity = verdicts("euler/generic", "implicit-midpoint", "0.02")
     assert by_quantity["T"].verdict is Status.FAIL
     assert by_quantity["H2"].verdict is Status.FAIL
