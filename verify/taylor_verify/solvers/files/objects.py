@@ -26,10 +26,28 @@ _ACCEPTED: Final = (
 
 
 def trajectory(answer: Any, scene: Scene, columns: Request = ()) -> TrajectoryFile:
-    """Return the trajectory that a Python object holds; its name is the type of the object.
+    """Return the trajectory that a Python object holds.
 
-    ``scene`` has the order of the states of an OdeResult; ``columns`` are pairs of a name of ours and the
-    object's. Raises Refused with every fault of its columns, and ValueError for an object of another kind.
+    Parameters
+    ----------
+    answer
+        A DataFrame, a Dataset, a record array, arrays by name, or SciPy's OdeResult.
+    scene
+        The scene that it answers: it has the order of the states of an OdeResult.
+    columns
+        Pairs of a name of ours and the name that the object has for it.
+
+    Returns
+    -------
+    solvers.files.file.TrajectoryFile
+        The trajectory. Its name is the type of the object.
+
+    Raises
+    ------
+    scenes.reading.faults.Refused
+        For columns that cannot be judged, with every fault.
+    ValueError
+        For an object of another kind.
     """
     place = f"the {type(answer).__name__}"
     gathered = _Gathered(place)

@@ -30,10 +30,22 @@ from taylor_verify.solvers.trajectory import Outcome, Trajectory
 PREFIX: Final = "fmu:"
 _RUNNER: Final = Path(__file__).with_name("runner.py")
 _SET: Final = (
-    *("inertia", "inverse_inertia", "moment", "rotor", "damping"),
-    *("linear", "coupling", "angular", "force", "couple"),
-    *("omega_start", "angular_momentum_start", "linear_impulse_start", "angular_impulse_start"),
-    *("attitude_start", "centre_start"),
+    "inertia",
+    "inverse_inertia",
+    "moment",
+    "rotor",
+    "damping",
+    "linear",
+    "coupling",
+    "angular",
+    "force",
+    "couple",
+    "omega_start",
+    "angular_momentum_start",
+    "linear_impulse_start",
+    "angular_impulse_start",
+    "attitude_start",
+    "centre_start",
 )
 _READ: Final = ("omega", "linear_impulse", "angular_impulse", "attitude", "centre")
 _STEP, _FIXED = "step", "fixed"

@@ -34,8 +34,24 @@ from taylor_verify.solvers.values import Value, exact
 _BODY: Final = "SC_BODY"
 # Frames that turn with the earth or with an orbit: equations of motion have other terms in them.
 _TURNING: Final = (
-    *("ITRF", "DTRF", "EFG", "WGS", "GTOD", "TDR", "GRC"),
-    *("LVLH", "VVLH", "RTN", "RSW", "RIC", "QSW", "TNW", "NTW", "VNC", "SEZ", "NSW"),
+    "ITRF",
+    "DTRF",
+    "EFG",
+    "WGS",
+    "GTOD",
+    "TDR",
+    "GRC",
+    "LVLH",
+    "VVLH",
+    "RTN",
+    "RSW",
+    "RIC",
+    "QSW",
+    "TNW",
+    "NTW",
+    "VNC",
+    "SEZ",
+    "NSW",
 )
 _NOT_UNIFORM: Final = ("UT1", "GMST", "SCLK", "MET", "MRT")
 _BLANK: Final = b"\xef\xbb\xbf \t\r\n"

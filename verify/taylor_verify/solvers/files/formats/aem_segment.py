@@ -28,8 +28,18 @@ _LINE: Final = Limit(4096, "characters in a line", "the standard allows 254")
 _VERSION: Final = "CCSDS_AEM_VERS"
 # Roots of XML that is no attitude ephemeris.
 _OTHER_MESSAGES: Final = (
-    *("apm", "acm", "oem", "opm", "omm", "ocm", "cdm", "tdm", "rdm"),
-    *("robot", "sdf", "mujoco"),
+    "apm",
+    "acm",
+    "oem",
+    "opm",
+    "omm",
+    "ocm",
+    "cdm",
+    "tdm",
+    "rdm",
+    "robot",
+    "sdf",
+    "mujoco",
 )
 
 
