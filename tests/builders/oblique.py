@@ -16,19 +16,13 @@ track = ["omega", "attitude"]
 [body]
 inertia = {inertia}
 [initial]
-omega = {omega}
-attitude = {attitude}
+omega = [0.9, -0.3, 0.5]
+attitude = [1, 2, -1, 3]
 [time]
 {time}
 """
 
 
-def oblique(
-    inertia: str = FULL,
-    time: str = FORWARDS,
-    omega: str = "[0.9, -0.3, 0.5]",
-    attitude: str = "[1, 2, -1, 3]",
-) -> Scene:
+def oblique(inertia: str = FULL, time: str = FORWARDS) -> Scene:
     """Return the scene, its keys as a file has them."""
-    text = _SCENE.format(inertia=inertia, omega=omega, attitude=attitude, time=time)
-    return read(text, "oblique")
+    return read(_SCENE.format(inertia=inertia, time=time), "oblique")

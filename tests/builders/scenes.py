@@ -7,10 +7,12 @@ from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
+from taylor_verify.models.problem import Problem, pose
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Body, Clebsch, ImmersedBody, RigidBody
 from taylor_verify.scenes.motion import Clock, Impulse, Quaternion, Spin, State
-from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix, Vector
 
@@ -85,6 +87,14 @@ omega = [1, 0.4, 0.3]
 end = 2
 samples = 3
 """
+
+
+def three_instants(on: str = "f64", samples: int = 3) -> Problem:
+    """The problem of three instants, or more, on a precision."""
+    text = THREE_INSTANTS.replace("samples = 3", f"samples = {samples}")
+    return pose(read(text, "short"), rung(on))
+
+
 LISTED_INSTANTS = """
 title = "A short motion"
 model = "euler"

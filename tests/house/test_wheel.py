@@ -83,7 +83,7 @@ import pytest
 import taylor_verify
 
 OUTSIDE = pathlib.Path(taylor_verify.__file__).parent / "solvers" / "outside"
-RK4 = "process:" + shlex.join([sys.executable, str(OUTSIDE / "rk4.py"), "0.05"])
+RK4 = "process:" + shlex.join([sys.executable, str(OUTSIDE / "rk4.py"), "step=0.05"])
 
 def still(problem):
     return [problem.given.initial.omega] * len(problem.times)

@@ -279,7 +279,7 @@ def test_the_verbs_that_judge_no_solver_of_ours_work(tmp_path: Path) -> None:
 def test_a_program_of_a_user_is_judged(tmp_path: Path) -> None:
     """`process:` needs no heyoka."""
     rk4 = Path(taylor_verify.__file__).parent / "solvers" / "outside" / "rk4.py"
-    solver = f"process:{shlex.join([sys.executable, str(rk4), '0.05'])}"
+    solver = f"process:{shlex.join([sys.executable, str(rk4), 'step=0.05'])}"
     status, out, _ = command(tmp_path, "run", "euler/spherical", "--solver", solver)
     assert status == 0, out
 

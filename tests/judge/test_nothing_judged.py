@@ -143,7 +143,7 @@ def test_a_missing_number_format_is_exit_0_and_said(
     [
         ("scipy:DOP853", "f32"),
         ("geometric:splitting?step=0.1", "f128"),
-        ("outside:numbalsoda-lsoda", "f64"),
+        ("outside:cvode-bdf", "f80"),
         ("taylor?tol=1e-60", "f32"),
     ],
 )

@@ -16,8 +16,10 @@ from taylor_verify.scenes.bodies import Body, RigidBody
 from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.parts import NUMBER, Part, Shape
 from taylor_verify.scenes.tensors import Vector, diagonal
+from taylor_verify.solvers.process import protocol
 from taylor_verify.solvers.registry import solver_named
 
+CLOSED_FORM = "closed-form:ellipj"
 INERTIA = diagonal((Fraction(1), Fraction(2), Fraction(3)))
 
 
@@ -55,6 +57,26 @@ def test_an_engine_for_plain_bodies_does_not_take_a_new_kind() -> None:
     assert "free bodies without wheels" in type(engine).unsuited(asked, problem)
     problem.given.body = RigidBody(INERTIA)
     assert type(engine).unsuited(asked, problem) == ""
+
+
+@pytest.mark.parametrize(
+    "name", ["geometric:splitting?step=0.1", "geometric:implicit-midpoint?step=1", CLOSED_FORM]
+)
+def test_a_method_for_bodies_it_knows_does_not_take_a_new_kind(name: str) -> None:
+    """A method names the part that it does not know, and takes the same body without it."""
+    solver: Any = solver_named(name)
+    scene = replace(taylor_verify.load("euler/generic"), body=SprungBody(INERTIA))
+    problem: Any = SimpleNamespace(scene=scene, given=scene, initial_momenta=(1, 1, 1))
+    assert solver.unsuited(problem) == f"{solver.name} is made for a body without spring"
+    problem.given = replace(scene, body=RigidBody(INERTIA))
+    assert solver.unsuited(problem) == ""
+
+
+def test_a_program_can_tell_a_new_kind() -> None:
+    """The version of its question is beyond all that programs know."""
+    assert protocol._version(SprungBody(INERTIA)) > max(protocol.VERSIONS.values())
+    for body, version in (("rigid", 1), ("under a moment", 1), ("with wheels", 3), ("damped", 4)):
+        assert protocol._version(BODIES[body][0]) == version
 
 
 def test_causes_that_are_not_looked_for_are_told() -> None:

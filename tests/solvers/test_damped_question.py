@@ -16,7 +16,6 @@ from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.process import protocol
 from taylor_verify.solvers.registry import solver_named
-from taylor_verify.solvers.trajectory import Outcome
 
 
 def short(name: str, **changes: object) -> Scene:
@@ -30,7 +29,7 @@ def posed(scene: Scene, on: str = "f64") -> Problem:
     return pose(scene, rung(on))
 
 
-RIGID, FLUID = "euler/damped", "kirchhoff/damped"
+RIGID, FLUID, WHEELS = "euler/damped", "kirchhoff/damped", "euler/gyrostat"
 
 
 @pytest.mark.parametrize(
@@ -62,39 +61,13 @@ def test_lie_rk4_keeps_the_order_four() -> None:
     assert 14 <= errors[0] / errors[1] <= 18
 
 
-@pytest.mark.parametrize(
-    "method",
-    ["implicit-midpoint", "splitting", "moser-veselov", "preprocessed-moser-veselov"],
-)
-def test_a_geometric_method_refuses_it_by_name(method: str) -> None:
-    """A method that conserves what damping takes says that it is made for a body without damping."""
-    solver = solver_named(f"geometric:{method}?step=0.1")
-    trajectory = solver.solve(posed(short(RIGID)))
-    assert trajectory.outcome is Outcome.NOT_STARTED
-    assert trajectory.detail == f"{solver.name} is made for a body without damping"
-
-
-def test_the_closed_form_of_scipy_refuses_it() -> None:
-    """Jacobi's functions are those of a body without damping."""
-    solver = solver_named("closed-form:ellipj")
-    scene = replace(short(RIGID), track=frozenset())
-    assert "without damping" in solver.solve(posed(scene)).detail
-
-
-@pytest.mark.parametrize("scene", [RIGID, FLUID])
-def test_the_question_has_a_version_of_its_own(scene: str) -> None:
-    """Programs are asked by version 4, with the damping as text and as the float of the rung."""
-    asked = protocol.question(posed(short(scene)))
+@pytest.mark.parametrize(("scene", "others"), [(RIGID, set()), (FLUID, set()), (WHEELS, {"rotor"})])
+def test_the_question_has_a_version_of_its_own(scene: str, others: set[str]) -> None:
+    """Programs are asked by version 4, also with wheels; the damping is a text and a float."""
+    asked = protocol.question(posed(short(scene, damping=Fraction(1, 8))))
     assert asked["protocol"] == 4
-    number = asked["body"]["damping"]
-    assert float.fromhex(number["hex"]) == float(load(scene).body.damping)
+    assert {"damping", *others} <= set(asked["body"])
+    assert asked["body"]["damping"] == {"text": "0.125", "hex": "0x1p-3"}
     plain = protocol.question(posed(short(scene, damping=Fraction(0))))
-    assert plain["protocol"] == 1
+    assert plain["protocol"] == (3 if others else 1)
     assert "damping" not in plain["body"]
-
-
-def test_wheels_and_damping_are_asked_together() -> None:
-    """A body with wheels and damping is asked by version 4 too, which knows of both."""
-    asked = protocol.question(posed(short("euler/gyrostat", damping=Fraction(1, 8))))
-    assert asked["protocol"] == 4
-    assert {"rotor", "damping"} <= set(asked["body"])

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import json
 import math
-import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from fractions import Fraction
-from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -17,25 +15,19 @@ from builders.oblique import BACKWARDS, oblique
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.solvers.engines.engine import SCRIPTS
 from taylor_verify.solvers.process import protocol
 from taylor_verify.solvers.solver import Callback
 from taylor_verify.tradeoff.accuracy import Truth
 
 
 @pytest.fixture
-def shared(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
-    """The module as the scripts import it, from their own folder."""
-    monkeypatch.syspath_prepend(str(SCRIPTS))
-    yield import_module("free_body")
-    for name in ("free_body", "equations", "question"):
-        sys.modules.pop(name, None)
+def shared(sibling: Callable[[str], Any]) -> Any:
+    return sibling("free_body")
 
 
 @pytest.fixture
-def immersed(shared: Any) -> Iterator[Any]:
-    yield import_module("immersed_body")
-    sys.modules.pop("immersed_body", None)
+def immersed(sibling: Callable[[str], Any]) -> Any:
+    return sibling("immersed_body")
 
 
 def asked(problem: Problem, shared: Any) -> Any:
@@ -109,20 +101,6 @@ def test_an_engine_with_the_right_equations_converges_to_the_exact_motion(
     assert first <= 40 * 2**-53
     _, fine = errors(problem, shared, engine, 0.05)
     assert fine <= coarse / 8
-
-
-@pytest.mark.parametrize("seed", range(20))
-def test_principal_axes_lead_back_to_the_tensor(seed: int, shared: Any) -> None:
-    """The moments are the eigenvalues, and the turned axes give the tensor back, to a few roundings."""
-    random = np.random.default_rng(seed)
-    factor = random.normal(size=(3, 3))
-    tensor = factor @ factor.T
-    moments, turn = shared.principal(tensor.tolist())
-    axes = np.array([shared.to_space(turn, axis) for axis in np.eye(3)]).T
-    few = 60 * 2**-53 * np.max(tensor)
-    assert np.linalg.det(axes) > 0
-    assert np.max(np.abs(np.sort(moments) - np.linalg.eigvalsh(tensor))) <= few
-    assert np.max(np.abs(axes @ np.diag(moments) @ axes.T - tensor)) <= few
 
 
 @pytest.mark.parametrize("seed", range(20))

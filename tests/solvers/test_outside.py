@@ -9,24 +9,19 @@ import shutil
 import sys
 import threading
 import tomllib
-from collections.abc import Callable, Iterator
-from importlib import import_module
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
-from builders.other_equations import has_other_equations
 from builders.programs import imported_tops
-from builders.scenes import THREE_INSTANTS
+from builders.scenes import three_instants
 from packaging.specifiers import SpecifierSet
 
 from taylor_verify.models.problem import Problem, pose
-from taylor_verify.records.quantities import INITIAL, STATES
-from taylor_verify.records.status import Status
-from taylor_verify.run import run
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.faults import Refused
-from taylor_verify.scenes.reading.reader import load, read
+from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.engines import python
 from taylor_verify.solvers.engines.engine import SCRIPTS, Engine, engines, named, prepare
 from taylor_verify.solvers.engines.launcher import NotMade
@@ -45,10 +40,6 @@ SCENES = [
     *("kirchhoff/constant-loads", "kirchhoff/screw", "kirchhoff/listed-times"),
     *("euler/damped", "kirchhoff/damped"),
 ]
-
-
-def problem(on: str = "f64") -> Problem:
-    return pose(read(THREE_INSTANTS, "short"), rung(on))
 
 
 # Their names.
@@ -110,18 +101,6 @@ def test_the_command_line_lists_them_all() -> None:
         assert solver_named(name).name == name
 
 
-def test_what_cannot_be_had_says_why() -> None:
-    """An engine that nothing can install is there by name, is not started, and says why."""
-    without = [one for one in engines().values() if one.script.about.unavailable]
-    assert without
-    for one in without:
-        solver = solver_named(f"outside:{one.name}")
-        assert solver.unavailable(rung("f64")) == one.unavailable == one.script.about.unavailable
-        assert solver.solve(problem()).outcome is Outcome.NOT_STARTED
-        with pytest.raises(NotMade):
-            prepare(one.name)
-
-
 # The scripts.
 
 
@@ -154,17 +133,15 @@ def pythons(requirement: str) -> list[str]:
 def test_a_script_has_the_methods_it_names(file: Path) -> None:
     """The methods of the metadata are those of the script, and it loads no library to begin with."""
     about = read_script(file).about
-    if about.unavailable:
-        return
     tree = ast.parse(file.read_text())
     tables = [
         ast.literal_eval(node.value)
         for node in tree.body
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "METHODS"
     ]
-    # One without methods is a single solver.
-    table = tables[0] if about.methods else {}
-    assert list(about.methods) == list(table)
+    # Where there is no table, the words of the methods are the library's own.
+    (table,) = tables or [about.methods]
+    assert list(about.methods) == list(table), f"other methods in METHODS than above @ {file.name}"
     siblings = {file.stem for file in SCRIPTS.glob("*.py")}
     for node in tree.body:
         if isinstance(node, ast.Import):
@@ -195,21 +172,12 @@ def test_a_list_says_what_each_is(monkeypatch: pytest.MonkeyPatch) -> None:
             if usage.partition("?")[0].endswith(f":{name}")
         ]
         assert remark
-        assert ("unavailable" in remark) is name.startswith("numbalsoda")
+        assert "unavailable" not in remark
     monkeypatch.setattr(python, "_uv", lambda: None)
     assert "pip install 'taylor-verify[engines]'" in remarks()[engines()["cvode-bdf"].usage]
 
 
 # What they share: the reading of the question, the equations, the writing of the answer.
-
-
-@pytest.fixture
-def sibling(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[str], Any]]:
-    """Imports a module as the scripts do, from their own folder."""
-    monkeypatch.syspath_prepend(str(SCRIPTS))
-    yield import_module
-    for name in ("equations", "question", "rk4"):
-        sys.modules.pop(name, None)
 
 
 @pytest.mark.parametrize("scene", SCENES)
@@ -249,17 +217,16 @@ def test_the_equations_of_the_scripts_lead_to_the_exact_motion(
             "among w1 w2 w3 q0 q1 q2 q3, got s1 @ columns",
         ),
         ({"model": "gyrostat"}, "expected the model euler or kirchhoff, got gyrostat"),
+        ({"manufactured": {}}, "expected constant loads, got a manufactured motion"),
     ],
 )
 def test_a_question_beyond_the_equations_is_refused_in_a_sentence(
     changed: dict[str, Any], fault: str, sibling: Callable[[str], Any]
 ) -> None:
-    """A state quantity or a model that the scripts do not know is named, by each reader of questions."""
-    document = {**protocol.question(problem()), **changed}
+    """A state quantity or a model that the scripts do not know is named."""
+    document = {**protocol.question(three_instants()), **changed}
     with pytest.raises(SystemExit, match=fault):
         sibling("question").read(document)
-    with pytest.raises(SystemExit, match=fault):
-        sibling("rk4").known_columns(document)
 
 
 def error(asked: Problem, answer: protocol.Answer) -> float:
@@ -287,15 +254,13 @@ def test_the_first_propagation_is_what_compiles(sibling: Callable[[str], Any]) -
 # The libraries themselves, where their environments are.
 
 
-def ready(setting: str) -> list[Engine]:
-    """The engines that can be had here and have this setting."""
-    every = [one for one in engines().values() if not one.script.about.unavailable]
-    return [one for one in every if setting in one.script.about.settings]
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("scene", ["euler/backward", "kirchhoff/whole-motion"])
-@pytest.mark.parametrize("one", ready("rtol"), ids=lambda one: one.name)
+@pytest.mark.parametrize(
+    "one",
+    [one for one in engines().values() if "rtol" in one.script.about.settings],
+    ids=lambda one: one.name,
+)
 def test_a_library_keeps_near_its_tolerance(
     one: Engine, scene: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -322,71 +287,49 @@ def test_a_library_keeps_near_its_tolerance(
     assert errors[1e-9] <= errors[1e-6] / 10
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("one", ready("step"), ids=lambda one: one.name)
-def test_an_engine_begins_with_the_start_and_comes_nearer_with_the_step(
-    one: Engine, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The first row is the state that the engine was given, with an oblique attitude, and half the step
-    leaves an error of half the size at most, but where the engine has other equations."""
-    monkeypatch.setenv("UV_OFFLINE", "1")
-    try:
-        prepare(one.name)
-    except NotMade as reason:
-        pytest.skip(str(reason))
-    about = one.script.about
-    scene = load(
-        "euler/with-attitude" if "euler" in about.models else "kirchhoff/ellipsoid-triaxial"
-    )
-    on = rung(about.rungs[-1])
-    errors = []
-    for step in (2.0**-6, 2.0**-7):
-        verdicts = {
-            v.quantity: v for v in run(scene, f"outside:{one.name}?step={step}", on).verdicts
-        }
-        assert verdicts[INITIAL].verdict is Status.PASS
-        errors.append(max(v.max or 0 for v in verdicts.values() if v.quantity in STATES))
-    # The first order is half the error.
-    assert (errors[1] <= 0.6 * errors[0]) is not has_other_equations(one.name)
-
-
-def written(folder: Path, metadata: str) -> Path:
-    """A script of the folder with this block."""
-    lines = "\n".join(f"# {line}".rstrip() for line in metadata.splitlines())
+def written(folder: Path, *blocks: str) -> Path:
+    """A script of the folder with these blocks of metadata."""
+    texts = (f"# /// script\n{block}\n///".replace("\n", "\n# ") for block in blocks)
     file = folder / "with_mine.py"
-    file.write_text(f"# /// script\n{lines}\n# ///\n", encoding="utf-8")
+    file.write_text("".join(f"{text}\nprint(1)\n" for text in texts), encoding="utf-8")
     return file
 
 
+TITLED = '[tool.taylor-verify]\ntitle = "x"\n'
+
+
 @pytest.mark.parametrize(
-    ("metadata", "fault"),
+    ("blocks", "fault"),
     [
+        ([], "expected one block of script metadata, got 0"),
+        (["a = 1", "a = 1"], "expected one block of script metadata, got 2"),
+        (["a = "], "expected TOML in the metadata"),
+        (["[tool.taylor-verify]\ntitel = 1"], "unknown field `titel`"),
+        (["dependencies = []"], "missing required field `title`"),
         (
-            'dependencies = ["six"]',
+            ['dependencies = ["six"]\n' + TITLED],
             "expected a dependency pinned with ==, got 'six' @ with_mine.py",
         ),
-        (
-            'dependencies = ["six==1.0"]\n[tool.taylor-verify]\ntitle = "x"\npackage = "seven"',
-            "expected a package among the dependencies, got 'seven' @ with_mine.py",
+        *(
+            (
+                [f'dependencies = ["six==1.0"]\n{TITLED}{key}'],
+                "expected a package among the dependencies, got 'seven' @ with_mine.py",
+            )
+            for key in ('package = "seven"', 'alike = ["seven"]')
         ),
         (
-            'dependencies = ["six==1.0"]\n[tool.taylor-verify]\ntitle = "x"\nalike = ["seven"]',
-            "expected a package among the dependencies, got 'seven' @ with_mine.py",
-        ),
-        (
-            '[tool.taylor-verify]\ntitle = "x"\nsettings = {step = -1.0}',
+            [TITLED + "settings = {step = -1.0}"],
             "expected a positive number or words for the setting step, got -1.0 @ with_mine.py",
         ),
         (
-            '[tool.taylor-verify]\ntitle = "x"\nsettings = {step = "stp"}',
+            [TITLED + 'settings = {step = "stp"}'],
             "expected an earlier setting for step to follow, got 'stp' @ with_mine.py",
         ),
     ],
 )
-def test_a_script_that_is_wrong_is_refused(metadata: str, fault: str, tmp_path: Path) -> None:
+def test_a_script_that_is_wrong_is_refused(blocks: list[str], fault: str, tmp_path: Path) -> None:
     """Each fault is one line with its file, and reading the folder tells all of them."""
-    about = "" if "tool" in metadata else '\n[tool.taylor-verify]\ntitle = "x"'
-    file = written(tmp_path, f"{metadata}{about}")
+    file = written(tmp_path, *blocks)
     with pytest.raises(ValueError, match=re.escape(fault)):
         read_script(file)
     with pytest.raises(Refused, match=re.escape(fault)):
@@ -395,7 +338,7 @@ def test_a_script_that_is_wrong_is_refused(metadata: str, fault: str, tmp_path: 
 
 def test_a_script_without_a_library_has_no_version(tmp_path: Path) -> None:
     """A program of the standard library alone is an engine too, and no version of it can be asked for."""
-    script = read_script(written(tmp_path, '[tool.taylor-verify]\ntitle = "x"'))
+    script = read_script(written(tmp_path, TITLED))
     assert script.package == ""
     with pytest.raises(ValueError, match=r"expected no version: with_mine\.py has no library"):
         script.at_version("1.0")

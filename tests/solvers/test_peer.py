@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Callable, Iterator
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -25,38 +24,18 @@ from taylor_verify.solvers.trajectory import Outcome
 from taylor_verify.tradeoff.accuracy import Truth
 from taylor_verify_reports.studies.tradeoff.measurement import PEERS
 
-# An integrator without a library: the classical method in steps that end on the samples.
+# An integrator without a library: the worked example, in so many steps between two samples.
 _SCRIPT = """
 import os, sys, time
+from dataclasses import replace
 sys.path.insert(0, {scripts!r})
-from question import Solved, answer, equations_of, twice
+import rk4
+from question import answer
 
 def solve(question, settings):
     {begins}
-    f = equations_of(question)
-
-    def rates(s):
-        return [question.sign * v for v in f(s, question.parameters)]
-
-    def moved(s, k, h):
-        return [a + h * b for a, b in zip(s, k)]
-
-    def propagate():
-        rows, s = [question.state], question.state
-        for before, after in zip(question.instants, question.instants[1:]):
-            h = (after - before) / {steps}
-            for _ in range({steps}):
-                a = rates(s)
-                b = rates(moved(s, a, h / 2))
-                c = rates(moved(s, b, h / 2))
-                d = rates(moved(s, c, h))
-                s = [v + h / 6 * (p + 2 * q + 2 * r + t) for v, p, q, r, t in zip(s, a, b, c, d)]
-            rows.append(s)
-        return rows
-
-    rows, seconds, compiling = twice(propagate)
-    steps = {steps} * (len(question.instants) - 1)
-    return Solved(rows, steps, 4 * steps, seconds, compiling, again=propagate)
+    settings.step = max(b - a for a, b in zip(question.instants, question.instants[1:])) / {steps}
+    return replace(rk4.solve(question, settings), again=lambda: rk4.solve(question, settings))
 
 answer(solve)
 """
@@ -66,12 +45,12 @@ Made = Callable[..., Peer]
 
 
 @pytest.fixture
-def fake(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Made]:
+def fake(monkeypatch: pytest.MonkeyPatch, users_cache: Path) -> Iterator[Made]:
     """A peer that is this script in this interpreter."""
 
     def made(begins: str = "pass", steps: int = 40, limit: str = "60") -> Peer:
         monkeypatch.setenv("TAYLOR_VERIFY_TIME_LIMIT", limit)
-        script = tmp_path / "with_fake.py"
+        script = users_cache.with_name("with_fake.py")
         script.write_text(_SCRIPT.format(scripts=str(SCRIPTS), begins=begins, steps=steps))
         command = [sys.executable, "-B", str(script), "serve"]
         monkeypatch.setattr(peers, "command_of", lambda engine: command)
@@ -98,19 +77,12 @@ def test_a_peer_is_asked_the_problem_that_heyoka_is_asked(scene: str, fake: Made
     assert Truth(problem).accuracy(trajectory).worst <= 1e-5
 
 
-def test_the_code_of_a_peer_is_the_code_of_this_process() -> None:
+def test_the_code_of_a_peer_is_the_code_of_this_process(sibling: Callable[[str], Any]) -> None:
     """Read back from the document, the lines give the rates of the form to the last bit."""
     problem = posed("kirchhoff/whole-motion")
     asked = json.loads(json.dumps(document(problem)))
-    sys.path.insert(0, str(SCRIPTS))
-    try:
-        service, question = import_module("service"), import_module("question")
-        read = service._read(asked)
-        rates = question.equations_of(read)(read.state, read.parameters)
-    finally:
-        sys.path.remove(str(SCRIPTS))
-        for name in ("service", "question", "equations"):
-            sys.modules.pop(name, None)
+    read = sibling("service")._read(asked)
+    rates = sibling("question").equations_of(read)(read.state, read.parameters)
     parameters = [float(value) for value in problem.parameters]
     expected = straight_line(problem.form, parameters)(0.0, read.state)
     assert list(rates) == expected

@@ -5,14 +5,13 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
-from importlib import import_module
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
 from builders.oblique import oblique
-from builders.other_equations import has_other_equations
+from builders.other_equations import WITHOUT_GYROSCOPIC_TERM, has_other_equations
 from builders.processes import PATIENCE
 
 from taylor_verify.models.problem import pose
@@ -21,6 +20,7 @@ from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.engines.engine import SCRIPTS, engines, prepare
 from taylor_verify.solvers.engines.launcher import NotMade
 from taylor_verify.solvers.process import protocol
@@ -31,23 +31,12 @@ STEP = 1 / 32
 BESIDE = {"coordinates=EulerParameters": "integrator=GeneralizedAlpha"}
 
 
-@pytest.fixture
-def sibling(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[str], Any]]:
-    """Imports a script as it imports its siblings, from their own folder."""
-    monkeypatch.syspath_prepend(str(SCRIPTS))
-    loaded = set(sys.modules)
-    yield import_module
-    for name in set(sys.modules) - loaded:
-        if str(getattr(sys.modules[name], "__file__", "")).startswith(str(SCRIPTS)):
-            del sys.modules[name]
-
-
 def each_setting() -> list[str]:
     """The engines by name, with each word of each of their settings, and those without a step."""
     names = []
     for one in engines().values():
         about = one.script.about
-        if about.data != "tensor" or "euler" not in about.models:
+        if about.data != "tensor":
             continue
         words = [
             f"{key}={word}"
@@ -68,7 +57,9 @@ def verdicts_of(name: str, **settings: float) -> dict[str, Verdict]:
         name += f"{'&' if '?' in name else '?'}{key}={value}"
     solver = solver_named(name)
     on = next(on for on in ("f64", "f32") if not solver.unavailable(rung(on)))
-    return {v.quantity: v for v in run(oblique(), solver, on).verdicts}
+    takes_euler = "euler" in solver.engine.script.about.models
+    scene = oblique() if takes_euler else load("kirchhoff/ellipsoid-triaxial")
+    return {v.quantity: v for v in run(scene, solver, on).verdicts}
 
 
 @pytest.mark.slow
@@ -96,6 +87,26 @@ def test_an_engine_is_right_under_every_setting(name: str, monkeypatch: pytest.M
     roundoff = 30 * 2.0**-bits * 4 / STEP
     comes_nearer = errors[1] <= max(errors[0] / 1.5 if stepped else 0.0, roundoff)
     assert comes_nearer is not has_other_equations(name)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [n for n in WITHOUT_GYROSCOPIC_TERM if n[:4] != "brax"])
+def test_an_engine_without_the_gyroscopic_term_keeps_omega_in_space(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Omega in space axes stays where it was, whatever the moments."""
+    monkeypatch.setenv("npm_config_offline", "true")
+    try:
+        prepare(f"outside:{name}")
+    except NotMade as reason:
+        pytest.skip(str(reason))
+    solver: Any = solver_named(f"outside:{name}{'&' if '?' in name else '?'}step=0.01")
+    on = rung(solver.engine.script.about.rungs[0])
+    rows = solver.solve(solver.problem(oblique(), on)).quantities
+    q, w = (np.array(rows[key], dtype=float) for key in ("quaternion", "omega"))
+    twice = 2 * np.cross(q[:, 1:], w)
+    in_space = w + q[:, :1] * twice + np.cross(q[:, 1:], twice)
+    assert np.max(np.abs(in_space - in_space[0])) <= 400 * 2.0**-on.bits
 
 
 # What the scripts do themselves.

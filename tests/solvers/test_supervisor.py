@@ -14,11 +14,8 @@ from pathlib import Path
 import pytest
 from builders.processes import PATIENCE, interruptible, wait_until
 from builders.programs import is_alive
-from builders.scenes import THREE_INSTANTS
+from builders.scenes import three_instants
 
-from taylor_verify.models.problem import pose
-from taylor_verify.scenes.precision import rung
-from taylor_verify.scenes.reading.reader import read
 from taylor_verify.solvers.process import conversation, process, supervisor
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
@@ -94,8 +91,7 @@ def name(program: Path) -> str:
 
 def solve(program: Path, text: str, limit: float = 60) -> Trajectory:
     program.write_text(text)
-    asked = pose(read(THREE_INSTANTS, "short"), rung("f64"))
-    return process.Process(name(program), time_limit=limit).solve(asked)
+    return process.Process(name(program), time_limit=limit).solve(three_instants())
 
 
 @pytest.mark.parametrize(("ending", "outcome"), ENDINGS, ids=[o.name for _, o in ENDINGS])

@@ -12,8 +12,6 @@ import pytest
 from builders import recordings
 from builders.recordings import OMEGA, QUATERNION, Columns
 from builders.trajectories import columns_at, conjugate
-from ccsds_ndm import mapping, ndm_io
-from ccsds_ndm.models import ndmxml2
 
 import taylor_verify
 from taylor_verify.scenes.reading.faults import Refused
@@ -142,53 +140,16 @@ def test_derivatives_are_angular_velocities(tmp_path: Path) -> None:
     assert table.groups["omega"] == ((Fraction(1, 2), Fraction(-1, 4), Fraction(1)),)
 
 
-@pytest.mark.parametrize("order", ["FIRST", "LAST"])
-@pytest.mark.parametrize("direction", ["A2B", "B2A"])
+@pytest.mark.parametrize(("order", "numbers"), [("FIRST", "4 1 2 -3"), ("LAST", "1 2 -3 4")])
+@pytest.mark.parametrize(("direction", "sign"), [("A2B", 1), ("B2A", -1)])
 def test_version_1_says_order_and_direction(
-    order: str, direction: str, columns: Columns, tmp_path: Path
+    order: str, numbers: str, direction: str, sign: int, tmp_path: Path
 ) -> None:
-    """Keywords of version 1, written by the library, say where the scalar is and what is turned."""
-    stated = columns if direction == "A2B" else conjugate(columns)
-    message = version_1(stated, order, direction)
-    ndm_io.NdmIo().to_file(message, mapping.NDMFileFormats.KVN, tmp_path / "run.aem")
-    assert f"QUATERNION_TYPE          = {order}" in (tmp_path / "run.aem").read_text()
-    table = read(tmp_path / "run.aem")
-    assert table.groups["quaternion"] == quaternions(columns)
-    assert table.times == tuple(map(Fraction, columns["t"]))
-
-
-def version_1(columns: Columns, order: str, direction: str) -> Any:
-    states = [
-        ndmxml2.AttitudeStateType(
-            quaternion_state=ndmxml2.QuaternionEphemerisType(
-                epoch=recordings.epoch(columns["t"][k]),
-                quaternion=ndmxml2.QuaternionType(
-                    **{
-                        key: columns[name][k]
-                        for key, name in zip(recordings.SCALAR_FIRST, QUATERNION, strict=True)
-                    }
-                ),
-            )
-        )
-        for k in range(len(columns["t"]))
-    ]
-    metadata = ndmxml2.AemMetadata(
-        object_name="TOP",
-        object_id="2024-001A",
-        center_name="EARTH",
-        ref_frame_a="EME2000",
-        ref_frame_b="SC_BODY_1",
-        attitude_dir=ndmxml2.RotDirectionType(direction),
-        time_system=ndmxml2.TimeSystemType.TAI,
-        start_time=recordings.epoch(columns["t"][0]),
-        stop_time=recordings.epoch(columns["t"][-1]),
-        attitude_type=ndmxml2.AttitudeTypeType.QUATERNION_1,
-        quaternion_type=ndmxml2.QuaternionTypeType(order),
-    )
-    data = ndmxml2.AemData(attitude_state=states)
-    header = ndmxml2.NdmHeader(creation_date="2024-03-01T00:00:00", originator="TESTS")
-    segment = ndmxml2.AemSegment(metadata=metadata, data=data)
-    return ndmxml2.Aem(header=header, body=ndmxml2.AemBody(segment=[segment]))
+    """Keywords of version 1 say where the scalar is and what is turned."""
+    keywords = {"QUATERNION_TYPE": order, "ATTITUDE_DIR": direction}
+    content = text(f"2024-061T00:00:00 {numbers}", version="1.0", **keywords)
+    table = read(written(tmp_path, content))
+    assert table.groups["quaternion"] == ((4, sign, 2 * sign, -3 * sign),)
 
 
 def test_rates_of_euler_angles_are_not_taken_for_angular_velocities(tmp_path: Path) -> None:

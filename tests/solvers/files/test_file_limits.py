@@ -177,19 +177,6 @@ def test_an_archive_of_many_members_is_refused(tmp_path: Path) -> None:
         read(archive(tmp_path / "mine.npz", **many))
 
 
-@given(place=st.integers(0, 2000), byte=st.integers(0, 255))
-def test_a_damaged_archive_is_read_or_refused(
-    place: int, byte: int, tmp_path_factory: pytest.TempPathFactory
-) -> None:
-    """Whatever one byte becomes, the archive is read or refused, and no other error is raised."""
-    file = archive(tmp_path_factory.getbasetemp() / "mine.npz")
-    content = bytearray(file.read_bytes())
-    content[place % len(content)] = byte
-    file.write_bytes(content)
-    with suppress(Refused):
-        assert read(file).times
-
-
 def test_a_key_twice_is_refused_in_json(tmp_path: Path) -> None:
     """JSON takes the last of two equal keys in silence; here they are a fault."""
     file = tmp_path / "mine.json"

@@ -27,7 +27,7 @@ from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, ROWS
 from taylor_verify.solvers.files.formats.reading import FORMATS
 
 COLUMNS_WRITTEN = {name: [0.5, 0.25, 0.125] for name in (*OMEGA, *QUATERNION)} | {"t": [0, 1, 2]}
-FILES = [name for name in WRITERS if "." in name and not name.endswith(".npz")]
+FILES = [name for name in WRITERS if "." in name]
 HEADER = b"MATLAB 5.0 MAT-file".ljust(124) + b"\x00\x01IM"
 
 

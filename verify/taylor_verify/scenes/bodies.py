@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Any, ClassVar, Final, Self, cast
@@ -77,9 +77,28 @@ class Body(Parted):
         return frozenset(p.name for p in self.PARTS if not (p.is_energy or p.is_load))
 
     @property
+    def acting(self) -> tuple[str, ...]:
+        """The names of all that moves the body besides its energy.
+
+        Parts of its own kind such as ``rotor``, ``damping``, ``manufactured``, and loads that are not zero.
+        """
+        own = (part.name for part in self.PARTS if part.name in self.others)
+        changing = (
+            "damping" * bool(self.damping),
+            "manufactured" * (self.manufactured is not None),
+        )
+        loads = (part.name for part in self.PARTS if part.is_load and any(self.part(part)))
+        return tuple(filter(None, (*own, *changing, *loads)))
+
+    @property
     def is_plain(self) -> bool:
         """True if the energy alone moves the body: no loads, no damping, nothing else that acts."""
-        return self.is_free and not self.damping and not self.others
+        return not self.acting
+
+    @property
+    def description(self) -> Mapping[str, Value]:
+        """The numbers that the body was given by, where its parts were computed from them."""
+        return {}
 
     def with_motion(self, motion: Manufactured | None) -> Self:
         """Return the same body with this manufactured motion, or with none."""
@@ -189,6 +208,11 @@ class ImmersedBody(Body):
     def is_revolved(self) -> bool:
         """True for T of Clebsch's form about axis 3."""
         return self.clebsch is not None
+
+    @property
+    def description(self) -> Mapping[str, Value]:
+        """Semi-axes and densities of a body that was given as an ellipsoid."""
+        return asdict(self.ellipsoid) if self.ellipsoid else {}
 
     @cached_property
     def energy_matrix(self) -> Matrix:

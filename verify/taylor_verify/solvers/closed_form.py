@@ -29,13 +29,11 @@ from flint import fmpq, fmpq_mat
 
 from taylor_verify.models.problem import Problem
 from taylor_verify.scenes import tensors
-from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.solvers.geometric.fixed_step import Body
 from taylor_verify.solvers.options import options
 from taylor_verify.solvers.scipy import unavailable
-from taylor_verify.solvers.solver import Solver, raised
+from taylor_verify.solvers.solver import Solver, made_without, raised
 from taylor_verify.solvers.trajectory import Outcome, Trajectory, of_rows
 
 METHODS: Final = ("ellipj",)
@@ -49,27 +47,22 @@ class ClosedForm(Solver):
     """Omega of a free body with three distinct principal moments, by Jacobi's functions in float64."""
 
     name: str
-    setting: str = ""
 
     def unavailable(self, rung: Rung) -> str:
         return unavailable(self.name, rung)
 
     def unsuited(self, problem: Problem) -> str:
         body = problem.given.body
-        if isinstance(body, Gyrostat):
-            return f"{self.name} is made for a body without wheels"
-        if not isinstance(body, RigidBody):
-            return f"{self.name} is made for Euler's equations, got {problem.scene.model}"
+        if problem.given.model != "euler":
+            return f"{self.name} is made for Euler's equations, got {problem.given.model}"
+        if reason := made_without(self.name, body):
+            return reason
         if "attitude" in problem.scene.track:
             return f"{self.name} gives omega and no attitude"
-        for fits, made_for in (
-            (body.is_free, "a body without a moment"),
-            (not body.damping, "a body without damping"),
-            (any(problem.initial_momenta), "a body that turns"),
-            (_has_distinct_moments(body.inverse_inertia), "three distinct principal moments"),
-        ):
-            if not fits:
-                return f"{self.name} is made for {made_for}"
+        if not any(problem.initial_momenta):
+            return f"{self.name} is made for a body that turns"
+        if not _has_distinct_moments(body.energy_matrix):
+            return f"{self.name} is made for three distinct principal moments"
         return ""
 
     def solve(self, problem: Problem) -> Trajectory:
@@ -141,9 +134,9 @@ def _orbit(
     return sqrt(ab * A), m, np.array([a, b, c]), angle
 
 
-def _has_distinct_moments(K: tensors.Matrix) -> bool:
+def _has_distinct_moments(tensor: tensors.Matrix) -> bool:
     """Return True if the characteristic polynomial, in rationals, shares no root with its derivative."""
-    entries = [fmpq(entry.numerator, entry.denominator) for row in K for entry in row]
+    entries = [fmpq(entry.numerator, entry.denominator) for row in tensor for entry in row]
     polynomial = fmpq_mat(3, 3, entries).charpoly()
     return bool(polynomial.gcd(polynomial.derivative()).degree() == 0)
 

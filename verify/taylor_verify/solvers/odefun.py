@@ -41,7 +41,6 @@ class Odefun(Solver):
     name: str
     tol: Fraction | None = None
     degree: int | None = None
-    setting: str = ""
     counts_steps = True
 
     def unavailable(self, rung: Rung) -> str:

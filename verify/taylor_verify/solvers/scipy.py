@@ -58,7 +58,6 @@ class SciPy(Solver):
     name: str
     rtol: float = float(_RTOL)
     atol: float = float(_ATOL)
-    setting: str = ""
     counts_steps = True
 
     def __post_init__(self) -> None:

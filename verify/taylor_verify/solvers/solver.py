@@ -3,24 +3,31 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from numbers import Rational
 from time import perf_counter
-from typing import Any, ClassVar, final
+from typing import Any, ClassVar, Final, final
 
 import numpy as np
 from mpmath import mp
 
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.records.quantities import COLUMNS, state_groups
+from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.solvers.values import Value, as_mpf, exact
 
 _RATIONAL_BITS = 4000
+# What acts on a body, in the words of a sentence.
+_ACTING: Final = {
+    "rotor": "wheels",
+    "moment": "a moment",
+    "manufactured": "a moment that changes with time",
+}
 
 
 class Lack(str):
@@ -90,7 +97,6 @@ class Callback(Solver):
 
     answer: Callable[[Problem], Any]
     name: str = "callback"
-    setting: str = ""
 
     def solve(self, problem: Problem) -> Trajectory:
         began = perf_counter()
@@ -120,6 +126,14 @@ class Callback(Solver):
 def float64_alone(name: str, rung: Rung) -> str:
     """Return the reason why a solver made in float64 cannot run on that rung; empty where it can."""
     return "" if rung.name == "f64" else f"{name} is made in float64: f64 alone"
+
+
+def made_without(name: str, body: Body, takes: Collection[str] = ()) -> str:
+    """Return the reason why a solver that takes no more than this is not made for a body; or empty."""
+    for part in body.acting:
+        if part not in takes:
+            return f"{name} is made for a body without {_ACTING.get(part, part)}"
+    return ""
 
 
 def not_started(reason: str) -> Trajectory:

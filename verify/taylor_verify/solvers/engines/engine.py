@@ -63,11 +63,7 @@ class Engine:
     @property
     def unavailable(self) -> str:
         """The reason why it cannot run here; empty if it is ready, or would be after a download."""
-        return (
-            self.script.about.unavailable
-            or process.unavailable()
-            or self.script.launcher.unavailable()
-        )
+        return process.unavailable() or self.script.launcher.unavailable()
 
 
 @cache
@@ -140,7 +136,6 @@ class Outside(Solver):
     block: str
     settings: tuple[tuple[str, str], ...]
     time_limit: float = process.DEFAULT_LIMIT
-    setting: str = ""
 
     def unavailable(self, rung: Rung) -> str:
         rungs = self.engine.script.about.rungs

@@ -1,26 +1,8 @@
 """A script in solvers/outside, and what its block of inline metadata (PEP 723) says.
 
 In with_NAME.mjs the lines begin with // instead of #, packages are pinned as "cannon-es@0.20.0", and
-requires-node = ">=20" says which node is needed.
-
-requires-python = ">=3.11,<3.15"
-dependencies = ["scikit-sundae==1.2.0", "numpy==2.4.6"]
-[tool.taylor-verify]
-title = "SUNDIALS CVODE, by scikit-sundae"
-package = "scikit-sundae"              optional: whose pin `version` replaces; else the first
-alike = ["mujoco"]                     optional: packages whose pins `version` replaces with it
-rungs = ["f64"]                        optional
-models = ["euler", "kirchhoff"]        optional
-loads = false                          optional: takes no constant loads and no wheels
-data = "tensor"                        optional: takes I and omega as they stand; else I^-1 and I omega
-serves = true                          optional: answers many questions in one process (service.py)
-unavailable = "..."                    optional: why nothing can install it
-[tool.taylor-verify.methods]           optional: each method is a solver, with its title
-bdf = "BDF, order 1 to 5"
-[tool.taylor-verify.settings]          optional: each with its default
-rtol = 1e-9                            a positive number
-atol = "rtol"                          the value of another setting
-integrator = ["RK4", "Euler"]          one of these words, the first unless another is set
+requires-node = ">=20" says which node is needed. `cases/README.md`, *To add an engine*, explains the tables
+`[tool.taylor-verify]`, its `methods` and its `settings`.
 """
 
 from __future__ import annotations
@@ -46,7 +28,11 @@ _PREFIX: Final = "with_"
 
 
 class About(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """The table `[tool.taylor-verify]` of a script."""
+    """The table `[tool.taylor-verify]` of a script.
+
+    A version that is asked for replaces the pin of ``package``, else of the first dependency, and of those
+    ``alike``. A default of ``settings`` is a number, the name of another setting, or a list of words.
+    """
 
     title: str
     package: str = ""
@@ -56,7 +42,6 @@ class About(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     loads: bool = True
     data: Literal["inverse", "tensor"] = "inverse"
     serves: bool = False
-    unavailable: str = ""
     methods: Mapping[str, str] = {}
     settings: Mapping[str, float | str | list[str]] = {}
 

@@ -1,12 +1,6 @@
 """A trajectory file: every number exactly as written, or every fault with its place.
 
-t                 time                          q0 q1 q2 q3      quaternion of R, scalar first
-w1 w2 w3          angular velocity, body axes   r11 r12 ... r33  R itself, r12 is row 1, column 2
-u1 u2 u3          velocity of the body's        c1 c2 c3         centre, space axes
-                  origin, body axes
-x1 x2 x3 y1 y2 y3 impulses, body axes
-
-Usual other names and units are taken and said (the folder columns).
+`docs/columns.md` has the columns; usual other names and units are taken and said (the folder columns).
 
 Decimals, ``a/b`` and hexadecimal floats become rationals; binary numbers are taken as they are. None
 of them passes through a double on its way.

@@ -2,7 +2,7 @@
 
 It is stepped by fmpy in a process of its own (runner.py), which speaks the protocol of `process:`; so
 a crash, an endless step and a time limit end as they do there. What of the scene is set in the FMU and
-what is read of it goes by names: those in the table of runner.py, or those given here.
+what is read of it goes by names: those of the table in docs/formats.md, or those given here.
 
     step=0.01              the longest communication step; by default that of the FMU
     omega=w[1],w[2],w[3]   the FMU's variables of a quantity; one name of a vector stands for all
@@ -63,7 +63,6 @@ class Fmu(Solver):
     file: Path
     settings: str
     time_limit: float = process.DEFAULT_LIMIT
-    setting: str = ""
 
     def unavailable(self, rung: Rung) -> str:
         if reason := float64_alone(self.name, rung):

@@ -4,15 +4,7 @@ The FMU, for co-simulation, is unpacked into FOLDER. SETTINGS is JSON: `step`, t
 step or null for that of the FMU; `names`, lists of variables of the FMU in place of those in the table;
 `fixed`, what is built into the FMU and not set. Three names for a matrix are its diagonal; the name of an
 array of the FMU stands for its entries. An index counts from 1, that of a quaternion from 0.
-
-    set before the run   inertia I11 ... I33       inverse_inertia K11 ... K33     moment M1 M2 M3
-                         linear A11 ... A33        coupling B11 ... B33            angular C11 ... C33
-                         force X1 X2 X3            couple L1 L2 L3
-                         omega_start w1_start ...  angular_momentum_start H1_start ...
-                         linear_impulse_start x1_start ...   angular_impulse_start y1_start ...
-                         attitude_start q0_start ...         centre_start c1_start ...
-    read at each time    omega w1 w2 w3            linear_impulse x1 x2 x3         angular_impulse y1 y2 y3
-                         attitude q0 q1 q2 q3      centre c1 c2 c3
+`docs/formats.md` has the table of names: what is set before the run, and what is read at each time.
 
 fmpy's own `simulate_fmu` samples at one interval alone, and a scene has its samples anywhere.
 

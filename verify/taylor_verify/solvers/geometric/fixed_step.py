@@ -23,11 +23,9 @@ from typing import Any, ClassVar, Final, NamedTuple, Self
 import numpy as np
 
 from taylor_verify.models.problem import Problem
-from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.solvers.geometric.vectors import Matrix, Quaternion, Vector, conjugate, product
-from taylor_verify.solvers.solver import Solver, float64_alone
+from taylor_verify.solvers.solver import Solver, float64_alone, made_without
 from taylor_verify.solvers.trajectory import Outcome, Trajectory, of_rows
 
 # At some ten microseconds a step these take a quarter of an hour: more is not begun.
@@ -88,12 +86,10 @@ class FixedStep(Solver):
 
     step: Fraction
     name: str
-    setting: str = ""
     counts_steps = True
 
-    takes_moment: ClassVar[bool] = False
-    takes_wheels: ClassVar[bool] = False
-    takes_damping: ClassVar[bool] = False
+    # What may act on a body besides its energy, by the names of `acting`.
+    takes: ClassVar[tuple[str, ...]] = ()
     in_principal_axes: ClassVar[bool] = False
 
     @abstractmethod
@@ -108,17 +104,9 @@ class FixedStep(Solver):
         return float64_alone(self.name, rung)
 
     def unsuited(self, problem: Problem) -> str:
-        if not isinstance(problem.given.body, RigidBody | Gyrostat):
-            return f"{self.name} is made for Euler's equations, got {problem.scene.model}"
-        if any(Body.of(problem).r) and not self.takes_wheels:
-            return f"{self.name} is made for a body without wheels"
-        if problem.given.body.damping and not self.takes_damping:
-            return f"{self.name} is made for a body without damping"
-        if problem.given.body.manufactured is not None:
-            return f"{self.name} is made for a body without a moment that changes with time"
-        if any(Body.of(problem).M) and not self.takes_moment:
-            return f"{self.name} is made for a body without a moment"
-        return ""
+        if problem.given.model != "euler":
+            return f"{self.name} is made for Euler's equations, got {problem.given.model}"
+        return made_without(self.name, problem.given.body, self.takes)
 
     def solve(self, problem: Problem) -> Trajectory:
         if reason := self.unsuited(problem) or self.unavailable(problem.rung):

@@ -8,8 +8,7 @@ from functools import partial
 from typing import Final
 
 from taylor_verify.solvers.geometric.fixed_step import FixedStep
-from taylor_verify.solvers.geometric.midpoint import ImplicitMidpoint
-from taylor_verify.solvers.geometric.moser_veselov import MoserVeselov
+from taylor_verify.solvers.geometric.implicit import ImplicitMidpoint, MoserVeselov
 from taylor_verify.solvers.geometric.munthe_kaas import MuntheKaas
 from taylor_verify.solvers.geometric.splitting import Splitting
 from taylor_verify.solvers.options import options

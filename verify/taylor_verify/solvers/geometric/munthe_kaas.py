@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import exp
-from typing import ClassVar, final
+from typing import final
 
 from taylor_verify.solvers.geometric.fixed_step import Body, FixedStep, Step, Stepped
 from taylor_verify.solvers.geometric.vectors import (
@@ -35,7 +35,7 @@ class MuntheKaas(FixedStep):
     """The Munthe-Kaas method for any tensor; the truncated series of dexp^-1 has an error of order five."""
 
     name: str = "geometric:lie-rk4"
-    takes_damping: ClassVar[bool] = True
+    takes = ("damping",)
 
     def stepping(self, body: Body, H: Vector, h: float) -> Step:
         del H

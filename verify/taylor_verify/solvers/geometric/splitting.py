@@ -33,7 +33,7 @@ class Splitting(FixedStep):
 
     name: str = "geometric:splitting"
     in_principal_axes: ClassVar[bool] = True
-    takes_wheels: ClassVar[bool] = True
+    takes = ("rotor",)
 
     def stepping(self, body: Body, H: Vector, h: float) -> Step:
         del H

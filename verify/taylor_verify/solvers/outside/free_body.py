@@ -220,6 +220,16 @@ def stepped(body: Body, step: float, start: Callable[[], Engine], remark: str = 
     )
 
 
+def repeated(step: Callable[[], Any]) -> Callable[[int], None]:
+    """Return how to go on by a number of steps, for an engine that makes one at a time."""
+
+    def advance(steps: int) -> None:
+        for _ in range(steps):
+            step()
+
+    return advance
+
+
 # Axes.
 
 

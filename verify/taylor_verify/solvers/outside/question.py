@@ -9,9 +9,9 @@ With the one argument ``many`` it reads a question from each line, {"settings": 
 {...}}, and writes an answer to each, in a line of its own: libraries are loaded once. An error ends the
 script, and what is not answered by then has to be asked again.
 
-The keys of the JSON are explained in solvers/process/protocol.py of taylor-verify. Numbers are the
-doubles that the protocol hands over as ``hex``. An integration backwards in time is asked with
-``sign`` -1: the rates are to be multiplied by it, and the clock runs forwards for every library.
+The keys of the JSON are explained in cases/README.md of taylor-verify. Numbers are the doubles that the
+protocol hands over as ``hex``. An integration backwards in time is asked with ``sign`` -1: the rates are to
+be multiplied by it, and the clock runs forwards for every library.
 """
 
 from __future__ import annotations
@@ -227,6 +227,8 @@ COLUMNS = {
 def read(scene: Any) -> Question:
     """Return the question in a document; raises Unsuited if it asks for what is not computed."""
     body, initial, clock = scene["body"], scene["initial"], scene["time"]
+    if "manufactured" in scene:
+        raise Unsuited("expected constant loads, got a manufactured motion")
     columns = scene["columns"][1:]
     if scene["model"] not in COLUMNS:
         raise Unsuited(f"expected the model {' or '.join(COLUMNS)}, got {scene['model']}")

@@ -5,7 +5,7 @@
  *
  * It reads a scene as JSON on stdin and writes a trajectory as JSON on stdout, and needs no library
  * but C's own. The argument is the longest step, in the scene's own time. rk4.py beside it is the same
- * program in Python; the keys are explained in solvers/process/protocol.py of taylor-verify.
+ * program in Python; the keys are explained in cases/README.md of taylor-verify.
  *
  * No JSON reader is needed. Every number is an object of two lists, "text" and "hex". Every other key occurs
  * once in the document, and no value can look like one (inside a JSON string every quote is escaped). So

@@ -39,7 +39,6 @@ from free_body import Engine, FreeBody, Settings, Solved, answer, stepped
 from question import Row, unit
 from with_mujoco import compiled_inertia, mjcf, remark
 
-METHODS = {"generalized": "generalized", "spring": "spring", "positional": "positional"}
 DOUBLE_BITS = 53
 # Brax reads no model without one; it touches nothing, and the inertia is stated beside it.
 GEOM = '<geom size="0.1" contype="0" conaffinity="0"/>'
@@ -53,7 +52,7 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
     from brax.io import mjcf as reader
     from jax import numpy
 
-    pipeline = import_module(f"brax.{METHODS[settings.method]}.pipeline")
+    pipeline = import_module(f"brax.{settings.method}.pipeline")
     # The pipelines have one integrator each.
     asked = SimpleNamespace(**vars(settings), integrator="Euler")
     model = mujoco.MjModel.from_xml_string(mjcf(body, asked, GEOM))

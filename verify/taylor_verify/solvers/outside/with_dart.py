@@ -22,7 +22,7 @@ puts slow bodies to sleep as it comes, which is on.
 
 from __future__ import annotations
 
-from free_body import Engine, FreeBody, Settings, Solved, answer, stepped
+from free_body import Engine, FreeBody, Settings, Solved, answer, repeated, stepped
 from immersed_body import ORIGIN, ImmersedBody, any_body
 from question import Row
 
@@ -59,10 +59,6 @@ def solve(body: FreeBody | ImmersedBody, settings: Settings) -> Solved:
         joint.setSpatialVelocity([*body.omega, *velocity], space, node)
         world.addSkeleton(skeleton)
 
-        def advance(steps: int) -> None:
-            for _ in range(steps):
-                world.step()
-
         def row() -> Row:
             moving, place = node.getSpatialVelocity(), node.getWorldTransform()
             attitude = place.quaternion().wxyz()
@@ -70,7 +66,7 @@ def solve(body: FreeBody | ImmersedBody, settings: Settings) -> Solved:
                 return body.row(moving[3:], moving[:3], attitude, place.translation())
             return body.row(moving[:3], attitude)
 
-        return advance, row
+        return repeated(world.step), row
 
     return stepped(body, settings.step, start)
 

@@ -39,7 +39,6 @@ from immersed_body import ImmersedBody, immersed_body
 from question import Unsuited, unit
 from with_mujoco import require_integrator
 
-METHODS = {"ellipsoid": "ellipsoid", "callback": "callback"}
 Force = Callable[[Any, Any], None]
 
 

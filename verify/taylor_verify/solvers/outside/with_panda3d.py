@@ -25,7 +25,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from free_body import Engine, FreeBody, Settings, Solved, answer, stepped
+from free_body import Engine, FreeBody, Settings, Solved, answer, repeated, stepped
 
 METHODS = {"ode": "step", "ode-quick": "quick_step", "bullet": "do_physics"}
 
@@ -52,14 +52,10 @@ def ode(body: FreeBody, settings: Settings) -> Engine:
         made.set_auto_disable_flag(False)
     step = getattr(world, METHODS[settings.method])
 
-    def advance(steps: int) -> None:
-        for _ in range(steps):
-            step(settings.step)
-
     def row() -> Any:
         return body.row_from_space(made.get_angular_vel(), made.get_quaternion())
 
-    return advance, row
+    return repeated(lambda: step(settings.step)), row
 
 
 def bullet(turned: FreeBody, settings: Settings) -> Engine:
@@ -76,15 +72,11 @@ def bullet(turned: FreeBody, settings: Settings) -> Engine:
         made.set_angular_damping(0.0)
         made.set_deactivation_enabled(False)
 
-    def advance(steps: int) -> None:
-        for _ in range(steps):
-            # No substeps: the step is that of the engine.
-            world.do_physics(settings.step, 0)
-
     def row() -> Any:
         return turned.row_from_space(made.get_angular_velocity(), made.get_transform().get_quat())
 
-    return advance, row
+    # No substeps: the step is that of the engine.
+    return repeated(lambda: world.do_physics(settings.step, 0)), row
 
 
 if __name__ == "__main__":

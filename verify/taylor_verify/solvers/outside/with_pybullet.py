@@ -27,7 +27,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from free_body import Engine, FreeBody, Settings, Solved, answer, stepped
+from free_body import Engine, FreeBody, Settings, Solved, answer, repeated, stepped
 
 NO_CAP = 1e30
 
@@ -42,16 +42,12 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
         pybullet.setTimeStep(settings.step)
         made = body_of(turned, settings)
 
-        def advance(steps: int) -> None:
-            for _ in range(steps):
-                pybullet.stepSimulation()
-
         def row() -> Any:
             _, (x, y, z, w) = pybullet.getBasePositionAndOrientation(made)
             _, omega = pybullet.getBaseVelocity(made)
             return turned.row_from_space(omega, (w, x, y, z))
 
-        return advance, row
+        return repeated(pybullet.stepSimulation), row
 
     pybullet.connect(pybullet.DIRECT)
     return stepped(turned, settings.step, start)

@@ -28,8 +28,6 @@ from typing import Any
 
 from question import Question, Settings, Solved, answer, compiled_rates, twice
 
-METHODS = {"bs": "bs"}
-
 
 def solve(question: Question, settings: Settings) -> Solved:
     # Compiled by the first propagation, and held as long as its address is in use.
@@ -61,7 +59,7 @@ def _propagated(address: int, question: Question, settings: Settings) -> tuple[A
     import rebound
 
     sim = rebound.Simulation()
-    sim.integrator = METHODS[settings.method]
+    sim.integrator = settings.method
     sim.integrator.eps_rel, sim.integrator.eps_abs = settings.rtol, settings.atol
     ode = sim.create_ode(len(question.state), needs_nbody=False)
     ode._derivatives = ctypes.cast(address, type(ode._derivatives))

@@ -27,7 +27,7 @@ from __future__ import annotations
 import warnings
 from typing import Any
 
-from free_body import Engine, FreeBody, Settings, Solved, answer, stepped
+from free_body import Engine, FreeBody, Settings, Solved, answer, repeated, stepped
 
 NO_CAP = 1e18
 
@@ -39,14 +39,10 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
         # The scene keeps its system going.
         scene, made = scene_of(turned, settings)
 
-        def advance(steps: int) -> None:
-            for _ in range(steps):
-                scene.physx_system.step()
-
         def row() -> Any:
             return turned.row_from_space(made.angular_velocity, made.entity.pose.q)
 
-        return advance, row
+        return repeated(lambda: scene.physx_system.step()), row
 
     return stepped(turned, settings.step, start)
 

@@ -48,7 +48,6 @@ class Process(Solver):
     name: str
     time_limit: float = DEFAULT_LIMIT
     folder: str | None = None
-    setting: str = ""
 
     @property
     def command(self) -> list[str]:

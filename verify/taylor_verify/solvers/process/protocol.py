@@ -1,81 +1,16 @@
 """The protocol of user programs: a question in JSON on standard input, an answer in JSON on its output.
 
-The question is one JSON document on the program's standard input. Every key but ``text`` and ``hex``
-occurs once in it and has one meaning, whatever its table, so that a reader may search the text for
-``"elapsed":`` and go on from there. None of them is a key of the answer.
+`cases/README.md`, *A program as a solver*, has every key of both. Every key of the question but ``text``
+and ``hex`` occurs once in it and has one meaning, whatever its table, so that a reader may search the text
+for ``"elapsed":`` and go on from there. None of them is a key of the answer.
 
-    protocol             1; 2 where there is `manufactured`, 3 where there is `rotor`, and 4 where there is
-                         `damping`, which a reader of an earlier one would not look for
-    scene, title         the name of the scene and its title
-    model                "euler" or "kirchhoff"
-    track                what the scene asks besides omega or impulse: "attitude", "centre"
-    rung, bits           the precision of the run, "f64", and its bits of significand, 53
-    columns              the names that the answer needs, in the order t, w1, ...
-    body                 the body, in body axes
-      inertia              I, 3x3                                (euler; its hex is rounded)
-      inverse_inertia      K = I^-1, 3x3                         (euler)
-      moment               M                                     (euler)
-      rotor                h, the momentum of wheels, where there are any (euler)
-      linear               A, 3x3: T = x.A x/2 + x.B y + y.C y/2 (kirchhoff)
-      coupling             B, 3x3, its row the index of x        (kirchhoff)
-      angular              C, 3x3                                (kirchhoff)
-      force, couple        X and L, 3 each                       (kirchhoff)
-      damping              d, a number, where there is any: -d H, or -d x and -d y, in the rates
-      semi_axes, density, fluid_density    of a solid that was given as an ellipsoid (their hex is rounded)
-    initial              the state at the start
-      omega                body axes                             (euler; its hex is rounded)
-      angular_momentum     H = I omega, without the wheels       (euler)
-      linear_impulse       x, body axes                          (kirchhoff)
-      angular_impulse      y, body axes                          (kirchhoff)
-      attitude             quaternion q0..q3, scalar first, body to space, of any length but zero
-      centre               the body's origin, space axes         (kirchhoff)
-    manufactured         only where loads change with time: the motion z* that they are made for
-      frequencies          nu, one for each wave
-      cosines, sines       a row for each wave: of H* (euler), or of x* and y*, six numbers (kirchhoff)
-      constant_part        z* without its waves                  (its hex is rounded)
-    time                 the instants that are asked for, and the time of the initial state
-      start                the time of the initial state         (its hex is rounded)
-      elapsed              the times since then, monotonic: integrate over these, from 0
-      times                start + elapsed: column t of answer   (its hex is rounded)
+Every number, vector or matrix of the question is an object of two: ``text``, the exact value, and ``hex``,
+the hexadecimal float of the rung, as C's strtod reads it. K and H are rounded once, and I = K^-1 and
+omega = K H follow from them exactly; so whoever integrates H' = H x K H + M has exact data. An engine whose
+script says ``data = "tensor"`` is asked the other way round.
 
-Every number, vector or matrix is an object of two: ``text``, the exact value (a decimal, or "a/b"
-where no decimal is finite), and ``hex``, the hexadecimal float of the rung, as C's strtod reads it.
-They are equal but where the table says that hex is rounded: K and H are rounded once, and I = K^-1
-and omega = K H follow from them exactly. Whoever integrates H' = H x K H + M has exact data; with wheels
-it is H' = (H + h) x K H + M, and with damping -d H more. An engine whose script says
-``data = "tensor"`` is asked the other way round: I and omega are rounded once, their text and hex are
-equal, and K and H follow from them.
-
-Loads that change with time are M = H*' - H* x K H*, or X = x*' - x* x Omega* and
-L = y*' - y* x Omega* - x* x U*, with Omega* and U* made of x* and y* as Omega and U are of x and y:
-
-    z*(s) = constant_part + sum over the waves of cosine cos(nu s) + sine sin(nu s)
-          = z*(0) + sum over the waves of cosine (cos(nu s) - 1) + sine sin(nu s),
-
-s being an elapsed time and z*(0) the initial H, or x and y. The second form has exact data alone.
-
-The answer is one JSON object on standard output, and the exit status 0: a list for every name in
-``columns``, one entry for each instant.
-
-    t                    the times, as given (within four roundings of the rung)
-    w1 w2 w3             omega, body axes                        (euler)
-    x1 x2 x3 y1 y2 y3    the impulses, body axes                 (kirchhoff)
-    q0 q1 q2 q3          attitude, nearly unit, of either sign   (where tracked)
-    c1 c2 c3             centre, space axes                      (where tracked)
-    steps                optional: the steps taken. The judge allows rounding its square root, and
-                         counts no more of them than are plausible (judge/steps.py)
-    evaluations          optional: the evaluations of the derivative
-    seconds              optional: the propagation alone, by the program's own clock. Believed only if
-                         the whole run, as it is measured from outside, took no less
-    compile_seconds      optional, beside seconds: what went before the propagation
-    remark               optional: a sentence on how the answer was had, kept with the trajectory
-
-A program that cannot take the question (the body, the loads, what is tracked) answers {"unsuited": "..."}
-with the reason, and nothing else. The run is then unavailable, and no failure.
-
-An entry in quotes, "0x1.8p-3", "0.1" or "1/3", is taken exactly. A bare JSON number is on f32 and
-f64 the double nearest to it, because that is what the program held and printed, and on wider rungs
-the exact decimal. null, NaN and infinities are not finite. Other keys are not looked at.
+An entry of the answer in quotes is taken exactly. A bare JSON number is on f32 and f64 the double nearest
+to it, because that is what the program held and printed, and on wider rungs the exact decimal.
 """
 
 from __future__ import annotations
@@ -83,30 +18,25 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
-from typing import Any
+from typing import Any, Final
 
 import gmpy2
 
 from taylor_verify.models.problem import Problem
 from taylor_verify.models.registry import mechanics
 from taylor_verify.records.quantities import COLUMNS
-from taylor_verify.scenes.bodies import Body, ImmersedBody
-from taylor_verify.scenes.gyrostat import Gyrostat
+from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.parts import Value
 from taylor_verify.scenes.precision import Rung, double_text, hexadecimal
 from taylor_verify.solvers.solver import columns
 from taylor_verify.solvers.values import exact, named_once
 
-VERSION = 1
-# Versions let a program refuse questions that it does not know: loads that change with time,
-VERSION_WITH_WAVES = 2
-# wheels,
-VERSION_WITH_WHEELS = 3
-# and damping.
-VERSION_WITH_DAMPING = 4
+# The version of a question, and those of what acts besides constant loads: a program can refuse them.
+VERSION: Final = 1
+VERSIONS: Final = {"manufactured": 2, "rotor": 3, "damping": 4}
 
 # A time is read from a decimal, formed as start + k dt and printed again: three roundings, plus one.
 _TIME_ROUNDINGS = 4
@@ -164,12 +94,10 @@ def question(problem: Problem) -> dict[str, Any]:
 
 
 def _version(body: Body) -> int:
-    """Return the version of the protocol that a program has to know for this body."""
-    if body.damping:
-        return VERSION_WITH_DAMPING
-    if isinstance(body, Gyrostat):
-        return VERSION_WITH_WHEELS
-    return VERSION if body.manufactured is None else VERSION_WITH_WAVES
+    """Return the version that a program has to know for this body; one that no program knows for others."""
+    unknown = max(VERSIONS.values()) + 1
+    acting = set(body.acting) - set(body.load_names())
+    return max((VERSIONS.get(name, unknown) for name in acting), default=VERSION)
 
 
 def column_names(problem: Problem) -> list[str]:
@@ -182,12 +110,12 @@ def _data(problem: Problem) -> dict[str, Any]:
     body, initial, clock = given.body, given.initial, given.clock
     derived = mechanics(body).derived(body, initial)
     numbers: dict[str, dict[str, Any]] = {
-        "body": _merged(body.parts(), derived.get("body", {})),
+        "body": {
+            **_merged(body.parts(), derived.get("body", {})),
+            **problem.scene.body.description,
+        },
         "initial": _merged(initial.parts(), derived.get("initial", {})),
     }
-    shape = problem.scene.body
-    if isinstance(shape, ImmersedBody) and (ellipsoid := shape.ellipsoid):
-        numbers["body"] |= asdict(ellipsoid)
     if body.manufactured is not None:
         # The motion of what a program integrates: of H = I omega, or of x and y as it stands.
         motion = mechanics(body).change(body).motion_of_momenta(body.manufactured)

@@ -17,7 +17,6 @@ import logging
 import os
 import pickle
 import platform
-import shutil
 import stat
 import tempfile
 from collections.abc import Callable
@@ -116,7 +115,6 @@ def _build() -> bytes:
 def _read(file: Path) -> Any:
     """Return the integrator in a file; None where there is none, or none that can be trusted."""
     try:
-        number = file.parent.stat().st_ino
         content = _own_bytes(file)
     except OSError:
         return None
@@ -124,7 +122,7 @@ def _read(file: Path) -> Any:
         return None
     digest, data = content[:_DIGEST_SIZE], content[_DIGEST_SIZE:]
     if digest != hashlib.sha256(data).digest():
-        _set_aside(file.parent, number)
+        _warn_of_damage(file.parent)
         return None
     try:
         integrator = pickle.loads(data)
@@ -148,30 +146,9 @@ def _own_bytes(file: Path) -> bytes | None:
         return opened.read() if stat.S_ISREG(about.st_mode) and is_own and is_closed else None
 
 
-def _set_aside(folder: Path, number: int) -> None:
-    """Move a damaged folder, told by its inode number, out of the way, with one warning.
-
-    Where one file is damaged, the others are suspect. Of several processes that meet the damage one
-    moves the folder, and that one warns. An earlier folder set aside is removed.
-    """
-    target = folder.with_name(f"{folder.name}.damaged-{number}")
-    try:
-        if folder.stat().st_ino != number:
-            return
-        for earlier in folder.parent.glob(f"{folder.name}.damaged-*"):
-            shutil.rmtree(earlier, ignore_errors=True)
-        folder.rename(target)
-    except FileNotFoundError:
-        return
-    except OSError as error:
-        _warn_once(f"damaged compiled code cannot be moved away ({error.strerror}) @ {folder}")
-    else:
-        _warn_once(f"damaged compiled code is set aside, and compiled anew @ {target}")
-
-
 @cache
-def _warn_once(message: str) -> None:
-    _log.warning("taylor-verify: warning: %s", message)
+def _warn_of_damage(folder: Path) -> None:
+    _log.warning("taylor-verify: warning: damaged compiled code is compiled anew @ %s", folder)
 
 
 def _write(file: Path, integrator: Any) -> None:

@@ -51,7 +51,6 @@ class Taylor(Solver):
     """
 
     name: str = "taylor"
-    setting: str = ""
     tolerance: Fraction | None = None
     is_optimised: bool = False
     counts_steps = True

@@ -30,13 +30,7 @@ from taylor_verify.solvers.taylor.cache import stored
 from taylor_verify.solvers.taylor.driver import compiled, pays
 from taylor_verify.solvers.taylor.equations import equations
 from taylor_verify.solvers.taylor.numbers import arithmetic, unavailable
-from taylor_verify.solvers.taylor.way import (
-    LEAST_STEPS,
-    MOST_RADIANS,
-    STEPS_PER_RADIAN,
-    longest_step,
-    outcome_of,
-)
+from taylor_verify.solvers.taylor.way import MOST_RADIANS, longest_step, most_steps, outcome_of
 from taylor_verify.solvers.trajectory import Outcome
 
 Array = np.ndarray[Any, Any]
@@ -65,6 +59,10 @@ class Lane:
     @property
     def goes_on(self) -> bool:
         return self.outcome is Outcome.FINISHED
+
+    def radians_to(self, target: Fraction) -> float:
+        """Return the length of the way to a time, in radians of its fastest rate."""
+        return self.fastest * abs(float(target - self.time))
 
 
 @final
@@ -120,9 +118,10 @@ class Ensemble:
         rate = max(lane.fastest, linearised.fastest([_double(v) for v in lane.state]))
         if not isfinite(rate):
             return replace(lane, outcome=Outcome.NON_FINITE)
-        if not rate * abs(float(until - lane.time)) <= MOST_RADIANS:
+        ready = replace(lane, fastest=rate)
+        if not ready.radians_to(until) <= MOST_RADIANS:
             return replace(lane, outcome=Outcome.STEP_LIMIT)
-        return replace(lane, fastest=rate)
+        return ready
 
     def _run(
         self, stepper: Any, group: Sequence[int], lanes: list[Lane], targets: Sequence[Fraction]
@@ -141,7 +140,7 @@ class Ensemble:
         status, _, _, steps, *_ = integrator.propagate_until(
             end,
             max_delta_t=numbers.double(longest_step(int(integrator.order)) / lane.fastest),
-            max_steps=most_steps(lane, target),
+            max_steps=most_steps(lane.radians_to(target)),
         )
         return self._reached(lane, target, outcome_of(status), int(steps), integrator.state)
 
@@ -167,7 +166,7 @@ class Ensemble:
                 time[k] = end[k] = end[going[0]]
             integrator.set_time(time)
             integrator.state[:], integrator.pars[:] = state, parameters
-            most = max(most_steps(lanes[k], targets[k]) for k in going)
+            most = max(most_steps(lanes[k].radians_to(targets[k])) for k in going)
             integrator.propagate_until(end, max_delta_t=longest, max_steps=most)
             results = integrator.propagate_res
             steps += [int(result[3]) for result in results]
@@ -201,11 +200,6 @@ def batch_width(rung: Rung) -> int:
 
     kind = _BATCHED.get(rung.name)
     return 1 if kind is None else int(hy.recommended_simd_size(kind))
-
-
-def most_steps(lane: Lane, target: Fraction) -> int:
-    """Return a bound that no regular orbit comes near: what needs more has gone astray."""
-    return LEAST_STEPS + int(STEPS_PER_RADIAN * lane.fastest * abs(float(target - lane.time)))
 
 
 def _processors() -> int:

@@ -145,7 +145,7 @@ class Way:
         status, _, uncut, steps, _, rows = self._integrator.propagate_grid(
             instants,
             max_delta_t=self.numbers.double(cap),
-            max_steps=LEAST_STEPS + int(STEPS_PER_RADIAN * radians),
+            max_steps=most_steps(radians),
             callback=self._callback,
         )
         seconds = perf_counter() - began
@@ -213,6 +213,11 @@ def _joined(legs: Sequence[Ran]) -> Ran:
 def longest_step(order: int) -> float:
     """Return the longest step that is taken in an order, in units of the fastest linear rate."""
     return _LONGEST_STEP if order < _HIGH_ORDER else _LONGEST_OF_HIGH_ORDER
+
+
+def most_steps(radians: float) -> int:
+    """Return a bound that no regular orbit comes near: what needs more has gone astray."""
+    return LEAST_STEPS + int(STEPS_PER_RADIAN * radians)
 
 
 def outcome_of(status: Any) -> Outcome:

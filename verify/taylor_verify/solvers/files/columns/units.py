@@ -38,6 +38,8 @@ def _of_pi(rational: Fraction) -> Fraction:
         return exact_value(mp.convert(rational) * mp.pi)
 
 
+# A degree in radians.
+DEGREE: Final = _of_pi(Fraction(1, 180))
 _RATES: Final = "radians per unit of time"
 # Dimension by dimension: the factor, its words, and the ways to write it.
 _WRITTEN: Final[Mapping[str, Sequence[tuple[Fraction, str, str]]]] = {
@@ -53,7 +55,7 @@ _WRITTEN: Final[Mapping[str, Sequence[tuple[Fraction, str, str]]]] = {
         (Fraction(1), _RATES, "rad/s rads/s rad/sec rads rad.s^-1 rad.s-1 radps rad_per_s 1/s"),
         (Fraction(1, 1000), f"thousandths of {_RATES}", "mrad/s"),
         (
-            _of_pi(Fraction(1, 180)),
+            DEGREE,
             "degrees per unit of time",
             "deg/s deg/sec degs degps deg_per_s dps",
         ),

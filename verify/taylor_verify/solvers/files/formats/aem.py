@@ -11,16 +11,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
-from functools import cache
 from math import nan
 from pathlib import Path
 from typing import BinaryIO, Final
 
-from mpmath import mp
-
 from taylor_verify.models.algebra import apply, dot, transpose
 from taylor_verify.models.frame import attitude_rate, rotation
 from taylor_verify.scenes.reading.faults import Faults, Refused, cut, refusal
+from taylor_verify.solvers.files.columns.units import DEGREE
 from taylor_verify.solvers.files.formats.aem_segment import (
     ANGULAR_VELOCITY,
     DERIVATIVE,
@@ -56,7 +54,6 @@ _TURNING: Final = (
     "NSW",
 )
 _NOT_UNIFORM: Final = ("UT1", "GMST", "SCLK", "MET", "MRT")
-_BITS: Final = 400
 _BLANK: Final = b"\xef\xbb\xbf \t\r\n"
 # The scalar of ours comes first, that of a message last.
 _SCALAR_FIRST: Final = (3, 0, 1, 2)
@@ -208,7 +205,7 @@ def _angular_velocities(
     if frame not in frames.values():
         raise refusal(f"ANGVEL_FRAME = {' or '.join(frames.values())}", cut(frame) or "none", path)
     sign = -1 if segment.frame("A").startswith(_BODY) else 1
-    velocities = [[sign * _degree() * v for v in rate] for rate in rates]
+    velocities = [[sign * DEGREE * v for v in rate] for rate in rates]
     if not frame.startswith(_BODY):
         velocities = [_in_body(q, v) for q, v in zip(turned, velocities, strict=True)]
     return velocities, f"w1 w2 w3 are ANGVEL in {stated}, degrees a second"
@@ -228,10 +225,3 @@ def _in_body(q: Row, v: Row) -> Row:
 def _divided(vector: Row, q: Row) -> Row:
     square = sum(entry * entry for entry in q)
     return [entry / square if square else nan for entry in vector]
-
-
-@cache
-def _degree() -> Fraction:
-    """Return pi / 180, rounded to 400 bits."""
-    with mp.workprec(_BITS):
-        return Fraction(*map(int, (mp.pi / 180).as_integer_ratio()))

@@ -25,7 +25,9 @@ from taylor_verify.solvers.files.formats.column import (
     CHARACTERS,
     COLUMNS,
     Column,
+    Table,
     check_size,
+    refuse_part,
 )
 
 _READERS: Final = {
@@ -62,14 +64,15 @@ class _Member(NamedTuple):
     dtype: np.dtype[np.generic]
 
 
-def read(file: BinaryIO, path: Path) -> list[Column]:
+def read(file: BinaryIO, path: Path, part: str) -> Table:
     """Return the arrays; every header is checked before the data of any is read."""
+    refuse_part(part, path)
     try:
         _check_entries(file, path)
         with zipfile.ZipFile(file) as archive:
             members = [_member(archive, info, path) for info in archive.infolist()]
             _check(members, path)
-            return [_column(archive, member) for member in members]
+            return Table([_column(archive, member) for member in members])
     except _BROKEN as error:
         raise refusal("an NPZ archive", f"a fault in it: {error}", path) from None
 

@@ -54,6 +54,12 @@ def check_size(columns: int, rows: int, place: object) -> None:
     VALUES.check(columns * rows, place)
 
 
+def refuse_part(part: str, place: object) -> None:
+    """Refuse FILE#PART of a format that holds one trajectory in a file."""
+    if part:
+        raise refusal("a file of one trajectory by its name alone", f"`#{part}`", place)
+
+
 def no_utf8(start: bytes, place: object) -> Refused:
     """Return the refusal of text in another encoding, told by the first bytes of its file."""
     is_utf16 = start[:2] in (BOM_UTF16_LE, BOM_UTF16_BE)

@@ -13,22 +13,31 @@ import numpy as np
 
 from taylor_verify.scenes.reading.faults import Faults, Refused, refusal
 from taylor_verify.scenes.reading.limit import Limit
-from taylor_verify.solvers.files.formats.column import ROWS, Column, alike, check_size, no_utf8
+from taylor_verify.solvers.files.formats.column import (
+    ROWS,
+    Column,
+    Table,
+    alike,
+    check_size,
+    no_utf8,
+    refuse_part,
+)
 from taylor_verify.solvers.values import is_number
 
 _LINE: Final = Limit(2**20, "characters in a line", "a thousand columns of a thousand each")
 _ROWS_AT_ONCE: Final = 1000
 
 
-def read(file: BinaryIO, path: Path) -> list[Column]:
+def read(file: BinaryIO, path: Path, part: str) -> Table:
     """Return the columns; # begins a comment line. The rows are counted before any of them is kept."""
+    refuse_part(part, path)
     text = TextIOWrapper(file, encoding="utf-8-sig")
     try:
         for count, _ in enumerate(_Lines(text, path)):
             if count > ROWS.most:
                 raise ROWS.refusal("more", path)
         text.seek(0)
-        return _columns(_Lines(text, path), path)
+        return Table(_columns(_Lines(text, path), path))
     except UnicodeDecodeError:
         file.seek(0)
         raise no_utf8(file.read(2), path) from None

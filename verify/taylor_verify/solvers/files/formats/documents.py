@@ -9,14 +9,23 @@ from typing import Any, BinaryIO, Final
 
 from taylor_verify.scenes.reading.faults import Faults, Refused, refusal
 from taylor_verify.solvers.files.columns.names import KNOWN
-from taylor_verify.solvers.files.formats.column import ROWS, VALUES, Column, no_utf8, shown
+from taylor_verify.solvers.files.formats.column import (
+    ROWS,
+    VALUES,
+    Column,
+    Table,
+    no_utf8,
+    refuse_part,
+    shown,
+)
 from taylor_verify.solvers.values import named_once
 
 _BETWEEN_BRACKETS: Final = re.compile(r"[^\[\]{}]+")
 
 
-def read(file: BinaryIO, path: Path) -> list[Column]:
+def read(file: BinaryIO, path: Path, part: str) -> Table:
     """Return the arrays; their commas are counted before anything is made of the text."""
+    refuse_part(part, path)
     content = file.read()
     try:
         text = content.decode("utf-8-sig")
@@ -41,7 +50,7 @@ def read(file: BinaryIO, path: Path) -> list[Column]:
             faults.add("an array of numbers", shown(values), f"{path}, column {name}")
     if faults.lines:
         raise Refused(faults.lines)
-    return columns
+    return Table(columns)
 
 
 def _parsed(text: str, path: Path) -> Any:

@@ -13,7 +13,7 @@ from typing import Any, BinaryIO, Final
 from taylor_verify.scenes.reading.faults import cut, refusal
 from taylor_verify.solvers.files.formats.arrays import Array, table
 from taylor_verify.solvers.files.formats.column import COLUMNS, Table
-from taylor_verify.solvers.files.formats.package import needed, unbroken
+from taylor_verify.solvers.files.formats.package import unbroken
 
 # Deflate, shuffle, Fletcher's checksum, szip, nbit and scale-offset are HDF5's own; LZF is h5py's.
 _FILTERS: Final = {1, 2, 3, 4, 5, 6, 32000}
@@ -26,8 +26,8 @@ def read(file: BinaryIO, path: Path, part: str) -> Table:
 
 def opened(file: BinaryIO, path: Path, tabulate: Callable[[Any], Table]) -> Table:
     """Return the table that is made of the open file; whatever is broken in it is refused."""
-    with needed("h5py", "HDF5", "hdf5", path):
-        import h5py
+    import h5py
+
     with unbroken("an HDF5 file", path), h5py.File(file, "r") as content:
         return tabulate(content)
 

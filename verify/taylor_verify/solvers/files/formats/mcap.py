@@ -19,16 +19,13 @@ from taylor_verify.scenes.reading.limit import Limit
 from taylor_verify.solvers.files.formats import messages
 from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Table
 from taylor_verify.solvers.files.formats.messages import Topic
-from taylor_verify.solvers.files.formats.package import needed, unbroken
+from taylor_verify.solvers.files.formats.package import unbroken
 
-_EXTRA: Final = "mcap"
 _MESSAGES: Final = Limit(20_000_000, "messages", "a minute of reading, all topics together")
 
 
 def read(file: BinaryIO, path: Path, part: str) -> Table:
     """Return the columns of a topic; the file is read twice, first for the topics there are."""
-    with needed("mcap", "MCAP", _EXTRA, path):
-        import mcap  # noqa: F401
     with unbroken("an MCAP file", path):
         recording = _Recording.of(file, path)
         topic = messages.chosen(recording.topics(), part, path)
@@ -85,8 +82,8 @@ class _Recording(NamedTuple):
 def _decoder(channel: Any, schema: Any, path: Path) -> Callable[[bytes], Any]:
     if channel.message_encoding == "json":
         return _from_json
-    with needed("mcap-ros2-support", "ROS 2 messages in MCAP", _EXTRA, path):
-        from mcap_ros2.decoder import DecoderFactory
+    from mcap_ros2.decoder import DecoderFactory
+
     # It prints a definition that it cannot read before it raises.
     with redirect_stderr(StringIO()):
         decode = DecoderFactory().decoder_for(channel.message_encoding, schema)

@@ -4,32 +4,45 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Final
 
 from taylor_verify.scenes.reading.faults import Refused, cut, refusal
 
+# The optional dependency that installs a package.
+_EXTRAS: Final = {
+    "h5py": "hdf5",
+    "mcap": "mcap",
+    "mcap_ros2": "mcap",
+    "pyarrow": "parquet",
+    "rosbags": "rosbag",
+}
+
+
+def install(package: str) -> str:
+    """Return the command that installs a package that a reader needs."""
+    return f"pip install 'taylor-verify[{_EXTRAS.get(package, 'readers')}]'"
+
 
 @contextmanager
-def needed(package: str, what: str, extra: str, place: object) -> Iterator[None]:
-    """Refuse the file at ``place`` if an import in the block lacks the package.
-
-    ``what`` names the format, ``extra`` the optional dependency that installs the package.
-    """
+def needed(place: object) -> Iterator[None]:
+    """Refuse the file at ``place`` if an import in the block lacks a package."""
     try:
         yield
-    except ModuleNotFoundError:
-        mend = f"install it with `pip install 'taylor-verify[{extra}]'`, or write CSV"
-        raise refusal(f"the package {package} to read {what}", "none", place, mend) from None
+    except ModuleNotFoundError as error:
+        package = str(error.name).partition(".")[0]
+        mend = f"install it with `{install(package)}`, or write CSV"
+        raise refusal(f"the package {package}", "none", place, mend) from None
 
 
 @contextmanager
 def unbroken(what: str, place: object) -> Iterator[None]:
-    """Refuse the file at ``place`` if the block raises anything.
+    """Refuse the file at ``place`` if the block raises anything but for the lack of a package.
 
     No library documents which exceptions a broken file becomes.
     """
     try:
         yield
-    except Refused:
+    except (Refused, ModuleNotFoundError):
         raise
     except Exception as error:
         reason = cut((str(error).splitlines() or [type(error).__name__])[0])

@@ -7,14 +7,21 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from taylor_verify.scenes.reading.faults import Faults, Refused, refusal
-from taylor_verify.solvers.files.formats.column import BYTES, CHARACTERS, Column, check_size
-from taylor_verify.solvers.files.formats.package import needed
+from taylor_verify.solvers.files.formats.column import (
+    BYTES,
+    CHARACTERS,
+    Column,
+    Table,
+    check_size,
+    refuse_part,
+)
 
 
-def read(file: BinaryIO, path: Path) -> list[Column]:
+def read(file: BinaryIO, path: Path, part: str) -> Table:
     """Return the columns; what the footer says of their size is checked before any is read."""
-    with needed("pyarrow", "Parquet", "parquet", path):
-        from pyarrow import ArrowException, parquet
+    refuse_part(part, path)
+    from pyarrow import ArrowException, parquet
+
     try:
         texts = _checked(parquet.ParquetFile(file), path)
         table = parquet.ParquetFile(file, read_dictionary=texts).read(use_threads=False)
@@ -25,7 +32,8 @@ def read(file: BinaryIO, path: Path) -> list[Column]:
         raise refusal("a Parquet file", f"a fault in it: {reason}", path) from None
     table = _flat(table)
     _check_texts(table, texts, path)
-    return [Column(name, table.column(i).to_pylist()) for i, name in enumerate(table.column_names)]
+    columns = (table.column(i).to_pylist() for i in range(table.num_columns))
+    return Table(list(map(Column, table.column_names, columns)))
 
 
 def _checked(footer: Any, path: Path) -> list[str]:

@@ -19,7 +19,7 @@ from taylor_verify.scenes.reading.regular_file import read_bytes, regular_file
 from taylor_verify.solvers.files.formats import mcap, messages
 from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Table
 from taylor_verify.solvers.files.formats.messages import Topic
-from taylor_verify.solvers.files.formats.package import needed, unbroken
+from taylor_verify.solvers.files.formats.package import unbroken
 
 _METADATA: Final = "metadata.yaml"
 _PACKED: Final = re.compile(r"compression_mode:\s*['\"]?(file|message)", re.IGNORECASE)
@@ -61,8 +61,8 @@ def read(file: BinaryIO, path: Path, part: str) -> Table:
 
 
 def _table(path: Path, part: str) -> Table:
-    with needed("rosbags", "rosbags", "rosbag", path):
-        from rosbags import rosbag1, rosbag2
+    from rosbags import rosbag1, rosbag2
+
     with unbroken("a rosbag", path):
         is_ros1 = path.suffix.lower() == _ROS1
         with rosbag1.Reader(path) if is_ros1 else rosbag2.Reader(path) as reader:
