@@ -32,7 +32,6 @@ from taylor_verify.exact.kirchhoff.turning import TurningBody
 from taylor_verify.exact.kirchhoff.weber.curve import REGIME as WEBER
 from taylor_verify.exact.kirchhoff.weber.curve import Curve, curve
 from taylor_verify.exact.kirchhoff.weber.quotients import WeberBalls
-from taylor_verify.exact.kirchhoff.weber.sums import WeberSums
 from taylor_verify.exact.solution import NoClosedForm, Solution
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.scene import Scene
@@ -43,13 +42,16 @@ Subject = Nutation | Plane | Impulse | FreeSpin | Curve
 
 @dataclass(frozen=True)
 class Case:
-    """A motion that has a closed form: what is left after the reductions, and its two routes."""
+    """A motion that has a closed form: what is left after the reductions, and its two routes.
+
+    Where ``floats`` is None, Taylor series are the second route.
+    """
 
     regime: str
     reduced: Reduced
     subject: Subject
     balls: Callable[[], Solution]
-    floats: Callable[[], Solution]
+    floats: Callable[[], Solution] | None
 
 
 def enclosed(scene: Scene) -> Solution:
@@ -59,8 +61,10 @@ def enclosed(scene: Scene) -> Solution:
 
 
 def closed_form(scene: Scene) -> Solution:
-    """The motion in mpmath; raises NoClosedForm likewise."""
+    """The motion in mpmath; raises NoClosedForm likewise, and for Weber's case."""
     solved = case(scene)
+    if solved.floats is None:
+        raise NoClosedForm(f"the second route of the regime {solved.regime} is taylor")
     return solved.reduced.carried_back(solved.floats())
 
 
@@ -174,9 +178,7 @@ def weber(whole: Reduced) -> Case | None:
         return None
     if whole.scene.track:
         raise NoClosedForm("attitude and centre of Weber's motion have no closed form")
-    return Case(
-        WEBER, reduced, genus_two, lambda: WeberBalls(genus_two), lambda: WeberSums(genus_two)
-    )
+    return Case(WEBER, reduced, genus_two, lambda: WeberBalls(genus_two), None)
 
 
 # Bodies of revolution and planes have words of their own for their steady motions.
