@@ -19,7 +19,6 @@ from taylor_verify.exact.kirchhoff import jacobi, weierstrass
 from taylor_verify.exact.kirchhoff.axes import at_rest_in_space, clebsch_about, out_of
 from taylor_verify.exact.kirchhoff.displaced import centred
 from taylor_verify.exact.kirchhoff.isotropic import less_coupling, multiple
-from taylor_verify.exact.kirchhoff.pendulum import Pendulum
 from taylor_verify.exact.kirchhoff.plane import Plane, in_plane, of_revolution, planar
 from taylor_verify.exact.kirchhoff.plane import regime as regime_in_plane
 from taylor_verify.exact.kirchhoff.quartic import Nutation
@@ -116,18 +115,19 @@ def revolution(whole: Reduced) -> Case | None:
 
 
 def flat(whole: Reduced) -> Case | None:
-    """A motion in a plane of the body: in balls that of the body of revolution that moves alike."""
+    """A motion in a plane of the body: that of the body of revolution that moves alike."""
     reduced_plane = planar(whole)
     if reduced_plane is None:
         return None
     reduced, place = reduced_plane
-    kind = regime_in_plane(place)
-
-    def balls() -> Solution:
-        alike = case(of_revolution(reduced.scene, place))
-        return carried(alike.reduced.carried_back(alike.balls()), in_plane(place), kind)
-
-    return Case(kind, reduced, place, balls, lambda: Pendulum(kind, place, reduced.scene))
+    kind, back, alike = regime_in_plane(place), in_plane(place), of_revolution(reduced.scene, place)
+    return Case(
+        kind,
+        reduced,
+        place,
+        lambda: carried(enclosed(alike), back, kind),
+        lambda: carried(closed_form(alike), back, kind),
+    )
 
 
 def steady(whole: Reduced) -> Case | None:
