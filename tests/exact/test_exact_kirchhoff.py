@@ -13,14 +13,14 @@ from builders.turns import by_turns
 from mpmath import mp, mpf
 
 from taylor_verify.exact.kirchhoff.closed import closed_form
-from taylor_verify.exact.kirchhoff.quartic import Nutation, RealRoots, value
+from taylor_verify.exact.kirchhoff.quartic import Nutation, value
 from taylor_verify.exact.solution import NoClosedForm, Solution
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.precision import power_of_two
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Vector, diagonal
+from taylor_verify.scenes.tensors import diagonal
 
 DIGITS = 40
 # The solution promises DIGITS of |x| and of |y| apart, which here are below 100 each; the Taylor
@@ -349,32 +349,6 @@ def test_says_why_there_is_no_closed_form(reason: str) -> None:
     """What is not built is refused with its reason, never answered by a neighbouring formula."""
     with pytest.raises(NoClosedForm, match=reason):
         closed_form(REFUSED[reason])
-
-
-@pytest.mark.parametrize("gap", [Fraction(1), Fraction(1, 10**8), Fraction(1, 10**40)])
-def test_real_roots_are_enclosed(gap: Fraction) -> None:
-    """Real roots however close are found apart, each within the width asked for."""
-    roots = [Fraction(-7, 3), Fraction(1, 8), Fraction(1, 8) + gap]
-    polynomial: Vector = (Fraction(5),)
-    for root in roots:
-        polynomial = _times(polynomial, (Fraction(1), -root))
-    for factor in ((Fraction(1), Fraction(-9)), (Fraction(1), Fraction(0), gap)):
-        real_roots = RealRoots(_times(polynomial, factor))
-        expected = [*roots, Fraction(9)][: real_roots.number]
-        for width in (gap / 100, gap / 10**30):
-            enclosed = real_roots.enclosed(width)
-            assert all(abs(a - b) <= width for a, b in zip(enclosed, expected, strict=True))
-        assert [real_roots.number_up_to(root) for root in expected] == list(
-            range(1, real_roots.number + 1)
-        )
-
-
-def _times(a: Vector, b: Vector) -> Vector:
-    product = [Fraction(0)] * (len(a) + len(b) - 1)
-    for i, c in enumerate(a):
-        for j, d in enumerate(b):
-            product[i + j] += c * d
-    return tuple(product)
 
 
 @seeds
