@@ -27,7 +27,7 @@ from taylor_verify.exact.kirchhoff.regime import nutation_of, regime
 from taylor_verify.exact.kirchhoff.screws import is_steady
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.kirchhoff.top import top, with_impulses
-from taylor_verify.exact.kirchhoff.turning import TurningBody
+from taylor_verify.exact.kirchhoff.turning import Turning, TurningBody
 from taylor_verify.exact.kirchhoff.weber.curve import REGIME as WEBER
 from taylor_verify.exact.kirchhoff.weber.curve import Curve, curve
 from taylor_verify.exact.kirchhoff.weber.quotients import WeberBalls
@@ -93,16 +93,10 @@ def revolution(whole: Reduced) -> Case | None:
     if clebsch_about(solid(scene)[0]) is None:
         return None
     nutation, start = nutation_of(scene)
-    kind, rate, axes, track = regime(nutation), nutation.turn_rate, nutation.axes, scene.track
+    kind, axes, track = regime(nutation), nutation.axes, scene.track
     if kind in ("rest", "steady", "euler-top"):
-        body = nutation.solid
-        return Case(
-            kind,
-            reduced,
-            nutation,
-            lambda: TurningBody(kind, body, start, track, rate, axes.n),
-            lambda: jacobi.Screw(kind, body, start, track, rate, axes.n),
-        )
+        turn = Turning(kind, nutation.solid, start, track, nutation.turn_rate, axes.n)
+        return Case(kind, reduced, nutation, lambda: TurningBody(turn), lambda: jacobi.Screw(turn))
     if not axes.is_upright:
         reduced, start = reduced.then(scene, out_of(axes, start)), at_rest_in_space(start)
     return Case(
@@ -135,14 +129,9 @@ def steady(whole: Reduced) -> Case | None:
     body, start = solid(whole.scene)
     if not is_steady(body, start):
         return None
-    kind, track = "steady" if any(start.moving) else "rest", whole.scene.track
-    return Case(
-        kind,
-        whole,
-        start,
-        lambda: TurningBody(kind, body, start, track),
-        lambda: jacobi.Screw(kind, body, start, track),
-    )
+    kind = "steady" if any(start.moving) else "rest"
+    turn = Turning(kind, body, start, whole.scene.track)
+    return Case(kind, whole, start, lambda: TurningBody(turn), lambda: jacobi.Screw(turn))
 
 
 def turning(whole: Reduced) -> Case | None:
