@@ -37,7 +37,6 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact import lattice
 from taylor_verify.exact.balls import Undecidable, ball
-from taylor_verify.exact.elements import elements
 from taylor_verify.exact.kirchhoff import orbit
 from taylor_verify.exact.kirchhoff.closed import closed_form, enclosed
 from taylor_verify.exact.kirchhoff.course import Course
@@ -192,25 +191,6 @@ def test_a_short_way_has_its_digits() -> None:
         asked = replace(asked, initial=replace(asked.initial, centre=vector(0, 0, 0)))
         for route in ROUTES:
             assert is_taylors(asked, route, [Fraction(1, 10**30)])
-
-
-@of_each_regime
-def test_x3_recurs_after_a_billion_periods(name: str) -> None:
-    """So does |y|; a motion that falls away has no period."""
-    _, start, kind = MOTIONS[name]
-    asked = replace(scene(name), track=frozenset())
-    of_orbit = elements(asked, 60)
-    if kind not in ("four-roots", "two-roots", "cubic", "trigonometric"):
-        assert "x3_low" not in of_orbit or "period" not in of_orbit
-        return
-    late = 10**9 * exact_value(of_orbit["period"].value)
-    motion = found(asked, "arb", [late], 40)
-    with mp.workdps(60):
-        x, y = motion["linear_impulse"][0], motion["angular_impulse"][0]
-        x0, y0 = np.array([mp.convert(c) for c in exact(start)]).reshape(2, 3)
-        room = mpf(10) ** -38 * (_norm(x0) + _norm(y0))
-        assert abs(x[2] - x0[2]) <= room
-        assert abs(_norm(y) - _norm(y0)) <= room
 
 
 # Difficult bodies.

@@ -456,7 +456,11 @@ SHIPPED = {
     "axis-beside-the-origin": "four-roots",
     "displaced-origin": "max-axis",
     "no-linear-impulse": "min-axis",
+    "pendulum": "planar-swing",
+    "pendulum-front": "planar-front",
+    "steady-screw": "steady",
     "steady-screw-under-loads": "steady",
+    "weber": "weber",
     "wound-pendulum": "planar-swing",
 }
 
