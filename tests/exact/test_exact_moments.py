@@ -25,12 +25,13 @@ from taylor_verify.exact.euler.moments import erf, weber
 from taylor_verify.exact.euler.moments.kummer import KummerTurn
 from taylor_verify.exact.euler.moments.power_series import SeriesTurn
 from taylor_verify.exact.euler.moments.regime import Line, LoadedSpin
+from taylor_verify.exact.kirchhoff.solid import short_digits
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm, Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.motion import IDENTITY, Motion, Spin
+from taylor_verify.scenes.motion import IDENTITY, Impulse, Motion, Spin
 from taylor_verify.scenes.precision import exact_value
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
@@ -451,3 +452,11 @@ def test_whether_a_line_is_short_does_not_depend_on_the_unit_of_time(
         for k, v in ((1, vector(0, 3, 4)), (2, vector(15, 0, 20)))
     )
     assert Line(a, b).is_short(Fraction(t) / faster, 10) is is_short
+
+
+@pytest.mark.parametrize("faster", [1, 1000, Fraction(1, 1000)])
+def test_the_digits_of_a_short_way_do_not_depend_on_the_unit_of_time(faster: Fraction) -> None:
+    """A way of 1e-9 beside a lever of 1: nine digits, in seconds as in milliseconds."""
+    start = Impulse(vector(1, 0, 0), vector(0, 1, 0))
+    U, time = vector(Fraction(faster, 1000), 0, 0), Fraction(1, 10**6) / faster
+    assert short_digits(U, start, [time]) == 9

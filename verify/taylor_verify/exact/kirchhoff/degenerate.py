@@ -132,6 +132,16 @@ class ElementaryOrbit(Orbit):
     def elements(self) -> dict[str, mpf]:
         return {"period": 2 * mp.pi / self._rate} if self._A < 0 else {}
 
+    def losses(self, t: mpf) -> list[mpf]:
+        pace = abs(self._linear) + abs(self._up_rate) + abs(self._down_rate)
+        pace += abs(self._screw) * self._F + abs(self._glide)
+        losses = [1 + self._rate * t, 1 + pace * t]
+        if self._d is not None:
+            # Falling away from near d, v is a small difference on the way, and grows from another,
+            # smaller in proportion to 1/v0^2, when it returns.
+            losses.append(1 + (self._F * self._v0) ** 2)
+        return losses
+
     def _face_poles(self, nutation: Nutation, carrier: Carrier) -> None:
         """The factor of each pole, the upper first, and the linear parts of U and D."""
         gaps_at_start = distances(nutation.F2, nutation.z)
@@ -247,3 +257,7 @@ class Front(Orbit):
     @property
     def elements(self) -> dict[str, mpf]:
         return {}
+
+    def losses(self, t: mpf) -> list[mpf]:
+        turned = abs(self._screw) * self._F + abs(self._glide)
+        return [1 + abs(self._c) * self._F * t, 1 + turned * t]

@@ -14,14 +14,15 @@ from taylor_verify.exact.frames import Frame, applied, product, start_frame, tra
 from taylor_verify.exact.kirchhoff.degenerate import ElementaryOrbit, Front
 from taylor_verify.exact.kirchhoff.orbit import EllipticOrbit, Orbit
 from taylor_verify.exact.kirchhoff.quartic import Nutation
+from taylor_verify.exact.kirchhoff.solid import short_digits, velocities
 from taylor_verify.exact.kirchhoff.space import Axial
 from taylor_verify.exact.kirchhoff.turning import Turning
 from taylor_verify.exact.solution import Quantities, Settled, Time, beside, longest
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.motion import Impulse
 
-# Estimates of what a motion loses would cost more than the evaluations that they save.
-_GUARD_DIGITS: Final = 16
+_GUARD_DIGITS: Final = 12
+_ROUGH_DIGITS: Final = 20
 _ORBITS: Final[Mapping[str, type[ElementaryOrbit | Front]]] = {
     "hyperbolic": ElementaryOrbit,
     "trigonometric": ElementaryOrbit,
@@ -106,7 +107,13 @@ class NutatingBody(Settled):
     _orbits: dict[int, Orbit] = field(default_factory=dict, init=False)
 
     def evaluate(self, elapsed: Sequence[Time], digits: int) -> Quantities:
-        with mp.workdps(digits + _GUARD_DIGITS):
+        with mp.workdps(_ROUGH_DIGITS):
+            losses = self._orbit().losses(mp.convert(longest(elapsed)))
+            lost = sum(max(0, int(mp.ceil(mp.log10(loss)))) for loss in losses)
+        if "centre" in self.track:
+            U, _ = velocities(self.nutation.body.body(), self.start)
+            lost += short_digits(U, self.start, elapsed)
+        with mp.workdps(digits + _GUARD_DIGITS + lost):
             orbit = self._orbit()
             poses = [orbit.pose(mp.convert(t)) for t in elapsed]
             places = [orbit.axes.place(pose) for pose in poses] if self.track else []

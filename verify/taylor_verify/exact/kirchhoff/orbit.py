@@ -55,6 +55,13 @@ class Orbit(ABC):
     def elements(self) -> dict[str, mpf]:
         """The period of nutation where x3 recurs; for elliptic motion also rate, m and m_prime."""
 
+    @abstractmethod
+    def losses(self, t: mpf) -> list[mpf]:
+        """Estimates of the factors by which errors have grown by the time t >= 0.
+
+        They save repetitions; whether they were enough is decided by two precisions.
+        """
+
     @final
     @cached_property
     def axes(self) -> SpaceAxes:
@@ -173,6 +180,11 @@ class EllipticOrbit(Orbit):
     def elements(self) -> dict[str, mpf]:
         wave = self._wave
         return {"period": wave.period, "rate": wave.rate, "m": wave.m, "m_prime": wave.m_prime}
+
+    def losses(self, t: mpf) -> list[mpf]:
+        linear = abs(self._glide) + sum(abs(phase.rate) for phase in self._phases)
+        betas = [phase.beta + 1 / phase.beta for phase in self._phases if phase.bend]
+        return [1 + self._wave.rate * t, 1 / self._wave.m_prime, 1 + linear * t, *betas]
 
     def _spin_phase(self) -> Phase:
         """L, by x3 = z1 + width w a/(b + w a)."""

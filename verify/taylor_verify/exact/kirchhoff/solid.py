@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+from fractions import Fraction
+
+from taylor_verify.exact.solution import Time, longest
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
+from taylor_verify.scenes.precision import floor_log2
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Vector
 
@@ -20,3 +26,16 @@ def velocities(body: ImmersedBody, start: Impulse) -> tuple[Vector, Vector]:
     """Return U and Omega at the start, in body axes."""
     both = tensors.apply(body.energy_matrix, start.linear + start.angular)
     return both[:3], both[3:]
+
+
+def short_digits(U: Vector, start: Impulse, elapsed: Sequence[Time]) -> int:
+    """The digits by which |y|/F, whose change is the way across F, exceeds the centre itself.
+
+    F is not zero, and U is the velocity at the start.
+    """
+    shortest = min((longest([t]) for t in elapsed if t != 0), default=Fraction(1))
+    reached = tensors.dot(start.centre, start.centre) + tensors.dot(U, U) * shortest**2
+    lever = tensors.dot(start.angular, start.angular) / tensors.dot(start.linear, start.linear)
+    if not 0 < reached < lever:
+        return 0
+    return math.ceil(floor_log2(lever / reached) * math.log10(2) / 2)
