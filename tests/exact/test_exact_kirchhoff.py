@@ -193,6 +193,12 @@ def test_a_short_way_has_its_digits() -> None:
             assert is_taylors(asked, route, [Fraction(1, 10**30)])
 
 
+def test_a_way_that_two_precisions_would_lose_has_its_digits() -> None:
+    """Impulses of 1e-150 move the centre by as little: both would agree on a wrong one."""
+    asked, times = load("extremes/kirchhoff-impulses-1e-150"), [Fraction(5)]
+    assert overlap(found(asked, "arb", times, 40), found(asked, "mpmath", times, 40))
+
+
 # Difficult bodies.
 
 TINY = "1/1000000000000000000000000000000"
