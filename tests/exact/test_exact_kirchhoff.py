@@ -99,7 +99,7 @@ def _room(motion: Motion, k: int, name: str) -> mpf:
     return motion.radius[k] * (_norm(motion[name][k]) / (1 - motion.radius[k]) or 1)
 
 
-def found(asked: Scene, route: str, times: Sequence[Fraction], digits: int = DIGITS) -> Motion:
+def motion_by(asked: Scene, route: str, times: Sequence[Fraction], digits: int = DIGITS) -> Motion:
     """The motion by a route, with its digits."""
     motion = ROUTES[route](asked).motion(times, digits)
     assert all(radius <= mpf(10) ** -digits for radius in motion.radius)
@@ -114,7 +114,7 @@ def truth(asked: Scene, times: tuple[Fraction, ...]) -> Motion:
 def is_taylors(asked: Scene, route: str, times: Sequence[Fraction]) -> bool:
     """Whether a route finds impulses, attitude and centre as Taylor does."""
     try:
-        return overlap(found(asked, route, times), truth(asked, tuple(times)))
+        return overlap(motion_by(asked, route, times), truth(asked, tuple(times)))
     except Unsettled:
         return False
 
@@ -133,7 +133,7 @@ def test_begins_as_it_is_told(name: str) -> None:
         }
         for route, solve in ROUTES.items():
             assert solve(asked).regime == MOTIONS[name][2]
-            motion = found(replace(asked, initial=start), route, [Fraction(0)])
+            motion = motion_by(replace(asked, initial=start), route, [Fraction(0)])
             with mp.workdps(DIGITS + 20):
                 for quantity, expected in stated.items():
                     exactly = np.vectorize(mp.convert, otypes=[object])(np.array(expected))
@@ -154,7 +154,7 @@ def test_the_routes_agree_for_long(name: str) -> None:
     times = vector("13/3", -120, 10**12)
     if MOTIONS[name][2] in ("hyperbolic", "heteroclinic"):
         times = times[:2]  # Then nothing but the double root is left.
-    assert overlap(found(scene(name), "arb", times), found(scene(name), "mpmath", times))
+    assert overlap(motion_by(scene(name), "arb", times), motion_by(scene(name), "mpmath", times))
 
 
 @of_each_regime
@@ -162,7 +162,7 @@ def test_the_routes_agree_for_long(name: str) -> None:
 def test_a_ball_at_any_precision_holds_the_truth(name: str, bits: int) -> None:
     """Component by component, however coarse: what is found with 80 digits lies in every ball."""
     times = vector("3/2", -40)
-    fine = found(scene(name), "arb", times, 80)
+    fine = motion_by(scene(name), "arb", times, 80)
     with ctx.workprec(bits):
         try:
             coarse: Any = enclosed(scene(name))
@@ -196,7 +196,7 @@ def test_a_short_way_has_its_digits() -> None:
 def test_a_way_that_two_precisions_would_lose_has_its_digits() -> None:
     """Impulses of 1e-150 move the centre by as little: both would agree on a wrong one."""
     asked, times = load("extremes/kirchhoff-impulses-1e-150"), [Fraction(5)]
-    assert overlap(found(asked, "arb", times, 40), found(asked, "mpmath", times, 40))
+    assert overlap(motion_by(asked, "arb", times, 40), motion_by(asked, "mpmath", times, 40))
 
 
 # Difficult bodies.
@@ -245,14 +245,14 @@ def test_difficult_bodies_are_solved(name: str) -> None:
     asked = whole(*ADVERSARIAL[name])
     assert all(is_taylors(asked, route, vector("3/2", -3)) for route in ROUTES)
     times = vector("17/3", -100 if "falling" in name else -(10**6))
-    assert overlap(found(asked, "arb", times), found(asked, "mpmath", times))
+    assert overlap(motion_by(asked, "arb", times), motion_by(asked, "mpmath", times))
 
 
 @pytest.mark.parametrize("name", ADVERSARIAL)
 def test_difficult_bodies_settle_to_few_digits_and_to_many(name: str) -> None:
     """Three digits are not refused because the way there takes hundreds, and hold what 150 find."""
     times = vector(2, -100 if "falling" in name else -(10**12), Fraction(1, 10**100))
-    few, many = (found(whole(*ADVERSARIAL[name]), "arb", times, digits) for digits in (3, 150))
+    few, many = (motion_by(whole(*ADVERSARIAL[name]), "arb", times, digits) for digits in (3, 150))
     assert overlap(few, many)
 
 

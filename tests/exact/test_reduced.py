@@ -123,20 +123,6 @@ def test_another_origin_changes_no_integral() -> None:
     assert integrals(moved(scene, AWAY)) == integrals(scene)
 
 
-def test_another_origin_has_its_own_velocity() -> None:
-    """About the origin moved by d it is U + Omega x d, and Omega is the same."""
-    scene = one_instant(GENERAL, IMPULSE)
-    U, Omega = velocities(*solid(scene))
-    there = velocities(*solid(moved(scene, AWAY)))
-    assert there == (tensors.plus(U, tensors.cross(Omega, AWAY)), Omega)
-
-
-def test_to_another_origin_and_back_is_nothing() -> None:
-    """The displacements by d and by -d undo each other, coefficient by coefficient."""
-    scene = one_instant(GENERAL, IMPULSE)
-    assert moved(moved(scene, AWAY), tensors.scaled(Fraction(-1), AWAY)) == scene
-
-
 def test_b_is_symmetric_about_one_origin() -> None:
     """There the displacement to it is zero, and it is found again from any other origin."""
     scene = one_instant(GENERAL, IMPULSE)
