@@ -17,7 +17,6 @@ from taylor_verify.numbers.irrational import PI
 from taylor_verify.scenes import ellipsoid
 from taylor_verify.scenes.bodies import Ellipsoid, ImmersedBody
 from taylor_verify.scenes.ellipsoid import LambIntegral
-from taylor_verify.scenes.precision import exact_value
 from taylor_verify.scenes.stand_in import STAND_IN_BITS, StandIn, written
 from taylor_verify.scenes.tensors import Vector
 
@@ -50,11 +49,6 @@ def added(ellipsoid: Ellipsoid) -> tuple[list[mpf], list[mpf]]:
     """m_i and j_i at the ambient precision."""
     exact = ellipsoid.inertias
     return [*map(mp.convert, exact.added_mass)], [*map(mp.convert, exact.added_inertia)]
-
-
-def displaced(ellipsoid: Ellipsoid) -> mpf:
-    a, b, c = ellipsoid.semi_axes
-    return 4 * mp.pi / 3 * mp.convert(a * b * c * ellipsoid.fluid_density)
 
 
 def diagonal(body: ImmersedBody) -> list[Any]:
@@ -159,21 +153,6 @@ def test_the_fluid_resists_most_along_the_shortest_axis(name: str) -> None:
             assert (m[i] == m[j]) is (axes[i] == axes[j])
 
 
-@pytest.mark.parametrize("name", SHAPES)
-def test_integrals_sum_to_their_identities(name: str) -> None:
-    """The alphas add to 2, and weighted with a_i^2 to 2 a1 a2 a3 R_F(a1^2, a2^2, a3^2)."""
-    axes = shape(SHAPES[name]).semi_axes
-    with ctx.workprec(BITS), mp.workprec(2 * BITS):
-        alphas = [integral(axes, i).evaluated() for i in range(3)]
-        squares = [a * a for a in axes]
-        product = mp.convert(axes[0] * axes[1] * axes[2])
-        weighted = 2 * product * mp.elliprf(*map(mp.convert, squares))
-        total = sum((alpha * ball(q) for alpha, q in zip(alphas, squares, strict=True)), arb(0))
-        assert sum(alphas, arb(0)).overlaps(arb(2))
-        assert total.overlaps(ball(exact_value(weighted)))
-        assert total.rel_accuracy_bits() >= BITS - 20
-
-
 def test_a_sphere_carries_half_the_mass_it_displaces() -> None:
     """m = rho V/2 and j = 0 exactly, so that p = 1/(M + rho V/2) and r = 5/(2 M a^2)."""
     body = shape((2, 2, 2), density=3, fluid=5).body()
@@ -181,94 +160,6 @@ def test_a_sphere_carries_half_the_mass_it_displaces() -> None:
     p, r = written(body.linear[0][0]), written(body.angular[0][0])
     assert p == 1 / (volume * (3 + Fraction(5, 2)))
     assert r == 5 / (2 * 3 * volume * 4)
-
-
-@pytest.mark.parametrize("little", [Fraction(1, 10**9), Fraction(1, 10**300)])
-def test_beside_a_sphere_the_added_inertia_is_quadratic(little: Fraction) -> None:
-    """j = rho V (a^2 - b^2)^2/15, to the order of the difference: no digit of it cancels."""
-    body = shape((1, 1 + little, 1 - 2 * little), fluid=3)
-    squares = [a * a for a in body.semi_axes]
-    with mp.workprec(3 * BITS):
-        for i, j in enumerate(added(body)[1]):
-            gap = mp.convert(squares[i - 1] - squares[i - 2])
-            assert abs(15 * j / (displaced(body) * gap**2) - 1) <= 10 * mp.convert(little)
-
-
-def spheroid(e: mpf, is_prolate: bool) -> tuple[mpf, mpf]:
-    """alpha along the axis and across it, in the eccentricity: Lamb, arts. 114 and 373."""
-    if is_prolate:
-        along = 2 * (1 - e**2) / e**3 * (mp.atanh(e) - e)
-        return along, 1 / e**2 - (1 - e**2) / e**3 * mp.atanh(e)
-    root = mp.sqrt(1 - e**2)
-    return 2 / e**2 * (1 - root / e * mp.asin(e)), root / e**3 * mp.asin(e) - root**2 / e**2
-
-
-@pytest.mark.parametrize("axes", [(2, 1, 1), (1, 1, 3), (1, 4, 4), (Fraction(1, 50), 1, 1)])
-def test_spheroids_have_elementary_coefficients(axes: tuple[Fraction, ...]) -> None:
-    """m and j of spheroids are Lamb's logarithms and arcs in the eccentricity."""
-    body = shape(axes)
-    (i,) = (n for n in range(3) if axes.count(axes[n]) == 1)
-    c, a = Fraction(axes[i]), Fraction(axes[(i + 1) % 3])
-    with mp.workprec(BITS):
-        e2 = 1 - min(a, c) ** 2 / max(a, c) ** 2
-        along, across = spheroid(mp.sqrt(mp.convert(e2)), is_prolate=c > a)
-        rho_V, gap, total = displaced(body), mp.convert(c**2 - a**2), mp.convert(c**2 + a**2)
-        exact = body.inertias
-        j = rho_V / 5 * gap**2 * (across - along) / (2 * gap + total * (along - across))
-        expected = [rho_V * along / (2 - along), rho_V * across / (2 - across), j]
-        numbers = [exact.added_mass[i], exact.added_mass[i - 1], exact.added_inertia[i - 1]]
-        for value, number in zip(expected, numbers, strict=True):
-            # The elementary formulas cancel: a factor e^-3, below 10 for these, and a dozen roundings.
-            assert abs(value / mp.convert(number) - 1) <= mp.ldexp(1, 12 - BITS)
-        assert exact.added_inertia[i] == 0
-
-
-def test_a_disc_is_approached_in_proportion_to_its_thickness() -> None:
-    """For c -> 0: m_3 -> 8/3 rho a^3 and j_1 -> 16/45 rho a^5; what is missing falls off like c."""
-    with mp.workprec(BITS):
-        missing = []
-        for power in (20, 40):
-            m, j = added(shape((3, 3 + Fraction(1, 10**100), Fraction(1, 10**power)), fluid=7))
-            missing.append(
-                (m[2] / (mpf(8) / 3 * 7 * 3**3) - 1, j[0] / (mpf(16) / 45 * 7 * 3**5) - 1)
-            )
-        for thick, thin in zip(*missing, strict=True):
-            assert 0 < abs(thick) <= mpf(10) ** -20
-            # The next term of the series is of the order c^2 (log c), 1e-18 of this one.
-            assert abs(thin / thick * mpf(10) ** 20 - 1) <= mpf(10) ** -17
-
-
-def test_an_elliptic_plate_moves_the_mass_of_a_complete_integral() -> None:
-    """For c -> 0 and a > b: m_3 -> 4 pi rho a b^2 / (3 E(k)), k^2 = 1 - b^2/a^2 (Lamb, art. 114)."""
-    with mp.workprec(BITS):
-        m, _ = added(shape((5, 2, Fraction(1, 10**50))))
-        plate = 4 * mp.pi * 5 * 2**2 / (3 * mp.ellipe(1 - mpf(4) / 25))
-        assert 0 < abs(m[2] / plate - 1) <= mpf(10) ** -49
-
-
-def test_a_needle_is_a_row_of_slices() -> None:
-    """For a -> oo every slice x moves like an ellipse in a plane, scaled by (1 - x^2/a^2)^(1/2).
-
-    Per length an ellipse b, c has rho pi c^2 along b, rho pi b^2 along c and rho pi (b^2 - c^2)^2/8
-    about its centre; along the needle there is nothing.
-    """
-    a, b, c = 10**15, 3, 2
-    with mp.workprec(BITS):
-        m, j = added(shape((a, b, c)))
-        rho_V = 4 * mp.pi / 3 * a * b * c
-        slices = {
-            "m2": (m[1], mp.pi * c**2 * mpf(4 * a) / 3),
-            "m3": (m[2], mp.pi * b**2 * mpf(4 * a) / 3),
-            "j1": (j[0], mp.pi * (b**2 - c**2) ** 2 / 8 * mpf(16 * a) / 15),
-            "j2": (j[1], mp.pi * b**2 * mpf(4 * a**3) / 15),
-            "j3": (j[2], mp.pi * c**2 * mpf(4 * a**3) / 15),
-        }
-        # The ends are missing: of the order (b/a)^2 log(a/b), here 9e-30 times 34.
-        bound = 10 * (mpf(b) / a) ** 2 * mp.log(a)
-        assert {
-            name: 0 < abs(x / y - 1) <= bound for name, (x, y) in slices.items()
-        } == dict.fromkeys(slices, True)
-        assert 0 < m[0] / rho_V <= bound
 
 
 # The flow itself.

@@ -244,16 +244,3 @@ def test_instants_within_a_step_cost_no_step(monkeypatch: pytest.MonkeyPatch) ->
         asked.motion([Fraction(10 * (k + 1), count) for k in range(count)], 15)
         counts.append(steps)
     assert counts[0] == counts[1]
-
-
-def test_the_start_is_the_state_itself() -> None:
-    """At time zero the balls are those of the initial rationals."""
-    asked = CASES["kirchhoff"][0]
-    motion = TaylorSolution(asked).motion([Fraction(0)], 30)
-    with mp.workdps(40), ctx.workprec(140):
-        (row,) = motion["linear_impulse"]
-        exact = balls(asked.initial.linear) if isinstance(asked.initial, Impulse) else []
-        assert all(
-            abs(mpf(str(e.mid().str(40, radius=False))) - v) < 1e-35
-            for e, v in zip(exact, row, strict=True)
-        )

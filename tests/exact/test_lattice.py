@@ -117,17 +117,6 @@ def test_p_begins_as_it_should(invariants: Invariants) -> None:
         assert abs(u**3 * slope + 2 - g2 * u**4 / 10 - g3 * u**6 / 7) <= 8 * bound
 
 
-@by_case
-def test_p_is_even_and_real_on_the_real_line(invariants: Invariants) -> None:
-    """p(-u) = p(u), p'(-u) = -p'(u), and conjugate arguments have conjugate values."""
-    with at_work(invariants) as (cell, length):
-        for u in points(length):
-            p, slope = cell.p(u)
-            assert same(cell.p(-u), (p, -slope))
-            mirrored = cell.p(u.conjugate())
-            assert same((mirrored[0].conjugate(), mirrored[1].conjugate()), (p, slope))
-
-
 @pytest.mark.parametrize("name", PERIODIC)
 def test_p_has_its_period(name: str) -> None:
     """p(u + L) = p(u), and on the real line it is above its least value, which is at L/2."""
@@ -152,13 +141,6 @@ def test_a_period_loses_no_bits_to_roots_that_are_close(name: str) -> None:
         assert period.rel_accuracy_bits() >= BITS - 16
 
 
-@pytest.mark.parametrize("name", ["double root, positive", "triple root"])
-def test_without_a_period_there_is_none(name: str) -> None:
-    """A double root e > 0 or a triple one leaves p without a real period."""
-    with at_work(CASES[name]) as (cell, _):
-        assert cell.period is None
-
-
 # The argument
 
 
@@ -171,18 +153,6 @@ def test_the_argument_leads_back_to_its_point(invariants: Invariants) -> None:
             point = cell.p(cell.argument(*there))
             assert same(point, there)
             assert not point[1].overlaps(-there[1])
-
-
-@by_case
-def test_the_opposite_point_has_the_opposite_argument(invariants: Invariants) -> None:
-    """argument(X, -Y) + argument(X, Y) is a period: there s vanishes."""
-    with at_work(invariants) as (cell, length):
-        for u in points(length):
-            X, Y = cell.p(u)
-            both = cell.argument(X, Y) + cell.argument(X, -Y)
-            value, slope = cell.jet(both, 1)
-            assert value.contains(0)
-            assert abs(value) <= NARROW * abs(slope) * length
 
 
 fractions = st.fractions(-3, 3, max_denominator=50)
@@ -224,12 +194,6 @@ def test_a_half_period_is_told_from_the_others(name: str) -> None:
         X = cell.p(acb(period / 2))[0]
         w = cell.argument(X, acb(0))
         assert any(close(w / period, acb(half) / 2) for half in (-1, 1))
-
-
-def test_half_periods_that_cannot_be_told_apart_are_left_open() -> None:
-    """Where the ball of X holds two roots, none is chosen."""
-    with at_work((Fraction(4), Fraction(0))) as (cell, _), pytest.raises(Undecidable):
-        cell.argument(acb(arb(0, 2)), acb(0))
 
 
 @pytest.mark.parametrize("name", ELLIPTIC)
@@ -341,16 +305,6 @@ def test_conjugate_offsets_have_conjugate_quotients(invariants: Invariants) -> N
                         cell.jet(u - a, 2)[order] / cell.jet(-a, 0)[0] for a in (w, w.conjugate())
                     )
                     assert close(one.conjugate() * length**order, other * length**order)
-
-
-@by_case
-def test_conjugate_offsets_turn_against_each_other(invariants: Invariants) -> None:
-    """The turn about the conjugate of w is minus that about w."""
-    with at_work(invariants) as (cell, length):
-        for w in off_the_line(cell, length):
-            for k in (3, -20):
-                u = length * k
-                assert close(turned(cell, u, w.conjugate()), -turned(cell, u, w))
 
 
 @pytest.mark.parametrize("name", PERIODIC)

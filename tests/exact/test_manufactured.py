@@ -20,7 +20,7 @@ from taylor_verify.exact.solution import NoClosedForm
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.models import euler
 from taylor_verify.models.algebra import add, apply, cross
-from taylor_verify.models.euler import euler_equations, heinbockel_moment, momentum_rate
+from taylor_verify.models.euler import euler_equations
 from taylor_verify.models.form import Equations, Named, labelled
 from taylor_verify.models.kirchhoff import kirchhoff_equations, velocities
 from taylor_verify.models.manufactured import Loaded
@@ -30,7 +30,7 @@ from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.scenes import library
-from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
+from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.manufactured import Manufactured, Wave
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import rung
@@ -226,30 +226,6 @@ def test_the_motion_put_back_leaves_nothing(name: str, step: str) -> None:
     assert residual(problem, problem.form.equations) == 0
 
 
-def test_the_moment_is_that_of_the_text() -> None:
-    """M by Heinbockel's (2.2.70), from I, omega* and omega*', to 60 digits along the motion."""
-    scene = bare(EULER)
-    problem = pose(scene, rung("mp237"))
-    body, motion = problem.given.body, motion_of(problem.given)
-    assert isinstance(body, RigidBody)
-    with mp.workdps(70):
-        inertia = [[mp.convert(c) for c in row] for row in body.inertia]
-        for t in (mpf(0), mpf("1.7"), mpf(-40)):
-            omega, rate = [mp.convert(c) for c in motion.constant], [mpf(0)] * 3
-            for w in motion.waves:
-                nu = mp.convert(w.frequency)
-                c, s = mp.cos(nu * t), mp.sin(nu * t)
-                a, b = ([mp.convert(z) for z in v] for v in (w.cosine, w.sine))
-                omega = [z + p * c + q * s for z, p, q in zip(omega, a, b, strict=True)]
-                rate = [z + nu * (q * c - p * s) for z, p, q in zip(rate, a, b, strict=True)]
-            M = heinbockel_moment(omega, rate, inertia)
-            H = [sum(i * w for i, w in zip(row, omega, strict=True)) for row in inertia]
-            K = [[mp.convert(c) for c in row] for row in body.inverse_inertia]
-            expected = [sum(i * w for i, w in zip(row, rate, strict=True)) for row in inertia]
-            moment = momentum_rate(H, K, M)
-            assert max(abs(p - q) for p, q in zip(moment, expected, strict=True)) <= mpf(10) ** -60
-
-
 # What is broken is found.
 
 
@@ -370,15 +346,6 @@ def test_the_size_of_a_motion_does_not_matter(size: str, step: str) -> None:
         clock=Clock(Fraction(0), times),
     )
     assert run(scene, "taylor", step).verdicts[1].verdict is Status.PASS
-
-
-def test_there_are_four_scenes_of_each_model() -> None:
-    """And all 21 coefficients of Kirchhoff's bodies are there."""
-    bodies = [load(name).body for name in NAMES]
-    immersed = [body for body in bodies if isinstance(body, ImmersedBody)]
-    assert len(immersed) >= 4
-    assert len(bodies) - len(immersed) >= 4
-    assert all(all(entry for row in body.energy_matrix for entry in row) for body in immersed)
 
 
 @pytest.mark.parametrize("solver", ["outside:cvode-bdf", "geometric:lie-rk4?step=0.1"])

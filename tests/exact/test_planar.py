@@ -12,15 +12,10 @@ from mpmath import mp, mpf
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.kirchhoff.closed import closed_form, enclosed
 from taylor_verify.exact.kirchhoff.plane import plane, regime
-from taylor_verify.exact.route import solution
 from taylor_verify.exact.taylor import TaylorSolution
-from taylor_verify.models.problem import pose
-from taylor_verify.records.precisions import LADDER
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Clock, Impulse
-from taylor_verify.scenes.precision import rung
-from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix
 
@@ -112,37 +107,6 @@ def test_both_routes_are_the_taylor_motion(name: str, swapped: bool) -> None:
             assert apart(motion, truth) <= 2 * mpf(10) ** -DIGITS
 
 
-@pytest.mark.parametrize("k", [0, 1, 2])
-def test_every_axis_may_stand_across_the_plane(k: int) -> None:
-    """The same pendulum with its axes named anew has the same numbers."""
-    turned, first = built(k, BROAD, ("3/4", "-1/2", "1/4")), built(2, BROAD, ("3/4", "-1/2", "1/4"))
-    motion, expected = (closed_form(s).motion(TIMES, DIGITS) for s in (turned, first))
-    order, usual = (*cyclic(k), k), (0, 1, 2)
-    with mp.workdps(DIGITS + 20):
-        for name in ("linear_impulse", "angular_impulse"):
-            difference = motion[name][:, order] - expected[name][:, usual]
-            assert max(abs(e) for e in difference.flat) <= mpf(10) ** -DIGITS
-
-
-@pytest.mark.parametrize("name", ["planar-swing", "planar-turn"])
-def test_it_is_what_clebschs_body_does_in_its_plane(name: str) -> None:
-    """The shipped planar scenes, their symmetry broken where the plane does not see it."""
-    symmetric = load(f"kirchhoff/{name}")
-    assert isinstance(symmetric.body, ImmersedBody)
-    assert plane(symmetric) is None
-    C = symmetric.body.angular
-    broken = replace(
-        symmetric,
-        body=replace(symmetric.body, angular=tensors.diagonal((3 * C[0][0], C[1][1], C[2][2]))),
-    )
-    assert closed_form(broken).regime == name
-    motion, expected = (
-        solution(scene, "mpmath").motion(TIMES, DIGITS) for scene in (broken, symmetric)
-    )
-    with mp.workdps(DIGITS + 20):
-        assert apart(motion, expected) <= 2 * mpf(10) ** -DIGITS
-
-
 def test_the_border_of_swing_and_turn_is_decided_exactly() -> None:
     """A part in 10^40 of y more or less, and it turns over or comes back."""
     scene, _ = fitting("front", 2, False)
@@ -226,14 +190,3 @@ def test_the_motion_recurs_after_its_period_and_not_before(name: str) -> None:
             assert max(abs(e) for e in rows[2] - rows[0]) <= mpf(10) ** -(DIGITS - 2)
         signs = [(motion[b][1] * motion[b][0]).sum() for b in ("linear_impulse", "angular_impulse")]
         assert min(signs) < 0
-
-
-@pytest.mark.parametrize("step", LADDER)
-def test_the_shipped_front_is_one_on_every_rung(step: str) -> None:
-    """Its numbers are dyadic; so is every zero of the pendulum's."""
-    in_plane = plane(pose(load("kirchhoff/pendulum-front"), rung(step)).given)
-    assert in_plane is not None
-    assert regime(in_plane) == "planar-front"
-    swinging = plane(pose(load("kirchhoff/pendulum"), rung(step)).given)
-    assert swinging is not None
-    assert regime(swinging) == "planar-swing"

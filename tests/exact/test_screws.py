@@ -196,21 +196,6 @@ def test_a_disturbance_of_an_unstable_screw_grows_at_the_rate_stated() -> None:
         assert abs(mp.log(at[1] / at[0]) / 30 - midpoint(screw.growth())) <= mpf(10) ** -6
 
 
-@pytest.mark.parametrize("seed", range(4))
-def test_a_diagonal_body_along_an_axis_has_the_exponents_of_the_text(seed: int) -> None:
-    """Moving along axis 3 without turning: s^2 = -F^2 r2 (p1 - p3) and -F^2 r1 (p2 - p3)."""
-    draw = Random(seed)
-    p, r = (tuple(Fraction(n, 7) for n in draw.sample(range(3, 20), 3)) for _ in range(2))
-    body = ImmersedBody(tensors.diagonal(p), tensors.ZERO_MATRIX, tensors.diagonal(r))
-    along = next(
-        s for s in screws(body, F2, Fraction(0)) if abs(s.x[2]) > abs(s.x[0]) + abs(s.x[1])
-    )
-    one, two = F2 * r[1] * (p[0] - p[2]), F2 * r[0] * (p[1] - p[2])
-    assert (along.c2 - ball(one + two)).contains(0)
-    assert (along.c0 - ball(one * two)).contains(0)
-    assert along.c0.rad() < 1e-25
-
-
 @pytest.mark.parametrize("step", LADDER)
 def test_the_shipped_screw_is_steady_on_every_rung(step: str) -> None:
     """Exactly, and it is the second of three: held by its turning, not by its energy."""

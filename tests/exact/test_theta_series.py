@@ -9,7 +9,6 @@ from typing import Any
 
 import pytest
 from flint import acb, arb, arb_mat, ctx
-from mpmath import mp
 
 from taylor_verify.exact import lattice as lattice_module
 from taylor_verify.exact import theta_series
@@ -107,21 +106,6 @@ def test_the_functions_of_real_arguments_are_those_of_flint(tau: str) -> None:
     assert agree(tau_of(tau)) == [True] * (2 if tau.startswith("rhombic") else 4)
 
 
-@pytest.mark.parametrize("tau", ["0.075", "0.3", "1"])
-@pytest.mark.parametrize("less", [2, 3])
-def test_short_series_of_real_arguments_need_their_tails(
-    tau: str, less: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """With two terms missing they contain their functions, and without the tails not one does."""
-    odd, even = ThetaSeries._count, ThetaSeries._even_count
-    monkeypatch.setattr(ThetaSeries, "_count", lambda self, b, order: odd(self, b, order) - less)
-    monkeypatch.setattr(ThetaSeries, "_even_count", lambda self: even(self) - less)
-    assert agree(tau_of(tau)) == [True] * 4
-    monkeypatch.setattr(ThetaSeries, "_tail", lambda self, count, b, order: arb(0))
-    monkeypatch.setattr(ThetaSeries, "_even_tail", lambda self, count: arb(0))
-    assert agree(tau_of(tau)) == [False] * 4
-
-
 @pytest.mark.parametrize("count", [2, 7])
 def test_polynomials_together_have_the_values_of_each_alone(count: int) -> None:
     """Values are the same whether few or many are asked for, short or long, and longer ones later."""
@@ -133,16 +117,6 @@ def test_polynomials_together_have_the_values_of_each_alone(count: int) -> None:
         ]
         for values, polynomial in zip(places.at_each(asked), asked, strict=True):
             assert all(map(arb.overlaps, values, places.at(polynomial)))
-
-
-@pytest.mark.parametrize("tau", TAUS)
-def test_the_series_loses_few_digits(tau: str) -> None:
-    """Its balls are at most 2^20 last bits wide, beside the largest of the values."""
-    places = Places([arb.pi() * v for v in arguments()])
-    at, series = tau_of(tau), series_of(tau_of(tau))
-    values = series.shifted(acb(0, at.imag / 3), acb(1)).at(places)
-    largest = max(abs(v).upper() for v in values)
-    assert all(v.real.rad() <= largest * arb(2) ** (20 - BITS) for v in values)
 
 
 # The terms left out
@@ -186,28 +160,6 @@ def test_a_short_series_without_its_tail_is_caught(
     assert agrees(at, shift, order)
     monkeypatch.setattr(ThetaSeries, "_tail", lambda self, count, b, order: arb(0))
     assert not agrees(at, shift, order)
-
-
-@pytest.mark.parametrize("tau", ["0.075", "0.3", "1"])
-@pytest.mark.parametrize("order", [0, 1])
-@pytest.mark.parametrize("count", [2, 5, 9])
-def test_the_tail_is_at_least_the_sum_that_it_bounds(tau: str, order: int, count: int) -> None:
-    """Summed term by term at the worst place, where every bound of a factor is reached."""
-    at = tau_of(tau)
-    series, b = series_of(at), at.imag / 3
-    size = (-2 * arb.pi() * at.imag).exp()
-    total = arb(0)
-    for n in range(count, count + 60):
-        grown = ((2 * n + 1) * arb.pi() * b).cosh() * (2 * n + 1) ** (1 + order)
-        total += size ** (n * (n + 1) // 2) * grown
-    try:
-        bound = series._tail(count, b, order)
-    except theta_series.Undecidable:
-        assert count == 2
-        return
-    assert bound.upper() >= total.lower()
-    # And it is a bound of some use: within the first term left out, a thousand times over.
-    assert bound.lower() <= 1000 * total.upper()
 
 
 def test_near_a_separatrix_there_is_no_series() -> None:
@@ -291,20 +243,6 @@ def test_a_motion_by_series_that_are_too_short_is_caught(
     many, alone = enclosures(name, 90)
     rows = ((flat(row), flat(alone[k][q][0])) for q in many for k, row in enumerate(many[q]))
     assert not all(overlap(one, other) for one, other in rows)
-
-
-@pytest.mark.parametrize("name", ["euler/with-attitude", "kirchhoff/whole-motion"])
-def test_a_motion_by_series_is_that_of_mpmath(name: str) -> None:
-    """At many times the radii hold the distance from the other route, by other formulas."""
-    scene, digits = load(name), 25
-    times = [Fraction(3 * k - 8, 2) for k in range(SAMPLES)]
-    one, other = (solution(scene, route).motion(times, digits) for route in ("arb", "mpmath"))
-    with mp.workdps(2 * digits):
-        for quantity, rows in one.quantities.items():
-            for k, row in enumerate(rows):
-                apart = mp.norm(list((row - other[quantity][k]).flat))
-                room = (one.radius[k] + other.radius[k]) * (mp.norm(list(row.flat)) or 1)
-                assert apart <= room
 
 
 @pytest.mark.parametrize("module", [theta, lattice_module])

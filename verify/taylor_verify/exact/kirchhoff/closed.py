@@ -19,7 +19,6 @@ from taylor_verify.exact.kirchhoff import jacobi, weierstrass
 from taylor_verify.exact.kirchhoff.axes import at_rest_in_space, clebsch_about, out_of
 from taylor_verify.exact.kirchhoff.displaced import centred
 from taylor_verify.exact.kirchhoff.isotropic import less_coupling, multiple
-from taylor_verify.exact.kirchhoff.pendulum import Pendulum
 from taylor_verify.exact.kirchhoff.plane import Plane, in_plane, of_revolution, planar
 from taylor_verify.exact.kirchhoff.plane import regime as regime_in_plane
 from taylor_verify.exact.kirchhoff.quartic import Nutation
@@ -28,11 +27,10 @@ from taylor_verify.exact.kirchhoff.regime import nutation_of, regime
 from taylor_verify.exact.kirchhoff.screws import is_steady
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.kirchhoff.top import top, with_impulses
-from taylor_verify.exact.kirchhoff.turning import TurningBody
+from taylor_verify.exact.kirchhoff.turning import Turning, TurningBody
 from taylor_verify.exact.kirchhoff.weber.curve import REGIME as WEBER
 from taylor_verify.exact.kirchhoff.weber.curve import Curve, curve
 from taylor_verify.exact.kirchhoff.weber.quotients import WeberBalls
-from taylor_verify.exact.kirchhoff.weber.sums import WeberSums
 from taylor_verify.exact.solution import NoClosedForm, Solution
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.scene import Scene
@@ -43,13 +41,16 @@ Subject = Nutation | Plane | Impulse | FreeSpin | Curve
 
 @dataclass(frozen=True)
 class Case:
-    """A motion that has a closed form: what is left after the reductions, and its two routes."""
+    """A motion that has a closed form: what is left after the reductions, and its two routes.
+
+    Where ``floats`` is None, Taylor series are the second route.
+    """
 
     regime: str
     reduced: Reduced
     subject: Subject
     balls: Callable[[], Solution]
-    floats: Callable[[], Solution]
+    floats: Callable[[], Solution] | None
 
 
 def enclosed(scene: Scene) -> Solution:
@@ -59,8 +60,10 @@ def enclosed(scene: Scene) -> Solution:
 
 
 def closed_form(scene: Scene) -> Solution:
-    """The motion in mpmath; raises NoClosedForm likewise."""
+    """The motion in mpmath; raises NoClosedForm likewise, and for Weber's case."""
     solved = case(scene)
+    if solved.floats is None:
+        raise NoClosedForm(f"the second route of the regime {solved.regime} is taylor")
     return solved.reduced.carried_back(solved.floats())
 
 
@@ -90,16 +93,10 @@ def revolution(whole: Reduced) -> Case | None:
     if clebsch_about(solid(scene)[0]) is None:
         return None
     nutation, start = nutation_of(scene)
-    kind, rate, axes, track = regime(nutation), nutation.turn_rate, nutation.axes, scene.track
+    kind, axes, track = regime(nutation), nutation.axes, scene.track
     if kind in ("rest", "steady", "euler-top"):
-        body = nutation.solid
-        return Case(
-            kind,
-            reduced,
-            nutation,
-            lambda: TurningBody(kind, body, start, track, rate, axes.n),
-            lambda: jacobi.Screw(kind, body, start, track, rate, axes.n),
-        )
+        turn = Turning(kind, nutation.solid, start, track, nutation.turn_rate, axes.n)
+        return Case(kind, reduced, nutation, lambda: TurningBody(turn), lambda: jacobi.Screw(turn))
     if not axes.is_upright:
         reduced, start = reduced.then(scene, out_of(axes, start)), at_rest_in_space(start)
     return Case(
@@ -112,18 +109,19 @@ def revolution(whole: Reduced) -> Case | None:
 
 
 def flat(whole: Reduced) -> Case | None:
-    """A motion in a plane of the body: in balls that of the body of revolution that moves alike."""
+    """A motion in a plane of the body: that of the body of revolution that moves alike."""
     reduced_plane = planar(whole)
     if reduced_plane is None:
         return None
     reduced, place = reduced_plane
-    kind = regime_in_plane(place)
-
-    def balls() -> Solution:
-        alike = case(of_revolution(reduced.scene, place))
-        return carried(alike.reduced.carried_back(alike.balls()), in_plane(place), kind)
-
-    return Case(kind, reduced, place, balls, lambda: Pendulum(kind, place, reduced.scene))
+    kind, back, alike = regime_in_plane(place), in_plane(place), of_revolution(reduced.scene, place)
+    return Case(
+        kind,
+        reduced,
+        place,
+        lambda: carried(enclosed(alike), back, kind),
+        lambda: carried(closed_form(alike), back, kind),
+    )
 
 
 def steady(whole: Reduced) -> Case | None:
@@ -131,14 +129,9 @@ def steady(whole: Reduced) -> Case | None:
     body, start = solid(whole.scene)
     if not is_steady(body, start):
         return None
-    kind, track = "steady" if any(start.moving) else "rest", whole.scene.track
-    return Case(
-        kind,
-        whole,
-        start,
-        lambda: TurningBody(kind, body, start, track),
-        lambda: jacobi.Screw(kind, body, start, track),
-    )
+    kind = "steady" if any(start.moving) else "rest"
+    turn = Turning(kind, body, start, whole.scene.track)
+    return Case(kind, whole, start, lambda: TurningBody(turn), lambda: jacobi.Screw(turn))
 
 
 def turning(whole: Reduced) -> Case | None:
@@ -174,9 +167,7 @@ def weber(whole: Reduced) -> Case | None:
         return None
     if whole.scene.track:
         raise NoClosedForm("attitude and centre of Weber's motion have no closed form")
-    return Case(
-        WEBER, reduced, genus_two, lambda: WeberBalls(genus_two), lambda: WeberSums(genus_two)
-    )
+    return Case(WEBER, reduced, genus_two, lambda: WeberBalls(genus_two), None)
 
 
 # Bodies of revolution and planes have words of their own for their steady motions.

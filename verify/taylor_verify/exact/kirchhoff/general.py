@@ -19,8 +19,7 @@ from taylor_verify.exact.euler.regime import FreeSpin
 from taylor_verify.exact.kirchhoff.closed import Case
 from taylor_verify.exact.kirchhoff.displaced import centred, symmetric_origin
 from taylor_verify.exact.kirchhoff.integrable import family_of
-from taylor_verify.exact.kirchhoff.pendulum import Pendulum
-from taylor_verify.exact.kirchhoff.plane import Plane
+from taylor_verify.exact.kirchhoff.plane import Plane, swing
 from taylor_verify.exact.kirchhoff.reduced import Reduced
 from taylor_verify.exact.kirchhoff.screws import Screw, Stability, is_steady, screws_beside
 from taylor_verify.exact.kirchhoff.solid import solid, velocities
@@ -129,8 +128,7 @@ def _own(solved: Case, working: int) -> list[Element]:
     """The elements of x and y in one of the cases."""
     match solved.subject:
         case Plane() as place:
-            swing = Pendulum(solved.regime, place, solved.reduced.scene).elements(working)
-            return [*recurring(swing, _SWING, "x and y recur in body axes", _PENDULUM)]
+            return [*recurring(swing(place), _SWING, "x and y recur in body axes", _PENDULUM)]
         case Curve() as curve:
             return _weber_rates(curve, working)
         case FreeSpin() as spin:

@@ -16,15 +16,13 @@ from taylor_verify.exact.kirchhoff.orbit import EllipticOrbit, Orbit
 from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.kirchhoff.solid import short_digits, velocities
 from taylor_verify.exact.kirchhoff.space import Axial
+from taylor_verify.exact.kirchhoff.turning import Turning
 from taylor_verify.exact.solution import Quantities, Settled, Time, beside, longest
 from taylor_verify.scenes import tensors
-from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
-from taylor_verify.scenes.tensors import Vector
 
 _GUARD_DIGITS: Final = 12
 _ROUGH_DIGITS: Final = 20
-_UNIT: Final = tensors.diagonal((Fraction(1),) * 3)
 _ORBITS: Final[Mapping[str, type[ElementaryOrbit | Front]]] = {
     "hyperbolic": ElementaryOrbit,
     "trigonometric": ElementaryOrbit,
@@ -37,51 +35,39 @@ _ORBITS: Final[Mapping[str, type[ElementaryOrbit | Front]]] = {
 class Screw(Settled):
     """Motions in which x and y turn about a body axis n together, or stay as they are.
 
-    These are steady screws of any body, tau = 0; rest and steady motion of Clebsch's body, and its Euler's
-    top. Seen from axes that turn with them, at the rate tau |n|, the body's U and its Omega do not change:
+        R = R0 Rot(a t) Rot(-tau n t),    centre = c0 + R0 int Rot(a t) U0 dt,    a = Omega0 + tau n,
 
-        R = R0 Rot(nu t) Rot(-tau n t),    centre = c0 + R0 int Rot(nu t) U0 dt,    nu = Omega0 + tau n,
-
-    all in rationals but for |nu| and |n|.
+    all in rationals but for |a| and |n|.
     """
 
     route = "mpmath"
 
-    def __init__(
-        self,
-        kind: str,
-        body: ImmersedBody,
-        start: Impulse,
-        track: frozenset[str],
-        rate: Fraction = Fraction(0),
-        axis: Vector = _UNIT[2],
-    ) -> None:
-        self.regime = kind
-        self._start, self._track = start, track
-        self._turn_rate, self._axis = rate, axis
-        self._U, Omega = velocities(body, start)
-        self._nu = tensors.plus(Omega, tensors.scaled(rate, axis))
+    def __init__(self, turning: Turning) -> None:
+        self.regime = turning.kind
+        self._turning, self._start = turning, turning.start
 
     def evaluate(self, elapsed: Sequence[Time], digits: int) -> Quantities:
-        length = sum(map(abs, self._axis))
-        rates = abs(self._turn_rate) * length + sum(abs(rate) for rate in self._nu)
+        length = sum(map(abs, self._turning.n))
+        rates = abs(self._turning.tau) * length + sum(abs(rate) for rate in self._turning.a)
         with mp.workdps(digits + _GUARD_DIGITS + len(str(int(rates * longest(elapsed))))):
-            axis = [mp.convert(entry) for entry in self._axis]
+            axis = [mp.convert(entry) for entry in self._turning.n]
             size = mp.norm(axis)
-            turns = [turn(axis, size * _times(self._turn_rate, t)) for t in elapsed]
+            turns = [turn(axis, size * _times(self._turning.tau, t)) for t in elapsed]
             x, y = (
                 [applied(forward, [mp.convert(entry) for entry in v]) for forward in turns]
                 for v in (self._start.linear, self._start.angular)
             )
-            places = self._places(elapsed, turns) if self._track else []
-            return _quantities(x, y, places, self._track)
+            places = self._places(elapsed, turns) if self._turning.track else []
+            return _quantities(x, y, places, self._turning.track)
 
     def _places(
         self, elapsed: Sequence[Time], turns: Sequence[Frame]
     ) -> list[tuple[Frame, list[mpf]]]:
         """The attitude and the centre at every time."""
-        nu, centre = ([mp.convert(c) for c in vector] for vector in (self._nu, self._start.centre))
-        rate = mp.sqrt(mp.convert(tensors.dot(self._nu, self._nu)))
+        nu, centre = (
+            [mp.convert(c) for c in vector] for vector in (self._turning.a, self._start.centre)
+        )
+        rate = mp.sqrt(mp.convert(tensors.dot(self._turning.a, self._turning.a)))
         first = start_frame(self._start.attitude)
         places = []
         for t, forward in zip(elapsed, turns, strict=True):
@@ -93,11 +79,13 @@ class Screw(Settled):
     def _moved(self, t: Time, rate: mpf) -> list[mpf]:
         """int_0^t Rot(nu t) U0 dt: U0 along nu, and U0 across it on a circle."""
         if rate == 0:
-            return [_times(u, t) for u in self._U]
-        share = tensors.dot(self._nu, self._U) / tensors.dot(self._nu, self._nu)
-        along = tensors.scaled(share, self._nu)
-        across = tensors.plus(self._U, tensors.scaled(Fraction(-1), along))
-        aside = tensors.cross(self._nu, across)
+            return [_times(u, t) for u in self._turning.U]
+        share = tensors.dot(self._turning.a, self._turning.U) / tensors.dot(
+            self._turning.a, self._turning.a
+        )
+        along = tensors.scaled(share, self._turning.a)
+        across = tensors.plus(self._turning.U, tensors.scaled(Fraction(-1), along))
+        aside = tensors.cross(self._turning.a, across)
         half = mp.convert(t) * rate / 2
         sine, versed = mp.sin(2 * half) / rate, 2 * (mp.sin(half) / rate) ** 2
         return [

@@ -17,6 +17,8 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
+from mpmath import mp, mpf
+
 from taylor_verify.exact.carried import Back
 from taylor_verify.exact.kirchhoff.displaced import about, moved, symmetric_origin
 from taylor_verify.exact.kirchhoff.integrable import CYCLIC
@@ -147,7 +149,23 @@ def regime(place: Plane) -> str:
     return "planar-swing" if place.lack > 0 else "planar-turn"
 
 
-# The body of revolution that moves alike: the route in balls. The other one has the pendulum's formulas.
+def swing(place: Plane) -> dict[str, mpf]:
+    """The period after which x and y recur, where they do, with rate and parameters: a pendulum's.
+
+    A swing takes 4 K of its argument, and so does a turn to bring x back.
+    """
+    kind = regime(place)
+    if kind == "planar-uniform":
+        return {"period": 2 * mp.pi / abs(mp.convert(place.rate))}
+    if kind in ("planar-steady", "planar-front"):
+        return {}
+    smaller, larger = sorted((place.h, place.omega0_squared))
+    m, m_prime = mp.convert(smaller / larger), mp.convert(abs(place.lack) / larger)
+    rate, quarter = mp.sqrt(mp.convert(larger)), mp.pi / (2 * mp.agm(1, mp.sqrt(m_prime)))
+    return {"period": 4 * quarter / rate, "rate": rate, "m": m, "m_prime": m_prime}
+
+
+# The body of revolution that moves alike.
 
 
 def of_revolution(scene: Scene, place: Plane) -> Scene:

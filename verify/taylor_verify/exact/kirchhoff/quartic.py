@@ -1,4 +1,4 @@
-"""The polynomial of x3 in Clebsch's body, z'^2 = f(z), in exact rationals, and its real roots.
+"""The polynomial of x3 in Clebsch's body, z'^2 = f(z), in exact rationals.
 
 Legend, Hydromechanics 49: z = x3, F^2 = x.x and FG = x.y; p, p', q, q', r, r' are the
 coefficients of T, f = r^2 X3. A polynomial is a tuple of Fractions, the highest power first.
@@ -12,7 +12,6 @@ from __future__ import annotations
 from dataclasses import astuple, dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from itertools import pairwise
 from typing import Any
 
 from taylor_verify.exact.kirchhoff.axes import UPRIGHT, Axes, body_about
@@ -20,7 +19,6 @@ from taylor_verify.numbers.irrational import Irrational
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody
 from taylor_verify.scenes.motion import Impulse
-from taylor_verify.scenes.precision import floor_log2, power_of_two
 from taylor_verify.scenes.tensors import dot
 
 Polynomial = tuple[Fraction, ...]
@@ -156,32 +154,18 @@ def invariants(polynomial: Polynomial) -> tuple[Fraction, Fraction]:
     return g2, g3
 
 
-def remainder(a: Polynomial, b: Polynomial) -> Polynomial:
-    rest = list(a)
-    while len(rest) >= len(b):
-        factor = rest[0] / b[0]
-        rest = [c - factor * d for c, d in zip(rest, b + (Fraction(0),) * len(rest), strict=False)]
-        del rest[0]
-    return stripped(tuple(rest))
-
-
-def sturm_chain(polynomial: Polynomial) -> tuple[Polynomial, ...]:
-    """Sturm's sequence; its last member is the greatest common divisor of f and f'."""
-    chain = [polynomial, derivative(polynomial)]
-    while rest := remainder(chain[-2], chain[-1]):
-        # Only signs are read: a positive factor keeps the numbers short.
-        size = abs(rest[0])
-        chain.append(tuple(-c / size for c in rest))
-    return tuple(chain)
-
-
 def repeated_root(polynomial: Polynomial) -> Fraction | None:
     """The one root that is repeated, which is rational; None if there is none, or more than one."""
-    common = sturm_chain(polynomial)[-1]  # (z - d)^n up to a factor, if d is the only one
+    # The greatest common divisor of f and f': (z - d)^n up to a factor, if d is the only one.
+    common, rest = polynomial, derivative(polynomial)
+    while rest:
+        # A factor keeps the numbers short.
+        rest = tensors.scaled(1 / rest[0], rest)
+        common, rest = rest, _remainder(common, rest)
     times = len(common) - 1
     if times == 0:
         return None
-    root = -common[1] / (times * common[0])
+    root = -common[1] / times
     while len(common) > 1:
         if value(common, root) != 0:
             return None
@@ -189,78 +173,11 @@ def repeated_root(polynomial: Polynomial) -> Fraction | None:
     return root
 
 
-@dataclass(frozen=True)
-class RealRoots:
-    """The real roots of a polynomial without repeated roots, enclosed in dyadic intervals."""
-
-    polynomial: Polynomial
-
-    def enclosed(self, width: Fraction) -> list[Fraction]:
-        """The real roots in ascending order, each within ``width`` of its true place."""
-        return [self._refined(low, high, width) for low, high in self._isolated]
-
-    @property
-    def number(self) -> int:
-        bound = self._bound()
-        return self._changes(-bound) - self._changes(bound)
-
-    def number_up_to(self, z: Fraction) -> int:
-        """The number of roots <= z."""
-        return self._changes(-self._bound()) - self._changes(z)
-
-    @cached_property
-    def _isolated(self) -> list[tuple[Fraction, Fraction]]:
-        """Disjoint intervals (low, high], each with one root."""
-        bound = self._bound()
-        pending, intervals = [(-bound, bound)], []
-        while pending:
-            low, high = pending.pop()
-            number = self._changes(low) - self._changes(high)
-            if number == 1:
-                intervals.append((low, high))
-            elif number > 1:
-                middle = (low + high) / 2
-                pending += [(middle, high), (low, middle)]
-        return intervals
-
-    def _bound(self) -> Fraction:
-        """A power of two above every root: none exceeds twice the largest |c_k/c_0|^(1/k) (Fujiwara).
-
-        As near to the roots in any units, which Cauchy's 1 + max |c_k/c_0| is not.
-        """
-        first, *others = self.polynomial
-        exponents = [-(-(floor_log2(c / first) + 1) // k) for k, c in enumerate(others, 1) if c]
-        return power_of_two(1 + max(exponents, default=0))
-
-    @cached_property
-    def _chain(self) -> tuple[Polynomial, ...]:
-        return sturm_chain(self.polynomial)
-
-    def _changes(self, z: Fraction) -> int:
-        """Sturm's number of sign changes: it falls by the number of roots in (low, high]."""
-        signs = [member > 0 for p in self._chain if (member := value(p, z)) != 0]
-        return sum(a != b for a, b in pairwise(signs))
-
-    def _refined(self, low: Fraction, high: Fraction, width: Fraction) -> Fraction:
-        """Quadratic interval refinement: every step is proved by a change of sign.
-
-        The interval is cut into ``parts`` and the one where the chord meets the axis is tried. If
-        the root is there, the number of parts is squared; if not, the interval is halved.
-        """
-        f = self.polynomial
-        above = value(f, low) or value(derivative(f), low)  # the sign of f just above low
-        parts = 4
-        while high - low > width:
-            at_low, at_high = value(f, low), value(f, high)
-            if at_high == 0:
-                return high
-            step = (high - low) / parts
-            left = low + min(int(parts * at_low / (at_low - at_high)), parts - 1) * step
-            before = left == low or value(f, left) * above > 0
-            if before and value(f, left + step) * above <= 0:
-                low, high, parts = left, left + step, parts**2
-            else:
-                middle = (low + high) / 2
-                low, high = (middle, high) if value(f, middle) * above > 0 else (low, middle)
-                parts = 4
-        return (low + high) / 2
+def _remainder(a: Polynomial, b: Polynomial) -> Polynomial:
+    """The remainder of a division by a polynomial that begins with 1."""
+    rest = list(a)
+    while len(rest) >= len(b):
+        first = rest[0]
+        rest = [c - first * d for c, d in zip(rest, b + (Fraction(0),) * len(rest), strict=False)]
+        del rest[0]
+    return stripped(tuple(rest))

@@ -2,26 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
+from math import ceil, log2
 from typing import Any, Final
 
+from flint import arb, ctx, fmpq, fmpq_poly
+
+from taylor_verify.exact.balls import ball, midpoint
 from taylor_verify.exact.kirchhoff.axes import clebsch_about
-from taylor_verify.exact.kirchhoff.quartic import (
-    Nutation,
-    RealRoots,
-    derivative,
-    repeated_root,
-    value,
-)
+from taylor_verify.exact.kirchhoff.quartic import Nutation, derivative, repeated_root, value
 from taylor_verify.exact.kirchhoff.solid import solid
+from taylor_verify.exact.real_roots import real_roots
 from taylor_verify.exact.solution import NoClosedForm, Unsettled
 from taylor_verify.scenes.motion import Impulse
-from taylor_verify.scenes.precision import floor_log2, power_of_two
+from taylor_verify.scenes.precision import exact_value
 from taylor_verify.scenes.scene import Scene
 
-_NARROWINGS: Final = 40
+_DOUBLINGS: Final = 12
 # Rationals near irrational constants have four times the digits asked for, and some more.
 _BITS_PER_DIGIT: Final = 14
 _MORE_BITS: Final = 256
@@ -99,85 +98,75 @@ class TurningPoints:
 def turning_points(nutation: Nutation, digits: int) -> TurningPoints:
     """The turning points to ``digits`` significant digits of every difference.
 
-    The smallest difference is not known beforehand: the roots are narrowed until it is large enough
-    beside what is left of their enclosures. Of irrational constants rationals near them are taken: so these
-    roots prove nothing, and two precisions must agree. Raises Unsettled if they do not come apart.
+    The smallest difference is not known beforehand: the precision rises until it has its digits. Of
+    irrational constants rationals near them are taken: so these roots prove nothing, and two precisions
+    must agree. Raises Unsettled if they do not come apart.
     """
     poles = nutation.touches_pole(1), nutation.touches_pole(-1)
-    start, nutation = nutation.z, nutation.near(_BITS_PER_DIGIT * digits + _MORE_BITS)
-    roots = RealRoots(nutation.f)
-    F_above = power_of_two(floor_log2(nutation.F2) // 2 + 1)
-    width = F_above / 10**digits
-    for _ in range(_NARROWINGS):
-        points = _arranged(nutation, roots, width, poles)
-        smallest = min(_allowances(nutation, points, width))
-        if width * 10**digits <= smallest:
-            # A start at a turning point is that point exactly, whatever the constants are.
-            at_start: dict[str, Any] = {
-                name: start for name in ("z1", "z2") if getattr(points, name) == nutation.z
-            }
-            return replace(points, **at_start)
-        width = min(smallest / 10**digits, width) / 16 if smallest > 0 else width / 10**digits
+    near = nutation.near(_BITS_PER_DIGIT * digits + _MORE_BITS)
+    wanted = ceil(digits * log2(10))
+    for bits in (2 * wanted << n for n in range(_DOUBLINGS)):
+        with ctx.workprec(bits):
+            points = _arranged(near, nutation.z, poles)
+            if min(map(arb.rel_accuracy_bits, _differences(near, points))) >= wanted:
+                z1, z2, z3, z4 = map(_rational, (points.z1, points.z2, points.z3, points.z4))
+                pair = points.pair and (_rational(points.pair[0]), _rational(points.pair[1]))
+                return TurningPoints(z1, z2, z3, z4, pair, points.at_top, points.at_bottom)
     raise Unsettled("the roots of the quartic of x3 do not come apart")
 
 
-def _arranged(
-    nutation: Nutation, real: RealRoots, width: Fraction, poles: tuple[bool, bool]
-) -> TurningPoints:
-    """The roots in the order of the formulas, with those that are known exactly put in."""
-    roots = real.enclosed(width)
-    lower = real.number_up_to(nutation.z) - 1
-    if nutation.speed == 0:  # a start at a turning point
-        lower = min(range(len(roots)), key=lambda k: abs(roots[k] - nutation.z))
-        roots[lower] = nutation.z
-        if value(derivative(nutation.f), nutation.z) < 0:
-            lower -= 1
+def _arranged(nutation: Nutation, start: Fraction, poles: tuple[bool, bool]) -> TurningPoints:
+    """The roots in the order of the formulas, in balls; a start at a turning point is exactly that."""
+    f, z = nutation.f, ball(nutation.z)
+    roots: list[Any] = real_roots(fmpq_poly([fmpq(*c.as_integer_ratio()) for c in reversed(f)]))
+    lower = sum(root.mid() <= z.mid() for root in roots) - 1
+    if nutation.speed == 0:
+        lower = min(range(len(roots)), key=lambda k: abs(roots[k] - z).mid())
+        roots[lower] = start
+        lower -= value(derivative(f), nutation.z) < 0
+    lower = max(0, min(lower, len(roots) - 2))
     z1, z2 = roots[lower], roots[lower + 1]
     at_top = poles[0] and _is_pole(nutation, roots, lower + 1, side=1)
     at_bottom = poles[1] and _is_pole(nutation, roots, lower, side=-1)
-    if len(nutation.f) == 5 and len(roots) == 2:
-        pair = _complex_pair(nutation, z1, z2)
+    if len(f) == 5 and len(roots) == 2:
+        pair: Any = _complex_pair(nutation, ball(z1), ball(z2))
         return TurningPoints(z1, z2, None, None, pair, at_top, at_bottom)
-    circle: list[Fraction | None] = [*roots]
-    if len(roots) == 3:
-        circle.append(None)
+    circle = [*roots, *[None] * (4 - len(roots))]
     z4, z3 = circle[(lower + 2) % 4], circle[(lower + 3) % 4]
     return TurningPoints(z1, z2, z3, z4, None, at_top, at_bottom)
 
 
-def _is_pole(nutation: Nutation, roots: list[Fraction], index: int, side: int) -> bool:
+def _is_pole(nutation: Nutation, roots: list[Any], index: int, side: int) -> bool:
     """Return True if this root is the pole side * F, one of the roots: it is the nearest one."""
-    distances = [
-        abs(nutation.F2 - root**2) if side * root > 0 else nutation.F2 + root**2 for root in roots
-    ]
-    return distances[index] == min(distances)
+    F2 = ball(nutation.F2)
+    squares = [ball(root) * abs(ball(root)) * side for root in roots]
+    distances = [abs(F2 - square).mid() for square in squares]
+    return bool(distances[index] == min(distances))
 
 
-def _complex_pair(nutation: Nutation, z1: Fraction, z2: Fraction) -> tuple[Fraction, Fraction]:
+def _complex_pair(nutation: Nutation, z1: arb, z2: arb) -> tuple[arb, arb]:
     """(middle, n^2) from the coefficients and the two real roots."""
     lead, cubic, square = nutation.f[:3]
-    middle = -(cubic / lead + z1 + z2) / 2
-    return middle, square / lead - z1 * z2 - 2 * middle * (z1 + z2) - middle**2
+    middle = -(ball(cubic / lead) + z1 + z2) / 2
+    return middle, ball(square / lead) - z1 * z2 - middle * (2 * (z1 + z2) + middle)
 
 
-def _allowances(nutation: Nutation, points: TurningPoints, width: Fraction) -> list[Fraction]:
-    """Errors of a root that would be as large as each difference that enters."""
-    z1, z2 = points.z1, points.z2
-    F_above = power_of_two(floor_log2(nutation.F2) // 2 + 1)
-    allowed = [z2 - z1]
-    if nutation.speed != 0:
-        allowed += [nutation.z - z1, z2 - nutation.z]
-    allowed += [(nutation.F2 - z1**2) / (4 * F_above)] * (not points.at_bottom)
-    allowed += [(nutation.F2 - z2**2) / (4 * F_above)] * (not points.at_top)
-    others = [root for root in (points.z3, points.z4) if root is not None]
-    allowed += [abs(a - b) / 2 for a in others for b in (z1, z2)]
-    allowed += [abs(a - b) / 2 for a, b in pairwise(others)]
+def _differences(nutation: Nutation, points: TurningPoints) -> list[arb]:
+    """The numbers that enter a closed form and whose digits count."""
+    z1, z2, z, F2 = (ball(entry) for entry in (points.z1, points.z2, nutation.z, nutation.F2))
+    numbers = [z2 - z1]
+    numbers += [z - z1, z2 - z] * (nutation.speed != 0)
+    numbers += [F2 - z1 * z1] * (not points.at_bottom)
+    numbers += [F2 - z2 * z2] * (not points.at_top)
+    others = [ball(root) for root in (points.z3, points.z4) if root is not None]
+    numbers += [a - b for a in others for b in (z1, z2)]
+    numbers += [a - b for a, b in pairwise(others)]
     if points.pair is not None:
-        middle, n_squared = points.pair
-        if n_squared <= 0:
-            return [Fraction(0)]
-        cubic = abs(nutation.f[1] / nutation.f[0])
-        # d(n^2) <= influence * width, by differentiating the formulas of _complex_pair.
-        influence = 5 * (abs(z1) + abs(z2)) + 2 * cubic + 2 * abs(middle) + 10 * width
-        allowed += [n_squared / influence, power_of_two(floor_log2(n_squared) // 2)]
-    return allowed
+        middle, n2 = map(ball, points.pair)
+        numbers += [n2, *((z - middle) * (z - middle) + n2 for z in (z1, z2))]
+    return numbers
+
+
+def _rational(root: Any) -> Any:
+    """The midpoint of a ball; what is no ball as it is."""
+    return exact_value(midpoint(root)) if isinstance(root, arb) else root

@@ -31,7 +31,8 @@ def velocities(body: ImmersedBody, start: Impulse) -> tuple[Vector, Vector]:
 def short_digits(U: Vector, start: Impulse, elapsed: Sequence[Time]) -> int:
     """The digits by which |y|/F, whose change is the way across F, exceeds the centre itself.
 
-    F is not zero, and U is the velocity at the start.
+    Without them two precisions agree on a wrong centre where both lose the whole way. F is not zero, and U
+    is the velocity at the start.
     """
     shortest = min((longest([t]) for t in elapsed if t != 0), default=Fraction(1))
     reached = tensors.dot(start.centre, start.centre) + tensors.dot(U, U) * shortest**2

@@ -39,8 +39,3 @@ RIEMANN: Final = reduce(xor, filter(is_odd, HALF_PERIODS))
 def at_branches(*branches: int) -> int:
     """The characteristic of theta[0] at Z of the points e_p, e_q, or with more half periods added."""
     return reduce(xor, (HALF_PERIODS[j] for j in branches), RIEMANN)
-
-
-def of_pair(i: int, j: int) -> int:
-    """The sum of two half periods: the theta function of y_k, where a_i and a_j are these e."""
-    return HALF_PERIODS[i] ^ HALF_PERIODS[j]
