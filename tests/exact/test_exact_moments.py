@@ -5,7 +5,6 @@ Legend as in taylor_verify.exact.euler.moments.regime.
 
 from __future__ import annotations
 
-from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 
@@ -21,7 +20,7 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.euler import closed
-from taylor_verify.exact.euler.moments import erf, weber
+from taylor_verify.exact.euler.moments import erf
 from taylor_verify.exact.euler.moments.kummer import KummerTurn
 from taylor_verify.exact.euler.moments.power_series import SeriesTurn
 from taylor_verify.exact.euler.moments.regime import Line, LoadedSpin
@@ -104,6 +103,12 @@ def equation_residual(scene: Scene, route: str, t: Fraction) -> mpf:
 EQUATION = mpf("1e-49")
 
 
+def spin_of(scene: Scene) -> LoadedSpin:
+    assert isinstance(scene.body, RigidBody)
+    assert isinstance(scene.initial, Spin)
+    return LoadedSpin(scene.body.inertia, scene.body.moment, scene.initial.omega)
+
+
 # The shipped scenes.
 
 
@@ -184,29 +189,18 @@ def scenes(draw: st.DrawFn) -> Scene:
 def test_the_routes_overlap_on_bodies_drawn_at_random(scene: Scene, t: Fraction) -> None:
     """Gaps to 1e-20, moments to 1e-20 and times to 5e7: balls and mpmath share no special function.
 
-    A time at which one of them is out of reach under a weak moment is out of reach of the other.
+    The attitude under a weak moment is left to the enclosure.
     """
-    motions = []
-    for route in ROUTES:
-        with suppress(Unsettled):
-            motions.append(solution(scene, route).motion([t], DIGITS))
-    if motions:
-        assert apart(*motions) <= BOTH
-    else:
-        assert isinstance(scene.body, RigidBody)
-        assert isinstance(scene.initial, Spin)
-        spin = LoadedSpin(scene.body.inertia, scene.body.moment, scene.initial.omega)
-        assert scene.track
-        assert spin.line.is_weak
+    assume(not (scene.track and spin_of(scene).line.is_weak))
+    one, other = (solution(scene, route).motion([t], DIGITS) for route in ROUTES)
+    assert apart(one, other) <= BOTH
 
 
 @settings(max_examples=12, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(scenes())
 def test_drawn_bodies_satisfy_the_equations_of_motion(scene: Scene) -> None:
     """Rates below 1e3, of omega below 1e2, keep the third derivatives below 1e11."""
-    assert isinstance(scene.body, RigidBody)
-    assert isinstance(scene.initial, Spin)
-    spin = LoadedSpin(scene.body.inertia, scene.body.moment, scene.initial.omega)
+    spin = spin_of(scene)
     assume(min(spin.free.simple_moment, spin.free.double_moment) >= Fraction(1, 2))
     assume(max(map(abs, (*spin.omega, *spin.moment))) <= 3)
     assert equation_residual(scene, "arb", Fraction(3, 2)) <= EQUATION
@@ -216,10 +210,7 @@ def test_drawn_bodies_satisfy_the_equations_of_motion(scene: Scene) -> None:
 
 
 def strong_line() -> Line:
-    scene = load("euler/moment-spherical")
-    assert isinstance(scene.body, RigidBody)
-    assert isinstance(scene.initial, Spin)
-    return LoadedSpin(scene.body.inertia, scene.body.moment, scene.initial.omega).line
+    return spin_of(load("euler/moment-spherical")).line
 
 
 @pytest.mark.parametrize("t", ["-9", "-1/3", "2", "100"])
@@ -367,43 +358,35 @@ WEAK = {
 
 @pytest.mark.parametrize("name", WEAK)
 def test_a_weak_moment_has_its_attitude_by_power_series(name: str) -> None:
-    """Balls, two solutions of Weber's equation, and enclosed Taylor series find one motion."""
+    """Balls are the enclosed Taylor series, forward and backward; mpmath names them as its second route."""
     scene, times = WEAK[name], [Fraction(7, 3), Fraction(-20), Fraction(0)]
-    one, other = (solution(scene, route).motion(times, DIGITS) for route in ROUTES)
-    assert one["attitude"].shape == (3, 3, 3)
-    assert apart(one, other) <= BOTH
-    near = solution(scene).motion(times[:1], 20)
-    with mp.workdps(2 * DIGITS):
-        assert distance(near, TaylorSolution(scene).motion(times[:1], 20)) <= mpf("2e-20")
+    motion = solution(scene, "arb").motion(times, DIGITS)
+    assert motion["attitude"].shape == (3, 3, 3)
+    assert apart(motion, TaylorSolution(scene).motion(times, DIGITS)) <= BOTH
+    with pytest.raises(NoClosedForm, match="the second route is taylor"):
+        solution(scene, "mpmath")
 
 
-def test_a_weak_moment_is_followed_for_ten_thousand_units() -> None:
-    """Some thousand radians in as many power series as it takes, forward and backward."""
-    times = [Fraction(10**4, 3), Fraction(-(10**4), 7)]
-    one, other = (solution(WEAK["1e-60"], route).motion(times, 20) for route in ROUTES)
-    assert apart(one, other) <= mpf("2e-20")
+def test_a_weak_moment_is_followed_for_a_thousand_units() -> None:
+    """Some hundred radians in as many power series as it takes, and back."""
+    scene, times = WEAK["1e-60"], [Fraction(10**3, 3), Fraction(-(10**3), 7)]
+    exact = solution(scene, "arb")
+    assert apart(exact.motion(times, 20), TaylorSolution(scene).motion(times, 20)) <= mpf("2e-20")
 
 
-@pytest.mark.parametrize("route", ROUTES)
-def test_a_time_out_of_reach_is_said_at_once(route: str) -> None:
-    """Power series cost by the angle: beyond some seconds of work both routes say that they end."""
+def test_a_time_out_of_reach_is_said_at_once() -> None:
+    """Power series cost by the angle: beyond some seconds of work they say that they end."""
     with pytest.raises(Unsettled, match="under a weak moment: expected at most 131072 radians"):
-        solution(WEAK["1e-60"], route).motion([ONE, Fraction(10**9)], DIGITS)
+        solution(WEAK["1e-60"], "arb").motion([ONE, Fraction(10**9)], DIGITS)
 
 
 @pytest.mark.parametrize("t", ["-9", "-1/3", "2", "100"])
 def test_power_series_are_kummers_functions(t: str) -> None:
-    """Balls overlap to 1e-60 where both are in reach, and so do the solutions in mpmath."""
+    """Balls overlap to 1e-60 where both are in reach."""
     line, time = strong_line(), Fraction(t)
     with ctx.workprec(300):
         series, kummer = (turn(line).quaternion(time) for turn in (SeriesTurn, KummerTurn))
         assert all(p.overlaps(q) and p.rad() < 1e-60 for p, q in zip(series, kummer, strict=True))
-    with mp.workdps(60):
-        f, h, df, dh = weber.KummerPair(line).start
-        even, odd = weber.KummerPair(line).at(time)
-        one, two = weber.SeriesPair(line).at(time)
-        assert abs(dh * even - df * odd - one) <= mpf("1e-45")
-        assert abs(f * odd - h * even - two) <= mpf("1e-45")
 
 
 @given(vectors, vectors.filter(any), st.integers(-8, 3))

@@ -1,4 +1,7 @@
-"""Two routes to every closed form, balls and mpmath, sharing no formula: they must overlap."""
+"""Two routes to a closed form, balls and mpmath, sharing no formula: they must overlap.
+
+The second route to a washboard, an integral in balls, is the enclosure (test_washboard).
+"""
 
 from __future__ import annotations
 
@@ -42,11 +45,8 @@ def everything(scene: Scene) -> Scene:
 STATE_ALONE = {
     *("euler/moment-across-axis", "euler/moment-across-no-spin"),
     *("euler/moment-oblique", "euler/moment-backward"),
-    *("euler/moment-middle-axis", "euler/washboard-run", "euler/washboard-swing"),
     "kirchhoff/weber",
 }
-# The second route alone takes seconds for its many teeth.
-LONG = {"euler/washboard-run"}
 
 
 def disagreement(scene: Scene, times: list[Fraction]) -> str:
@@ -68,17 +68,15 @@ def closed_forms() -> list[str]:
     scenes = []
     for name in names():
         try:
-            solution(load(name), "arb")
+            regime = solution(load(name), "arb").regime
         except NoClosedForm:
             continue
-        scenes.append(name)
+        if not regime.startswith("washboard"):
+            scenes.append(name)
     return scenes
 
 
-@pytest.mark.parametrize(
-    "name",
-    [pytest.param(name, marks=pytest.mark.slow if name in LONG else ()) for name in closed_forms()],
-)
+@pytest.mark.parametrize("name", closed_forms())
 def test_on_every_shipped_scene(name: str) -> None:
     """Attitude and centre included, within the span of the scene, before it and after it."""
     scene = load(name)

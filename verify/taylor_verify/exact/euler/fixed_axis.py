@@ -16,10 +16,11 @@ from mpmath import mp, mpf
 from taylor_verify.exact import rotation
 from taylor_verify.exact.balls import ball, balls
 from taylor_verify.exact.euler.orbit import converted
-from taylor_verify.exact.euler.rotations import BallCourse, decades
+from taylor_verify.exact.euler.rotations import BallCourse, Rotation, RotationBalls, decades
 from taylor_verify.exact.frames import Frame, turn
 from taylor_verify.exact.solution import Number, Time, beside, unchanged
 from taylor_verify.scenes import tensors
+from taylor_verify.scenes.motion import Quaternion
 from taylor_verify.scenes.tensors import ZERO_VECTOR, Vector
 
 _GUARD_DIGITS: Final = 8
@@ -52,6 +53,16 @@ class FixedAxis:
             return _GUARD_DIGITS
         furthest = max(abs(self.turned(t)) for t in (longest, -longest))
         return _GUARD_DIGITS + decades(1 + furthest**2 / self.axis_squared) / 2
+
+
+def in_balls(regime: str, axis: FixedAxis, attitude: Quaternion | None) -> RotationBalls:
+    """The motion in balls."""
+    return RotationBalls(regime, lambda: FixedAxisBalls(axis), attitude)
+
+
+def in_mpmath(regime: str, axis: FixedAxis, attitude: Quaternion | None) -> Rotation:
+    """The motion in mpmath."""
+    return Rotation(regime, lambda: FixedAxisFloats(axis), axis.lost, attitude)
 
 
 @final

@@ -116,7 +116,6 @@ class Rotation(Settled):
     set_up: Callable[[], Course]
     lost: Callable[[Fraction, bool], float]
     attitude: motion.Quaternion | None = None
-    by_quadrature: bool = False
     _courses: dict[int, Course] = field(default_factory=dict, init=False)
 
     route = "mpmath"

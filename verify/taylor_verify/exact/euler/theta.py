@@ -19,7 +19,7 @@ from flint import arb, arb_mat
 
 from taylor_verify.exact import rotation
 from taylor_verify.exact.balls import ball, ball_matrix, balls
-from taylor_verify.exact.euler.fixed_axis import FixedAxis, FixedAxisBalls
+from taylor_verify.exact.euler.fixed_axis import FixedAxis, in_balls
 from taylor_verify.exact.euler.moduli import Moduli, Triple
 from taylor_verify.exact.euler.phase import Periodic, Separatrix
 from taylor_verify.exact.euler.polynomials import Polynomials
@@ -32,14 +32,11 @@ from taylor_verify.scenes import motion, tensors
 
 def free_rotation(spin: FreeSpin, attitude: motion.Quaternion | None = None) -> RotationBalls:
     """The torque-free motion of any rigid body, and R from an attitude at the start."""
-    return RotationBalls(spin.regime.value, lambda: _course(spin), attitude)
-
-
-def _course(spin: FreeSpin) -> BallCourse:
-    """The motion set up at the ambient precision of flint."""
-    if spin.regime in CONSTANT:
-        return FixedAxisBalls(FixedAxis(spin.omega))
-    return _Precession(spin) if spin.regime is Regime.AXISYMMETRIC else Tumbling(spin)
+    regime = spin.regime
+    if regime in CONSTANT:
+        return in_balls(regime.value, FixedAxis(spin.omega), attitude)
+    course = _Precession if regime is Regime.AXISYMMETRIC else Tumbling
+    return RotationBalls(regime.value, lambda: course(spin), attitude)
 
 
 @final

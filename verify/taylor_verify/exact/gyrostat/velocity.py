@@ -43,7 +43,7 @@ class WeierstrassForm:
     @classmethod
     def of(cls, free: FreeGyrostat) -> WeierstrassForm:
         """Return the exact constants of one start."""
-        K, g, G, S, c2 = free.K, free.g, free.momentum, free.trace, free.minors
+        K, g, G, (S, c2, _) = free.K, free.g, free.momentum, free.cubic
         _, G1, half_G2, *_ = free.jet
         G2 = tensors.scaled(Fraction(2), half_G2)
         q, w1 = tensors.apply(K, G), tensors.apply(K, G1)
