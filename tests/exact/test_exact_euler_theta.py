@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -13,27 +12,25 @@ import pytest
 from builders.free_spins import OBLIQUE, ON_SEPARATRIX, near_separatrix, rotation, spinning, turned
 from builders.scenes import vector
 from builders.turns import by_turns
-from flint import acb, arb, arb_mat, ctx
+from flint import arb, arb_mat, ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
 from taylor_verify.exact import balls
-from taylor_verify.exact.balls import Enclosed, Enclosure, ball
+from taylor_verify.exact.balls import Enclosed, Enclosure, ball, ball_matrix
 from taylor_verify.exact.euler import closed, fixed_axis, phase, theta
 from taylor_verify.exact.euler.closed import enclosed
 from taylor_verify.exact.euler.moduli import Moduli
-from taylor_verify.exact.euler.orbit import Orbit
 from taylor_verify.exact.euler.principal import principal_balls
 from taylor_verify.exact.euler.regime import FreeSpin, Regime
-from taylor_verify.exact.euler.rotations import RotationBalls
+from taylor_verify.exact.euler.rotations import OneByOne, RotationBalls, Rows
 from taylor_verify.exact.euler.theta import free_rotation
-from taylor_verify.exact.rotation import conjugate, product, rotation_rows, unit
+from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import IDENTITY, Clock, Motion, Quaternion, Spin
-from taylor_verify.scenes.precision import exact_value
 from taylor_verify.scenes.scene import Scene
 
 DIGITS = 50
@@ -301,14 +298,15 @@ class Coarse(Enclosed):
 
     def enclose(self, elapsed: Sequence[Fraction], bits: int) -> Enclosure:
         course, spread = self._rotation.course(), arb(0, ball(self._spread))
+        assert isinstance(course, OneByOne)
         with pytest.MonkeyPatch.context() as patch:
             for module in (fixed_axis, theta):
                 patch.setattr(module, "ball", lambda number: ball(number) + spread)
             places = [course.at(t, turned=True) for t in elapsed]
         if self._name == "omega":
             return {"omega": [omega for omega, _ in places]}
-        start = unit(TILTED)
-        return {"attitude": [rotation_rows(product(start, turn)) for _, turn in places]}
+        start = ball_matrix(rotation_matrix(TILTED))
+        return {"attitude": [(start * arb_mat(turn)).tolist() for _, turn in places]}
 
 
 def radius_covers_the_error(spin: FreeSpin) -> None:
@@ -378,22 +376,11 @@ def _axes_exchanged(patch: pytest.MonkeyPatch) -> None:
 def _transposed(patch: pytest.MonkeyPatch) -> None:
     right = theta.Tumbling.at
 
-    def wrong(self: theta.Tumbling, t: Fraction, turned: bool) -> tuple[list[arb], list[arb]]:
+    def wrong(self: theta.Tumbling, t: Fraction, turned: bool) -> tuple[list[arb], Rows]:
         omega, turn = right(self, t, turned)
-        return omega, conjugate(turn)
+        return omega, [list(column) for column in zip(*turn, strict=True)]
 
     patch.setattr(theta.Tumbling, "at", wrong)
-
-
-def _turns_forgotten(patch: pytest.MonkeyPatch) -> None:
-    right = phase.Periodic.half_phase
-
-    def wrong(self: phase.Periodic, t: arb, functions: Any) -> tuple[arb, arb]:
-        whole = acb(*right(self, t, functions))
-        root = (whole * whole).sqrt()
-        return root.real, root.imag
-
-    patch.setattr(phase.Periodic, "half_phase", wrong)
 
 
 def _backward_precession(patch: pytest.MonkeyPatch) -> None:
@@ -430,7 +417,6 @@ CHECKS: dict[str, Callable[[FreeSpin], None]] = {
     EQUATIONS: lambda spin: obeys_its_equations(spin, Fraction(7, 3)),
     INTEGRALS: lambda spin: keeps_its_integrals(spin, [Fraction(7, 3)]),
     "radius covers the error": radius_covers_the_error,
-    "moves without a jump": lambda spin: moves_without_a_jump(spin),
 }
 TWINS: list[tuple[Callable[[pytest.MonkeyPatch], None], str]] = [
     (_wrong_sign_of_the_phase, MPMATH),
@@ -443,7 +429,6 @@ TWINS: list[tuple[Callable[[pytest.MonkeyPatch], None], str]] = [
     (_transposed, EQUATIONS),
     (_transposed, INTEGRALS),
     (_half_a_digit_too_narrow, "radius covers the error"),
-    (_turns_forgotten, "moves without a jump"),
 ]
 
 
@@ -542,128 +527,6 @@ def test_principal_frame_is_right_handed_and_diagonalises(spin: FreeSpin) -> Non
         assert axes.det() > 0
         for i, J in enumerate(moduli.moments):
             assert all(0 in image[i, j] - J * axes[i, j] for j in range(3))
-
-
-# The quaternion
-
-
-def rate_bound(spin: FreeSpin) -> Fraction:
-    """|omega| <= |H| |I^-1|, with norms that are rational."""
-    inverse = tensors.inverse(spin.inertia)
-    size = sum(map(abs, spin.momentum), Fraction(0))
-    return size * sum((inverse[i][i] for i in range(3)), Fraction(0))
-
-
-def is_periodic(spin: FreeSpin) -> bool:
-    return spin.regime in (Regime.MAX_AXIS, Regime.MIN_AXIS)
-
-
-def period(spin: FreeSpin) -> Fraction:
-    """That of omega, from the other route, to a hundred digits."""
-    with mp.workdps(110):
-        return exact_value(Orbit(spin).period)
-
-
-def moves_without_a_jump(spin: FreeSpin) -> None:
-    """The quaternion is continuous over a period, or on both sides of the start if there is none."""
-    # At most two radians a step: a chord of 2 sin(1/2) < 1, where a change of sign has 2 cos(1/2).
-    h = 2 / (rate_bound(spin) + Fraction(1, 10))
-    at = [k * h for k in range(int(period(spin) / h) + 2)] if is_periodic(spin) else []
-    at = at or [k * h for k in range(-100, 100)]
-    turns = quaternions(scene(spin), at, 15)
-    with mp.workdps(30):
-        assert all(mp.norm(list(q - p)) < 1 for p, q in pairwise(turns))
-
-
-def quaternions(asked: Scene, at: Sequence[Fraction], digits: int) -> np.ndarray[Any, Any]:
-    return rotation_of(asked).quaternion(at, digits)["quaternion"]
-
-
-def rotation_of(asked: Scene) -> RotationBalls:
-    rotation = enclosed(asked)
-    assert isinstance(rotation, RotationBalls)
-    return rotation
-
-
-def matrix_of(q: Sequence[mpf]) -> np.ndarray[Any, Any]:
-    w, x, y, z = q
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ],
-        dtype=object,
-    )
-
-
-def hamilton(p: Sequence[mpf], q: Sequence[mpf]) -> list[mpf]:
-    a, b, c, d = p
-    w, x, y, z = q
-    return [
-        a * w - b * x - c * y - d * z,
-        a * x + b * w + c * z - d * y,
-        a * y - b * z + c * w + d * x,
-        a * z + b * y - c * x + d * w,
-    ]
-
-
-@pytest.mark.parametrize("name", [*SPINS, "m' ~ 1e-60", "ratio 1e12, oblique"])
-def test_quaternion_squares_to_the_attitude(name: str) -> None:
-    """The quaternion has unit length, and its rotation is R, however late."""
-    spin = {**SPINS, **EXTREMES}[name]
-    at = times(0, "7/3", "-5/2", 31, LONG, -LONG)
-    rotation = rotation_of(scene(spin))
-    motion, frames = rotation.quaternion(at, DIGITS), rotation.motion(at, DIGITS)["attitude"]
-    assert all(r <= mpf(10) ** -DIGITS for r in motion.radius)
-    with mp.workdps(2 * DIGITS):
-        # R is quadratic in q: at most four radii per entry and its own, on nine entries.
-        bound = 15 * mpf(10) ** -DIGITS
-        for q, R in zip(motion["quaternion"], frames, strict=True):
-            assert abs(mp.norm(list(q)) - 1) <= bound
-            assert _norm(matrix_of(q) - R) <= bound
-
-
-@pytest.mark.parametrize("name", SPINS)
-def test_quaternion_starts_as_the_scene_has_it(name: str) -> None:
-    """At the start it is the quaternion given over its norm, in its own sign."""
-    for sign in (1, -1):
-        given_one: Quaternion = tuple(sign * c for c in TILTED)  # type: ignore[assignment]
-        (quaternion,) = quaternions(scene(SPINS[name], given_one), [Fraction(0)], DIGITS)
-        with mp.workdps(2 * DIGITS):
-            exact = [mp.convert(c) / mp.sqrt(15) for c in given_one]
-            assert (
-                mp.norm([p - q for p, q in zip(quaternion, exact, strict=True)])
-                <= mpf(10) ** -DIGITS
-            )
-
-
-@pytest.mark.parametrize("name", [*SPINS, "m' ~ 1e-60", "beside the unstable axis"])
-def test_quaternion_never_jumps(name: str) -> None:
-    """In a step h the body turns by |omega| h at most, and the quaternion moves by less than half that.
-
-    Over the whole period of omega, or as much before the start as after it where there is none.
-    """
-    moves_without_a_jump({**SPINS, **EXTREMES}[name])
-
-
-@pytest.mark.parametrize("name", [name for name, spin in SPINS.items() if is_periodic(spin)])
-def test_quaternion_keeps_its_sign_for_a_million_million_seconds(name: str) -> None:
-    """q(n P + r) = s^n q(r) with s = q(P)/q(0), where P is the period of omega: the sign included."""
-    spin, r = SPINS[name], Fraction(5, 7)
-    once_round = period(spin)
-    turns = int(LONG / once_round)
-    at = [Fraction(0), once_round, r, turns * once_round + r]
-    start, once, early, late = quaternions(scene(spin), at, 80)
-    with mp.workdps(100):
-        step = hamilton(once, [start[0], *(-c for c in start[1:])])
-        power = [mpf(1), mpf(0), mpf(0), mpf(0)]
-        for bit in f"{turns:b}":
-            power = hamilton(power, power)
-            power = hamilton(power, step) if bit == "1" else power
-        expected = hamilton(power, early)
-        # An error of 1e-80 in s, 1e12 times.
-        assert mp.norm([p - q for p, q in zip(late, expected, strict=True)]) <= mpf(10) ** -66
 
 
 # The scene

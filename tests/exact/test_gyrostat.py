@@ -34,10 +34,9 @@ from taylor_verify.exact.elements import elements
 from taylor_verify.exact.euler import jacobi as top
 from taylor_verify.exact.euler import theta
 from taylor_verify.exact.euler.regime import FreeSpin
-from taylor_verify.exact.gyrostat import jacobi
+from taylor_verify.exact.gyrostat import jacobi, sigma
 from taylor_verify.exact.gyrostat.closed import closed_form, enclosed
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat, Regime
-from taylor_verify.exact.gyrostat.sigma import GyrostatBalls
 from taylor_verify.exact.gyrostat.spins import steady_spins
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NoClosedForm
@@ -215,7 +214,7 @@ def test_the_equations_are_obeyed(name: str) -> None:
     """
     free, t, step, bits = MOTIONS[name], Fraction(37, 11), Fraction(1, 10**40), 900
     with ctx.workprec(bits):
-        enclosure = GyrostatBalls(free, TILTED).enclose([t - step, t, t + step], bits)
+        enclosure = sigma.free_rotation(free, TILTED).enclose([t - step, t, t + step], bits)
         omega, rows = enclosure["omega"], [arb_mat(R) for R in enclosure["attitude"]]
         sizes = [sum(map(abs, v), Fraction(0)) for v in (free.momentum, free.g)]
         K_size = sum((free.K[i][i] for i in range(3)), Fraction(0))
@@ -260,7 +259,7 @@ def is_eulers_top(spin: FreeSpin) -> None:
     """Weierstrass's formula, by balls and by mpmath, finds the motion of both routes of a rigid body."""
     none = FreeGyrostat(spin.inertia, vector(0, 0, 0), spin.omega)
     instants = paced(none, (Fraction(3, 2), Fraction(-40)))
-    motion = GyrostatBalls(none, TILTED).motion(instants, 20)
+    motion = sigma.free_rotation(none, TILTED).motion(instants, 20)
     routes = (
         jacobi.free_rotation(none, TILTED),
         *(route.free_rotation(spin, TILTED) for route in (theta, top)),

@@ -48,7 +48,7 @@ class WeberTurn:
         self._y = -mp.conj(h) / 2, mp.conj(f) / 2
 
     def quaternion(self, t: Fraction) -> list[mpf]:
-        """The unit quaternion at the time t, scalar first; 1 at t = 0, without a jump of sign."""
+        """The unit quaternion at the time t, scalar first; 1 at t = 0."""
         f, h = self._even_and_odd(t + self._lead)
         x = self._x[0] * f + self._x[1] * h
         y = self._y[0] * mp.conj(f) + self._y[1] * mp.conj(h)

@@ -32,7 +32,7 @@ from taylor_verify.exact.euler.moments.washboard.turnings import (
     regime,
     turnings,
 )
-from taylor_verify.exact.euler.rotations import BallCourse, RotationBalls
+from taylor_verify.exact.euler.rotations import OneByOne, RotationBalls, Rows
 from taylor_verify.exact.integral import integral
 from taylor_verify.exact.solution import Unsettled
 
@@ -210,7 +210,7 @@ class Turn:
         return self.side * self._quotient(self.side * y * y)
 
 
-class Course(BallCourse):
+class Course(OneByOne):
     """The course at one precision of flint."""
 
     def __init__(self, board: Washboard) -> None:
@@ -236,7 +236,7 @@ class Course(BallCourse):
         """The time after which omega recurs; None for a run."""
         return None if self._upper is None else 2 * self._half
 
-    def at(self, t: Fraction, turned: bool) -> tuple[list[arb], list[arb]]:
+    def at(self, t: Fraction, turned: bool) -> tuple[list[arb], Rows]:
         """omega in body axes; of the turn nothing is known."""
         turn, since = self._turn(self._lead + ball(t))
         y = turn.at(since)
