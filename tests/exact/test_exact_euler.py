@@ -17,7 +17,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
-from taylor_verify.exact.elements import elements
 from taylor_verify.exact.euler.closed import closed_form
 from taylor_verify.exact.euler.jacobi import free_rotation
 from taylor_verify.exact.euler.orbit import Orbit, principal_frame
@@ -26,7 +25,6 @@ from taylor_verify.exact.euler.rotations import decades
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Spin
-from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.tensors import Matrix
 
 DIGITS = 50
@@ -325,27 +323,6 @@ def test_evaluation_is_repeatable():
     assert (
         first == free_rotation(ORBITS["max-axis, full tensor"]).evaluate(times, 40)["omega"]
     ).all()
-
-
-@pytest.mark.parametrize("name", ["generic", "about-max-axis", "tennis-racket", "axisymmetric"])
-def test_motion_recurs_after_the_period(name: str) -> None:
-    """omega(t + P) = omega(t) for the period P among the elements, and m + m' = 1."""
-    scene = load(f"euler/{name}")
-    exact, numbers = closed_form(scene), elements(scene, 50)
-    with mp.workdps(60):
-        period = Fraction(*numbers["period"].value.as_integer_ratio())
-        now, later = exact.motion([Fraction(3), Fraction(3) + period], 45)["omega"]
-        # The period is known to 50 digits and omega changes by less than ten of itself in unit time.
-        assert distance(later, now) <= mpf(10) ** -43
-        if "m" in numbers:
-            assert abs(numbers["m"].value + numbers["m_prime"].value - 1) <= mpf(10) ** -48
-
-
-def test_separatrix_has_no_period() -> None:
-    """On the separatrix m is 1 and there is a rate but no period."""
-    orbit = elements(load("euler/separatrix"), 30)
-    assert "period" not in orbit
-    assert orbit["m_prime"].value == 0
 
 
 @given(st.fractions(min_value=Fraction(1, 10**9), max_value=10**9))
