@@ -185,7 +185,7 @@ def test_what_is_not_tracked_is_not_known() -> None:
     "start",
     [
         LOADED_EULER,
-        LOADED_KIRCHHOFF,
+        pytest.param(LOADED_KIRCHHOFF, marks=pytest.mark.slow),
         sample_scene(CLEBSCH, "attitude", "centre"),
         sample_scene(RigidBody(TENSOR)),
     ],

@@ -9,10 +9,8 @@ import pytest
 from builders.numbers import apart
 from mpmath import mp, mpf
 
-from taylor_verify.exact.elements import elements
 from taylor_verify.exact.kirchhoff.closed import closed_form, enclosed
 from taylor_verify.exact.kirchhoff.plane import plane, regime
-from taylor_verify.exact.route import solution
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.models.problem import pose
 from taylor_verify.records.precisions import LADDER
@@ -112,37 +110,6 @@ def test_both_routes_are_the_taylor_motion(name: str, swapped: bool) -> None:
             assert apart(motion, truth) <= 2 * mpf(10) ** -DIGITS
 
 
-@pytest.mark.parametrize("k", [0, 1, 2])
-def test_every_axis_may_stand_across_the_plane(k: int) -> None:
-    """The same pendulum with its axes named anew has the same numbers."""
-    turned, first = built(k, BROAD, ("3/4", "-1/2", "1/4")), built(2, BROAD, ("3/4", "-1/2", "1/4"))
-    motion, expected = (closed_form(s).motion(TIMES, DIGITS) for s in (turned, first))
-    order, usual = (*cyclic(k), k), (0, 1, 2)
-    with mp.workdps(DIGITS + 20):
-        for name in ("linear_impulse", "angular_impulse"):
-            difference = motion[name][:, order] - expected[name][:, usual]
-            assert max(abs(e) for e in difference.flat) <= mpf(10) ** -DIGITS
-
-
-@pytest.mark.parametrize("name", ["planar-swing", "planar-turn"])
-def test_it_is_what_clebschs_body_does_in_its_plane(name: str) -> None:
-    """The shipped planar scenes, their symmetry broken where the plane does not see it."""
-    symmetric = load(f"kirchhoff/{name}")
-    assert isinstance(symmetric.body, ImmersedBody)
-    assert plane(symmetric) is None
-    C = symmetric.body.angular
-    broken = replace(
-        symmetric,
-        body=replace(symmetric.body, angular=tensors.diagonal((3 * C[0][0], C[1][1], C[2][2]))),
-    )
-    assert closed_form(broken).regime == name
-    motion, expected = (
-        solution(scene, "mpmath").motion(TIMES, DIGITS) for scene in (broken, symmetric)
-    )
-    with mp.workdps(DIGITS + 20):
-        assert apart(motion, expected) <= 2 * mpf(10) ** -DIGITS
-
-
 def test_the_border_of_swing_and_turn_is_decided_exactly() -> None:
     """A part in 10^40 of y more or less, and it turns over or comes back."""
     scene, _ = fitting("front", 2, False)
@@ -209,23 +176,6 @@ def test_a_start_or_a_load_out_of_the_plane_is_no_pendulum() -> None:
         assert plane(replace(scene, initial=initial)) is None
     loaded = replace(scene.body, couple=(Fraction(0), Fraction(0), little))
     assert plane(replace(scene, body=loaded)) is None
-
-
-@pytest.mark.parametrize("name", ["swing", "turn backward"])
-def test_the_motion_recurs_after_its_period_and_not_before(name: str) -> None:
-    """x and y come back after one period; after half of it x or y has another sign."""
-    scene, _ = fitting(name, 1, False)
-    alone = replace(scene, track=frozenset())
-    with mp.workdps(40):
-        whole = elements(alone, 30)["period"].value
-        p, q = (int(n) for n in (mp.nint(whole * 10**30), 10**30))
-        period = Fraction(p, q)
-        motion = TaylorSolution(alone).motion([Fraction(0), period / 2, period], DIGITS)
-        for block in ("linear_impulse", "angular_impulse"):
-            rows = motion[block]
-            assert max(abs(e) for e in rows[2] - rows[0]) <= mpf(10) ** -(DIGITS - 2)
-        signs = [(motion[b][1] * motion[b][0]).sum() for b in ("linear_impulse", "angular_impulse")]
-        assert min(signs) < 0
 
 
 @pytest.mark.parametrize("step", LADDER)

@@ -100,36 +100,6 @@ def found_by_both(scene: Scene, times: list[Fraction] = TIMES) -> list[Any]:
 # The reductions themselves.
 
 
-def integrals(scene: Scene) -> tuple[Any, ...]:
-    """T, F^2, FG, and in space the impulse and the moment of the impulses, in rationals."""
-    body, start = solid(scene)
-    x, y, R = start.linear, start.angular, rotation_matrix(start.attitude)
-    T = tensors.dot(x + y, tensors.apply(body.energy_matrix, x + y)) / 2
-    X0 = tensors.apply(R, x)
-    moment = tensors.plus(tensors.apply(R, y), tensors.cross(start.centre, X0))
-    return T, tensors.dot(x, x), tensors.dot(x, y), X0, moment
-
-
-def test_another_origin_changes_no_integral() -> None:
-    """T, F^2, FG and both momenta in space are the same numbers about every origin."""
-    scene = one_instant(GENERAL, IMPULSE)
-    assert integrals(moved(scene, AWAY)) == integrals(scene)
-
-
-def test_another_origin_has_its_own_velocity() -> None:
-    """About the origin moved by d it is U + Omega x d, and Omega is the same."""
-    scene = one_instant(GENERAL, IMPULSE)
-    U, Omega = velocities(*solid(scene))
-    there = velocities(*solid(moved(scene, AWAY)))
-    assert there == (tensors.plus(U, tensors.cross(Omega, AWAY)), Omega)
-
-
-def test_to_another_origin_and_back_is_nothing() -> None:
-    """The displacements by d and by -d undo each other, coefficient by coefficient."""
-    scene = one_instant(GENERAL, IMPULSE)
-    assert moved(moved(scene, AWAY), tensors.scaled(Fraction(-1), AWAY)) == scene
-
-
 def test_b_is_symmetric_about_one_origin() -> None:
     """There the displacement to it is zero, and it is found again from any other origin."""
     scene = one_instant(GENERAL, IMPULSE)
