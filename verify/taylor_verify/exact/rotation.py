@@ -18,6 +18,11 @@ from taylor_verify.scenes.tensors import Matrix
 Number = TypeVar("Number", Fraction, arb)
 
 
+def scalar_product(p: Sequence[Number], q: Sequence[Number]) -> Number:
+    """Return p . q."""
+    return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
+
+
 def cross(p: Sequence[Number], q: Sequence[Number]) -> list[Number]:
     """Return p x q."""
     return [

@@ -31,7 +31,14 @@ from taylor_verify.exact.gyrostat.point import PointMap, point_map
 from taylor_verify.exact.gyrostat.velocity import momentum_form
 from taylor_verify.exact.lattice import Lattice, lattice
 from taylor_verify.exact.line import Line
-from taylor_verify.exact.rotation import conjugate, cross, product, rotation_rows, turn
+from taylor_verify.exact.rotation import (
+    conjugate,
+    cross,
+    product,
+    rotation_rows,
+    scalar_product,
+    turn,
+)
 from taylor_verify.exact.solution import Time
 from taylor_verify.scenes.motion import Quaternion
 from taylor_verify.scenes.tensors import Vector, dot
@@ -172,9 +179,9 @@ class Azimuth:
         """m1, m2 and m3, the columns of M."""
         over = 1 / self._N
         m3 = [component * over for component in G]
-        along = self._c[0] * m3[0] + self._c[1] * m3[1] + self._c[2] * m3[2]
+        along = scalar_product(self._c, m3)
         across = [p - along * q for p, q in zip(self._c, m3, strict=True)]
-        length = (across[0] * across[0] + across[1] * across[1] + across[2] * across[2]).rsqrt()
+        length = scalar_product(across, across).rsqrt()
         m1 = [component * length for component in across]
         return [m1, cross(m3, m1), m3]
 
