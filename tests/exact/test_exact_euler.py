@@ -11,20 +11,15 @@ from fractions import Fraction
 
 import pytest
 from builders.free_spins import OBLIQUE, ON_SEPARATRIX, near_separatrix, rotation, spinning, turned
-from builders.numbers import rational
-from builders.scenes import sample_scene, vector
+from builders.scenes import vector
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
-from taylor_verify.exact.euler.closed import closed_form
 from taylor_verify.exact.euler.jacobi import free_rotation
 from taylor_verify.exact.euler.orbit import Orbit, principal_frame
 from taylor_verify.exact.euler.regime import FreeSpin, Regime
 from taylor_verify.exact.euler.rotations import decades
-from taylor_verify.scenes import tensors
-from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.tensors import Matrix
 
 DIGITS = 50
@@ -229,15 +224,6 @@ def test_every_digit_asked_for_is_right(name):
             assert distance(omega_at(spin, t, digits=digits)[0], best) <= one_ulp(digits)
 
 
-@pytest.mark.parametrize("name", EXTREMES)
-def test_motion_is_confirmed_at_the_first_attempt(name):
-    """Two evaluations at precisions that differ by a dozen digits agree to the forty asked for."""
-    spin, t = EXTREMES[name]
-    radius = free_rotation(spin).motion([t], 40).radius
-    # The poorer evaluation was made with 43 digits; a second attempt would have left far less.
-    assert mpf(10) ** -55 <= radius[0] <= one_ulp(42)
-
-
 @pytest.mark.parametrize("sign", [1, -1])
 @pytest.mark.parametrize("exponent", [12, 24, 60])
 def test_complementary_parameter_is_accurate_relatively(sign, exponent):
@@ -265,16 +251,6 @@ def test_gap_of_a_full_tensor_is_accurate_relatively(moment, gap):
         assert distance([frame_gap], [mp.convert(Fraction(gap))]) <= one_ulp(29)
 
 
-def test_detest_b5_as_a_body():
-    """J = (3, 2, 1) from (1, 0, q), q^2 = 1.53, is (dn, -q sn, q cn)(t | 0.51): DETEST B5."""
-    with mp.workdps(100):
-        root = mp.sqrt(mpf("1.53"))
-        # Rounding the root at 100 digits moves the orbit by as much, times some powers of t = 20.
-        spin = spinning(vector(3, 2, 1), (Fraction(1), Fraction(0), rational(root)))
-        sn, cn, dn = (mp.ellipfun(name, 20, m=mpf("0.51")) for name in ("sn", "cn", "dn"))
-        assert distance(omega_at(spin, 20)[0], [dn, -root * sn, root * cn]) <= one_ulp(DIGITS)
-
-
 @pytest.mark.parametrize("side", [1, -1])
 def test_separatrix_ends_on_the_intermediate_axis(side):
     """On the separatrix omega tends to opposite rotations about the intermediate axis."""
@@ -291,21 +267,6 @@ def test_separatrix_ends_on_the_intermediate_axis(side):
 
 
 # The interface
-
-
-BODY = RigidBody(tensors.diagonal(vector(1, 2, 3)))
-START = Spin(vector("0.3", 1, "0.2"))
-
-
-def test_closed_form_of_a_scene():
-    """A torque-free scene has a closed form that names its regime and its route."""
-    solution = closed_form(sample_scene(BODY, start=START))
-    # H^2 = 4.45 and 2T = 2.21: H^2/2T is a little more than the moment 2.
-    assert (solution.regime, solution.route) == ("max-axis", "mpmath")
-    motion = solution.motion([Fraction(0), Fraction(1)], 40)
-    assert motion["omega"].shape == (2, 3)
-    with mp.workdps(DIGITS):
-        assert distance(motion["omega"][0], numbers(START.omega)) <= one_ulp(40)
 
 
 def test_no_samples_are_no_rows():

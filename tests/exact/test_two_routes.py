@@ -10,6 +10,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
+from builders.free_spins import rotation
 from builders.turns import by_turns
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
@@ -165,19 +166,12 @@ def spins(draw: st.DrawFn) -> Scene:
     diagonal, omega = draw(beside_a_separatrix() if draw(st.booleans()) else spinning())
     inertia: Matrix = tensors.diagonal(diagonal)
     if draw(st.booleans()):
-        turn = rational_rotation(draw(st.integers(1, 5)), draw(st.integers(-5, 5)))
+        turn = rotation(draw(st.integers(1, 5)), draw(st.integers(-5, 5)), 1, 2)
         inertia = tensors.product(tensors.product(turn, inertia), tensors.transpose(turn))
         omega = tensors.apply(turn, omega)
     clock = Clock(Fraction(0), (Fraction(1),))
     spin = Spin(omega, FRAME)
     return Scene("drawn", "", "euler", frozenset({"attitude"}), RigidBody(inertia), spin, clock)
-
-
-def rational_rotation(a: int, b: int) -> Matrix:
-    """The rotation of the quaternion (a, b, 1, 2)."""
-    from taylor_verify.exact.rotation import rotation_matrix
-
-    return rotation_matrix((Fraction(a), Fraction(b), Fraction(1), Fraction(2)))
 
 
 @st.composite

@@ -151,18 +151,22 @@ def test_omega_recurs_after_its_period_by_the_taylor_motion() -> None:
         assert mp.norm(list(half - start)) >= mpf("0.1")
 
 
+def kept_by(scene: Scene, motion: Motion) -> list[Any]:
+    """2T J - |H|^2 at every time."""
+    assert isinstance(scene.body, RigidBody)
+    rows = [[mp.convert(entry) for entry in row] for row in scene.body.inertia]
+    H = motion["omega"] @ np.array(rows, dtype=object)
+    J = mp.convert(board(scene).axial_moment)
+    return [J * (w @ h) - h @ h for w, h in zip(motion["omega"], H, strict=True)]
+
+
 @pytest.mark.parametrize("name", ["least run", "middle", "turned"])
 def test_what_elements_says_is_conserved_is(name: str) -> None:
     """2T J - |H|^2 of the Taylor motion at every time."""
     scene, _ = SCENES[name]
-    assert isinstance(scene.body, RigidBody)
     conserved = elements(scene, 30)["2TJ-H2"].value
-    J = mp.convert(board(scene).axial_moment)
     with mp.workdps(2 * DIGITS):
-        rows = [[mp.convert(entry) for entry in row] for row in scene.body.inertia]
-        H = truth(name)["omega"] @ np.array(rows, dtype=object)
-        for omega, momentum in zip(truth(name)["omega"], H, strict=True):
-            assert abs(J * (omega @ momentum) - momentum @ momentum - conserved) <= mpf("1e-29")
+        assert all(abs(now - conserved) <= mpf("1e-29") for now in kept_by(scene, truth(name)))
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -340,15 +344,6 @@ class OneBranch(Turn):
 
     def nu(self, y: arb) -> arb:
         return abs(super().nu(y))
-
-
-def kept_by(scene: Scene, motion: Motion) -> list[Any]:
-    """2T J - |H|^2 at every time."""
-    assert isinstance(scene.body, RigidBody)
-    rows = [[mp.convert(entry) for entry in row] for row in scene.body.inertia]
-    H = motion["omega"] @ np.array(rows, dtype=object)
-    J = mp.convert(board(scene).axial_moment)
-    return [J * (w @ h) - h @ h for w, h in zip(motion["omega"], H, strict=True)]
 
 
 def test_a_turning_point_on_the_wrong_branch_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
