@@ -296,7 +296,7 @@ def _best_poles(free: FreeGyrostat, swing: Swing) -> tuple[Frame, list[Pole]]:
 
 
 def _distance(pole: Pole, least: mpf) -> mpf:
-    """About the distance of a pole from the real times, at which p is ``least`` or more."""
+    """The distance of a pole, roughly, from the real times, at which p is ``least`` or more."""
     return abs(pole.p - max(mp.re(pole.p), least)) / abs(pole.slope)
 
 
