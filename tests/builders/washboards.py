@@ -16,7 +16,6 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix, Vector
 
 DIGITS = 45
-ROUTES = ("arb", "mpmath")
 FRAME = (Fraction(1), Fraction(-2), Fraction(1, 3), Fraction(2))
 
 

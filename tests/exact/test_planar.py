@@ -9,7 +9,6 @@ import pytest
 from builders.numbers import apart
 from mpmath import mp, mpf
 
-from taylor_verify.exact.elements import elements
 from taylor_verify.exact.kirchhoff.closed import closed_form, enclosed
 from taylor_verify.exact.kirchhoff.plane import plane, regime
 from taylor_verify.exact.taylor import TaylorSolution
@@ -173,20 +172,3 @@ def test_a_start_or_a_load_out_of_the_plane_is_no_pendulum() -> None:
         assert plane(replace(scene, initial=initial)) is None
     loaded = replace(scene.body, couple=(Fraction(0), Fraction(0), little))
     assert plane(replace(scene, body=loaded)) is None
-
-
-@pytest.mark.parametrize("name", ["swing", "turn backward"])
-def test_the_motion_recurs_after_its_period_and_not_before(name: str) -> None:
-    """x and y come back after one period; after half of it x or y has another sign."""
-    scene, _ = fitting(name, 1, False)
-    alone = replace(scene, track=frozenset())
-    with mp.workdps(40):
-        whole = elements(alone, 30)["period"].value
-        p, q = (int(n) for n in (mp.nint(whole * 10**30), 10**30))
-        period = Fraction(p, q)
-        motion = TaylorSolution(alone).motion([Fraction(0), period / 2, period], DIGITS)
-        for block in ("linear_impulse", "angular_impulse"):
-            rows = motion[block]
-            assert max(abs(e) for e in rows[2] - rows[0]) <= mpf(10) ** -(DIGITS - 2)
-        signs = [(motion[b][1] * motion[b][0]).sum() for b in ("linear_impulse", "angular_impulse")]
-        assert min(signs) < 0

@@ -107,22 +107,6 @@ def found_by_both(scene: Scene, times: list[Fraction] = TIMES) -> list[Any]:
 # The reductions themselves.
 
 
-def integrals(scene: Scene) -> tuple[Any, ...]:
-    """T, F^2, FG, and in space the impulse and the moment of the impulses, in rationals."""
-    body, start = solid(scene)
-    x, y, R = start.linear, start.angular, rotation_matrix(start.attitude)
-    T = tensors.dot(x + y, tensors.apply(body.energy_matrix, x + y)) / 2
-    X0 = tensors.apply(R, x)
-    moment = tensors.plus(tensors.apply(R, y), tensors.cross(start.centre, X0))
-    return T, tensors.dot(x, x), tensors.dot(x, y), X0, moment
-
-
-def test_another_origin_changes_no_integral() -> None:
-    """T, F^2, FG and both momenta in space are the same numbers about every origin."""
-    scene = one_instant(GENERAL, IMPULSE)
-    assert integrals(moved(scene, AWAY)) == integrals(scene)
-
-
 def test_b_is_symmetric_about_one_origin() -> None:
     """There the displacement to it is zero, and it is found again from any other origin."""
     scene = one_instant(GENERAL, IMPULSE)

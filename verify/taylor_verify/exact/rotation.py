@@ -11,12 +11,16 @@ from typing import TypeVar
 
 from flint import arb
 
-from taylor_verify.exact.balls import ball
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.motion import Quaternion
 from taylor_verify.scenes.tensors import Matrix
 
 Number = TypeVar("Number", Fraction, arb)
+
+
+def scalar_product(p: Sequence[Number], q: Sequence[Number]) -> Number:
+    """Return p . q."""
+    return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
 
 
 def cross(p: Sequence[Number], q: Sequence[Number]) -> list[Number]:
@@ -58,12 +62,6 @@ def rotation_matrix(quaternion: Quaternion) -> Matrix:
     """Return R of a quaternion of any length: rational, being of degree 2 in q/|q|."""
     scale = 1 / tensors.dot(quaternion, quaternion)
     return tuple(tuple(scale * entry for entry in row) for row in rotation_rows(quaternion))
-
-
-def unit(quaternion: Quaternion) -> list[arb]:
-    """Return the quotient of a rational quaternion by its norm, in balls."""
-    length = ball(tensors.dot(quaternion, quaternion)).sqrt()
-    return [ball(component) / length for component in quaternion]
 
 
 def turn(axis: Sequence[arb], half_angle: arb) -> list[arb]:

@@ -25,7 +25,7 @@ import numpy as np
 
 from taylor_verify.exact.clocks import Floats
 from taylor_verify.exact.conditioning.differences import settled
-from taylor_verify.exact.conditioning.flow import Flow, Steps, products
+from taylor_verify.exact.conditioning.flow import Flow, Steps
 from taylor_verify.exact.conditioning.momentum import momentum
 from taylor_verify.exact.conditioning.variation import integrated
 from taylor_verify.exact.registry import kind_of
@@ -112,16 +112,14 @@ class Path:
                 factors.append(_narrowed(both))
             return self._sizes(np.array(factors))
 
-    def norms(self, out: str, into: str, since: int = 0) -> Floats:
-        """The spectral norms of d out(t) / d into(t_since) from that time on, in the scene's units.
+    def norms(self, out: str, into: str) -> Floats:
+        """The spectral norms of d out(t) / d into(0) at each time, in the scene's units.
 
         ``into`` is a block of the state, and ``out`` another one, or ``omega`` = K momentum for a rigid
         body. What the scene does not track raises KeyError. A norm outside the range of float64 is inf.
         """
         places = {name: self._place(name) for name in self.blocks}
-        steps = self.carried
-        reached = steps.since_first if since == 0 else products(steps.steps[since:])
-        columns = reached[:, :, places[into]]
+        columns = self.carried.since_first[:, :, places[into]]
         if out == "omega" and "momentum" in places:
             rows = self.flow.equations.spin @ columns[:, places["momentum"]]
         else:

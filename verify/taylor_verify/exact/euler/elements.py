@@ -17,9 +17,9 @@ from mpmath import mp, mpf
 from taylor_verify.exact.element import Element, Elements, described, settled
 from taylor_verify.exact.euler.closed import top
 from taylor_verify.exact.euler.moments.regime import LoadedSpin, MomentRegime
+from taylor_verify.exact.euler.moments.washboard.balls import period
 from taylor_verify.exact.euler.moments.washboard.board import Washboard, WashboardRegime
-from taylor_verify.exact.euler.moments.washboard.chebyshev import Swing, course
-from taylor_verify.exact.euler.moments.washboard.turnings import located, regime
+from taylor_verify.exact.euler.moments.washboard.turnings import regime
 from taylor_verify.exact.euler.orbit import Orbit, principal_frame
 from taylor_verify.exact.euler.regime import FreeSpin, Regime
 from taylor_verify.exact.manufactured import MANUFACTURED, REGIME
@@ -138,7 +138,7 @@ def _loaded(body: RigidBody, omega: tensors.Vector, digits: int) -> Elements:
 def _washboard(board: Washboard, digits: int) -> Elements:
     """Return the elements of a washboard motion. Raises NoClosedForm too near to a separatrix."""
     kind = regime(board)
-    numbers = () if board.keeps_axis else settled(lambda _: _bead(board), digits)
+    numbers = () if board.keeps_axis else settled(lambda _: _bead(board, kind), digits)
     return Elements(kind.value, numbers, _BEAD[kind])
 
 
@@ -151,10 +151,10 @@ conserved :: omega.I (J - I) omega
 """
 
 
-def _bead(board: Washboard) -> list[Element]:
+def _bead(board: Washboard, kind: WashboardRegime) -> list[Element]:
     """The period of a swing, and what is conserved."""
-    motion = course(board, located(board))
-    numbers = described(_PERIOD, [motion.period]) if isinstance(motion, Swing) else []
+    is_swing = kind is WashboardRegime.SWING
+    numbers = described(_PERIOD, [period(board)]) if is_swing else []
     (conserved,) = described(_DIFFERENCE, [mp.convert(board.conserved)])
     return [*numbers, replace(conserved, size=mp.convert(board.momentum_squared))]
 
@@ -207,7 +207,7 @@ def disturbance(spin: FreeSpin) -> Fraction:
     J = H^2/2T, (J - J_p)(J - J_q) = p'(J), J_p J_q = det I/J and w^2 J = 2T.
     """
     J = spin.momentum_squared / spin.twice_energy
-    slope = 3 * J**2 - 2 * spin.trace * J + spin.minors
+    slope = 3 * J**2 - 2 * spin.trace * J + spin.cubic.minors
     return -spin.twice_energy * slope / spin.determinant
 
 

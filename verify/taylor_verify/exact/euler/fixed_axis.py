@@ -16,10 +16,11 @@ from mpmath import mp, mpf
 from taylor_verify.exact import rotation
 from taylor_verify.exact.balls import ball, balls
 from taylor_verify.exact.euler.orbit import converted
-from taylor_verify.exact.euler.rotations import BallCourse, decades
+from taylor_verify.exact.euler.rotations import OneByOne, Rotation, RotationBalls, Rows, decades
 from taylor_verify.exact.frames import Frame, turn
 from taylor_verify.exact.solution import Number, Time, beside, unchanged
 from taylor_verify.scenes import tensors
+from taylor_verify.scenes.motion import Quaternion
 from taylor_verify.scenes.tensors import ZERO_VECTOR, Vector
 
 _GUARD_DIGITS: Final = 8
@@ -54,17 +55,28 @@ class FixedAxis:
         return _GUARD_DIGITS + decades(1 + furthest**2 / self.axis_squared) / 2
 
 
+def in_balls(regime: str, axis: FixedAxis, attitude: Quaternion | None) -> RotationBalls:
+    """The motion in balls."""
+    return RotationBalls(regime, lambda: FixedAxisBalls(axis), attitude)
+
+
+def in_mpmath(regime: str, axis: FixedAxis, attitude: Quaternion | None) -> Rotation:
+    """The motion in mpmath."""
+    return Rotation(regime, lambda: FixedAxisFloats(axis), axis.lost, attitude)
+
+
 @final
-class FixedAxisBalls(BallCourse):
+class FixedAxisBalls(OneByOne):
     """The course in balls."""
 
     def __init__(self, exact: FixedAxis) -> None:
         self._exact, self._length = exact, ball(exact.axis_squared or 1).sqrt()
         self._axis = [entry / self._length for entry in balls(exact.axis)]
 
-    def at(self, t: Time, turned: bool) -> tuple[list[arb], list[arb]]:
+    def at(self, t: Time, turned: bool) -> tuple[list[arb], Rows]:
         omega, angle = self._exact.omega(t, ball), self._exact.turned(t, ball) / self._length
-        return omega, rotation.turn(self._axis, angle / 2) if turned else []
+        half = rotation.turn(self._axis, angle / 2)
+        return omega, rotation.rotation_rows(half) if turned else []
 
 
 @final

@@ -19,10 +19,10 @@ from typing import Final
 from mpmath import mp, mpf
 
 from taylor_verify.exact.elliptic import Triple
-from taylor_verify.exact.euler.fixed_axis import FixedAxis, FixedAxisFloats
+from taylor_verify.exact.euler.fixed_axis import FixedAxis, in_mpmath
 from taylor_verify.exact.euler.orbit import Orbit, converted
 from taylor_verify.exact.euler.regime import CONSTANT, FreeSpin, Regime
-from taylor_verify.exact.euler.rotations import Course, Rotation, decades
+from taylor_verify.exact.euler.rotations import Rotation, decades
 from taylor_verify.exact.frames import Frame, product, transposed, turn
 from taylor_verify.exact.solution import Time
 from taylor_verify.scenes import tensors
@@ -35,22 +35,21 @@ _OWN_GUARD_DIGITS: Final = 8
 def free_rotation(spin: FreeSpin, attitude: Quaternion | None = None) -> Rotation:
     """The torque-free motion of any rigid body, and R from an attitude at the start."""
 
-    def course() -> Course:
-        if spin.regime in CONSTANT:
-            return FixedAxisFloats(FixedAxis(spin.omega))
-        return Precession(spin) if spin.regime is Regime.AXISYMMETRIC else Triaxial(spin)
-
-    return Rotation(spin.regime.value, course, lambda *until: lost_digits(spin, *until), attitude)
+    regime = spin.regime
+    if regime in CONSTANT:
+        return in_mpmath(regime.value, FixedAxis(spin.omega), attitude)
+    course = Precession if regime is Regime.AXISYMMETRIC else Triaxial
+    return Rotation(
+        regime.value, lambda: course(spin), lambda *until: lost_digits(spin, *until), attitude
+    )
 
 
 def lost_digits(spin: FreeSpin, longest: Fraction, turned: bool) -> float:
     """The decimal digits that the closed form may lose up to the time ``longest``.
 
-    Each term is an upper bound from exact rationals; of a constant omega nothing is lost. Being
-    close to the separatrix has no term of its own, because m' comes from an exact difference.
+    Each term is an upper bound from exact rationals. Being close to the separatrix has no term of its
+    own, because m' comes from an exact difference. omega is not constant.
     """
-    if spin.regime in CONSTANT:
-        return FixedAxis(spin.omega).lost(longest, turned)
     H2, tr, det = spin.momentum_squared, spin.trace, spin.determinant
     # The phase lam t (or the angle of precession) is reduced by whole periods, and
     # lam <= H/J_min <= H tr^2/det.

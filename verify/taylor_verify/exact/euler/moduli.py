@@ -16,7 +16,7 @@ from flint import arb
 from taylor_verify.exact.balls import ball, balls, sign
 from taylor_verify.exact.euler.principal import principal_balls
 from taylor_verify.exact.euler.regime import FreeSpin, Regime
-from taylor_verify.exact.rotation import cross
+from taylor_verify.exact.rotation import cross, scalar_product
 
 Triple = tuple[arb, arb, arb]
 
@@ -40,10 +40,10 @@ class Moduli:
         ac = frame.whole_gap
 
         omega = balls(spin.omega)
-        side = sign(dot(frame.axes[a], omega))
+        side = sign(scalar_product(frame.axes[a], omega))
         e_a, e_b = [side * component for component in frame.axes[a]], frame.axes[b]
         self.axes = (e_a, e_b, cross(e_a, e_b))
-        w_a, w_b, w_c = (dot(axis, omega) for axis in self.axes)
+        w_a, w_b, w_c = (scalar_product(axis, omega) for axis in self.axes)
 
         # Sums of positive terms, and for D an exact numerator: nothing cancels.
         # (Products, because a power of a ball about zero is NaN in flint.)
@@ -71,7 +71,3 @@ class Moduli:
             J_c * a_c / self.momentum,
         )
         self.nu = J_c * C / (J_a * A)
-
-
-def dot(p: list[arb], q: list[arb]) -> arb:
-    return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]

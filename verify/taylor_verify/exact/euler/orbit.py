@@ -110,14 +110,14 @@ def principal_frame(spin: FreeSpin) -> PrincipalFrame:
         return _sorted_frame(tuple(spin.inertia[i][i] for i in range(3)))
     # Viete's solution of the cubic. The angle has a sine from the exact discriminant, and the gaps
     # are sines of its third: they are accurate relatively, however nearly two moments agree.
-    sine, cosine = mp.sqrt(27 * mp.convert(spin.discriminant)), mp.convert(spin.skewness)
+    sine, cosine = mp.sqrt(27 * mp.convert(spin.discriminant)), mp.convert(spin.cubic.skewness)
     third, rest = mp.atan2(sine, cosine) / 3, mp.atan2(sine, -cosine) / 3  # they add up to pi/3
-    mean, radius = mp.convert(spin.trace / 3), mp.sqrt(mp.convert(spin.spread))
+    mean, radius = mp.convert(spin.trace / 3), mp.sqrt(mp.convert(spin.cubic.spread))
     upper, lower = (radius * mp.sin(angle) * 2 / mp.sqrt(3) for angle in (rest, third))
     # Of J2 and J3 the product and the sum, so that the small moments of a needle do not cancel.
     J1 = mean + radius * mp.cos(third) * 2 / 3
     both = mp.convert(spin.determinant) / J1
-    J2 = ((mp.convert(spin.minors) - both) / J1 + lower) / 2
+    J2 = ((mp.convert(spin.cubic.minors) - both) / J1 + lower) / 2
     moments = [J1, J2, both / J2]
     axes = [_eigenvector(spin.inertia, moment) for moment in moments]
     return PrincipalFrame(moments, axes, upper, lower)

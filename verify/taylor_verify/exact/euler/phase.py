@@ -13,7 +13,7 @@ from functools import cached_property
 
 from flint import acb, arb
 
-from taylor_verify.exact.balls import Undecidable, sign
+from taylor_verify.exact.balls import sign
 from taylor_verify.exact.euler.moduli import Moduli, Triple
 
 
@@ -54,27 +54,18 @@ class Periodic:
             (self._cn[0] * (q * s) + self._cn[1] * (p * r)) * whole,
         )
 
-    def half_phase(self, t: arb, functions: Triple) -> tuple[arb, arb]:
-        """(cos psi/2, sin psi/2) by e^{i psi} = e^{i Om t} theta_1(z)/theta_1(z_0) over its modulus.
+    def phase(self, t: arb, functions: Triple) -> tuple[arb, arb]:
+        """(cos psi, sin psi) by e^{i psi} = e^{i Om t} theta_1(z)/theta_1(z_0) over its modulus.
 
-        Where sig < 0, psi is the negative of that argument. The argument of theta_1(z) is pi/2 - pi Re z,
-        plus less than a right angle either way. For its slope, a fraction linear in sn^2, is negative at
-        sn^2 = 0 and 1 (|theta_1| and |theta_2| grow along the imaginary axis), so it falls without a stop,
-        and it is a multiple of pi/2 wherever Re z is one of 1/2. So -i e^{i pi Re z} theta_1(z) has a
-        positive real part.
+        Where sig < 0, psi is the negative of the argument of the quotient.
         """
-        rate, _ = self.drift
-        mean_rate = rate - self._moduli.sense * arb.pi() * self.speed
-        half = _half_argument(self._bounded(t)) * self._unwound
-        return _on_circle(half, self._moduli.sense, mean_rate * t / 2)
-
-    def _bounded(self, t: arb) -> acb:
-        z = self.drift[1] + self._turns(t)
-        return self._thetas(z)[0] * acb(z.real - arb(0.5)).exp_pi_i()
+        rate, z0 = self.drift
+        whole = self._thetas(z0 + self._turns(t))[0] * self._unwound
+        return _on_circle(whole, self._moduli.sense, rate * t)
 
     @cached_property
     def _unwound(self) -> acb:
-        return _half_argument(self._bounded(arb(0))).conjugate()
+        return self._thetas(self.drift[1])[0].conjugate()
 
     def _turns(self, t: arb) -> arb:
         """lam t/2K less an even whole number, so about -1..1; whichever number, it is a period."""
@@ -120,7 +111,7 @@ class Separatrix:
         self._root = moduli.nu.sqrt()
         # psi' tends to the rate about axis b, for there 2T J_b = H^2.
         self._rate = moduli.momentum / moduli.moments[1]
-        self._unwound = _half_argument(self._bounded(moduli.functions)).conjugate()
+        self._unwound = self._bounded(moduli.functions).conjugate()
 
     def at(self, t: arb) -> Triple:
         """(dn, sn, cn) of lam t + u_0."""
@@ -132,13 +123,10 @@ class Separatrix:
         falling = cn * C * (1 - sn * S) * whole
         return falling, (sn * C2 + S * cn2) * whole, falling
 
-    def half_phase(self, t: arb, functions: Triple) -> tuple[arb, arb]:
-        """(cos psi/2, sin psi/2); psi = |H| t/J_b - sig [atan(nu^(1/2) sn)] from the start to t.
-
-        Each arctangent is less than a right angle.
-        """
-        half = _half_argument(self._bounded(functions)) * self._unwound
-        return _on_circle(half, self._moduli.sense, self._rate * t / 2)
+    def phase(self, t: arb, functions: Triple) -> tuple[arb, arb]:
+        """(cos psi, sin psi); psi = |H| t/J_b - sig [atan(nu^(1/2) sn)] from the start to t."""
+        whole = self._bounded(functions) * self._unwound
+        return _on_circle(whole, self._moduli.sense, self._rate * t)
 
     def _bounded(self, functions: Triple) -> acb:
         return acb(1, -self._root * functions[1])
@@ -150,13 +138,6 @@ def _on_circle(factor: acb, sense: int, angle: arb) -> tuple[arb, arb]:
     size = (x * x + y * y).rsqrt()
     sin, cos = angle.sin_cos()
     return (cos * x - sin * y) * size, (sin * x + cos * y) * size
-
-
-def _half_argument(z: acb) -> acb:
-    """A number with half the argument of z, which lies in the right half plane (proven)."""
-    if not z.real > 0:
-        raise Undecidable("the ball of a bounded phase leaves the right half plane")
-    return z.sqrt()
 
 
 def _carlson(x: arb, y: arb, z: arb) -> arb:

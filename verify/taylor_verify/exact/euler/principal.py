@@ -15,7 +15,6 @@ from flint import arb, ctx
 
 from taylor_verify.exact.balls import Undecidable, ball, balls
 from taylor_verify.exact.euler.regime import FreeSpin
-from taylor_verify.exact.spectrum import Cubic
 from taylor_verify.scenes import tensors
 
 Axis = list[arb]  # three components in body axes
@@ -38,10 +37,8 @@ def principal_balls(spin: FreeSpin) -> PrincipalBalls:
     """
     if tensors.is_diagonal(spin.inertia):
         return _sorted_frame(tuple(spin.inertia[i][i] for i in range(3)))
-    mean, square = spin.trace / 3, spin.spread / 3
-    moments, (high, middle, low), (upper, lower, whole) = Cubic(
-        spin.trace, spin.minors, spin.determinant
-    ).spectrum()
+    mean, square = spin.trace / 3, spin.cubic.spread / 3
+    moments, (high, middle, low), (upper, lower, whole) = spin.cubic.spectrum()
     traceless = tuple(
         tuple(entry - (mean if i == j else 0) for j, entry in enumerate(row))
         for i, row in enumerate(spin.inertia)

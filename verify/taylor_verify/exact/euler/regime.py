@@ -11,11 +11,9 @@ from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, Final, cast
+from typing import Final
 
-import gmpy2
-
-from taylor_verify.numbers.irrational import Irrational
+from taylor_verify.exact.spectrum import Cubic
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.tensors import Matrix, Vector
 
@@ -43,20 +41,17 @@ class FreeSpin:
     omega: Vector
 
     @cached_property
+    def cubic(self) -> Cubic:
+        """p."""
+        return Cubic.of(self.inertia)
+
+    @property
     def trace(self) -> Fraction:
-        return sum((self.inertia[i][i] for i in range(3)), Fraction(0))
+        return self.cubic.trace
 
-    @cached_property
-    def minors(self) -> Fraction:
-        """J1 J2 + J2 J3 + J3 J1, the sum of the principal minors."""
-        i = [tuple(map(_quick, row)) for row in self.inertia]
-        pairs = ((0, 1), (1, 2), (2, 0))
-        return _exact(sum(i[j][j] * i[k][k] - i[j][k] ** 2 for j, k in pairs))
-
-    @cached_property
+    @property
     def determinant(self) -> Fraction:
-        a, b, c = (tuple(map(_quick, row)) for row in self.inertia)
-        return _exact(tensors.dot(a, tensors.cross(b, c)))
+        return self.cubic.determinant
 
     @cached_property
     def momentum(self) -> Vector:
@@ -74,40 +69,34 @@ class FreeSpin:
     @cached_property
     def torque(self) -> Vector:
         """I w' = H x w at the start: zero exactly in a permanent rotation."""
-        momentum, omega = (tuple(map(_quick, v)) for v in (self.momentum, self.omega))
-        return tuple(map(_exact, tensors.cross(momentum, omega)))
-
-    @cached_property
-    def spread(self) -> Fraction:
-        """(tr I)^2 - 3 minors, half the sum of the squared differences of the moments."""
-        return self.trace**2 - 3 * self.minors
-
-    @cached_property
-    def skewness(self) -> Fraction:
-        """27 (J1 - t)(J2 - t)(J3 - t), where t = tr I/3 is the mean moment."""
-        trace, minors, determinant = map(_quick, (self.trace, self.minors, self.determinant))
-        return _exact(2 * trace**3 - 9 * trace * minors + 27 * determinant)
+        return tensors.cross(self.momentum, self.omega)
 
     @cached_property
     def discriminant(self) -> Fraction:
         """((J1 - J2)(J2 - J3)(J3 - J1))^2."""
-        return _exact((4 * _quick(self.spread) ** 3 - _quick(self.skewness) ** 2) / 27)
+        return self.cubic.discriminant
 
     @cached_property
     def separation(self) -> Fraction:
         """(2T)^3 p(H^2/2T) = (H^2 - 2T J1)(H^2 - 2T J2)(H^2 - 2T J3), without a division."""
-        h, t = _quick(self.momentum_squared), _quick(self.twice_energy)
-        trace, minors, determinant = map(_quick, (self.trace, self.minors, self.determinant))
-        return _exact(h**3 - trace * h**2 * t + minors * h * t**2 - determinant * t**3)
+        h, t = self.momentum_squared, self.twice_energy
+        trace, minors, determinant = self.cubic
+        return h**3 - trace * h**2 * t + minors * h * t**2 - determinant * t**3
+
+    @cached_property
+    def is_spherical(self) -> bool:
+        """True if all three moments are equal."""
+        return self.cubic.spread == 0
 
     # Two equal moments: an axis of symmetry e. Of three equal ones every axis is one.
 
     @cached_property
     def double_moment(self) -> Fraction:
         """J_d, the repeated principal moment, which is always rational."""
-        if self.spread == 0:
+        if self.is_spherical:
             return self.trace / 3
-        return (9 * self.determinant - self.trace * self.minors) / (-2 * self.spread)
+        trace, minors, determinant = self.cubic
+        return (9 * determinant - trace * minors) / (-2 * self.cubic.spread)
 
     @property
     def simple_moment(self) -> Fraction:
@@ -122,7 +111,7 @@ class FreeSpin:
     @cached_property
     def axis(self) -> Vector:
         """n, a rational vector along e: the longest column of (I - J_d)/(J_s - J_d) = e e^T."""
-        if self.spread == 0:
+        if self.is_spherical:
             return (Fraction(1), Fraction(0), Fraction(0))
         double, gap = self.double_moment, self.simple_moment - self.double_moment
         # Of e e^T, the diagonal entry is the square of the column's length.
@@ -153,7 +142,7 @@ class FreeSpin:
         """The kind of orbit. Each question assumes that the earlier ones were denied."""
         if not any(self.omega):
             return Regime.REST
-        if self.spread == 0:
+        if self.is_spherical:
             return Regime.SPHERICAL
         if not any(self.torque):
             return Regime.STEADY
@@ -162,18 +151,3 @@ class FreeSpin:
         if self.separation == 0:
             return Regime.SEPARATRIX
         return Regime.MAX_AXIS if self.separation < 0 else Regime.MIN_AXIS
-
-
-# Polynomials of rationals by GMP, which takes a fifth of the time that Python's own take.
-
-
-def _quick(value: Any) -> Any:
-    if isinstance(value, Irrational):
-        return value
-    return gmpy2.mpq(value.numerator, value.denominator)
-
-
-def _exact(value: Any) -> Fraction:
-    if isinstance(value, Irrational):
-        return cast("Fraction", value)
-    return Fraction(int(value.numerator), int(value.denominator))

@@ -5,8 +5,6 @@ as in regime and moduli; h = H/|H| in (a, b, c), rho^2 = h_a^2 + h_b^2, P = [e_a
 rotation that takes h to axis 3 and c into the plane of axes 1 and 3. With three different moments
 
     R(t) = R0 P B(0)^T Rz(psi) B(t) P^T.
-
-The spherical angle of h about c never winds, because h_a > 0: all the winding is in psi.
 """
 
 from __future__ import annotations
@@ -18,13 +16,13 @@ from typing import final
 from flint import arb, arb_mat
 
 from taylor_verify.exact import rotation
-from taylor_verify.exact.balls import ball, ball_matrix, balls
-from taylor_verify.exact.euler.fixed_axis import FixedAxis, FixedAxisBalls
+from taylor_verify.exact.balls import ball, balls
+from taylor_verify.exact.euler.fixed_axis import FixedAxis, in_balls
 from taylor_verify.exact.euler.moduli import Moduli, Triple
 from taylor_verify.exact.euler.phase import Periodic, Separatrix
 from taylor_verify.exact.euler.polynomials import Polynomials
 from taylor_verify.exact.euler.regime import CONSTANT, FreeSpin, Regime
-from taylor_verify.exact.euler.rotations import BallCourse, Moving, RotationBalls
+from taylor_verify.exact.euler.rotations import Moving, OneByOne, RotationBalls, Rows
 from taylor_verify.exact.solution import Time
 from taylor_verify.exact.theta_series import MANY, ThetaSeries
 from taylor_verify.scenes import motion, tensors
@@ -32,18 +30,15 @@ from taylor_verify.scenes import motion, tensors
 
 def free_rotation(spin: FreeSpin, attitude: motion.Quaternion | None = None) -> RotationBalls:
     """The torque-free motion of any rigid body, and R from an attitude at the start."""
-    return RotationBalls(spin.regime.value, lambda: _course(spin), attitude)
-
-
-def _course(spin: FreeSpin) -> BallCourse:
-    """The motion set up at the ambient precision of flint."""
-    if spin.regime in CONSTANT:
-        return FixedAxisBalls(FixedAxis(spin.omega))
-    return _Precession(spin) if spin.regime is Regime.AXISYMMETRIC else Tumbling(spin)
+    regime = spin.regime
+    if regime in CONSTANT:
+        return in_balls(regime.value, FixedAxis(spin.omega), attitude)
+    course = _Precession if regime is Regime.AXISYMMETRIC else Tumbling
+    return RotationBalls(regime.value, lambda: course(spin), attitude)
 
 
 @final
-class _Precession(BallCourse):
+class _Precession(OneByOne):
     """An axisymmetric body: a turn about the constant H at H/J_d, after one about its own axis.
 
     In body axes omega turns about e at Om = (J_s - J_d)(e.w)/J_d.
@@ -60,7 +55,7 @@ class _Precession(BallCourse):
         self._momentum_axis = [component / momentum for component in balls(spin.momentum)]
         self._momentum_rate = momentum / ball(spin.double_moment)
 
-    def at(self, t: Time, turned: bool) -> tuple[list[arb], list[arb]]:
+    def at(self, t: Time, turned: bool) -> tuple[list[arb], Rows]:
         time = ball(t)
         sin, cos = (self._rate * time).sin_cos()
         parts = zip(self._along, self._across, self._ahead, strict=True)
@@ -69,11 +64,11 @@ class _Precession(BallCourse):
             return omega, []
         outer = rotation.turn(self._momentum_axis, self._momentum_rate * time / 2)
         inner = rotation.turn(self._axis, -self._rate * time / 2)
-        return omega, rotation.product(outer, inner)
+        return omega, rotation.rotation_rows(rotation.product(outer, inner))
 
 
 @final
-class Tumbling(BallCourse):
+class Tumbling(OneByOne):
     """A body with three different moments."""
 
     def __init__(self, spin: FreeSpin) -> None:
@@ -83,28 +78,27 @@ class Tumbling(BallCourse):
         self._to_body = arb_mat([list(row) for row in zip(*moduli.axes, strict=True)])
         self._is_diagonal = tensors.is_diagonal(spin.inertia)
 
-    def at(self, t: Time, turned: bool) -> tuple[list[arb], list[arb]]:
+    def at(self, t: Time, turned: bool) -> tuple[list[arb], Rows]:
         time = ball(t)
         functions = self._functions.at(time)
         parts = zip(self._moduli.amplitudes, functions, strict=True)
         omega = (self._to_body * arb_mat(3, 1, [size * f for size, f in parts])).entries()
         if not turned:
             return omega, []
-        cos, sin = self._functions.half_phase(time, functions)
-        w, x, y, z = self._half_tilt(functions)
-        # The turn by psi about axis 3, after the tilt.
-        tilted = [cos * w - sin * z, cos * x - sin * y, cos * y + sin * x, cos * z + sin * w]
-        return omega, (self._tilted_back * arb_mat(4, 1, tilted)).entries()
+        cos, sin = self._functions.phase(time, functions)
+        pairs = zip(*self._tilt(functions), strict=True)
+        tilted = [(cos * p - sin * q, sin * p + cos * q, h) for p, q, h in pairs]
+        columns = arb_mat([list(column) for column in tilted])
+        return omega, (self._tilted_back * (self._to_body * columns).transpose()).tolist()
 
-    def rows(self, times: Sequence[Time], start: motion.Quaternion | None) -> Moving:
+    def rows(self, times: Sequence[Time], start: arb_mat | None) -> Moving:
         """Return omega and R at every time: by polynomials if there are many times and a short series."""
         polynomials = self._polynomials if len(times) >= MANY else None
         if polynomials is None:
             return super().rows(times, start)
         if start is None:
             return self._in_body(polynomials.omega(times)), []
-        attitude = ball_matrix(rotation.rotation_matrix(start))
-        omega, frames = polynomials.motion(times, attitude * self._to_body)
+        omega, frames = polynomials.motion(times, start * self._to_body)
         turned = self._in_body([row for frame in frames for row in frame])
         return self._in_body(omega), [turned[k : k + 3] for k in range(0, len(turned), 3)]
 
@@ -133,20 +127,12 @@ class Tumbling(BallCourse):
 
     @cached_property
     def _tilted_back(self) -> arb_mat:
-        """P B(0)^T as it acts on a quaternion, whose vector part comes out in body axes."""
-        back = rotation.conjugate(self._half_tilt(self._moduli.functions))
-        images = [rotation.product(back, [arb(int(i == k)) for i in range(4)]) for k in range(4)]
-        scalars, *vectors = zip(*images, strict=True)
-        in_body = (self._to_body * arb_mat([list(row) for row in vectors])).tolist()
-        return arb_mat([list(scalars), *in_body])
+        """P B(0)^T."""
+        return self._to_body * arb_mat(self._tilt(self._moduli.functions)).transpose()
 
-    def _half_tilt(self, functions: Triple) -> list[arb]:
-        """The quaternion of B: B^T = Rz(al) Ry(th), |al| < pi/2 and 0 < th < pi.
-
-        So the cosines of both half angles, and the sine of the second, are positive.
-        """
+    def _tilt(self, functions: Triple) -> Rows:
+        """B: rows are unit vectors, the last one h, the second one normal to h and to axis c."""
         h_a, h_b, h_c = (h * f for h, f in zip(self._moduli.direction, functions, strict=True))
         rho = (h_a * h_a + h_b * h_b).sqrt()
-        cos_al, cos_th = ((1 + h_a / rho) / 2).sqrt(), ((1 + h_c) / 2).sqrt()
-        sin_al, sin_th = h_b / (2 * rho * cos_al), rho / (2 * cos_th)
-        return [cos_al * cos_th, sin_al * sin_th, -cos_al * sin_th, -sin_al * cos_th]
+        cos, sin = h_a / rho, h_b / rho
+        return [[h_c * cos, h_c * sin, -rho], [-sin, cos, arb(0)], [h_a, h_b, h_c]]

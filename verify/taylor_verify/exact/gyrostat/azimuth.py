@@ -11,13 +11,13 @@ G = sigma N c + rho f is on the curve, and another one where G is its conjugate.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from fractions import Fraction
 from typing import Any, Final, NamedTuple
 
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.exact.gyrostat.point import PointMap
-from taylor_verify.exact.rotation import cross, rotation_matrix
+from taylor_verify.exact.rotation import cross, rotation_matrix, scalar_product
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.tensors import Vector, dot
 
@@ -72,7 +72,7 @@ def poles(free: FreeGyrostat, place: PointMap, frame: Frame, numbers: Arithmetic
     for sigma in (1, -1):
         for rho in _feet(free, frame, sigma, N, numbers):
             point = [sigma * N * p + rho * q for p, q in zip(c, f, strict=True)]
-            omega = [_dot(row, point) - entry for row, entry in zip(K, g, strict=True)]
+            omega = [scalar_product(row, point) - entry for row, entry in zip(K, g, strict=True)]
             result.append(Pole(sigma, *place.at(point, cross(point, omega))))
     return result
 
@@ -103,7 +103,3 @@ def rate_at_start(free: FreeGyrostat, c: Vector, N: Any, real: Callable[[Fractio
     """phi' at the start: N times a rational number."""
     G, w = free.momentum, free.omega
     return N * real((dot(G, w) - dot(G, c) * dot(w, c)) / (free.n - dot(G, c) ** 2))
-
-
-def _dot(a: Sequence[Any], b: Sequence[Any]) -> Any:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

@@ -14,9 +14,9 @@ from taylor_verify.scenes.scene import Scene
 
 def enclosed(scene: Scene) -> Solution:
     """Return the motion in balls; raises NoClosedForm for a moment on the body."""
-    from taylor_verify.exact.gyrostat.sigma import GyrostatBalls
+    from taylor_verify.exact.gyrostat.sigma import free_rotation
 
-    return GyrostatBalls(*free_gyrostat(scene))
+    return free_rotation(*free_gyrostat(scene))
 
 
 def closed_form(scene: Scene) -> Solution:

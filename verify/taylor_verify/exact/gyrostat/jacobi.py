@@ -15,6 +15,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from fractions import Fraction
 from functools import cached_property
+from operator import itemgetter
 from typing import Final, NamedTuple, final
 
 from mpmath import mp, mpc, mpf
@@ -43,10 +44,6 @@ from taylor_verify.scenes.tensors import Vector
 
 _MPMATH: Final = Arithmetic(mp.convert, mpc, mp.sqrt)
 _GUARD_DIGITS: Final = 15
-_CHOICE_DIGITS: Final = 15
-_SAMPLES: Final = 48
-# An orbit without a period is looked at for so many times the time in which G turns by a radian at first.
-_UNITS: Final = 16
 
 
 def free_rotation(free: FreeGyrostat, attitude: Quaternion | None) -> Rotation:
@@ -116,6 +113,8 @@ class Swing:
     at: Callable[[mpf], Place]
     half: Place
     """The place at half the period, where there is one."""
+    least: mpf
+    """The least p at a real time, which a motion without a period never reaches."""
     m: mpf | None = None
     m_prime: mpf | None = None
 
@@ -126,6 +125,7 @@ class Swing:
         if not discriminant:
             self._root = mp.convert(free.double_root)
             self.rate = mp.sqrt(3 * abs(self._root))
+            self.least = max(self._root, -2 * self._root)
             if self._root < 0:
                 self.period = mp.pi / self.rate
                 self.half = Place(-2 * self._root, mpf(0), (mpf(0), self.rate**2, self.rate**2))
@@ -153,7 +153,7 @@ class Swing:
             upper = mp.sqrt(discriminant) / (4 * lower * whole)
         else:
             lower = mp.sqrt(discriminant) / (4 * upper * whole)
-        self._root, self.rate = e3, mp.sqrt(whole)
+        self._root, self.least, self.rate = e3, e1, mp.sqrt(whole)
         self.m, self.m_prime = lower / whole, upper / whole
         self._chain = Landen(self.m, self.m_prime)
         self.period = 2 * self._chain.quarter_period / self.rate
@@ -177,7 +177,8 @@ class Swing:
         bigger = mpf(1) / 2 + abs(3 * e / (4 * H))
         smaller = -discriminant / (256 * H**6 * bigger)
         self.m, self.m_prime = (smaller, bigger) if e >= 0 else (bigger, smaller)
-        self._root, self.rate = e, mp.sqrt(H)
+        self._root = self.least = e
+        self.rate = mp.sqrt(H)
         self._chain = Landen(self.m, self.m_prime)
         self.period = 2 * self._chain.quarter_period / self.rate
         self._to_pair = mpc(3 * e / 2, 2 * H * mp.sqrt(self.m * self.m_prime))
@@ -246,7 +247,7 @@ class Azimuth:
     """phi(t) of one frame, and M(t)."""
 
     def __init__(self, free: FreeGyrostat, swing: Swing) -> None:
-        frame, self._poles = _best_poles(free, swing.period)
+        frame, self._poles = _best_poles(free, swing)
         self._c = converted(frame.c)
         self._N = mp.sqrt(mp.convert(free.n))
         self._rate = rate_at_start(free, frame.c, self._N, mp.convert)
@@ -279,36 +280,27 @@ def _integral(place: Place, x: mpc) -> mpc:
     return integral_j(*place.above_roots, place.p - x) / 3
 
 
-def _best_poles(free: FreeGyrostat, period: mpf) -> tuple[Frame, list[Pole]]:
-    """Return the frame whose axis c the momentum stays farthest away from, and its poles."""
-    orbit = _rough_orbit(free, period)
-    place = point_map(free).converted(mp.convert)
-    nearest = {k: max(abs(mp.fdot(frame.c, G)) for G in orbit) for k, frame in enumerate(FRAMES)}
-    for number in sorted(nearest, key=nearest.__getitem__):
+def _best_poles(free: FreeGyrostat, swing: Swing) -> tuple[Frame, list[Pole]]:
+    """Return the frame whose poles are farthest from the real times, and those poles."""
+    place, choices = point_map(free).converted(mp.convert), []
+    for frame in FRAMES:
         with suppress(ZeroDivisionError):
-            return FRAMES[number], poles(free, place, FRAMES[number], _MPMATH)
-    raise ZeroDivisionError("no frame has its poles at finite places")
+            choice = poles(free, place, frame, _MPMATH)
+            # Near the start, where p has its pole, the momentum itself tells the distance.
+            distances = (_distance(pole, swing.least) for pole in choice)
+            choices.append((min(*distances, _distance_at_start(free, frame)), frame, choice))
+    if not choices:
+        raise ZeroDivisionError("no frame has its poles at finite places")
+    _, frame, best = max(choices, key=itemgetter(0))
+    return frame, best
 
 
-def _rough_orbit(free: FreeGyrostat, period: mpf) -> list[list[mpf]]:
-    """G along one period, or some turns of a motion without one, by a rough integration."""
-    with mp.workdps(_CHOICE_DIGITS):
-        K, g = [converted(row) for row in free.K], converted(free.g)
-        G, slope = map(converted, free.jet[:2])
-        span = period if period < mp.inf else _UNITS * mp.norm(G) / mp.norm(slope)
-        h = span / _SAMPLES
+def _distance(pole: Pole, least: mpf) -> mpf:
+    """The distance of a pole, roughly, from the real times, at which p is ``least`` or more."""
+    return abs(pole.p - max(mp.re(pole.p), least)) / abs(pole.slope)
 
-        def rate(G: list[mpf], step: list[mpf], size: mpf) -> list[mpf]:
-            moved = [p + size * q for p, q in zip(G, step, strict=True)]
-            return cross(moved, [q - c for q, c in zip(applied(K, moved), g, strict=True)])
 
-        orbit = [G]
-        for _ in range(_SAMPLES):
-            k1 = rate(G, slope, mpf(0))
-            k2 = rate(G, k1, h / 2)
-            k3 = rate(G, k2, h / 2)
-            k4 = rate(G, k3, h)
-            slopes = zip(G, k1, k2, k3, k4, strict=True)
-            G = [p + h * (a + 2 * b + 2 * c + d) / 6 for p, a, b, c, d in slopes]
-            orbit.append(G)
-        return orbit
+def _distance_at_start(free: FreeGyrostat, frame: Frame) -> mpf:
+    """The time in which the momentum turns as far as it is from the axis c at the start."""
+    away, G1 = tensors.cross(frame.c, free.momentum), free.jet[1]
+    return mp.sqrt(mp.convert(tensors.dot(away, away) / tensors.dot(G1, G1)))

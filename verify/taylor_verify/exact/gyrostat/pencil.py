@@ -18,6 +18,8 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Final
 
+from taylor_verify.exact.euler.regime import FreeSpin
+from taylor_verify.exact.spectrum import Cubic
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.tensors import Matrix, Vector, cross, dot
 
@@ -49,6 +51,11 @@ class FreeGyrostat:
     omega: Vector
 
     @cached_property
+    def spin(self) -> FreeSpin:
+        """The body and its start without wheels."""
+        return FreeSpin(self.inertia, self.omega)
+
+    @cached_property
     def K(self) -> Matrix:
         return tensors.inverse(self.inertia)
 
@@ -76,9 +83,9 @@ class FreeGyrostat:
         return dot(self.omega, tensors.apply(self.inertia, self.omega))
 
     @cached_property
-    def trace(self) -> Fraction:
-        """S = tr K."""
-        return _trace(self.K)
+    def cubic(self) -> Cubic:
+        """The trace S of K, the sum c2 of its principal minors, and its determinant."""
+        return Cubic.of(self.K)
 
     @cached_property
     def square(self) -> Matrix:
@@ -86,16 +93,10 @@ class FreeGyrostat:
         return tensors.product(self.K, self.K)
 
     @cached_property
-    def minors(self) -> Fraction:
-        """c2, the sum of the principal minors of K."""
-        return (self.trace**2 - _trace(self.square)) / 2
-
-    @cached_property
     def invariants(self) -> tuple[Fraction, Fraction]:
         """(g2, g3) of the quartic D = a0 s^4 + 4 a1 s^3 + 6 a2 s^2 + 4 a3 s + a4."""
-        n, E, S, c2, g = self.n, self.E, self.trace, self.minors, self.g
-        k1, k2, k3 = self.K
-        determinant = dot(k1, cross(k2, k3))
+        n, E, g = self.n, self.E, self.g
+        S, c2, determinant = self.cubic
         # adj(K - s) = adj K - s (S - K) + s^2, and adj K = K^2 - S K + c2.
         gg, gKg = dot(g, g), dot(g, tensors.apply(self.K, g))
         gKKg = dot(g, tensors.apply(self.square, g))
@@ -156,7 +157,7 @@ class FreeGyrostat:
         if not any(cross(self.momentum, self.omega)):
             return Regime.STEADY
         if self._precession is not None:
-            return Regime.SPHERICAL if self.axis_projector is None else Regime.AXISYMMETRIC
+            return Regime.SPHERICAL if self.spin.is_spherical else Regime.AXISYMMETRIC
         if self.discriminant:
             return Regime.PERIODIC
         if not self.double_root:
@@ -172,7 +173,7 @@ class FreeGyrostat:
             return self.omega
         if self._precession is None:
             return None
-        return tensors.scaled(1 / self.double_moment, self.momentum)
+        return tensors.scaled(1 / self.spin.double_moment, self.momentum)
 
     @property
     def inner(self) -> Vector:
@@ -187,60 +188,10 @@ class FreeGyrostat:
 
         None for three different moments, and for wheels that do not turn about the axis.
         """
-        N = self.axis_projector
-        if N is None:
-            return self.g if self._is_spherical else None
-        along = tensors.apply(N, self.rotor)
-        if along != self.rotor:
+        spin = self.spin
+        if spin.is_spherical:
+            return self.g
+        if spin.discriminant or spin.along(self.rotor) != self.rotor:
             return None
-        simple = self._trace_of_inertia - 2 * self.double_moment
-        spin = tensors.apply(N, self.omega)
-        total = tensors.plus(tensors.scaled(simple - self.double_moment, spin), along)
-        return tensors.scaled(1 / self.double_moment, total)
-
-    @property
-    def has_equal_moments(self) -> bool:
-        return self._is_spherical or self.axis_projector is not None
-
-    @cached_property
-    def double_moment(self) -> Fraction:
-        """The repeated moment of inertia, where two or all three are equal; always rational."""
-        if self._is_spherical:
-            return self.inertia[0][0]
-        tr, spread = self._trace_of_inertia, self._spread
-        minors = (tr**2 - _trace(tensors.product(self.inertia, self.inertia))) / 2
-        a, b, c = self.inertia
-        return (9 * dot(a, cross(b, c)) - tr * minors) / (-2 * spread)
-
-    @cached_property
-    def axis_projector(self) -> Matrix | None:
-        """e e^T for the axis e of a body with exactly two equal moments; None for any other."""
-        if self._is_spherical:
-            return None
-        double = self.double_moment
-        simple = self._trace_of_inertia - 2 * double
-        multiple = tensors.diagonal((double,) * 3)
-        shifted = tuple(tensors.minus(p, q) for p, q in zip(self.inertia, multiple, strict=True))
-        # With three different moments ``double`` is none of them, and no multiple of this is a projector.
-        if simple == double:
-            return None
-        projector = tuple(tensors.scaled(1 / (simple - double), row) for row in shifted)
-        return projector if tensors.product(projector, projector) == projector else None
-
-    @property
-    def _is_spherical(self) -> bool:
-        return self._spread == 0
-
-    @cached_property
-    def _trace_of_inertia(self) -> Fraction:
-        return _trace(self.inertia)
-
-    @cached_property
-    def _spread(self) -> Fraction:
-        """Half the sum of the squared differences of the moments of inertia."""
-        squares = _trace(tensors.product(self.inertia, self.inertia))
-        return (3 * squares - self._trace_of_inertia**2) / 2
-
-
-def _trace(matrix: Matrix) -> Fraction:
-    return matrix[0][0] + matrix[1][1] + matrix[2][2]
+        gyration = tensors.scaled(spin.ratio, spin.along(self.omega))
+        return tensors.plus(gyration, tensors.scaled(1 / spin.double_moment, self.rotor))

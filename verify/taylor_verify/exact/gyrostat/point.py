@@ -20,6 +20,7 @@ from fractions import Fraction
 from typing import Any, Self, final
 
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
+from taylor_verify.exact.rotation import scalar_product
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.tensors import Vector, cross, dot
 
@@ -54,9 +55,9 @@ class ByPlanes(PointMap):
 
     def at(self, point: Sequence[Any], rate: Sequence[Any]) -> tuple[Any, Any]:
         d = [p - q for p, q in zip(point, self.start, strict=True)]
-        below = _dot(self.nu, d)
-        ratio = _dot(self.mu, d) / below
-        slope = (_dot(self.mu, rate) - ratio * _dot(self.nu, rate)) / below
+        below = scalar_product(self.nu, d)
+        ratio = scalar_product(self.mu, d) / below
+        slope = (scalar_product(self.mu, rate) - ratio * scalar_product(self.nu, rate)) / below
         return self.scale * ratio + self.constant, self.scale * slope
 
 
@@ -66,7 +67,7 @@ class OnCircle(PointMap):
 
     def at(self, point: Sequence[Any], rate: Sequence[Any]) -> tuple[Any, Any]:
         d = [p - q for p, q in zip(point, self.start, strict=True)]
-        c = self.scale * _dot(self.mu, d) / _dot(self.nu, d) + self.constant
+        c = self.scale * scalar_product(self.mu, d) / scalar_product(self.nu, d) + self.constant
         return c * c - 2 * self.double_root, 2 * c * (3 * self.double_root - c * c)
 
 
@@ -106,7 +107,3 @@ def _quotient(free: FreeGyrostat, mu: Vector, nu: Vector) -> tuple[Fraction, ...
 def _stripped(series: Sequence[Fraction]) -> Sequence[Fraction]:
     """The series from its first coefficient that is not zero."""
     return series[next(k for k, c in enumerate(series) if c) :]
-
-
-def _dot(a: Sequence[Any], b: Sequence[Any]) -> Any:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

@@ -10,14 +10,15 @@ four factors of modulus one, of which no branch has to be chosen.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
-from fractions import Fraction
-from typing import Any, Final, NamedTuple, Protocol, final
+from functools import cache, cached_property, partial
+from typing import Final, NamedTuple, final
 
 from flint import acb, arb, arb_mat
 
-from taylor_verify.exact.balls import Enclosed, Enclosure, Undecidable, ball, balls, balls_of
+from taylor_verify.exact.balls import Undecidable, ball, balls, balls_of
+from taylor_verify.exact.euler.rotations import BallCourse, Moving, OneByOne, RotationBalls, Rows
 from taylor_verify.exact.gyrostat.azimuth import (
     FRAMES,
     Arithmetic,
@@ -34,77 +35,42 @@ from taylor_verify.exact.rotation import (
     conjugate,
     cross,
     product,
-    rotation_matrix,
     rotation_rows,
+    scalar_product,
     turn,
-    unit,
 )
+from taylor_verify.exact.solution import Time
 from taylor_verify.scenes.motion import Quaternion
 from taylor_verify.scenes.tensors import Vector, dot
-
-Rows = list[list[arb]]
-Row = tuple[list[arb], Rows]
-"""omega in body axes, and the rows of R; none of the latter where it is not tracked."""
 
 _BALLS: Final = Arithmetic(ball, acb, lambda z: z.sqrt())
 
 
-class Course(Protocol):
-    """A motion with numbers of one precision, to be used at that one."""
+def free_rotation(free: FreeGyrostat, attitude: Quaternion | None) -> RotationBalls:
+    """The free motion of a rigid body with wheels, and R where an attitude is given."""
+    # Chosen once, at the first precision that tells.
+    frame = cache(partial(_best_frame, free))
 
-    def rows(self, times: Sequence[arb]) -> list[Row]:
-        """omega in body axes, and R where it is tracked, at each time."""
-        ...
+    def course() -> BallCourse:
+        return Tumbling(free, frame) if free.outer is None else Turning(free, free.outer)
 
-
-@final
-class GyrostatBalls(Enclosed):
-    """The free motion of a rigid body with wheels: omega(t) in body axes, and R(t) where it is tracked."""
-
-    def __init__(self, free: FreeGyrostat, attitude: Quaternion | None) -> None:
-        self.regime = free.regime.value
-        self._free, self._attitude = free, attitude
-        self._courses: dict[int, Course] = {}
-        self._frame: Frame | None = None
-
-    def enclose(self, elapsed: Sequence[Fraction], bits: int) -> Enclosure:
-        """``omega``, rows of 3, and ``attitude``, rows of 3x3, where it is tracked."""
-        if bits not in self._courses:
-            self._courses[bits] = self._course()
-        rows = self._courses[bits].rows(balls_of(elapsed))
-        enclosure: dict[str, Any] = {"omega": [omega for omega, _ in rows]}
-        if self._attitude is not None:
-            enclosure["attitude"] = [R for _, R in rows]
-        return enclosure
-
-    def _course(self) -> Course:
-        if self._free.outer is not None:
-            return Turning(self._free, self._free.outer, self._attitude)
-        if self._attitude is None:
-            return Tumbling(self._free, None, FRAMES[0])
-        if self._frame is None:
-            self._frame = _best_frame(self._free)
-        return Tumbling(self._free, self._attitude, self._frame)
+    return RotationBalls(free.regime.value, course, attitude)
 
 
 @final
-class Turning:
-    """w turns in the body at a constant rate v, and the body about u: R = R(0) Rot(u t) Rot(-v t)."""
+class Turning(OneByOne):
+    """w turns in the body at a constant rate v, and the body about u: a turn by Rot(u t) Rot(-v t)."""
 
-    def __init__(self, free: FreeGyrostat, outer: Vector, attitude: Quaternion | None) -> None:
+    def __init__(self, free: FreeGyrostat, outer: Vector) -> None:
         self._omega, self._outer, self._inner = free.omega, outer, free.inner
-        self._start = None if attitude is None else unit(attitude)
 
-    def rows(self, times: Sequence[arb]) -> list[Row]:
-        return [self._at(t) for t in times]
-
-    def _at(self, t: arb) -> Row:
-        inner = _turn(self._inner, t)
-        omega = arb_mat(rotation_rows(inner)) * arb_mat(3, 1, balls(self._omega))
-        if self._start is None:
-            return omega.entries(), []
-        turned = product(_turn(self._outer, t), conjugate(inner))
-        return omega.entries(), rotation_rows(product(self._start, turned))
+    def at(self, t: Time, turned: bool) -> tuple[list[arb], Rows]:
+        time = ball(t)
+        inner = _turn(self._inner, time)
+        omega = (arb_mat(rotation_rows(inner)) * arb_mat(3, 1, balls(self._omega))).entries()
+        if not turned:
+            return omega, []
+        return omega, rotation_rows(product(_turn(self._outer, time), conjugate(inner)))
 
 
 def _turn(rate: Vector, t: arb) -> list[arb]:
@@ -116,31 +82,41 @@ def _turn(rate: Vector, t: arb) -> list[arb]:
 
 @final
 class Tumbling:
-    """omega and R of a motion that is not a uniform turning."""
+    """A motion that is not a uniform turning; ``frame`` is that of its azimuth."""
 
-    def __init__(self, free: FreeGyrostat, attitude: Quaternion | None, frame: Frame) -> None:
+    def __init__(self, free: FreeGyrostat, frame: Callable[[], Frame]) -> None:
+        self._free, self._frame = free, frame
         self._form = momentum_form(free).converted(ball)
         self._K, self._g = [balls(row) for row in free.K], balls(free.g)
         self._lattice = lattice(*free.invariants)
         self._omega = balls(free.omega)
-        self._azimuth: Azimuth | None = None
-        self._start: Rows = []
-        if attitude is not None:
-            self._azimuth = Azimuth(free, point_map(free), frame, self._lattice)
-            self._start = [balls(row) for row in rotation_matrix(attitude)]
-            tilt = arb_mat(self._azimuth.axes(balls(free.momentum))).transpose()
-            self._to_space = (arb_mat(self._start) * tilt).tolist()
 
-    def rows(self, times: Sequence[arb]) -> list[Row]:
-        line = self._lattice.along(times)
+    @cached_property
+    def _azimuth(self) -> Azimuth:
+        return Azimuth(self._free, point_map(self._free), self._frame(), self._lattice)
+
+    @cached_property
+    def _tilted_back(self) -> arb_mat:
+        """M(0)."""
+        return arb_mat(self._azimuth.axes(balls(self._free.momentum))).transpose()
+
+    def rows(self, times: Sequence[Time], start: arb_mat | None) -> Moving:
+        """omega, and R from the R at the start, at each time: by the points of one line."""
+        elapsed = balls_of(times)
+        line = self._lattice.along(elapsed)
         places = [self._form.at(P, slope) for P, slope in line.p()]
-        frames: Sequence[Rows] = [[]] * len(places)
-        if self._azimuth is not None:
-            turned = zip(self._azimuth.turns(times, line), places, strict=True)
-            frames = [self._in_space(turn, *self._azimuth.axes(G)) for turn, G in turned]
-        return [
-            (self._omega, self._start) if t.is_zero() else (self._spin(G), R)
-            for t, G, R in zip(times, places, frames, strict=True)
+        at_start = [t.is_zero() for t in elapsed]
+        omega = [
+            self._omega if first else self._spin(G)
+            for first, G in zip(at_start, places, strict=True)
+        ]
+        if start is None:
+            return omega, []
+        to_space = (start * self._tilted_back).tolist()
+        turns = zip(at_start, self._azimuth.turns(elapsed, line), places, strict=True)
+        return omega, [
+            start.tolist() if first else _in_space(to_space, turn, *self._azimuth.axes(G))
+            for first, turn, G in turns
         ]
 
     # Entry by entry: to make a matrix of balls takes longer than the product.
@@ -151,11 +127,12 @@ class Tumbling:
         rows = zip(self._K, self._g, strict=True)
         return [p * a + q * b + r * c - g for (p, q, r), g in rows]
 
-    def _in_space(self, turn: acb, m1: list[arb], m2: list[arb], m3: list[arb]) -> Rows:
-        """R(0) M(0) Rz(phi) M^T, with the cosine and the sine of phi in ``turn``."""
-        x, y = turn.real, turn.imag
-        turned = [(x * a - y * b, y * a + x * b, c) for a, b, c in zip(m1, m2, m3, strict=True)]
-        return [[p * a + q * b + r * c for a, b, c in turned] for p, q, r in self._to_space]
+
+def _in_space(to_space: Rows, turn: acb, m1: list[arb], m2: list[arb], m3: list[arb]) -> Rows:
+    """R(0) M(0) Rz(phi) M^T, with the cosine and the sine of phi in ``turn``."""
+    x, y = turn.real, turn.imag
+    turned = [(x * a - y * b, y * a + x * b, c) for a, b, c in zip(m1, m2, m3, strict=True)]
+    return [[p * a + q * b + r * c for a, b, c in turned] for p, q, r in to_space]
 
 
 @final
@@ -202,9 +179,9 @@ class Azimuth:
         """m1, m2 and m3, the columns of M."""
         over = 1 / self._N
         m3 = [component * over for component in G]
-        along = self._c[0] * m3[0] + self._c[1] * m3[1] + self._c[2] * m3[2]
+        along = scalar_product(self._c, m3)
         across = [p - along * q for p, q in zip(self._c, m3, strict=True)]
-        length = (across[0] * across[0] + across[1] * across[1] + across[2] * across[2]).rsqrt()
+        length = scalar_product(across, across).rsqrt()
         m1 = [component * length for component in across]
         return [m1, cross(m3, m1), m3]
 

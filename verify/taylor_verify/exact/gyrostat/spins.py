@@ -6,7 +6,6 @@ in a spin goes as e^{s t} with s^2 = -G.adj(K - mu) G.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from contextlib import suppress
 from fractions import Fraction
 from typing import Final, NamedTuple
@@ -17,9 +16,10 @@ from mpmath import mp, mpf
 from taylor_verify.exact.balls import Undecidable, ball, balls, midpoint, sign
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.exact.real_roots import real_roots
+from taylor_verify.exact.rotation import scalar_product
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.scenes import tensors
-from taylor_verify.scenes.tensors import Matrix, Vector, cross, dot
+from taylor_verify.scenes.tensors import Matrix, Vector
 
 _GUARD_BITS: Final = 40
 _ATTEMPTS: Final = 8
@@ -60,8 +60,8 @@ def _spins(free: FreeGyrostat, precision: int) -> list[tuple[arb, arb]]:
     axial = determinant
     for image in images:
         axial = axial.gcd(image)
-    if free.has_equal_moments:
-        double = 1 / free.double_moment
+    if not free.spin.discriminant:
+        double = 1 / free.spin.double_moment
         while axial.degree() > 0 and not axial(fmpq(double.numerator, double.denominator)):
             axial //= _polynomial(-double, Fraction(1))
     tangent = axial.gcd(condition // (axial * axial))
@@ -76,7 +76,7 @@ def _spins(free: FreeGyrostat, precision: int) -> list[tuple[arb, arb]]:
     for mu in real_roots(axial // tangent):
         spins += _axial(free, mu)
     spins += [(mu, arb(0)) for border in (multiple, tangent) for mu in real_roots(border)]
-    N, pace = ball(n).sqrt(), ball(free.trace)
+    N, pace = ball(n).sqrt(), ball(free.cubic.trace)
     if not all(
         _is_narrow(mu, pace, precision) and _is_narrow(square, abs(square), precision)
         for mu, square in spins
@@ -108,8 +108,10 @@ def _axial(free: FreeGyrostat, mu: arb) -> list[tuple[arb, arb]]:
     pairs = ((0, 1), (1, 2), (2, 0))
     minors = sum((moved[i][i] * moved[j][j] - moved[i][j] ** 2 for i, j in pairs), arb(0))
     # M^2 - (tr M) M + minors = 0 across the axis, where M = K - mu is regular.
-    across = [(trace * p - _dot(row, g)) / minors for p, row in zip(g, moved, strict=True)]
-    along = ball(free.n) - _dot(across, across)
+    across = [
+        (trace * p - scalar_product(row, g)) / minors for p, row in zip(g, moved, strict=True)
+    ]
+    along = ball(free.n) - scalar_product(across, across)
     return [(mu, -minors * along)] * 2 if sign(along) > 0 else []
 
 
@@ -117,21 +119,17 @@ def _adjugate_form(free: FreeGyrostat, mu: arb, G: list[arb]) -> arb:
     """G.adj(K - mu) G, with adj(K - mu) = K^2 - S K + c2 - mu (S - K) + mu^2."""
 
     def form(matrix: Matrix) -> arb:
-        return _dot(G, [_dot(balls(row), G) for row in matrix])
+        return scalar_product(G, [scalar_product(balls(row), G) for row in matrix])
 
-    S, c2 = ball(free.trace), ball(free.minors)
-    n, first = _dot(G, G), form(free.K)
+    S, c2 = ball(free.cubic.trace), ball(free.cubic.minors)
+    n, first = scalar_product(G, G), form(free.K)
     return form(free.square) - S * first + c2 * n - mu * (S * n - first) + mu**2 * n
-
-
-def _dot(a: Sequence[arb], b: Sequence[arb]) -> arb:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def _adjugate(free: FreeGyrostat) -> tuple[Vector, Vector, Vector]:
     """adj(K - mu) g by powers of mu, the constant first."""
     g, Kg = free.g, tensors.apply(free.K, free.g)
-    S, c2 = free.trace, free.minors
+    S, c2, _ = free.cubic
     rest = tensors.minus(tensors.scaled(c2, g), tensors.scaled(S, Kg))
     constant = tensors.plus(tensors.apply(free.square, g), rest)
     return constant, tensors.minus(Kg, tensors.scaled(S, g)), g
@@ -139,8 +137,8 @@ def _adjugate(free: FreeGyrostat) -> tuple[Vector, Vector, Vector]:
 
 def _determinant(free: FreeGyrostat) -> tuple[Fraction, ...]:
     """det(K - mu) by powers of mu, the constant first."""
-    k1, k2, k3 = free.K
-    return dot(k1, cross(k2, k3)), -free.minors, free.trace, Fraction(-1)
+    S, c2, determinant = free.cubic
+    return determinant, -c2, S, Fraction(-1)
 
 
 def _value(coefficients: list[arb], mu: arb) -> arb:

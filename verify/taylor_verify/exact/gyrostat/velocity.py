@@ -24,6 +24,7 @@ from typing import Any, final
 
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.exact.gyrostat.point import OnCircle, point_map
+from taylor_verify.exact.rotation import scalar_product
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.tensors import Vector, cross, dot
 
@@ -43,7 +44,7 @@ class WeierstrassForm:
     @classmethod
     def of(cls, free: FreeGyrostat) -> WeierstrassForm:
         """Return the exact constants of one start."""
-        K, g, G, S, c2 = free.K, free.g, free.momentum, free.trace, free.minors
+        K, g, G, (S, c2, _) = free.K, free.g, free.momentum, free.cubic
         _, G1, half_G2, *_ = free.jet
         G2 = tensors.scaled(Fraction(2), half_G2)
         q, w1 = tensors.apply(K, G), tensors.apply(K, G1)
@@ -136,7 +137,7 @@ class CircleForm:
         start, mu, nu = self.place.start, self.place.mu, self.place.nu
         c = (P + 2 * self.place.double_root) ** 0.5
         r = ((-c if slope > 0 else c) - self.place.constant) / self.place.scale
-        size, across, height = (_dot(*pair) for pair in ((mu, mu), (nu, nu), (nu, start)))
+        size, across, height = (scalar_product(*pair) for pair in ((mu, mu), (nu, nu), (nu, start)))
         factor = -2 * height / (r * r * across + size)
         components = zip(start, mu, nu, strict=True)
         return [G + factor * (r * p + size / across * q) for G, p, q in components]
@@ -149,10 +150,6 @@ def momentum_form(free: FreeGyrostat) -> WeierstrassForm | CircleForm:
         assert isinstance(place, OnCircle)
         return CircleForm(place)
     return WeierstrassForm.of(free)
-
-
-def _dot(a: Sequence[Any], b: Sequence[Any]) -> Any:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def _bracket(K: Any, a: Vector, b: Vector) -> Vector:

@@ -23,7 +23,7 @@ from taylor_verify.exact.balls import ball, balls
 from taylor_verify.exact.euler.moments.kummer import KummerTurn
 from taylor_verify.exact.euler.moments.power_series import SeriesTurn
 from taylor_verify.exact.euler.moments.regime import Line, LoadedSpin, MomentRegime
-from taylor_verify.exact.euler.rotations import BallCourse, RotationBalls
+from taylor_verify.exact.euler.rotations import OneByOne, RotationBalls, Rows
 from taylor_verify.scenes import motion, tensors
 
 
@@ -36,7 +36,7 @@ def loaded_rotation(spin: LoadedSpin, attitude: motion.Quaternion | None = None)
     return RotationBalls(spin.regime.value, lambda: _Course(spin, line), attitude)
 
 
-class _Course(BallCourse):
+class _Course(OneByOne):
     """The course at one precision of flint."""
 
     def __init__(self, spin: LoadedSpin, line: Line | None) -> None:
@@ -56,14 +56,13 @@ class _Course(BallCourse):
             self._axis = [component / length for component in balls(spin.free.axis)]
             self._turn = SeriesTurn(line) if line.is_weak else KummerTurn(line)
 
-    def at(self, t: Fraction, turned: bool) -> tuple[list[arb], list[arb]]:
+    def at(self, t: Fraction, turned: bool) -> tuple[list[arb], Rows]:
         phi = ball(self._spin.phi(t)) / self._length
         omega = self._omega(t, phi)
         if not turned:
             return omega, []
-        return omega, rotation.product(
-            self._turn.quaternion(t), rotation.turn(self._axis, -phi / 2)
-        )
+        back = rotation.turn(self._axis, -phi / 2)
+        return omega, rotation.rotation_rows(rotation.product(self._turn.quaternion(t), back))
 
     def _omega(self, t: Fraction, phi: arb) -> list[arb]:
         spin = self._spin

@@ -21,7 +21,8 @@ from taylor_verify.exact.euler.orbit import converted
 from taylor_verify.exact.euler.rotations import Rotation, decades
 from taylor_verify.exact.frames import Frame, product, turn
 from taylor_verify.exact.rotation import cross, rotation_rows
-from taylor_verify.scenes import motion, tensors
+from taylor_verify.exact.solution import NoClosedForm
+from taylor_verify.scenes import motion
 
 # Some hundred roundings in a row; what else is lost is counted, or left to the settling.
 _OWN_GUARD_DIGITS: Final = 8
@@ -30,9 +31,13 @@ _OWN_GUARD_DIGITS: Final = 8
 def loaded_rotation(spin: LoadedSpin, attitude: motion.Quaternion | None = None) -> Rotation:
     """The motion of a body with two or three equal moments, and R from an attitude at the start.
 
-    Raises NoClosedForm where the attitude has none.
+    Raises NoClosedForm where the attitude has none, and under a moment too weak for Kummer's functions.
     """
     line = None if attitude is None else spin.line
+    if line is not None and line.is_weak:
+        raise NoClosedForm(
+            "in mpmath, the attitude under so weak a moment; the second route is taylor"
+        )
 
     def lost(longest: Fraction, turned: bool) -> float:
         digits = _OWN_GUARD_DIGITS + _angle_digits(spin, longest)
@@ -52,14 +57,7 @@ def _angle_digits(spin: LoadedSpin, longest: Fraction) -> float:
 
 
 def _turn_digits(line: Line, longest: Fraction) -> float:
-    """The decimal digits before the point of |z| = |b| s^2/2: e^(z/2) turns by no larger angle.
-
-    Under a weak moment those of |a|/|across|, by which h may exceed its first slope, and of the angle.
-    """
-    if line.is_weak:
-        size, across = (tensors.dot(v, v) for v in (line.a, line.across))
-        angle = size * longest**2 + line.pace * longest**4
-        return decades((1 + angle) * (1 + (size / across if across else 0))) / 2
+    """The decimal digits before the point of |z| = |b| s^2/2: e^(z/2) turns by no larger angle."""
     furthest = longest + abs(line.lead)
     return decades(1 + line.pace * furthest**4 / 4) / 2
 

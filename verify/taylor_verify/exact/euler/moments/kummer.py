@@ -41,7 +41,7 @@ class KummerTurn:
         self._back = rotation.conjugate(self._since_nearest(line.lead))
 
     def quaternion(self, t: Fraction) -> list[arb]:
-        """The unit quaternion at the time t, 1 at t = 0 and without a jump of sign."""
+        """The unit quaternion at the time t, 1 at t = 0."""
         return rotation.product(self._back, self._since_nearest(t + self._lead))
 
     def _since_nearest(self, s: Fraction) -> list[arb]:

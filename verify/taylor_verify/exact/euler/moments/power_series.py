@@ -42,7 +42,7 @@ class SeriesTurn:
         self._turns: dict[tuple[Fraction, Fraction], list[arb]] = {}
 
     def quaternion(self, t: Fraction) -> list[arb]:
-        """The unit quaternion at the time t, 1 at t = 0 and without a jump of sign."""
+        """The unit quaternion at the time t, 1 at t = 0."""
         self._line.check_reach(t)
         zero = Fraction(0)
         return self._between(zero, t) if t >= 0 else conjugate(self._between(t, zero))

@@ -130,7 +130,7 @@ class LoadedSpin:
     @cached_property
     def regime(self) -> MomentRegime:
         """The kind of motion, decided in rationals."""
-        if self.free.spread == 0:
+        if self.free.is_spherical:
             return MomentRegime.SPHERICAL
         if not any(tensors.cross(self.free.axis, self.moment)):
             return MomentRegime.AXIAL

@@ -1,1 +1,1 @@
-"""A triaxial body under a constant moment: a bead on a tilted washboard, by two routes."""
+"""A triaxial body under a constant moment: a bead on a tilted washboard, in balls."""

@@ -15,13 +15,14 @@ is carried to the time asked for by the mean value theorem.
 from __future__ import annotations
 
 from bisect import bisect_left
+from contextlib import suppress
 from fractions import Fraction
 from typing import Final
 
 from flint import acb, arb, ctx
+from mpmath import mp, mpf
 
-from taylor_verify.exact.balls import Undecidable, ball, balls
-from taylor_verify.exact.euler.fixed_axis import FixedAxis, FixedAxisBalls
+from taylor_verify.exact.balls import Undecidable, ball, balls, midpoint
 from taylor_verify.exact.euler.moments.washboard.board import Washboard
 from taylor_verify.exact.euler.moments.washboard.speed import Speed, Swinging, speed
 from taylor_verify.exact.euler.moments.washboard.teeth import FarTeeth
@@ -31,11 +32,12 @@ from taylor_verify.exact.euler.moments.washboard.turnings import (
     regime,
     turnings,
 )
-from taylor_verify.exact.euler.rotations import BallCourse, RotationBalls
+from taylor_verify.exact.euler.rotations import OneByOne, RotationBalls, Rows
 from taylor_verify.exact.integral import integral
 from taylor_verify.exact.solution import Unsettled
-from taylor_verify.scenes.motion import Quaternion
 
+_GUARD_BITS: Final = 40
+_ATTEMPTS: Final = 8
 _STEPS_PER_BIT: Final = 4
 # An integral over a tooth takes ten, one past a crest that is all but a double root a hundred. Where the
 # precision does not resolve the crest, no number of evaluations would.
@@ -45,14 +47,25 @@ _WIDENINGS: Final = 20
 _ARRIVED_BITS: Final = 12
 
 
-def motion(board: Washboard, attitude: Quaternion | None = None) -> RotationBalls:
-    """The motion of a triaxial body under a moment, and R from a start where omega keeps its axis."""
-    kind = regime(board).value
-    if board.keeps_axis:
-        return RotationBalls(
-            kind, lambda: FixedAxisBalls(FixedAxis(board.omega, board.gain)), attitude
-        )
-    return RotationBalls(kind, lambda: Course(board), by_quadrature=True)
+def motion(board: Washboard) -> RotationBalls:
+    """omega of a triaxial body under a moment along a principal axis, which omega does not keep."""
+    return RotationBalls(regime(board).value, lambda: Course(board), by_quadrature=True)
+
+
+def period(board: Washboard) -> mpf:
+    """The time after which omega of a swing recurs, to mpmath's precision.
+
+    Raises Unsettled so near to a separatrix that some thousand digits do not suffice.
+    """
+    bits = mp.prec + _GUARD_BITS
+    for _ in range(_ATTEMPTS):
+        with ctx.workprec(bits), suppress(Undecidable):
+            period = Course(board).period
+            assert period is not None
+            if period.rad() <= period * arb(2) ** -mp.prec:
+                return +midpoint(period)
+        bits *= 2
+    raise Unsettled(f"the period is not known with {bits // 2} bits")
 
 
 class Turn:
@@ -197,7 +210,7 @@ class Turn:
         return self.side * self._quotient(self.side * y * y)
 
 
-class Course(BallCourse):
+class Course(OneByOne):
     """The course at one precision of flint."""
 
     def __init__(self, board: Washboard) -> None:
@@ -223,7 +236,7 @@ class Course(BallCourse):
         """The time after which omega recurs; None for a run."""
         return None if self._upper is None else 2 * self._half
 
-    def at(self, t: Fraction, turned: bool) -> tuple[list[arb], list[arb]]:
+    def at(self, t: Fraction, turned: bool) -> tuple[list[arb], Rows]:
         """omega in body axes; of the turn nothing is known."""
         turn, since = self._turn(self._lead + ball(t))
         y = turn.at(since)

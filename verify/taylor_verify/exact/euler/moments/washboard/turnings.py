@@ -1,4 +1,4 @@
-"""The turning points of the bead on the washboard, in balls: both routes know them beforehand.
+"""The turning points of the bead on the washboard, in balls.
 
 Legend as in board. nu^2 = F(sigma) >= 0 confines sigma to the component about 0 of where F is not
 negative. There is always a ``lower`` end. Where there is an ``upper`` one the motion is a swing.
