@@ -16,8 +16,6 @@ from taylor_verify.cli.progress import working
 from taylor_verify.draw import file_errors
 from taylor_verify.draw.caption import NotDrawn
 from taylor_verify.draw.course import motion
-from taylor_verify.draw.film import ENDINGS as FILMS
-from taylor_verify.draw.film import film
 from taylor_verify.draw.moving import Moving, moving
 from taylor_verify.draw.page import page
 from taylor_verify.draw.pictures import pictures
@@ -60,9 +58,8 @@ def answer(options: argparse.Namespace) -> Answer:
 
 
 def _animate(motion: Moving, place: Path) -> dict[str, str]:
-    """Write the motion as a page or as a film."""
-    ending = place.suffix.lower()
-    made = page(motion) if ending == _PAGE else film(motion, ending)
+    """Write the motion as a page."""
+    made = page(motion)
     with unwritable("a file that can be written", str(place), "--out"):
         (path,) = replace_files(place.parent, {place.name: made})
     return {
@@ -147,11 +144,10 @@ def _place(options: argparse.Namespace, scene: Scene) -> Path:
     """Return the file that --out names, from which each picture has its name. Raises WrongCall."""
     stem = Path(scene.name).with_suffix("").as_posix().replace("/", "-").strip("-.")
     place = writable_file(stem if options.out is None else options.out, "--out")
-    endings = (_PAGE, *FILMS) if options.animate else STILLS
+    endings, others = ((_PAGE,), STILLS) if options.animate else (STILLS, (_PAGE,))
     if options.out is None or not place.suffix:
         return place.with_name(place.name + (_PAGE if options.animate else _STILL))
     if place.suffix.lower() not in endings:
-        others = STILLS if options.animate else (_PAGE, *FILMS)
         how = "out" if options.animate else ""
         mend = f" (with{how} --animate: {', '.join(others)})"
         raise WrongCall(f"expected {', '.join(endings)}{mend}, got {place.suffix!r} @ --out")

@@ -17,6 +17,5 @@ class NotDrawn(ValueError):  # noqa: N818 (an answer, not a fault of the code)
 
 
 def caption(document: Mapping[str, Any]) -> str:
-    """Return the scene and the exact route; "" for a document that `course.motion` has not made."""
-    way = _WAYS.get(document.get("route", ""))
-    return f"{document['scene']}: {way}." if way and "evidence" in document else ""
+    """Return the scene and the exact route of its motion."""
+    return f"{document['scene']}: {_WAYS[document['route']]}."

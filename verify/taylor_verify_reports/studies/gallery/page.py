@@ -1,12 +1,11 @@
 """Gallery: pictures of some motions and of their errors, made from stored data alone.
 
-Its data are data/portraits (the motion), data/records (the errors of a run), reference/NAME.csv (the
-exact motion at its samples) and data/controls.json (broken solvers). The page is figures/README.md.
+Its data are data/portraits (the motion), data/records (the errors of a run) and data/controls.json (broken
+solvers). The page is figures/README.md.
 """
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
@@ -18,18 +17,14 @@ from taylor_verify.plotting.picture import Picture
 from taylor_verify.records import store
 from taylor_verify.records.file_names import of_scene
 from taylor_verify.records.precisions import place_of_rung
-from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.words.markdown import code, prose
 from taylor_verify.words.page import whole
 from taylor_verify_reports.studies.controls import picture as shifts
 from taylor_verify_reports.studies.controls.document import CONTROLS
 from taylor_verify_reports.studies.gallery.pictures import errors_over_time, potential
 from taylor_verify_reports.studies.portraits.study import PORTRAITS
-from taylor_verify_reports.studies.reference import page as reference_files
 
 _SOLVER: Final = "taylor"
-# The rung whose samples are marked on a polhode.
-_RUNG: Final = "f64"
 
 _WHAT: Final = (
     "Every picture is drawn from the data beside this folder, by `taylor-verify publish gallery`, as "
@@ -93,21 +88,10 @@ class Stored:
         names = [file.name.removeprefix(f"{stem}.").removesuffix(".json") for file in files]
         return sorted(names, key=place_of_rung)
 
-    def samples(self, scene: str, columns: Sequence[str]) -> list[list[float]]:
-        """Return the exact motion as a row of the columns for each instant of the scene."""
-        file = self.folder / reference_name(scene)
-        with file.open(encoding="utf-8", newline="") as lines:
-            return [[float(row[column]) for column in columns] for row in csv.DictReader(lines)]
-
 
 def record_name(scene: str, rung: str) -> str:
     """Return the path of the record of a run, below the report folder."""
     return f"{store.FOLDER}/{store.record_name(scene, _SOLVER, rung)}"
-
-
-def reference_name(scene: str) -> str:
-    """Return the path of the exact motion of a scene, below the report folder."""
-    return f"{reference_files.FOLDER}/{of_scene(scene)}.csv"
 
 
 def gallery(folder: Path) -> list[Shown]:
@@ -142,16 +126,11 @@ Made = tuple[Picture, str, tuple[str, ...]]
 
 
 def _polhode(stored: Stored, portrait: Document) -> Made:
-    scene = portrait["scene"]
     caption = (
-        f"{code(scene)}: the angular velocity on its ellipsoid of inertia. The line is the exact "
-        f"course, the marks are the samples of {_SOLVER} on {_RUNG}, coloured by their error in units "
-        "of u; dashed the separatrices. Repeated turns overlap, with later marks above earlier ones."
+        f"{code(portrait['scene'])}: the angular velocity on its ellipsoid of inertia, from light to dark "
+        "with time; dashed the separatrices."
     )
-    samples, record = stored.samples(scene, COLUMNS["omega"]), stored.record(scene, _RUNG)
-    picture = polhode.picture(portrait, samples, record)
-    sources = (PORTRAITS.name(scene), record_name(scene, _RUNG), reference_name(scene))
-    return picture, caption, sources
+    return polhode.picture(portrait), caption, (PORTRAITS.name(portrait["scene"]),)
 
 
 def _axis(stored: Stored, portrait: Document) -> Made:
@@ -165,10 +144,10 @@ def _axis(stored: Stored, portrait: Document) -> Made:
 
 
 def _path(stored: Stored, portrait: Document) -> Made:
-    path = centre_path.series(portrait)
+    body = "the solid itself" if portrait["semi_axes"] else "the axes of the body"
     caption = (
         f"{code(portrait['scene'])}: the path of the body's origin through the fluid, with its projections "
-        f"on three walls; the short lines are body axis {path.axis} at equal intervals of time."
+        f"on three walls, and {body} at equal intervals of time."
     )
     return centre_path.picture(portrait), caption, (PORTRAITS.name(portrait["scene"]),)
 
@@ -177,7 +156,7 @@ def _errors(stored: Stored, portrait: Document) -> Made:
     scene = portrait["scene"]
     rungs = stored.rungs(scene)
     if not rungs:
-        raise FileNotFoundError(2, "no such file", stored.folder / record_name(scene, _RUNG))
+        raise FileNotFoundError(2, "no such file", stored.folder / record_name(scene, "f64"))
     caption = (
         f"{code(scene)}: the largest error of {_SOLVER} up to each time on {', '.join(rungs)}, in units of "
         "the rung's own roundoff u. Dashed, through the middle of all: the powers of time that random "
