@@ -460,7 +460,7 @@ def test_the_published_paper_is_short(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_the_whole_site_is_small(clone: Path, tmp_path: Path) -> None:
-    """All that is published fits in 20 MB, Plotly's script included, and every scene has its page."""
+    """All that is published fits in 20 MB, and every scene has its page."""
     files = build(clone, tmp_path / "site")
     assert sum(file.stat().st_size for file in files) < 20 * MEGABYTE
     scenes = {file.stem for file in files if file.parent.name == "scenes"}

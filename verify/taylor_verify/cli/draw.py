@@ -16,7 +16,7 @@ from taylor_verify.cli.progress import working
 from taylor_verify.draw import file_errors
 from taylor_verify.draw.caption import NotDrawn
 from taylor_verify.draw.course import motion
-from taylor_verify.draw.moving import Moving, moving
+from taylor_verify.draw.moving import moving
 from taylor_verify.draw.page import page
 from taylor_verify.draw.pictures import pictures
 from taylor_verify.exact.solution import Unsettled
@@ -57,17 +57,12 @@ def answer(options: argparse.Namespace) -> Answer:
     return Answer(PASS, content, partial(_text, content))
 
 
-def _animate(motion: Moving, place: Path) -> dict[str, str]:
+def _animate(motion: Mapping[str, Any], place: Path) -> dict[str, str]:
     """Write the motion as a page."""
-    made = page(motion)
     with unwritable("a file that can be written", str(place), "--out"):
-        (path,) = replace_files(place.parent, {place.name: made})
-    return {
-        "file": str(path),
-        "picture": "animation",
-        "title": motion.title,
-        "shows": motion.alt,
-    }
+        (path,) = replace_files(place.parent, {place.name: page(motion)})
+    named = {"title": motion["title"], "shows": motion["alt"]}
+    return {"file": str(path), "picture": "animation", **named}
 
 
 def _asked(options: argparse.Namespace) -> tuple[Scene, list[TrajectoryFile]]:

@@ -102,7 +102,7 @@ def _face(face: Face) -> dict[str, Any]:
 def quaternions(attitudes: Numbers) -> Numbers:
     """Return unit quaternions (n, 4), scalar first; the sign of each is that of its neighbour."""
     xx, xy, xz, yx, yy, yz, zx, zy, zz = attitudes.reshape(-1, 9).T
-    # q R(q)^T of a unit quaternion q is the eigenvector of this symmetric matrix to its greatest eigenvalue.
+    # A unit quaternion q of R is the eigenvector to the greatest eigenvalue of this symmetric matrix.
     upper = [
         [xx + yy + zz, zy - yz, xz - zx, yx - xy],
         [zy - yz, xx - yy - zz, xy + yx, xz + zx],

@@ -64,7 +64,7 @@ class Series:
 def series(portrait: Document) -> Series:
     """Return the curve.
 
-    Raises NotDrawn for a scene without such a surface: a solid in a fluid, a torque, wheels, a body at rest.
+    Raises NotDrawn for a scene without such a surface: a solid in a fluid, a torque, wheels, rest.
     """
     body, course = portrait["body"], portrait["course"]
     is_free = any(row["name"] == "T" for row in portrait["analytic"])

@@ -9,6 +9,7 @@ from typing import Final
 
 from taylor_verify.batch.pool import LocalPool, available_cores
 from taylor_verify.draw.caption import NotDrawn
+from taylor_verify.draw.moving import moving
 from taylor_verify.draw.page import page
 from taylor_verify.plotting.picture import Picture, content
 from taylor_verify.records.file_names import of_scene
@@ -75,16 +76,14 @@ def staged(folder: Path) -> Stage:
         ]
     )
     stage.files |= {f"{SCENES}/{name}": svg for name, svg in drawings.items()}
-    moving = dict(_moving(report))
-    stage.motions |= {f"{REPORTS}/{motion_place(scene)}": text for scene, text in moving.items()}
+    motions = dict(_motions(report))
+    stage.motions |= {f"{REPORTS}/{motion_place(scene)}": text for scene, text in motions.items()}
     stage.add_pages(
         {
             f"{SCENES}.md": _scenes(report),
             _GATES: _gates(report),
             **{
-                f"{SCENES}/{of_scene(scene)}.md": scene_page(
-                    scene, report, drawn, scene in moving
-                )
+                f"{SCENES}/{of_scene(scene)}.md": scene_page(scene, report, drawn, scene in motions)
                 for scene, drawn in pictures.items()
             },
             FRONT: _front(report, stage, pictures.get(_EXAMPLE, ())),
@@ -93,12 +92,12 @@ def staged(folder: Path) -> Stage:
     return stage
 
 
-def _moving(report: Report) -> Iterator[tuple[str, str]]:
+def _motions(report: Report) -> Iterator[tuple[str, str]]:
     """Yield each scene that moves, with the page on which it does."""
     for scene in report.scenes:
         with suppress(NotDrawn):
             if portrait := report.portrait(scene):
-                yield scene, page(portrait)
+                yield scene, page(moving(portrait))
 
 
 def _pictures_of(scene: str, portrait: Document, records: Mapping[str, Document]) -> list[Picture]:
