@@ -225,10 +225,10 @@ def test_draw_writes_what_it_says(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert document_printed["evidence"] == "proven"
     for one in document_printed["files"]:
         assert one["shows"] in Path(one["file"]).read_text(encoding="utf-8").replace("&gt;", ">")
-    alone = ["draw", "euler/generic", "--only", "time", "--out", str(tmp_path / "a.svg")]
+    alone = ["draw", "euler/axisymmetric", "--only", "time", "--out", str(tmp_path / "a.svg")]
     assert main(alone) == 0
     assert (tmp_path / "a.svg").exists()
-    assert main(["draw", "euler/generic", "--animate", "--out", str(tmp_path / "a.html")]) == 0
+    assert main(["draw", "euler/axisymmetric", "--animate", "--out", str(tmp_path / "a.html")]) == 0
     assert (tmp_path / "a.html").read_text(encoding="utf-8").endswith("</html>\n")
 
 

@@ -136,7 +136,7 @@ def test_the_curve_touches_zero_at_the_ends_of_the_interval() -> None:
 def test_a_body_without_a_quartic_is_refused() -> None:
     """Only Clebsch's free body has one."""
     with pytest.raises(ValueError, match=r"expected a quartic .* @ kirchhoff/general-body"):
-        potential.picture([stored().portrait("kirchhoff/general-body")], "general-body")
+        potential.picture([reports.portrait_without_run("kirchhoff/general-body")], "general-body")
 
 
 # The whole gallery

@@ -277,13 +277,8 @@ class Motions(gallery.Stored):
 
     def record(self, scene: str, rung: str) -> Any:
         times = self.portrait(scene)["course"]["t"]
-        gates = [
-            {"quantity": name, "errors": [1e-16] * len(times)} for name in ("omega", "impulse")
-        ]
+        gates = [{"quantity": "omega", "errors": [1e-16] * len(times)}]
         return {"rung": rung, "times": times, "unit_roundoff": 2.0**-53, "gates": gates}
-
-    def samples(self, scene: str, columns: Any) -> Any:
-        return self.portrait(scene)["course"]["omega"]
 
 
 @cache
@@ -297,10 +292,7 @@ def drawable() -> tuple[Picture, ...]:
     measured = [
         p for study in registry.STUDIES if study.name != "gallery" for p in study.pictures(REPORTS)
     ]
-    without_runs = ("-errors", "-polhode")
-    motions = [
-        one.picture for one in gallery_shown() if not one.picture.stem.endswith(without_runs)
-    ]
+    motions = [one.picture for one in gallery_shown() if not one.picture.stem.endswith("-errors")]
     return (*measured, *motions)
 
 

@@ -14,11 +14,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from taylor_verify.draw.caption import caption
+from taylor_verify.draw.caption import captioned
 from taylor_verify.draw.stage import END, START, Look, Stage, scale
 from taylor_verify.draw.view import Ellipsoid, Numbers, View
 from taylor_verify.plotting.picture import Picture
-from taylor_verify.plotting.wording import stem_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -110,10 +109,7 @@ def picture(portrait: Document) -> Picture:
         f"Body axis {track.axis} of {portrait['scene']} on the unit sphere in space, from "
         f"t = {track.times[0]:g} to t = {track.times[-1]:g}, darker as time goes on.{still}"
     )
-    title = f"Axis in space: {portrait['scene']}"
-    return Picture(
-        stem_of(portrait, "axis"), title, alt, partial(_figure, track, caption(portrait))
-    )
+    return captioned(portrait, "axis", "Axis in space", alt, partial(_figure, track))
 
 
 def _figure(track: Series, words: str) -> Figure:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from taylor_verify.draw.caption import NotDrawn, caption
+from taylor_verify.draw.caption import NotDrawn, captioned
 from taylor_verify.draw.solid import AXES, by_depth, draw_ellipsoid, draw_frame, reach
 from taylor_verify.draw.stage import END, START, Look, Stage, scale
 from taylor_verify.draw.view import Numbers, View
@@ -21,7 +21,6 @@ from taylor_verify.plotting.palette import FAINT, INK, QUIET
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.plotting.sheet import Entry
 from taylor_verify.plotting.style import SMALL
-from taylor_verify.plotting.wording import stem_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -136,10 +135,7 @@ def picture(portrait: Document) -> Picture:
         f"{track.times[0]:g} to {last} at t = {track.times[-1]:g}, with its projections on three walls "
         f"and {'the ellipsoid itself' if track.semi_axes else 'the axes of the body'} along the way."
     )
-    title = f"Path through the fluid: {portrait['scene']}"
-    return Picture(
-        stem_of(portrait, "centre"), title, alt, partial(_figure, track, caption(portrait))
-    )
+    return captioned(portrait, "centre", "Path through the fluid", alt, partial(_figure, track))
 
 
 def _figure(track: Series, words: str) -> Figure:

@@ -126,7 +126,7 @@ def _inset(document: Document) -> dict[str, Any] | None:
 
 
 def _direction(document: Document) -> dict[str, Any]:
-    letter, rows = next(iter(spheres.series(document).directions.items()))
+    letter, rows = next(iter(spheres.directions_of(document).items()))
     return _on_surface((1.0, 1.0, 1.0), rows, (), letter, f"direction of {letter} in the body")
 
 

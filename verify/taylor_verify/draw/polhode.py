@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from taylor_verify.draw.caption import NotDrawn, caption
+from taylor_verify.draw.caption import NotDrawn, captioned
 from taylor_verify.draw.stage import END, START, Look, Stage, scale
 from taylor_verify.draw.view import Ellipsoid, Numbers, View
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.plotting.sheet import Entry
-from taylor_verify.plotting.wording import plain, stem_of
+from taylor_verify.plotting.wording import plain
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -91,8 +91,7 @@ def picture(portrait: Document) -> Picture:
     )
     words = {0: "the exact course.", 1: "it sinks below it.", -1: "it rises above it."}
     alt += words[int(np.sign(portrait["damping"]))]
-    title, stem = f"Polhode: {portrait['scene']}", stem_of(portrait, "polhode")
-    return Picture(stem, title, alt, partial(_figure, curve, caption(portrait)))
+    return captioned(portrait, "polhode", "Polhode", alt, partial(_figure, curve))
 
 
 def _separatrices(surface: Ellipsoid, moments: Numbers) -> list[Numbers]:
