@@ -25,17 +25,17 @@ from taylor_verify.records.verdict import Verdict
 from taylor_verify_reports.studies.controls import picture as shifts
 from taylor_verify_reports.studies.controls.document import CONTROLS
 from taylor_verify_reports.studies.gallery import page as gallery
-from taylor_verify_reports.studies.gallery.page import Stored
 from taylor_verify_reports.studies.gallery.pictures import errors_over_time, potential
 from taylor_verify_reports.studies.portraits.study import PORTRAITS
+from taylor_verify_reports.studies.source import Report
 
 RUNGS = ("f32", "f64", "f80", "f128", "mp237")
 RAISED = "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"
 LOWERED = str.maketrans(RAISED, "-0123456789")
 
 
-def stored() -> Stored:
-    return Stored(reports.for_gallery())
+def stored() -> Report:
+    return Report(reports.for_gallery())
 
 
 @cache
@@ -65,9 +65,9 @@ def test_what_a_logarithm_cannot_show_is_left_out() -> None:
 
 def test_the_powers_are_those_of_brouwers_law() -> None:
     """All panels have one dashed line, straight in logarithms, of slope 1/2 or 3/2."""
-    records = [stored().record("euler/generic", rung) for rung in RUNGS]
+    records = stored().records("euler/generic")
     with plotting():
-        figure = errors_over_time.picture("euler/generic", records).figure()
+        figure = errors_over_time.picture("euler/generic", [*records.values()]).figure()
     slopes = []
     for axes in figure.axes:
         (line,) = [one for one in axes.get_lines() if str(one.get_gid()).startswith("power")]
@@ -79,7 +79,7 @@ def test_the_powers_are_those_of_brouwers_law() -> None:
 
 def test_a_record_of_the_state_alone_has_one_panel() -> None:
     """A record without gates on conserved quantities has a single panel."""
-    record = stored().record("manufactured/euler-resonance", "f64")
+    record = stored().records("manufactured/euler-resonance")["f64"]
     alone = {**record, "gates": [g for g in record["gates"] if g["quantity"] == "omega"]}
     panels = errors_over_time.panels_of(errors_over_time.series([alone]))
     assert [panel.quantity for panel in panels] == ["omega"]
@@ -124,7 +124,7 @@ def test_the_half_millisecond_is_found() -> None:
 def test_the_curve_touches_zero_at_the_ends_of_the_interval() -> None:
     """The ends are corners of the drawn curve, X3 is zero there, and the roots near by are inside."""
     for scene in ("whole-motion", "two-real-roots", "falling-away", "half-turn", "algebraic"):
-        series = potential.series(stored().portrait(f"kirchhoff/{scene}"))
+        series = potential.series(stored().portrait(f"kirchhoff/{scene}") or {})
         z, X = series.curve.T
         top = X[(z >= series.interval[0]) & (z <= series.interval[1])].max()
         for end in series.interval:

@@ -16,10 +16,9 @@ from builders.reports import every_portrait, portrait_without_run
 from latex2mathml.converter import convert
 
 from taylor_verify.cli import main
-from taylor_verify.draw.course import DIGITS, FIGURES, INTERVALS, PERIODS
+from taylor_verify.draw.course import FIGURES, INTERVALS, PERIODS
 from taylor_verify.exact.kirchhoff.displaced import symmetric_origin
 from taylor_verify.exact.kirchhoff.solid import solid
-from taylor_verify.exact.printed import document
 from taylor_verify.exact.route import solution
 from taylor_verify.explain.explanation import explanation
 from taylor_verify.records.file_names import of_scene
@@ -29,7 +28,7 @@ from taylor_verify.scenes.library import names
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify_reports.studies.portraits.equations import equations
-from taylor_verify_reports.studies.portraits.measure import TIMES, roots
+from taylor_verify_reports.studies.portraits.measure import roots
 from taylor_verify_reports.studies.portraits.study import PORTRAITS
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -75,11 +74,6 @@ def test_a_portrait_is_the_same_when_made_again(scene: str) -> None:
     assert again.pop("explain") == {"cost": {"seconds": None}}
     assert before.pop("explain")["rung"] == "f64"
     assert again == before
-
-
-def test_no_portrait_holds_a_time_of_the_clock() -> None:
-    """No portrait has the time that its run took, which would be another file each time."""
-    assert all(stored(name)["explain"]["cost"]["seconds"] is None for name in SCENES)
 
 
 def test_the_comment_and_the_text_are_those_of_the_file() -> None:
@@ -140,20 +134,6 @@ def test_the_course_has_the_whole_motion() -> None:
         gram = np.einsum("nij,nik->njk", R, R)
         assert np.abs(gram - np.eye(3)).max() <= 20 * HALF
         assert (np.linalg.det(R) > 0).all()
-
-
-def test_the_values_are_those_of_the_other_route() -> None:
-    """Balls and mpmath print the same thirty digits, but for the last, at ten times over the span."""
-    scene = load(FRESH[0])
-    values = portrait_without_run(scene.name)["values"]
-    times = [(row["t"], Fraction(row["t"])) for row in values["rows"]]
-    assert len(times) == TIMES
-    assert times[-1][1] == scene.clock.instants[-1]
-    other = document(scene, solution(scene, "mpmath"), times, DIGITS)
-    assert other["route"] != values["route"]
-    for row, same in zip(values["rows"], other["rows"], strict=True):
-        gaps = [Fraction(a) - Fraction(b) for a, b in zip(row["omega"], same["omega"], strict=True)]
-        assert max(map(abs, gaps)) <= Fraction(1, 10 ** (DIGITS - 2))
 
 
 def test_the_numbers_of_the_orbit_are_those_of_explain() -> None:

@@ -52,6 +52,7 @@ from taylor_verify_reports.studies.paper.pack import pack
 from taylor_verify_reports.studies.prices.document import PRICES
 from taylor_verify_reports.studies.reference import page as reference_files
 from taylor_verify_reports.studies.site.builder import build
+from taylor_verify_reports.studies.source import Report
 from taylor_verify_reports.studies.stored import Stored
 from taylor_verify_reports.studies.tradeoff import stored as trades
 from taylor_verify_reports.typesetting.paper import images
@@ -263,7 +264,7 @@ def test_exact_trajectories_are_those_of_the_code() -> None:
     assert [path for path in published if (REPORTS / path).read_bytes() != made_now[path]] == []
 
 
-class Motions(gallery.Stored):
+class Motions(Report):
     """The report as the gallery reads it, with what is not published made without a run.
 
     Motions are exact and come out as they were drawn. Records have one error at each sample.
@@ -272,13 +273,10 @@ class Motions(gallery.Stored):
     def portrait(self, scene: str) -> Any:
         return reports.portrait_without_run(scene)
 
-    def rungs(self, scene: str) -> list[str]:
-        return ["f64"]
-
-    def record(self, scene: str, rung: str) -> Any:
+    def records(self, scene: str) -> Any:
         times = self.portrait(scene)["course"]["t"]
         gates = [{"quantity": "omega", "errors": [1e-16] * len(times)}]
-        return {"rung": rung, "times": times, "unit_roundoff": 2.0**-53, "gates": gates}
+        return {"f64": {"rung": "f64", "times": times, "unit_roundoff": 2.0**-53, "gates": gates}}
 
 
 @cache

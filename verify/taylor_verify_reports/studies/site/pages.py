@@ -26,8 +26,8 @@ from taylor_verify_reports.studies.site.scene_page import (
     scene_page,
     shown,
 )
-from taylor_verify_reports.studies.site.source import Document, Report
 from taylor_verify_reports.studies.site.stage import FRONT, REPORTS, Stage, docs_beside, smaller
+from taylor_verify_reports.studies.source import Document, Report
 
 _GATES: Final = f"{REPORTS}/tables/gates.md"
 # Fewer pictures are drawn in this process, because to start others takes as long as some drawings.

@@ -19,7 +19,7 @@ from taylor_verify.words.cells import conclusion, figure, verdict_table
 from taylor_verify.words.markdown import bullets, code, prose, table
 from taylor_verify.words.page import packages
 from taylor_verify_reports.studies import figures
-from taylor_verify_reports.studies.site.source import Document, Report
+from taylor_verify_reports.studies.source import Document, Report
 from taylor_verify_reports.studies.tradeoff.stored import TimedPoint, Trade
 
 # The navigation has no lines for scenes, which are too many; the table of scenes has links to them.
