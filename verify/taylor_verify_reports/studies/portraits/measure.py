@@ -103,7 +103,7 @@ def _potential(scene: Scene, orbit: Mapping[str, str]) -> Document | None:
     variable = f"x{nutation.axes.number}"
     ends = [orbit[name] for name in (f"{variable}_low", f"{variable}_high") if name in orbit]
     with mp.workdps(DIGITS):
-        interval = [mp.convert(end) for end in ends or [nutation.z] * 2]
+        interval = [mp.mpf(end) for end in ends] or [mp.convert(nutation.z)] * 2
         return {
             "variable": variable,
             "coefficients": plain([mp.convert(coefficient) for coefficient in X3]),
