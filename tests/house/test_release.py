@@ -113,7 +113,7 @@ def test_publishing_has_a_group_of_its_own() -> None:
     """The libraries of the site and of the paper are in no other group, and `make verify` lacks them."""
     groups = project()["dependency-groups"]
     names = {re.match(r"[\w-]+", line)[0].lower() for line in groups["publishing"]}
-    assert {"sphinx", "plotly", "pypandoc-binary", "selenium"} <= names
+    assert {"sphinx", "pypandoc-binary", "selenium"} <= names
     assert names.isdisjoint(pins("requirements-verify.txt"))
     assert {"include-group": "publishing"} in groups["dev"]
 

@@ -10,12 +10,10 @@ from typing import Any
 import pytest
 
 SITE = Path(__file__).resolve().parents[2] / "reports" / "site"
-# WebGL by software: a machine without a screen has no other.
 _OPTIONS = (
     "--headless=new",
     "--no-sandbox",
     "--disable-gpu",
-    "--enable-unsafe-swiftshader",
     "--hide-scrollbars",
     "--disable-dev-shm-usage",
     "--no-first-run",

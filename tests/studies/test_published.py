@@ -52,6 +52,7 @@ from taylor_verify_reports.studies.paper.pack import pack
 from taylor_verify_reports.studies.prices.document import PRICES
 from taylor_verify_reports.studies.reference import page as reference_files
 from taylor_verify_reports.studies.site.builder import build
+from taylor_verify_reports.studies.source import Report
 from taylor_verify_reports.studies.stored import Stored
 from taylor_verify_reports.studies.tradeoff import stored as trades
 from taylor_verify_reports.typesetting.paper import images
@@ -263,7 +264,7 @@ def test_exact_trajectories_are_those_of_the_code() -> None:
     assert [path for path in published if (REPORTS / path).read_bytes() != made_now[path]] == []
 
 
-class Motions(gallery.Stored):
+class Motions(Report):
     """The report as the gallery reads it, with what is not published made without a run.
 
     Motions are exact and come out as they were drawn. Records have one error at each sample.
@@ -272,18 +273,10 @@ class Motions(gallery.Stored):
     def portrait(self, scene: str) -> Any:
         return reports.portrait_without_run(scene)
 
-    def rungs(self, scene: str) -> list[str]:
-        return ["f64"]
-
-    def record(self, scene: str, rung: str) -> Any:
+    def records(self, scene: str) -> Any:
         times = self.portrait(scene)["course"]["t"]
-        gates = [
-            {"quantity": name, "errors": [1e-16] * len(times)} for name in ("omega", "impulse")
-        ]
-        return {"rung": rung, "times": times, "unit_roundoff": 2.0**-53, "gates": gates}
-
-    def samples(self, scene: str, columns: Any) -> Any:
-        return self.portrait(scene)["course"]["omega"]
+        gates = [{"quantity": "omega", "errors": [1e-16] * len(times)}]
+        return {"f64": {"rung": "f64", "times": times, "unit_roundoff": 2.0**-53, "gates": gates}}
 
 
 @cache
@@ -297,10 +290,7 @@ def drawable() -> tuple[Picture, ...]:
     measured = [
         p for study in registry.STUDIES if study.name != "gallery" for p in study.pictures(REPORTS)
     ]
-    without_runs = ("-errors", "-polhode")
-    motions = [
-        one.picture for one in gallery_shown() if not one.picture.stem.endswith(without_runs)
-    ]
+    motions = [one.picture for one in gallery_shown() if not one.picture.stem.endswith("-errors")]
     return (*measured, *motions)
 
 
@@ -460,7 +450,7 @@ def test_the_published_paper_is_short(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_the_whole_site_is_small(clone: Path, tmp_path: Path) -> None:
-    """All that is published fits in 20 MB, Plotly's script included, and every scene has its page."""
+    """All that is published fits in 20 MB, and every scene has its page."""
     files = build(clone, tmp_path / "site")
     assert sum(file.stat().st_size for file in files) < 20 * MEGABYTE
     scenes = {file.stem for file in files if file.parent.name == "scenes"}

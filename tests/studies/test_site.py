@@ -5,39 +5,28 @@ from __future__ import annotations
 import json
 import re
 import shutil
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Mapping
 from fractions import Fraction
 from html import unescape
 from html.parser import HTMLParser
-from itertools import pairwise
-from math import dist
 from pathlib import Path, PurePosixPath
-from typing import Any
 from urllib.parse import unquote
 
-import numpy as np
 import pytest
 from builders import reports
 from builders.reports import SCENES
-from hypothesis import given
-from hypothesis import strategies as st
 from markdown_it import MarkdownIt
 
 from taylor_verify.cli import main
-from taylor_verify.plotting.palette import PAPER, contrast
 from taylor_verify.solvers.files.file import read
-from taylor_verify_reports.studies.site import builder, conf, motion
+from taylor_verify_reports.studies.site import builder
 from taylor_verify_reports.studies.site.builder import MADE_BY, build, contents
 from taylor_verify_reports.studies.site.links import relinked
 from taylor_verify_reports.studies.site.scene_page import scene_page
-from taylor_verify_reports.studies.site.source import Report
 from taylor_verify_reports.studies.site.stage import Stage
+from taylor_verify_reports.studies.source import Report
 from taylor_verify_reports.typesetting.mathml import inline, mathml
 
-# The paper of the theme where it is dark.
-DARK_PAPER = "#131416"
-# What WCAG 2.1 (1.4.11) asks of a line.
-LINE_CONTRAST = 3.0
 CONF = "from taylor_verify_reports.studies.site.conf import *\n"
 INDEX = """\
 # Docs
@@ -96,7 +85,7 @@ def pages(site: dict[str, str | bytes]) -> dict[str, Page]:
 
 
 class Page(HTMLParser):
-    """The links, anchors and stored data of a page, as a browser would find them."""
+    """The links and anchors of a page, as a browser would find them."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
@@ -104,8 +93,6 @@ class Page(HTMLParser):
         self.links: list[str] = []
         self.loads: list[str] = []
         self.anchors: list[str] = []
-        self.figures: list[Any] = []
-        self._is_stored = False
         self.feed(text)
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
@@ -114,16 +101,10 @@ class Page(HTMLParser):
             self.anchors.append(str(attributes["id"]))
         if tag == "a" and attributes.get("href"):
             self.links.append(str(attributes["href"]))
-        if tag in ("script", "img", "link") and (
+        if tag in ("script", "img", "link", "iframe") and (
             link := attributes.get("src") or attributes.get("href")
         ):
             self.loads.append(link)
-        self._is_stored = tag == "script" and attributes.get("type") == "application/json"
-
-    def handle_data(self, data: str) -> None:
-        if self._is_stored:
-            self.figures.append(json.loads(data))
-            self._is_stored = False
 
     @property
     def navigation(self) -> str:
@@ -178,7 +159,7 @@ def test_nothing_comes_from_a_network(site: dict[str, str | bytes], pages: dict[
     for name, text in sheets.items():
         assert not re.search(r"@import|url\(\W*(?:https?:)?//", text), name
     own = [file.name for file in Path(builder.__file__).parent.glob("assets/*.js")]
-    assert len(own) == 2
+    assert own
     for name in own:
         script = text_of(site[f"_static/{name}"])
         assert not re.search(r"https?:|fetch\(|XMLHttp|import\(", script), name
@@ -190,11 +171,13 @@ def text_of(content: str | bytes) -> str:
 
 @building
 def test_docs_and_report_have_one_navigation(pages: dict[str, Page]) -> None:
-    """Pages of docs, of the report and of scenes have the same navigation."""
+    """Pages of docs, of the report and of scenes have the same navigation, and motions have none."""
     listed = {
         name: re.findall(r'reference internal" href="[^"]*">([^<]+)<', page.navigation)
         for name, page in pages.items()
+        if not name.startswith("reports/motions/")
     }
+    assert len(listed) < len(pages)
     assert len({tuple(names) for names in listed.values()}) == 1
     assert {"How it is done", "Scenes", "What each gate sees", "Tables"} <= set(
         listed["index.html"]
@@ -241,30 +224,6 @@ def test_anchors_are_one_of_a_kind(pages: dict[str, Page]) -> None:
 
 
 @building
-def test_motions_name_what_is_there(pages: dict[str, Page]) -> None:
-    """Both themes have all colours that a motion names."""
-    themes = conf.html_theme_options
-    light, dark = themes["light_css_variables"], themes["dark_css_variables"]
-    assert light.keys() == dark.keys()
-    figures = [figure for page in pages.values() for figure in page.figures]
-    assert len(figures) > 5
-    for figure in figures:
-        assert figure["traces"]
-        assert len(figure["axes"]) == 3
-        for text in texts(figure):
-            if text.startswith("$"):
-                assert f"motion-{text[1:]}" in light, text
-
-
-def texts(value: Any) -> Iterator[str]:
-    if isinstance(value, str):
-        yield value
-    elif isinstance(value, (list, dict)):
-        for one in value.values() if isinstance(value, dict) else value:
-            yield from texts(one)
-
-
-@building
 def test_a_scene_has_everything(site: dict[str, str | bytes], pages: dict[str, Page]) -> None:
     """Equations, orbit, data, accuracy, pictures, gates, values and commands stand on a scene's page."""
     page = pages[place_of("kirchhoff/whole-motion")]
@@ -276,8 +235,9 @@ def test_a_scene_has_everything(site: dict[str, str | bytes], pages: dict[str, P
         "pictures",
     }
     headings |= {"the-arithmetic-of-the-gates", "exact-values", "how-to-reproduce-this"}
-    blocks = {"scene", "exact", "commands", "polhode", "axis", "path"}
+    blocks = {"scene", "exact", "commands", "motion"}
     assert headings | blocks <= set(page.anchors)
+    assert "../motions/kirchhoff-whole-motion.html" in page.loads
     assert "_images/kirchhoff-whole-motion-errors.svg" in site
     assert "_images/kirchhoff-whole-motion-potential.svg" in site
 
@@ -299,67 +259,6 @@ def test_exact_values_are_a_trajectory(
     assert list(read_back.times) == [Fraction(row["t"]) for row in rows]
     first = copied.splitlines()[1].split(",")
     assert [text.strip() for text in first[1:4]] == rows[0]["linear_impulse"]
-
-
-def test_the_polhode_lies_on_its_ellipsoid(report: Path) -> None:
-    """The course satisfies omega.I omega = 2T to the digits of the surface."""
-    portrait = Report(report).portrait("euler/with-attitude")
-    assert portrait is not None
-    figure = motion.polhode(portrait, None)
-    assert figure is not None
-    ball = figure.traces[0]["ball"]
-    for omega in portrait["course"]["omega"]:
-        along = [sum(a * w for a, w in zip(axis, omega, strict=True)) for axis in ball["axes"]]
-        square = sum((w / s) ** 2 for w, s in zip(along, ball["semi"], strict=True))
-        # Semi-axes and directions have four digits, and enter squared.
-        assert abs(square - 1) <= 2e-3
-
-
-@pytest.mark.parametrize("scene", ["euler/with-attitude", "kirchhoff/whole-motion"])
-def test_every_frame_holds_its_motion(report: Path, scene: str) -> None:
-    """The box of each picture in space holds the curve and the surface, at one scale for all axes."""
-    portrait = Report(report).portrait(scene)
-    assert portrait is not None
-    for figure in motion.motions_of(portrait, None):
-        low, high = np.array(figure.box).T
-        for trace in figure.traces:
-            if "x" in trace:
-                points = np.array([trace[axis] for axis in "xyz"]).T
-                assert (points >= low).all(), figure.name
-                assert (points <= high).all(), figure.name
-            else:
-                ends = np.array(trace["ball"]["semi"])[:, None] * np.array(trace["ball"]["axes"])
-                assert (np.abs(ends) <= high).all(), figure.name
-        sides = high - low
-        # But for rounding: a box is never seen as a line.
-        assert sides.min() >= 0.3 * (1 - 1e-9) * sides.max(), figure.name
-
-
-def test_a_loaded_body_has_no_ellipsoid(report: Path) -> None:
-    """A moment changes the energy, so that the curve of omega has no surface."""
-    portrait = Report(report).portrait("euler/constant-moment")
-    assert portrait is not None
-    figure = motion.polhode(portrait, None)
-    assert figure is not None
-    assert {trace["type"] for trace in figure.traces} == {"scatter3d"}
-
-
-@given(st.lists(st.tuples(*[st.floats(-1, 1)] * 3), min_size=3, max_size=60), st.floats(1e-3, 0.2))
-def test_a_thinned_curve_is_the_same_curve(rows: list[tuple[float, ...]], part: float) -> None:
-    """All points that were left out are within the tolerance of the chords."""
-    places = motion.thinned(rows, part)
-    extent = max(max(row[i] for row in rows) - min(row[i] for row in rows) for i in range(3))
-    assert (places[0], places[-1]) == (0, len(rows) - 1)
-    for first, last in pairwise(places):
-        for k in range(first + 1, last):
-            # A thousand points of the chord come within its length / 2000 of the nearest one.
-            chord = [on_chord(rows[first], rows[last], n / 1000) for n in range(1001)]
-            near = min(dist(rows[k], point) for point in chord)
-            assert near <= part * extent + dist(rows[first], rows[last]) / 2000 + 1e-12
-
-
-def on_chord(one: tuple[float, ...], other: tuple[float, ...], part: float) -> list[float]:
-    return [a + part * (b - a) for a, b in zip(one, other, strict=True)]
 
 
 # Words, formulas, links
@@ -421,14 +320,6 @@ def test_formulas_are_set() -> None:
 
 
 # Colours, files
-
-
-def test_lines_stand_out_in_both_themes() -> None:
-    """The colours of a motion have the contrast of 3 of WCAG 2.1 (1.4.11) on light paper and on dark."""
-    for theme, paper in (("light", PAPER), ("dark", DARK_PAPER)):
-        colours = conf.html_theme_options[f"{theme}_css_variables"]
-        for name in ("ink", "quiet", "low", "middle", "high"):
-            assert contrast(colours[f"motion-{name}"], paper) >= LINE_CONTRAST, name
 
 
 @building

@@ -189,8 +189,7 @@ files* FILE  trajectory files, read as `check` reads them: their errors are draw
 --out NAME  write NAME-polhode.svg and so on; the ending of NAME says the format: .svg (default), .pdf, .png
 --only NAME,...  draw only these: polhode, momentum, bifurcation, time, herpolhode, axis, spheres, path,
   errors; a single picture is written to the file of --out itself
---animate  draw one moving picture: a page that turns and needs no network (--out NAME.html, the default),
-  or a film (.gif; .mp4 needs ffmpeg)
+--animate  draw one moving picture: a page that turns and needs no network (--out NAME.html)
 {_RUNG_OF_FILES}
 --columns* NAME=THEIRS,...  THEIRS is the file's column for NAME, as in `check`
 --accept-conventions  correct the conventions of the files before their errors are drawn, as in `check`

@@ -16,9 +16,7 @@ from taylor_verify.cli.progress import working
 from taylor_verify.draw import file_errors
 from taylor_verify.draw.caption import NotDrawn
 from taylor_verify.draw.course import motion
-from taylor_verify.draw.film import ENDINGS as FILMS
-from taylor_verify.draw.film import film
-from taylor_verify.draw.moving import Moving, moving
+from taylor_verify.draw.moving import moving
 from taylor_verify.draw.page import page
 from taylor_verify.draw.pictures import pictures
 from taylor_verify.exact.solution import Unsettled
@@ -59,18 +57,12 @@ def answer(options: argparse.Namespace) -> Answer:
     return Answer(PASS, content, partial(_text, content))
 
 
-def _animate(motion: Moving, place: Path) -> dict[str, str]:
-    """Write the motion as a page or as a film."""
-    ending = place.suffix.lower()
-    made = page(motion) if ending == _PAGE else film(motion, ending)
+def _animate(motion: Mapping[str, Any], place: Path) -> dict[str, str]:
+    """Write the motion as a page."""
     with unwritable("a file that can be written", str(place), "--out"):
-        (path,) = replace_files(place.parent, {place.name: made})
-    return {
-        "file": str(path),
-        "picture": "animation",
-        "title": motion.title,
-        "shows": motion.alt,
-    }
+        (path,) = replace_files(place.parent, {place.name: page(motion)})
+    named = {"title": motion["title"], "shows": motion["alt"]}
+    return {"file": str(path), "picture": "animation", **named}
 
 
 def _asked(options: argparse.Namespace) -> tuple[Scene, list[TrajectoryFile]]:
@@ -147,11 +139,10 @@ def _place(options: argparse.Namespace, scene: Scene) -> Path:
     """Return the file that --out names, from which each picture has its name. Raises WrongCall."""
     stem = Path(scene.name).with_suffix("").as_posix().replace("/", "-").strip("-.")
     place = writable_file(stem if options.out is None else options.out, "--out")
-    endings = (_PAGE, *FILMS) if options.animate else STILLS
+    endings, others = ((_PAGE,), STILLS) if options.animate else (STILLS, (_PAGE,))
     if options.out is None or not place.suffix:
         return place.with_name(place.name + (_PAGE if options.animate else _STILL))
     if place.suffix.lower() not in endings:
-        others = STILLS if options.animate else (_PAGE, *FILMS)
         how = "out" if options.animate else ""
         mend = f" (with{how} --animate: {', '.join(others)})"
         raise WrongCall(f"expected {', '.join(endings)}{mend}, got {place.suffix!r} @ --out")

@@ -14,11 +14,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from taylor_verify.draw.caption import NotDrawn, caption
+from taylor_verify.draw.caption import captioned
 from taylor_verify.draw.stage import END, START, Look, Stage, scale
 from taylor_verify.draw.view import Ellipsoid, Numbers, View
 from taylor_verify.plotting.picture import Picture
-from taylor_verify.plotting.wording import stem_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -57,27 +56,27 @@ class Series:
 
 
 def series(portrait: Document) -> Series:
-    """Return the path of the axis. Raises NotDrawn for a scene that tracks no attitude."""
+    """Return the path of the axis."""
     course = portrait["course"]
-    if "attitude" not in course:
-        raise NotDrawn(f"expected a scene with its attitude, got none @ {portrait['scene']}")
     attitudes = np.array(course["attitude"]).reshape(-1, 3, 3)
-    axis = axis_of(portrait)
+    axis = _axis_of(portrait)
     momentum, name = momentum_of(portrait)
-    in_space = np.einsum("nij,nj->ni", attitudes, momentum)
-    sizes = np.linalg.norm(in_space, axis=1, keepdims=True)
-    still = bool((sizes > 0).all()) and bool(
-        np.abs(in_space / sizes - in_space[0] / sizes[0]).max() <= _AT_REST
-    )
-    fixed = in_space[0] / sizes[0] if still else None
+    fixed = fixed_direction(np.einsum("nij,nj->ni", attitudes, momentum))
     return Series(np.array(course["t"]), attitudes[:, :, axis - 1], axis, fixed, name)
 
 
-def axis_of(portrait: Document) -> int:
+def fixed_direction(vectors: Numbers) -> Numbers | None:
+    """Return the unit vector along all vectors (n, 3); None if their direction changes."""
+    sizes = np.linalg.norm(vectors, axis=1, keepdims=True)
+    if not sizes.min() > 0:
+        return None
+    directions = vectors / sizes
+    return directions[0] if np.abs(directions - directions[0]).max() <= _AT_REST else None
+
+
+def _axis_of(portrait: Document) -> int:
     """Return 1, 2 or 3: the axis of symmetry, or the axis that the polhode goes round; else the third."""
-    if portrait["potential"]:
-        return int(portrait["potential"]["variable"][1:])
-    if portrait.get("axis"):
+    if portrait["axis"]:
         return int(portrait["axis"])
     body = portrait["body"]
     choose = {"min-axis": np.argmin, "max-axis": np.argmax}.get(portrait["regime"])
@@ -97,23 +96,20 @@ def momentum_of(portrait: Document) -> tuple[Numbers, str]:
         return np.array(course["linear_impulse"]), "linear impulse"
     axes = np.array(body["axes"])
     tensor = axes.T @ np.diag(body["principal_moments"]) @ axes
-    wheels = np.array(portrait.get("rotor") or [0.0] * 3)
+    wheels = np.array(portrait["rotor"] or [0.0] * 3)
     momenta: Numbers = np.array(course["omega"]) @ tensor + wheels
     return momenta, "angular momentum"
 
 
 def picture(portrait: Document) -> Picture:
-    """Return the path of one scene's axis. Raises NotDrawn as `series` does."""
+    """Return the path of one scene's axis."""
     track = series(portrait)
     still = "" if track.fixed is None else f" The direction of the {track.fixed_name} is marked."
     alt = (
         f"Body axis {track.axis} of {portrait['scene']} on the unit sphere in space, from "
         f"t = {track.times[0]:g} to t = {track.times[-1]:g}, darker as time goes on.{still}"
     )
-    title = f"Axis in space: {portrait['scene']}"
-    return Picture(
-        stem_of(portrait, "axis"), title, alt, partial(_figure, track, caption(portrait))
-    )
+    return captioned(portrait, "axis", "Axis in space", alt, partial(_figure, track))
 
 
 def _figure(track: Series, words: str) -> Figure:

@@ -17,14 +17,14 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from taylor_verify.draw import momentum_sphere
-from taylor_verify.draw.caption import NotDrawn, caption
+from taylor_verify.draw.caption import NotDrawn, captioned
 from taylor_verify.draw.spins import Branch, Wheels, number
 from taylor_verify.draw.stage import Look
 from taylor_verify.draw.view import Numbers
 from taylor_verify.plotting.palette import INK, QUIET
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.plotting.sheet import Entry, sheet
-from taylor_verify.plotting.wording import plain, stem_of
+from taylor_verify.plotting.wording import plain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -123,13 +123,8 @@ def picture(document: Document) -> Picture:
         f"Beside it the same for wheels that vary in a plane: {', '.join(bifurcations.regions)}, "
         "with the border between."
     )
-    title = f"Bifurcations of the steady spins: {document['scene']}"
-    return Picture(
-        stem_of(document, "bifurcation"),
-        title,
-        alt,
-        partial(_figure, bifurcations, caption(document)),
-    )
+    title = "Bifurcations of the steady spins"
+    return captioned(document, "bifurcation", title, alt, partial(_figure, bifurcations))
 
 
 def _figure(bifurcations: Series, caption: str) -> Figure:

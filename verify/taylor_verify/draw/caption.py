@@ -1,9 +1,16 @@
-"""The caption of a picture, with the scene and the route of its numbers, and the refusal of a picture."""
+"""Pictures of one motion by name and caption, and the refusal of a picture."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, Final
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+from taylor_verify.plotting.picture import Picture
+from taylor_verify.plotting.wording import stem_of
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _WAYS: Final = {
     "arb": "exact, by closed form with proven bounds",
@@ -17,6 +24,16 @@ class NotDrawn(ValueError):  # noqa: N818 (an answer, not a fault of the code)
 
 
 def caption(document: Mapping[str, Any]) -> str:
-    """Return the scene and the exact route; "" for a document that `course.motion` has not made."""
-    way = _WAYS.get(document.get("route", ""))
-    return f"{document['scene']}: {way}." if way and "evidence" in document else ""
+    """Return the scene and the exact route of its motion."""
+    return f"{document['scene']}: {_WAYS[document['route']]}."
+
+
+def captioned(
+    document: Mapping[str, Any], kind: str, title: str, alt: str, draw: Callable[[str], Figure]
+) -> Picture:
+    """Return a picture of the motion ``document``; ``draw`` makes the figure with its caption.
+
+    ``kind`` is the end of the file's name, and ``title`` stands before the name of the scene.
+    """
+    heading = f"{title}: {document['scene']}"
+    return Picture(stem_of(document, kind), heading, alt, partial(draw, caption(document)))

@@ -1,8 +1,7 @@
 """The path of the body's origin through the fluid, with its projections and the body on the way.
 
 One scale for all three directions. The walls behind carry the path's projections on them. The body is drawn
-at equal intervals of time: as its axis, a short line from the origin forward; or as the solid itself, an
-ellipsoid in its own size, and the frame of a body that has no shape.
+at equal intervals of time: an ellipsoid in its own size, and the frame of a body that has no shape.
 """
 
 from __future__ import annotations
@@ -14,8 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from taylor_verify.draw.axis_path import axis_of
-from taylor_verify.draw.caption import NotDrawn, caption
+from taylor_verify.draw.caption import NotDrawn, captioned
 from taylor_verify.draw.solid import AXES, by_depth, draw_ellipsoid, draw_frame, reach
 from taylor_verify.draw.stage import END, START, Look, Stage, scale
 from taylor_verify.draw.view import Numbers, View
@@ -23,7 +21,6 @@ from taylor_verify.plotting.palette import FAINT, INK, QUIET
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.plotting.sheet import Entry
 from taylor_verify.plotting.style import SMALL
-from taylor_verify.plotting.wording import stem_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -33,19 +30,15 @@ Document = Mapping[str, Any]
 # In inches.
 _HEIGHT: Final = 4.3
 _STAGE: Final = 4.6
-_GLYPHS: Final = 24
-# The length of a glyph, and the room beside the path, in parts of the longest side of the box.
-_GLYPH: Final = 0.07
+# The length of the axes of a frame, and the room beside the path, in parts of the longest side of the box.
+_AXIS: Final = 0.077
 _MARGIN: Final = 0.08
 # No side of the box is shorter than this part of the longest one.
 _LEAST_SIDE: Final = 0.35
 # The greatest number of solids on a path, and their distance from each other in parts of their size.
 _FRAMES: Final = 10
 _APART: Final = 1.25
-# The axes of a frame are so many times as long as a glyph.
-_LONGER: Final = 1.1
 _WIDTH: Final = 1.8
-_AXIS: Final[Look] = {"color": "#A83C00", "linewidth": 0.9, "gid": "axis"}
 _SHADOW: Final[Look] = {"color": "#A9B2BA", "linewidth": 0.8, "gid": "projection"}
 _SIDES: Final = ("x", "y", "z")
 # The sides from which a path may be seen, in degrees.
@@ -62,21 +55,13 @@ _BELOW: Final = 0.42
 class Series:
     """The path of the origin (n, 3) and the attitudes (n, 3, 3) in space, at the times (n,).
 
-    ``axis`` is the number of the body axis that is drawn; with ``is_solid`` the body itself is drawn
-    instead. ``semi_axes`` are those of an ellipsoid, else None.
+    ``semi_axes`` are those of an ellipsoid, else None.
     """
 
     times: Numbers
     path: Numbers
     attitudes: Numbers
-    axis: int
-    semi_axes: tuple[float, float, float] | None = None
-    is_solid: bool = False
-
-    @property
-    def directions(self) -> Numbers:
-        """The axis in space."""
-        return np.asarray(self.attitudes[:, :, self.axis - 1])
+    semi_axes: tuple[float, float, float] | None
 
     @property
     def instants(self) -> list[int]:
@@ -89,7 +74,7 @@ class Series:
     @property
     def extent(self) -> Numbers:
         """Points that the box has to contain: the path, and the solids on it."""
-        if not self.is_solid or self.semi_axes is None:
+        if self.semi_axes is None:
             return self.path
         places = self.instants
         half = reach(np.array(self.semi_axes), self.attitudes[places])
@@ -127,19 +112,17 @@ class _Box:
 
 
 def series(portrait: Document) -> Series:
-    """Return the path and the axis on it. Raises NotDrawn for a scene that tracks no centre."""
+    """Return the path and the body on it. Raises NotDrawn for a scene that tracks no centre."""
     course = portrait["course"]
     if "centre" not in course:
         raise NotDrawn(f"expected a scene with its centre, got none @ {portrait['scene']}")
     attitudes = np.array(course["attitude"]).reshape(-1, 3, 3)
-    shape = portrait.get("semi_axes")
+    shape = portrait["semi_axes"]
     return Series(
         np.array(course["t"]),
         np.array(course["centre"]),
         attitudes,
-        axis_of(portrait),
         None if shape is None else (shape[0], shape[1], shape[2]),
-        "evidence" in portrait,
     )
 
 
@@ -150,18 +133,9 @@ def picture(portrait: Document) -> Picture:
     alt = (
         f"The origin of the body of {portrait['scene']} in space, from {first} at t = "
         f"{track.times[0]:g} to {last} at t = {track.times[-1]:g}, with its projections on three walls "
-        f"and {_name(track)} along the way."
+        f"and {'the ellipsoid itself' if track.semi_axes else 'the axes of the body'} along the way."
     )
-    title = f"Path through the fluid: {portrait['scene']}"
-    return Picture(
-        stem_of(portrait, "centre"), title, alt, partial(_figure, track, caption(portrait))
-    )
-
-
-def _name(track: Series) -> str:
-    if not track.is_solid:
-        return f"the direction of body axis {track.axis}"
-    return "the ellipsoid itself" if track.semi_axes else "the axes of the body"
+    return captioned(portrait, "centre", "Path through the fluid", alt, partial(_figure, track))
 
 
 def _figure(track: Series, words: str) -> Figure:
@@ -174,8 +148,7 @@ def _figure(track: Series, words: str) -> Figure:
         shadow[:, i] = box.walls[i]
         stage.axes.plot(*view.project(shadow).T, zorder=1, **_SHADOW)
     stage.course(track.path, _WIDTH, 4)
-    draw_body = _draw_solids if track.is_solid else _draw_glyphs
-    draw_body(stage, track, _GLYPH * box.longest)
+    _draw_solids(stage, track, _AXIS * box.longest)
     stage.mark(track.path[0], START, gid="start")
     stage.mark(track.path[-1], END, gid="end")
     entries: list[Entry] = [
@@ -186,14 +159,12 @@ def _figure(track: Series, words: str) -> Figure:
         ({**END, "markerfacecolor": QUIET}, "end"),
     ]
     note = f"One scale in all directions, the scene's own unit of length. {words}".rstrip()
-    stage.legend(entries, note, 4.1 if track.is_solid else 3.4, indent=0.05)
-    stage.time_bar(track.times, 0.5 if track.is_solid else 1.3)
+    stage.legend(entries, note, 4.1, indent=0.05)
+    stage.time_bar(track.times, 0.5)
     return stage.figure
 
 
 def _body_entries(track: Series) -> list[Entry]:
-    if not track.is_solid:
-        return [(_AXIS, f"body axis {track.axis}")]
     if track.semi_axes:
         look = {"marker": "o", "markersize": 8, "markerfacecolor": "#E8EEF2", "linestyle": "none"}
         return [({**look, "markeredgecolor": "#43525C"}, "the solid, in its own size")]
@@ -277,13 +248,4 @@ def _draw_solids(stage: Stage, track: Series, length: float) -> None:
         if track.semi_axes:
             draw_ellipsoid(stage, track.semi_axes, track.attitudes[row], track.path[row], at)
         else:
-            draw_frame(stage, _LONGER * length, track.attitudes[row], track.path[row], at)
-
-
-def _draw_glyphs(stage: Stage, track: Series, length: float) -> None:
-    """Draw the body's axis at equal intervals of time, a dot where it begins."""
-    for row in np.linspace(0, len(track.path) - 1, _GLYPHS).round().astype(int):
-        start = track.path[row]
-        ends = stage.view.project(np.array([start, start + length * track.directions[row]]))
-        stage.axes.plot(*ends.T, zorder=3.5, **_AXIS)
-        stage.axes.plot(*ends[:1].T, marker="o", markersize=1.8, color=_AXIS["color"], zorder=5)
+            draw_frame(stage, length, track.attitudes[row], track.path[row], at)

@@ -13,13 +13,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from taylor_verify.draw.caption import NotDrawn, caption
+from taylor_verify.draw.caption import NotDrawn, captioned
 from taylor_verify.draw.view import Numbers
 from taylor_verify.plotting.palette import INK, PAPER, QUIET
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.plotting.sheet import Entry, sheet
 from taylor_verify.plotting.style import SMALL
-from taylor_verify.plotting.wording import stem_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -113,10 +112,7 @@ def picture(document: Document) -> Picture:
         alt += f" The middle component is zero, a flip, at t = {flips}."
     if components.flip_time is not None:
         alt += f" The flip time is {components.flip_time:.9g}."
-    title = f"Motion in time: {document['scene']}"
-    return Picture(
-        stem_of(document, "time"), title, alt, partial(_figure, components, caption(document))
-    )
+    return captioned(document, "time", "Motion in time", alt, partial(_figure, components))
 
 
 def _figure(components: Series, words: str) -> Figure:

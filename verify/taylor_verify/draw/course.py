@@ -52,14 +52,14 @@ def motion(scene: Scene, intervals: int = INTERVALS) -> Document:
     the motion cannot be computed to the digits of a picture.
     """
     whole = replace(scene, track=frozenset(TRACKED[scene.model]))
-    exact, orbit = solution(whole), orbit_of(scene)
+    exact, orbit = solution(whole), _orbit_of(scene)
     body = scene.body
     shape, rotor = getattr(body, "ellipsoid", None), body.parts().get("rotor")
     # The route and the evidence below are those of the last call of `exact`.
-    extent = length(scene, orbit)
-    course = course_of(scene, exact, extent, intervals)
+    extent = _length(scene, orbit)
+    course = _course_of(scene, exact, extent, intervals)
     if (more := _enough(course)) > 1:
-        course = course_of(scene, exact, extent, more * intervals)
+        course = _course_of(scene, exact, extent, more * intervals)
     return {
         "scene": scene.name,
         "title": scene.title,
@@ -67,10 +67,9 @@ def motion(scene: Scene, intervals: int = INTERVALS) -> Document:
         "regime": orbit.regime or exact.regime,
         "route": exact.route,
         "evidence": exact.evidence,
-        "analytic": analytic(orbit),
+        "analytic": _analytic(orbit),
         "course": course,
-        "body": inertia_ellipsoid(scene),
-        "potential": None,
+        "body": _inertia_ellipsoid(scene),
         "axis": body.axis_of_symmetry if isinstance(body, ImmersedBody) else None,
         "semi_axes": None if shape is None else [float(a) for a in shape.semi_axes],
         "rotor": [float(v) for v in rotor] if rotor else None,
@@ -79,7 +78,7 @@ def motion(scene: Scene, intervals: int = INTERVALS) -> Document:
     }
 
 
-def orbit_of(scene: Scene) -> Elements:
+def _orbit_of(scene: Scene) -> Elements:
     """Return the numbers of the orbit; none if their digits cannot be computed."""
     try:
         return elements(scene, DIGITS)
@@ -87,7 +86,7 @@ def orbit_of(scene: Scene) -> Elements:
         return Elements("", (), (str(doubt),))
 
 
-def analytic(orbit: Elements) -> list[Document]:
+def _analytic(orbit: Elements) -> list[Document]:
     """Return the numbers of the orbit with their meaning, each to all its digits."""
     names = ("name", "value", "meaning", "unit", "source")
     with mp.workdps(DIGITS):
@@ -104,7 +103,7 @@ def span(scene: Scene) -> Fraction:
     return max((instant - start for instant in scene.clock.instants), key=abs)
 
 
-def length(scene: Scene, orbit: Elements) -> Fraction:
+def _length(scene: Scene, orbit: Elements) -> Fraction:
     """Return the span, or a few periods if it is longer."""
     whole = span(scene)
     if "period" not in orbit:
@@ -113,9 +112,7 @@ def length(scene: Scene, orbit: Elements) -> Fraction:
     return whole if abs(whole) <= few else (few if whole > 0 else -few)
 
 
-def course_of(
-    scene: Scene, exact: Solution, extent: Fraction, intervals: int = INTERVALS
-) -> Document:
+def _course_of(scene: Scene, exact: Solution, extent: Fraction, intervals: int) -> Document:
     """Return times and the motion at them, each number rounded to the figures of a picture.
 
     A row is the motion at exactly the time printed. A vector is a list; an attitude has nine numbers,
@@ -144,16 +141,16 @@ def _rounded(entries: Sequence[mpf]) -> list[float]:
     return [float(mp.nstr(v, FIGURES)) if abs(v) > least else 0.0 for v in entries]
 
 
-def inertia_ellipsoid(scene: Scene) -> Document | None:
+def _inertia_ellipsoid(scene: Scene) -> Document | None:
     """Return the principal moments, each with its axis in body axes; None for a body in a fluid."""
     inertia = scene.body.parts().get("inertia")
     if inertia is None:
         return None
-    moments, axes = principal_frame(inertia)
+    moments, axes = _principal_frame(inertia)
     return {"principal_moments": plain(moments), "axes": [_rounded(axis) for axis in axes]}
 
 
-def principal_frame(inertia: Matrix) -> tuple[list[mpf], list[list[mpf]]]:
+def _principal_frame(inertia: Matrix) -> tuple[list[mpf], list[list[mpf]]]:
     """Return the principal moments, and to each a unit vector; the three vectors are right-handed.
 
     A body whose axes are its principal axes keeps their order and signs. Any other body has its moments in

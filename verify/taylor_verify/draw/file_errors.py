@@ -15,14 +15,14 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from taylor_verify.draw.caption import NotDrawn, caption
+from taylor_verify.draw.caption import NotDrawn, captioned
 from taylor_verify.draw.view import Numbers
 from taylor_verify.plotting.log_axes import powers_within, widened
 from taylor_verify.plotting.palette import QUIET
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.plotting.sheet import Entry, sheet
 from taylor_verify.plotting.style import look_of_line
-from taylor_verify.plotting.wording import plain, power_of_ten, stem_of
+from taylor_verify.plotting.wording import plain, power_of_ten
 from taylor_verify.records.quantities import STATES, is_conserved
 from taylor_verify.records.record import Record
 
@@ -98,10 +98,7 @@ def picture(document: Document, records: Mapping[str, Record]) -> Picture:
         for line in lines
     )
     alt = f"Errors of files against time on {document['scene']}, logarithmic: {largest}."
-    title = f"Errors in time: {document['scene']}"
-    return Picture(
-        stem_of(document, "errors"), title, alt, partial(_figure, panels, caption(document))
-    )
+    return captioned(document, "errors", "Errors in time", alt, partial(_figure, panels))
 
 
 def _figure(panels: Panels, words: str) -> Figure:

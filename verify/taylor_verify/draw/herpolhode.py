@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from taylor_verify.draw.axis_path import momentum_of
-from taylor_verify.draw.caption import NotDrawn, caption
+from taylor_verify.draw.caption import NotDrawn, captioned
 from taylor_verify.draw.stage import END, START, Look, Stage, scale
 from taylor_verify.draw.view import Numbers, View
 from taylor_verify.plotting.palette import QUIET
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.plotting.sheet import Entry
-from taylor_verify.plotting.wording import plain, stem_of
+from taylor_verify.plotting.wording import plain
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -91,9 +91,7 @@ def picture(document: Document) -> Picture:
         f"The tip of the angular velocity of {document['scene']} in space, seen along the angular "
         f"momentum: between {plain(float(radii.min()))} and {plain(float(radii.max()))} from its axis."
     )
-    title = f"Herpolhode: {document['scene']}"
-    stem = stem_of(document, "herpolhode")
-    return Picture(stem, title, alt, partial(_figure, curve, caption(document)))
+    return captioned(document, "herpolhode", "Herpolhode", alt, partial(_figure, curve))
 
 
 def _figure(curve: Series, words: str) -> Figure:

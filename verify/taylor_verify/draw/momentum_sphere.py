@@ -15,14 +15,14 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from taylor_verify.draw.caption import NotDrawn, caption
+from taylor_verify.draw.caption import NotDrawn, captioned
 from taylor_verify.draw.spins import ZERO, Spin, Wheels
 from taylor_verify.draw.stage import START, Look, Stage
 from taylor_verify.draw.view import Ellipsoid, Numbers, View
 from taylor_verify.plotting.palette import INK, PAPER
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.plotting.sheet import Entry
-from taylor_verify.plotting.wording import plain, stem_of
+from taylor_verify.plotting.wording import plain
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -131,10 +131,7 @@ def picture(document: Document) -> Picture:
         f"The momentum of {document['scene']} on the sphere |H| = {plain(sphere.size)} in the body, with "
         f"curves of equal energy. {sphere.words}"
     )
-    title = f"Momentum sphere: {document['scene']}"
-    return Picture(
-        stem_of(document, "momentum"), title, alt, partial(_figure, sphere, caption(document))
-    )
+    return captioned(document, "momentum", "Momentum sphere", alt, partial(_figure, sphere))
 
 
 def _figure(sphere: Series, caption: str) -> Figure:

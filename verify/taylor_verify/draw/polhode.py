@@ -1,9 +1,7 @@
-"""The polhode: the angular velocity on the ellipsoid of inertia, alone or coloured by the error of a run.
+"""The polhode: the angular velocity on the ellipsoid of inertia.
 
 T is conserved, so omega stays on the surface omega.I omega = 2T, whose semi-axes along the principal axes
-are sqrt(2T/J_i). The line is the exact course. With a run, the marks are its samples: each stands at the
-exact place (an error of a few u is far below the width of a line), and its colour shows the error. With
-damping omega sinks below the surface of the start.
+are sqrt(2T/J_i). With damping omega sinks below the surface of the start.
 """
 
 from __future__ import annotations
@@ -11,21 +9,19 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from math import isfinite, sqrt
+from math import sqrt
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from taylor_verify.draw.caption import NotDrawn, caption
-from taylor_verify.draw.stage import END, START, Look, Stage, norm_of, scale
+from taylor_verify.draw.caption import NotDrawn, captioned
+from taylor_verify.draw.stage import END, START, Look, Stage, scale
 from taylor_verify.draw.view import Ellipsoid, Numbers, View
-from taylor_verify.plotting.palette import INK, PAPER, QUIET
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.plotting.sheet import Entry
-from taylor_verify.plotting.wording import plain, stem_of
+from taylor_verify.plotting.wording import plain
 
 if TYPE_CHECKING:
-    from matplotlib.colors import Normalize
     from matplotlib.figure import Figure
 
 Document = Mapping[str, Any]
@@ -33,42 +29,29 @@ Document = Mapping[str, Any]
 # In inches.
 _HEIGHT: Final = 3.5
 _STAGE: Final = 4.2
-_COURSE: Final[Look] = {"color": INK, "linewidth": 0.8, "gid": "course"}
 _BORDER: Final[Look] = {
     "color": "#8A5A00",
     "linewidth": 0.8,
     "dashes": (4, 2),
     "gid": "separatrix",
 }
-_SAMPLE: Final[Look] = {
-    "linestyle": "none",
-    "marker": "o",
-    "markersize": 4.5,
-    "markerfacecolor": QUIET,
-    "markeredgecolor": INK,
-    "markeredgewidth": 0.4,
-}
 # Beyond this squared distance a course has left the surface; below it is the rounding of nine digits.
 _OFF: Final = 1e-6
 _WIDTH: Final = 2.0
 _OMEGA: Final = "\N{GREEK SMALL LETTER OMEGA}"
-# The widths of marks in front and behind, in points.
-_NEAR, _FAR = 4.2, 3.0
 # The axis that the curve goes round faces the reader; the two others are seen from the side.
 _FACING: Final = (1.0, 0.55, 0.45)
 
 
 @dataclass(frozen=True)
 class Series:
-    """The curve in principal axes, one row a time, and the samples with their errors in u.
+    """The curve in principal axes, one row a time.
 
     ``separatrices`` are the curves through the middle axis; none where two moments are equal.
     """
 
     semi_axes: tuple[float, float, float]
     course: Numbers
-    samples: Numbers
-    errors: tuple[float, ...]
     separatrices: tuple[Numbers, ...]
 
     @property
@@ -78,69 +61,37 @@ class Series:
         return bool(np.abs(q - 1).max() > _OFF)
 
 
-def series(
-    portrait: Document,
-    samples: Sequence[Sequence[float]] = (),
-    record: Document | None = None,
-) -> Series:
-    """Return the curve, and the samples of a run with its errors.
+def series(portrait: Document) -> Series:
+    """Return the curve.
 
-    ``samples`` is the exact omega at the times of the ``record``. Raises NotDrawn for a scene without such
-    a surface: a solid in a fluid, a torque, wheels, a body at rest.
+    Raises NotDrawn for a scene without such a surface: a solid in a fluid, a torque, wheels, rest.
     """
     body, course = portrait["body"], portrait["course"]
     is_free = any(row["name"] == "T" for row in portrait["analytic"])
     if body is None or "omega" not in course or not is_free:
         got = "a solid in a fluid" if body is None else "a motion without a constant energy"
         raise NotDrawn(f"expected a free rigid body, got {got} @ {portrait['scene']}")
-    if portrait.get("rotor"):
+    if portrait["rotor"]:
         raise NotDrawn(f"expected a body without wheels, got a rotor @ {portrait['scene']}")
-    gates = record["gates"] if record else ()
-    errors = next((gate["errors"] for gate in gates if gate["quantity"] == "omega"), ())
-    u = record["unit_roundoff"] if record else 1.0
     axes, moments = np.array(body["axes"]), np.array(body["principal_moments"])
     own = np.array(course["omega"]) @ axes.T
     twice = float(moments @ np.square(own[0]))
     if not twice > 0:
         raise NotDrawn(f"expected a body that turns, got one at rest @ {portrait['scene']}")
     a, b, c = (sqrt(twice / moment) for moment in moments)
-    return Series(
-        (a, b, c),
-        own,
-        np.array(samples).reshape(-1, 3) @ axes.T,
-        tuple(error / u for error in errors),
-        tuple(_separatrices(Ellipsoid((a, b, c)), moments)),
-    )
+    return Series((a, b, c), own, tuple(_separatrices(Ellipsoid((a, b, c)), moments)))
 
 
-def picture(
-    portrait: Document,
-    samples: Sequence[Sequence[float]] = (),
-    record: Document | None = None,
-) -> Picture:
-    """Return the polhode of one scene, with the errors of a run if given.
-
-    Raises NotDrawn as `series` does.
-    """
-    curve = series(portrait, samples, record)
+def picture(portrait: Document) -> Picture:
+    """Return the polhode of one scene. Raises NotDrawn as `series` does."""
+    curve = series(portrait)
     alt = (
         f"The angular velocity of {portrait['scene']} on its ellipsoid of inertia, whose semi-axes are "
         f"{', '.join(plain(a) for a in curve.semi_axes)}: "
     )
-    title, stem = f"Polhode: {portrait['scene']}", stem_of(portrait, "polhode")
-    if record is None:
-        words = {0: "the exact course.", 1: "it sinks below it.", -1: "it rises above it."}
-        alt += words[int(np.sign(portrait["damping"]))]
-        return Picture(stem, title, alt, partial(_alone, curve, caption(portrait)))
-    rung = record["rung"]
-    most, at = max(
-        (e, t) for e, t in zip(curve.errors, record["times"], strict=True) if isfinite(e)
-    )
-    alt += (
-        f"a closed curve or part of one, with the {len(curve.errors)} samples of the run on {rung} "
-        f"marked. Their errors are at most {plain(most)} u, at t = {at:g}."
-    )
-    return Picture(stem, title, alt, partial(_figure, curve, rung))
+    words = {0: "the exact course.", 1: "it sinks below it.", -1: "it rises above it."}
+    alt += words[int(np.sign(portrait["damping"]))]
+    return captioned(portrait, "polhode", "Polhode", alt, partial(_figure, curve))
 
 
 def _separatrices(surface: Ellipsoid, moments: Numbers) -> list[Numbers]:
@@ -172,8 +123,8 @@ def facing(course: Numbers, semi_axes: Sequence[float]) -> View:
     return View.facing([float(v) for v in direction])
 
 
-def _alone(curve: Series, words: str) -> Figure:
-    """Draw the exact course by itself, darker as time goes on, with its start and its end."""
+def _figure(curve: Series, words: str) -> Figure:
+    """Draw the course, darker as time goes on, with its start and its end."""
     stage = _stage(curve)
     # The surface does not hide a curve that has sunk below it.
     over = replace(stage, surface=None) if curve.sinks else stage
@@ -201,28 +152,3 @@ def _stage(curve: Series) -> Stage:
     names = [f"{_OMEGA}{subscript} = {semi_axis:.3g}" for subscript, semi_axis in axes]
     stage.name_axes(curve.semi_axes, names)
     return stage
-
-
-def _figure(curve: Series, rung: str) -> Figure:
-    stage = _stage(curve)
-    stage.line(curve.course, 3, _COURSE)
-    norm = norm_of(curve.errors)
-    _draw_samples(stage, curve, norm)
-    entries: list[Entry] = [(_COURSE, "exact course"), (_SAMPLE, f"samples of taylor {rung}")]
-    entries += [(_BORDER, "separatrices")] if curve.separatrices else []
-    stage.legend(entries, "Faint: on the far side.", 2.8)
-    stage.bar(norm, f"error on {rung}, in u of max|{_OMEGA}|", 1.0)
-    return stage.figure
-
-
-def _draw_samples(stage: Stage, curve: Series, norm: Normalize) -> None:
-    """Draw later samples above earlier ones; those behind the body are smaller, hollow and faint."""
-    errors = np.array(curve.errors)
-    known, faces = np.isfinite(errors), stage.faces(curve.samples)
-    x, y = stage.view.project(curve.samples).T
-    colours = scale()(norm(np.where(known, errors, 0.0)))
-    near, far = known & faces, known & ~faces
-    hollow = {"facecolor": PAPER, "edgecolors": colours[far], "linewidths": 0.7, "alpha": 0.5}
-    stage.axes.scatter(x[far], y[far], s=_FAR**2, zorder=0.6, gid="hidden samples", **hollow)
-    full = {"c": colours[near], "edgecolors": INK, "linewidths": 0.35}
-    stage.axes.scatter(x[near], y[near], s=_NEAR**2, zorder=5, gid="samples", **full)

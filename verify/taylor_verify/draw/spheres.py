@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from taylor_verify.draw.caption import NotDrawn, caption
+from taylor_verify.draw.caption import NotDrawn, captioned
 from taylor_verify.draw.stage import START, Look, Stage
 from taylor_verify.draw.view import Ellipsoid, Numbers, View
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.plotting.sheet import Entry
-from taylor_verify.plotting.wording import stem_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -34,15 +32,11 @@ _NAMES: Final = {"x": "linear_impulse", "y": "angular_impulse"}
 _ZERO: Final = 1e-9
 
 
-@dataclass(frozen=True)
-class Series:
-    """The directions of x and y (n, 3) by letter; an impulse that is zero at some time is left out."""
+def directions_of(document: Document) -> dict[str, Numbers]:
+    """Return the directions of x and y (n, 3) by letter, without an impulse that is zero at some time.
 
-    directions: Mapping[str, Numbers]
-
-
-def series(document: Document) -> Series:
-    """Return the directions. Raises NotDrawn for a rigid body, and for a body without impulses."""
+    Raises NotDrawn for a rigid body, and for a body without impulses.
+    """
     if document["body"] is not None:
         raise NotDrawn(f"expected a solid in a fluid, got a rigid body @ {document['scene']}")
     directions = {}
@@ -53,25 +47,25 @@ def series(document: Document) -> Series:
             directions[letter] = rows / sizes
     if not directions:
         raise NotDrawn(f"expected impulses with a direction, got zero @ {document['scene']}")
-    return Series(directions)
+    return directions
 
 
 def picture(document: Document) -> Picture:
-    """Return the spheres of one scene. Raises NotDrawn as `series` does."""
-    spheres = series(document)
-    letters = " and ".join(spheres.directions)
+    """Return the spheres of one scene. Raises NotDrawn as `directions_of` does."""
+    directions = directions_of(document)
+    letters = " and ".join(directions)
     alt = f"Directions of the impulses {letters} of {document['scene']} in the body, on the unit sphere."
-    title = f"Impulses on the sphere: {document['scene']}"
-    stem = stem_of(document, "spheres")
-    return Picture(stem, title, alt, partial(_figure, spheres, caption(document)))
+    return captioned(
+        document, "spheres", "Impulses on the sphere", alt, partial(_figure, directions)
+    )
 
 
-def _figure(spheres: Series, words: str) -> Figure:
-    mean = np.concatenate(list(spheres.directions.values())).mean(axis=0)
+def _figure(directions: Mapping[str, Numbers], words: str) -> Figure:
+    mean = np.concatenate(list(directions.values())).mean(axis=0)
     side = mean if float(np.linalg.norm(mean)) > 0.05 else np.array([1.0, 0.7, 0.5])
     stage = Stage.around(_SPHERE, View.facing([float(v) for v in side]), _STAGE, _HEIGHT)
     entries: list[Entry] = []
-    for letter, rows in spheres.directions.items():
+    for letter, rows in directions.items():
         stage.line(rows, 3, _LINES[letter])
         stage.mark(rows[0], START, gid="start")
         entries.append((_LINES[letter], f"{letter}/|{letter}|, {_NAMES[letter].replace('_', ' ')}"))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import hypot, isfinite
+from math import hypot
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -20,7 +20,7 @@ from taylor_verify.plotting.style import PAGE_WIDTH, SMALL
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.colors import Colormap, Normalize
+    from matplotlib.colors import Colormap
     from matplotlib.figure import Figure
 
 Look = dict[str, Any]
@@ -41,10 +41,6 @@ _NAME: Final = 0.36
 # Light to dark: distinct in grey and to any colour vision. The lightest part is left out: paper is white.
 _SCALE: Final = "cividis_r"
 _FROM: Final = 0.06
-# Beyond this ratio of the largest to the median, the scale of colours is logarithmic.
-_UNLIKE: Final = 30.0
-# The decades of a logarithmic scale.
-_DECADES: Final = 4
 # The number of pieces of a course, each of one colour.
 _STRETCHES: Final = 40
 
@@ -168,49 +164,32 @@ class Stage:
         left = self.width - indent
         draw_legend(self.figure, entries, note, Frame(left, 0.0, PAGE_WIDTH - left, top))
 
-    def bar(self, norm: Normalize, name: str, low: float, is_reversed: bool = False) -> None:
-        """Draw the scale of colours; ``is_reversed`` if the dark end is the least value."""
-        from matplotlib.cm import ScalarMappable
-        from matplotlib.colors import LogNorm
-        from matplotlib.ticker import MaxNLocator
-
-        axes = add_axes(self.figure, Frame(self.width, low, PAGE_WIDTH - self.width - 0.2, 0.12))
-        colours = ScalarMappable(norm, scale().reversed() if is_reversed else scale())
-        bar = self.figure.colorbar(colours, cax=axes, orientation="horizontal")
-        bar.outline.set_linewidth(0.5)
-        bar.outline.set_edgecolor(QUIET)
-        if not isinstance(norm, LogNorm):
-            axes.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
-        axes.set_xlabel(name, size=SMALL)
-        axes.tick_params(labelsize=SMALL)
-
     def time_bar(self, times: Numbers, low: float) -> None:
-        """Draw the colours of a course from start to end, unless these are the same double."""
+        """Draw the colours of a course from start to end, unless these are the same double.
+
+        ``low`` is the distance of the bar from the foot, in inches.
+        """
+        from matplotlib.cm import ScalarMappable
         from matplotlib.colors import Normalize
+        from matplotlib.ticker import MaxNLocator
 
         if times[0] == times[-1]:
             return
-        norm = Normalize(float(times.min()), float(times.max()))
-        self.bar(norm, "time t", low, is_reversed=bool(times[-1] < times[0]))
+        axes = add_axes(self.figure, Frame(self.width, low, PAGE_WIDTH - self.width - 0.2, 0.12))
+        # The end is dark, also where time runs backward.
+        colours = scale() if times[-1] > times[0] else scale().reversed()
+        mapped = ScalarMappable(Normalize(float(times.min()), float(times.max())), colours)
+        bar = self.figure.colorbar(mapped, cax=axes, orientation="horizontal")
+        bar.outline.set_linewidth(0.5)
+        bar.outline.set_edgecolor(QUIET)
+        axes.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
+        axes.set_xlabel("time t", size=SMALL)
+        axes.tick_params(labelsize=SMALL)
 
 
 def scale() -> Colormap:
-    """Return the colours of a quantity, from little (light) to much (dark)."""
+    """Return the colours of time, from the start (light) to the end (dark)."""
     import matplotlib
     from matplotlib.colors import ListedColormap
 
     return ListedColormap(matplotlib.colormaps[_SCALE](np.linspace(_FROM, 1.0, 256)))
-
-
-def norm_of(values: Sequence[float]) -> Normalize:
-    """Return the scale of the sizes: linear, or logarithmic if they are of very different size.
-
-    Zero, and sizes below the last decade, have the lightest colour.
-    """
-    from matplotlib.colors import LogNorm, Normalize
-
-    above = sorted(value for value in values if isfinite(value) and value > 0)
-    most = above[-1] if above else 1.0
-    if not above or most <= _UNLIKE * above[len(above) // 2]:
-        return Normalize(0.0, most, clip=True)
-    return LogNorm(max(above[0], most / 10**_DECADES), most, clip=True)

@@ -68,7 +68,7 @@ def add(verb: argparse.ArgumentParser) -> None:
         "--site",
         metavar="SITE",
         help="make one site of the docs and of DIR, in the folder SITE (needs sphinx, myst-nb, furo, "
-        "sphinx-copybutton, latex2mathml, plotly)",
+        "sphinx-copybutton, latex2mathml)",
     )
     for study in STUDIES:
         if study.options:

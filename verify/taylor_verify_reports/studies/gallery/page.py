@@ -1,35 +1,29 @@
 """Gallery: pictures of some motions and of their errors, made from stored data alone.
 
-Its data are data/portraits (the motion), data/records (the errors of a run), reference/NAME.csv (the
-exact motion at its samples) and data/controls.json (broken solvers). The page is figures/README.md.
+Its data are data/portraits (the motion), data/records (the errors of a run) and data/controls.json (broken
+solvers). The page is figures/README.md.
 """
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from taylor_verify.draw import axis_path, centre_path, polhode
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.records import store
-from taylor_verify.records.file_names import of_scene
-from taylor_verify.records.precisions import place_of_rung
-from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.words.markdown import code, prose
 from taylor_verify.words.page import whole
 from taylor_verify_reports.studies.controls import picture as shifts
 from taylor_verify_reports.studies.controls.document import CONTROLS
 from taylor_verify_reports.studies.gallery.pictures import errors_over_time, potential
 from taylor_verify_reports.studies.portraits.study import PORTRAITS
-from taylor_verify_reports.studies.reference import page as reference_files
+from taylor_verify_reports.studies.source import Document, Report
 
 _SOLVER: Final = "taylor"
-# The rung whose samples are marked on a polhode.
-_RUNG: Final = "f64"
 
 _WHAT: Final = (
     "Every picture is drawn from the data beside this folder, by `taylor-verify publish gallery`, as "
@@ -43,8 +37,6 @@ _ELSEWHERE: Final = (
     "[tradeoff](../tables/tradeoff.md), and the digits that each precision leaves in "
     "[hard scenes](../tables/hard.md)."
 )
-
-Document = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
@@ -69,61 +61,35 @@ def _named(source: str) -> str:
     return code(source) if is_made else f"[{Path(source).name}](../{source})"
 
 
-@dataclass(frozen=True)
-class Stored:
-    """The data of a report folder that the pictures need.
-
-    Raises FileNotFoundError for missing files, and ValueError for files that hold something else.
-    """
-
-    folder: Path
-
-    def portrait(self, scene: str) -> Document:
-        """Return the portrait of a scene."""
-        return store.read_document(self.folder / PORTRAITS.name(scene))
-
-    def record(self, scene: str, rung: str) -> Document:
-        """Return the record of the run of a scene on a rung."""
-        return store.read_document(self.folder / record_name(scene, rung))
-
-    def rungs(self, scene: str) -> list[str]:
-        """Return the rungs on which the scene was run, in the order of the ladder."""
-        stem = f"{of_scene(scene)}.{_SOLVER}"
-        files = (self.folder / store.FOLDER / store.RECORDS).glob(f"{stem}.*.json")
-        names = [file.name.removeprefix(f"{stem}.").removesuffix(".json") for file in files]
-        return sorted(names, key=place_of_rung)
-
-    def samples(self, scene: str, columns: Sequence[str]) -> list[list[float]]:
-        """Return the exact motion as a row of the columns for each instant of the scene."""
-        file = self.folder / reference_name(scene)
-        with file.open(encoding="utf-8", newline="") as lines:
-            return [[float(row[column]) for column in columns] for row in csv.DictReader(lines)]
-
-
 def record_name(scene: str, rung: str) -> str:
     """Return the path of the record of a run, below the report folder."""
     return f"{store.FOLDER}/{store.record_name(scene, _SOLVER, rung)}"
 
 
-def reference_name(scene: str) -> str:
-    """Return the path of the exact motion of a scene, below the report folder."""
-    return f"{reference_files.FOLDER}/{of_scene(scene)}.csv"
-
-
 def gallery(folder: Path) -> list[Shown]:
-    """Return every picture of the gallery. Raises FileNotFoundError and ValueError as `Stored` does."""
+    """Return every picture of the gallery.
+
+    Raises FileNotFoundError for missing files, and ValueError for files that hold something else.
+    """
     with store.expecting("data of the gallery", folder / store.FOLDER):
-        return list(shown(Stored(folder)))
+        return list(shown(Report(folder)))
 
 
-def shown(stored: Stored) -> Iterator[Shown]:
+def shown(report: Report) -> Iterator[Shown]:
     """Yield every picture of the gallery, scene by scene."""
     for scene, kinds in _SCENES:
-        portrait = stored.portrait(scene)
+        portrait = _portrait(report, scene)
         for kind in kinds:
-            yield Shown(f"{scene}: {prose(portrait['title'])}", *kind(stored, portrait))
-    yield Shown("Clebsch's body: where the axial impulse may go", *_quartics(stored))
-    yield Shown("Errors split in lateness and the rest", *_shifts(stored))
+            yield Shown(f"{scene}: {prose(portrait['title'])}", *kind(report, portrait))
+    yield Shown("Clebsch's body: where the axial impulse may go", *_quartics(report))
+    yield Shown("Errors split in lateness and the rest", *_shifts(report))
+
+
+def _portrait(report: Report, scene: str) -> Document:
+    portrait = report.portrait(scene)
+    if portrait is None:
+        raise FileNotFoundError(2, "no such file", report.folder / PORTRAITS.name(scene))
+    return portrait
 
 
 def page(pictures: Sequence[Shown]) -> str:
@@ -141,20 +107,15 @@ def page(pictures: Sequence[Shown]) -> str:
 Made = tuple[Picture, str, tuple[str, ...]]
 
 
-def _polhode(stored: Stored, portrait: Document) -> Made:
-    scene = portrait["scene"]
+def _polhode(report: Report, portrait: Document) -> Made:
     caption = (
-        f"{code(scene)}: the angular velocity on its ellipsoid of inertia. The line is the exact "
-        f"course, the marks are the samples of {_SOLVER} on {_RUNG}, coloured by their error in units "
-        "of u; dashed the separatrices. Repeated turns overlap, with later marks above earlier ones."
+        f"{code(portrait['scene'])}: the angular velocity on its ellipsoid of inertia, from light to dark "
+        "with time; dashed the separatrices."
     )
-    samples, record = stored.samples(scene, COLUMNS["omega"]), stored.record(scene, _RUNG)
-    picture = polhode.picture(portrait, samples, record)
-    sources = (PORTRAITS.name(scene), record_name(scene, _RUNG), reference_name(scene))
-    return picture, caption, sources
+    return polhode.picture(portrait), caption, (PORTRAITS.name(portrait["scene"]),)
 
 
-def _axis(stored: Stored, portrait: Document) -> Made:
+def _axis(report: Report, portrait: Document) -> Made:
     path = axis_path.series(portrait)
     still = "" if path.fixed is None else f"; the cross is the direction of its {path.fixed_name}"
     caption = (
@@ -164,43 +125,42 @@ def _axis(stored: Stored, portrait: Document) -> Made:
     return axis_path.picture(portrait), caption, (PORTRAITS.name(portrait["scene"]),)
 
 
-def _path(stored: Stored, portrait: Document) -> Made:
-    path = centre_path.series(portrait)
+def _path(report: Report, portrait: Document) -> Made:
+    body = "the solid itself" if portrait["semi_axes"] else "the axes of the body"
     caption = (
         f"{code(portrait['scene'])}: the path of the body's origin through the fluid, with its projections "
-        f"on three walls; the short lines are body axis {path.axis} at equal intervals of time."
+        f"on three walls, and {body} at equal intervals of time."
     )
     return centre_path.picture(portrait), caption, (PORTRAITS.name(portrait["scene"]),)
 
 
-def _errors(stored: Stored, portrait: Document) -> Made:
+def _errors(report: Report, portrait: Document) -> Made:
     scene = portrait["scene"]
-    rungs = stored.rungs(scene)
-    if not rungs:
-        raise FileNotFoundError(2, "no such file", stored.folder / record_name(scene, _RUNG))
+    records = report.records(scene)
+    if not records:
+        raise FileNotFoundError(2, "no such file", report.folder / record_name(scene, "f64"))
     caption = (
-        f"{code(scene)}: the largest error of {_SOLVER} up to each time on {', '.join(rungs)}, in units of "
-        "the rung's own roundoff u. Dashed, through the middle of all: the powers of time that random "
+        f"{code(scene)}: the largest error of {_SOLVER} up to each time on {', '.join(records)}, in units "
+        "of the rung's own roundoff u. Dashed, through the middle of all: the powers of time that random "
         "roundings leave on regular orbits, 1/2 for a conserved quantity, 3/2 for state and attitude. Near "
         "an unstable motion the state's error grows faster for a while, whatever the rung."
     )
-    records = [stored.record(scene, rung) for rung in rungs]
-    picture = errors_over_time.picture(scene, records, portrait["course"]["t"][0])
-    return picture, caption, tuple(record_name(scene, rung) for rung in rungs)
+    picture = errors_over_time.picture(scene, [*records.values()], portrait["course"]["t"][0])
+    return picture, caption, tuple(record_name(scene, rung) for rung in records)
 
 
-def _quartics(stored: Stored) -> Made:
+def _quartics(report: Report) -> Made:
     caption = (
         "The quartic X3 of Clebsch's body, whose root the axial impulse follows: x3'^2 = r^2 X3(x3). "
         "The body swings between two simple roots; it only approaches a double root, like an "
         "exponential, and a triple one like 1/t^2. With two real roots the other two are a complex "
         "pair."
     )
-    picture = potential.picture([stored.portrait(scene) for scene in QUARTICS], "kirchhoff")
+    picture = potential.picture([_portrait(report, scene) for scene in QUARTICS], "kirchhoff")
     return picture, caption, tuple(PORTRAITS.name(scene) for scene in QUARTICS)
 
 
-def _shifts(stored: Stored) -> Made:
+def _shifts(report: Report) -> Made:
     caption = (
         "Solvers that were broken on purpose: the largest error of each, and the rest after the best "
         "shift of time. The shift of a sound run is as random as its roundings, and is not stored. A "
@@ -208,11 +168,11 @@ def _shifts(stored: Stored) -> Made:
         "quantity is right. If the second mark lies on the first, the motion is wrong, or only some "
         "of its samples are late."
     )
-    verdicts = CONTROLS.load(stored.folder).verdicts
+    verdicts = CONTROLS.load(report.folder).verdicts
     return shifts.picture(verdicts, "controls"), caption, (CONTROLS.name,)
 
 
-_SCENES: Final[tuple[tuple[str, tuple[Callable[[Stored, Document], Made], ...]], ...]] = (
+_SCENES: Final[tuple[tuple[str, tuple[Callable[[Report, Document], Made], ...]], ...]] = (
     ("euler/generic", (_polhode, _errors)),
     ("euler/with-attitude", (_polhode, _axis, _errors)),
     ("euler/separatrix", (_polhode, _errors)),

@@ -27,8 +27,8 @@ def _measure(folder: Path, progress: Progress) -> Measured:
             return Measured()
     except FileNotFoundError as error:
         raise NotMeasured(
-            "expected what `run --out`, `publish reference`, `publish controls` and `publish portraits` "
-            f"write, got no such file @ {error.filename}"
+            "expected what `run --out`, `publish controls` and `publish portraits` write, "
+            f"got no such file @ {error.filename}"
         ) from error
     except (ImportError, ValueError) as error:
         raise NotMeasured(str(error)) from error

@@ -1,6 +1,6 @@
 """Portrait of a shipped scene: everything that its page shows, as one plain document.
 
-    document["course"]["omega"]      the motion at dense times, in plain floats, for pictures
+    document["course"]["omega"]      the motion at dense times (draw.course.motion), for pictures
     document["values"]["rows"]       the motion at ten times, in 30 digits, for comparisons
     document["potential"]            the quartic X3 of Clebsch's body, x3'^2 = r^2 X3(x3)
 
@@ -10,7 +10,7 @@ f64. Nothing depends on the machine or the time of day: two portraits of one sce
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from math import lcm
 from typing import Any, Final
@@ -18,18 +18,7 @@ from typing import Any, Final
 from flint import acb, ctx, fmpz_poly
 from mpmath import mp
 
-from taylor_verify.draw.course import (
-    DIGITS,
-    FIGURES,
-    analytic,
-    course_of,
-    inertia_ellipsoid,
-    length,
-    orbit_of,
-    plain,
-    span,
-)
-from taylor_verify.exact.elements import Elements
+from taylor_verify.draw.course import DIGITS, FIGURES, motion, plain, span
 from taylor_verify.exact.kirchhoff.closed import revolution
 from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.kirchhoff.reduced import Reduced
@@ -53,27 +42,21 @@ Document = dict[str, Any]
 def portrait(scene: Scene) -> Document:
     """Return the document of one shipped scene. Raises Unsettled if a number does not reach its digits."""
     text = find(scene.name).read_text(encoding="utf-8")
-    exact, orbit = solution(scene), orbit_of(scene)
-    values = document(scene, exact, _times(scene), DIGITS)
-    explained = explanation(scene, _RUNG)
+    values = document(scene, solution(scene), _times(scene), DIGITS)
+    explained, moved = explanation(scene, _RUNG), motion(scene)
+    orbit = {row["name"]: row["value"] for row in moved["analytic"]}
     return {
-        "scene": scene.name,
-        "title": scene.title,
-        "model": scene.model,
+        **moved,
         "source": scene.source or None,
         "why": _comment(text),
         "toml": text,
         "track": _tracked(scene),
         "regime": values["regime"],
-        "route": values["route"],
         "warnings": list(scene.warnings),
         "tex": equations(scene),
-        "analytic": analytic(orbit),
         # The seconds of a run differ from run to run.
         "explain": {**explained, "cost": {**explained["cost"], "seconds": None}},
         "values": values,
-        "course": course_of(scene, exact, length(scene, orbit)),
-        "body": inertia_ellipsoid(scene),
         "potential": _potential(scene, orbit),
         "sha256": scene.digest,
     }
@@ -101,7 +84,7 @@ def _times(scene: Scene) -> list[tuple[str, Fraction]]:
 # The potential.
 
 
-def _potential(scene: Scene, orbit: Elements) -> Document | None:
+def _potential(scene: Scene, orbit: Mapping[str, str]) -> Document | None:
     """Return X3 of Hydromechanics 49 with its roots, and the interval of the axial impulse.
 
     The result is None unless the body is free, symmetric about one of its axes, and has a linear impulse,
@@ -110,17 +93,17 @@ def _potential(scene: Scene, orbit: Elements) -> Document | None:
     body = scene.body
     if not isinstance(body, ImmersedBody) or not body.is_free:
         return None
-    motion = revolution(Reduced(scene))
-    if motion is None or not isinstance(motion.subject, Nutation):
+    closed = revolution(Reduced(scene))
+    if closed is None or not isinstance(closed.subject, Nutation):
         return None
-    nutation = motion.subject
+    nutation = closed.subject
     X3 = [coefficient / nutation.body.r**2 for coefficient in nutation.f]  # noqa: N806 (as in 49)
     if nutation.F2 == 0 or len(X3) < 2 or nutation.axes.number is None:
         return None
     variable = f"x{nutation.axes.number}"
-    ends = [orbit[name].value for name in (f"{variable}_low", f"{variable}_high") if name in orbit]
+    ends = [orbit[name] for name in (f"{variable}_low", f"{variable}_high") if name in orbit]
     with mp.workdps(DIGITS):
-        interval = ends or [mp.convert(nutation.z)] * 2
+        interval = [mp.mpf(end) for end in ends] or [mp.convert(nutation.z)] * 2
         return {
             "variable": variable,
             "coefficients": plain([mp.convert(coefficient) for coefficient in X3]),

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import re
 import warnings
-from importlib import resources
 from importlib.util import find_spec
 from io import StringIO
 from pathlib import Path
@@ -19,7 +18,6 @@ from taylor_verify_reports.studies.site.pages import staged
 MADE_BY: Final = "<!-- made by taylor-verify publish --site; do not edit -->"
 FRONT: Final = "index.html"
 
-_SCRIPT: Final = "plotly.min.js"
 # Modules that the site needs; their packages have these names with hyphens.
 _NEEDED: Final = (
     "sphinx",
@@ -29,7 +27,6 @@ _NEEDED: Final = (
     "sphinx_copybutton",
     "latex2mathml",
     "matplotlib",
-    "plotly",
 )
 # Patterns of pages; other Markdown is copied as files.
 _PAGES: Final = ["index.md", "docs/**", "reports/**"]
@@ -73,9 +70,7 @@ def contents(folder: Path) -> dict[str, str | bytes]:
             for file in files
             if not file.name.endswith(_UNNEEDED)
         }
-    # A page loads Plotly's script when a picture of a motion comes into view.
-    plotly = resources.files("plotly") / "package_data" / _SCRIPT
-    return {**site, f"_static/{_SCRIPT}": plotly.read_bytes()}
+    return site | {name: f"{MADE_BY}\n{page}" for name, page in stage.motions.items()}
 
 
 def _run_sphinx(source: Path, target: Path, settings: Path) -> None:

@@ -32,28 +32,16 @@ html_title = project
 html_math_renderer = "mathml"
 html_static_path = [str(Path(__file__).parent / "assets")]
 html_css_files = ["site.css"]
-html_js_files = ["tables.js", "motions.js"]
+html_js_files = ["tables.js"]
 html_show_copyright = False
 html_show_sourcelink = False
 html_copy_source = False
 html_domain_indices = html_use_index = False
 # Search results have no excerpts, because a page that is opened as a file cannot read other pages.
 html_show_search_summary = False
-# Colours of the style sheet and the pictures, light and dark, by name. For dark pages a hue is lightened
-# until a line has the contrast of 3 that WCAG 2.1 (1.4.11) requires.
-_COLOURS = {
-    "motion-ink": ("#1B1D21", "#E8E8E4"),
-    "motion-quiet": ("#5B616A", "#A6ABB2"),
-    "motion-faint": ("#E3E5E8", "#31363D"),
-    "motion-surface": ("#C9CED6", "#59616C"),
-    "motion-low": ("#2F7DB5", "#4FA3DC"),
-    "motion-middle": ("#8A6AA8", "#A98BC9"),
-    "motion-high": ("#C4500A", "#EE8A4E"),
-    "color-problem": ("#A83C00", "#F0976A"),
-}
 html_theme_options = {
-    "light_css_variables": {name: light for name, (light, _) in _COLOURS.items()},
-    "dark_css_variables": {name: dark for name, (_, dark) in _COLOURS.items()},
+    "light_css_variables": {"color-problem": "#A83C00"},
+    "dark_css_variables": {"color-problem": "#F0976A"},
 }
 pygments_style = "default"
 pygments_dark_style = "monokai"

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
 from taylor_verify.batch.pool import LocalPool, available_cores
+from taylor_verify.draw.caption import NotDrawn
+from taylor_verify.draw.moving import moving
+from taylor_verify.draw.page import page
 from taylor_verify.plotting.picture import Picture, content
 from taylor_verify.records.file_names import of_scene
 from taylor_verify.records.runs import Run, gravest
@@ -15,9 +19,15 @@ from taylor_verify.words.cells import NOTHING, judged, main_error, ratio, verdic
 from taylor_verify.words.markdown import code, prose, table
 from taylor_verify_reports.studies.gallery.pictures import errors_over_time, potential
 from taylor_verify_reports.studies.site.extension import SCENES
-from taylor_verify_reports.studies.site.scene_page import drawing_of, made_with, scene_page, shown
-from taylor_verify_reports.studies.site.source import Document, Report
+from taylor_verify_reports.studies.site.scene_page import (
+    drawing_of,
+    made_with,
+    motion_place,
+    scene_page,
+    shown,
+)
 from taylor_verify_reports.studies.site.stage import FRONT, REPORTS, Stage, docs_beside, smaller
+from taylor_verify_reports.studies.source import Document, Report
 
 _GATES: Final = f"{REPORTS}/tables/gates.md"
 # Fewer pictures are drawn in this process, because to start others takes as long as some drawings.
@@ -66,18 +76,28 @@ def staged(folder: Path) -> Stage:
         ]
     )
     stage.files |= {f"{SCENES}/{name}": svg for name, svg in drawings.items()}
+    motions = dict(_motions(report))
+    stage.motions |= {f"{REPORTS}/{motion_place(scene)}": text for scene, text in motions.items()}
     stage.add_pages(
         {
             f"{SCENES}.md": _scenes(report),
             _GATES: _gates(report),
             **{
-                f"{SCENES}/{of_scene(scene)}.md": scene_page(scene, report, drawn)
+                f"{SCENES}/{of_scene(scene)}.md": scene_page(scene, report, drawn, scene in motions)
                 for scene, drawn in pictures.items()
             },
             FRONT: _front(report, stage, pictures.get(_EXAMPLE, ())),
         }
     )
     return stage
+
+
+def _motions(report: Report) -> Iterator[tuple[str, str]]:
+    """Yield each scene that moves, with the page on which it does."""
+    for scene in report.scenes:
+        with suppress(NotDrawn):
+            if portrait := report.portrait(scene):
+                yield scene, page(moving(portrait))
 
 
 def _pictures_of(scene: str, portrait: Document, records: Mapping[str, Document]) -> list[Picture]:

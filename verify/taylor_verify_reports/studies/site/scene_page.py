@@ -19,12 +19,9 @@ from taylor_verify.words.cells import conclusion, figure, verdict_table
 from taylor_verify.words.markdown import bullets, code, prose, table
 from taylor_verify.words.page import packages
 from taylor_verify_reports.studies import figures
-from taylor_verify_reports.studies.site.motion import motions_of
-from taylor_verify_reports.studies.site.source import Document, Report
+from taylor_verify_reports.studies.source import Document, Report
 from taylor_verify_reports.studies.tradeoff.stored import TimedPoint, Trade
 
-# The rung of the errors that colour the curves in space.
-_SHOWN: Final = "f64"
 # The navigation has no lines for scenes, which are too many; the table of scenes has links to them.
 _ORPHAN: Final = "---\norphan: true\n---"
 _ACCURACY: Final = (
@@ -46,15 +43,17 @@ _ALLOWED: Final = (
 )
 
 
-def scene_page(scene: str, report: Report, pictures: Sequence[Picture]) -> str:
-    """Return the whole page of a scene with its ``pictures``; empty sections are left out."""
+def scene_page(
+    scene: str, report: Report, pictures: Sequence[Picture], has_motion: bool = False
+) -> str:
+    """Return the whole page of a scene with its ``pictures``; empty sections are left out.
+
+    With ``has_motion`` the page on which the scene moves is shown too.
+    """
     runs = report.runs_of(scene)
     portrait, records = report.portrait(scene) or {}, report.records(scene)
     record = next(iter(records.values()), {})
     verdicts = [verdict for run in runs for verdict in run.verdicts]
-    motions = [figure.html() for figure in motions_of(portrait, records.get(_SHOWN))]
-    if motions:
-        motions = ['<div class="motions">', *motions, "</div>"]
     toml = portrait.get("toml", "").strip()
     condition = portrait.get("explain", {}).get("condition") or {}
     digest = next((str(v.provenance.get("scene", "")) for v in verdicts), "")
@@ -71,7 +70,7 @@ def scene_page(scene: str, report: Report, pictures: Sequence[Picture]) -> str:
         else [],
         "Accuracy": [verdict_table(_ACCURACY, verdicts)],
         "Other solvers": _solvers(report.trade(scene)),
-        "Pictures": [*_drawings(report, pictures), *motions],
+        "Pictures": [*([_turning(scene)] if has_motion else []), *_drawings(report, pictures)],
         "The arithmetic of the gates": [
             prose(condition.get("sentence", "")),
             _folded("Every bound with its terms", _gates(verdicts)),
@@ -94,6 +93,22 @@ def scene_page(scene: str, report: Report, pictures: Sequence[Picture]) -> str:
 def drawing_of(picture: Picture) -> str:
     """Return the path of a published picture in the report."""
     return f"{figures.FOLDER}/{picture.stem}.svg"
+
+
+def motion_place(scene: str) -> str:
+    """Return the path of the page on which a scene moves, from the folder of the report."""
+    return f"motions/{of_scene(scene)}.html"
+
+
+def _turning(scene: str) -> str:
+    """Return the page on which a scene moves, within another page; without empty lines, as HTML needs."""
+    address = f"../{motion_place(scene)}"
+    return (
+        f'<figure class="turning" id="motion">\n<iframe loading="lazy" title="The motion of {scene}, '
+        f'which plays and can be turned" src="{address}"></iframe>\n'
+        f'<figcaption>The exact motion, moving. <a href="{address}">On a page of its own</a></figcaption>\n'
+        "</figure>"
+    )
 
 
 def shown(report: Report, picture: Picture, top: str) -> str:
@@ -142,7 +157,7 @@ def _facts(runs: Sequence[Run], portrait: Document, record: Document) -> str:
         "regime": portrait.get("regime") or record.get("regime", ""),
         "period": f"{float(periods[0]):.6g}" if periods else "",
         "compared": ", ".join(dict.fromkeys(v.quantity for run in runs for v in run.state)),
-        "truth": portrait.get("route") or record.get("route", ""),
+        "truth": (portrait.get("values") or record).get("route", ""),
         "source": portrait.get("source") or "",
     }
     return "\n".join(f":{name}: {prose(value)}" for name, value in facts.items() if value)

@@ -42,11 +42,15 @@ def docs_beside(folder: Path) -> Path | None:
 
 @dataclass
 class Stage:
-    """Files for Sphinx by path. ``folder`` has the report, ``docs`` the pages of the checkout, if any."""
+    """Files for Sphinx by path. ``folder`` has the report, ``docs`` the pages of the checkout, if any.
+
+    ``motions`` are pages that Sphinx does not make, by the path that they have on the site.
+    """
 
     folder: Path
     docs: Path | None
     files: dict[str, str | bytes] = field(default_factory=dict)
+    motions: dict[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self._pages = dict(self._markdown())

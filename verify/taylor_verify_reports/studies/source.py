@@ -1,4 +1,4 @@
-"""Data of a report folder that the site reads: verdicts, records, portraits and measurements.
+"""Data of a report that the site and the gallery read: verdicts, records, portraits and measurements.
 
     portrait   data/portraits/NAME.json: one scene in text, equations, exact values and a dense course;
                without it the page of a scene has fewer sections

@@ -1,0 +1,236 @@
+"""The gallery: pictures of errors and of quartics are true to their data, and its page names them."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from functools import cache
+from itertools import combinations
+from math import floor, inf, log, nan
+from pathlib import Path
+
+import numpy as np
+import pytest
+from builders import reports
+from hypothesis import given
+from hypothesis import strategies as st
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.ticker import FixedLocator
+
+from taylor_verify.cli import main
+from taylor_verify.plotting import log_axes
+from taylor_verify.plotting.picture import Picture, plotting
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
+from taylor_verify_reports.studies.controls import picture as shifts
+from taylor_verify_reports.studies.controls.document import CONTROLS
+from taylor_verify_reports.studies.gallery import page as gallery
+from taylor_verify_reports.studies.gallery.pictures import errors_over_time, potential
+from taylor_verify_reports.studies.portraits.study import PORTRAITS
+from taylor_verify_reports.studies.source import Report
+
+RUNGS = ("f32", "f64", "f80", "f128", "mp237")
+RAISED = "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"
+LOWERED = str.maketrans(RAISED, "-0123456789")
+
+
+def stored() -> Report:
+    return Report(reports.for_gallery())
+
+
+@cache
+def shown() -> tuple[gallery.Shown, ...]:
+    return tuple(gallery.shown(stored()))
+
+
+# Errors
+
+
+def test_the_line_is_the_largest_error_so_far() -> None:
+    """The line never falls, has values of errors, and ends at the largest."""
+    points = [(1.0, 2.0), (2.0, 0.5), (3.0, 4.0), (4.0, 1.0)]
+    assert errors_over_time.so_far(points) == [(1.0, 2.0), (2.0, 2.0), (3.0, 4.0), (4.0, 4.0)]
+
+
+def test_what_a_logarithm_cannot_show_is_left_out() -> None:
+    """The start, an error of zero and what is no number have no place; the others are in units of u."""
+    gate = {"quantity": "omega", "errors": [0.0, 2e-7, 0.0, None, inf, 4e-7]}
+    times = [10.0, 9.0, 8.0, 7.0, 6.0, 5.0]
+    record = {"rung": "f32", "times": times, "unit_roundoff": 1e-7, "gates": [gate]}
+    points = errors_over_time.series([record])["omega"]["f32"]
+    assert points == [(1.0, pytest.approx(2)), (5.0, pytest.approx(4))]
+    with pytest.raises(ValueError, match="expected errors above zero, got none @ euler/generic"):
+        errors_over_time.picture("euler/generic", [])
+
+
+def test_the_powers_are_those_of_brouwers_law() -> None:
+    """All panels have one dashed line, straight in logarithms, of slope 1/2 or 3/2."""
+    records = stored().records("euler/generic")
+    with plotting():
+        figure = errors_over_time.picture("euler/generic", [*records.values()]).figure()
+    slopes = []
+    for axes in figure.axes:
+        (line,) = [one for one in axes.get_lines() if str(one.get_gid()).startswith("power")]
+        (t0, e0), (t1, e1) = line.get_xydata()
+        slopes.append(log(e1 / e0) / log(t1 / t0))
+        assert [one.get_gid() for one in axes.get_lines() if one is not line] == list(RUNGS)
+    assert slopes == pytest.approx([0.5, 1.5])
+
+
+def test_a_record_of_the_state_alone_has_one_panel() -> None:
+    """A record without gates on conserved quantities has a single panel."""
+    record = stored().records("manufactured/euler-resonance")["f64"]
+    alone = {**record, "gates": [g for g in record["gates"] if g["quantity"] == "omega"]}
+    panels = errors_over_time.panels_of(errors_over_time.series([alone]))
+    assert [panel.quantity for panel in panels] == ["omega"]
+
+
+def test_shifts_are_those_of_rows_that_have_one() -> None:
+    """No number, no shift or a shift that explains nothing: no line. The best explained comes first."""
+    row = Verdict(
+        "euler/a",
+        "a",
+        "f64",
+        "control",
+        "omega",
+        Status.FAIL,
+        "reached the last sample",
+        **{"max": 1e-3, "residual": 1e-4, "time_shift": 0.5, "shift": "constant"},
+    )
+    rows = [
+        row,
+        replace(row, solver="b", residual=1e-9),
+        replace(row, solver="c", shift="none"),
+        replace(row, solver="d", max=None),
+        replace(row, solver="e", residual=nan),
+        replace(row, solver="f", residual=None, time_shift=None, shift=None),
+    ]
+    assert [one["solver"] for one in shifts.series(rows)] == ["b", "a"]
+    with pytest.raises(ValueError, match="expected an error with its shift of time"):
+        shifts.picture(rows[2:], "controls")
+
+
+def test_the_half_millisecond_is_found() -> None:
+    """The defect that is read half a millisecond early has that shift, and next to nothing is left."""
+    rows = {row["solver"]: row for row in shifts.series(CONTROLS.load(stored().folder).verdicts)}
+    early = rows["half-a-millisecond-early"]
+    assert early["shift"] == pytest.approx(-5e-4, rel=1e-6)
+    assert early["residual"] <= 1e-10 * early["error"]
+
+
+# The quartic
+
+
+def test_the_curve_touches_zero_at_the_ends_of_the_interval() -> None:
+    """The ends are corners of the drawn curve, X3 is zero there, and the roots near by are inside."""
+    for scene in ("whole-motion", "two-real-roots", "falling-away", "half-turn", "algebraic"):
+        series = potential.series(stored().portrait(f"kirchhoff/{scene}") or {})
+        z, X = series.curve.T
+        top = X[(z >= series.interval[0]) & (z <= series.interval[1])].max()
+        for end in series.interval:
+            assert abs(X[np.flatnonzero(z == end)[0]]) <= 1e-6 * top
+        assert (np.diff(z) > 0).all()
+        assert sum(count for _, count in series.roots) + 2 * (series.pair is not None) == 4
+
+
+def test_a_body_without_a_quartic_is_refused() -> None:
+    """Only Clebsch's free body has one."""
+    with pytest.raises(ValueError, match=r"expected a quartic .* @ kirchhoff/general-body"):
+        potential.picture([reports.portrait_without_run("kirchhoff/general-body")], "general-body")
+
+
+# The whole gallery
+
+
+@pytest.mark.parametrize("end", ["generic-errors", "kirchhoff-potential", "controls-shifts"])
+def test_no_text_is_cut(end: str) -> None:
+    """All names, numbers and notes lie within their pictures, to a tenth of a millimetre."""
+    picture = next(one.picture for one in shown() if one.picture.stem.endswith(end))
+    with plotting():
+        figure = picture.figure()
+        # In inches, of all that is visible.
+        box = figure.get_tightbbox(FigureCanvasAgg(figure).get_renderer())
+    width, height = figure.get_size_inches()
+    least, most = min(box.x0, box.y0), max(box.x1 - width, box.y1 - height)
+    assert max(-least, most) <= 0.004, picture.stem
+
+
+def overlaps(picture: Picture) -> list[tuple[str, str]]:
+    """The numbers at its axes that lie on each other."""
+    with plotting():
+        figure = picture.figure()
+        renderer = FigureCanvasAgg(figure).get_renderer()
+        figure.draw(renderer)
+        pairs = []
+        for axes in figure.axes:
+            for axis, limits in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
+                ticks = [*axis.get_major_ticks(), *axis.get_minor_ticks()]
+                shown = [
+                    (tick.label1.get_window_extent(renderer), tick.label1.get_text())
+                    for tick in ticks
+                    if tick.label1.get_visible() and min(limits) <= tick.get_loc() <= max(limits)
+                ]
+                named = [(box, text) for box, text in shown if text]
+                pairs += [
+                    (a, b) for (p, a), (q, b) in combinations(named, 2) if p.overlaps(q) and a != b
+                ]
+    return pairs
+
+
+@pytest.mark.parametrize("stem", ["euler-separatrix-errors", "kirchhoff-through-the-pole-errors"])
+def test_a_short_logarithmic_axis_can_be_read(stem: str) -> None:
+    """An axis of less than two decades has plain numbers, none of which lies on another."""
+    picture = next(one.picture for one in shown() if one.picture.stem == stem)
+    assert overlaps(picture) == []
+    with plotting():
+        figure = picture.figure()
+        figure.axes[0].set_xlim(1, 1.0001)
+        figure.axes[0].xaxis.set_major_locator(FixedLocator([1, 1.000001]))
+        figure.axes[0].xaxis.set_major_formatter(lambda value, _: f"{value:.6f}")
+    assert overlaps(replace(picture, figure=lambda: figure)) == [("1.000000", "1.000001")]
+
+
+# Up to 10^308, the last power of ten that is a double.
+@given(st.floats(-300, 296), st.floats(0.3, 12), st.booleans())
+def test_a_number_at_an_axis_reads_as_it_stands(low: float, decades: float, is_long: bool) -> None:
+    """The text of 1, 2 or 5 of any decade is that number, and axes have as many powers as decades."""
+    power = floor(low)
+    for digit in (1,) if is_long else (1, 2, 5):
+        text = log_axes.number(digit * 10.0**power, is_long)
+        raised = re.fullmatch(rf"(?:(\d)·)?10([{RAISED}]+)", text)
+        value = (
+            int(raised[1] or 1) * 10.0 ** int(raised[2].translate(LOWERED))
+            if raised
+            else float(text)
+        )
+        assert value == pytest.approx(digit * 10.0**power, rel=1e-12)
+    count = log_axes.powers_within(10.0**low, 10.0 ** (low + decades))
+    assert abs(count - decades) <= 1
+
+
+def test_the_page_shows_every_picture_and_where_it_comes_from() -> None:
+    """The page names its maker first, has unique stems, and names existing files of data."""
+    text = gallery.page(shown())
+    stems = [one.picture.stem for one in shown()]
+    assert text.startswith("<!-- made by taylor-verify publish; do not edit -->\n")
+    assert len(set(stems)) == len(stems) >= 20
+    assert re.findall(r"\]\(([\w-]+)\.svg\)", text) == stems
+    named = re.findall(r"(?:\]\(\.\./|`)((?:data|reference)/[^)`]+)[)`]", text)
+    assert len(named) > len(stems)
+    assert [name for name in named if not (reports.for_gallery() / name).is_file()] == []
+    assert all(one.picture.alt for one in shown())
+    assert not any(re.search(r"\b(nan|inf|None)\b", one.block()) for one in shown())
+
+
+def test_the_command_asks_for_what_is_missing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A folder without portraits, or with a portrait that is none, is a wrong call and stays as it is."""
+    assert main(["publish", "gallery", "--from", str(tmp_path)]) == 2
+    assert "publish portraits" in capsys.readouterr().err
+    portrait = tmp_path / PORTRAITS.name("euler/generic")
+    portrait.parent.mkdir(parents=True)
+    portrait.write_text("[]\n", encoding="utf-8")
+    assert main(["publish", "gallery", "--from", str(tmp_path)]) == 2
+    assert "euler-generic.json" in capsys.readouterr().err
+    assert not (tmp_path / "figures").exists()
