@@ -22,7 +22,6 @@ from builders.verdicts import far_off as row
 
 import taylor_verify
 from taylor_verify.cli import main
-from taylor_verify.cli.sentences import coarser_tolerance
 from taylor_verify.judge.diagnosis import diagnosed, is_bounded, is_constant, power_of_time
 from taylor_verify.records.error_kind import ErrorKind
 from taylor_verify.records.quantities import COMPLETE, CONSERVED, INITIAL, STATES
@@ -30,6 +29,7 @@ from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, read_row
 from taylor_verify.scenes.reading.reader import load
+from taylor_verify.words.next_steps import coarser_tolerance
 
 Captured = pytest.CaptureFixture[str]
 
