@@ -172,6 +172,16 @@ def test_every_field_of_an_order_is_documented() -> None:
     assert {stall.value for stall in Stall} <= set(re.findall(r"`([\w ]+)`", section))
 
 
+def test_the_glossary_is_in_order_and_defines_in_sentences() -> None:
+    """Words are sorted, none is there twice, and each has a definition of some words."""
+    _, *entries = text_of("glossary.md").split("\n## ")
+    definitions = dict(entry.split("\n", 1) for entry in entries)
+    assert [*definitions] == sorted(definitions, key=str.lower)
+    assert len(definitions) == len(entries)
+    texts = [text.strip() for text in definitions.values()]
+    assert [text for text in texts if not text.endswith(".") or len(text.split()) < 8] == []
+
+
 def test_every_outcome_is_documented() -> None:
     """The sentences of errors.md are those of Outcome, in its order."""
     sentences = re.findall(r"^- (.*)$", text_of("errors.md"), re.MULTILINE)

@@ -68,7 +68,7 @@ class Judgement:
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """Everything that was found out about the answer, a sentence each."""
+        """The facts that were found out about the answer, a sentence each."""
         return self.notes
 
     def __bool__(self) -> bool:

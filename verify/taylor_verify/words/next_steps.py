@@ -1,4 +1,4 @@
-"""What to call next: the options of the command line that help with some verdicts."""
+"""The next call: options of the command line that help with some verdicts."""
 
 from __future__ import annotations
 
