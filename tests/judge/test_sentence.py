@@ -6,7 +6,7 @@ import json
 import re
 import sys
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
@@ -191,13 +191,6 @@ def test_a_printed_start_is_no_wrong_start() -> None:
 # Since when.
 
 
-@dataclass(frozen=True)
-class Tolerant(Verdict):
-    """A verdict whose bound is the caller's."""
-
-    tolerance: float | None = None
-
-
 def test_since_is_the_first_sample_above_its_bound() -> None:
     """Only a failed row has a first sample above its bound; a tolerance replaces what arithmetic leaves."""
     times, attainable = np.arange(5.0) + 7, np.full(5, 1e-3)
@@ -205,7 +198,7 @@ def test_since_is_the_first_sample_above_its_bound() -> None:
     verdict = diagnosed(row(Status.FAIL), times, 7.0, errors, attainable)
     assert (verdict.since, verdict.until) == (8.0, 11.0)
     assert diagnosed(row(Status.PASS), times, 7.0, errors / 9, attainable).since is None
-    tolerant = Tolerant(**{**vars(row(Status.FAIL)), "tolerance": 2.5e-2})
+    tolerant = row(Status.FAIL, tolerance=2.5e-2)
     verdict = diagnosed(tolerant, times, 7.0, errors, attainable)
     assert verdict.since == 10.0
     assert "above the tolerance of 0.025 (roundoff of f64 alone would need " in verdict.sentence
@@ -271,13 +264,6 @@ def test_five_samples_in_each_quarter_show_a_bound() -> None:
     """Twenty equal errors are bounded; of nineteen, a quarter has four."""
     assert is_bounded(np.linspace(0, 1, 20), np.ones(20))
     assert not is_bounded(np.linspace(0, 1, 19), np.ones(19))
-
-
-def test_a_power_of_time_has_three_decimals() -> None:
-    """More of them would be noise."""
-    elapsed = np.geomspace(1 / 32, 1, 101)
-    power = power_of_time(elapsed, elapsed**1.23456)
-    assert power == round(float(power or 0.0), 3) > 1
 
 
 def test_few_samples_show_no_course() -> None:

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
-from fractions import Fraction
 from typing import Any
 
 import pytest
 
-from taylor_verify import check, exact, load
+from taylor_verify import check
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
@@ -145,15 +142,11 @@ def test_program(verify_solver):
         'verify_solver("euler/spherical", 17)',
         'verify_solver("euler/spherical", still, rung="f65")',
         'verify_solver("euler/spherical", still, tolerance=0)',
-        'verify_solver("euler/spherical", still, tolerance=float("nan"))',
-        'verify_solver("euler/spherical", still, tolerance=True)',
-        'verify_solver("euler/spherical", still, tolerance=1)',
-        'verify_solver("euler/spherical", still, tolerance="1e-8")',
         'verify_solver("euler/spherical", still, tolerance={"omega": 2})',
         'verify_solver("euler/spherical", still, tolerance={"attitude": 1e-3})',
-        'verify_solver("euler/spherical", still, tolerance={})',
         'verify_solver("euler/spherical", still, only=["T", "attitude"])',
         'verify_solver("euler/spherical", still, only=[])',
+        'verify_solver("euler/spherical", still, only=[None])',
     ],
 )
 def test_a_wrong_call_fails(pytester: pytest.Pytester, call: str) -> None:
@@ -282,19 +275,6 @@ def test_a_tolerance_below_the_floor_is_said_to_be_so() -> None:
     assert "the tolerance is finer than the roundings of this precision" in text
 
 
-def test_a_time_shift_is_told_beside_a_tolerance() -> None:
-    """What the judge made of the error as a shift of time is passed on with the tolerance."""
-    scene = load("euler/generic")
-    late = exact(scene, [t - Fraction(1, 2000) for t in scene.clock.instants], 20)["omega"]
-    judgement = check(
-        scene, lambda problem: [[float(w) for w in row] for row in late], tolerance=1e-9
-    )
-    text = report(judgement, demanded_rows(judgement))
-    assert "a time shift: the answer is late by 0.0005, and" in text
-    assert "above the tolerance of 1e-09 (roundoff of f64 alone would need" in text
-    assert "x growth" not in text
-
-
 # The marker.
 
 
@@ -412,21 +392,6 @@ def test_by_a_fixture_of_ones_own(simulator):
 
 
 # What it costs a project that does not use it.
-
-
-def test_the_plugin_alone_imports_nothing_heavy() -> None:
-    """Neither the plugin nor what it decides by loads an integrator, an array or a big number."""
-    script = (
-        "import sys, pytest\n"
-        "before = set(sys.modules)\n"
-        "import taylor_verify.testing.plugin\n"
-        "print(*sorted(m for m in set(sys.modules) - before if m.partition('.')[0] != '__mp_main__'))"
-    )
-    done = subprocess.run([sys.executable, "-c", script], check=True, stdout=subprocess.PIPE)
-    loaded = set(done.stdout.decode().split())
-    assert {"taylor_verify", "taylor_verify.testing.plugin"} <= loaded
-    assert {name for name in loaded if name.startswith("taylor_verify.")} == LIGHT
-    assert not HEAVY & {name.partition(".")[0] for name in loaded}
 
 
 def test_a_session_without_a_scene_loads_nothing_heavy(pytester: pytest.Pytester) -> None:
