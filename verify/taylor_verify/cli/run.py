@@ -170,6 +170,9 @@ def _print_rows(page: Page, results: Judgements, explained: bool) -> None:
         for cause in own:
             print_line(page, cause_line(cause.sentence))
         page.line()
+    if not is_few:
+        page.indented("", opening(results.unexpected or verdicts, causes))
+        page.line()
     # A line for each run: its worst state, its worst drift, its cost.
     lines = [[scene, rung, *_run_cells(group)] for (scene, rung), group in runs]
     print_table(page.console, _OVERVIEW, lines, keys=2)
