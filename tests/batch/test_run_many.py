@@ -291,7 +291,7 @@ def test_its_truth_value_is_whether_it_passed(
     assert judgements.exit_status == exit_status
     assert judgements.passed is bool(judgements) is (exit_status == 0)
     if exit_status:
-        with pytest.raises(NotPassed, match=rf"^{status}  euler/rest f32 .*: "):
+        with pytest.raises(NotPassed, match=rf"\n{status}  euler/rest f32 .*: "):
             judgements.raise_for_failure()
     else:
         judgements.raise_for_failure()

@@ -107,13 +107,6 @@ def test_a_point_off_the_root_is_refused() -> None:
         Field({"u": 3, "v": 4, "w": 6}, {"w": "u**2 + v**2"})
 
 
-def test_no_equation_is_no_proof() -> None:
-    """Nothing is compared, which is neither exact nor within a bound."""
-    residual = CIRCLE.residual([])
-    assert math.isnan(residual.size)
-    assert residual.bound == 0
-
-
 def test_partial_derivatives_divide_out_denominators() -> None:
     """d((u + v)/u)/du = -v/u^2, for what is not reduced to lowest terms too."""
     field = triangle()

@@ -114,4 +114,4 @@ def test_next():
     )
     result = pytester.runpytest_subprocess()
     result.assert_outcomes(failed=1, passed=1)
-    result.stdout.fnmatch_lines(["*sys.exit(*", "*omega: fail, ended with an error*"])
+    result.stdout.fnmatch_lines(["*sys.exit(*", "*fail  * omega: *ended with an error*"])

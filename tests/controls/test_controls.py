@@ -323,14 +323,3 @@ def test_short_table_is_short() -> None:
     assert 10 <= len(lines) - 2 <= 18
     assert all(line.count(" | ") == 3 for line in lines)
     assert sum(line.count("not seen") == 2 for line in lines) >= 2
-
-
-def test_short_table_tells_the_defects_that_are_made_most() -> None:
-    """Every one that has been met in a published simulator or in a textbook is in the short table."""
-    met = {
-        *("no-gyroscopic-term", "diagonal-tensor", "averaged-exponential", "angular-damping"),
-        *("explicit-gyroscopic-update", "implicit-gyroscopic-update", "float32-state"),
-        *("no-added-mass-acceleration", "munk-moment-sign", "half-a-millisecond-early"),
-        *("last-point-interpolated", "success-after-failure"),
-    }
-    assert met <= {defect.name for defect in DEFECTS if defect.is_common}

@@ -16,8 +16,6 @@ from taylor_verify.scenes.motion import State
 PACKAGE: Final = Path(taylor_verify.__file__).parent
 # Elsewhere a solver, a control, a reader or a study may be made for one kind of body, and asks for it.
 ROOMS: Final = ("batch", "cli", "judge", "models", "plotting", "records", "testing", "words")
-# The one file of these rooms that is made for a kind: its equations are those of free rigid bodies.
-MADE_FOR_ONE: Final = PACKAGE / "models" / "bodies.py"
 KINDS: Final = {kind.__name__ for base in (Body, State) for kind in base.__subclasses__()}
 
 
@@ -33,7 +31,7 @@ def questions(source: str) -> Iterator[str]:
 @pytest.mark.parametrize("room", ROOMS)
 def test_no_kind_of_body_is_asked_for(room: str) -> None:
     """These rooms ask a body for its parts, or look its class up in a table."""
-    files = sorted(set((PACKAGE / room).rglob("*.py")) - {MADE_FOR_ONE})
+    files = sorted((PACKAGE / room).rglob("*.py"))
     assert files
     asked = [f"{file.name} {q}" for file in files for q in questions(file.read_text("utf-8"))]
     assert asked == []

@@ -109,7 +109,9 @@ def test_every_key_of_a_scene_is_documented(monkeypatch: pytest.MonkeyPatch) -> 
 # Verdicts.
 
 
-@pytest.mark.parametrize("words", [reason.Cause, reason.Kind, ErrorKind, ClaimVerdict])
+@pytest.mark.parametrize(
+    "words", [reason.Cause, reason.Kind, ErrorKind, answers.Stall, ClaimVerdict]
+)
 def test_every_word_of_a_verdict_is_documented(words: type[reason.Cause]) -> None:
     """The page of verdicts has each word that a program may read in a row."""
     assert missing((word.value for word in words), VERDICTS) == []

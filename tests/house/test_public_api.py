@@ -7,7 +7,6 @@ import pickle
 import subprocess
 import sys
 from importlib.metadata import version
-from pathlib import Path
 from types import FunctionType
 from typing import Any
 
@@ -97,15 +96,6 @@ def test_importing_the_package_imports_no_library_of_numbers() -> None:
 
 
 @pytest.mark.parametrize("function", FUNCTIONS, ids=NAMES)
-def test_a_function_is_typed(function: FunctionType) -> None:
-    """Each argument and the result have a type."""
-    signature = inspect.signature(function)
-    types = [argument.annotation for argument in signature.parameters.values()]
-    assert inspect.Signature.empty not in [*types, signature.return_annotation]
-    assert (Path(taylor_verify.__file__).with_name("py.typed")).is_file()
-
-
-@pytest.mark.parametrize("function", FUNCTIONS, ids=NAMES)
 def test_a_function_goes_to_another_process(function: FunctionType) -> None:
     """Pickled and read again it is the same function."""
     assert pickle.loads(pickle.dumps(function)) is function
@@ -171,24 +161,12 @@ def test_a_run_that_cannot_begin_is_an_outcome(
     assert first.verdict is not Status.PASS
 
 
-def test_many_runs_are_in_the_order_asked_for() -> None:
-    """A judgement for each scene and, within it, each rung, equal to those of `run`."""
-    judgements = taylor_verify.run_many(SCENES, rungs=["f64", "f32"], jobs=2)
-    asked = [(scene, rung) for scene in SCENES for rung in ("f64", "f32")]
-    assert [(j.verdicts[0].scene, j.verdicts[0].rung) for j in judgements] == asked
-    one = taylor_verify.run(SCENES[0], "taylor", "f32")
-    rows = [[(v.quantity, v.verdict, v.max) for v in j.verdicts] for j in (judgements[1], one)]
-    assert rows[0] == rows[1]
-    assert taylor_verify.run_many([]) == []
-
-
 @pytest.mark.parametrize(
     ("changed", "error", "expected"),
     [
         ({"scenes": ["euler/rest", "euler/none"]}, Refused, "euler/none"),
         ({"solver": "tailor"}, ValueError, "tailor"),
         ({"rungs": ["f65"]}, ValueError, "f65"),
-        ({"jobs": 0}, ValueError, "expected jobs of at least 1, got 0"),
     ],
 )
 def test_many_runs_refuse_a_wrong_call(

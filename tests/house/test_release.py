@@ -15,7 +15,6 @@ from taylor_verify.records.version import __version__
 
 ROOT = Path(__file__).resolve().parents[2]
 WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
-FORMS = sorted(set((ROOT / ".github" / "ISSUE_TEMPLATE").glob("*.yml")))
 ACTION = ROOT / ".github" / "actions" / "verify" / "action.yml"
 # Of each action the newest version that was known when the workflows were last looked at.
 NEWEST = {
@@ -188,25 +187,6 @@ def test_the_docs_are_built_of_what_is_there() -> None:
     first, second = settings["python"]["install"]
     files = [settings["sphinx"]["configuration"], first["requirements"], second["path"]]
     assert all((ROOT / file).exists() for file in files)
-
-
-@pytest.mark.parametrize("file", FORMS, ids=lambda file: file.stem)
-def test_a_form_of_an_issue_is_one(file: Path) -> None:
-    """Name, description and fields with labels; the ids differ, and something must be filled in."""
-    form = read(file)
-    if file.stem == "config":
-        assert set(form) == {"blank_issues_enabled"}
-        return
-    assert {"name", "description", "body"} <= set(form)
-    fields = [field for field in form["body"] if field["type"] != "markdown"]
-    assert len({field["id"] for field in fields}) == len(fields)
-    assert all(field["attributes"]["label"] for field in fields)
-    assert any(field.get("validations", {}).get("required") for field in fields)
-
-
-def test_there_is_a_form_for_each_purpose() -> None:
-    """A wrong number, an engine, a scene."""
-    assert {file.stem for file in FORMS} == {"config", "engine", "scene", "wrong-number"}
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from taylor_verify.judge.series.convergence import Sweep, sweep
 from taylor_verify.models.problem import Problem
-from taylor_verify.records.convergence import Convergence, convergence
+from taylor_verify.records.observed_order import Convergence, convergence
 from taylor_verify.scenes.scene import Scene
 
 HALVED = [2.0**-k for k in range(1, 11)]

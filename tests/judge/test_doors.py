@@ -1,21 +1,28 @@
-"""Every door through which a verdict leaves names the same likely cause."""
+"""Every door through which a verdict leaves has the same words: status, worst row, likely cause."""
 
 from __future__ import annotations
 
+from contextlib import redirect_stderr, redirect_stdout
+from html import unescape
+from io import StringIO
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
+from urllib.parse import unquote
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 
 import taylor_verify
 from taylor_verify.cli import main
+from taylor_verify.judge.judgement import Judgement
 from taylor_verify.testing.demand import report
+from taylor_verify.words.account import cause_line
+from taylor_verify.words.markdown import plain
+from taylor_verify.words.opening import opening, worst
 
-pytest_plugins = ["pytester"]
-
-SCENE = "euler/generic"
-CAUSE = "no gyroscopic term"
+SCENE: Final = "euler/generic"
+CAUSE: Final = "no gyroscopic term"
 
 
 def without_gyroscopic_term(problem: Any) -> Any:
@@ -36,46 +43,99 @@ def trajectory(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return file
 
 
-def test_the_terminal_begins_with_the_verdict_and_has_a_line_for_the_cause(
-    trajectory: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """The first sentence has verdict, cause and worst row; a line begins `likely cause:`."""
-    assert main(["check", str(trajectory), "--scene", SCENE]) == 1
-    lines = capsys.readouterr().out.splitlines()
-    assert any(line.startswith(f"fail, likely cause: {CAUSE}; worst:") for line in lines[:4])
-    assert any(line.startswith("likely cause:") and CAUSE in line for line in lines)
+@pytest.fixture(scope="module")
+def judgement(trajectory: Path) -> Judgement:
+    return taylor_verify.check(SCENE, trajectory)
 
 
-def test_junit_and_github_name_the_cause(
-    trajectory: Path,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    """JUnit, the annotations and the step summary have it beside the row that it explains."""
-    junit, summary = tmp_path / "results.xml", tmp_path / "summary.md"
-    monkeypatch.setenv("GITHUB_STEP_SUMMARY", str(summary))
+@pytest.fixture(scope="module")
+def doors(
+    trajectory: Path, judgement: Judgement, tmp_path_factory: pytest.TempPathFactory
+) -> dict[str, str]:
+    """The text that leaves by each door, without what its format adds."""
+    folder = tmp_path_factory.mktemp("written")
+    junit, summary = folder / "results.xml", folder / "summary.md"
     call = ["check", str(trajectory), "--scene", SCENE, "--junit", str(junit), "--github"]
-    assert main(call) == 1
-    shown = capsys.readouterr()
-    annotations = [line for line in f"{shown.out}\n{shown.err}".splitlines() if "::error" in line]
-    texts = [junit.read_text(encoding="utf-8"), summary.read_text(encoding="utf-8"), *annotations]
-    assert all(CAUSE in text for text in texts[:2])
-    assert any(CAUSE in line for line in annotations)
-
-
-def test_python_prints_the_cause(trajectory: Path) -> None:
-    """print, a notebook and the exception have it."""
-    judgement = taylor_verify.check(SCENE, trajectory)
+    with pytest.MonkeyPatch.context() as patch, redirect_stdout(StringIO()) as out:
+        patch.setenv("GITHUB_STEP_SUMMARY", str(summary))
+        with redirect_stderr(StringIO()) as err:
+            assert main(call) == 1
     with pytest.raises(AssertionError) as raised:
         judgement.raise_for_failure()
-    texts = (str(judgement), judgement._repr_html_(), str(raised.value))
-    assert all(CAUSE in text for text in texts)
+    failures = ElementTree.parse(junit).iter("failure")
+    return {
+        "terminal": out.getvalue(),
+        "step summary": plain(summary.read_text(encoding="utf-8")),
+        "JUnit": "\n".join(f"{failure.get('type')}\n{failure.text}" for failure in failures),
+        "annotations": unquote(err.getvalue()),
+        "print": str(judgement),
+        "notebook": unescape(judgement._repr_html_()),
+        "exception": str(raised.value),
+        "pytest": report(judgement, judgement.verdicts),
+    }
 
 
-def test_pytest_names_the_cause_and_gives_no_false_lead() -> None:
-    """The report of the plugin has the cause in place of the advice that the pattern of fails gives."""
-    judgement = taylor_verify.check(SCENE, without_gyroscopic_term)
-    text = report(judgement, list(judgement.verdicts))
-    assert f"likely cause: {CAUSE}" in text.splitlines()[0]
-    assert "Look at the time" not in text
+DOORS: Final = (
+    "terminal",
+    "step summary",
+    "JUnit",
+    "annotations",
+    "print",
+    "notebook",
+    "exception",
+    "pytest",
+)
+# These show a row at its own place, and no report that could begin with a sentence.
+ROWS_ALONE: Final = ("JUnit", "annotations")
+
+
+@pytest.mark.parametrize("door", DOORS)
+def test_every_door_has_the_status_the_worst_row_and_the_cause(
+    door: str, doors: dict[str, str], judgement: Judgement
+) -> None:
+    """The sentence of the worst row and the line of the cause are equal at all of them."""
+    (cause,) = judgement.causes
+    assert cause.name == CAUSE
+    assert "fail" in doors[door]
+    assert worst(judgement.verdicts).sentence in doors[door]
+    assert cause_line(cause.sentence) in doors[door]
+
+
+@pytest.mark.parametrize("door", [door for door in DOORS if door not in ROWS_ALONE])
+def test_every_report_begins_with_one_sentence(
+    door: str, doors: dict[str, str], judgement: Judgement
+) -> None:
+    """Status, cause and worst row come before every other row."""
+    beginning = opening(judgement.verdicts, judgement.causes)
+    assert beginning.startswith(f"fail, likely cause: {CAUSE}; worst: omega: ")
+    assert doors[door].index(beginning) < doors[door].index("likely cause: no gyroscopic term: ")
+
+
+def test_the_terminal_begins_a_line_with_the_cause(doors: dict[str, str]) -> None:
+    """Programs find it by `likely cause:` at the beginning of a line."""
+    assert any(line.startswith("likely cause: ") for line in doors["terminal"].splitlines())
+
+
+def test_a_convention_is_a_note_at_every_door_of_python() -> None:
+    """What was found out about a file is said by print, the notebook, the exception and the terminal."""
+    times = np.linspace(0, 10, 11)
+    states = np.array(taylor_verify.exact(SCENE, times)["omega"], dtype=float)
+    columns = zip(("w1", "w2", "w3"), np.degrees(states).T, strict=True)
+    judgement = taylor_verify.check(SCENE, {"t": times, **dict(columns)})
+    (note,) = (finding.sentence for finding in judgement.conventions)
+    assert f"note: {note}" in str(judgement)
+    assert f"note: {note}" in unescape(judgement._repr_html_())
+
+
+def test_the_row_of_one_of_several_runs_has_its_place() -> None:
+    """In a report on many runs the opening, the rows and the causes name scene and rung."""
+    results = taylor_verify.run_many(
+        ["euler/generic", "euler/spherical"], "geometric:splitting?step=1", rungs=["f64"], jobs=1
+    )
+    with pytest.raises(AssertionError) as raised:
+        results.raise_for_failure()
+    first, *lines = str(raised.value).splitlines()
+    assert "; worst: euler/" in first
+    rows = [line for line in lines if line.startswith("fail  ")]
+    assert rows
+    assert all(line.startswith("fail  euler/") for line in rows)

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from taylor_verify.judge.series.order import Sample, orders
 from taylor_verify.records.answers import Order, Stall
-from taylor_verify.records.convergence import SAME
+from taylor_verify.records.observed_order import SAME
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 

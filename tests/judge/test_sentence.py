@@ -6,7 +6,7 @@ import json
 import re
 import sys
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
@@ -22,7 +22,6 @@ from builders.verdicts import far_off as row
 
 import taylor_verify
 from taylor_verify.cli import main
-from taylor_verify.cli.sentences import coarser_tolerance
 from taylor_verify.judge.diagnosis import diagnosed, is_bounded, is_constant, power_of_time
 from taylor_verify.records.error_kind import ErrorKind
 from taylor_verify.records.quantities import COMPLETE, CONSERVED, INITIAL, STATES
@@ -30,6 +29,7 @@ from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, read_row
 from taylor_verify.scenes.reading.reader import load
+from taylor_verify.words.next_steps import coarser_tolerance
 
 Captured = pytest.CaptureFixture[str]
 
@@ -191,13 +191,6 @@ def test_a_printed_start_is_no_wrong_start() -> None:
 # Since when.
 
 
-@dataclass(frozen=True)
-class Tolerant(Verdict):
-    """A verdict whose bound is the caller's."""
-
-    tolerance: float | None = None
-
-
 def test_since_is_the_first_sample_above_its_bound() -> None:
     """Only a failed row has a first sample above its bound; a tolerance replaces what arithmetic leaves."""
     times, attainable = np.arange(5.0) + 7, np.full(5, 1e-3)
@@ -205,7 +198,7 @@ def test_since_is_the_first_sample_above_its_bound() -> None:
     verdict = diagnosed(row(Status.FAIL), times, 7.0, errors, attainable)
     assert (verdict.since, verdict.until) == (8.0, 11.0)
     assert diagnosed(row(Status.PASS), times, 7.0, errors / 9, attainable).since is None
-    tolerant = Tolerant(**{**vars(row(Status.FAIL)), "tolerance": 2.5e-2})
+    tolerant = row(Status.FAIL, tolerance=2.5e-2)
     verdict = diagnosed(tolerant, times, 7.0, errors, attainable)
     assert verdict.since == 10.0
     assert "above the tolerance of 0.025 (roundoff of f64 alone would need " in verdict.sentence
@@ -238,7 +231,10 @@ def test_a_power_of_time_is_read_from_the_errors(power: float, scale: float) -> 
     """The power is read at any size, through a factor that swings twofold; noise and a jump have none."""
     elapsed = np.linspace(0, 200, 401)
     swing = 1 + np.abs(np.sin(3.3 * elapsed))
-    assert power_of_time(elapsed, scale * swing * elapsed**power) == pytest.approx(power, abs=0.1)
+    fitted = power_of_time(elapsed, scale * swing * elapsed**power)
+    assert fitted == pytest.approx(power, abs=0.1)
+    # A number of Python: those of NumPy cannot be stored between processes.
+    assert type(fitted) is float
     assert not is_bounded(elapsed, scale * swing * elapsed**power)
     assert power_of_time(elapsed, scale * swing) is None
     assert power_of_time(elapsed, scale * np.where(elapsed < 100, 1.0, 1e4)) is None
@@ -271,13 +267,6 @@ def test_five_samples_in_each_quarter_show_a_bound() -> None:
     """Twenty equal errors are bounded; of nineteen, a quarter has four."""
     assert is_bounded(np.linspace(0, 1, 20), np.ones(20))
     assert not is_bounded(np.linspace(0, 1, 19), np.ones(19))
-
-
-def test_a_power_of_time_has_three_decimals() -> None:
-    """More of them would be noise."""
-    elapsed = np.geomspace(1 / 32, 1, 101)
-    power = power_of_time(elapsed, elapsed**1.23456)
-    assert power == round(float(power or 0.0), 3) > 1
 
 
 def test_few_samples_show_no_course() -> None:
@@ -379,13 +368,13 @@ def test_the_answer_comes_first_and_the_arithmetic_on_request(
     assert "--explain" not in explained
 
 
-def test_of_many_runs_the_overview_comes_first(capsys: Captured) -> None:
+def test_of_many_runs_an_overview_follows_the_first_sentence(capsys: Captured) -> None:
     """Then the sentence of every row that is no pass, behind its scene and precision."""
     solver = "geometric:implicit-midpoint?step=0.01"
     scenes = [SCENE, "euler/rest", "euler/full-tensor"]
     assert main(["run", *scenes, "--solver", solver, "--jobs", "1"]) == 1
     text = capsys.readouterr().out
-    assert text.startswith("scene ")
+    assert re.match(r"fail; worst: euler/\S+ f64 \S+: .*\n\nscene ", text)
     rows = [line for line in text.splitlines() if line.startswith("fail  euler/")]
     assert rows
     assert all(re.match(r"fail  euler/\S+ f64 (omega|T|H2): ", line) for line in rows)

@@ -30,8 +30,9 @@ from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.words import annotations, junit
+from taylor_verify.words.account import with_numbers as sentence
 from taylor_verify.words.annotations import annotation_lines
-from taylor_verify.words.case import Remark, cases, sentence
+from taylor_verify.words.case import Remark, cases
 from taylor_verify.words.step_summary import step_summary
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -213,16 +213,6 @@ def changed_digit(row: Document) -> None:
     row["omega"][1] = f"{text[:-2]}{digit + 1 if digit < 9 else 8}{text[-1]}"
 
 
-def changed_sign(row: Document) -> None:
-    row["omega"][0] = (
-        row["omega"][0].removeprefix("-") if row["omega"][0][0] == "-" else f"-{row['omega'][0]}"
-    )
-
-
-def swapped(row: Document) -> None:
-    row["attitude"][0][1], row["attitude"][1][0] = row["attitude"][1][0], row["attitude"][0][1]
-
-
 def small_radius(row: Document) -> None:
     row["radius"] = "1e-42"
 
@@ -276,8 +266,6 @@ def answers(command: Command) -> dict[str, Document]:
     ("plant", "reason"),
     [
         (changed_digit, "more than one unit of the last digit"),
-        (changed_sign, "more than one unit of the last digit"),
-        (swapped, "more than one unit of the last digit"),
         (small_radius, "smaller than the error"),
         (empty_radius, "larger than one unit"),
         (short_number, "fewer digits"),

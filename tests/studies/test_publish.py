@@ -473,7 +473,7 @@ def pages(report: Path) -> Iterable[str]:
 
 def test_every_page_names_its_maker_and_says_how_to_remake_it(report: Path) -> None:
     """The first line is the maker's; the last section has the commands and the versions."""
-    assert len(list(pages(report))) == 5
+    assert len(list(pages(report))) == 4
     for text in pages(report):
         assert text.splitlines()[0] == MADE_BY
         end = text.partition("## To remake this")[2]

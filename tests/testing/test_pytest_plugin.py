@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
-from fractions import Fraction
 from typing import Any
 
 import pytest
 
-from taylor_verify import check, exact, load
-from taylor_verify.judge.judgement import Judgement
+from taylor_verify import check
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes.reading.reader import read
-from taylor_verify.solvers.trajectory import Outcome
 from taylor_verify.testing.demand import demanded_rows, is_met, report
 
 pytest_plugins = ["pytester"]
@@ -100,13 +95,12 @@ def test_my_simulator(verify_solver):
         [
             '>       verify_solver("euler/generic", still)',
             "E       Failed: fail, likely cause: no gyroscopic term; worst: omega: *",
-            "E       still on euler/generic, f64: 1 of 4 judged quantities are no pass",
-            "E       omega: fail; no digit is right at t = * (error *); *; above what f64 * since t = *",
-            "E           against  the exact motion of the same rounded data (route *)",
-            "E           bound    * x max|omega|; the error is * times what perfect rounding *",
-            "E       T: pass, * <= * x scale of T",
-            "E       H2: pass, * <= * x scale of H2",
-            "E       *likely cause: no gyroscopic term: *",
+            "E       still on euler/generic, f64, against the exact motion * data (*): 1 of 4 * no pass",
+            "E       fail  euler/generic f64 omega: no digit is right at t = * (error *); *; above what "
+            "f64 * since t = *; largest error * (max|omega|) * is allowed; up to * times what perfect *",
+            "E       pass  euler/generic f64 T: *",
+            "E       pass  euler/generic f64 H2: *",
+            "E       likely cause: euler/generic f64: no gyroscopic term: *",
         ]
     )
     # Nothing of the plugin's own between the user's line and the message.
@@ -135,7 +129,9 @@ def test_program(verify_solver):
 """
     result = session(pytester, tests)
     result.assert_outcomes(passed=1, failed=1)
-    result.stdout.fnmatch_lines(["*omega: fail, ended by a signal or with an exit status*"])
+    result.stdout.fnmatch_lines(
+        ["*fail  euler/spherical f64 omega: *ended by a signal or with an exit status*"]
+    )
 
 
 @pytest.mark.parametrize(
@@ -146,15 +142,11 @@ def test_program(verify_solver):
         'verify_solver("euler/spherical", 17)',
         'verify_solver("euler/spherical", still, rung="f65")',
         'verify_solver("euler/spherical", still, tolerance=0)',
-        'verify_solver("euler/spherical", still, tolerance=float("nan"))',
-        'verify_solver("euler/spherical", still, tolerance=True)',
-        'verify_solver("euler/spherical", still, tolerance=1)',
-        'verify_solver("euler/spherical", still, tolerance="1e-8")',
         'verify_solver("euler/spherical", still, tolerance={"omega": 2})',
         'verify_solver("euler/spherical", still, tolerance={"attitude": 1e-3})',
-        'verify_solver("euler/spherical", still, tolerance={})',
         'verify_solver("euler/spherical", still, only=["T", "attitude"])',
         'verify_solver("euler/spherical", still, only=[])',
+        'verify_solver("euler/spherical", still, only=[None])',
     ],
 )
 def test_a_wrong_call_fails(pytester: pytest.Pytester, call: str) -> None:
@@ -182,9 +174,8 @@ def test_it(verify_solver, tolerance):
     result.assert_outcomes(passed=2, failed=3)
     result.stdout.fnmatch_lines(
         [
-            "E       omega: fail; 6 digits are right up to t = 100 (largest error 9.5e-07); *"
-            "above the tolerance of 1e-09 (roundoff of f64 alone would need *",
-            "E           bound    1e-09 x max|omega|; the error is * times what perfect rounding *",
+            "E       fail * omega: 6 digits are right up to t = 100 (largest error 9.5e-07); *above the "
+            "tolerance of 1e-09 (roundoff of f64 alone would need *, where 1.00e-9 is allowed; *",
         ]
     )
 
@@ -253,22 +244,6 @@ def test_only_a_pass_meets_a_demand(status: Status) -> None:
     assert is_met(verdict(status)) is (status is Status.PASS)
 
 
-@pytest.mark.parametrize(
-    ("outcome", "words"),
-    [
-        (Outcome.NO_PACKAGE, "install the package that is missing"),
-        (Outcome.NO_FORMAT, "take another rung"),
-        (Outcome.UNSUITED, "take another solver, or another rung"),
-    ],
-)
-def test_a_run_that_is_unavailable_says_what_would_mend_it(outcome: Outcome, words: str) -> None:
-    """A missing package is installed; another rung is advised only where the rung is the reason."""
-    row = verdict(Status.UNAVAILABLE, outcome=outcome.value)
-    text = report(Judgement((row,), None), [row])
-    mend = next(line for line in text.splitlines() if line.startswith("    mend "))
-    assert words in mend
-
-
 def test_a_verdict_that_is_no_fail_says_what_to_do() -> None:
     """A gate of which rounding alone reaches the size of the motion is vacuous, and says so."""
     # At the first flip all components are of size one, and round at 10^-8; back beside the axis such
@@ -288,8 +263,8 @@ samples = 61
     verdicts = {v.quantity: v.verdict for v in judgement.verdicts}
     assert verdicts["omega"] is Status.VACUOUS
     text = report(judgement, demanded_rows(judgement))
-    assert "omega: vacuous" in text
-    assert "    mend     rounding alone reaches the size of the motion" in text
+    assert "\nvacuous  too long f32 omega: " in text
+    assert "\n    rounding alone reaches the size of the motion" in text
     assert all(is_met(row) for row in demanded_rows(judgement, only="conserved"))
 
 
@@ -298,19 +273,6 @@ def test_a_tolerance_below_the_floor_is_said_to_be_so() -> None:
     judgement = run("euler/tennis-racket", "taylor", "f64", tolerance=1e-17)
     text = report(judgement, demanded_rows(judgement))
     assert "the tolerance is finer than the roundings of this precision" in text
-
-
-def test_a_time_shift_is_told_beside_a_tolerance() -> None:
-    """What the judge made of the error as a shift of time is passed on with the tolerance."""
-    scene = load("euler/generic")
-    late = exact(scene, [t - Fraction(1, 2000) for t in scene.clock.instants], 20)["omega"]
-    judgement = check(
-        scene, lambda problem: [[float(w) for w in row] for row in late], tolerance=1e-9
-    )
-    text = report(judgement, demanded_rows(judgement))
-    assert "a time shift: the answer is late by 0.0005, and" in text
-    assert "above the tolerance of 1e-09 (roundoff of f64 alone would need" in text
-    assert "x growth" not in text
 
 
 # The marker.
@@ -430,21 +392,6 @@ def test_by_a_fixture_of_ones_own(simulator):
 
 
 # What it costs a project that does not use it.
-
-
-def test_the_plugin_alone_imports_nothing_heavy() -> None:
-    """Neither the plugin nor what it decides by loads an integrator, an array or a big number."""
-    script = (
-        "import sys, pytest\n"
-        "before = set(sys.modules)\n"
-        "import taylor_verify.testing.plugin\n"
-        "print(*sorted(m for m in set(sys.modules) - before if m.partition('.')[0] != '__mp_main__'))"
-    )
-    done = subprocess.run([sys.executable, "-c", script], check=True, stdout=subprocess.PIPE)
-    loaded = set(done.stdout.decode().split())
-    assert {"taylor_verify", "taylor_verify.testing.plugin"} <= loaded
-    assert {name for name in loaded if name.startswith("taylor_verify.")} == LIGHT
-    assert not HEAVY & {name.partition(".")[0] for name in loaded}
 
 
 def test_a_session_without_a_scene_loads_nothing_heavy(pytester: pytest.Pytester) -> None:

@@ -17,6 +17,7 @@ from taylor_verify.records.record import Record
 from taylor_verify.records.showing import counts, dataframe, html_table
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, summary
+from taylor_verify.words.account import account
 
 if TYPE_CHECKING:
     import pandas
@@ -105,11 +106,9 @@ class Judgements(Sequence[Judgement]):
         if self.passed:
             return
         others = [v for v in self.unexpected if v.verdict is not Status.PASS]
-        lines = [f"{v.verdict}  {v.scene} {v.rung} {v.sentence}" for v in others]
-        lines += [cause.line for cause in self.causes]
-        lines += [f"note: {note}" for note in self.notes]
+        lines = account(others, self.causes, self.notes)
         lines += [str(mismatch) for mismatch in self.agreement.mismatches]
-        raise NotPassed("\n".join(lines) or "nothing was judged")
+        raise NotPassed("\n".join(lines))
 
     @property
     def summary(self) -> dict[str, int]:

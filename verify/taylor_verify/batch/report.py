@@ -80,6 +80,7 @@ def _explained(results: Judgements | Judgement, cause: LikelyCause) -> list[Verd
 
 def remarks(results: Judgements | Judgement, comparison: Comparison | None = None) -> list[Remark]:
     """Return the remarks on rows for a CI, besides their verdicts: unexpected answers, and regressions."""
+    from taylor_verify.words.account import cause_line
     from taylor_verify.words.case import Remark
 
     remarked: list[Remark] = []
@@ -102,7 +103,7 @@ def remarks(results: Judgements | Judgement, comparison: Comparison | None = Non
     if comparison is None or not comparison.decides:
         for cause in results.causes:
             for verdict in _explained(results, cause):
-                remark(verdict, Status.FAIL, f"likely cause: {cause.sentence}")
+                remark(verdict, Status.FAIL, cause_line(cause.sentence))
     if comparison is not None:
         for failure in comparison.failures:
             remark(failure, Status.FAIL, f"regression: {failure}")

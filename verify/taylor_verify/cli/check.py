@@ -25,8 +25,8 @@ from taylor_verify.cli.progress import working
 from taylor_verify.cli.sentences import (
     figure,
     print_arithmetic,
-    print_cause,
     print_end,
+    print_line,
     print_sentence,
     status_text,
 )
@@ -47,6 +47,7 @@ from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.columns.request import request
 from taylor_verify.solvers.files.file import TrajectoryFile, read
+from taylor_verify.words.account import cause_line, note_line
 from taylor_verify.words.opening import opening
 
 _NUMBERS: Final = (
@@ -191,10 +192,9 @@ def _text_of_one(
     page.line()
     for verdict in judged.verdicts:
         print_sentence(page, verdict)
-    for cause in judged.causes:
-        print_cause(page, cause)
-    for note in judged.notes:
-        page.line(Text("note", "yellow"), f": {note}")
+    causes = (cause_line(cause.sentence) for cause in judged.causes)
+    for line in (*causes, *map(note_line, judged.notes)):
+        print_line(page, line)
     page.line()
     if any(verdict.is_compared for verdict in judged.verdicts):
         _print_numbers(page, judged.verdicts)
@@ -217,7 +217,7 @@ def _print_conventions(page: Page, judged: FileJudgement) -> None:
     page.line()
     page.line(bold(f"the file departs from the scene's conventions{how}", "yellow"))
     for finding in judged.conventions:
-        page.indented("note: ", finding.sentence)
+        page.indented("", note_line(finding.sentence))
     if is_certain and not judged.accepted:
         page.line("  (--accept-conventions corrects this and judges the rest)")
 
@@ -253,7 +253,7 @@ def _text_of_several(judged: FilesJudgement, scene: str, rung: str, status: int 
     first, *others = judged.files
     common = [note for note in first.notes if all(note in one.notes for one in others)]
     for note in (*judged.notes, *common):
-        page.line(Text("note", "yellow"), f"  {note}")
+        print_line(page, note_line(note))
     page.line()
     _print_files(page, judged)
     for one in judged.files:
@@ -289,9 +289,8 @@ def _peculiar(one: FileJudgement) -> Iterator[str]:
     for finding in one.conventions:
         yield finding.sentence
     for cause in one.causes:
-        yield cause.line
+        yield cause_line(cause.sentence)
     yield from one.notes
     for verdict in one.verdicts:
         if not verdict.is_compared:
-            status = status_text(verdict.verdict.value).plain
-            yield f"{status}: {verdict.quantity}: {verdict.because}"
+            yield f"{verdict.verdict}: {verdict.quantity}: {verdict.because}"

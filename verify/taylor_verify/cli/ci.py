@@ -21,6 +21,7 @@ from taylor_verify.records.json_text import complete
 from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.words.annotations import annotation_lines
+from taylor_verify.words.opening import opening
 from taylor_verify.words.step_summary import step_summary
 
 # The variable that names the file for the summary of a step, set by GitHub's runner.
@@ -132,7 +133,9 @@ def _write_github(
         return [f"no step summary: {_SUMMARY} is not set"]
     # Other commands of the same step have theirs in the same file.
     with open(file, "a", encoding="utf-8") as summary:
-        summary.write(step_summary(verdicts, remarked, decision))
+        summary.write(
+            step_summary(verdicts, remarked, decision or opening(verdicts, results.causes))
+        )
     return []
 
 

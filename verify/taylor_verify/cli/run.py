@@ -9,8 +9,6 @@ from itertools import groupby
 from math import inf, isnan
 from typing import Final
 
-from rich.text import Text
-
 from taylor_verify.batch.comparison import Earlier
 from taylor_verify.batch.expectations import Agreement
 from taylor_verify.batch.judgements import Judgements
@@ -25,8 +23,8 @@ from taylor_verify.cli.inputs import known_rungs, read_tolerances
 from taylor_verify.cli.progress import advancing
 from taylor_verify.cli.sentences import (
     print_arithmetic,
-    print_cause,
     print_end,
+    print_line,
     print_sentence,
     status_text,
 )
@@ -40,6 +38,8 @@ from taylor_verify.records.status import gravest
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run_many import run_many
 from taylor_verify.solvers.registry import solver_named
+from taylor_verify.words.account import cause_line, note_line
+from taylor_verify.words.opening import opening
 
 # Up to so many runs, their sentences come before the lines of the overview.
 _FEW: Final = 2
@@ -161,12 +161,17 @@ def _print_rows(page: Page, results: Judgements, explained: bool) -> None:
     runs = [(run, list(rows)) for run, rows in groupby(verdicts, key=lambda v: (v.scene, v.rung))]
     is_few = len(runs) <= _FEW
     for (scene, rung), rows in runs if is_few else ():
+        own = [cause for cause in causes if (cause.scene, cause.rung) == (scene, rung)]
         page.line(bold(scene), f" in {rung} arithmetic")
+        page.indented("", opening(rows, own))
+        page.line()
         for verdict in rows:
             print_sentence(page, verdict, why=_expected(verdict, agreement))
-        for cause in causes:
-            if (cause.scene, cause.rung) == (scene, rung):
-                print_cause(page, cause)
+        for cause in own:
+            print_line(page, cause_line(cause.sentence))
+        page.line()
+    if not is_few:
+        page.indented("", opening(results.unexpected or verdicts, causes))
         page.line()
     # A line for each run: its worst state, its worst drift, its cost.
     lines = [[scene, rung, *_run_cells(group)] for (scene, rung), group in runs]
@@ -185,9 +190,9 @@ def _print_rows(page: Page, results: Judgements, explained: bool) -> None:
         place = f"{verdict.scene} {verdict.rung}"
         print_sentence(page, verdict, place, _expected(verdict, agreement))
     for cause in () if is_few else causes:
-        print_cause(page, cause, f"{cause.scene} {cause.rung}")
+        print_line(page, cause_line(cause.sentence, f"{cause.scene} {cause.rung}"))
     for note in results.notes:
-        page.line(Text("note", "yellow"), f": {note}")
+        print_line(page, note_line(note))
     for mismatch in agreement.mismatches:
         page.line(bold("not as expected", "red"), f"  {mismatch}")
     if explained:

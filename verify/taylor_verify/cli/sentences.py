@@ -1,36 +1,24 @@
-"""The sentences about verdicts on a console, and the line that ends an answer."""
+"""Verdicts printed on a console in the words of `words`, and the line that ends an answer."""
 
 from __future__ import annotations
 
 import sys
 import textwrap
-from collections.abc import Iterator, Sequence
-from math import ceil, log10
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from rich.text import Text
 
 from taylor_verify.cli.answer import FAIL, PASS, UNDECIDED, WRONG_CALL
 from taylor_verify.cli.console import Page, bold
-from taylor_verify.records.error_kind import ErrorKind
+from taylor_verify.words.next_steps import next_steps
 
 if TYPE_CHECKING:
-    from taylor_verify.records.answers import LikelyCause
     from taylor_verify.records.verdict import Verdict
 
 _COLOURS = {"pass": "green", "fail": "bold red", "undecided": "yellow", "vacuous": "yellow"}
 _MEANINGS = {PASS: "passed", FAIL: "failed", UNDECIDED: "undecided", WRONG_CALL: "not judged"}
 _INDENT = "    "
-# Errors of these kinds are no matter of accuracy: a wider tolerance would hide them.
-_NO_ACCURACY = (
-    None,
-    ErrorKind.CONVENTION,
-    ErrorKind.OFFSET,
-    ErrorKind.TIME_SHIFT,
-    ErrorKind.NOT_FINITE,
-)
-# A tolerance beyond this judges nothing.
-_LARGEST_TOLERANCE = 0.01
 
 
 def status_text(status: str) -> Text:
@@ -59,10 +47,10 @@ def figure(value: float | None) -> str:
     return "not finite" if value is None or value != value else f"{value:.3g}"
 
 
-def print_cause(page: Page, cause: LikelyCause, place: str = "") -> None:
-    """Print a likely cause; ``place`` says which run it is about."""
-    about = f"  {place}" if place else ""
-    page.line(bold("likely cause", "yellow"), f"{about}: {cause.sentence}")
+def print_line(page: Page, line: str) -> None:
+    """Print a line whose first words, up to a colon, say what it is, such as a likely cause or a note."""
+    what, _, rest = line.partition(":")
+    page.line(bold(what, "yellow"), f":{rest}")
 
 
 def print_arithmetic(page: Page, verdicts: Sequence[Verdict]) -> None:
@@ -83,26 +71,5 @@ def print_end(
     """
     meaning = f"{_MEANINGS.get(status, '')} (exit status {status})" if status is not None else ""
     page.line(f"{counts}: {meaning or 'by their own bounds'}")
-    for step in _next_steps(verdicts, explained):
+    for step in next_steps(verdicts, explained):
         page.indented("  ", step)
-
-
-def _next_steps(verdicts: Sequence[Verdict], explained: bool) -> Iterator[str]:
-    tolerance = coarser_tolerance(verdicts)
-    if tolerance is not None:
-        yield f"--tolerance {tolerance:.0e} judges a method of this accuracy"
-    if not explained and any(v.is_compared and v.verdict.value != "pass" for v in verdicts):
-        yield "--explain shows the arithmetic of what is allowed"
-
-
-def coarser_tolerance(verdicts: Sequence[Verdict]) -> float | None:
-    """Return the least power of ten above the errors of all failed rows.
-
-    None if no row failed, or if the fault is not one of accuracy.
-    """
-    failed = [v for v in verdicts if v.verdict.value == "fail"]
-    errors = [v.max for v in failed if v.max is not None and v.error_kind not in _NO_ACCURACY]
-    has_one = any(v.tolerance is not None for v in verdicts)
-    if not failed or has_one or len(errors) < len(failed) or not max(errors) < _LARGEST_TOLERANCE:
-        return None
-    return float(10.0 ** ceil(log10(max(errors))))

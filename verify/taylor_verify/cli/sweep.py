@@ -24,6 +24,7 @@ from taylor_verify.cli.streams import say
 from taylor_verify.plotting.exceedance import STEM
 from taylor_verify.records.quantities import INITIAL
 from taylor_verify.records.sweep import Spread, SweepSummary
+from taylor_verify.words.account import cause_line
 
 _HEADINGS: Final = (
     "quantity",
@@ -113,7 +114,7 @@ def _text(summary: SweepSummary) -> str:
         words = f"  {case.scene}  {case.quantity} {size}"
         page.line(status_text(case.verdict.value), f"{words}  {case.file}".rstrip())
         for cause in case.causes:
-            page.line(f"likely cause: {cause}")
+            page.line(cause_line(cause))
     page.line()
     print_end(page, [], f"bodies: {counts(summary)}", summary.exit_status, explained=True)
     return page.text()

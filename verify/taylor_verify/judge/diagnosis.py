@@ -128,7 +128,7 @@ def power_of_time(elapsed: Floats, errors: Floats) -> float | None:
     (slope, _), covariance = np.polyfit(x, y, 1, cov=True)
     half = student(_PARTS - 2, _LEVEL) * float(covariance[0, 0]) ** 0.5
     is_clear = isfinite(slope) and half <= _CLEAR
-    return round(slope, 3) if is_clear and slope >= _LEAST_POWER else None
+    return round(float(slope), 3) if is_clear and slope >= _LEAST_POWER else None
 
 
 def _parts(elapsed: Floats, edges: Floats) -> list[Places]:

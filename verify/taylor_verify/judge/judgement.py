@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -33,7 +33,8 @@ from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
-from taylor_verify.words.opening import cause_lines
+from taylor_verify.words.account import account
+from taylor_verify.words.cells import figure
 
 if TYPE_CHECKING:
     import pandas
@@ -65,6 +66,11 @@ class Judgement:
         was_judged = any(verdict.verdict is Status.PASS for verdict in self.verdicts)
         return was_judged and exit_status(self.verdicts) == 0
 
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """The facts that were found out about the answer, a sentence each."""
+        return self.notes
+
     def __bool__(self) -> bool:
         return self.passed
 
@@ -82,32 +88,22 @@ class Judgement:
 
     def __str__(self) -> str:
         """Return how it ended, a line for each quantity, the likely causes and the notes."""
-        return "\n".join([repr(self)[1:-1], *self._lines(self.verdicts)])
-
-    def _lines(self, verdicts: Iterable[Verdict]) -> list[str]:
-        """Return the lines about some verdicts, the likely causes and the notes."""
-        sentences = [verdict.sentence for verdict in verdicts]
-        notes = [f"note: {note}" for note in self.notes]
-        return [*sentences, *cause_lines(self.causes), *notes]
+        return "\n".join(account(self.verdicts, self.causes, self.remarks, repr(self)[1:-1]))
 
     def _repr_html_(self) -> str:
         headings = ("quantity", "verdict", "largest error", "allowed", "unit")
         rows = (
-            (v.quantity, v.verdict.value, _short(v.max), _short(v.bound), v.unit)
+            (v.quantity, v.verdict.value, figure(v.max), figure(v.bound), v.unit)
             for v in self.verdicts
         )
-        return html_table(repr(self)[1:-1], headings, rows, self._lines(self.verdicts))
+        return html_table(
+            repr(self)[1:-1], headings, rows, account(self.verdicts, self.causes, self.remarks)
+        )
 
     def raise_for_failure(self) -> None:
-        """Raise NotPassed, an AssertionError, unless the judgement passed."""
+        """Raise NotPassed, an AssertionError with the text of the judgement, unless it passed."""
         if not self.passed:
-            not_passed = [v for v in self.verdicts if v.verdict is not Status.PASS]
-            lines = [f"{v.verdict}  {v.scene} {v.rung} {v.sentence}" for v in not_passed]
-            raise NotPassed("\n".join([*lines, *self._lines(())]) or "nothing was judged")
-
-
-def _short(value: float | None) -> str:
-    return "" if value is None else f"{value:.3g}"
+            raise NotPassed(str(self))
 
 
 def judgement(

@@ -46,12 +46,6 @@ class LikelyCause:
     scene: str = ""
     rung: str = ""
 
-    @property
-    def line(self) -> str:
-        """The cause as a line of text, with its run in front if it names one."""
-        place = f"{self.scene} {self.rung}: " if self.scene else ""
-        return f"{place}likely cause: {self.sentence}"
-
 
 @dataclass(frozen=True)
 class FileRead:

@@ -19,19 +19,17 @@ from taylor_verify.words.sheet import sheet
 
 _RUN: Final = ("scene", "solver", "setting", "rung")
 _ERROR: Final = ("quantity", "max", "mean", "final", "at", "unit", "max_u", "mean_u")
-_ACCURACY: Final = (*_RUN, *_ERROR, "ratio", "ratio_at", "bound", "steps", "verdict", "outcome")
-_ATTAINABLE: Final = (
+_ACCURACY: Final = (
     *_RUN,
-    "quantity",
-    "max",
-    "at",
+    *_ERROR,
     "attainable",
+    "attainable_u",
     "ratio",
     "ratio_at",
-    "unit",
-    "max_u",
-    "attainable_u",
+    "bound",
+    "steps",
     "verdict",
+    "outcome",
 )
 _GATES: Final = (
     *_RUN,
@@ -51,17 +49,12 @@ _GATES: Final = (
 )
 _CONSERVED: Final = ("max_u", "mean_u", "at", "ratio", "verdict")
 _FORMED: Final = ("max_u", "mean_u", "attainable_u", "scene_sha256")
-_FIELDS: Final = tuple({*_ACCURACY, *_ATTAINABLE, *_GATES} - {*_FORMED})
+_FIELDS: Final = tuple({*_ACCURACY, *_GATES} - {*_FORMED})
 
 
 def accuracy(verdicts: Iterable[Verdict]) -> str:
     """Return a row for every state quantity of every run."""
     return sheet(_ACCURACY, (_fields(v) for run in runs(verdicts) for v in run.state))
-
-
-def attainable(verdicts: Iterable[Verdict]) -> str:
-    """Return a row for every state quantity of every run, with what was attainable."""
-    return sheet(_ATTAINABLE, (_fields(v) for run in runs(verdicts) for v in run.state))
 
 
 def conserved(verdicts: Iterable[Verdict]) -> str:

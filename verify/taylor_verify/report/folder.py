@@ -11,7 +11,6 @@ from taylor_verify.records import store
 from taylor_verify.records.replacement import first_line, replace_files
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.report import csv_tables, tables
-from taylor_verify.report.attainable import attainable
 from taylor_verify.report.front import front
 from taylor_verify.words.page import MADE_BY
 
@@ -28,8 +27,6 @@ GATES: Final[Mapping[str, Callable[[Sequence[Verdict]], str]]] = {
 TABLES: Final[Mapping[str, Callable[[Sequence[Verdict]], str]]] = {
     "tables/accuracy.md": tables.accuracy,
     "tables/accuracy.csv": csv_tables.accuracy,
-    "tables/attainable.md": attainable,
-    "tables/attainable.csv": csv_tables.attainable,
     "tables/conserved.md": tables.conserved,
     "tables/conserved.csv": csv_tables.conserved,
     **GATES,

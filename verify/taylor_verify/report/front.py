@@ -39,10 +39,9 @@ _READING = (
 )
 _CONTENTS = (
     ("[tables](tables/README.md)", "every number, and how a cell is read"),
-    ("[tables/accuracy.md](tables/accuracy.md)", "the error of each scene on each rung"),
     (
-        "[tables/attainable.md](tables/attainable.md)",
-        "what was attainable, beside what was reached",
+        "[tables/accuracy.md](tables/accuracy.md)",
+        "the error of each scene on each rung, and what was attainable",
     ),
     ("[tables/conserved.md](tables/conserved.md)", "the drift of energy, momenta and the like"),
     ("`tables/gates.md`", "every verdict, its bound and the reason of the bound (not committed)"),

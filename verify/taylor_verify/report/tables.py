@@ -36,11 +36,10 @@ _RATIO: Final = (
     "rounding of every step would leave on this orbit"
 )
 _CONTENTS: Final = (
-    ("[State errors](accuracy.md)", "[csv](accuracy.csv)", "the error of what each scene tracks"),
     (
-        "[Attainable and reached](attainable.md)",
-        "[csv](attainable.csv)",
-        "the same beside the errors of perfect rounding, a column for each rung",
+        "[State errors](accuracy.md)",
+        "[csv](accuracy.csv)",
+        "the error of what each scene tracks, beside that of perfect rounding",
     ),
     ("[Conserved quantities](conserved.md)", "[csv](conserved.csv)", "their drift, a run a line"),
     (

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from taylor_verify.records.status import Status, gravest
 from taylor_verify.records.verdict import Verdict, exit_status
-from taylor_verify.words.cells import figure, instant, ratio
+from taylor_verify.words.account import with_numbers
 
 Key = tuple[str, str, str, str, str]
 
@@ -100,22 +100,8 @@ def _case(key: Key, verdict: Verdict | None, remarks: list[Remark], by_remarks: 
     counted = own
     if by_remarks and verdict is not None and exit_status([verdict]):
         counted = [Status.PASS]
-    faults = [] if verdict is None or verdict.verdict is Status.PASS else [sentence(verdict)]
+    faults = [] if verdict is None or verdict.verdict is Status.PASS else [with_numbers(verdict)]
     sentences = (*faults, *(remark.text for remark in remarks))
     return Case(
         *key, gravest((*own, *statuses)), gravest((*counted, *statuses)), sentences, verdict
-    )
-
-
-def sentence(verdict: Verdict) -> str:
-    """Return the sentence of a verdict, with the numbers that a reader needs."""
-    if not verdict.is_compared:
-        return verdict.sentence
-    size = "not finite" if verdict.max is None else figure(verdict.max)
-    unit = f" ({verdict.unit})" if verdict.unit else ""
-    where = "" if verdict.ratio_at is None else f" at t = {instant(verdict.ratio_at)}"
-    return (
-        f"{verdict.sentence}; largest error {size}{unit} at t = {instant(verdict.at)}, where "
-        f"{figure(verdict.bound)} is allowed; up to {ratio(verdict)} times what perfect rounding "
-        f"would leave{where}"
     )

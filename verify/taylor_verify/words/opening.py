@@ -11,23 +11,25 @@ from taylor_verify.records.verdict import Verdict
 
 
 def opening(verdicts: Sequence[Verdict], causes: Sequence[LikelyCause] = ()) -> str:
-    """Return one sentence: the gravest status, the names of likely causes, and the worst row."""
+    """Return one sentence: the gravest status, the names of likely causes, and the worst row.
+
+    The row of one of several runs begins with its scene and rung.
+    """
     if not verdicts:
         return "nothing was judged"
     status = gravest(verdict.verdict for verdict in verdicts)
     names = " or ".join(dict.fromkeys(cause.name for cause in causes))
     cause = f", likely cause: {names}" if names else ""
-    return f"{status.value}{cause}; {_of_worst(worst(verdicts))}"
+    where = "nearest to its bound" if status is Status.PASS else "worst"
+    row = worst(verdicts)
+    is_one_run = len({(verdict.scene, verdict.rung) for verdict in verdicts}) == 1
+    place = "" if is_one_run else f"{row.scene} {row.rung} "
+    return f"{status.value}{cause}; {where}: {place}{row.sentence}"
 
 
 def worst(verdicts: Sequence[Verdict]) -> Verdict:
     """Return the row of the gravest status whose error is largest beside its bound."""
     return min(verdicts, key=lambda verdict: (GRAVITY.index(verdict.verdict), -_excess(verdict)))
-
-
-def cause_lines(causes: Sequence[LikelyCause]) -> list[str]:
-    """Return a line for each likely cause, with its run in front if it names one."""
-    return [cause.line for cause in causes]
 
 
 def _excess(verdict: Verdict) -> float:
@@ -37,8 +39,3 @@ def _excess(verdict: Verdict) -> float:
     if verdict.tolerance is None and verdict.ratio is not None:
         return verdict.ratio
     return verdict.max / verdict.bound if verdict.bound else verdict.max
-
-
-def _of_worst(verdict: Verdict) -> str:
-    where = "nearest to its bound" if verdict.verdict is Status.PASS else "worst"
-    return f"{where}: {verdict.sentence}"

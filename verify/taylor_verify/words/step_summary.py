@@ -21,17 +21,17 @@ _NUMBERS: Final = ("max:", "at t:", "bound:", "over attainable:")
 
 
 def step_summary(
-    verdicts: Iterable[Verdict], remarks: Iterable[Remark] = (), decision: str = ""
+    verdicts: Iterable[Verdict], remarks: Iterable[Remark] = (), beginning: str = ""
 ) -> str:
-    """Return the page within GitHub's limit; ``decision`` is a sentence if the verdicts do not decide."""
+    """Return the page within GitHub's limit; ``beginning`` is the sentence that says how it ended."""
     rows = list(verdicts)
     every = cases(rows, remarks)
     notable = [case for case in every if case.sentences]
     for most in (len(every), len(every) // 10, 100, 10):
-        text = _page(rows, every, notable, most, decision)
+        text = _page(rows, every, notable, most, beginning)
         if len(text.encode()) <= _MOST_BYTES:
             return text
-    return _page(rows, every, notable, 0, decision)
+    return _page(rows, every, notable, 0, beginning)
 
 
 def _page(
@@ -39,14 +39,14 @@ def _page(
     every: Sequence[Case],
     notable: Sequence[Case],
     most: int,
-    decision: str,
+    beginning: str,
 ) -> str:
     # A row of the second table is short, because it has no reasons.
     folded = every if most == len(every) else ()
     beyond = sum(case.verdict is None or case.status != case.verdict.verdict for case in every)
     blocks = [
         "## taylor-verify",
-        bold(prose(decision)) if decision else "",
+        bold(prose(beginning)) if beginning else "",
         counts(verdicts),
         bold(
             f"{beyond} more of the rows regressed from the baseline, or cannot be held against it."

@@ -60,6 +60,11 @@ class FileJudgement(Judgement):
     conventions: tuple[Finding, ...] = ()
     accepted: bool = False
 
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """The conventions that differ from the scene's and the notes, a sentence each."""
+        return (*(finding.sentence for finding in self.conventions), *self.notes)
+
     def document(self) -> dict[str, Any]:
         """Return the document that `check --json` prints."""
         columns = (column for group in self.file.groups for column in COLUMNS[group])

@@ -10,7 +10,7 @@ from typing import Any, final
 
 from taylor_verify.judge.judgement import judgement
 from taylor_verify.models.problem import NotRepresentable, Problem, pose
-from taylor_verify.records.convergence import SAME, Convergence, convergence
+from taylor_verify.records.observed_order import SAME, Convergence, convergence
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.precision import Rung

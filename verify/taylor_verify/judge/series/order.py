@@ -15,14 +15,14 @@ from math import exp, isfinite, log, log10, sqrt
 from typing import TYPE_CHECKING, Final
 
 from taylor_verify.records.answers import Order, OrderPoint, Stall
-from taylor_verify.records.convergence import (
+from taylor_verify.records.json_text import finite
+from taylor_verify.records.observed_order import (
     CLEAR,
     SAME,
     Convergence,
     convergence,
     local_orders,
 )
-from taylor_verify.records.json_text import finite
 from taylor_verify.records.quantities import COMPLETE, INITIAL, UNIT_QUATERNION
 from taylor_verify.records.status import Status
 

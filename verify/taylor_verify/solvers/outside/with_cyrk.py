@@ -98,7 +98,7 @@ def _propagated(address: int, question: Question, settings: Settings) -> tuple[A
         count.nbytes,
         0,  # any number of steps
         MOST_MEMORY,
-        False,  # the interpolant is not kept
+        False,  # noqa: FBT003 (no names; the interpolant is not kept)
         instants.ctypes.data,
         instants.size,
         0,  # nothing is called before an evaluation
@@ -110,7 +110,7 @@ def _propagated(address: int, question: Question, settings: Settings) -> tuple[A
         atol.size,
         MAX_SIZE,  # the longest step
         0.0,  # the first step
-        True,  # the counts are kept
+        True,  # noqa: FBT003 (no names; the counts are kept)
     )
     try:
         size = c.c_get_size(solution)

@@ -59,7 +59,11 @@ def motion(body: FreeBody) -> list[Any]:
         for i in range(3)
     ]
     start = Attitude(
-        epoch, frame, Rotation(*body.attitude, True), Vector3D(*body.omega), Vector3D.ZERO
+        epoch,
+        frame,
+        Rotation(*body.attitude, True),  # noqa: FBT003 (Java has no names)
+        Vector3D(*body.omega),
+        Vector3D.ZERO,
     )
     provider = TorqueFree(start, Inertia(*axes))
     rows = []

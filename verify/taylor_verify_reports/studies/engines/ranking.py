@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from itertools import groupby
 from math import inf, log10
 
-from taylor_verify.records.convergence import Convergence, convergence
+from taylor_verify.records.observed_order import Convergence, convergence
 from taylor_verify_reports.studies.engines.document import EngineRow, EnginesStudy
 
 

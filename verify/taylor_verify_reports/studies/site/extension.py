@@ -1,4 +1,4 @@
-"""Sphinx extension: formulas as MathML, links of scenes and terms, search without large tables.
+"""Sphinx extension: formulas as MathML, links of scenes, search without large tables.
 
 It also gives the kernels of notebooks settings of their own, and writes each notebook as a file to
 download.
@@ -15,7 +15,6 @@ from docutils import nodes
 from sphinx import addnodes
 
 from taylor_verify.records.file_names import of_scene
-from taylor_verify_reports.studies.site.glossary import link_terms
 from taylor_verify_reports.studies.site.notebooks import add_link, write_notebooks
 from taylor_verify_reports.typesetting.mathml import inline, mathml
 
@@ -40,7 +39,6 @@ def setup(app: Sphinx) -> dict[str, Any]:
     app.connect("builder-inited", _set_kernels)
     app.connect("source-read", _read_formulas)
     app.connect("doctree-read", _link_scenes)
-    app.connect("doctree-read", link_terms)
     app.connect("doctree-read", add_link)
     app.connect("doctree-read", _leave_out_of_search)
     app.connect("build-finished", write_notebooks)

@@ -91,7 +91,7 @@ def stretch(e: Sequence[arb], s: int, angle: arb) -> tuple[arb, arb]:
 
 def _integral(integrand: Integrand, angle: arb) -> arb:
     """Integrate from 0, to an error that is small beside the integrand in the middle."""
-    goal = abs(integrand(acb(angle / 2), False)) * arb(2) ** -ctx.prec
+    goal = abs(integrand(acb(angle / 2), False)) * arb(2) ** -ctx.prec  # noqa: FBT003 (as Arb calls it)
     return integral(integrand, acb(0), acb(angle), abs_tol=goal).real
 
 

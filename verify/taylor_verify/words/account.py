@@ -1,0 +1,74 @@
+"""The text of a report: the opening, a line for each row, the likely causes and the notes.
+
+`print`, a notebook, pytest and the errors of `raise_for_failure` show it whole. The terminal, JUnit, the
+step summary and the annotations of GitHub arrange the same lines.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Final
+
+from taylor_verify.records.answers import LikelyCause
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.words.cells import figure, instant, ratio
+from taylor_verify.words.opening import opening
+
+_MENDS: Final = {
+    Status.UNDECIDED: "no fault of the solver, and no pass; a larger tolerance may decide it",
+    Status.VACUOUS: "rounding alone reaches the size of the motion, so that no answer could fail: "
+    "take a wider rung, a tolerance of your own, or the conserved quantities alone",
+    Status.REFUSED: "the rung cannot hold this scene: take another",
+}
+
+
+def account(
+    verdicts: Sequence[Verdict],
+    causes: Sequence[LikelyCause] = (),
+    notes: Iterable[str] = (),
+    run: str = "",
+) -> list[str]:
+    """Return the lines of a report on some verdicts, one for each; a mend stands below its row.
+
+    ``run`` is a line on what was judged, behind the opening. Each row can stand alone.
+    """
+    lines = [opening(verdicts, causes), run]
+    for verdict in verdicts:
+        lines += [_row(verdict), *_mends(verdict)]
+    for cause in causes:
+        lines.append(cause_line(cause.sentence, f"{cause.scene} {cause.rung}".strip()))
+    return [*filter(None, lines), *map(note_line, notes)]
+
+
+def cause_line(sentence: str, run: str = "") -> str:
+    """Return the line of a likely cause, with the run that it is about where there are several."""
+    return ": ".join(filter(None, ("likely cause", run, sentence)))
+
+
+def note_line(note: str) -> str:
+    """Return the line of what was found out about an answer."""
+    return f"note: {note}"
+
+
+def with_numbers(verdict: Verdict) -> str:
+    """Return the sentence of a verdict and, unless it is a pass, the numbers that decide it."""
+    if verdict.verdict is Status.PASS or not verdict.is_compared:
+        return verdict.sentence
+    size = "not finite" if verdict.max is None else figure(verdict.max)
+    unit = f" ({verdict.unit})" if verdict.unit else ""
+    where = "" if verdict.ratio_at is None else f" at t = {instant(verdict.ratio_at)}"
+    return (
+        f"{verdict.sentence}; largest error {size}{unit} at t = {instant(verdict.at)}, where "
+        f"{figure(verdict.bound)} is allowed; up to {ratio(verdict)} times what perfect rounding "
+        f"would leave{where}"
+    )
+
+
+def _row(verdict: Verdict) -> str:
+    return f"{verdict.verdict}  {verdict.scene} {verdict.rung} {with_numbers(verdict)}"
+
+
+def _mends(verdict: Verdict) -> Iterator[str]:
+    if verdict.verdict in _MENDS and not verdict.is_waived:
+        yield f"    {_MENDS[verdict.verdict]}"
