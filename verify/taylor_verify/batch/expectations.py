@@ -13,6 +13,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from taylor_verify.batch.differences import Difference, Direction
 from taylor_verify.records.answers import ExpectationsMet
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status
@@ -24,19 +25,6 @@ _PASS = Expectation(Status.PASS.value, "")
 
 
 @dataclass(frozen=True)
-class Mismatch:
-    """A row that differs from the expected one; ``got`` is a verdict or `no row`."""
-
-    row: Row
-    expected: Expectation
-    got: str
-
-    def __str__(self) -> str:
-        why = f" ({self.expected.why})" if self.expected.why else ""
-        return f"expected {self.expected.verdict}{why}, got {self.got} @ {' '.join(self.row)}"
-
-
-@dataclass(frozen=True)
 class Agreement:
     """Verdicts beside the expected ones.
 
@@ -44,7 +32,7 @@ class Agreement:
     """
 
     expected: Mapping[Row, Expectation] = field(default_factory=dict)
-    mismatches: tuple[Mismatch, ...] = ()
+    mismatches: tuple[Difference, ...] = ()
 
     def met(self, verdict: Verdict) -> Expectation | None:
         """Return the expectation of a row that is no pass and came as expected; None for all others."""
@@ -104,7 +92,7 @@ def compare_with_expectations(
         return Agreement()
     expectations = expectations or shipped()
     expected: dict[Row, Expectation] = {}
-    mismatches: list[Mismatch] = []
+    mismatches: list[Difference] = []
     for run, by_quantity in runs.items():
         foreseen = expectations.of_run(*run)
         if not foreseen and all(v.verdict is Status.UNAVAILABLE for v in by_quantity.values()):
@@ -116,8 +104,15 @@ def compare_with_expectations(
             expected[row] = wanted
             got = by_quantity[quantity].verdict.value if quantity in by_quantity else "no row"
             if got != wanted.verdict:
-                mismatches.append(Mismatch(row, wanted, got))
+                mismatches.append(_mismatch(row, wanted, got))
     return Agreement(expected, tuple(mismatches))
+
+
+def _mismatch(row: Row, wanted: Expectation, got: str) -> Difference:
+    """Return a row that came otherwise; to the better or to the worse, it is a failure."""
+    why = f" ({wanted.why})" if wanted.why else ""
+    expected = f"{wanted.verdict}{why}"
+    return Difference(*row, "", expected, got, TAYLOR, "", Direction.CHANGED)
 
 
 def _row(verdict: Verdict) -> Row:

@@ -60,7 +60,9 @@ _VERBS: Final = {
     "list": (
         "list the shipped scenes, families, solvers, precisions and file formats",
         "list --json",
-        "",
+        """
+--schema  print the JSON schema of what `run --json` and `check --json` print
+""",
     ),
     "scene": (
         "write a scene from a URDF, SDF or MJCF file",

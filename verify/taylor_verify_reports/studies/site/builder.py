@@ -13,11 +13,13 @@ from tempfile import TemporaryDirectory
 from typing import Final
 
 from taylor_verify.batch.pool import available_cores
+from taylor_verify.records import schema
 from taylor_verify.records.replacement import first_line, replace_files
 from taylor_verify_reports.studies.site.pages import staged
 
 MADE_BY: Final = "<!-- made by taylor-verify publish --site; do not edit -->"
 FRONT: Final = "index.html"
+SCHEMA: Final = "verdicts.schema.json"
 
 _SCRIPT: Final = "plotly.min.js"
 # Modules that the site needs; their packages have these names with hyphens.
@@ -75,7 +77,7 @@ def contents(folder: Path) -> dict[str, str | bytes]:
         }
     # A page loads Plotly's script when a picture of a motion comes into view.
     plotly = resources.files("plotly") / "package_data" / _SCRIPT
-    return {**site, f"_static/{_SCRIPT}": plotly.read_bytes()}
+    return {**site, f"_static/{_SCRIPT}": plotly.read_bytes(), SCHEMA: schema.text()}
 
 
 def _run_sphinx(source: Path, target: Path, settings: Path) -> None:
