@@ -11,7 +11,7 @@ import subprocess
 import sys
 import textwrap
 from collections.abc import Callable, Iterable
-from dataclasses import fields, replace
+from dataclasses import fields
 from itertools import combinations_with_replacement
 from pathlib import Path
 from typing import Any
@@ -236,6 +236,8 @@ def test_the_gravest_counts_and_both_are_told() -> None:
     assert (only.status, len(only.sentences)) == (Status.FAIL, 2)
     (only,) = cases([row(Status.FAIL)], [remark(status=Status.UNDECIDED)])
     assert only.status is Status.FAIL
+    (only,) = cases([row()], [remark(text="max"), remark(text="mean")])
+    assert only.text == "max\nmean"
 
 
 def test_paths_make_dotted_names() -> None:
@@ -665,10 +667,3 @@ def test_the_script_of_the_action_judges(short: Path) -> None:
     assert step(SCENES="short.toml", TOLERANCE="1e-19") == 1
     assert step(SCENES="short.toml", TOLERANCE="omega=1e-8,T=1e-8", GATE="bound") == 0
     assert step(SCENES="short.toml", GATE="baseline") == 2
-
-
-def test_remarks_of_the_same_row_are_all_told() -> None:
-    """Two regressions of one row are one case with both."""
-    (only,) = cases([row()], [remark(text="max"), remark(text="mean")])
-    assert only.text == "max\nmean"
-    assert replace(only, sentences=()).text == ""
