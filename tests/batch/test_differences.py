@@ -26,7 +26,7 @@ PAIRS = 20_000
 STEPS = 200
 
 
-def found(before: Verdict, now: Verdict) -> list[tuple[Direction, str]]:
+def differing(before: Verdict, now: Verdict) -> list[tuple[Direction, str]]:
     """The direction and the name of every difference of a row."""
     return [(each.direction, each.what) for each in compare([before], [now]).all]
 
@@ -118,7 +118,9 @@ def test_an_error_leaves_its_class_upwards_or_downwards(was: float, now: float) 
         limit = FACTOR * max(low, LEVEL)
         if abs(high - limit) > 1e-12 * limit:  # errors are rounded products of these
             expected = [(direction, "max (and mean, final, ratio)")] if high > limit else []
-            assert [each for each in found(row(was), row(now)) if each[0] is direction] == expected
+            assert [
+                each for each in differing(row(was), row(now)) if each[0] is direction
+            ] == expected
 
 
 @pytest.mark.parametrize(("error", "level"), [(1.0, 0.0), (0.0, 1.0)])
@@ -133,9 +135,9 @@ def test_ten_times_an_error_is_in_its_class(error: float, level: float) -> None:
 def test_an_error_that_is_no_number_is_beyond_every_number(name: str, lost: Any) -> None:
     """NaN, infinite or nothing in place of a number is worse by its name, the reverse is better."""
     broken = row(**{name: lost})
-    assert found(row(), broken) == [(WORSE, name)]
-    assert found(broken, row()) == [(BETTER, name)]
-    assert found(broken, broken) == []
+    assert differing(row(), broken) == [(WORSE, name)]
+    assert differing(broken, row()) == [(BETTER, name)]
+    assert differing(broken, broken) == []
 
 
 def test_the_figures_of_a_difference_are_its_limit_and_its_reason() -> None:
@@ -153,8 +155,8 @@ def test_the_figures_of_a_difference_are_its_limit_and_its_reason() -> None:
 @pytest.mark.parametrize("was", [0.0, 1e-9, 0.01, 0.5])
 def test_below_five_attainable_an_error_was_small_by_chance(was: float) -> None:
     """No error of at most 5 attainable is worse than any, and every larger one is."""
-    assert found(row(was), row(4.99)) == []
-    assert [direction for direction, _ in found(row(was), row(5.01))] == [WORSE]
+    assert differing(row(was), row(4.99)) == []
+    assert [direction for direction, _ in differing(row(was), row(5.01))] == [WORSE]
 
 
 def test_more_steps_excuse_no_error() -> None:
@@ -162,7 +164,7 @@ def test_more_steps_excuse_no_error() -> None:
     former attainable is worse."""
     costly = {"steps": 10_000, "evaluations": 200_000, "attainable": 10 * ATTAINABLE, "ratio": 4.0}
     new = row(40, **costly, bound=100 * ATTAINABLE)
-    assert found(row(), new) == [(WORSE, "max (and mean, final)")]
+    assert differing(row(), new) == [(WORSE, "max (and mean, final)")]
 
 
 # The other columns of a row.
@@ -188,8 +190,8 @@ def test_every_other_number_has_its_class(
     changed: dict[str, Any], expected: tuple[Direction, str]
 ) -> None:
     """A change of any one of them is named, whichever of the two rows is the former one."""
-    assert found(row(), row(**changed)) == [expected]
-    assert found(row(**changed), row()) == [expected]
+    assert differing(row(), row(**changed)) == [expected]
+    assert differing(row(**changed), row()) == [expected]
 
 
 @pytest.mark.parametrize(
@@ -204,27 +206,27 @@ def test_every_other_number_has_its_class(
 )
 def test_what_is_drawn_anew_makes_no_difference(changed: dict[str, Any]) -> None:
     """A few steps more, another time of the maximum and the floor there, are within the class."""
-    assert found(row(), row(**changed)) == []
+    assert differing(row(), row(**changed)) == []
 
 
 def test_a_short_run_may_take_two_steps_more() -> None:
     """A tenth of a few steps is less than a step."""
     five, seven, eight = (row(steps=n, evaluations=20 * n) for n in (5, 7, 8))
-    assert found(five, seven) == []
-    assert found(five, eight) == [(CHANGED, "steps")]
+    assert differing(five, seven) == []
+    assert differing(five, eight) == [(CHANGED, "steps")]
 
 
 def test_another_question_and_a_growth_leave_out_their_consequences() -> None:
     """Nothing else is said of a row with another question, nor of one that is worse but what is worse."""
     before = row(until=40.0)
-    assert found(before, row(1e5, verdict=Status.FAIL, until=9.0)) == [
+    assert differing(before, row(1e5, verdict=Status.FAIL, until=9.0)) == [
         (OTHER_QUESTION, "last time")
     ]
     worse = row(1e5, verdict=Status.FAIL, steps=900, outcome="stopped")
     errors = "max (and mean, final, ratio)"
-    assert found(row(), worse) == [(WORSE, "verdict"), (WORSE, errors)]
+    assert differing(row(), worse) == [(WORSE, "verdict"), (WORSE, errors)]
     names = ["verdict", "outcome", "steps", "evaluations a step", errors]
-    assert [what for _, what in found(worse, row())] == names
+    assert [what for _, what in differing(worse, row())] == names
 
 
 JUDGED = [status for status in Status if status is not Status.UNAVAILABLE]
@@ -237,17 +239,17 @@ def test_a_verdict_is_worse_by_the_grades_of_the_exit_status(was: Status, now: S
     before, after = row(verdict=was), row(verdict=now)
     grades = [order.index(exit_status([each])) for each in (before, after)]
     direction = CHANGED if grades[0] == grades[1] else WORSE if grades[0] < grades[1] else BETTER
-    assert found(before, after) == ([] if was is now else [(direction, "verdict")])
+    assert differing(before, after) == ([] if was is now else [(direction, "verdict")])
 
 
 def test_a_verdict_by_another_tolerance_is_neither_worse_nor_better() -> None:
     """Errors are compared all the same, and so is the verdict of a run that came to no comparison."""
     by_tolerance = row(1e5, tolerance=1e-6)
     failed = replace(by_tolerance, tolerance=None, verdict=Status.FAIL)
-    assert found(by_tolerance, failed) == [(CHANGED, "verdict")]
-    assert found(by_tolerance, replace(failed, max=1e9))[0] == (WORSE, "max")
-    assert found(by_tolerance, replace(failed, tolerance=1e-6)) == [(WORSE, "verdict")]
-    assert (WORSE, "verdict") in found(by_tolerance, replace(failed, at=None))
+    assert differing(by_tolerance, failed) == [(CHANGED, "verdict")]
+    assert differing(by_tolerance, replace(failed, max=1e9))[0] == (WORSE, "max")
+    assert differing(by_tolerance, replace(failed, tolerance=1e-6)) == [(WORSE, "verdict")]
+    assert (WORSE, "verdict") in differing(by_tolerance, replace(failed, at=None))
 
 
 # Rows of one side alone.
@@ -256,11 +258,11 @@ def test_a_verdict_by_another_tolerance_is_neither_worse_nor_better() -> None:
 def test_a_row_that_is_gone_is_worse_and_a_new_one_is_a_change() -> None:
     """Either is named, and is not counted as compared."""
     both = [row(), row(quantity="T")]
-    (gone,) = compare(both, [row()]).all
-    assert str(gone) == "expected this row, got none @ euler/generic f64 T"
+    (missing,) = compare(both, [row()]).all
+    assert str(missing) == "expected this row, got none @ euler/generic f64 T"
     (new,) = compare([row()], both).all
     assert str(new) == "expected no such row, got a new one @ euler/generic f64 T"
-    assert (gone.direction, new.direction) == (WORSE, CHANGED)
+    assert (missing.direction, new.direction) == (WORSE, CHANGED)
     assert compare(both, [row()]).compared == compare(both[:1], both).compared == 1
 
 

@@ -122,7 +122,7 @@ class Differences:
 
 
 def compare(before: Iterable[Verdict], now: Iterable[Verdict]) -> Differences:
-    """Compare every row with the earlier one of its scene, solver, setting, rung and quantity.
+    """Compare every row of ``now`` with that of ``before`` for its scene, solver, setting, rung, quantity.
 
     A row that exists on one side only is a difference. A run on a rung that one of the two machines does
     not have is named and not compared.
@@ -133,16 +133,16 @@ def compare(before: Iterable[Verdict], now: Iterable[Verdict]) -> Differences:
     earlier, later = (
         {(_run(v), v.quantity): v for v in rows if _run(v) not in lacking} for rows in (old, new)
     )
-    found = [_gone(v) for key, v in earlier.items() if key not in later]
-    found += [_new(v) for key, v in later.items() if key not in earlier]
-    found += [
+    differing = [_gone(v) for key, v in earlier.items() if key not in later]
+    differing += [_new(v) for key, v in later.items() if key not in earlier]
+    differing += [
         Difference.of(v, Direction.UNAVAILABLE, "the rung on both machines", "it on one")
         for v in (*old, *new)
         if v.verdict is Status.UNAVAILABLE
     ]
     shared = [(earlier[key], v) for key, v in later.items() if key in earlier]
-    found += [each for pair in shared for each in _decisive(*pair)]
-    return Differences(len(shared), tuple(found))
+    differing += [each for pair in shared for each in _decisive(*pair)]
+    return Differences(len(shared), tuple(differing))
 
 
 def _run(verdict: Verdict) -> tuple[str, ...]:
@@ -166,11 +166,11 @@ def _new(verdict: Verdict) -> Difference:
 
 def _decisive(old: Verdict, new: Verdict) -> list[Difference]:
     """Return the differences of a row that are no consequences of another one."""
-    found = list(_of_row(old, new))
+    differing = list(_of_row(old, new))
     for direction in (Direction.OTHER_QUESTION, Direction.WORSE):
-        if chosen := [each for each in found if each.direction is direction]:
+        if chosen := [each for each in differing if each.direction is direction]:
             return chosen
-    return found
+    return differing
 
 
 def _of_row(old: Verdict, new: Verdict) -> Iterator[Difference]:
