@@ -607,20 +607,6 @@ def test_an_interrupt_ends_run_and_workers_with_one_line(
 
 
 @needs_processes
-def test_a_worker_that_is_killed_ends_the_run_with_one_line(
-    working: subprocess.Popen[str], tmp_path: Path
-) -> None:
-    """Exit 2 and a message; nothing is written."""
-    os.kill(children(working.pid)[0], signal.SIGKILL)
-    out, error = working.communicate(timeout=PATIENCE)
-    assert working.returncode == 2
-    assert out == ""
-    assert error.count("\n") == 1
-    assert "worker" in error
-    assert not (tmp_path / "out").exists()
-
-
-@needs_processes
 def test_workers_do_not_outlive_a_run_that_is_killed(working: subprocess.Popen[str]) -> None:
     """After kill -9 of the run its workers are gone, in the middle of work of a minute."""
     workers = children(working.pid)

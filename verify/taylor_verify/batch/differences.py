@@ -133,7 +133,7 @@ def compare(before: Iterable[Verdict], now: Iterable[Verdict]) -> Differences:
     earlier, later = (
         {(_run(v), v.quantity): v for v in rows if _run(v) not in lacking} for rows in (old, new)
     )
-    differing = [_gone(v) for key, v in earlier.items() if key not in later]
+    differing = [_missing(v) for key, v in earlier.items() if key not in later]
     differing += [_new(v) for key, v in later.items() if key not in earlier]
     differing += [
         Difference.of(v, Direction.UNAVAILABLE, "the rung on both machines", "it on one")
@@ -149,7 +149,7 @@ def _run(verdict: Verdict) -> tuple[str, ...]:
     return verdict.scene, verdict.solver, verdict.setting, verdict.rung
 
 
-def _gone(verdict: Verdict) -> Difference:
+def _missing(verdict: Verdict) -> Difference:
     # A quaternion has a row only where it fails: a sound run has none.
     if verdict.quantity == UNIT_QUATERNION:
         return Difference.of(verdict, Direction.BETTER, "a row that fails", "none: it is mended")
