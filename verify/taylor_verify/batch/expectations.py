@@ -9,7 +9,7 @@ compared with nothing: its verdict counts as it stands.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -44,17 +44,13 @@ class Agreement:
     def exit_status(self, verdicts: Sequence[Verdict]) -> int:
         """Return 1 for a mismatch; else the status of the rows that did not come as expected.
 
-        Where nothing was judged: 2 if a package is missing, 0 if the machine lacks every number format
-        that was asked for, 3 otherwise.
+        Where nothing was judged it is that of `unjudged_status`.
         """
         if self.mismatches:
             return 1
         if not self.unjudged(verdicts):
             return exit_status(verdict for verdict in verdicts if self.met(verdict) is None)
-        outcomes = {verdict.outcome for verdict in verdicts}
-        if Outcome.NO_PACKAGE.value in outcomes:
-            return 2
-        return 0 if outcomes == {Outcome.NO_FORMAT.value} else 3
+        return unjudged_status({verdict.outcome for verdict in verdicts})
 
     def unjudged(self, verdicts: Sequence[Verdict]) -> str:
         """Return the reasons why nothing was judged; empty where something was, or came as expected."""
@@ -75,6 +71,16 @@ class Agreement:
         """Return the number of answers besides `pass` that came as expected, and every mismatch."""
         met = sum(self.met(verdict) is not None for verdict in verdicts)
         return ExpectationsMet(met, tuple(map(str, self.mismatches)))
+
+
+def unjudged_status(outcomes: Set[str]) -> int:
+    """Return the exit status where nothing was judged, by the outcomes of all rows.
+
+    2 if a package is missing, 0 if the machine lacks every number format asked for, 3 otherwise.
+    """
+    if Outcome.NO_PACKAGE.value in outcomes:
+        return 2
+    return 0 if outcomes == {Outcome.NO_FORMAT.value} else 3
 
 
 def compare_with_expectations(

@@ -10,6 +10,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from taylor_verify.batch.expectations import unjudged_status
 from taylor_verify.batch.sweeps.chunk import DRAWN
 from taylor_verify.batch.sweeps.dataset import Dataset
 from taylor_verify.batch.sweeps.questions import Questions
@@ -17,9 +18,8 @@ from taylor_verify.batch.sweeps.sizes import Sizes
 from taylor_verify.judge.provenance import command, processor, versions
 from taylor_verify.records.provenance import Provenance
 from taylor_verify.records.quantities import GATE_FACTOR, INITIAL
-from taylor_verify.records.status import GRAVITY, Status
+from taylor_verify.records.status import GRAVITY, Status, exit_status
 from taylor_verify.records.sweep import Spread, SweepSummary, WorstCase
-from taylor_verify.solvers.trajectory import Outcome
 
 Rows = dict[str, np.ndarray[Any, Any]]
 """The columns of a part, by their names."""
@@ -82,7 +82,7 @@ class _Totals:
         self.worst: list[tuple[tuple[float, float, int], WorstCase]] = []
         self._most, self._drawn = worst, drawn
         self._quantities: dict[str, _Quantity] = {}
-        self._outcomes: Counter[str] = Counter()
+        self._outcomes: set[str] = set()
         # Reasons by status, in the order in which they occurred.
         self._reasons: dict[Status, dict[str, None]] = {status: {} for status in _REASONED}
 
@@ -109,21 +109,16 @@ class _Totals:
 
     def exit_status(self) -> int:
         """Return the exit status of a run of all these bodies; unjudged bodies are no failure."""
-        if self.bodies[Status.FAIL]:
-            return 1
-        if sum(self.bodies.values()) == self.bodies[Status.UNAVAILABLE]:
-            if self._outcomes[Outcome.NO_PACKAGE.value]:
-                return 2
-            return 0 if set(self._outcomes) == {Outcome.NO_FORMAT.value} else 3
-        is_open = any(
-            self.bodies[status] for status in (Status.UNDECIDED, Status.REFUSED, Status.VACUOUS)
-        )
-        return 3 if is_open else 0
+        if self._is_unjudged():
+            return unjudged_status(self._outcomes)
+        return exit_status([status for status, count in self.bodies.items() if count])
 
     def lacks(self) -> tuple[str, ...]:
         """Return the reasons why nothing was judged; empty where something was."""
-        is_nothing = sum(self.bodies.values()) == self.bodies[Status.UNAVAILABLE]
-        return tuple(self._reasons[Status.UNAVAILABLE]) if is_nothing else ()
+        return tuple(self._reasons[Status.UNAVAILABLE]) if self._is_unjudged() else ()
+
+    def _is_unjudged(self) -> bool:
+        return sum(self.bodies.values()) == self.bodies[Status.UNAVAILABLE]
 
     def refusals(self) -> tuple[str, ...]:
         """Return some of the reasons why numbers make no body."""
