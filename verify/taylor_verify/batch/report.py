@@ -1,4 +1,4 @@
-"""The runs beside an earlier report, and as a JUnit file. This module of batch alone knows `publish`."""
+"""The runs beside an earlier report, and as a JUnit file."""
 
 from __future__ import annotations
 
