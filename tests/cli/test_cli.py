@@ -523,7 +523,7 @@ def test_an_error_nobody_foresaw_is_one_line_with_its_place(
 
 def test_a_reader_that_goes_away_is_no_error() -> None:
     """`| head -1` ends without a word on stderr and with the status of the run."""
-    for arguments in (["list"], ["list", "--json"], ["--help"]):
+    for arguments in (["list"], ["--help"]):
         with subprocess.Popen(
             command(*arguments),
             env=environment(),

@@ -112,7 +112,7 @@ def test_only_what_was_expected_is_met(wanted: str, came: Status) -> None:
     comparison = compare_with_expectations([verdict], expecting(wanted))
     agrees = came.value == wanted
     assert (comparison.met(verdict) is not None) is agrees
-    assert comparison.exit_status([verdict]) == (0 if agrees else 1)
+    assert comparison.exit_status == (0 if agrees else 1)
     assert comparison.row(verdict)["expected"] == {
         "verdict": wanted,
         "why": "so it is",
@@ -124,7 +124,7 @@ def test_only_what_was_expected_is_met(wanted: str, came: Status) -> None:
 @pytest.mark.parametrize("came", list(Status))
 def test_a_row_that_is_not_listed_must_pass(came: Status) -> None:
     """Without an entry every verdict but `pass` is a mismatch, unless the machine has no such rung."""
-    status = compare_with_expectations([row(came)], Expectations()).exit_status([row(came)])
+    status = compare_with_expectations([row(came)], Expectations()).exit_status
     assert status == (0 if came in (Status.PASS, Status.UNAVAILABLE) else 1)
 
 
@@ -134,7 +134,7 @@ def test_a_row_that_is_listed_must_come() -> None:
     (mismatch,) = comparison.mismatches
     text = "expected vacuous (so it is), got no row @ extremes/euler-a f64 attitude"
     assert str(mismatch) == text
-    assert comparison.exit_status([row()]) == 1
+    assert comparison.exit_status == 1
 
 
 def test_an_entry_waits_for_its_own_rung() -> None:
@@ -152,8 +152,8 @@ def test_nothing_else_is_held_to_it(came: Status, changed: dict[str, str]) -> No
     """For all other scenes and solvers the exit status is that of the verdicts, and rows are as ever."""
     verdict = row(came, **changed)
     comparison = compare_with_expectations([verdict], expecting("vacuous"))
-    assert comparison == Agreement()
-    assert comparison.exit_status([verdict]) == exit_status([verdict])
+    assert comparison == Agreement([verdict])
+    assert comparison.exit_status == exit_status([verdict])
     assert "expected" not in comparison.row(verdict)
 
 

@@ -26,11 +26,12 @@ _PASS = Expectation(Status.PASS.value, "")
 
 @dataclass(frozen=True)
 class Agreement:
-    """Verdicts beside the expected ones.
+    """The ``verdicts`` of runs beside the expected ones.
 
     ``expected`` has every row that the file names; ``mismatches`` are the rows that differ from it.
     """
 
+    verdicts: Sequence[Verdict]
     expected: Mapping[Row, Expectation] = field(default_factory=dict)
     mismatches: tuple[Difference, ...] = ()
 
@@ -41,22 +42,29 @@ class Agreement:
             return None
         return expectation if expectation.verdict == verdict.verdict.value else None
 
-    def exit_status(self, verdicts: Sequence[Verdict]) -> int:
-        """Return 1 for a mismatch; else the status of the rows that did not come as expected.
+    @property
+    def unexpected(self) -> list[Verdict]:
+        """The verdicts without those that are no pass and came as expected."""
+        return [verdict for verdict in self.verdicts if self.met(verdict) is None]
+
+    @property
+    def exit_status(self) -> int:
+        """Exit status: 1 for a mismatch; else the status of the rows that did not come as expected.
 
         Where nothing was judged it is that of `unjudged_status`.
         """
         if self.mismatches:
             return 1
-        if not self.unjudged(verdicts):
-            return exit_status(verdict for verdict in verdicts if self.met(verdict) is None)
-        return unjudged_status({verdict.outcome for verdict in verdicts})
+        if self.unjudged:
+            return unjudged_status({verdict.outcome for verdict in self.verdicts})
+        return exit_status(self.unexpected)
 
-    def unjudged(self, verdicts: Sequence[Verdict]) -> str:
-        """Return the reasons why nothing was judged; empty where something was, or came as expected."""
-        if any(v.verdict is not Status.UNAVAILABLE or self.met(v) for v in verdicts):
+    @property
+    def unjudged(self) -> str:
+        """The reasons why nothing was judged; empty where something was, or came as expected."""
+        if any(v.verdict is not Status.UNAVAILABLE or self.met(v) for v in self.verdicts):
             return ""
-        return "; ".join(dict.fromkeys(v.because for v in verdicts)) or "no run was asked for"
+        return "; ".join(dict.fromkeys(v.because for v in self.verdicts)) or "no run was asked for"
 
     def row(self, verdict: Verdict) -> dict[str, Any]:
         """Return the row as JSON has it, with what was expected of it where the file speaks of it."""
@@ -67,9 +75,9 @@ class Agreement:
         expected = {"verdict": expectation.verdict, "why": expectation.why, "met": is_met}
         return {**verdict.row(), "expected": expected}
 
-    def document(self, verdicts: Sequence[Verdict]) -> ExpectationsMet:
+    def document(self) -> ExpectationsMet:
         """Return the number of answers besides `pass` that came as expected, and every mismatch."""
-        met = sum(self.met(verdict) is not None for verdict in verdicts)
+        met = len(self.verdicts) - len(self.unexpected)
         return ExpectationsMet(met, tuple(map(str, self.mismatches)))
 
 
@@ -95,7 +103,7 @@ def compare_with_expectations(
         if is_extreme(verdict.scene) and (verdict.solver, verdict.setting) == (TAYLOR, ""):
             runs.setdefault((verdict.scene, verdict.rung), {})[verdict.quantity] = verdict
     if not runs:
-        return Agreement()
+        return Agreement(verdicts)
     expectations = expectations or shipped()
     expected: dict[Row, Expectation] = {}
     mismatches: list[Difference] = []
@@ -111,7 +119,7 @@ def compare_with_expectations(
             got = by_quantity[quantity].verdict.value if quantity in by_quantity else "no row"
             if got != wanted.verdict:
                 mismatches.append(_mismatch(row, wanted, got))
-    return Agreement(expected, tuple(mismatches))
+    return Agreement(verdicts, expected, tuple(mismatches))
 
 
 def _mismatch(row: Row, wanted: Expectation, got: str) -> Difference:
