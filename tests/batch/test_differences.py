@@ -280,7 +280,7 @@ def test_a_run_that_did_not_finish_is_worse_in_every_row() -> None:
     """Its one row is worse, and the others are gone."""
     broken = row(verdict=Status.FAIL, outcome="crashed", unit="", roundoff=None)
     both = [row(), row(quantity="T"), row(quantity="H2")]
-    worse = [str(each) for each in compare(both, [broken]).of(WORSE)]
+    worse = [str(each) for each in compare(both, [broken]).towards(WORSE)]
     assert [line.rpartition("f64 ")[2] for line in worse] == ["T", "H2", "omega verdict"]
 
 

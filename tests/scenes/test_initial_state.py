@@ -114,7 +114,7 @@ def test_a_start_that_got_worse_is_a_regression() -> None:
     """With the row in the baseline a start that is wrong now has regressed."""
     before = rows(taylor_verify.check("euler/generic", answered(lambda motion: motion)))
     now = rows(taylor_verify.check("euler/generic", answered(first_moved)))
-    assert INITIAL in {worse.quantity for worse in compare(before, now).of(Direction.WORSE)}
+    assert INITIAL in {worse.quantity for worse in compare(before, now).towards(Direction.WORSE)}
 
 
 @pytest.mark.heyoka

@@ -406,7 +406,7 @@ def test_unlike_rungs_are_in_one_class() -> None:
     assert len(pairs) > 1000
     assert [pair for pair in pairs if max(pair) > FACTOR * max(LEVEL, min(pair))] == []
     rows = [(baseline_row(was), baseline_row(now)) for was, now in pairs]
-    assert [pair for pair in rows if compare([pair[0]], [pair[1]]).of(Direction.WORSE)] == []
+    assert [pair for pair in rows if compare([pair[0]], [pair[1]]).towards(Direction.WORSE)] == []
 
 
 def test_published_rows_are_no_departures_from_themselves() -> None:

@@ -81,15 +81,20 @@ class Earlier:
         if decides:
             more = _unjudged(report.all, before, shown_verdicts(results))
             report = Differences(report.compared, (*report.all, *more))
-        failures, undecided = report.of(Direction.WORSE), report.of(Direction.OTHER_QUESTION)
-        changes = report.of(Direction.BETTER, Direction.CHANGED, Direction.UNAVAILABLE)
+        failures, undecided = (
+            report.towards(Direction.WORSE),
+            report.towards(Direction.OTHER_QUESTION),
+        )
+        changes = report.towards(Direction.BETTER, Direction.CHANGED, Direction.UNAVAILABLE)
         return Comparison(report.compared, failures, undecided, changes, before, notes, decides)
 
     def compare_as_published(self, results: Judgements | Judgement) -> Comparison:
         """Find every number that left the rounding class of its published one, upwards or downwards."""
         before = _asked_again(self.verdicts, results)
         report = compare(before, results.verdicts)
-        failures = report.of(*(each for each in Direction if each is not Direction.UNAVAILABLE))
+        failures = report.towards(
+            *(each for each in Direction if each is not Direction.UNAVAILABLE)
+        )
         return Comparison(report.compared, failures, (), (), before)
 
 

@@ -116,7 +116,7 @@ class Differences:
     compared: int
     all: tuple[Difference, ...]
 
-    def of(self, *directions: Direction) -> tuple[Difference, ...]:
+    def towards(self, *directions: Direction) -> tuple[Difference, ...]:
         """Return the differences in some directions."""
         return tuple(each for each in self.all if each.direction in directions)
 
