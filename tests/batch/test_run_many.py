@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
-from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from dataclasses import replace
 from multiprocessing import get_context
 from pathlib import Path
@@ -16,12 +16,10 @@ from builders.executor import Backwards
 from builders.scenes import THREE_INSTANTS
 
 import taylor_verify
-from taylor_verify.batch.failure import Failed
 from taylor_verify.batch.job import Job
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.batch.judging import Interrupted
-from taylor_verify.batch.lock import LOCK, Occupied, alone_in
-from taylor_verify.batch.report import ReportNotWritten
+from taylor_verify.batch.lock import LOCK
 from taylor_verify.batch.selection import Selection, select
 from taylor_verify.cli import main
 from taylor_verify.judge.judgement import Judgement, NotPassed
@@ -147,24 +145,13 @@ def test_an_interrupted_run_with_an_executor_goes_on_where_it_was(
 
 
 @pytest.mark.parametrize(
-    "wrong",
-    [
-        {"jobs": 2, "executor": Backwards(1)},
-        {"scenes": Selection((), ("f64",)), "rungs": ["f64"]},
-    ],
-)
-def test_a_call_that_says_two_things_is_refused(wrong: dict[str, Any]) -> None:
-    """A number of processes beside an executor, and rungs beside those of a Selection."""
-    with pytest.raises(ValueError, match="expected"):
-        taylor_verify.run_many(**{"scenes": ["euler/rest"], **wrong})
-
-
-@pytest.mark.parametrize(
     ("wrong", "sentence"),
     [
         ({"jobs": "2"}, "expected jobs of at least 1, got '2' @ jobs"),
         ({"jobs": 0}, "expected jobs of at least 1, got 0 @ jobs"),
         ({"jobs": True}, "expected jobs of at least 1, got True @ jobs"),
+        ({"jobs": 2, "executor": Backwards(1)}, "got both @ jobs"),
+        ({"scenes": Selection((), ("f64",)), "rungs": ["f64"]}, "got others besides @ rungs"),
         ({"jobs": 1.5}, "expected jobs of at least 1, got 1.5 @ jobs"),
         ({"executor": 3}, "expected an executor with a method submit, got 3 @ executor"),
         ({"out": 3}, "expected the path of a folder, got 3 @ out"),
@@ -198,21 +185,6 @@ def test_a_single_name_is_no_row_of_letters(tmp_path: Path) -> None:
         assert selection.rungs == ("f32",)
     assert len(select("extremes").scenes) > 10
     assert taylor_verify.run_many("euler/rest", rungs="f64").passed
-
-
-def test_an_error_of_the_executor_is_told_of_its_scene() -> None:
-    """An executor whose future raises what no run raises: Failed, with the scene and the error."""
-
-    class Unreachable(Executor):
-        def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Any:
-            future: Future[Any] = Future()
-            future.set_exception(OSError(111, "connection refused"))
-            return future
-
-    with pytest.raises(
-        Failed, match=r"^euler/rest on f64: .*ConnectionRefusedError: .*connection refused"
-    ):
-        taylor_verify.run_many(["euler/rest"], executor=Unreachable())
 
 
 # What is selected.
@@ -390,41 +362,3 @@ def test_out_writes_what_the_command_writes(tmp_path: Path) -> None:
     assert mine == its
     assert Path(LOCK) not in mine
     assert judgements.passed
-
-
-def test_a_second_run_into_one_folder_is_refused(tmp_path: Path) -> None:
-    """Before anything runs, and nothing in the folder changes."""
-    with alone_in(tmp_path), pytest.raises(Occupied, match="no other run writes to"):
-        taylor_verify.run_many(["euler/rest"], out=tmp_path)
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_a_report_that_cannot_be_written_costs_no_results(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The error has the judgements."""
-
-    def full(*_: Any) -> None:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr("taylor_verify.records.store.write", full)
-    with pytest.raises(ReportNotWritten, match="No space left") as raised:
-        taylor_verify.run_many(["euler/rest"], out=tmp_path / "out")
-    assert raised.value.results.passed
-
-
-def test_an_executor_is_only_asked_to_submit() -> None:
-    """Neither `map` nor `shutdown` of somebody's executor is called."""
-
-    class Minimal(Executor):
-        def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Any:
-            with ThreadPoolExecutor(1) as one:
-                return one.submit(fn, *args, **kwargs)
-
-        def map(self, *_: Any, **__: Any) -> Any:
-            pytest.fail("map was called")
-
-        def shutdown(self, *_: Any, **__: Any) -> None:
-            pytest.fail("shutdown was called")
-
-    assert taylor_verify.run_many(["euler/rest", "euler/spherical"], executor=Minimal()).passed

@@ -232,46 +232,6 @@ def test_a_finished_run_leaves_nothing(cache: Path) -> None:
     assert [file for file in cache.rglob("*") if file.is_file()] == []
 
 
-# A result so long that its worker is still writing it when the run is interrupted.
-_IN_THE_MIDDLE = """
-import sys, time
-from pathlib import Path
-from taylor_verify.batch.runs import run_all
-
-MARK = Path(sys.argv[1])
-
-
-def work(size):
-    if size:
-        MARK.touch()
-    return bytes(size)
-
-
-def finished(size, result):
-    while not MARK.exists():
-        time.sleep(0.001)
-    time.sleep(float(sys.argv[2]))
-    raise KeyboardInterrupt
-
-
-if __name__ == "__main__":
-    try:
-        run_all(work, [0, 200_000_000], workers=2, expense=lambda size: size, ended=finished)
-    except KeyboardInterrupt:
-        print("interrupted")
-"""
-
-
-@pytest.mark.parametrize("later", ["0.02", "0.1", "0.2"])
-def test_an_interrupt_within_a_result_is_no_deadlock(tmp_path: Path, later: str) -> None:
-    """A worker that is ended while it hands over its result leaves nobody waiting for the rest."""
-    script = tmp_path / "interrupted.py"
-    script.write_text(_IN_THE_MIDDLE)
-    command = [sys.executable, str(script), str(tmp_path / "mark"), later]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, check=False)
-    assert done.stdout == "interrupted\n", done.stderr
-
-
 @pytest.mark.skipif(not Path("/proc").exists(), reason="needs Linux's signals to a process group")
 def test_an_interrupted_run_goes_on_where_it_was(tmp_path: Path) -> None:
     """It says so and how; what follows has every verdict of a run that was not interrupted."""

@@ -58,7 +58,7 @@ class Numbers(Enum):
 
     AS_PRINTED: integers are equal, others agree to a fiftieth, which forgives the last of two digits.
     ROUNDING_CLASS: made of roundings that another processor draws anew: of the same size, to a
-    factor of ten, as judge.rounding_class has it. MEASURED: a time, or a count that follows from
+    factor of ten, as batch.differences has it. MEASURED: a time, or a count that follows from
     one: any number.
     """
 

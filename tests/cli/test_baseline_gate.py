@@ -17,7 +17,6 @@ from builders.verdicts import row
 from taylor_verify.batch.comparison import Earlier, compare_with_baseline
 from taylor_verify.check import check
 from taylor_verify.cli import main
-from taylor_verify.judge.baseline import decided_alone, hold
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status
@@ -30,7 +29,8 @@ Captured = pytest.CaptureFixture[str]
 
 
 def status_alone(before: Sequence[Verdict], now: Sequence[Verdict]) -> int:
-    return decided_alone(hold(before, now), before, now).status
+    earlier = Earlier("before.json", tuple(before))
+    return earlier.compare_as_baseline(Judgement(tuple(now), None), decides=True).exit_status
 
 
 def ordinary(errors: float = 1e5, **changed: Any) -> Verdict:
@@ -84,14 +84,22 @@ def test_a_new_row_counts_if_it_fails() -> None:
     assert status_alone([ordinary()], [ordinary(), ordinary(quantity="T")]) == 3
 
 
-def test_a_verdict_by_another_tolerance_is_not_compared_and_its_errors_are() -> None:
-    """A pass by a tolerance and a fail without one are no regression; an error that grew is."""
-    before = row(1e5, tolerance=1e-6, bound=1e-6)
-    assert hold([before], [ordinary()]).status == 0
-    assert hold([before], [ordinary(11e5)]).status == 1
-    assert hold([before], [replace(ordinary(), tolerance=1e-6)]).status == 1
-    unfinished = ordinary(max=None, mean=None, final=None, ratio=None, at=None)
-    assert hold([before], [unfinished]).status == 1
+def test_a_row_that_is_named_already_is_not_named_again() -> None:
+    """Without the gates a row is lost once, or shows nothing; a row that passes is neither."""
+    failed = row(50.0, verdict=Status.FAIL)
+    lost = row(verdict=Status.FAIL, max=math.nan)
+    empty = row(verdict=Status.VACUOUS)
+    for was, now, failures, undecided in (
+        (row(), row(), 0, 0),
+        (row(), failed, 2, 0),
+        (failed, failed, 0, 0),
+        (lost, lost, 1, 0),
+        (empty, empty, 0, 1),
+    ):
+        comparison = Earlier("before.json", (was,)).compare_as_baseline(
+            Judgement((now,), None), decides=True
+        )
+        assert (len(comparison.failures), len(comparison.undecided)) == (failures, undecided)
 
 
 # What a CI is shown.

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import re
+import sys
 from itertools import pairwise
 from time import monotonic
 
 import pytest
 from builders.processes import wait_until
 
+from taylor_verify.batch.job import Job
 from taylor_verify.cli import progress
-from taylor_verify.cli.progress import PROGRESS, working
+from taylor_verify.cli.progress import PROGRESS, advancing, working
 
 
 def test_news_of_long_work_is_told(
@@ -42,10 +45,21 @@ def test_short_work_says_nothing(capsys: pytest.CaptureFixture[str]) -> None:
     assert not PROGRESS.handlers
 
 
-def test_a_share_is_drawn_and_told() -> None:
-    """News that say how much is done have a bar as long as that; others have none."""
-    with progress._news() as latest:
-        assert latest().bar == ""
-        PROGRESS.info("50 % of 8192 rows", extra={"share": 0.5})
-        assert latest().words == "50 % of 8192 rows"
-        assert latest().bar == f"[{'#' * 15}{'.' * 15}] "
+def test_a_terminal_shows_the_news_and_the_share(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A bar is as long as the share that is done, of one thing and of many jobs."""
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("COLUMNS", "100")
+    for stream in (sys.stderr, sys.stdout):
+        monkeypatch.setattr(stream, "isatty", lambda: True)
+    with working("exact scene"):
+        PROGRESS.info("4096 of 8192 rows", extra={"share": 0.5})
+    out, error = capsys.readouterr()
+    assert out == ""
+    shown = re.sub(r"\x1b\[[0-9;?]*[a-zA-Z]", "", error)
+    assert f"exact scene: 4096 of 8192 rows {'━' * 20}╺" in shown
+    with advancing() as progress:
+        progress(0, 4, None)
+        progress(3, 4, Job("euler/rest", "taylor", ("f64",)))
+    assert "3/4 euler/rest" in capsys.readouterr().err

@@ -24,7 +24,6 @@ from taylor_verify.judge.files.coverage import Extent, span_notes
 from taylor_verify.judge.files.stored import storing
 from taylor_verify.judge.floor.carrying import Carrying, carrying
 from taylor_verify.judge.judgement import Judgement
-from taylor_verify.judge.rounding_class import has_grown
 from taylor_verify.judge.series import files, order
 from taylor_verify.judge.velocities import momenta, velocities
 from taylor_verify.records.reason import Kind
@@ -182,13 +181,6 @@ def test_the_width_of_a_truth_is_relative_to_its_vector() -> None:
     asked: Any = SimpleNamespace(name="omega", unit="1", groups=("omega",))
     distances = state._vectors(asked, truth, truth, None)
     assert float(distances.widths["omega"][0]) == pytest.approx(5e-10, abs=0)
-
-
-@pytest.mark.parametrize(("error", "level"), [(1.0, 0.0), (0.0, 1.0)])
-def test_ten_times_an_error_is_in_its_class(error: float, level: float) -> None:
-    """An error has grown when it is above ten times the former one and the level."""
-    assert not has_grown(error, 10.0, level)
-    assert has_grown(error, 10.000001, level)
 
 
 @pytest.mark.parametrize(("turns", "square"), [(0.0, 1 / 2), (400.0, 2.0)])

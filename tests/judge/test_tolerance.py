@@ -315,10 +315,10 @@ def test_the_expected_verdicts_are_those_of_the_ordinary_bounds() -> None:
     vacuous = replace(row, quantity="omega", verdict=Status.VACUOUS)
     failed = replace(vacuous, verdict=Status.FAIL, tolerance=1e-8)
     expected = compare_with_expectations([vacuous])
-    assert expected.exit_status([vacuous]) == 0
+    assert expected.exit_status == 0
     agreement = compare_with_expectations([failed])
     assert agreement.mismatches == ()
-    assert agreement.exit_status([failed]) == 1
+    assert agreement.exit_status == 1
 
 
 def test_a_page_says_that_a_tolerance_has_judged() -> None:

@@ -11,7 +11,7 @@ import subprocess
 import sys
 import textwrap
 from collections.abc import Callable, Iterable
-from dataclasses import fields, replace
+from dataclasses import fields
 from itertools import combinations_with_replacement
 from pathlib import Path
 from typing import Any
@@ -19,10 +19,11 @@ from xml.etree import ElementTree
 
 import pytest
 from builders.scenes import LISTED_INSTANTS, scene_file
-from builders.schema import SCHEMA, SCHEMA_FILE, violations
+from builders.schema import SCHEMA, violations
 from builders.verdicts import far_off as row
 from hypothesis import given
 from hypothesis import strategies as st
+from jsonschema import Draft202012Validator
 
 from taylor_verify.cli import main
 from taylor_verify.records import schema, store
@@ -236,6 +237,8 @@ def test_the_gravest_counts_and_both_are_told() -> None:
     assert (only.status, len(only.sentences)) == (Status.FAIL, 2)
     (only,) = cases([row(Status.FAIL)], [remark(status=Status.UNDECIDED)])
     assert only.status is Status.FAIL
+    (only,) = cases([row()], [remark(text="max"), remark(text="mean")])
+    assert only.text == "max\nmean"
 
 
 def test_paths_make_dotted_names() -> None:
@@ -462,9 +465,12 @@ def test_a_spoiled_document_is_not_of_the_schema(
     assert message in "\n".join(violations(document))
 
 
-def test_the_schema_describes_every_field_of_a_verdict() -> None:
-    """The published schema is that of the types; a row has all its keys, and stored rows are of it."""
-    assert schema.text() == SCHEMA_FILE.read_text(encoding="utf-8")
+def test_the_schema_describes_every_field_of_a_verdict(capsys: Captured) -> None:
+    """`list --schema` prints the schema of the types; a row has all its keys, and stored rows are of it."""
+    for call in (["list", "--schema"], ["list", "--schema", "--json"]):
+        assert main(call) == 0
+        assert json.loads(capsys.readouterr().out) == SCHEMA
+    Draft202012Validator.check_schema(SCHEMA)
     described = SCHEMA["$defs"]["Verdict"]["properties"]
     assert {field.name for field in fields(Verdict)} | {"because", "sentence", "digits"} == set(
         described
@@ -662,10 +668,3 @@ def test_the_script_of_the_action_judges(short: Path) -> None:
     assert step(SCENES="short.toml", TOLERANCE="1e-19") == 1
     assert step(SCENES="short.toml", TOLERANCE="omega=1e-8,T=1e-8", GATE="bound") == 0
     assert step(SCENES="short.toml", GATE="baseline") == 2
-
-
-def test_remarks_of_the_same_row_are_all_told() -> None:
-    """Two regressions of one row are one case with both."""
-    (only,) = cases([row()], [remark(text="max"), remark(text="mean")])
-    assert only.text == "max\nmean"
-    assert replace(only, sentences=()).text == ""

@@ -11,10 +11,9 @@ import numpy as np
 import pytest
 
 import taylor_verify
+from taylor_verify.batch.differences import Direction, compare
 from taylor_verify.cli import main
-from taylor_verify.judge.baseline import hold
 from taylor_verify.judge.judgement import Judgement
-from taylor_verify.judge.rounding_class import compare
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.quantities import GATE_FACTOR, INITIAL
 from taylor_verify.records.status import Status
@@ -102,24 +101,20 @@ def rows(judgement: Judgement) -> list[Verdict]:
 
 
 def test_older_rows_without_it_are_compared_in_an_orderly_way() -> None:
-    """A baseline calls the row a new one and regresses nothing; published rows have to be made anew."""
+    """The row is a new one, which is no regression; published rows have to be made anew."""
     now = rows(run("euler/generic"))
     before = now[1:]
-    comparison = hold(before, now)
-    assert (comparison.status, comparison.compared) == (0, len(before))
-    assert [change.quantity for change in comparison.changes] == [INITIAL]
-    (departure,) = compare(before, now).departures
-    assert departure.quantity == INITIAL
-    assert compare(now, now).departures == ()
+    compared = compare(before, now)
+    (new,) = compared.all
+    assert (new.quantity, new.direction) == (INITIAL, Direction.CHANGED)
+    assert compared.compared == len(before)
 
 
 def test_a_start_that_got_worse_is_a_regression() -> None:
     """With the row in the baseline a start that is wrong now has regressed."""
     before = rows(taylor_verify.check("euler/generic", answered(lambda motion: motion)))
     now = rows(taylor_verify.check("euler/generic", answered(first_moved)))
-    comparison = hold(before, now)
-    assert comparison.status == 1
-    assert INITIAL in {regression.quantity for regression in comparison.regressions}
+    assert INITIAL in {worse.quantity for worse in compare(before, now).towards(Direction.WORSE)}
 
 
 @pytest.mark.heyoka

@@ -23,8 +23,8 @@ from builders.pages import results
 from builders.schema import violations
 from builders.verdicts import row as baseline_row
 
-from taylor_verify.judge import baseline
-from taylor_verify.judge.rounding_class import FACTOR, LEVEL, compare
+from taylor_verify.batch import earlier_file
+from taylor_verify.batch.differences import FACTOR, LEVEL, Direction, compare
 from taylor_verify.plotting.picture import Picture, content
 from taylor_verify.records import store
 from taylor_verify.records.precisions import LADDER
@@ -390,23 +390,16 @@ def test_unlike_rungs_are_in_one_class() -> None:
     assert len(pairs) > 1000
     assert [pair for pair in pairs if max(pair) > FACTOR * max(LEVEL, min(pair))] == []
     rows = [(baseline_row(was), baseline_row(now)) for was, now in pairs]
-    assert [pair for pair in rows if baseline.hold([pair[0]], [pair[1]]).regressions] == []
+    assert [pair for pair in rows if compare([pair[0]], [pair[1]]).towards(Direction.WORSE)] == []
 
 
 def test_published_rows_are_no_departures_from_themselves() -> None:
     """Every row is in its own rounding class and no regression, read as a report or as a baseline."""
-    compared = compare(verdicts(), verdicts())
-    assert compared.departures == ()
-    assert compared.compared == len(verdicts()) > 0
-    read = baseline.load(REPORTS / "data" / "verdicts.json")
-    comparison = baseline.hold(read, read)
-    assert comparison.compared == len(read) > 0
-    assert (
-        comparison.regressions,
-        comparison.undecided,
-        comparison.changes,
-        comparison.status,
-    ) == ((), (), (), 0)
+    read = earlier_file.load(REPORTS / "data" / "verdicts.json")
+    for rows in (verdicts(), read):
+        compared = compare(rows, rows)
+        assert (compared.compared, compared.all) == (len(rows), ())
+        assert rows
     keys = [(v.scene, v.rung, v.quantity, v.max, v.ratio) for v in verdicts()]
     assert [(v.scene, v.rung, v.quantity, v.max, v.ratio) for v in read] == keys
 

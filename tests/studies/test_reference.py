@@ -18,8 +18,6 @@ import pytest
 from builders.reports import SOME_REFERENCES, every_reference, some_references
 
 import taylor_verify
-from taylor_verify.batch.documents import document as document_of
-from taylor_verify.batch.documents import documents
 from taylor_verify.batch.failure import Failed
 from taylor_verify.cli import main
 from taylor_verify.exact.printed import document
@@ -28,6 +26,8 @@ from taylor_verify.exact.solution import Unsettled
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.words.page import MADE_BY
+from taylor_verify_reports.studies.documents import document as document_of
+from taylor_verify_reports.studies.documents import documents
 from taylor_verify_reports.studies.reference import page as reference_files
 from taylor_verify_reports.studies.reference.measure import DIGITS, reference
 

@@ -111,7 +111,7 @@ def registered() -> Iterator[None]:
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The reports of something that is taken for a checkout."""
-    monkeypatch.setattr("taylor_verify.cli.folders._checkout", lambda place: place)
+    monkeypatch.setattr("taylor_verify_reports.verbs.checkout._checkout", lambda place: place)
     return tmp_path / "reports"
 
 

@@ -18,6 +18,7 @@ from builders.reports import SCENES
 from markdown_it import MarkdownIt
 
 from taylor_verify.cli import main
+from taylor_verify.records.schema import schema
 from taylor_verify.solvers.files.file import read
 from taylor_verify_reports.studies.site import builder
 from taylor_verify_reports.studies.site.builder import MADE_BY, build, contents
@@ -341,6 +342,12 @@ def test_what_is_not_installed_is_named(report: Path, monkeypatch: pytest.Monkey
     with pytest.raises(ImportError) as raised:
         contents(report)
     assert raised.value.name == "no-such-package"
+
+
+@building
+def test_the_schema_of_verdicts_lies_at_the_top(site: dict[str, str | bytes]) -> None:
+    """A program finds what `list --schema` prints under a name that stays."""
+    assert json.loads(site["verdicts.schema.json"]) == schema()
 
 
 @building

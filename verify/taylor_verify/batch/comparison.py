@@ -2,26 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike, fspath
-from typing import TYPE_CHECKING
 
+from taylor_verify.batch import earlier_file
+from taylor_verify.batch.differences import (
+    Difference,
+    Differences,
+    Direction,
+    compare,
+    finite,
+)
 from taylor_verify.batch.judgements import Judgements
-from taylor_verify.judge import baseline, rounding_class
 from taylor_verify.judge.judgement import Judgement, NotPassed
+from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.solvers.files.file import Recorded
-
-if TYPE_CHECKING:
-    from taylor_verify.judge.rounding_class import Departure
-    from taylor_verify.records.verdict import Verdict
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """Rows that were ``compared`` with earlier ones, and their departures.
+    """Rows that were ``compared`` with earlier ones, and their differences.
 
-    ``failures`` fail the comparison: the regressions from a baseline, or whatever left the rounding class
+    ``failures`` fail the comparison: what is worse than in a baseline, or whatever left the rounding class
     of a published row. ``undecided`` rows were asked another question before, and ``changes`` fail
     nothing; a comparison with published rows has neither. ``before`` are the earlier rows that were
     asked for again, ``notes`` what else there is to say. With ``decides`` the comparison alone decides
@@ -29,9 +32,9 @@ class Comparison:
     """
 
     compared: int
-    failures: tuple[Departure, ...]
-    undecided: tuple[Departure, ...]
-    changes: tuple[Departure, ...]
+    failures: tuple[Difference, ...]
+    undecided: tuple[Difference, ...]
+    changes: tuple[Difference, ...]
     before: tuple[Verdict, ...]
     notes: tuple[str, ...] = ()
     decides: bool = False
@@ -52,9 +55,9 @@ class Comparison:
         return self.passed
 
     def raise_for_failure(self) -> None:
-        """Raise NotPassed, an AssertionError with a line for each departure, unless it passed."""
+        """Raise NotPassed, an AssertionError with a line for each difference, unless it passed."""
         if not self.passed:
-            lines = [str(departure) for departure in (*self.failures, *self.undecided)]
+            lines = [str(difference) for difference in (*self.failures, *self.undecided)]
             raise NotPassed("\n".join(lines) or "no row was compared")
 
 
@@ -74,17 +77,25 @@ class Earlier:
         """
         before, notes = _of_one_file(self.verdicts, results)
         before = _asked_again(before, results)
-        report = baseline.hold(before, results.verdicts)
+        report = compare(before, results.verdicts)
         if decides:
-            report = baseline.decided_alone(report, before, shown_verdicts(results))
-        departures = (report.regressions, report.undecided, report.changes)
-        return Comparison(report.compared, *departures, before, notes, decides)
+            more = _unjudged(report.all, before, shown_verdicts(results))
+            report = Differences(report.compared, (*report.all, *more))
+        failures, undecided = (
+            report.towards(Direction.WORSE),
+            report.towards(Direction.OTHER_QUESTION),
+        )
+        changes = report.towards(Direction.BETTER, Direction.CHANGED, Direction.UNAVAILABLE)
+        return Comparison(report.compared, failures, undecided, changes, before, notes, decides)
 
     def compare_as_published(self, results: Judgements | Judgement) -> Comparison:
         """Find every number that left the rounding class of its published one, upwards or downwards."""
         before = _asked_again(self.verdicts, results)
-        report = rounding_class.compare(before, results.verdicts)
-        return Comparison(report.compared, report.departures, (), (), before)
+        report = compare(before, results.verdicts)
+        failures = report.towards(
+            *(each for each in Direction if each is not Direction.UNAVAILABLE)
+        )
+        return Comparison(report.compared, failures, (), (), before)
 
 
 def compare_with_baseline(
@@ -106,7 +117,7 @@ def read_baseline(file: str | PathLike[str]) -> Earlier:
     Raises scenes.reading.faults.Refused for a file that cannot be read, and ValueError for one that holds
     something else.
     """
-    return Earlier(fspath(file), baseline.load(fspath(file)))
+    return Earlier(fspath(file), earlier_file.load(fspath(file)))
 
 
 def _asked_again(before: Sequence[Verdict], results: Judgements | Judgement) -> tuple[Verdict, ...]:
@@ -146,6 +157,36 @@ def _of_one_file(
         f"the baseline is of the file {other}, and this is {name}: they are compared all the same"
     )
     return tuple(replace(v, setting=name) if v.setting == other else v for v in before), (note,)
+
+
+def _unjudged(
+    named: Iterable[Difference], before: Iterable[Verdict], now: Iterable[Verdict]
+) -> Iterator[Difference]:
+    """Yield the rows that are not green where no bound decides, besides those that are ``named`` already.
+
+    A failed row without a finite error is worse than any, even if the baseline has no finite error either.
+    A row that shows nothing is not compared: it is undecided, vacuous or refused, or it fails and is new.
+    """
+    known = {_row(verdict) for verdict in before}
+    decisive = (Direction.WORSE, Direction.OTHER_QUESTION)
+    places = {_row(difference) for difference in named if difference.direction in decisive}
+    for verdict in now:
+        status = exit_status([verdict])
+        if status == 0 or _row(verdict) in places:
+            continue
+        if status != 1:
+            words = "a row that shows something", f"{verdict.verdict} ({verdict.because})"
+            yield Difference.of(verdict, Direction.OTHER_QUESTION, *words)
+        elif finite(verdict, "max") is None:
+            words = "a finite error", "no finite number"
+            yield Difference.of(verdict, Direction.WORSE, *words, "max")
+        elif _row(verdict) not in known:
+            words = "a row of the baseline", "a new one that fails"
+            yield Difference.of(verdict, Direction.OTHER_QUESTION, *words)
+
+
+def _row(of: Verdict | Difference) -> tuple[str, str, str]:
+    return of.scene, of.rung, of.quantity
 
 
 def shown_verdicts(results: Judgements | Judgement) -> list[Verdict]:

@@ -9,10 +9,11 @@ compared with nothing: its verdict counts as it stands.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from typing import Any
 
+from taylor_verify.batch.differences import Difference, Direction
 from taylor_verify.records.answers import ExpectationsMet
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status
@@ -24,27 +25,15 @@ _PASS = Expectation(Status.PASS.value, "")
 
 
 @dataclass(frozen=True)
-class Mismatch:
-    """A row that differs from the expected one; ``got`` is a verdict or `no row`."""
-
-    row: Row
-    expected: Expectation
-    got: str
-
-    def __str__(self) -> str:
-        why = f" ({self.expected.why})" if self.expected.why else ""
-        return f"expected {self.expected.verdict}{why}, got {self.got} @ {' '.join(self.row)}"
-
-
-@dataclass(frozen=True)
 class Agreement:
-    """Verdicts beside the expected ones.
+    """The ``verdicts`` of runs beside the expected ones.
 
     ``expected`` has every row that the file names; ``mismatches`` are the rows that differ from it.
     """
 
+    verdicts: Sequence[Verdict]
     expected: Mapping[Row, Expectation] = field(default_factory=dict)
-    mismatches: tuple[Mismatch, ...] = ()
+    mismatches: tuple[Difference, ...] = ()
 
     def met(self, verdict: Verdict) -> Expectation | None:
         """Return the expectation of a row that is no pass and came as expected; None for all others."""
@@ -53,26 +42,29 @@ class Agreement:
             return None
         return expectation if expectation.verdict == verdict.verdict.value else None
 
-    def exit_status(self, verdicts: Sequence[Verdict]) -> int:
-        """Return 1 for a mismatch; else the status of the rows that did not come as expected.
+    @property
+    def unexpected(self) -> list[Verdict]:
+        """The verdicts without those that are no pass and came as expected."""
+        return [verdict for verdict in self.verdicts if self.met(verdict) is None]
 
-        Where nothing was judged: 2 if a package is missing, 0 if the machine lacks every number format
-        that was asked for, 3 otherwise.
+    @property
+    def exit_status(self) -> int:
+        """Exit status: 1 for a mismatch; else the status of the rows that did not come as expected.
+
+        Where nothing was judged it is that of `unjudged_status`.
         """
         if self.mismatches:
             return 1
-        if not self.unjudged(verdicts):
-            return exit_status(verdict for verdict in verdicts if self.met(verdict) is None)
-        outcomes = {verdict.outcome for verdict in verdicts}
-        if Outcome.NO_PACKAGE.value in outcomes:
-            return 2
-        return 0 if outcomes == {Outcome.NO_FORMAT.value} else 3
+        if self.unjudged:
+            return unjudged_status({verdict.outcome for verdict in self.verdicts})
+        return exit_status(self.unexpected)
 
-    def unjudged(self, verdicts: Sequence[Verdict]) -> str:
-        """Return the reasons why nothing was judged; empty where something was, or came as expected."""
-        if any(v.verdict is not Status.UNAVAILABLE or self.met(v) for v in verdicts):
+    @property
+    def unjudged(self) -> str:
+        """The reasons why nothing was judged; empty where something was, or came as expected."""
+        if any(v.verdict is not Status.UNAVAILABLE or self.met(v) for v in self.verdicts):
             return ""
-        return "; ".join(dict.fromkeys(v.because for v in verdicts)) or "no run was asked for"
+        return "; ".join(dict.fromkeys(v.because for v in self.verdicts)) or "no run was asked for"
 
     def row(self, verdict: Verdict) -> dict[str, Any]:
         """Return the row as JSON has it, with what was expected of it where the file speaks of it."""
@@ -83,10 +75,20 @@ class Agreement:
         expected = {"verdict": expectation.verdict, "why": expectation.why, "met": is_met}
         return {**verdict.row(), "expected": expected}
 
-    def document(self, verdicts: Sequence[Verdict]) -> ExpectationsMet:
+    def document(self) -> ExpectationsMet:
         """Return the number of answers besides `pass` that came as expected, and every mismatch."""
-        met = sum(self.met(verdict) is not None for verdict in verdicts)
+        met = len(self.verdicts) - len(self.unexpected)
         return ExpectationsMet(met, tuple(map(str, self.mismatches)))
+
+
+def unjudged_status(outcomes: Set[str]) -> int:
+    """Return the exit status where nothing was judged, by the outcomes of all rows.
+
+    2 if a package is missing, 0 if the machine lacks every number format asked for, 3 otherwise.
+    """
+    if Outcome.NO_PACKAGE.value in outcomes:
+        return 2
+    return 0 if outcomes == {Outcome.NO_FORMAT.value} else 3
 
 
 def compare_with_expectations(
@@ -101,10 +103,10 @@ def compare_with_expectations(
         if is_extreme(verdict.scene) and (verdict.solver, verdict.setting) == (TAYLOR, ""):
             runs.setdefault((verdict.scene, verdict.rung), {})[verdict.quantity] = verdict
     if not runs:
-        return Agreement()
+        return Agreement(verdicts)
     expectations = expectations or shipped()
     expected: dict[Row, Expectation] = {}
-    mismatches: list[Mismatch] = []
+    mismatches: list[Difference] = []
     for run, by_quantity in runs.items():
         foreseen = expectations.of_run(*run)
         if not foreseen and all(v.verdict is Status.UNAVAILABLE for v in by_quantity.values()):
@@ -116,8 +118,15 @@ def compare_with_expectations(
             expected[row] = wanted
             got = by_quantity[quantity].verdict.value if quantity in by_quantity else "no row"
             if got != wanted.verdict:
-                mismatches.append(Mismatch(row, wanted, got))
-    return Agreement(expected, tuple(mismatches))
+                mismatches.append(_mismatch(row, wanted, got))
+    return Agreement(verdicts, expected, tuple(mismatches))
+
+
+def _mismatch(row: Row, wanted: Expectation, got: str) -> Difference:
+    """Return a row that came otherwise; to the better or to the worse, it is a failure."""
+    why = f" ({wanted.why})" if wanted.why else ""
+    expected = f"{wanted.verdict}{why}"
+    return Difference(*row, "", expected, got, TAYLOR, "", Direction.CHANGED)
 
 
 def _row(verdict: Verdict) -> Row:

@@ -76,7 +76,7 @@ class Judgements(Sequence[Judgement]):
     @property
     def unexpected(self) -> list[Verdict]:
         """The verdicts without those that are no pass and came as expected."""
-        return [v for v in self.verdicts if self.agreement.met(v) is None]
+        return self.agreement.unexpected
 
     @property
     def exit_status(self) -> int:
@@ -86,12 +86,12 @@ class Judgements(Sequence[Judgement]):
         undecided and nothing failed. Where nothing was judged: 2 if a package is missing, 0 if this machine
         lacks every number format asked for, 3 otherwise.
         """
-        return self.agreement.exit_status(self.verdicts)
+        return self.agreement.exit_status
 
     @property
     def unjudged(self) -> str:
         """The reasons why nothing was judged; empty where something was."""
-        return self.agreement.unjudged(self.verdicts)
+        return self.agreement.unjudged
 
     @property
     def passed(self) -> bool:
@@ -127,7 +127,7 @@ class Judgements(Sequence[Judgement]):
             "summary": self.summary,
         }
         if self.agreement.expected:
-            document["expected"] = complete(self.agreement.document(self.verdicts))
+            document["expected"] = complete(self.agreement.document())
         if self.selection.left_out:
             document["left_out"] = [complete(one) for one in self.left_out]
         if self.causes:

@@ -1,16 +1,15 @@
-"""The runs beside an earlier report, and as a JUnit file. This module of batch alone knows `publish`."""
+"""The runs beside an earlier report, and as a JUnit file."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from os import PathLike, fspath
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from taylor_verify.batch.comparison import Comparison, Earlier, shown_verdicts
+from taylor_verify.batch.differences import Difference
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.judge.judgement import Judgement
-from taylor_verify.judge.rounding_class import Departure
 from taylor_verify.records import store
 from taylor_verify.records.answers import LikelyCause
 from taylor_verify.records.status import Status
@@ -85,18 +84,14 @@ def remarks(results: Judgements | Judgement, comparison: Comparison | None = Non
 
     remarked: list[Remark] = []
 
-    def remark(row: Verdict | Departure, status: Status, text: str) -> None:
+    def remark(row: Verdict | Difference, status: Status, text: str) -> None:
         run = row.scene, row.solver, row.setting, row.rung
         remarked.append(Remark(*run, row.quantity, status, text))
 
     if isinstance(results, Judgements):
         if comparison is None or not comparison.decides:
-            # The solver's name is taken from the run of the row.
-            runs = {(v.scene, v.rung): v for v in results.verdicts}
             for mismatch in results.agreement.mismatches:
-                scene, rung, quantity = mismatch.row
-                row = replace(runs[scene, rung], quantity=quantity)
-                remark(row, Status.FAIL, str(mismatch))
+                remark(mismatch, Status.FAIL, str(mismatch))
         if results.unjudged and results.exit_status:
             for verdict in results.verdicts:
                 remark(verdict, Status.UNDECIDED, "nothing was judged")
@@ -107,8 +102,8 @@ def remarks(results: Judgements | Judgement, comparison: Comparison | None = Non
     if comparison is not None:
         for failure in comparison.failures:
             remark(failure, Status.FAIL, f"regression: {failure}")
-        for departure in comparison.undecided:
-            remark(departure, Status.UNDECIDED, f"not comparable: {departure}")
+        for difference in comparison.undecided:
+            remark(difference, Status.UNDECIDED, f"not comparable: {difference}")
         for verdict in results.verdicts if not comparison.compared else ():
             remark(verdict, Status.UNDECIDED, "no row was compared with the baseline")
     return remarked

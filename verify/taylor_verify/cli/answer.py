@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from pathlib import Path
 from typing import Any, NamedTuple
 
 PASS, FAIL, WRONG_CALL, UNDECIDED, INTERRUPTED = 0, 1, 2, 3, 130
@@ -39,9 +38,3 @@ class Answer(NamedTuple):
 def graver(*statuses: int) -> int:
     """Return the gravest of some exit statuses."""
     return min(statuses, key=_GRAVITY.index)
-
-
-def files_written(paths: Iterable[Path]) -> Answer:
-    """Return the answer of a verb whose work is files: their names."""
-    written = [str(path) for path in paths]
-    return Answer(PASS, {"written": written}, lambda: "\n".join(written))

@@ -22,7 +22,7 @@ from typing import Any, Final, NoReturn
 
 from taylor_verify.cli.answer import Answer
 from taylor_verify.cli.completion import SHELLS
-from taylor_verify.cli.verbs import add, verbs
+from taylor_verify.cli.verbs import add, described, package_of, verbs
 from taylor_verify.records.version import __version__
 from taylor_verify.scenes.names import escaped
 
@@ -60,7 +60,9 @@ _VERBS: Final = {
     "list": (
         "list the shipped scenes, families, solvers, precisions and file formats",
         "list --json",
-        "",
+        """
+--schema  print the JSON schema of what `run --json` and `check --json` print
+""",
     ),
     "scene": (
         "write a scene from a URDF, SDF or MJCF file",
@@ -333,11 +335,11 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     # The packages of this environment are asked for verbs only if none of ours is called: that takes time.
     for plugged in verbs(_VERBS) if first not in _VERBS else ():
         if plugged.name in words:
-            add(_verb_parser(own, plugged.name, *plugged.described()), plugged)
-        elif plugged.package == _OWN_PACKAGE:
+            add(_verb_parser(own, plugged.name, *described(plugged)), plugged)
+        elif package_of(plugged) == _OWN_PACKAGE:
             own.add_parser(plugged.name)
         else:
-            own.add_parser(plugged.name, help=f"a verb of the package {plugged.package}")
+            own.add_parser(plugged.name, help=f"a verb of the package {package_of(plugged)}")
     return parser
 
 

@@ -10,6 +10,7 @@ from typing import Final
 from taylor_verify.cli.answer import PASS, Answer
 from taylor_verify.cli.console import Page, bold
 from taylor_verify.records.precisions import LADDER
+from taylor_verify.records.schema import schema, text
 from taylor_verify.scenes.families.library import family, family_names
 from taylor_verify.scenes.library import ENGINES, EXTREMES, GUIDE, WORST, names
 from taylor_verify.scenes.reading.reader import load
@@ -21,8 +22,9 @@ _WIDEST: Final = 40
 
 
 def answer(options: argparse.Namespace) -> Answer:
-    """Name the scenes, solvers, rungs and formats of files, each with a sentence."""
-    del options
+    """Name the scenes, solvers, rungs and formats of files, each with a sentence; or print the schema."""
+    if options.schema:
+        return Answer(PASS, schema(), text)
     scenes = {
         "scenes": list(names()),
         "extremes": list(names(EXTREMES, WORST)),
@@ -38,8 +40,8 @@ def answer(options: argparse.Namespace) -> Answer:
         "rungs": list(LADDER),
         "formats": list(formats),
     }
-    text = partial(_text, names_by_group, {**titles, **families, **remarks(), **formats}, GUIDE)
-    return Answer(PASS, {**names_by_group, "guide": dict(GUIDE)}, text)
+    shown = partial(_text, names_by_group, {**titles, **families, **remarks(), **formats}, GUIDE)
+    return Answer(PASS, {**names_by_group, "guide": dict(GUIDE)}, shown)
 
 
 def _text(

@@ -5,11 +5,10 @@ from __future__ import annotations
 import logging
 import sys
 import threading
-from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from time import monotonic
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 from taylor_verify.cli.streams import say
 from taylor_verify.scenes.names import escaped
@@ -20,9 +19,8 @@ if TYPE_CHECKING:
 
 # Work that takes less than this, in seconds, shows no progress.
 _PATIENCE = 1.0
-# The length of a bar, in characters.
-_BAR: Final = 30
-# Every room reports the progress of long work to this logger.
+# Every room reports the progress of long work to this logger. A message says how much is done, from 0 to 1,
+# by an attribute ``share`` of its record.
 PROGRESS: Final = logging.getLogger("taylor_verify.progress")
 
 
@@ -32,24 +30,8 @@ def advancing() -> Iterator[Progress]:
     if not sys.stderr.isatty():
         yield _say_progress
         return
-    from rich import progress as bars
-
-    from taylor_verify.cli.console import EscapingConsole
-
-    columns = (
-        bars.TextColumn("{task.description}", markup=False),
-        bars.BarColumn(),
-        bars.MofNCompleteColumn(),
-        bars.TimeElapsedColumn(),
-    )
-    with bars.Progress(*columns, console=EscapingConsole(stderr=True), transient=True) as bar:
-        task = bar.add_task("compiling and solving")
-
-        def advance(finished: int, total: int, job: Job | None) -> None:
-            name = None if job is None else escaped(job.name)
-            bar.update(task, completed=finished, total=total, description=name)
-
-        yield advance
+    with _bar("compiling and solving"):
+        yield _log_progress
 
 
 def _say_progress(finished: int, total: int, job: Job | None) -> None:
@@ -57,84 +39,85 @@ def _say_progress(finished: int, total: int, job: Job | None) -> None:
         say(f"{finished}/{total} {job}")
 
 
+def _log_progress(finished: int, total: int, job: Job | None) -> None:
+    if job is not None:
+        PROGRESS.info(f"{finished}/{total} {job.name}", extra={"share": finished / total})
+
+
 @contextmanager
 def working(what: str) -> Iterator[None]:
-    """Show a spinner with the latest news while one long thing is computed, and a bar of its share.
+    """Show the latest news while one long thing is computed, and a bar of its share.
 
     Where stderr is no terminal, lines with the news, each after twice the time of the one before.
     """
-    with _news() as latest:
-        if sys.stderr.isatty():
-            from rich.console import Console
-            from rich.text import Text
+    with _bar(what) if sys.stderr.isatty() else _lines(what):
+        yield
 
-            def text() -> Text:
-                news = latest()
-                return Text(escaped(f"{what}: {news.bar}{news.words}"))
 
-            with (
-                Console(stderr=True).status(text()) as spinner,
-                _repeated(lambda: _PATIENCE, lambda: spinner.update(text())),
-            ):
-                yield
-            return
-        began = monotonic()
-        with _repeated(
-            lambda: max(_PATIENCE, monotonic() - began), lambda: say(f"{what}: {latest().words}")
-        ):
+@contextmanager
+def _bar(what: str) -> Iterator[None]:
+    """Show a line on a terminal: what is done, the latest news, a bar and the time so far."""
+    from rich import progress as bars
+
+    from taylor_verify.cli.console import EscapingConsole
+
+    columns = (
+        bars.SpinnerColumn(),
+        bars.TextColumn("{task.description}", markup=False),
+        bars.BarColumn(),
+        bars.TimeElapsedColumn(),
+    )
+    with bars.Progress(*columns, console=EscapingConsole(stderr=True), transient=True) as bar:
+        # Without a total the bar moves to and fro.
+        task = bar.add_task(f"{escaped(what)}: computing", total=None)
+
+        def show(news: str, share: float | None) -> None:
+            total = None if share is None else 1.0
+            description = escaped(f"{what}: {news}")
+            bar.update(task, description=description, total=total, completed=share or 0.0)
+
+        with _hearing(show):
             yield
 
 
-class _News(NamedTuple):
-    """Present work, and the share of it that is done, from 0 to 1, where that is known."""
-
-    words: str
-    share: float | None = None
-
-    @property
-    def bar(self) -> str:
-        if self.share is None:
-            return ""
-        done = round(_BAR * self.share)
-        return f"[{'#' * done}{'.' * (_BAR - done)}] "
-
-
 @contextmanager
-def _news() -> Iterator[Callable[[], _News]]:
-    """Yield a function that returns the latest message of whatever room computes.
+def _lines(what: str) -> Iterator[None]:
+    """Print a line with the latest news again and again, each after twice the time of the one before."""
+    latest = "computing"
+    began, ended = monotonic(), threading.Event()
 
-    A message says how much is done by an attribute ``share`` of its record.
-    """
-    messages = deque([_News("computing")], maxlen=1)
-
-    class Latest(logging.Handler):
-        def emit(self, record: logging.LogRecord) -> None:
-            messages.append(_News(record.getMessage(), getattr(record, "share", None)))
-
-    handler = Latest(logging.INFO)
-    level = PROGRESS.level
-    PROGRESS.addHandler(handler)
-    PROGRESS.setLevel(logging.INFO)
-    try:
-        yield lambda: messages[-1]
-    finally:
-        PROGRESS.removeHandler(handler)
-        PROGRESS.setLevel(level)
-
-
-@contextmanager
-def _repeated(wait: Callable[[], float], tell: Callable[[], None]) -> Iterator[None]:
-    """Call ``tell`` again and again, after ``wait()`` seconds each time, until the block ends."""
-    ended = threading.Event()
+    def hear(news: str, _: float | None) -> None:
+        nonlocal latest
+        latest = news
 
     def repeat() -> None:
-        while not ended.wait(wait()):
-            tell()
+        while not ended.wait(max(_PATIENCE, monotonic() - began)):
+            say(f"{what}: {latest}")
 
+    # A thread, because most code computes for long without any news.
     thread = threading.Thread(target=repeat, daemon=True)
     thread.start()
     try:
-        yield
+        with _hearing(hear):
+            yield
     finally:
         ended.set()
         thread.join()
+
+
+@contextmanager
+def _hearing(hear: Callable[[str, float | None], None]) -> Iterator[None]:
+    """Call ``hear`` with the words and the share of each message about long work."""
+
+    class Hearing(logging.Handler):
+        def emit(self, record: logging.LogRecord) -> None:
+            hear(record.getMessage(), getattr(record, "share", None))
+
+    handler, level = Hearing(logging.INFO), PROGRESS.level
+    PROGRESS.addHandler(handler)
+    PROGRESS.setLevel(logging.INFO)
+    try:
+        yield
+    finally:
+        PROGRESS.removeHandler(handler)
+        PROGRESS.setLevel(level)

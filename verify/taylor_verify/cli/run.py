@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
 from functools import partial
 from itertools import groupby
 from math import inf, isnan
@@ -145,12 +144,11 @@ def _text(results: Judgements, explained: bool, status: int | None) -> str:
     verdicts, agreement = results.verdicts, results.agreement
     # A path of any length keeps its row in one line of a pipe; on a terminal it is folded.
     page = Page(PIPED_WIDTH + max((len(v.scene) for v in verdicts), default=0))
-    why = agreement.unjudged(verdicts)
+    why = agreement.unjudged
     if not why or len({verdict.because for verdict in verdicts}) > 1:
         _print_rows(page, results, explained)
-    total = f"{counts(verdicts)}{_as_expected(verdicts, agreement)}"
-    unexpected = [verdict for verdict in verdicts if agreement.met(verdict) is None]
-    print_end(page, unexpected, total, status, explained)
+    total = f"{counts(verdicts)}{_as_expected(agreement)}"
+    print_end(page, agreement.unexpected, total, status, explained)
     if why:
         page.line(f"nothing was judged: {why}")
     return page.text()
@@ -208,12 +206,12 @@ def _expected(verdict: Verdict, agreement: Agreement) -> str:
     return "" if expected is None else expected.why
 
 
-def _as_expected(verdicts: Sequence[Verdict], agreement: Agreement) -> str:
+def _as_expected(agreement: Agreement) -> str:
     """Return how many of the rows that are no pass are what the extremes are expected to answer."""
-    met = sum(agreement.met(verdict) is not None for verdict in verdicts)
+    met, mismatches = agreement.document().met, len(agreement.mismatches)
     words_and_counts = {
         f"{met} of them as expected": met,
-        f"{len(agreement.mismatches)} not as expected": agreement.mismatches,
+        f"{mismatches} not as expected": mismatches,
     }
     return "".join(f"; {words}" for words, count in words_and_counts.items() if count)
 

@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Collection, Iterator
-from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
@@ -27,65 +26,51 @@ if TYPE_CHECKING:
 GROUP: Final = "taylor_verify.verbs"
 
 
-@dataclass(frozen=True)
-class Verb:
-    """A verb of another package: its name, the package's and where it points to."""
-
-    entry: EntryPoint
-
-    @property
-    def name(self) -> str:
-        return self.entry.name
-
-    @property
-    def package(self) -> str:
-        """The distribution that brings it."""
-        return self.entry.dist.name if self.entry.dist is not None else "an unknown package"
-
-    def loaded(self) -> Any:
-        """Return the object behind the entry point.
-
-        Raises WrongCall if it cannot be imported or lacks a part of the contract.
-        """
-        try:
-            plugin = self.entry.load()
-        except Exception as error:
-            raise WrongCall(
-                f"expected the verb {self.name} of {self.package}, got {type(error).__name__}: {error}"
-            ) from error
-        lacking = [part for part in ("add", "run") if not callable(getattr(plugin, part, None))]
-        if lacking:
-            raise WrongCall(
-                f"expected the verb {self.name} of {self.package} to have {' and '.join(lacking)}, "
-                "got none"
-            )
-        return plugin
-
-    def described(self) -> tuple[str, str]:
-        """Return what the verb does and an example, as far as the plug-in says so."""
-        plugin = self.loaded()
-        return getattr(plugin, "help", f"a verb of the package {self.package}"), getattr(
-            plugin, "example", ""
-        )
+def package_of(verb: EntryPoint) -> str:
+    """Return the distribution that brings a verb."""
+    return verb.dist.name if verb.dist is not None else "an unknown package"
 
 
-def verbs(taken: Collection[str]) -> Iterator[Verb]:
+def described(verb: EntryPoint) -> tuple[str, str]:
+    """Return what a verb does and an example, as far as the plug-in says so.
+
+    Raises WrongCall if it cannot be imported or lacks a part of the contract.
+    """
+    plugin = _loaded(verb)
+    what = getattr(plugin, "help", f"a verb of the package {package_of(verb)}")
+    return what, getattr(plugin, "example", "")
+
+
+def _loaded(verb: EntryPoint) -> Any:
+    """Return the object behind an entry point. Raises WrongCall as ``described`` does."""
+    expected = f"expected the verb {verb.name} of {package_of(verb)}"
+    try:
+        plugin = verb.load()
+    except Exception as error:
+        raise WrongCall(f"{expected}, got {type(error).__name__}: {error}") from error
+    lacking = [part for part in ("add", "run") if not callable(getattr(plugin, part, None))]
+    if lacking:
+        raise WrongCall(f"{expected} to have {' and '.join(lacking)}, got none")
+    return plugin
+
+
+def verbs(taken: Collection[str]) -> Iterator[EntryPoint]:
     """Yield the verbs of other packages, each name once; one that is ``taken`` is named on stderr."""
     from importlib.metadata import entry_points
 
     known = set(taken)
-    for entry in sorted(entry_points(group=GROUP), key=lambda entry: entry.name):
-        verb = Verb(entry)
+    for verb in sorted(entry_points(group=GROUP), key=lambda entry: entry.name):
         if verb.name in known:
-            say(f"the verb {verb.name} of {verb.package} is left out: there is one of this name")
+            package = package_of(verb)
+            say(f"the verb {verb.name} of {package} is left out: there is one of this name")
             continue
         known.add(verb.name)
         yield verb
 
 
-def add(parser: argparse.ArgumentParser, verb: Verb) -> None:
-    """Let a plug-in add its arguments to the parser of its verb. Raises WrongCall as ``loaded`` does."""
-    plugin = verb.loaded()
+def add(parser: argparse.ArgumentParser, verb: EntryPoint) -> None:
+    """Let a plug-in add its arguments to the parser of its verb. Raises WrongCall as ``described`` does."""
+    plugin = _loaded(verb)
     plugin.add(parser)
     parser.set_defaults(act=partial(_act, plugin))
 

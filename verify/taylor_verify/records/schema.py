@@ -1,7 +1,4 @@
-"""The JSON schema of the documents of `run --json` and `check --json`, made from their types.
-
-python -c 'from taylor_verify.records.schema import text; print(text(), end="")' > verdicts.schema.json
-"""
+"""The JSON schema of the documents of `run --json` and `check --json`, made from their types."""
 
 from __future__ import annotations
 
@@ -118,5 +115,5 @@ def _tidied(schema: Any) -> Any:
 
 
 def text() -> str:
-    """Return the schema as the published file has it."""
+    """Return the schema as `list --schema` prints it and as the site has it."""
     return json.dumps(schema(), indent=1, ensure_ascii=False) + "\n"

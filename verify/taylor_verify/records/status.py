@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from enum import StrEnum
 from typing import Final
 
@@ -27,6 +27,14 @@ GRAVITY: Final = (
     Status.UNAVAILABLE,
     Status.PASS,
 )
+
+
+def exit_status(statuses: Collection[Status]) -> int:
+    """Return 0 if nothing failed, 1 for a failure, 3 if something shows nothing and nothing failed."""
+    if Status.FAIL in statuses:
+        return 1
+    nothing_shown = (Status.UNDECIDED, Status.REFUSED, Status.VACUOUS)
+    return 3 if any(status in statuses for status in nothing_shown) else 0
 
 
 def gravest(statuses: Iterable[Status]) -> Status:

@@ -8,6 +8,7 @@ from math import floor, inf, log10
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
+from taylor_verify.records import status
 from taylor_verify.records.error_kind import ErrorKind
 from taylor_verify.records.json_text import Count, Size, about, converted, finite, plain, read
 from taylor_verify.records.quantities import COMPLETE, is_conserved
@@ -207,7 +208,4 @@ def exit_status(verdicts: Iterable[Verdict]) -> int:
     count as undecided. Where such verdicts are expected, `batch.expectations` knows of it. A part that
     the caller has waived counts for nothing.
     """
-    statuses = {verdict.verdict for verdict in verdicts if not verdict.is_waived}
-    if Status.FAIL in statuses:
-        return 1
-    return 3 if statuses & {Status.UNDECIDED, Status.REFUSED, Status.VACUOUS} else 0
+    return status.exit_status({v.verdict for v in verdicts if not v.is_waived})

@@ -77,7 +77,7 @@ def front(verdicts: Sequence[Verdict], others: Iterable[Page]) -> str:
         "part of it anew and fails if a number has left its *rounding class*: processors fuse "
         "and order operations in their own ways, so the roundings differ, and with them the "
         "digits of an error, but neither its verdict nor its size. "
-        "`verify/taylor_verify/judge/rounding_class.py` says what that means in numbers, and why.",
+        "`verify/taylor_verify/batch/differences.py` says what that means in numbers, and why.",
         "Files that are *not committed* are large, and made from the other files: records, portraits "
         "of the scenes, `gates`, pictures as PDF, the paper, and the JSON of `reference`. "
         "`taylor-verify publish --missing` makes the data of these in minutes, `make paper` the paper "

@@ -18,21 +18,21 @@ A row of an extreme that is not named here is expected to pass.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from itertools import product
-from typing import Final
+from typing import Final, Literal
 
+import msgspec
+
+from taylor_verify.records.json_text import converted
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.scenes import library
 from taylor_verify.scenes.precision import rung
-from taylor_verify.scenes.reading.faults import Faults, Refused, near, shown
-from taylor_verify.scenes.reading.table import Table
+from taylor_verify.scenes.reading.faults import refusal
 
 FILE: Final = "EXPECTED.toml"
-# `fail` is not among them: a failure has to be fixed.
-WORDS: Final = ("vacuous", "refused", "undecided", "unavailable")
 _ALL: Final = "*"
 
 Row = tuple[str, str, str]
@@ -54,10 +54,6 @@ class Expectations:
     rows: Mapping[Row, Expectation] = field(default_factory=dict)
     left_out: Mapping[tuple[str, str], str] = field(default_factory=dict)
 
-    def of(self, scene: str, rung: str, quantity: str) -> Expectation | None:
-        """Return the expectation of a row; None if a pass is expected."""
-        return self.rows.get((scene, rung, quantity))
-
     def of_run(self, scene: str, rung: str) -> dict[str, Expectation]:
         """Return the expected answers of a scene on a rung other than `pass`, by quantity."""
         return {
@@ -74,7 +70,7 @@ def is_extreme(scene: str) -> bool:
 
 @lru_cache(maxsize=1)
 def shipped() -> Expectations:
-    """Return the expectations of the shipped file. Raises Refused with every fault of it."""
+    """Return the expectations of the shipped file."""
     file = library.cases_directory() / library.EXTREMES / FILE
     return read(file.read_text(encoding="utf-8"), library.named(library.EXTREMES))
 
@@ -92,62 +88,51 @@ def left_out(words: Iterable[str], rungs: Iterable[str]) -> dict[tuple[str, str]
     return {run: why for run, why in reasons.items() if run[0] in scenes and run[1] in chosen_rungs}
 
 
+class _LeftOut(msgspec.Struct, forbid_unknown_fields=True):
+    scene: str | list[str]
+    rung: str | list[str]
+    why: str
+
+
+class _Expected(_LeftOut):
+    quantity: str | list[str]
+    # `fail` is not among them: a failure has to be fixed.
+    verdict: Literal["vacuous", "refused", "undecided", "unavailable"]
+
+
+class _File(msgspec.Struct, forbid_unknown_fields=True):
+    expected: list[_Expected] = []
+    left_out: list[_LeftOut] = []
+
+
 def read(text: str, scenes: Iterable[str]) -> Expectations:
-    """Return the expectations of these scenes in a text. Raises Refused with every fault of it."""
-    faults = Faults()
+    """Return the expectations of these scenes in a text.
+
+    Raises ValueError for a text that is none, and Refused for an unknown scene and a row's second entry.
+    """
     # Names as the file has them, with the shipped names.
     known = {name.removeprefix(f"{library.EXTREMES}/"): name for name in scenes}
-    top = Table(tomllib.loads(text), "", faults)
+    file = converted(tomllib.loads(text), _File)
     rows: dict[Row, Expectation] = {}
-    for table in _tables(top, "expected"):
-        runs, quantities = _runs(table, known), _words(table, "quantity")
-        verdict, why = table.text("verdict"), table.text("why")
-        if verdict is not None and verdict not in WORDS:
-            table.fault(f"one of {', '.join(WORDS)}", shown(verdict), "verdict")
-        for run, quantity in product(runs, quantities) if verdict and why else ():
+    for entry in file.expected:
+        for run, quantity in product(_runs(entry, known), _words(entry.quantity)):
             row = (*run, quantity)
             if row in rows:
-                faults.add("one entry for each row", f"a second one for {row}", table.path())
-            rows[row] = Expectation(str(verdict), str(why))
-    left_out: dict[tuple[str, str], str] = {}
-    for table in _tables(top, "left_out"):
-        runs, why = _runs(table, known), table.text("why")
-        left_out |= dict.fromkeys(runs, why) if why else {}
-    top.close()
-    if faults.lines:
-        raise Refused(faults.lines)
+                raise refusal("one entry for each row", "a second one", " ".join(row))
+            rows[row] = Expectation(entry.verdict, entry.why)
+    left_out = {run: entry.why for entry in file.left_out for run in _runs(entry, known)}
     return Expectations(rows, left_out)
 
 
-def _tables(top: Table, key: str) -> Iterator[Table]:
-    """Yield the tables of an array of tables, and close each after it was read."""
-    for table in (top.tables(key) if top.has(key) else None) or ():
-        yield table
-        table.close()
-
-
-def _runs(table: Table, known: Mapping[str, str]) -> list[tuple[str, str]]:
+def _runs(entry: _LeftOut, known: Mapping[str, str]) -> list[tuple[str, str]]:
     """Return the scenes and rungs that an entry names, by their shipped names."""
-    scenes, rungs = _words(table, "scene", known), _words(table, "rung", LADDER)
-    for name in scenes:
-        if name not in known:
-            table.fault("a scene of the extremes", name, "scene", near(name, known))
-    for name in rungs:
-        try:
-            rung(name)
-        except ValueError:
-            table.fault("a rung", name, "rung", near(name, LADDER))
-    return [(known[name], on) for name, on in product(scenes, rungs) if name in known]
+    scenes, rungs = _words(entry.scene, known), _words(entry.rung, LADDER)
+    if unknown := [name for name in scenes if name not in known]:
+        raise refusal("scenes of the extremes", ", ".join(unknown), FILE)
+    return [(known[name], rung(on).name) for name, on in product(scenes, rungs)]
 
 
-def _words(table: Table, key: str, everything: Iterable[str] = ()) -> list[str]:
+def _words(given: str | list[str], everything: Iterable[str] = ()) -> list[str]:
     """Return the words of a key, which has one or several; ``"*"`` stands for ``everything``."""
-    expected = "a word or an array of words"
-    value = table.take(key, expected)
-    words = value if isinstance(value, list) else [value]
-    if value is None:
-        return []
-    if not words or not all(isinstance(word, str) and word for word in words):
-        table.fault(expected, shown(value), key)
-        return []
-    return [*everything] if words == [_ALL] and everything else [*map(str, words)]
+    words = given if isinstance(given, list) else [given]
+    return [*everything] if words == [_ALL] and everything else words

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from taylor_verify.cli.answer import PASS, Answer, WrongCall, files_written, graver
-from taylor_verify.cli.folders import alone_in, reports_folder, writable
+from taylor_verify.cli.answer import PASS, Answer, WrongCall, graver
+from taylor_verify.cli.folders import alone_in, writable
 from taylor_verify.cli.progress import advancing, working
 from taylor_verify.cli.streams import say
 from taylor_verify_reports.studies.registry import STUDIES, UnknownStudy, find, hint
+from taylor_verify_reports.verbs.checkout import reports_folder
 
 if TYPE_CHECKING:
     from taylor_verify_reports.studies.bulk import Missing
@@ -177,7 +178,7 @@ def _measured(
     from taylor_verify_reports.studies.report import publish_index
     from taylor_verify_reports.studies.study import NotMeasured
 
-    answer = files_written([])
+    answer = _files_written([])
     written: list[Path] = []
     for study in studies:
         if len(studies) > 1:
@@ -192,7 +193,7 @@ def _measured(
         answer = answer._replace(status=graver(answer.status, measured.status), messages=messages)
     if (folder / store.FOLDER / store.VERDICTS).exists():
         written += publish_index(folder)
-    return files_written(written)._replace(status=answer.status, messages=answer.messages)
+    return _files_written(written)._replace(status=answer.status, messages=answer.messages)
 
 
 def _progress() -> Progress:
@@ -224,21 +225,21 @@ def _pages(folder: Path) -> Answer:
     from taylor_verify_reports.studies import report
 
     with _wrong_calls(folder, ""):
-        return files_written(report.publish(folder))
+        return _files_written(report.publish(folder))
 
 
 def _rendered(folder: Path) -> Answer:
     with _wrong_calls(folder, " @ --paper"):
         from taylor_verify_reports.studies.paper import pack
 
-        return files_written(pack.write(folder))
+        return _files_written(pack.write(folder))
 
 
 def _site(folder: Path, target: Path) -> Answer:
     with _wrong_calls(folder, " @ --site"):
         from taylor_verify_reports.studies.site.builder import build
 
-        made = files_written(build(folder, target))
+        made = _files_written(build(folder, target))
     lacking = _missing(folder).data
     message = (
         f"pages of the site are without {lacking}: `taylor-verify publish --missing` makes what "
@@ -252,7 +253,7 @@ def make_missing(folder: Path) -> Answer:
     lacking = _missing(folder)
     if lacking.data:
         say(f"making what is not in {folder}: {lacking.data} ({_TIME})")
-    return files_written(lacking.make(_progress()))
+    return _files_written(lacking.make(_progress()))
 
 
 def _packed(folder: Path, target: Path) -> Answer:
@@ -267,7 +268,7 @@ def _packed(folder: Path, target: Path) -> Answer:
             "expected a whole report (`publish --missing`, then `publish --paper`), got one without "
             f"{without} @ --archive"
         )
-    return files_written(pack(folder, target, f"{_ARCHIVE}-{__version__}"))
+    return _files_written(pack(folder, target, f"{_ARCHIVE}-{__version__}"))
 
 
 def _missing(folder: Path) -> Missing:
@@ -275,3 +276,9 @@ def _missing(folder: Path) -> Missing:
 
     with _wrong_calls(folder, ""):
         return bulk.missing(folder)
+
+
+def _files_written(paths: Iterable[Path]) -> Answer:
+    """Return the answer of a verb whose work is files: their names."""
+    written = [str(path) for path in paths]
+    return Answer(PASS, {"written": written}, lambda: "\n".join(written))

@@ -27,7 +27,7 @@ def _add(folder: Path, scenes: Sequence[str], progress: Progress) -> list[Path]:
 
 
 def _portraits(scenes: Sequence[str], progress: Progress) -> list[dict[str, Any]]:
-    from taylor_verify.batch.documents import documents
+    from taylor_verify_reports.studies.documents import documents
     from taylor_verify_reports.studies.portraits.measure import portrait
 
     return documents(portrait, scenes, progress.counting(len(scenes)))

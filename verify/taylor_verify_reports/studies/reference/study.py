@@ -32,7 +32,7 @@ def _add(folder: Path, scenes: Sequence[str], progress: Progress) -> list[Path]:
 
 
 def _trajectories(scenes: Sequence[str], progress: Progress) -> list[dict[str, Any]]:
-    from taylor_verify.batch.documents import documents
+    from taylor_verify_reports.studies.documents import documents
     from taylor_verify_reports.studies.reference.measure import reference
 
     return documents(reference, scenes, progress.counting(len(scenes)))

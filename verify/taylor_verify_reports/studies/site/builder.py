@@ -12,11 +12,13 @@ from tempfile import TemporaryDirectory
 from typing import Final
 
 from taylor_verify.batch.pool import available_cores
+from taylor_verify.records import schema
 from taylor_verify.records.replacement import first_line, replace_files
 from taylor_verify_reports.studies.site.pages import staged
 
 MADE_BY: Final = "<!-- made by taylor-verify publish --site; do not edit -->"
 FRONT: Final = "index.html"
+SCHEMA: Final = "verdicts.schema.json"
 
 # Modules that the site needs; their packages have these names with hyphens.
 _NEEDED: Final = (
@@ -70,7 +72,8 @@ def contents(folder: Path) -> dict[str, str | bytes]:
             for file in files
             if not file.name.endswith(_UNNEEDED)
         }
-    return site | {name: f"{MADE_BY}\n{page}" for name, page in stage.motions.items()}
+    pages = {name: f"{MADE_BY}\n{page}" for name, page in stage.motions.items()}
+    return {**site, **pages, SCHEMA: schema.text()}
 
 
 def _run_sphinx(source: Path, target: Path, settings: Path) -> None:

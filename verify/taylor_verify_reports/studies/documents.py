@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import Executor
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -17,24 +16,15 @@ Document = dict[str, Any]
 
 
 def documents(
-    make: Callable[[Scene], Document],
-    names: Sequence[str],
-    finished: Callable[[str], None],
-    executor: Executor | None = None,
+    make: Callable[[Scene], Document], names: Sequence[str], finished: Callable[[str], None]
 ) -> list[Document]:
     """Return ``make(scene)`` for many scenes, in the order given.
 
     ``finished`` is called with the name of each scene as it ends. Raises Failed for one that came to
     nothing.
     """
-    return run_all(
-        partial(document, make),
-        names,
-        executor,
-        expense=_expense,
-        ended=lambda name, _: finished(name),
-        raises=Failed,
-    )
+    work = partial(document, make)
+    return run_all(work, names, ended=lambda name, _: finished(name), raises=Failed)
 
 
 def document(make: Callable[[Scene], Document], name: str) -> Document:
@@ -44,11 +34,3 @@ def document(make: Callable[[Scene], Document], name: str) -> Document:
 
     with failing(name, Unsettled):
         return make(load(name))
-
-
-def _expense(name: str) -> tuple[int, int]:
-    """Return a key to sort scenes by, the longest first: bodies in a fluid, and what is tracked."""
-    from taylor_verify.scenes.reading.reader import load
-
-    scene = load(name)
-    return -len(scene.initial.moving), -len(scene.track)

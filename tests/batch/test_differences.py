@@ -1,0 +1,301 @@
+"""Rows differ where rounding does not explain it, and a difference says whether it is for the worse."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from itertools import product
+from typing import Any
+
+import numpy as np
+import pytest
+from builders.verdicts import ATTAINABLE, row
+from hypothesis import given
+from hypothesis import strategies as st
+
+from taylor_verify.batch import differences
+from taylor_verify.batch.differences import FACTOR, LEVEL, Direction, compare, has_grown
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict, exit_status
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+WORSE, BETTER, CHANGED, OTHER_QUESTION, UNAVAILABLE = Direction
+
+# Pairs of runs; that none of n leaves its class says with 95 % that the rate is below 3/n.
+PAIRS = 20_000
+STEPS = 200
+
+
+def differing(before: Verdict, now: Verdict) -> list[tuple[Direction, str]]:
+    """The direction and the name of every difference of a row."""
+    return [(each.direction, each.what) for each in compare([before], [now]).all]
+
+
+# The rate of false alarms, on walks whose steps are those that attainable counts.
+
+
+def walk(rng: np.random.Generator) -> tuple[Floats, Floats]:
+    """Errors and attainable of a conserved quantity: every step's rounding stays."""
+    steps = rng.standard_normal((PAIRS, STEPS))
+    return np.abs(np.cumsum(steps, axis=1)), np.sqrt(np.arange(1, STEPS + 1))
+
+
+def secular(rng: np.random.Generator) -> tuple[Floats, Floats]:
+    """Errors of a phase that drifts at the rate of the walk: a rounding at j has grown to k - j at k."""
+    steps = rng.standard_normal((PAIRS, STEPS))
+    grown = np.arange(1, STEPS + 1)
+    return np.abs(np.cumsum(np.cumsum(steps, axis=1), axis=1)), np.sqrt(np.cumsum(grown**2.0))
+
+
+def unstable(rng: np.random.Generator) -> tuple[Floats, Floats]:
+    """Errors of an orbit that magnifies by e in five steps: the first few roundings are all that counts."""
+    steps = rng.standard_normal((PAIRS, STEPS))
+    growth = np.exp(np.arange(STEPS) / 5)
+    errors = np.abs(np.cumsum(steps / growth, axis=1)) * growth
+    return errors, np.sqrt(np.cumsum(growth**-2.0)) * growth
+
+
+def ratios(model: Any, seed: int) -> Floats:
+    errors, attainable = model(np.random.default_rng(seed))
+    largest: Floats = np.max(errors / attainable, axis=1)
+    return largest
+
+
+def share_out(old: Floats, new: Floats, factor: float, level: float) -> float:
+    """The share of pairs that are out of a class of this factor and level."""
+    up = new > factor * np.maximum(old, level)
+    down = old > factor * np.maximum(new, level)
+    return float(np.mean(up | down))
+
+
+@pytest.mark.parametrize("model", [walk, secular, unstable])
+def test_two_draws_of_one_walk_are_in_one_class(model: Any) -> None:
+    """None of the pairs leaves the class, whatever carries the roundings on; some would leave a
+    class without a level or with a factor of two, so that the walks do spread."""
+    old, new = ratios(model, 1), ratios(model, 2)
+    assert share_out(old, new, FACTOR, LEVEL) == 0
+    assert share_out(old, new, 2.0, LEVEL) > 1e-3
+
+
+def test_no_factor_is_a_class_without_a_level() -> None:
+    """The maximum of a walk in one unstable direction is a single Gaussian: the ratio of two such
+    exceeds any factor f with probability (4/pi) arctan(1/f), one way or the other."""
+    rng = np.random.default_rng(3)
+    old, new = np.abs(rng.standard_normal((2, PAIRS)))
+    expected = 4 / math.pi * math.atan(1 / FACTOR)
+    # Five standard deviations of a count of PAIRS: a fixed seed leaves no room for luck.
+    allowed = 5 * math.sqrt(expected / PAIRS)
+    assert abs(share_out(old, new, FACTOR, 0.0) - expected) <= allowed
+
+
+@pytest.mark.parametrize("model", [walk, secular, unstable])
+def test_the_stated_rate_of_false_alarms(model: Any) -> None:
+    """Alarms ask for one error beyond FACTOR LEVEL = 5, and Gaussian tails make that rare: the
+    tail that the simulation can see, beyond 3, is within the same formula at 3."""
+    level = 3.0
+    tail = math.erfc(level / math.sqrt(2)) / 2
+    stated = level**2 * tail * math.log(STEPS) + 4 * tail
+    beyond = float(np.mean(ratios(model, 4) > level))
+    assert beyond <= stated
+    assert f"FACTOR LEVEL = {FACTOR * LEVEL:g}" in (differences.__doc__ or "")
+    assert FACTOR * LEVEL == 5
+
+
+def test_a_maximum_over_all_samples_is_seldom_small() -> None:
+    """Less than one in twenty walks that are asked at every sample stays below LEVEL."""
+    assert float(np.mean(ratios(walk, 5) < LEVEL)) < 1 / 20
+
+
+# Errors.
+
+SIZES = st.floats(0, 1e6)
+
+
+@given(SIZES, SIZES)
+def test_an_error_leaves_its_class_upwards_or_downwards(was: float, now: float) -> None:
+    """The limit is ten times the larger of the one error and half of what is attainable."""
+    for direction, low, high in ((WORSE, was, now), (BETTER, now, was)):
+        limit = FACTOR * max(low, LEVEL)
+        if abs(high - limit) > 1e-12 * limit:  # errors are rounded products of these
+            expected = [(direction, "max (and mean, final, ratio)")] if high > limit else []
+            assert [
+                each for each in differing(row(was), row(now)) if each[0] is direction
+            ] == expected
+
+
+@pytest.mark.parametrize(("error", "level"), [(1.0, 0.0), (0.0, 1.0)])
+def test_ten_times_an_error_is_in_its_class(error: float, level: float) -> None:
+    """An error has grown when it is above ten times the former one and the level."""
+    assert not has_grown(error, 10.0, level)
+    assert has_grown(error, 10.000001, level)
+
+
+@pytest.mark.parametrize("name", ["max", "mean", "final", "ratio"])
+@pytest.mark.parametrize("lost", [None, math.nan, math.inf])
+def test_an_error_that_is_no_number_is_beyond_every_number(name: str, lost: Any) -> None:
+    """NaN, infinite or nothing in place of a number is worse by its name, the reverse is better."""
+    broken = row(**{name: lost})
+    assert differing(row(), broken) == [(WORSE, name)]
+    assert differing(broken, row()) == [(BETTER, name)]
+    assert differing(broken, broken) == []
+
+
+def test_the_figures_of_a_difference_are_its_limit_and_its_reason() -> None:
+    """A row that still passes, at 8 attainable, is worse than an eleventh of it, and better in reverse."""
+    (worse,) = compare([row(8 / 11)], [row(8)]).all
+    assert str(worse) == (
+        "expected at most 7.27e-14 (10 x the larger of the former 7.27e-15 and 0.5 attainable, "
+        "5e-15: rounding explains no more), got 8e-14 "
+        "@ euler/generic f64 omega max (and mean, final, ratio)"
+    )
+    (better,) = compare([row(8)], [row(8 / 11)]).all
+    assert str(better).startswith("expected at least 8e-15 (the former 8e-14 over 10: ")
+
+
+@pytest.mark.parametrize("was", [0.0, 1e-9, 0.01, 0.5])
+def test_below_five_attainable_an_error_was_small_by_chance(was: float) -> None:
+    """No error of at most 5 attainable is worse than any, and every larger one is."""
+    assert differing(row(was), row(4.99)) == []
+    assert [direction for direction, _ in differing(row(was), row(5.01))] == [WORSE]
+
+
+def test_more_steps_excuse_no_error() -> None:
+    """A hundred times the steps make ten times as much attainable, and still an error of 40 times the
+    former attainable is worse."""
+    costly = {"steps": 10_000, "evaluations": 200_000, "attainable": 10 * ATTAINABLE, "ratio": 4.0}
+    new = row(40, **costly, bound=100 * ATTAINABLE)
+    assert differing(row(), new) == [(WORSE, "max (and mean, final)")]
+
+
+# The other columns of a row.
+
+
+@pytest.mark.parametrize(
+    ("changed", "expected"),
+    [
+        ({"outcome": "stopped"}, (CHANGED, "outcome")),
+        ({"unit": "rad"}, (OTHER_QUESTION, "unit")),
+        ({"roundoff": 2.0**-24}, (OTHER_QUESTION, "roundoff")),
+        ({"unit": ""}, (CHANGED, "unit")),
+        ({"provenance": {"scene": "another"}}, (OTHER_QUESTION, "scene")),
+        ({"steps": 112, "evaluations": 2240}, (CHANGED, "steps")),
+        ({"evaluations": 2300}, (CHANGED, "evaluations a step")),
+        ({"attainable": 1.2e-14}, (CHANGED, "attainable")),
+        ({"bound": 2e-13}, (CHANGED, "bound")),
+        ({"bound": None}, (CHANGED, "bound")),
+        ({"bound": math.nan}, (CHANGED, "bound")),
+    ],
+)
+def test_every_other_number_has_its_class(
+    changed: dict[str, Any], expected: tuple[Direction, str]
+) -> None:
+    """A change of any one of them is named, whichever of the two rows is the former one."""
+    assert differing(row(), row(**changed)) == [expected]
+    assert differing(row(**changed), row()) == [expected]
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {},
+        {"steps": 109, "evaluations": 2180},
+        {"at": 99.0, "attainable": 5e-14, "bound": 5e-13},
+        {"max": 40 * ATTAINABLE, "at": 99.0, "attainable": 10 * ATTAINABLE},
+        {"ratio_at": 3.0, "seconds": 9.0},
+    ],
+)
+def test_what_is_drawn_anew_makes_no_difference(changed: dict[str, Any]) -> None:
+    """A few steps more, another time of the maximum and the floor there, are within the class."""
+    assert differing(row(), row(**changed)) == []
+
+
+def test_a_short_run_may_take_two_steps_more() -> None:
+    """A tenth of a few steps is less than a step."""
+    five, seven, eight = (row(steps=n, evaluations=20 * n) for n in (5, 7, 8))
+    assert differing(five, seven) == []
+    assert differing(five, eight) == [(CHANGED, "steps")]
+
+
+def test_another_question_and_a_growth_leave_out_their_consequences() -> None:
+    """Nothing else is said of a row with another question, nor of one that is worse but what is worse."""
+    before = row(until=40.0)
+    assert differing(before, row(1e5, verdict=Status.FAIL, until=9.0)) == [
+        (OTHER_QUESTION, "last time")
+    ]
+    worse = row(1e5, verdict=Status.FAIL, steps=900, outcome="stopped")
+    errors = "max (and mean, final, ratio)"
+    assert differing(row(), worse) == [(WORSE, "verdict"), (WORSE, errors)]
+    names = ["verdict", "outcome", "steps", "evaluations a step", errors]
+    assert [what for _, what in differing(worse, row())] == names
+
+
+JUDGED = [status for status in Status if status is not Status.UNAVAILABLE]
+
+
+@pytest.mark.parametrize(("was", "now"), [*product(JUDGED, JUDGED)])
+def test_a_verdict_is_worse_by_the_grades_of_the_exit_status(was: Status, now: Status) -> None:
+    """A change from pass to nothing shown, or from either to fail, is worse; the reverse is better."""
+    order = (0, 3, 1)
+    before, after = row(verdict=was), row(verdict=now)
+    grades = [order.index(exit_status([each])) for each in (before, after)]
+    direction = CHANGED if grades[0] == grades[1] else WORSE if grades[0] < grades[1] else BETTER
+    assert differing(before, after) == ([] if was is now else [(direction, "verdict")])
+
+
+def test_a_verdict_by_another_tolerance_is_neither_worse_nor_better() -> None:
+    """Errors are compared all the same, and so is the verdict of a run that came to no comparison."""
+    by_tolerance = row(1e5, tolerance=1e-6)
+    failed = replace(by_tolerance, tolerance=None, verdict=Status.FAIL)
+    assert differing(by_tolerance, failed) == [(CHANGED, "verdict")]
+    assert differing(by_tolerance, replace(failed, max=1e9))[0] == (WORSE, "max")
+    assert differing(by_tolerance, replace(failed, tolerance=1e-6)) == [(WORSE, "verdict")]
+    assert (WORSE, "verdict") in differing(by_tolerance, replace(failed, at=None))
+
+
+# Rows of one side alone.
+
+
+def test_a_row_that_is_gone_is_worse_and_a_new_one_is_a_change() -> None:
+    """Either is named, and is not counted as compared."""
+    both = [row(), row(quantity="T")]
+    (missing,) = compare(both, [row()]).all
+    assert str(missing) == "expected this row, got none @ euler/generic f64 T"
+    (new,) = compare([row()], both).all
+    assert str(new) == "expected no such row, got a new one @ euler/generic f64 T"
+    assert (missing.direction, new.direction) == (WORSE, CHANGED)
+    assert compare(both, [row()]).compared == compare(both[:1], both).compared == 1
+
+
+def test_a_quaternion_has_a_row_only_where_its_length_is_lost() -> None:
+    """Such a row is worse where it appears, and better where it is gone."""
+    lost = row(errors=50.0, verdict=Status.FAIL, quantity="unit quaternion")
+    (worse,) = compare([row()], [row(), lost]).all
+    assert "expected no such row, got one that fails" in str(worse)
+    (better,) = compare([row(), lost], [row()]).all
+    assert "got none: it is mended" in str(better)
+    assert (worse.direction, better.direction) == (WORSE, BETTER)
+
+
+def test_a_run_that_did_not_finish_is_worse_in_every_row() -> None:
+    """Its one row is worse, and the others are gone."""
+    broken = row(verdict=Status.FAIL, outcome="crashed", unit="", roundoff=None)
+    both = [row(), row(quantity="T"), row(quantity="H2")]
+    worse = [str(each) for each in compare(both, [broken]).towards(WORSE)]
+    assert [line.rpartition("f64 ")[2] for line in worse] == ["T", "H2", "omega verdict"]
+
+
+def test_a_rung_that_one_machine_lacks_is_named_and_not_compared() -> None:
+    """A run unavailable on either side is left out with all its quantities, and its rung alone."""
+    rows = [row(rung="f80"), row(rung="f80", quantity="T")]
+    absent = [row(rung="f80", verdict=Status.UNAVAILABLE, max=None, ratio=None)]
+    for old, new in ((rows, absent), (absent, rows)):
+        compared = compare([*old, row()], [*new, row()])
+        assert compared.compared == 1
+        assert [each.direction for each in compared.all] == [UNAVAILABLE]
+
+
+def test_a_set_of_verdicts_does_not_differ_from_itself() -> None:
+    """Every row is compared, also one without numbers."""
+    lost = row(quantity="T", verdict=Status.FAIL, max=math.nan)
+    rows = [row(), row(rung="f80"), row(setting="coarse"), row(solver="other"), lost]
+    assert (compare(rows, rows).compared, compare(rows, rows).all) == (len(rows), ())

@@ -1,0 +1,75 @@
+"""The file of an earlier run's verdicts: verdicts.json of `run --out`, or the document of `--json`."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from taylor_verify.batch.differences import ERRORS
+from taylor_verify.records.json_text import parsed
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.scenes.reading.limit import Limit
+from taylor_verify.scenes.reading.regular_file import read_bytes
+
+_SIZES: Final = (*ERRORS, "bound", "attainable", "roundoff")
+_MOST_BYTES: Final = Limit(2**28, "bytes", "a hundred thousand verdicts")
+
+
+def load(file: Path | str) -> tuple[Verdict, ...]:
+    """Return the verdicts of a file.
+
+    Raises scenes.reading.faults.Refused for a file that cannot be read. Raises ValueError, which names what
+    was expected and where, for a file with other content: a half-understood baseline would pass everything.
+    """
+    content = read_bytes(Path(file), "a file of verdicts", _MOST_BYTES)
+    try:
+        placed = dict(_placed(parsed(content, _Rows)))
+        for place, verdict in placed.items():
+            _check(verdict, place)
+        rows = Counter(
+            " ".join(filter(None, (v.scene, v.solver, v.setting, v.rung, v.quantity)))
+            for v in placed.values()
+        )
+        if twice := [row for row, count in rows.items() if count > 1]:
+            raise ValueError(f"expected every row once, got more of {', '.join(twice)}")
+    except ValueError as fault:
+        raise ValueError(f"{fault} @ {file}") from fault
+    return tuple(placed.values())
+
+
+@dataclass(frozen=True)
+class _Rows:
+    """The part of a document that a baseline needs; a document of several files has one for each file."""
+
+    verdicts: tuple[Verdict, ...] | None = None
+    files: tuple[_Rows, ...] = ()
+
+
+def _placed(document: _Rows, place: str = "") -> Iterator[tuple[str, Verdict]]:
+    """Yield every row of a document with its place in it. Raises ValueError where there is no list."""
+    if document.verdicts is None and not document.files:
+        raise ValueError(f"expected a key verdicts, got none @ {place or 'the document'}")
+    for i, verdict in enumerate(document.verdicts or ()):
+        yield f"{place}verdicts[{i}]", verdict
+    for k, file in enumerate(document.files):
+        yield from _placed(file, f"{place}files[{k}].")
+
+
+def _check(verdict: Verdict, place: str) -> None:
+    """Refuse a row whose numbers cannot belong to a verdict, or with which nothing can be compared."""
+    if not isinstance(verdict.provenance.get("scene"), str):
+        raise ValueError(
+            f"expected the digest of the scene's text, got none @ {place}.provenance.scene"
+        )
+    for name in _SIZES:
+        value = getattr(verdict, name)
+        if value is None and verdict.verdict is Status.PASS:
+            raise ValueError(f"expected a number of a row that passed, got null @ {place}.{name}")
+        if value is not None and not value >= 0:
+            raise ValueError(
+                f"expected a number that is not negative, got {value!r} @ {place}.{name}"
+            )
