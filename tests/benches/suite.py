@@ -1,7 +1,8 @@
 """Ratios taken by several processes, one after the other, kept and summarised by pyperf.
 
 pyperf's own Runner gives each benchmark processes of its own, minutes apart from those of another one. A
-ratio asks for both sides in one process, in turns: that is `benches.rounds`, and all else is pyperf.
+ratio asks for both sides in one process, in turns: these are the rounds of `tradeoff`, and all else is
+pyperf.
 """
 
 from __future__ import annotations
@@ -17,15 +18,38 @@ from typing import Final
 import pyperf
 
 from benches.ratio import Ratio
-from benches.rounds import Costs, in_turns
+from taylor_verify.tradeoff.timing import in_rounds
 
 # The fewest of which no single one decides the median.
 PROCESSES: Final = 3
 # Of each ratio in each process.
 SECONDS: Final = 0.6
+# Rounds in these seconds, or so many.
+_MOST_ROUNDS: Final = 15
+_SEED: Final = 1
 _YARDSTICK: Final = "yardstick of "
 # A cost is that of one core.
 _ONE_THREAD: Final = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+@dataclass(frozen=True)
+class Costs:
+    """The costs of one unit of the action and of its yardstick, a pair for each round."""
+
+    action: tuple[float, ...]
+    yardstick: tuple[float, ...]
+
+    @property
+    def quotients(self) -> tuple[float, ...]:
+        return tuple(a / b for a, b in zip(self.action, self.yardstick, strict=True))
+
+
+def in_turns(ratio: Ratio, seconds: float = 0) -> Costs:
+    """Take both sides in the rounds of the ratio, or in as many as fit into the seconds."""
+    sides = [side.cost for side in ratio.pair()]
+    if ratio.rounds is not None:
+        return Costs(*map(tuple, in_rounds(sides, ratio.rounds, _SEED)))
+    return Costs(*map(tuple, in_rounds(sides, _MOST_ROUNDS, _SEED, seconds)))
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,7 @@ import sys
 from pathlib import Path
 
 from benches.registry import RATIOS
-from benches.rounds import in_turns
-from benches.suite import SECONDS, add
+from benches.suite import SECONDS, add, in_turns
 
 
 def main(file: str, *names: str) -> None:

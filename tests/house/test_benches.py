@@ -14,10 +14,9 @@ from benches import commands, history
 from benches.history import Row, has_moved, keep, last
 from benches.judging import FAILING, PASSING, chunks
 from benches.propagation import plain
-from benches.ratio import LEAST_SECONDS, Action, Ratio, Side, Target
+from benches.ratio import Action, Ratio, Side, Target
 from benches.registry import RATIOS
-from benches.rounds import Costs, in_turns
-from benches.suite import Measured, add, summary
+from benches.suite import Costs, Measured, add, in_turns, summary
 from benches.table import remarks, table
 from rich.console import Console
 
@@ -28,6 +27,7 @@ from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Postponed
+from taylor_verify.tradeoff.timing import LEAST_SECONDS
 
 PROCESSOR, COMMIT = "some processor", "1234567"
 ENOUGH = Target(2.5, "half as much again may be added")
@@ -108,12 +108,13 @@ def test_a_long_call_is_made_once_before_it_is_timed() -> None:
     assert time.order == "ll"
 
 
-def test_both_sides_take_turns_and_each_is_first_in_every_other_round() -> None:
+def test_both_sides_have_a_turn_in_each_round() -> None:
     """The first cost of each is after a call that is not timed."""
     time = Time()
     pair = time.action("a", 1.0), time.action("y", 2.0)
     costs = in_turns(Ratio("x", "x", lambda: pair, rounds=4))
-    assert time.order == "aayy" + "ya" + "ay" + "ya"
+    assert {time.order[:4]} <= {"aayy", "yyaa"}
+    assert all({*time.order[k : k + 2]} == {"a", "y"} for k in (4, 6, 8))
     assert costs == Costs((1.0,) * 4, (2.0,) * 4)
 
 
@@ -299,10 +300,10 @@ def test_another_checkout_has_caches_of_its_own(
     cold, warm = commands.ratios(tmp_path, tmp_path / "caches")
     (tmp_path / "caches").mkdir()
     in_turns(replace(cold, rounds=1))
-    assert caches == [("here", False), ("here", True), ("other", False), ("other", True)]
+    assert sorted(caches) == [("here", False), ("here", True), ("other", False), ("other", True)]
     caches.clear()
     in_turns(replace(warm, rounds=1))
-    assert caches == [("here", True)] * 2 + [("other", True)] * 2
+    assert sorted(caches) == [("here", True)] * 2 + [("other", True)] * 2
 
 
 def test_a_verification_that_fails_is_not_timed(tmp_path: Path) -> None:

@@ -60,7 +60,7 @@ def test_growth_has_a_row_for_every_exponent() -> None:
         assert cells["gate"] == (row.gate.verdict.value if row.gate else "")
 
 
-def test_prices_have_a_row_for_every_variant_and_rung() -> None:
+def test_prices_have_a_row_for_every_variant() -> None:
     """A row has the interval of its ratio."""
     study = PRICES.load(measured_report())
     lines = read(prices.sheet(study))

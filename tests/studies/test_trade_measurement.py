@@ -14,6 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import taylor_verify
+from taylor_verify.batch.runs import run_all
 from taylor_verify.cli import main
 from taylor_verify.models.problem import Problem
 from taylor_verify.records import store
@@ -24,10 +25,9 @@ from taylor_verify.solvers.engines.peer import Peer
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
-from taylor_verify.tradeoff.cold import in_a_new_process
 from taylor_verify.tradeoff.document import TradePoint
-from taylor_verify.tradeoff.order_statistics import CONFIDENCE, coverage, estimate, place
 from taylor_verify.tradeoff.setting import setting as real_setting
+from taylor_verify.tradeoff.timing import CONFIDENCE, clock_resolution, coverage, estimate, place
 from taylor_verify_reports.studies.tradeoff import measurement, rounds
 from taylor_verify_reports.studies.tradeoff.measurement import (
     PROCESSES,
@@ -35,7 +35,7 @@ from taylor_verify_reports.studies.tradeoff.measurement import (
     published_settings,
     scene_named,
 )
-from taylor_verify_reports.studies.tradeoff.rounds import YARDSTICK, clock_resolution, measured
+from taylor_verify_reports.studies.tradeoff.rounds import YARDSTICK, measured
 
 # The median and its interval.
 
@@ -262,7 +262,7 @@ def test_numbers_and_times_are_apart(monkeypatch: pytest.MonkeyPatch, scene: Sce
     ]
     monkeypatch.setattr(measurement, "published_settings", lambda scene, outside: few)
     monkeypatch.setattr(measurement, "plain_doubles", lambda: iter(()))
-    monkeypatch.setattr(measurement, "in_a_new_process", lambda work, *given: work(*given))
+    monkeypatch.setattr(measurement, "run_all", lambda work, asked, workers: [work(*asked)])
     finished: list[str] = []
     numbers, times = measurement.measurement(["euler/generic"], 2, 1, finished=finished.append)
     (one,) = numbers.scenes
@@ -288,7 +288,7 @@ def test_a_process_of_its_own_measures_the_same_settings(scene: Scene) -> None:
     """Only names and numbers are sent between processes."""
     short = replace(scene, clock=replace(scene.clock, instants=scene.clock.instants[:3]))
     asked = [(short, names("taylor", "taylor?tol=1e-6"))]
-    ratios = in_a_new_process(measurement.one_process, asked, 1, 1)
+    (ratios,) = run_all(measurement.one_process, [(asked, 1, 1)], workers=1)
     assert set(ratios) == {short.name}
     assert set(ratios[short.name]) == set(names("taylor", "taylor?tol=1e-6"))
     assert all(one.seconds > 0 for one in ratios[short.name].values())
@@ -301,7 +301,7 @@ def test_the_verb_writes_data_and_page(
     few = (real_setting("taylor", _taylor()[1]),)  # type: ignore[arg-type]
     whole = measurement.measurement
     monkeypatch.setattr(measurement, "published_settings", lambda scene, outside: few)
-    monkeypatch.setattr(measurement, "in_a_new_process", lambda work, *given: work(*given))
+    monkeypatch.setattr(measurement, "run_all", lambda work, asked, workers: [work(*asked)])
     monkeypatch.setattr(
         measurement,
         "measurement",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -14,7 +14,7 @@ from builders.scenes import asked_at
 
 import taylor_verify
 from taylor_verify.cli import main
-from taylor_verify.models.problem import Problem, pose
+from taylor_verify.models.problem import pose
 from taylor_verify.records.standing import Standing
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.motion import Clock
@@ -22,17 +22,14 @@ from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.registry import solver_named, solver_names
-from taylor_verify.solvers.solver import Callback, Solver
+from taylor_verify.solvers.solver import Callback
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.taylor.names import at_tolerance
-from taylor_verify.solvers.trajectory import Trajectory
-from taylor_verify.tradeoff.cold import cold
 from taylor_verify.tradeoff.recommendation import recommend
 from taylor_verify.tradeoff.setting import (
     NOTHING,
     STEP,
     TOLERANCE,
-    Setting,
     chosen,
     outside,
     setting,
@@ -200,54 +197,6 @@ def test_a_recommendation_can_be_typed() -> None:
     assert recommendation.solver.name in recommendation.document()["command"]
 
 
-# The first solve of all.
-
-
-@dataclass(frozen=True)
-class Unsendable(Solver):
-    """Holds what cannot be sent to another process."""
-
-    name: str = "unsendable"
-    setting: str = ""
-
-    def solve(self, problem: Problem) -> Trajectory:
-        return Taylor().solve(problem)
-
-    def __reduce__(self) -> str:
-        raise TypeError("not sent")
-
-
-def test_a_cold_solve_is_told_part_by_part() -> None:
-    """Importing, compiling and solving are parts of the whole, and taylor has something to compile."""
-    labels: list[str] = []
-    asked = [setting("taylor", F64), Setting(Unsendable(), F64, None, NOTHING, "")]
-    times = cold(short("euler/generic"), asked, labels.append)
-    # What cannot be sent has no cold figure, and is no error.
-    assert list(times) == asked[:1]
-    assert labels == [one.label for one in asked]
-    (one,) = times.values()
-    whole = one.pop("whole")
-    assert set(one) == {"process", "importing", "compiling", "solving", "rest"}
-    assert sum(one.values()) == pytest.approx(whole)
-    assert min(one["importing"], one["compiling"], one["solving"]) > 0
-
-
-def test_the_library_of_a_solver_is_imported_before_it_is_timed() -> None:
-    """A first solve has heyoka loaded when the solver begins: to import is not to compile."""
-    script = (
-        "import pickle, sys\n"
-        "from taylor_verify.scenes.precision import rung\n"
-        "from taylor_verify.scenes.reading.reader import load\n"
-        "from taylor_verify.solvers.taylor import driver\n"
-        "from taylor_verify.tradeoff.cold import first_solve\n"
-        "def compiled(*_, **__): sys.exit('heyoka' not in sys.modules)\n"
-        "driver.compiled = compiled\n"
-        "assert 'heyoka' not in sys.modules\n"
-        "first_solve(pickle.dumps((load('euler/rest'), driver.Taylor(), rung('f64'))))\n"
-    )
-    subprocess.run([sys.executable, "-c", script], check=True)
-
-
 # The command.
 
 
@@ -265,15 +214,13 @@ def scene_file(tmp_path: Path) -> str:
 def test_the_verb_measures_what_it_is_told(
     scene_file: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The verb measures the settings of --solver and taylor's; --cold adds the parts of a first solve."""
-    call = ["tradeoff", scene_file, "--rung", "f32", "--repeats", "1", "--cold", "--json"]
+    """The verb measures the settings of --solver, and taylor's beside them."""
+    call = ["tradeoff", scene_file, "--rung", "f32", "--repeats", "1", "--json"]
     assert main([*call, "--solver", "geometric:splitting?step=0.1", "--solver", "taylor"]) == 0
     (trade,) = json.loads(capsys.readouterr().out)["scenes"]
     families = [row["family"] for row in trade["points"]]
     assert set(families) == {"taylor f32", "geometric splitting"}
-    for row in trade["points"]:
-        assert (row["cold"] is not None) == (row["standing"] == "sound")
-        assert row["requested"] is not None
+    assert all(row["requested"] is not None for row in trade["points"])
 
 
 def test_a_wrong_solver_is_refused_before_any_work(

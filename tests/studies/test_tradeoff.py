@@ -34,8 +34,8 @@ from taylor_verify.tradeoff.attainability import least_error
 from taylor_verify.tradeoff.point import Point, point
 from taylor_verify.tradeoff.recommendation import MARGIN, OutOfReach, recommend, recommended
 from taylor_verify.tradeoff.setting import Setting, settings
+from taylor_verify.tradeoff.solves import Timed, cold_caches, timed
 from taylor_verify.tradeoff.starts import STARTS, nearby
-from taylor_verify.tradeoff.timing import Timed, cold_caches, timed
 from taylor_verify.tradeoff.trade_off import (
     front,
     front_sentences,
@@ -483,7 +483,7 @@ def test_the_pictures_and_their_numbers_are_written_on_request(
     assert json.loads((place / "tradeoff.json").read_text()) == printed
     names = {file.name for file in place.iterdir()}
     expected = {
-        f"euler-generic-{what}.{end}" for what in ("time", "steps") for end in ("svg", "pdf")
+        f"euler-generic-{what}.{end}" for what in ("time", "evaluations") for end in ("svg", "pdf")
     }
     assert expected < names
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from math import isclose, log10
 from pathlib import Path
 from typing import Final
@@ -17,9 +17,7 @@ from taylor_verify.words.cells import NOTHING, figure
 from taylor_verify.words.markdown import bold, bullets, code, prose, table
 from taylor_verify.words.page import whole
 from taylor_verify.words.sheet import sheet as csv_sheet
-from taylor_verify_reports.pictures.ratio import Ratio
 from taylor_verify_reports.studies import figures
-from taylor_verify_reports.studies.tradeoff import time_by_rung
 from taylor_verify_reports.studies.tradeoff.peers import DIGITS, TAYLOR, peer_sections
 from taylor_verify_reports.studies.tradeoff.stored import TimedPoint, Trade, Trades, cheapest
 from taylor_verify_reports.studies.tradeoff.timing_method import (
@@ -85,7 +83,6 @@ def page(trades: Trades, folder: Path) -> str:
         "left. *attainable* are the digits that would be left by rounding the state once for each "
         "sample.",
         _by_rung(trades),
-        figures.shown(folder, _of_rungs(trades.short)),
         "## Asked for and achieved",
         "A tolerance bounds the solver's estimate of the error of one step, and not the error of the "
         "answer. The table has the digits that were left at each tolerance:",
@@ -118,27 +115,13 @@ def page(trades: Trades, folder: Path) -> str:
 
 
 def pictures(trades: Trades) -> list[Picture]:
-    """Return the pictures of every short scene, and the picture of all rungs."""
-    return [
-        *(picture for trade in trades.short for picture in _of_trade(trade)),
-        *_of_rungs(trades.short),
-    ]
+    """Return the pictures of every short scene."""
+    return [picture for trade in trades.short for picture in _of_trade(trade)]
 
 
 def _of_trade(trade: Trade) -> list[Picture]:
     """Return the pictures of one scene; none if no setting is sound."""
     return of_one_scene.pictures(trade.document()) if trade.sound else []
-
-
-def _of_rungs(trades: Sequence[Trade]) -> list[Picture]:
-    """Return the picture of taylor's time at each rung's own tolerance, a line for each scene."""
-    rows = [
-        Ratio(trade.scene, row.point.rung, row.timing.ratio, row.timing.low, row.timing.high)
-        for trade in trades
-        for row in trade.sound
-        if row.point.solver == "taylor"
-    ]
-    return [time_by_rung.picture("published", rows)] if rows else []
 
 
 # The cost of digits.
