@@ -22,7 +22,6 @@ from taylor_verify_reports.studies.growth.document import Ensemble
 from taylor_verify_reports.studies.growth.errors import PHASE
 from taylor_verify_reports.studies.growth.experiment import Experiment, QuantityGrowth, experiment
 from taylor_verify_reports.studies.growth.fit import BIAS, Law, growth
-from taylor_verify_reports.studies.growth.published import Entry
 from taylor_verify_reports.studies.growth.question import Question
 from taylor_verify_reports.studies.growth.study import STUDY
 
@@ -120,16 +119,14 @@ def test_products_with_a_small_fraction_lean_to_one_side() -> None:
 # What is published
 
 
-ONE = Entry("euler/about-max-axis", "f64", 1e5, 4, "a test")
-
-
 @pytest.fixture
-def one_short_entry(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(published, "PUBLISHED", (ONE,))
-    monkeypatch.setattr(published, "LONG", (Entry("euler/generic", "f64", 1e8, 3, "long"),))
+def one_short_ensemble(monkeypatch: pytest.MonkeyPatch) -> None:
+    axis, generic = load("euler/about-max-axis"), load("euler/generic")
+    monkeypatch.setattr(published, "published", lambda: [Question(axis, rung("f64"), 1e5, 4)])
+    monkeypatch.setattr(published, "long", lambda: [Question(generic, rung("f64"), 1e8, 3)])
 
 
-@pytest.mark.usefixtures("one_short_entry")
+@pytest.mark.usefixtures("one_short_ensemble")
 def test_publish_writes_data_and_page(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The page is made of the stored data alone, and the long ensemble stands beside the others."""
     call = ["publish", "growth", "--periods", "3163", "--from", str(tmp_path), "--json"]
@@ -175,7 +172,7 @@ def test_a_number_that_is_not_finite_is_stored_as_none() -> None:
     errors = np.full((2, len(result.steps)), np.nan)
     nothing = growth(np.array(result.question.counts), errors, Law.WALK, 1e-16)
     lost = replace(result, quantities=(QuantityGrowth("T", errors, nothing),))
-    for one in (result.ensemble("a test"), lost.ensemble()):
+    for one in (result.ensemble(), lost.ensemble()):
         assert converted(complete(one), Ensemble) == one
     (row,) = lost.ensemble().quantities
     assert row.rms == (None,) * len(result.steps)

@@ -18,8 +18,8 @@ from taylor_verify_reports.studies.growth.errors import lane_errors
 from taylor_verify_reports.studies.growth.fit import Floats, Growth, growth
 from taylor_verify_reports.studies.growth.question import Question
 
-# A function that is called after each piece with the number of finished pieces and of all pieces.
-Finished = Callable[[int, int], None]
+# A function that is called after each piece with the ensemble, the pieces done, and their number.
+Finished = Callable[[str, int, int], None]
 
 # The state of one lane at one instant and its steps so far; None for a lane that ended before.
 Sample = tuple[tuple[Fraction, ...], int] | None
@@ -54,8 +54,8 @@ class Experiment:
     steps: tuple[float, ...]
     quantities: tuple[QuantityGrowth, ...]
 
-    def ensemble(self, why: str = "") -> Ensemble:
-        """Return the ensemble in its stored form; ``why`` is the reason to measure it."""
+    def ensemble(self) -> Ensemble:
+        """Return the ensemble in its stored form."""
         question = self.question
         return Ensemble(
             scene=question.scene.name,
@@ -70,7 +70,7 @@ class Experiment:
             counts=question.counts,
             steps=self.steps,
             quantities=tuple(map(self._quantity, self.quantities)),
-            why=why,
+            why=question.why,
         )
 
     def _quantity(self, measured: QuantityGrowth) -> GrowthOfQuantity:
@@ -91,7 +91,7 @@ class Experiment:
         return converted(complete(row), GrowthOfQuantity)
 
 
-def course(question: Question, finished: Finished = lambda done, total: None) -> Course:
+def course(question: Question, finished: Finished = lambda label, done, total: None) -> Course:
     """Follow all lanes of a question to the end. Raises ValueError for lanes that do not fit together."""
     ensemble = Lanes(question.problems, question.tolerance)
     lanes, samples = ensemble.start(), list[tuple[Sample, ...]]()
@@ -100,11 +100,13 @@ def course(question: Question, finished: Finished = lambda done, total: None) ->
         if is_instant:
             states = ((lane.state, lane.steps) if lane.goes_on else None for lane in lanes)
             samples.append(tuple(states))
-        finished(done, len(question.pieces))
+        finished(question.label, done, len(question.pieces))
     return Course(lanes, tuple(samples))
 
 
-def experiment(question: Question, finished: Finished = lambda done, total: None) -> Experiment:
+def experiment(
+    question: Question, finished: Finished = lambda label, done, total: None
+) -> Experiment:
     """Follow an ensemble and measure the growth of its errors. Raises the errors of `course`."""
     end = course(question, finished)
     by_lane = [
