@@ -33,7 +33,6 @@ from taylor_verify.cli import main
 from taylor_verify.plotting.picture import plotting
 from taylor_verify.plotting.style import PAGE_WIDTH
 from taylor_verify.records.status import Status
-from taylor_verify.records.store import write
 from taylor_verify.scenes import library
 from taylor_verify.words.cells import NOTHING
 from taylor_verify.words.page import MADE_BY
@@ -42,7 +41,6 @@ from taylor_verify_reports.studies.hard import page as pages
 from taylor_verify_reports.studies.hard import picture as diagram
 from taylor_verify_reports.studies.hard.document import HARD, last_value
 from taylor_verify_reports.studies.hard.study import STUDY, store_scenes
-from taylor_verify_reports.studies.report import publish
 
 
 def lines(text: str, *words: str) -> list[str]:
@@ -71,33 +69,6 @@ def test_what_is_stored_reads_back(tmp_path: Path) -> None:
     assert loaded == replace(study(), verdicts=tuple(stored))
     assert [loaded.is_met(verdict) for verdict in loaded.verdicts] == [True, True, True, False]
     assert loaded.titles["extremes/long"] == "Title of extremes/long"
-
-
-def test_a_row_that_was_compared_with_nothing_is_no_mismatch(tmp_path: Path) -> None:
-    """A rung that the machine lacks is no mismatch, in the file and on the page."""
-    absent = passed("extremes/near", "f32", "omega", verdict=Status.UNAVAILABLE)
-    publish_document(tmp_path, STUDY, HARD, study((absent,), ()))
-    loaded = HARD.load(tmp_path)
-    (verdict,) = loaded.verdicts
-    assert loaded.is_met(verdict)
-
-
-def test_publish_remakes_it_from_the_data_alone(tmp_path: Path) -> None:
-    """The page is remade with the tables of a run, and linked from both; without data there is none."""
-    write(tmp_path, [passed("euler/a", "f64", "omega")], [])
-    publish(tmp_path)
-    assert not (tmp_path / STUDY.path).exists()
-    paths = publish_document(tmp_path, STUDY, HARD, study())
-    assert {path.suffix for path in paths} == {".json", ".md", ".csv", ".svg", ".pdf"}
-    texts = {p: p.read_bytes() for p in paths if p.suffix in (".md", ".csv")}
-    for path in texts:
-        path.unlink()
-    publish(tmp_path)
-    assert {path: path.read_bytes() for path in texts} == texts
-    assert "](tables/hard.md)" in (tmp_path / "README.md").read_text(encoding="utf-8")
-    index = (tmp_path / "tables" / "README.md").read_text(encoding="utf-8")
-    assert "[hard.md](hard.md)" in index
-    assert "[csv](hard.csv)" in index
 
 
 # Verdicts
@@ -311,10 +282,3 @@ def test_digits_left(digits: float) -> None:
     """An error of 10^-n leaves n digits; what is no number, or 1 and more, leaves none."""
     assert diagram.digits_left(10.0**-digits) == pytest.approx(digits)
     assert {diagram.digits_left(error) for error in (None, nan, inf, 1.0, 7.0)} == {0.0}
-
-
-def test_a_picture_of_nothing_is_refused() -> None:
-    """A study without runs of a family has no picture."""
-    assert pages.pictures(replace(study(), reach=())) == []
-    with pytest.raises(ValueError, match="expected runs of a family, got none @ reach"):
-        diagram.picture(replace(study(), reach=()))

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import gc
 import json
-import random
 from dataclasses import dataclass, fields, replace
+from functools import partial
 from math import comb, isclose
 from pathlib import Path
 from statistics import median
@@ -27,7 +28,14 @@ from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.tradeoff.document import TradePoint
 from taylor_verify.tradeoff.setting import setting as real_setting
-from taylor_verify.tradeoff.timing import CONFIDENCE, clock_resolution, coverage, estimate, place
+from taylor_verify.tradeoff.timing import (
+    CONFIDENCE,
+    clock_resolution,
+    coverage,
+    estimate,
+    in_rounds,
+    place,
+)
 from taylor_verify_reports.studies.tradeoff import measurement, rounds
 from taylor_verify_reports.studies.tradeoff.measurement import (
     PROCESSES,
@@ -69,22 +77,23 @@ def test_the_published_number_of_processes_is_the_smallest_that_suffices() -> No
     assert estimate(range(PROCESSES - 1)).low is None
 
 
-def test_the_interval_holds_the_median_as_often_as_it_says() -> None:
-    """A thousand sets of six values with a long tail have intervals that cover the median as stated."""
-    draw = random.Random(7)
-    sets = 4000
-    covered = 0
-    for _ in range(sets):
-        estimated = estimate(2.0 ** draw.gauss(0, 3) for _ in range(PROCESSES))
-        assert estimated.low is not None
-        assert estimated.high is not None
-        covered += estimated.low <= 1 <= estimated.high
-    expected = coverage(PROCESSES, 1)
-    # Four standard deviations of a binomial count.
-    assert abs(covered / sets - expected) <= 4 * (expected * (1 - expected) / sets) ** 0.5
-
-
 # The rounds of a process.
+
+
+def test_each_round_has_every_turn_in_an_order_of_its_own() -> None:
+    """Answers stand by turn and round, the order is random, and garbage is not collected meanwhile."""
+    called: list[int] = []
+
+    def turn(number: int) -> tuple[int, bool]:
+        called.append(number)
+        return len(called), gc.isenabled()
+
+    answers = in_rounds([partial(turn, k) for k in range(8)], 3, seed=2)
+    rounds = [called[k : k + 8] for k in range(0, 24, 8)]
+    assert all(sorted(each) == [*range(8)] for each in rounds)
+    assert len(set(map(tuple, rounds))) == 3
+    assert answers[5] == [(8 * k + each.index(5) + 1, False) for k, each in enumerate(rounds)]
+    assert gc.isenabled()
 
 
 class Machine:
@@ -162,19 +171,6 @@ def test_a_ratio_is_formed_within_its_round(machine: Machine, scene: Scene) -> N
     for one in ratios.values():
         assert 2 / 1.01**14 <= one.ratio <= 2 * 1.01**14
         assert one.inner == pytest.approx(one.seconds / 2)
-
-
-def test_each_round_has_an_order_of_its_own_and_every_setting(
-    machine: Machine, scene: Scene
-) -> None:
-    """The order of each round is random, and every round has the yardstick."""
-    asked = names(*(f"a{k}:0.04" for k in range(8)))
-    measured(scene, asked, seed=3, rounds=4, resolution=1e-9, clock=machine.clock)
-    each = [machine.solved[k : k + 9] for k in range(0, len(machine.solved), 9)]
-    assert len(each) == 5
-    assert all(sorted(one) == sorted(each[0]) for one in each)
-    assert len({tuple(one) for one in each[1:]}) > 1
-    assert all(YARDSTICK[0] in one for one in each)
 
 
 def test_a_short_solve_is_repeated_until_the_clock_resolves_it(

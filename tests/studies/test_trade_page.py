@@ -18,7 +18,6 @@ from taylor_verify.words.cells import NOTHING
 from taylor_verify_reports.studies.tradeoff.page import front, page
 from taylor_verify_reports.studies.tradeoff.stored import (
     NUMBERS,
-    TIMINGS,
     TimedPoint,
     Trades,
     load,
@@ -54,14 +53,6 @@ def line(text: str, *words: str) -> list[str]:
     """The cells of the only line that has all these words."""
     (matching,) = [row for row in text.splitlines() if all(word in row for word in words)]
     return [cell.strip() for cell in re.split(r"(?<!\\)\|", matching)[1:-1]]
-
-
-def test_no_time_stands_with_the_numbers(folder: Path) -> None:
-    """The file that can be compared between machines has no seconds and no machine in it."""
-    numbers = (folder / NUMBERS.name).read_text(encoding="utf-8")
-    assert "seconds" not in numbers
-    assert "chip" not in numbers
-    assert "A chip" in (folder / TIMINGS.name).read_text(encoding="utf-8")
 
 
 def test_what_was_stored_is_read_again(folder: Path) -> None:
@@ -229,18 +220,6 @@ def test_the_sheet_has_a_row_for_every_setting(folder: Path) -> None:
     assert [row["solver"] for row in rows] == [p.solver for p in POINTS]
     assert rows[1]["ratio"] == "1.0"
     assert rows[6]["standing"] == "false success"
-
-
-def test_the_page_can_be_made_again_from_the_data(folder: Path) -> None:
-    """The page made from the loaded data is the same."""
-    loaded = load(folder)
-    assert loaded is not None
-    assert page(loaded, folder) == text_of(folder)
-
-
-def test_a_folder_without_a_measurement_has_no_page(tmp_path: Path) -> None:
-    """A folder without a measurement has no page."""
-    assert load(tmp_path) is None
 
 
 def test_a_file_of_something_else_is_told(folder: Path) -> None:

@@ -14,18 +14,14 @@ from builders.scenes import asked_at
 
 import taylor_verify
 from taylor_verify.cli import main
-from taylor_verify.models.problem import pose
 from taylor_verify.records.standing import Standing
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.registry import solver_named, solver_names
-from taylor_verify.solvers.solver import Callback
+from taylor_verify.solvers.registry import solver_names
 from taylor_verify.solvers.taylor.driver import Taylor
-from taylor_verify.solvers.taylor.names import at_tolerance
-from taylor_verify.tradeoff.recommendation import recommend
 from taylor_verify.tradeoff.setting import (
     NOTHING,
     STEP,
@@ -45,15 +41,6 @@ def short(name: str) -> Scene:
 
 
 # Names.
-
-
-def test_a_tolerance_of_taylor_has_a_name() -> None:
-    """`taylor?tol=NUMBER` is the driver at that tolerance, exactly as written."""
-    solver = solver_named("taylor?tol=1e-9")
-    assert isinstance(solver, Taylor)
-    assert solver.tolerance == Fraction(1, 10**9)
-    assert solver == at_tolerance("1e-9")
-    assert solver_named("taylor") == Taylor()
 
 
 def test_checking_a_tolerance_loads_no_heyoka() -> None:
@@ -174,27 +161,7 @@ def test_an_unsuited_solver_is_unavailable_and_not_run(scene: str, name: str, re
     assert reason in p.because
 
 
-def test_a_solver_of_ones_own_suits_everything() -> None:
-    """Nobody knows beforehand what a stranger's code is made for."""
-    problem = pose(short("kirchhoff/screw"), F64)
-    assert Callback(lambda problem: []).unsuited(problem) == ""
-    assert solver_named("process:./mine").unsuited(problem) == ""
-
-
 # Recommendations.
-
-
-def test_a_recommendation_can_be_typed() -> None:
-    """The name of the recommended solver, given to `run`, meets the target again."""
-    scene = short("euler/generic")
-    asked = [one for one in settings(scene, ["f64"]) if isinstance(one.solver, Taylor)]
-    recommendation = recommend(scene, 1e-5, asked)
-    assert solver_named(recommendation.solver.name) == recommendation.solver
-    (_, omega, *_) = taylor_verify.run(
-        scene, recommendation.solver.name, recommendation.rung
-    ).verdicts
-    assert omega.max <= 1e-5
-    assert recommendation.solver.name in recommendation.document()["command"]
 
 
 # The command.

@@ -12,7 +12,6 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.plotting.picture import Picture
 from taylor_verify.records.json_text import complete, plain
 from taylor_verify.records.runs import Run, gravest, runs
 from taylor_verify.records.status import Status
@@ -34,7 +33,7 @@ from taylor_verify_reports.studies.hard.document import (
     last_value,
     most_periods,
 )
-from taylor_verify_reports.studies.hard.picture import Line, lines, picture
+from taylor_verify_reports.studies.hard.picture import Line, lines, pictures
 
 _FOLDER: Final = "extremes/"
 # Mark after the last value that was tried, beyond which the reach may extend.
@@ -247,14 +246,6 @@ def cell(value: str | int | None, last: str | int) -> str:
     if value is None:
         return NOTHING
     return f"{value}{_LAST}" if value == last else str(value)
-
-
-def pictures(study: HardStudy) -> list[Picture]:
-    """Return the picture of the reach; none if no family of distances was run."""
-    try:
-        return [picture(study)]
-    except ValueError:
-        return []
 
 
 def _reached(study: HardStudy, folder: Path) -> list[str]:
