@@ -211,6 +211,12 @@ def for_paper() -> Path:
     return place
 
 
+def write_growth(place: Path) -> None:
+    """Write the growth of errors of a small ensemble."""
+    ensemble = Question(load("euler/about-max-axis"), rung("f64"), 10**3.5, 4, why="a test")
+    GROWTH.write(place, followed([ensemble], lambda *piece: None))
+
+
 @cache
 def small() -> Path:
     """Return a report of five scenes on two rungs, with a page of every kind and its picture."""
@@ -218,8 +224,7 @@ def small() -> Path:
     write_runs(place, product(SCENES, ("f64", "mp237")))
     write_portraits(place, SCENES)
     _write_measured(place)
-    ensemble = Question(load("euler/about-max-axis"), rung("f64"), 10**3.5, 4, why="a test")
-    GROWTH.write(place, followed([ensemble], lambda *piece: None))
+    write_growth(place)
     CLAIMS.write(place, STUDY)
     save(registry.pictures(place), place / figures.FOLDER, ["svg"])
     report.publish(place)

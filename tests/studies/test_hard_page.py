@@ -49,19 +49,24 @@ def lines(text: str, *words: str) -> list[str]:
     ]
 
 
+@pytest.fixture(scope="module")
+def published(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("published")
+    publish_document(place, STUDY, HARD, study())
+    return place
+
+
 @pytest.fixture
-def page(tmp_path: Path) -> str:
-    publish_document(tmp_path, STUDY, HARD, study())
-    return (tmp_path / STUDY.path).read_text(encoding="utf-8")
+def page(published: Path) -> str:
+    return (published / STUDY.path).read_text(encoding="utf-8")
 
 
 # The document
 
 
-def test_what_is_stored_reads_back(tmp_path: Path) -> None:
+def test_what_is_stored_reads_back(published: Path) -> None:
     """Verdicts without their seconds, expectations, titles, worst and reach are the same again."""
-    publish_document(tmp_path, STUDY, HARD, study())
-    loaded = HARD.load(tmp_path)
+    loaded = HARD.load(published)
     stored = [
         replace(v, seconds=None, provenance={"scene": f"digest of {v.scene}"})
         for v in study().verdicts
@@ -104,8 +109,7 @@ def test_a_mismatch_stands_out(page: str) -> None:
 def test_a_pass_that_was_not_expected_is_told_too(tmp_path: Path) -> None:
     """A row that was foreseen to be vacuous and passed is a mismatch, with its reason."""
     lucky = replace(VACUOUS, verdict=Status.PASS)
-    publish_document(tmp_path, STUDY, HARD, study((lucky,), ("a mismatch",)))
-    (_, reason) = lines((tmp_path / STUDY.path).read_text(encoding="utf-8"), "`long`")
+    (_, reason) = lines(pages.page(study((lucky,), ("a mismatch",)), tmp_path), "`long`")
     assert "| pass" in reason
     assert "**vacuous**" in reason
 
@@ -119,11 +123,10 @@ def test_what_was_not_run_and_what_made_it_are_told(page: str) -> None:
     assert page.splitlines()[0] == MADE_BY
 
 
-def test_the_sheet_has_every_quantity(tmp_path: Path) -> None:
+def test_the_sheet_has_every_quantity() -> None:
     """A row for each verdict with every digit, what was expected and whether it came."""
-    publish_document(tmp_path, STUDY, HARD, study())
-    text = (tmp_path / "tables/hard.csv").read_text(encoding="utf-8")
-    cells = {(r["scene"], r["quantity"]): r for r in csv.DictReader(text.splitlines())}
+    rows = csv.DictReader(pages.sheet(study()).splitlines())
+    cells = {(r["scene"], r["quantity"]): r for r in rows}
     assert set(cells) == {(v.scene, v.quantity) for v in ALL}
     assert float(cells["extremes/near", "T"]["max"]) == DRIFT.max
     impulse = cells["extremes/vast", "impulse"]
@@ -262,7 +265,7 @@ def test_the_sheet_of_the_reach_has_a_row_for_every_number_of_periods() -> None:
 
 def test_each_rung_is_a_line_beside_its_floor() -> None:
     """Digits achieved and attainable stand over the distance; a value without a run has no point."""
-    (picture,) = pages.pictures(study())
+    (picture,) = diagram.pictures(study())
     with plotting():
         figure = picture.figure()
         everything = figure.get_tightbbox(FigureCanvasAgg(figure).get_renderer())
