@@ -20,7 +20,7 @@ from math import inf
 from typing import Final
 
 from taylor_verify.batch.runs import run_all
-from taylor_verify.judge.provenance import command, packages, processor, versions
+from taylor_verify.judge.provenance import machine, packages
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import rung as rung_named
@@ -30,14 +30,6 @@ from taylor_verify.solvers.engines.engine import prepare
 from taylor_verify.solvers.engines.launcher import NotMade
 from taylor_verify.solvers.engines.session import end_sessions
 from taylor_verify.solvers.registry import TAYLOR
-from taylor_verify.tradeoff.document import (
-    UNTIL,
-    TimingMachine,
-    TradeNumbers,
-    TradeScene,
-    TradeTiming,
-    TradeTimings,
-)
 from taylor_verify.tradeoff.setting import (
     ELLIPJ,
     Name,
@@ -55,6 +47,13 @@ from taylor_verify.tradeoff.trade_off import (
     request_sentences,
     sound_points,
     trade_off,
+)
+from taylor_verify_reports.studies.tradeoff.document import (
+    UNTIL,
+    TradeNumbers,
+    TradeScene,
+    TradeTiming,
+    TradeTimings,
 )
 from taylor_verify_reports.studies.tradeoff.plain_doubles import plain_doubles
 from taylor_verify_reports.studies.tradeoff.rounds import (
@@ -144,7 +143,7 @@ def measurement(
         points=tuple(p.on(trade.scene.name) for trade in trades for p in trade.points),
     )
     times = TradeTimings(
-        machine=TimingMachine(processor(), versions()["python"], command()),
+        machine=machine(),
         method=method(processes, rounds, seed),
         timings=tuple(_timings(asked, by_process)),
     )

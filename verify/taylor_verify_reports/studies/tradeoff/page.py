@@ -10,7 +10,7 @@ from typing import Final
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.standing import Standing
-from taylor_verify.tradeoff.document import PlainDouble, TradePoint
+from taylor_verify.tradeoff.document import TradePoint
 from taylor_verify.tradeoff.pareto import pareto
 from taylor_verify.tradeoff.pictures import trade as of_one_scene
 from taylor_verify.words.cells import NOTHING, figure
@@ -18,6 +18,7 @@ from taylor_verify.words.markdown import bold, bullets, code, prose, table
 from taylor_verify.words.page import whole
 from taylor_verify.words.sheet import sheet as csv_sheet
 from taylor_verify_reports.studies import figures
+from taylor_verify_reports.studies.tradeoff.document import PlainDouble
 from taylor_verify_reports.studies.tradeoff.peers import DIGITS, TAYLOR, peer_sections
 from taylor_verify_reports.studies.tradeoff.stored import TimedPoint, Trade, Trades, cheapest
 from taylor_verify_reports.studies.tradeoff.timing_method import (

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from taylor_verify.tradeoff.document import UNTIL
 from taylor_verify.words.cells import NOTHING, figure
 from taylor_verify.words.markdown import bold, bullets, code, prose, table
+from taylor_verify_reports.studies.tradeoff.document import UNTIL
 from taylor_verify_reports.studies.tradeoff.stored import TimedPoint, Trade, Trades, cheapest
 
 DIGITS: Final = (6, 9, 12)

@@ -21,7 +21,6 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines.peer import Peer
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
-from taylor_verify.tradeoff.document import TimingMethod
 from taylor_verify.tradeoff.setting import Name, setting
 from taylor_verify.tradeoff.solves import WHAT_IS_TIMED
 from taylor_verify.tradeoff.timing import (
@@ -35,6 +34,7 @@ from taylor_verify.tradeoff.timing import (
     in_rounds,
     place,
 )
+from taylor_verify_reports.studies.tradeoff.document import TimingMethod
 
 YARDSTICK: Final = ("taylor", "f64")
 ROUNDS: Final = 3
