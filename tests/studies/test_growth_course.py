@@ -145,7 +145,7 @@ def test_without_a_closed_form_the_drifts_are_measured() -> None:
     """A body without a closed form has no phase, and all of its conserved quantities."""
     result = experiment(question("kirchhoff/general-body", lanes=2))
     assert {one.quantity for one in result.quantities} == {"T", "F2", "FG"}
-    assert all(one.growth.gate is not None for one in result.quantities)
+    assert all(one.gate is not None for one in result.quantities)
 
 
 def test_a_phase_that_may_be_off_by_a_period_is_not_told() -> None:

@@ -61,5 +61,5 @@ def followed(
             left_out.append(f"{question.label}: {missing}")
             continue
         asked = question if most is None else replace(question, periods=min(question.periods, most))
-        runs.append(experiment(asked, finished).ensemble())
+        runs.append(experiment(asked, finished))
     return GrowthStudy(tuple(runs), tuple(left_out), Provenance(versions(), processor(), command()))
