@@ -16,7 +16,7 @@ from benches.judging import FAILING, PASSING, chunks
 from benches.propagation import plain
 from benches.ratio import Action, Ratio, Side, Target
 from benches.registry import RATIOS
-from benches.suite import Costs, Measured, add, in_turns, summary
+from benches.suite import Costs, Measured, in_turns, summary
 from benches.table import remarks, table
 from rich.console import Console
 
@@ -62,13 +62,9 @@ def invented(slower: float = 1, rounds: int | None = None) -> Ratio:
     return Ratio("invented/twice", "twice the work over the work", pair, ENOUGH, rounds=rounds)
 
 
-def measured(ratio: Ratio, folder: Path) -> Measured:
-    """Return a ratio that two processes have taken, by way of pyperf's file."""
-    file = folder / f"{len([*folder.iterdir()])}.json"
-    for _ in range(2):
-        add(ratio, in_turns(ratio), file)
-    (one,) = summary([ratio], file)
-    return one
+def measured(ratio: Ratio) -> Measured:
+    """Return a ratio that two processes have taken."""
+    return summary(ratio, [in_turns(ratio), in_turns(ratio)])
 
 
 def printed(measured: list[Measured], before: dict[str, Row]) -> str:
@@ -124,22 +120,19 @@ def test_rounds_go_on_for_the_seconds_that_are_given() -> None:
     assert len(in_turns(invented(), 60).action) == 15
 
 
-def test_a_ratio_is_the_median_of_quotients_of_single_rounds(tmp_path: Path) -> None:
+def test_a_ratio_is_the_median_of_quotients_of_single_rounds() -> None:
     """A machine that grows slower in the meantime changes costs, and not the ratio."""
-    ratio, file = invented(), tmp_path / "suite.json"
-    add(ratio, Costs((2.0, 4.0, 8.0), (1.0, 2.0, 4.0)), file)
-    add(ratio, Costs((30.0, 20.0), (10.0, 10.0)), file)
-    (one,) = summary([ratio], file)
+    every = [Costs((2.0, 4.0, 8.0), (1.0, 2.0, 4.0)), Costs((30.0, 20.0), (10.0, 10.0))]
+    one = summary(invented(), every)
     assert (one.value, one.spread, one.cost) == (2.0, 0.0, 8.0)
 
 
 # What is named
 
 
-@pytest.mark.slow
 def test_a_slower_twin_is_named(tmp_path: Path) -> None:
     """Half as slow again misses its target and is worse than what was kept; the sound one is neither."""
-    sound, slower = (measured(invented(factor), tmp_path) for factor in (1, 1.5))
+    sound, slower = (measured(invented(factor)) for factor in (1, 1.5))
     keep([sound], tmp_path / "history.csv", PROCESSOR, COMMIT)
     before = last(tmp_path / "history.csv", PROCESSOR)
     assert before["invented/twice"].ratio == 2.0
@@ -264,7 +257,6 @@ def test_a_missed_target_fails_only_where_that_is_asked_for(
         (["nonsense"], "expected the beginning of a ratio's name (invented), got nonsense"),
         (["--against", "/nowhere"], "expected a checkout of this project, got /nowhere"),
         (["--processes", "0"], "expected a positive number, got 0"),
-        (["--out", __file__], "expected a file that is not there yet"),
     ],
 )
 def test_a_wrong_call_is_refused(
