@@ -14,12 +14,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-import taylor_verify
 from taylor_verify.batch.runs import run_all
 from taylor_verify.cli import main
 from taylor_verify.models.problem import Problem
-from taylor_verify.records import store
 from taylor_verify.records.standing import Standing
+from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines.peer import Peer
@@ -44,6 +43,8 @@ from taylor_verify_reports.studies.tradeoff.measurement import (
     scene_named,
 )
 from taylor_verify_reports.studies.tradeoff.rounds import YARDSTICK, measured
+
+F64 = rung("f64")
 
 # The median and its interval.
 
@@ -137,20 +138,14 @@ def machine(monkeypatch: pytest.MonkeyPatch) -> Machine:
 
     def made_up(name: str, on: object) -> object:
         if name == YARDSTICK[0]:
-            return replace(real_setting(*_taylor()), solver=Paced(made, name, 0.02))
+            return replace(real_setting("taylor", F64), solver=Paced(made, name, 0.02))
         word, _, seconds = name.partition(":")
         outcome = Outcome.NON_FINITE if word == "broken" else Outcome.FINISHED
         solver = Paced(made, name, float(seconds), outcome)
-        return replace(real_setting(*_taylor()), solver=solver)
+        return replace(real_setting("taylor", F64), solver=solver)
 
     monkeypatch.setattr(rounds, "setting", made_up)
     return made
-
-
-def _taylor() -> tuple[str, object]:
-    from taylor_verify.scenes.precision import rung
-
-    return "taylor", rung("f64")
 
 
 @pytest.fixture(scope="module")
@@ -253,7 +248,7 @@ def test_a_scene_beyond_its_end_has_the_solvers_of_the_columns_alone() -> None:
 def test_numbers_and_times_are_apart(monkeypatch: pytest.MonkeyPatch, scene: Scene) -> None:
     """No time stands among the numbers, and every setting that is sound has one among the times."""
     few = [
-        replace(real_setting(name, _taylor()[1]), withheld=reason)  # type: ignore[arg-type]
+        replace(real_setting(name, F64), withheld=reason)
         for name, reason in (("taylor", ""), ("taylor?tol=1e-6", ""), ("scipy:DOP853", "too slow"))
     ]
     monkeypatch.setattr(measurement, "published_settings", lambda scene, outside: few)
@@ -277,7 +272,7 @@ def test_numbers_and_times_are_apart(monkeypatch: pytest.MonkeyPatch, scene: Sce
 
 def test_the_yardstick_is_what_everybody_gets() -> None:
     """The yardstick is the default driver of `run`."""
-    assert real_setting(*_taylor()).solver == Taylor()  # type: ignore[arg-type]
+    assert real_setting("taylor", F64).solver == Taylor()
 
 
 def test_a_process_of_its_own_measures_the_same_settings(scene: Scene) -> None:
@@ -293,8 +288,8 @@ def test_a_process_of_its_own_measures_the_same_settings(scene: Scene) -> None:
 def test_the_verb_writes_data_and_page(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """`publish tradeoff` measures and writes; plain `publish` makes the page again from the data."""
-    few = (real_setting("taylor", _taylor()[1]),)  # type: ignore[arg-type]
+    """`publish tradeoff` measures, and writes both documents, the page, its sheet and its pictures."""
+    few = (real_setting("taylor", F64),)
     whole = measurement.measurement
     monkeypatch.setattr(measurement, "published_settings", lambda scene, outside: few)
     monkeypatch.setattr(measurement, "run_all", lambda work, asked, workers: [work(*asked)])
@@ -313,10 +308,3 @@ def test_the_verb_writes_data_and_page(
         "tradeoff.md",
         "tradeoff.csv",
     }
-    page = tmp_path / "tables" / "tradeoff.md"
-    before = page.read_text(encoding="utf-8")
-    page.unlink()
-    store.write(tmp_path, taylor_verify.run("euler/rest").verdicts, [])
-    assert main(["publish", "--from", str(tmp_path)]) == 0
-    assert page.read_text(encoding="utf-8") == before
-    assert "tables/tradeoff.md" in (tmp_path / "README.md").read_text(encoding="utf-8")

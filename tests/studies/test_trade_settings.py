@@ -10,7 +10,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from builders.scenes import asked_at
+from builders.scenes import asked_at, scene_file
 
 import taylor_verify
 from taylor_verify.cli import main
@@ -161,44 +161,16 @@ def test_an_unsuited_solver_is_unavailable_and_not_run(scene: str, name: str, re
     assert reason in p.because
 
 
-# Recommendations.
-
-
 # The command.
 
 
-@pytest.fixture
-def scene_file(tmp_path: Path) -> str:
-    path = tmp_path / "short.toml"
-    path.write_text(
-        'title = "A moment"\nmodel = "euler"\n[body]\ninertia = [1, 2, 3]\n'
-        "[initial]\nomega = [1, 0.4, 0.3]\n[time]\nend = 1\nsamples = 3\n",
-        encoding="utf-8",
-    )
-    return str(path)
-
-
 def test_the_verb_measures_what_it_is_told(
-    scene_file: str, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """The verb measures the settings of --solver, and taylor's beside them."""
-    call = ["tradeoff", scene_file, "--rung", "f32", "--repeats", "1", "--json"]
+    call = ["tradeoff", str(scene_file(tmp_path)), "--rung", "f32", "--repeats", "1", "--json"]
     assert main([*call, "--solver", "geometric:splitting?step=0.1", "--solver", "taylor"]) == 0
     (trade,) = json.loads(capsys.readouterr().out)["scenes"]
     families = [row["family"] for row in trade["points"]]
     assert set(families) == {"taylor f32", "geometric splitting"}
     assert all(row["requested"] is not None for row in trade["points"])
-
-
-def test_a_wrong_solver_is_refused_before_any_work(
-    scene_file: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Exit status 2, and the nearest name there is."""
-    assert main(["tradeoff", scene_file, "--solver", "taylor?tol=none"]) == 2
-    assert "@ --solver" in capsys.readouterr().err
-
-
-def test_outside_asks_for_the_trade(capsys: pytest.CaptureFixture[str]) -> None:
-    """`publish --outside` alone would do nothing of what it says."""
-    assert main(["publish", "--outside"]) == 2
-    assert "`publish tradeoff`" in capsys.readouterr().err
