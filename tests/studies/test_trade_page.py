@@ -6,7 +6,6 @@ import csv
 import io
 import json
 import re
-import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -27,18 +26,11 @@ from taylor_verify_reports.studies.tradeoff.study import STUDY
 
 
 @pytest.fixture(scope="module")
-def published(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("published")
     write(place, NUMBERS_MADE, TIMES_MADE)
     STUDY.publish(place)
     return place
-
-
-@pytest.fixture
-def folder(published: Path, tmp_path: Path) -> Path:
-    """A copy of one's own: pictures take seconds to draw."""
-    shutil.copytree(published, tmp_path, dirs_exist_ok=True)
-    return tmp_path
 
 
 def text_of(folder: Path) -> str:
@@ -93,10 +85,8 @@ def test_a_peer_that_is_ahead_is_named(tmp_path: Path) -> None:
             else one
             for one in TIMES_MADE.timings
         )
-        write(tmp_path, NUMBERS_MADE, replace(TIMES_MADE, timings=timings))
-        loaded = load(tmp_path)
-        assert loaded is not None
-        table = section(page(loaded, tmp_path), "Beside compiled integrators of other libraries")
+        made = Trades(NUMBERS_MADE, replace(TIMES_MADE, timings=timings))
+        table = section(page(made, tmp_path), "Beside compiled integrators of other libraries")
         assert "7.00 s" in table
         lines[ratio] = line(table, "`euler/generic`", " 6 |")
         twelve = line(table, " 12 |")
@@ -112,10 +102,8 @@ def test_a_peer_that_is_ahead_is_named(tmp_path: Path) -> None:
 def test_without_peers_the_page_says_how_to_measure_them(tmp_path: Path) -> None:
     """The section has a command in place of a table."""
     points = tuple(p for p in POINTS if not p.solver.startswith("outside"))
-    write(tmp_path, replace(NUMBERS_MADE, points=points), TIMES_MADE)
-    loaded = load(tmp_path)
-    assert loaded is not None
-    text = section(page(loaded, tmp_path), "Beside compiled integrators of other libraries")
+    made = Trades(replace(NUMBERS_MADE, points=points), TIMES_MADE)
+    text = section(page(made, tmp_path), "Beside compiled integrators of other libraries")
     assert "publish tradeoff --outside" in text
     assert "|" not in text
 
@@ -127,30 +115,13 @@ def test_a_wider_number_has_its_price(folder: Path) -> None:
     assert "**40.0** [36.0, 48.0], 32.0 digits" in table
 
 
-@pytest.mark.parametrize("floors", [{"f64": 2e-16, "f128": None}, {}])
-def test_what_rounding_alone_leaves_stands_beside_it(
-    floors: dict[str, float | None], tmp_path: Path
-) -> None:
-    """A line of digits on each rung where the measurement has them, none where it does not."""
-    write(tmp_path, replace(NUMBERS_MADE, scenes=(replace(SCENE, attainable=floors),)), TIMES_MADE)
-    if not floors:
-        without_key(tmp_path / NUMBERS.name, "attainable")
-    loaded = load(tmp_path)
-    assert loaded is not None
-    table = section(page(loaded, tmp_path), "What a wider number costs")
-    if not floors:
-        assert "| *attainable*" not in table
-        return
+def test_what_rounding_alone_leaves_stands_beside_it(tmp_path: Path) -> None:
+    """A line of digits on each rung for which the measurement has them."""
+    scene = replace(SCENE, attainable={"f64": 2e-16, "f128": None})
+    made = Trades(replace(NUMBERS_MADE, scenes=(scene,)), TIMES_MADE)
+    table = section(page(made, tmp_path), "What a wider number costs")
     assert line(table, "| *attainable*")[1:] == ["15.7 digits", NOTHING]
-    assert floors_of(loaded.trades[0].document()) == {"f64": 2e-16}
-
-
-def without_key(file: Path, key: str) -> None:
-    """Return a document as earlier versions stored it, without a key."""
-    document = json.loads(file.read_text(encoding="utf-8"))
-    for scene in document["scenes"]:
-        del scene[key]
-    file.write_text(json.dumps(document), encoding="utf-8")
+    assert floors_of(made.trades[0].document()) == {"f64": 2e-16}
 
 
 def test_a_failure_is_listed_and_nowhere_else(folder: Path) -> None:
@@ -185,30 +156,12 @@ def test_the_front_is_what_nothing_beats() -> None:
     assert front(rows) == [rows[1], rows[3]]
 
 
-def test_a_false_success_of_the_closed_form_stands_out(folder: Path) -> None:
-    """A false success of the closed form has a bold error and the word for it."""
-    text = section(text_of(folder), "The closed form in plain doubles")
-    assert "**4.00e18**" in text
-    assert "**success, falsely**" in text
-    assert line(text, "| easy ")[-1] == "success"
-
-
-def test_the_method_is_on_the_page(folder: Path) -> None:
-    """Processes, rounds, confidence, formula, machine and command, as they were."""
-    text = section(text_of(folder), "How it was timed, and where")
-    for word in ("6 fresh processes", "3 rounds", "96.9%", "A chip", "seed 1", "n = 6"):
-        assert word in text
-    assert "make tradeoff" in section(text_of(folder), "To remake this")
-
-
 def test_too_few_processes_give_no_interval(tmp_path: Path) -> None:
     """The page says so, and shows no brackets."""
     method = replace(TIMES_MADE.method, processes=2, coverage=0.5)
     bare = tuple(replace(timing, low=None, high=None) for timing in TIMES_MADE.timings)
-    write(tmp_path, NUMBERS_MADE, replace(TIMES_MADE, method=method, timings=bare))
-    loaded = load(tmp_path)
-    assert loaded is not None
-    text = page(loaded, tmp_path)
+    made = Trades(NUMBERS_MADE, replace(TIMES_MADE, method=method, timings=bare))
+    text = page(made, tmp_path)
     assert "No interval is given" in text
     assert "**12.0** @ 1e-09" in text
 
@@ -222,8 +175,9 @@ def test_the_sheet_has_a_row_for_every_setting(folder: Path) -> None:
     assert rows[6]["standing"] == "false success"
 
 
-def test_a_file_of_something_else_is_told(folder: Path) -> None:
+def test_a_file_of_something_else_is_told(tmp_path: Path) -> None:
     """The refusal names the file."""
-    (folder / NUMBERS.name).write_text("{}", encoding="utf-8")
+    write(tmp_path, NUMBERS_MADE, TIMES_MADE)
+    (tmp_path / NUMBERS.name).write_text("{}", encoding="utf-8")
     with pytest.raises(ValueError, match=r"expected a key versions, got none @ .*tradeoff\.json"):
-        load(folder)
+        load(tmp_path)
