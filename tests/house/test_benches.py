@@ -198,32 +198,6 @@ def test_the_history_answers_with_the_latest_row_of_the_same_processor(tmp_path:
     assert len(file.read_text().splitlines()) == 4
 
 
-@pytest.mark.parametrize(
-    ("text", "place"),
-    [
-        ("date,ratio\n", "history.csv:1"),
-        ("", "history.csv:1"),
-        ("HEADER\n2026-01-01,1,1,p,n,1,2\n", "history.csv:2"),
-        ("HEADER\n2026-01-01,1,1,p,n,1,2,3\n2026-01-01,1,1,p,n,one,2,3\n", "history.csv:3"),
-    ],
-)
-def test_what_is_no_history_is_refused(
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-    text: str,
-    place: str,
-) -> None:
-    """The place is named, and nothing is measured."""
-    file = tmp_path / "history.csv"
-    header = "date,commit,version,processor,name,ratio,spread,cost"
-    file.write_text(text.replace("HEADER", header))
-    monkeypatch.setattr(history, "FILE", file)
-    with pytest.raises(SystemExit, match="2"):
-        bench.main(["--processes", "1"])
-    assert f"@ {tmp_path}/{place}" in capsys.readouterr().err
-
-
 def test_the_history_of_the_repository_can_be_read() -> None:
     """Each of its rows is that of a ratio that there is, or was."""
     assert all(row.ratio > 0 for row in last(history.FILE, history.processor()).values())
