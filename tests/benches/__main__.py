@@ -14,6 +14,7 @@ from benches import commands, history, suite
 from benches.ratio import Ratio
 from benches.registry import RATIOS
 from benches.table import remarks, table
+from taylor_verify.judge.provenance import processor
 
 
 def main(words: Sequence[str] | None = None) -> int:
@@ -32,18 +33,18 @@ def main(words: Sequence[str] | None = None) -> int:
     with TemporaryDirectory() as folder:
         try:
             ratios = _chosen(asked.only, asked.against, Path(folder) / "caches")
-            last = history.last(history.FILE, history.processor())
+            last = history.last(history.FILE, processor())
         except ValueError as error:
             parser.error(str(error))
         measured = suite.measured(ratios, asked.processes)
     page = Console(width=None if sys.stdout.isatty() else 140, highlight=False)
-    page.print(f"{history.processor()}; processor time, medians of {asked.processes} processes")
+    page.print(f"{processor()}; processor time, medians of {asked.processes} processes")
     page.print(table(measured, last))
     for line in remarks(measured, last):
         page.print(line)
     if asked.keep:
         shipped = [one for one in measured if one.ratio in RATIOS]
-        history.keep(shipped, history.FILE, history.processor(), history.commit())
+        history.keep(shipped, history.FILE, processor(), history.commit())
     return int(asked.strict and any(one.misses for one in measured))
 
 

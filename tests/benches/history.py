@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import platform
 import subprocess
 from collections.abc import Iterable
 from dataclasses import astuple, dataclass, fields
@@ -69,15 +68,6 @@ def has_moved(now: Measured, row: Row) -> bool:
     """Return True if a ratio is farther from the last than both spreads, and the resolution, explain."""
     apart = abs(now.value - row.ratio)
     return not apart <= max(now.spread + row.spread, RESOLUTION * row.ratio)
-
-
-def processor() -> str:
-    """Return the name of the processor as the kernel has it, or as Python does."""
-    listing = Path("/proc/cpuinfo")
-    for line in listing.read_text("utf-8").splitlines() if listing.exists() else []:
-        if line.startswith("model name"):
-            return line.partition(":")[2].strip()
-    return platform.processor() or platform.machine()
 
 
 def commit() -> str:

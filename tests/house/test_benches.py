@@ -21,6 +21,7 @@ from benches.table import remarks, table
 from rich.console import Console
 
 from taylor_verify.batch.sweeps.chunk import judge
+from taylor_verify.judge.provenance import processor
 from taylor_verify.models.problem import pose
 from taylor_verify.scenes.library import find
 from taylor_verify.scenes.precision import rung
@@ -200,7 +201,7 @@ def test_the_history_answers_with_the_latest_row_of_the_same_processor(tmp_path:
 
 def test_the_history_of_the_repository_can_be_read() -> None:
     """Each of its rows is that of a ratio that there is, or was."""
-    assert all(row.ratio > 0 for row in last(history.FILE, history.processor()).values())
+    assert all(row.ratio > 0 for row in last(history.FILE, processor()).values())
 
 
 # The command
@@ -222,7 +223,7 @@ def test_a_missed_target_fails_only_where_that_is_asked_for(
     assert "missed" in capsys.readouterr().out
     assert not shipped.exists()
     assert bench.main(["--strict", "--keep"]) == 1
-    assert last(shipped, history.processor())["invented/twice"].ratio == 3.0
+    assert last(shipped, processor())["invented/twice"].ratio == 3.0
 
 
 @pytest.mark.parametrize(
