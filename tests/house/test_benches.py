@@ -191,8 +191,8 @@ def test_the_history_answers_with_the_latest_row_of_the_same_processor(tmp_path:
     """Rows are appended, and another machine's ratios are no yardstick."""
     file = tmp_path / "history.csv"
     assert last(file, PROCESSOR) == {}
-    for value, processor in ((1.0, PROCESSOR), (1.5, PROCESSOR), (9.0, "another, older")):
-        keep([Measured(invented(), value, 0.1, 1e-3)], file, processor, COMMIT)
+    for value, chip in ((1.0, PROCESSOR), (1.5, PROCESSOR), (9.0, "another, older")):
+        keep([Measured(invented(), value, 0.1, 1e-3)], file, chip, COMMIT)
     assert last(file, PROCESSOR)["invented/twice"].ratio == 1.5
     assert last(file, "another, older")["invented/twice"].ratio == 9.0
     assert file.read_text().count("date,commit") == 1

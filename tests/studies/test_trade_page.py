@@ -10,14 +10,13 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from builders.studies.tradeoff import NUMBERS_MADE, POINTS, SCENE, TIMES_MADE, point
+from builders.studies.tradeoff import NUMBERS_MADE, POINTS, SCENE, TIMES_MADE
 
 from taylor_verify.tradeoff.pictures.trade import floors_of
 from taylor_verify.words.cells import NOTHING
-from taylor_verify_reports.studies.tradeoff.page import front, page
+from taylor_verify_reports.studies.tradeoff.page import page
 from taylor_verify_reports.studies.tradeoff.stored import (
     NUMBERS,
-    TimedPoint,
     Trades,
     load,
     write,
@@ -125,35 +124,14 @@ def test_what_rounding_alone_leaves_stands_beside_it(tmp_path: Path) -> None:
 
 
 def test_a_failure_is_listed_and_nowhere_else(folder: Path) -> None:
-    """A false success is no digit, no front, no cell of a cost; its reason cannot break the table."""
+    """A false success is no digit and no cell of a cost; its reason cannot break the table."""
     text = text_of(folder)
     listed = section(text, "What failed, and what was not run")
     assert "false success" in line(listed, "RK45?rtol=1e-3")
     assert r"size \| of the motion" in listed
     assert "it would take minutes" in listed
-    assert "rtol=1e-3" not in section(text, "The front")
     assert "rtol=1e-3" not in section(text, "What so many digits cost")
     assert "false success" in line(section(text, "Asked for and achieved"), "SciPy RK45")
-
-
-def test_the_front_is_told_with_and_without_the_closed_form(folder: Path) -> None:
-    """A closed form leads the front; behind it the integrators have a front of their own."""
-    text = section(text_of(folder), "The front")
-    whole, _, integrators = text.partition("And of the integrators alone:")
-    assert "closed-form:ellipj" in whole
-    assert "outside:cvode-bdf" not in whole
-    assert "closed-form:ellipj" not in integrators
-    assert integrators.index("taylor?tol=1e-6") < integrators.index("outside:cvode-bdf")
-
-
-def test_the_front_is_what_nothing_beats() -> None:
-    """The front keeps the more accurate of equal times, and the faster of equal errors."""
-    timing = TIMES_MADE.timings[0]
-    rows = [
-        TimedPoint(point("taylor", error), replace(timing, ratio=ratio))
-        for ratio, error in ((1.0, 1e-3), (1.0, 1e-4), (2.0, 1e-4), (3.0, 1e-5))
-    ]
-    assert front(rows) == [rows[1], rows[3]]
 
 
 def test_too_few_processes_give_no_interval(tmp_path: Path) -> None:
