@@ -252,17 +252,6 @@ def test_a_family_of_periods_has_the_most_periods() -> None:
     ]
 
 
-def test_the_sheet_of_the_reach_has_a_row_for_every_number_of_periods() -> None:
-    """An error that is missing says `lost`; a run that was not made has one row with its reason."""
-    cells = list(csv.DictReader(pages.reach_sheet(study()).splitlines()))
-    assert len(cells) == sum(len(one.periods) if one.errors else 1 for one in REACH)
-    made = [line for line in cells if line["periods"]]
-    assert {line["lost"] for line in made} == {"yes", "no"}
-    assert all((line["error"] == "") == (line["lost"] == "yes") for line in made)
-    assert all(line["why"] for line in cells if not line["periods"])
-    assert [float(line["error"]) for line in cells[:3]] == list(REACH[0].errors)
-
-
 def test_each_rung_is_a_line_beside_its_floor() -> None:
     """Digits achieved and attainable stand over the distance; a value without a run has no point."""
     (picture,) = diagram.pictures(study())

@@ -71,7 +71,6 @@ STUDY: Final = Study(
     find=HARD.find,
     page=page.page,
     sheet=page.sheet,
-    beside={"tables/hard-reach.csv": page.reach_sheet},
     draw=pictures,
     options=(
         Option(
