@@ -21,7 +21,6 @@ class TradeScene:
     """A measured scene.
 
     ``attainable`` are the errors that rounding alone leaves, by rung; empty if they were not measured.
-    ``requests`` are sentences on the requested and the achieved digits.
     """
 
     scene: str
@@ -29,7 +28,6 @@ class TradeScene:
     track: tuple[str, ...]
     sha256: str
     attainable: dict[str, Number] = field(default_factory=dict)
-    requests: tuple[str, ...] = ()
 
     @property
     def is_long(self) -> bool:

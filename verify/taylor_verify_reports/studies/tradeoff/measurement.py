@@ -44,7 +44,6 @@ from taylor_verify.tradeoff.solves import SEED, cold_caches
 from taylor_verify.tradeoff.timing import estimate
 from taylor_verify.tradeoff.trade_off import (
     TradeOff,
-    request_sentences,
     sound_points,
     trade_off,
 )
@@ -260,5 +259,4 @@ def _scene(trade: TradeOff) -> TradeScene:
         track=tuple(sorted(trade.scene.track)),
         sha256=trade.scene.digest,
         attainable=trade.attainable,
-        requests=tuple(request_sentences(trade.points)),
     )
