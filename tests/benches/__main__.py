@@ -14,6 +14,7 @@ from benches import commands, history, suite
 from benches.ratio import Ratio
 from benches.registry import RATIOS
 from benches.table import remarks, table
+from taylor_verify.judge.provenance import processor
 
 
 def main(words: Sequence[str] | None = None) -> int:
@@ -28,24 +29,22 @@ def main(words: Sequence[str] | None = None) -> int:
         "--against", type=Path, help="a checkout: times `make verify` here and there"
     )
     parser.add_argument("--processes", type=_positive, default=suite.PROCESSES)
-    parser.add_argument("--out", type=Path, help="a new file for all that pyperf keeps")
     asked = parser.parse_args(words)
     with TemporaryDirectory() as folder:
         try:
             ratios = _chosen(asked.only, asked.against, Path(folder) / "caches")
-            file = _new(asked.out or Path(folder) / "suite.json")
-            last = history.last(history.FILE, history.processor())
+            last = history.last(history.FILE, processor())
         except ValueError as error:
             parser.error(str(error))
-        measured = suite.measured(ratios, file, asked.processes)
+        measured = suite.measured(ratios, asked.processes)
     page = Console(width=None if sys.stdout.isatty() else 140, highlight=False)
-    page.print(f"{history.processor()}; processor time, medians of {asked.processes} processes")
+    page.print(f"{processor()}; processor time, medians of {asked.processes} processes")
     page.print(table(measured, last))
     for line in remarks(measured, last):
         page.print(line)
     if asked.keep:
         shipped = [one for one in measured if one.ratio in RATIOS]
-        history.keep(shipped, history.FILE, history.processor(), history.commit())
+        history.keep(shipped, history.FILE, processor(), history.commit())
     return int(asked.strict and any(one.misses for one in measured))
 
 
@@ -63,12 +62,6 @@ def _chosen(names: Sequence[str], against: Path | None, caches: Path) -> list[Ra
                 f"expected the beginning of a ratio's name ({known}), got {name} @ only"
             )
     return chosen
-
-
-def _new(file: Path) -> Path:
-    if file.exists():
-        raise ValueError(f"expected a file that is not there yet, got {file} @ --out")
-    return file
 
 
 def _positive(text: str) -> int:

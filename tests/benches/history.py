@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import csv
-import platform
 import subprocess
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import astuple, dataclass, fields
 from datetime import UTC, datetime
 from pathlib import Path
@@ -37,31 +36,15 @@ _NUMBERS: Final = ("ratio", "spread", "cost")
 
 
 def last(file: Path, processor: str) -> dict[str, Row]:
-    """Return the latest row of each ratio on a processor, by its name.
-
-    Raises ValueError for a file that is no history.
-    """
-    return {row.name: row for row in _rows(file) if row.processor == processor}
-
-
-def _rows(file: Path) -> list[Row]:
+    """Return the latest row of each ratio on a processor, by its name."""
     if not file.exists():
-        return []
+        return {}
     with file.open(encoding="utf-8", newline="") as lines:
-        header, *rows = [*csv.reader(lines)] or [[]]
-    if header != _HEADER:
-        raise ValueError(f"expected {','.join(_HEADER)}, got {','.join(header)} @ {file}:1")
-    return [_row(row, f"{file}:{n}") for n, row in enumerate(rows, 2)]
-
-
-def _row(cells: Sequence[str], place: str) -> Row:
-    try:
-        words = dict(zip(_HEADER, cells, strict=True))
-        return Row(**words | {name: float(words[name]) for name in _NUMBERS})
-    except ValueError as error:
-        raise ValueError(
-            f"expected {len(_HEADER)} cells, the last three numbers, got {cells} @ {place}"
-        ) from error
+        rows = [
+            Row(**cells | {name: float(cells[name]) for name in _NUMBERS})
+            for cells in csv.DictReader(lines)
+        ]
+    return {row.name: row for row in rows if row.processor == processor}
 
 
 def keep(measured: Iterable[Measured], file: Path, processor: str, commit: str) -> None:
@@ -85,15 +68,6 @@ def has_moved(now: Measured, row: Row) -> bool:
     """Return True if a ratio is farther from the last than both spreads, and the resolution, explain."""
     apart = abs(now.value - row.ratio)
     return not apart <= max(now.spread + row.spread, RESOLUTION * row.ratio)
-
-
-def processor() -> str:
-    """Return the name of the processor as the kernel has it, or as Python does."""
-    listing = Path("/proc/cpuinfo")
-    for line in listing.read_text("utf-8").splitlines() if listing.exists() else []:
-        if line.startswith("model name"):
-            return line.partition(":")[2].strip()
-    return platform.processor() or platform.machine()
 
 
 def commit() -> str:

@@ -10,8 +10,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Final, Literal, Protocol, final
 
-# What one call of the clock costs, and what interrupts it for microseconds, is below a thousandth of this.
-LEAST_SECONDS: Final = 0.01
+from taylor_verify.tradeoff.timing import LEAST_SECONDS, Clock, calls_to_time
+
 # Ratios of one code differ by so much: another order of the code in memory is enough.
 RESOLUTION: Final = 0.02
 # A first call that took so many times as long is no short call.
@@ -69,7 +69,7 @@ class Action:
         run: Callable[[Any], object],
         given: Callable[[], Any] = nothing,
         units: int = 1,
-        clock: Callable[[], float] = time.process_time,
+        clock: Clock = time.process_time,
     ) -> None:
         self._run, self._given, self._units, self._clock = run, given, units, clock
         self._calls = 0
@@ -78,10 +78,8 @@ class Action:
         """Return the seconds of one unit."""
         if not self._calls:
             # The first call fills caches, and may be slower by far than those that follow.
-            self._calls, seconds = 1, self._seconds(1) / _FIRST
-            while seconds < LEAST_SECONDS:
-                seconds = self._seconds(self._calls)
-                self._calls *= 1 if seconds >= LEAST_SECONDS else 2
+            is_short = self._seconds(1) < _FIRST * LEAST_SECONDS
+            self._calls = calls_to_time(self._seconds(1)) if is_short else 1
         return self._seconds(self._calls) / (self._calls * self._units)
 
     def _seconds(self, calls: int) -> float:

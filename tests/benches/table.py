@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
+from typing import Final
 
-from pyperf import format_metadata
 from rich import box
 from rich.table import Table
 
@@ -74,8 +74,12 @@ def format_ratio(value: float) -> str:
     return f"{value:.3g}" if value < 1000 else f"{value:,.0f}"
 
 
+_SECONDS: Final = {"s": 1.0, "ms": 1e-3, "µs": 1e-6, "ns": 1e-9}
+
+
 def format_cost(ratio: Ratio, value: float) -> str:
     """Return the cost of one unit with three digits."""
-    if ratio.measure == "second":
-        return format_metadata("duration", value)
-    return format_metadata("mem_max_rss", round(value))
+    if ratio.measure == "byte":
+        return f"{value / 2**20:.1f} MiB"
+    unit = next((unit for unit, size in _SECONDS.items() if value >= size), "ns")
+    return f"{value / _SECONDS[unit]:.3g} {unit}"

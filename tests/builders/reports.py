@@ -28,6 +28,7 @@ from taylor_verify.plotting.picture import save
 from taylor_verify.records import store
 from taylor_verify.run import run
 from taylor_verify.scenes.library import names
+from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify_reports.controls.defects import DEFECTS
 from taylor_verify_reports.studies import figures, registry, report
@@ -39,7 +40,8 @@ from taylor_verify_reports.studies.engines.entry import entry_list
 from taylor_verify_reports.studies.engines.stored import write as write_board
 from taylor_verify_reports.studies.gallery import page as gallery
 from taylor_verify_reports.studies.growth.page import GROWTH
-from taylor_verify_reports.studies.growth.published import Entry, followed
+from taylor_verify_reports.studies.growth.published import followed
+from taylor_verify_reports.studies.growth.question import Question
 from taylor_verify_reports.studies.hard.document import HARD
 from taylor_verify_reports.studies.portraits.measure import portrait
 from taylor_verify_reports.studies.portraits.study import PORTRAITS
@@ -55,7 +57,6 @@ SCENES: Final = (
 )
 # One that a shift of time explains, one that the energy does not see, and a term that is missing.
 _BROKEN: Final = ("half-a-millisecond-early", "munk-moment-sign", "no-gyroscopic-term")
-_ENSEMBLE: Final = Entry("euler/about-max-axis", "f64", 10**3.5, 4, "a test")
 
 
 def folder() -> Path:
@@ -201,6 +202,12 @@ def for_paper() -> Path:
     return place
 
 
+def write_growth(place: Path) -> None:
+    """Write the growth of errors of a small ensemble."""
+    ensemble = Question(load("euler/about-max-axis"), rung("f64"), 10**3.5, 4, why="a test")
+    GROWTH.write(place, followed([ensemble], lambda *piece: None))
+
+
 @cache
 def small() -> Path:
     """Return a report of five scenes on two rungs, with a page of every kind and its picture."""
@@ -208,7 +215,7 @@ def small() -> Path:
     write_runs(place, product(SCENES, ("f64", "mp237")))
     write_portraits(place, SCENES)
     _write_measured(place)
-    GROWTH.write(place, followed([_ENSEMBLE], lambda label, done, of: None))
+    write_growth(place)
     CLAIMS.write(place, STUDY)
     save(registry.pictures(place), place / figures.FOLDER, ["svg"])
     report.publish(place)

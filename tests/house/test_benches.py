@@ -14,20 +14,21 @@ from benches import commands, history
 from benches.history import Row, has_moved, keep, last
 from benches.judging import FAILING, PASSING, chunks
 from benches.propagation import plain
-from benches.ratio import LEAST_SECONDS, Action, Ratio, Side, Target
+from benches.ratio import Action, Ratio, Side, Target
 from benches.registry import RATIOS
-from benches.rounds import Costs, in_turns
-from benches.suite import Measured, add, summary
+from benches.suite import Costs, Measured, in_turns, summary
 from benches.table import remarks, table
 from rich.console import Console
 
 from taylor_verify.batch.sweeps.chunk import judge
+from taylor_verify.judge.provenance import processor
 from taylor_verify.models.problem import pose
 from taylor_verify.scenes.library import find
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Postponed
+from taylor_verify.tradeoff.timing import LEAST_SECONDS
 
 PROCESSOR, COMMIT = "some processor", "1234567"
 ENOUGH = Target(2.5, "half as much again may be added")
@@ -62,13 +63,9 @@ def invented(slower: float = 1, rounds: int | None = None) -> Ratio:
     return Ratio("invented/twice", "twice the work over the work", pair, ENOUGH, rounds=rounds)
 
 
-def measured(ratio: Ratio, folder: Path) -> Measured:
-    """Return a ratio that two processes have taken, by way of pyperf's file."""
-    file = folder / f"{len([*folder.iterdir()])}.json"
-    for _ in range(2):
-        add(ratio, in_turns(ratio), file)
-    (one,) = summary([ratio], file)
-    return one
+def measured(ratio: Ratio) -> Measured:
+    """Return a ratio that two processes have taken."""
+    return summary(ratio, [in_turns(ratio), in_turns(ratio)])
 
 
 def printed(measured: list[Measured], before: dict[str, Row]) -> str:
@@ -108,12 +105,13 @@ def test_a_long_call_is_made_once_before_it_is_timed() -> None:
     assert time.order == "ll"
 
 
-def test_both_sides_take_turns_and_each_is_first_in_every_other_round() -> None:
+def test_both_sides_have_a_turn_in_each_round() -> None:
     """The first cost of each is after a call that is not timed."""
     time = Time()
     pair = time.action("a", 1.0), time.action("y", 2.0)
     costs = in_turns(Ratio("x", "x", lambda: pair, rounds=4))
-    assert time.order == "aayy" + "ya" + "ay" + "ya"
+    assert {time.order[:4]} <= {"aayy", "yyaa"}
+    assert all({*time.order[k : k + 2]} == {"a", "y"} for k in (4, 6, 8))
     assert costs == Costs((1.0,) * 4, (2.0,) * 4)
 
 
@@ -123,22 +121,19 @@ def test_rounds_go_on_for_the_seconds_that_are_given() -> None:
     assert len(in_turns(invented(), 60).action) == 15
 
 
-def test_a_ratio_is_the_median_of_quotients_of_single_rounds(tmp_path: Path) -> None:
+def test_a_ratio_is_the_median_of_quotients_of_single_rounds() -> None:
     """A machine that grows slower in the meantime changes costs, and not the ratio."""
-    ratio, file = invented(), tmp_path / "suite.json"
-    add(ratio, Costs((2.0, 4.0, 8.0), (1.0, 2.0, 4.0)), file)
-    add(ratio, Costs((30.0, 20.0), (10.0, 10.0)), file)
-    (one,) = summary([ratio], file)
+    every = [Costs((2.0, 4.0, 8.0), (1.0, 2.0, 4.0)), Costs((30.0, 20.0), (10.0, 10.0))]
+    one = summary(invented(), every)
     assert (one.value, one.spread, one.cost) == (2.0, 0.0, 8.0)
 
 
 # What is named
 
 
-@pytest.mark.slow
 def test_a_slower_twin_is_named(tmp_path: Path) -> None:
     """Half as slow again misses its target and is worse than what was kept; the sound one is neither."""
-    sound, slower = (measured(invented(factor), tmp_path) for factor in (1, 1.5))
+    sound, slower = (measured(invented(factor)) for factor in (1, 1.5))
     keep([sound], tmp_path / "history.csv", PROCESSOR, COMMIT)
     before = last(tmp_path / "history.csv", PROCESSOR)
     assert before["invented/twice"].ratio == 2.0
@@ -196,43 +191,17 @@ def test_the_history_answers_with_the_latest_row_of_the_same_processor(tmp_path:
     """Rows are appended, and another machine's ratios are no yardstick."""
     file = tmp_path / "history.csv"
     assert last(file, PROCESSOR) == {}
-    for value, processor in ((1.0, PROCESSOR), (1.5, PROCESSOR), (9.0, "another, older")):
-        keep([Measured(invented(), value, 0.1, 1e-3)], file, processor, COMMIT)
+    for value, chip in ((1.0, PROCESSOR), (1.5, PROCESSOR), (9.0, "another, older")):
+        keep([Measured(invented(), value, 0.1, 1e-3)], file, chip, COMMIT)
     assert last(file, PROCESSOR)["invented/twice"].ratio == 1.5
     assert last(file, "another, older")["invented/twice"].ratio == 9.0
     assert file.read_text().count("date,commit") == 1
     assert len(file.read_text().splitlines()) == 4
 
 
-@pytest.mark.parametrize(
-    ("text", "place"),
-    [
-        ("date,ratio\n", "history.csv:1"),
-        ("", "history.csv:1"),
-        ("HEADER\n2026-01-01,1,1,p,n,1,2\n", "history.csv:2"),
-        ("HEADER\n2026-01-01,1,1,p,n,1,2,3\n2026-01-01,1,1,p,n,one,2,3\n", "history.csv:3"),
-    ],
-)
-def test_what_is_no_history_is_refused(
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-    text: str,
-    place: str,
-) -> None:
-    """The place is named, and nothing is measured."""
-    file = tmp_path / "history.csv"
-    header = "date,commit,version,processor,name,ratio,spread,cost"
-    file.write_text(text.replace("HEADER", header))
-    monkeypatch.setattr(history, "FILE", file)
-    with pytest.raises(SystemExit, match="2"):
-        bench.main(["--processes", "1"])
-    assert f"@ {tmp_path}/{place}" in capsys.readouterr().err
-
-
 def test_the_history_of_the_repository_can_be_read() -> None:
     """Each of its rows is that of a ratio that there is, or was."""
-    assert all(row.ratio > 0 for row in last(history.FILE, history.processor()).values())
+    assert all(row.ratio > 0 for row in last(history.FILE, processor()).values())
 
 
 # The command
@@ -254,7 +223,7 @@ def test_a_missed_target_fails_only_where_that_is_asked_for(
     assert "missed" in capsys.readouterr().out
     assert not shipped.exists()
     assert bench.main(["--strict", "--keep"]) == 1
-    assert last(shipped, history.processor())["invented/twice"].ratio == 3.0
+    assert last(shipped, processor())["invented/twice"].ratio == 3.0
 
 
 @pytest.mark.parametrize(
@@ -263,7 +232,6 @@ def test_a_missed_target_fails_only_where_that_is_asked_for(
         (["nonsense"], "expected the beginning of a ratio's name (invented), got nonsense"),
         (["--against", "/nowhere"], "expected a checkout of this project, got /nowhere"),
         (["--processes", "0"], "expected a positive number, got 0"),
-        (["--out", __file__], "expected a file that is not there yet"),
     ],
 )
 def test_a_wrong_call_is_refused(
@@ -299,10 +267,10 @@ def test_another_checkout_has_caches_of_its_own(
     cold, warm = commands.ratios(tmp_path, tmp_path / "caches")
     (tmp_path / "caches").mkdir()
     in_turns(replace(cold, rounds=1))
-    assert caches == [("here", False), ("here", True), ("other", False), ("other", True)]
+    assert sorted(caches) == [("here", False), ("here", True), ("other", False), ("other", True)]
     caches.clear()
     in_turns(replace(warm, rounds=1))
-    assert caches == [("here", True)] * 2 + [("other", True)] * 2
+    assert sorted(caches) == [("here", True)] * 2 + [("other", True)] * 2
 
 
 def test_a_verification_that_fails_is_not_timed(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ from base64 import b64decode
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import combinations, pairwise
-from math import inf, log10, nan
+from math import log10
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -33,8 +33,6 @@ from taylor_verify.plotting.wording import power_of_ten
 from taylor_verify.records.precisions import bits_of, place_of_rung
 from taylor_verify.tradeoff.pictures import trade
 from taylor_verify.tradeoff.pictures.series import front_of, panels_of, series_of
-from taylor_verify_reports.pictures.ratio import Ratio
-from taylor_verify_reports.studies.tradeoff import time_by_rung
 
 RUNGS = ("f32", "f64", "f80", "f128", "mp237")
 SVG = "{http://www.w3.org/2000/svg}"
@@ -238,7 +236,7 @@ def test_rungs_are_in_order_of_their_bits() -> None:
 def test_a_line_joins_neighbours_that_are_sound_and_nothing_else(crowded: dict) -> None:
     """All drawn lines are runs of neighbouring sound settings of one family."""
     rows = many()["points"]
-    keys = {"time": "seconds", "evaluations": "evaluations", "steps": "steps"}
+    keys = {"time": "seconds", "evaluations": "evaluations"}
     checked = 0
     for name, key in keys.items():
         for axes in crowded[name].axes:
@@ -253,7 +251,7 @@ def test_a_line_joins_neighbours_that_are_sound_and_nothing_else(crowded: dict) 
                 places = [order.index(spot) for spot in drawn]
                 assert places == list(range(places[0], places[0] + len(places)))
                 checked += 1
-    assert checked >= 3 * 26
+    assert checked >= 2 * 26
 
 
 def test_every_sound_point_is_drawn_once_a_panel(crowded: dict) -> None:
@@ -323,31 +321,6 @@ def test_the_front_agrees_with_the_judgement() -> None:
     assert next(p.stem for p in trade.pictures(made)) == "euler-generic-time"
 
 
-def test_the_diagonal_is_where_asked_and_achieved_agree(crowded: dict) -> None:
-    """Panels of digits have the diagonal, and their points are the digits of the rows."""
-    digits = {(one["requested_digits"], one["achieved_digits"]) for one in many()["points"]}
-    for axes in crowded["digits"].axes:
-        (diagonal,) = [line for line in axes.get_lines() if line.get_gid() == "diagonal"]
-        assert all(x == y for x, y in diagonal.get_xydata())
-        for line in axes.get_lines():
-            if line.get_gid() in {one["family"] for one in many()["points"]}:
-                assert {tuple(spot) for spot in line.get_xydata()} <= digits
-
-
-def test_a_step_asks_for_no_digits() -> None:
-    """A family with a fixed step is not among the digits."""
-    rows = family("taylor f64", "f64", 0.01, 9.0)
-    for one in family("geometric splitting", "f64", 0.01, 3.0):
-        rows.append(one | {"asked": "step", "requested_digits": None})
-    drawn = {
-        line.get_gid()
-        for axes in dict(figures(document(rows)))["digits"].axes
-        for line in axes.get_lines()
-    }
-    assert "taylor f64" in drawn
-    assert "geometric splitting" not in drawn
-
-
 def test_floors_are_drawn_where_their_rung_is(crowded: dict) -> None:
     """The attainable error of a rung stands in every panel with taylor on that rung."""
     floors = [
@@ -359,6 +332,11 @@ def test_floors_are_drawn_where_their_rung_is(crowded: dict) -> None:
 
 
 # Names
+
+
+def plain_picture() -> Picture:
+    """Return a picture of one family."""
+    return trade.pictures(document(family("taylor f64", "f64", 0.01, 9.0)))[0]
 
 
 def boxes(figure: Figure) -> list[tuple[Any, Any]]:
@@ -381,7 +359,7 @@ def assert_names_are_apart(figure: Figure) -> None:
         assert axes is not other_axes or not one.overlaps(other)
 
 
-@pytest.mark.parametrize("name", ["time", "evaluations", "steps", "digits"])
+@pytest.mark.parametrize("name", ["time", "evaluations"])
 def test_no_name_overlaps_another(crowded: dict, name: str) -> None:
     """All solvers have names in their panels, and no two names touch."""
     assert_names_are_apart(crowded[name])
@@ -447,7 +425,7 @@ def assert_all_is_on_the_page(figure: Figure) -> None:
 def test_two_drawings_are_the_same_bytes(tmp_path: Path) -> None:
     """Drawn twice, in another order and with other settings of the user, every file is the same."""
     rows = family("taylor f64", "f64", 0.01, 9.0) + family("scipy RK45", "f64", 0.05, 4.0)
-    made = [trade.pictures(document(rows))[0], by_rung()]
+    made = trade.pictures(document(rows))
     first = save(made, tmp_path / "a")
     with matplotlib.rc_context({"font.size": 20, "lines.linewidth": 9, "svg.hashsalt": "other"}):
         save(reversed(made), tmp_path / "b")
@@ -456,12 +434,12 @@ def test_two_drawings_are_the_same_bytes(tmp_path: Path) -> None:
         assert path.read_bytes() == (tmp_path / "b" / path.name).read_bytes()
 
 
-def test_a_trade_off_has_four_pictures_in_two_formats(tmp_path: Path) -> None:
+def test_a_trade_off_has_two_pictures_in_two_formats(tmp_path: Path) -> None:
     """The pictures are SVG and PDF with the name of the scene."""
     files = trade.draw(document(family("taylor f64", "f64", 0.01, 9.0)), tmp_path)
     assert [path.name for path in files] == [
         f"euler-generic-{what}.{ending}"
-        for what in ("time", "evaluations", "steps", "digits")
+        for what in ("time", "evaluations")
         for ending in ("svg", "pdf")
     ]
     assert sorted(files) == sorted(tmp_path.iterdir())
@@ -484,7 +462,7 @@ def test_a_file_is_text_without_a_date(tmp_path: Path) -> None:
 
 def test_a_notebook_shows_a_picture_with_its_words(tmp_path: Path) -> None:
     """A notebook shows the published SVG with its alternative text."""
-    picture = by_rung()
+    picture = plain_picture()
     (svg,) = save([picture], tmp_path, ["svg"])
     html = ElementTree.fromstring(picture._repr_html_())
     (image,) = html.iter("img")
@@ -497,7 +475,7 @@ def test_a_notebook_shows_a_picture_with_its_words(tmp_path: Path) -> None:
 def test_settings_of_the_user_stay(tmp_path: Path) -> None:
     """Drawing leaves matplotlib's settings as they were."""
     before = dict(matplotlib.rcParams)
-    save([by_rung()], tmp_path)
+    save([plain_picture()], tmp_path)
     assert dict(matplotlib.rcParams) == before
 
 
@@ -507,9 +485,9 @@ def test_a_picture_that_fails_leaves_the_old_files(tmp_path: Path) -> None:
     def broken() -> Figure:
         raise ZeroDivisionError
 
-    save([by_rung()], tmp_path)
+    save([plain_picture()], tmp_path)
     before = {path: path.read_bytes() for path in tmp_path.iterdir()}
-    sound = replace(by_rung(), figure=lambda: Figure())
+    sound = replace(plain_picture(), figure=lambda: Figure())
     with pytest.raises(ZeroDivisionError):
         save([sound, Picture("broken", "", "", broken)], tmp_path)
     assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
@@ -521,7 +499,7 @@ def test_without_matplotlib_the_error_says_what_to_install(
     """The error is one sentence with the name of the extra, and no file is written."""
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     with pytest.raises(ImportError, match=r"pip install 'taylor-verify\[plots\]'"):
-        save([by_rung()], tmp_path / "there")
+        save([plain_picture()], tmp_path / "there")
     assert not (tmp_path / "there").exists()
 
 
@@ -531,7 +509,6 @@ def test_alt_texts_need_no_matplotlib() -> None:
     code = (
         "import sys, json; sys.modules['matplotlib'] = None\n"
         "from taylor_verify.tradeoff.pictures import trade\n"
-        "from taylor_verify_reports.studies.tradeoff import time_by_rung\n"
         f"print([p.alt for p in trade.pictures(json.loads({rows!r}))])"
     )
     made = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
@@ -557,69 +534,10 @@ def test_a_document_without_an_answer_is_refused() -> None:
 
 
 def test_uncounted_work_makes_no_picture() -> None:
-    """A solver that counts nothing has a picture of its time, and none of its steps."""
+    """A solver that counts nothing has a picture of its time, and none of its evaluations."""
     rows = [one | {"steps": 0, "evaluations": 0} for one in family("other", "f64", 0.1, 4.0)]
     stems = [picture.stem for picture in trade.pictures(document(rows))]
-    assert stems == ["euler-generic-time", "euler-generic-digits"]
-
-
-# Ratios
-
-
-TIMES_BY_RUNG = tuple(
-    Ratio(label, rung, factor * (bits_of(rung) / 53) ** 2)
-    for label, factor in (("euler", 1), ("kirchhoff", 1.3))
-    for rung in reversed(RUNGS)
-)
-
-
-def by_rung() -> Picture:
-    """The picture of two scenes."""
-    return time_by_rung.picture("two scenes", TIMES_BY_RUNG)
-
-
-def test_time_is_drawn_by_bits() -> None:
-    """The ratios of each label make one line from the shortest rung to the longest."""
-    with plotting():
-        figure = by_rung().figure()
-        (axes,) = figure.axes
-    assert_names_are_apart(figure)
-    for label, factor in (("euler", 1), ("kirchhoff", 1.3)):
-        (line,) = [line for line in axes.get_lines() if line.get_gid() == label]
-        assert list(line.get_xdata()) == [24, 53, 64, 113, 237]
-        assert list(line.get_ydata()) == [
-            factor * (bits / 53) ** 2 for bits in (24, 53, 64, 113, 237)
-        ]
-
-
-@pytest.mark.parametrize(
-    ("ratios", "message"),
-    [
-        ([], r"expected ratios, got none @ ratios"),
-        ([Ratio("", "f64", 1)], r"expected a text, got '' @ ratios\[0\]\.label"),
-        ([Ratio("a", "f64", nan)], r"got nan @ ratios\[0\]\.ratio"),
-        ([Ratio("a", "f64", inf)], r"got inf @ ratios\[0\]\.ratio"),
-        ([Ratio("a", "f64", -1)], r"got -1 @ ratios\[0\]\.ratio"),
-        ([Ratio("a", "f64", 1, low=0.0)], r"got 0.0 @ ratios\[0\]\.low"),
-        ([Ratio("a", "f64", 3, high=2)], r"between 3 and 2, got 3"),
-    ],
-)
-def test_a_ratio_that_is_none_is_refused(ratios: list[Ratio], message: str) -> None:
-    """The error names the place of an empty text, an invalid number or a ratio outside its range."""
-    with pytest.raises(ValueError, match=message):
-        time_by_rung.picture("two scenes", ratios)
-
-
-def test_every_fault_is_said_at_once() -> None:
-    """Two faulty ratios give two lines."""
-    with pytest.raises(ValueError, match=r"ratios\[0\]\.ratio\n.*ratios\[1\]\.rung"):
-        time_by_rung.picture("two scenes", [Ratio("a", "f64", 0), Ratio("b", "", 1)])
-
-
-def test_a_rung_without_bits_is_refused() -> None:
-    """A rung without a number of bits has no place on the axis."""
-    with pytest.raises(ValueError, match=r"expected a rung.*, got 'double' @ ratios\[0\]"):
-        time_by_rung.picture("two scenes", [Ratio("a", "double", 1)])
+    assert stems == ["euler-generic-time"]
 
 
 @pytest.mark.parametrize(("value", "text"), [(1.0, "10⁰"), (1e-33, "10⁻³³"), (1e12, "10¹²")])

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 from builders.programs import is_alive
@@ -17,9 +15,8 @@ from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.engines import peer as peers
 from taylor_verify.solvers.engines.engine import SCRIPTS, named, prepare
 from taylor_verify.solvers.engines.launcher import NotMade
-from taylor_verify.solvers.engines.peer import Peer, document
+from taylor_verify.solvers.engines.peer import Peer
 from taylor_verify.solvers.engines.session import end_sessions, session
-from taylor_verify.solvers.straight_line import straight_line
 from taylor_verify.solvers.trajectory import Outcome
 from taylor_verify.tradeoff.accuracy import Truth
 from taylor_verify_reports.studies.tradeoff.measurement import PEERS
@@ -75,19 +72,6 @@ def test_a_peer_is_asked_the_problem_that_heyoka_is_asked(scene: str, fake: Made
     assert trajectory.evaluations == 4 * trajectory.steps > 0
     # The method is of fourth order, and no step is longer than a fortieth of a radian or so.
     assert Truth(problem).accuracy(trajectory).worst <= 1e-5
-
-
-def test_the_code_of_a_peer_is_the_code_of_this_process(sibling: Callable[[str], Any]) -> None:
-    """Read back from the document, the lines give the rates of the form to the last bit."""
-    problem = posed("kirchhoff/whole-motion")
-    asked = json.loads(json.dumps(document(problem)))
-    read = sibling("service")._read(asked)
-    rates = sibling("question").equations_of(read)(read.state, read.parameters)
-    parameters = [float(value) for value in problem.parameters]
-    expected = straight_line(problem.form, parameters)(0.0, read.state)
-    assert list(rates) == expected
-    assert read.parameters == parameters
-    assert read.instants == [float(t) for t in problem.times]
 
 
 def test_a_peer_is_timed_without_its_start(fake: Made) -> None:
@@ -178,9 +162,3 @@ def test_a_real_peer_keeps_near_its_tolerance(name: str, monkeypatch: pytest.Mon
             assert 0 < seconds < trajectory.compile_seconds
     finally:
         end_sessions()
-
-
-def test_every_peer_is_there() -> None:
-    """The columns that are published are engines whose scripts stay."""
-    peers: list[Any] = [named(f"outside:{name}") for name in PEERS]
-    assert all(one.engine.script.about.serves for one in peers)

@@ -18,7 +18,6 @@ from taylor_verify.cli import main
 from taylor_verify.records import store
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify_reports.studies import archive, bulk
-from taylor_verify_reports.verbs import publish as command
 
 SCENES = ("euler/rest", "euler/generic")
 Captured = pytest.CaptureFixture[str]
@@ -112,14 +111,6 @@ def test_a_run_that_was_never_judged_has_no_record(report: Path) -> None:
         row["verdict"] = "refused" if row["rung"] == "f32" else row["verdict"]
     file.write_text(store.laid_out(stored), encoding="utf-8")
     assert {run.rung for run in lacking(report, "records of runs")} == {"f64"}
-
-
-@pytest.mark.slow
-def test_scenes_and_solvers_that_are_not_ours_are_not_made(tmp_path: Path) -> None:
-    """Somebody's own report lacks nothing that this package could make."""
-    assert bulk.missing(reports.small(), {}).data == ""
-    with pytest.raises(command.WrongCall, match=r"no such file @ .*verdicts\.json"):
-        command.make_missing(tmp_path)
 
 
 def test_a_report_is_packed_the_same_every_time(report: Path, tmp_path: Path) -> None:

@@ -80,10 +80,10 @@ def test_what_cannot_be_followed_is_refused(changed: dict[str, Any], message: st
 def test_the_end_of_a_piece_is_no_sample(on: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each piece is reported as it ends, and samples are those of the instants alone."""
     several_pieces(monkeypatch)
-    asked, ended = question(on=on, lanes=3), list[tuple[int, int]]()
-    followed = course(asked, lambda done, of: ended.append((done, of)))
+    asked, ended = question(on=on, lanes=3), list[tuple[str, int, int]]()
+    followed = course(asked, lambda *piece: ended.append(piece))
     count = len(asked.pieces)
-    assert ended == [(done, count) for done in range(1, count + 1)]
+    assert ended == [(asked.label, done, count) for done in range(1, count + 1)]
     assert len(followed.samples) == len(asked.counts) < count
     for sample, lane in zip(followed.samples[-1], followed.lanes, strict=True):
         assert sample == (lane.state, lane.steps)
@@ -145,7 +145,7 @@ def test_without_a_closed_form_the_drifts_are_measured() -> None:
     """A body without a closed form has no phase, and all of its conserved quantities."""
     result = experiment(question("kirchhoff/general-body", lanes=2))
     assert {one.quantity for one in result.quantities} == {"T", "F2", "FG"}
-    assert all(one.growth.gate is not None for one in result.quantities)
+    assert all(one.gate is not None for one in result.quantities)
 
 
 def test_a_phase_that_may_be_off_by_a_period_is_not_told() -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import random
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,32 +15,36 @@ from taylor_verify.records.json_text import complete, converted
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
+from taylor_verify_reports.studies.growth import experiment as experiments
 from taylor_verify_reports.studies.growth import page as pages
 from taylor_verify_reports.studies.growth import published
-from taylor_verify_reports.studies.growth.document import Ensemble
-from taylor_verify_reports.studies.growth.errors import PHASE
-from taylor_verify_reports.studies.growth.experiment import Experiment, QuantityGrowth, experiment
-from taylor_verify_reports.studies.growth.fit import BIAS, Law, growth
-from taylor_verify_reports.studies.growth.published import Entry
+from taylor_verify_reports.studies.growth.document import Ensemble, GrowthOfQuantity
+from taylor_verify_reports.studies.growth.errors import PHASE, Measured
+from taylor_verify_reports.studies.growth.experiment import course, ensemble_errors, experiment
+from taylor_verify_reports.studies.growth.fit import BIAS, Law
 from taylor_verify_reports.studies.growth.question import Question
 from taylor_verify_reports.studies.growth.study import STUDY
 
 SHORT = 10**3.5
 
 
-def followed(name: str, periods: float = SHORT, lanes: int = 8, **changed: Any) -> Experiment:
-    return experiment(Question(load(name), rung("f64"), periods, lanes, **changed))
+def question(name: str, periods: float = SHORT, lanes: int = 8, **changed: Any) -> Question:
+    return Question(load(name), rung("f64"), periods, lanes, **changed)
 
 
-def of(result: Experiment, quantity: str) -> QuantityGrowth:
-    (one,) = [one for one in result.quantities if one.quantity == quantity]
+def of(ensemble: Ensemble, quantity: str) -> GrowthOfQuantity:
+    (one,) = [one for one in ensemble.quantities if one.quantity == quantity]
     return one
 
 
-def verdict(result: Experiment, quantity: str) -> Status:
-    judged = of(result, quantity).growth.gate
+def verdict(ensemble: Ensemble, quantity: str) -> Status:
+    judged = of(ensemble, quantity).gate
     assert judged is not None
     return judged.verdict
+
+
+def errors(asked: Question) -> dict[str, np.ndarray]:
+    return {one.quantity: one.values for one in ensemble_errors(asked, course(asked))}
 
 
 # The chain
@@ -50,44 +53,42 @@ def verdict(result: Experiment, quantity: str) -> Status:
 @pytest.mark.parametrize("name", ["euler/about-max-axis", "kirchhoff/two-real-roots"])
 def test_the_integrator_walks(name: str) -> None:
     """No quantity grows faster than a walk at the integrator's own tolerance, and every lane ends."""
-    result = followed(name)
+    result = experiment(question(name))
     assert result.lost == 0
-    assert {verdict(result, one.quantity) for one in result.quantities if one.growth.gate} == {
-        Status.PASS
-    }
-    walks = {row.quantity: row.in_walks for row in result.ensemble().quantities}
+    assert {one.gate.verdict for one in result.quantities if one.gate} == {Status.PASS}
     # A step rounds its end once, to half a unit in the last place at most, and each of its sums
     # once more, much smaller: a walk of steps of about u. Ten of them would be another integrator.
-    assert 0.01 <= walks["T"] <= 10
+    assert 0.01 <= of(result, "T").in_walks <= 10
 
 
 def test_a_coarse_tolerance_is_a_bias() -> None:
     """Truncation dominates at 1e-12: energy and momentum grow as t, the phase as t^2, and gates fail."""
-    result = followed("euler/about-max-axis", 1e4, solver="taylor?tol=1e-12")
+    asked = question("euler/about-max-axis", 1e4, solver="taylor?tol=1e-12")
+    result = experiment(asked)
     for name in ("T", "H2", PHASE):
         assert verdict(result, name) is Status.FAIL
-        assert of(result, name).growth.exponent.word == BIAS
+        assert of(result, name).word == BIAS
     # What always has one sign has it in every lane.
-    drift = of(result, "T").errors[:, -1]
+    drift = errors(asked)["T"][:, -1]
     assert np.all(np.sign(drift) == np.sign(drift[0]))
 
 
 def test_one_lane_alone_is_the_same_lane() -> None:
     """The errors of a lane do not change with the ensemble around it."""
-    few, many = followed("euler/about-max-axis", lanes=2), followed("euler/about-max-axis", lanes=5)
-    for one in few.quantities:
-        assert np.array_equal(one.errors, of(many, one.quantity).errors[:2])
+    few, many = (errors(question("euler/about-max-axis", lanes=lanes)) for lanes in (2, 5))
+    for name, values in few.items():
+        assert np.array_equal(values, many[name][:2])
 
 
 @pytest.mark.slow
 def test_brouwers_law_to_a_hundred_thousand_periods() -> None:
     """Three decades of f64: drifts grow as the root of time, the phase as its three halves."""
-    result = followed("euler/about-max-axis", 1e5, 16)
+    result = experiment(question("euler/about-max-axis", 1e5, 16))
     for name, power in (("T", 0.5), ("H2", 0.5), (PHASE, 1.5)):
         assert verdict(result, name) is Status.PASS
         # Half way to the next word. The slopes of sixteen lanes have a mean that scatters by 0.04, and
         # another processor draws other roundings.
-        assert abs(of(result, name).growth.exponent.value - power) <= 0.25
+        assert abs(of(result, name).exponent - power) <= 0.25
 
 
 def mean_rounding(coefficient: float, part: int) -> float:
@@ -120,16 +121,14 @@ def test_products_with_a_small_fraction_lean_to_one_side() -> None:
 # What is published
 
 
-ONE = Entry("euler/about-max-axis", "f64", 1e5, 4, "a test")
-
-
 @pytest.fixture
-def one_short_entry(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(published, "PUBLISHED", (ONE,))
-    monkeypatch.setattr(published, "LONG", (Entry("euler/generic", "f64", 1e8, 3, "long"),))
+def one_short_ensemble(monkeypatch: pytest.MonkeyPatch) -> None:
+    axis, generic = load("euler/about-max-axis"), load("euler/generic")
+    monkeypatch.setattr(published, "published", lambda: [Question(axis, rung("f64"), 1e5, 4)])
+    monkeypatch.setattr(published, "long", lambda: [Question(generic, rung("f64"), 1e8, 3)])
 
 
-@pytest.mark.usefixtures("one_short_entry")
+@pytest.mark.usefixtures("one_short_ensemble")
 def test_publish_writes_data_and_page(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The page is made of the stored data alone, and the long ensemble stands beside the others."""
     call = ["publish", "growth", "--periods", "3163", "--from", str(tmp_path), "--json"]
@@ -169,16 +168,17 @@ def test_a_wrong_call_is_refused(
     assert "expected a study" not in error
 
 
-def test_a_number_that_is_not_finite_is_stored_as_none() -> None:
+def test_a_number_that_is_not_finite_is_stored_as_none(monkeypatch: pytest.MonkeyPatch) -> None:
     """An ensemble is the same when it is read again; one without a finite error has no numbers."""
-    result = followed("euler/about-max-axis", lanes=2)
-    errors = np.full((2, len(result.steps)), np.nan)
-    nothing = growth(np.array(result.question.counts), errors, Law.WALK, 1e-16)
-    lost = replace(result, quantities=(QuantityGrowth("T", errors, nothing),))
-    for one in (result.ensemble("a test"), lost.ensemble()):
+    asked = question("euler/about-max-axis", lanes=2)
+    nothing = Measured("T", Law.WALK, np.full((2, len(asked.counts)), np.nan))
+    whole = experiment(asked)
+    monkeypatch.setattr(experiments, "ensemble_errors", lambda asked, end: [nothing])
+    lost = experiment(asked)
+    for one in (whole, lost):
         assert converted(complete(one), Ensemble) == one
-    (row,) = lost.ensemble().quantities
-    assert row.rms == (None,) * len(result.steps)
+    (row,) = lost.quantities
+    assert row.rms == (None,) * len(asked.counts)
     assert row.exponent is row.in_walks is row.gate.chance is None
 
 

@@ -33,7 +33,6 @@ from taylor_verify.cli import main
 from taylor_verify.plotting.picture import plotting
 from taylor_verify.plotting.style import PAGE_WIDTH
 from taylor_verify.records.status import Status
-from taylor_verify.records.store import write
 from taylor_verify.scenes import library
 from taylor_verify.words.cells import NOTHING
 from taylor_verify.words.page import MADE_BY
@@ -42,7 +41,6 @@ from taylor_verify_reports.studies.hard import page as pages
 from taylor_verify_reports.studies.hard import picture as diagram
 from taylor_verify_reports.studies.hard.document import HARD, last_value
 from taylor_verify_reports.studies.hard.study import STUDY, store_scenes
-from taylor_verify_reports.studies.report import publish
 
 
 def lines(text: str, *words: str) -> list[str]:
@@ -51,19 +49,24 @@ def lines(text: str, *words: str) -> list[str]:
     ]
 
 
+@pytest.fixture(scope="module")
+def published(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("published")
+    publish_document(place, STUDY, HARD, study())
+    return place
+
+
 @pytest.fixture
-def page(tmp_path: Path) -> str:
-    publish_document(tmp_path, STUDY, HARD, study())
-    return (tmp_path / STUDY.path).read_text(encoding="utf-8")
+def page(published: Path) -> str:
+    return (published / STUDY.path).read_text(encoding="utf-8")
 
 
 # The document
 
 
-def test_what_is_stored_reads_back(tmp_path: Path) -> None:
+def test_what_is_stored_reads_back(published: Path) -> None:
     """Verdicts without their seconds, expectations, titles, worst and reach are the same again."""
-    publish_document(tmp_path, STUDY, HARD, study())
-    loaded = HARD.load(tmp_path)
+    loaded = HARD.load(published)
     stored = [
         replace(v, seconds=None, provenance={"scene": f"digest of {v.scene}"})
         for v in study().verdicts
@@ -71,33 +74,6 @@ def test_what_is_stored_reads_back(tmp_path: Path) -> None:
     assert loaded == replace(study(), verdicts=tuple(stored))
     assert [loaded.is_met(verdict) for verdict in loaded.verdicts] == [True, True, True, False]
     assert loaded.titles["extremes/long"] == "Title of extremes/long"
-
-
-def test_a_row_that_was_compared_with_nothing_is_no_mismatch(tmp_path: Path) -> None:
-    """A rung that the machine lacks is no mismatch, in the file and on the page."""
-    absent = passed("extremes/near", "f32", "omega", verdict=Status.UNAVAILABLE)
-    publish_document(tmp_path, STUDY, HARD, study((absent,), ()))
-    loaded = HARD.load(tmp_path)
-    (verdict,) = loaded.verdicts
-    assert loaded.is_met(verdict)
-
-
-def test_publish_remakes_it_from_the_data_alone(tmp_path: Path) -> None:
-    """The page is remade with the tables of a run, and linked from both; without data there is none."""
-    write(tmp_path, [passed("euler/a", "f64", "omega")], [])
-    publish(tmp_path)
-    assert not (tmp_path / STUDY.path).exists()
-    paths = publish_document(tmp_path, STUDY, HARD, study())
-    assert {path.suffix for path in paths} == {".json", ".md", ".csv", ".svg", ".pdf"}
-    texts = {p: p.read_bytes() for p in paths if p.suffix in (".md", ".csv")}
-    for path in texts:
-        path.unlink()
-    publish(tmp_path)
-    assert {path: path.read_bytes() for path in texts} == texts
-    assert "](tables/hard.md)" in (tmp_path / "README.md").read_text(encoding="utf-8")
-    index = (tmp_path / "tables" / "README.md").read_text(encoding="utf-8")
-    assert "[hard.md](hard.md)" in index
-    assert "[csv](hard.csv)" in index
 
 
 # Verdicts
@@ -133,8 +109,7 @@ def test_a_mismatch_stands_out(page: str) -> None:
 def test_a_pass_that_was_not_expected_is_told_too(tmp_path: Path) -> None:
     """A row that was foreseen to be vacuous and passed is a mismatch, with its reason."""
     lucky = replace(VACUOUS, verdict=Status.PASS)
-    publish_document(tmp_path, STUDY, HARD, study((lucky,), ("a mismatch",)))
-    (_, reason) = lines((tmp_path / STUDY.path).read_text(encoding="utf-8"), "`long`")
+    (_, reason) = lines(pages.page(study((lucky,), ("a mismatch",)), tmp_path), "`long`")
     assert "| pass" in reason
     assert "**vacuous**" in reason
 
@@ -148,11 +123,10 @@ def test_what_was_not_run_and_what_made_it_are_told(page: str) -> None:
     assert page.splitlines()[0] == MADE_BY
 
 
-def test_the_sheet_has_every_quantity(tmp_path: Path) -> None:
+def test_the_sheet_has_every_quantity() -> None:
     """A row for each verdict with every digit, what was expected and whether it came."""
-    publish_document(tmp_path, STUDY, HARD, study())
-    text = (tmp_path / "tables/hard.csv").read_text(encoding="utf-8")
-    cells = {(r["scene"], r["quantity"]): r for r in csv.DictReader(text.splitlines())}
+    rows = csv.DictReader(pages.sheet(study()).splitlines())
+    cells = {(r["scene"], r["quantity"]): r for r in rows}
     assert set(cells) == {(v.scene, v.quantity) for v in ALL}
     assert float(cells["extremes/near", "T"]["max"]) == DRIFT.max
     impulse = cells["extremes/vast", "impulse"]
@@ -278,20 +252,9 @@ def test_a_family_of_periods_has_the_most_periods() -> None:
     ]
 
 
-def test_the_sheet_of_the_reach_has_a_row_for_every_number_of_periods() -> None:
-    """An error that is missing says `lost`; a run that was not made has one row with its reason."""
-    cells = list(csv.DictReader(pages.reach_sheet(study()).splitlines()))
-    assert len(cells) == sum(len(one.periods) if one.errors else 1 for one in REACH)
-    made = [line for line in cells if line["periods"]]
-    assert {line["lost"] for line in made} == {"yes", "no"}
-    assert all((line["error"] == "") == (line["lost"] == "yes") for line in made)
-    assert all(line["why"] for line in cells if not line["periods"])
-    assert [float(line["error"]) for line in cells[:3]] == list(REACH[0].errors)
-
-
 def test_each_rung_is_a_line_beside_its_floor() -> None:
     """Digits achieved and attainable stand over the distance; a value without a run has no point."""
-    (picture,) = pages.pictures(study())
+    (picture,) = diagram.pictures(study())
     with plotting():
         figure = picture.figure()
         everything = figure.get_tightbbox(FigureCanvasAgg(figure).get_renderer())
@@ -311,10 +274,3 @@ def test_digits_left(digits: float) -> None:
     """An error of 10^-n leaves n digits; what is no number, or 1 and more, leaves none."""
     assert diagram.digits_left(10.0**-digits) == pytest.approx(digits)
     assert {diagram.digits_left(error) for error in (None, nan, inf, 1.0, 7.0)} == {0.0}
-
-
-def test_a_picture_of_nothing_is_refused() -> None:
-    """A study without runs of a family has no picture."""
-    assert pages.pictures(replace(study(), reach=())) == []
-    with pytest.raises(ValueError, match="expected runs of a family, got none @ reach"):
-        diagram.picture(replace(study(), reach=()))

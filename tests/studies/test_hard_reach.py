@@ -17,7 +17,6 @@ from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.taylor.driver import Taylor
-from taylor_verify.solvers.taylor.names import at_tolerance
 from taylor_verify_reports.studies.hard import reach
 from taylor_verify_reports.studies.hard.document import ReachRow
 from taylor_verify_reports.studies.hard.members import (
@@ -125,15 +124,6 @@ def axis() -> dict[str, dict[str, ReachRow]]:
     return {value: measured(one, value) for value in ("1e-2", "1e-10")}
 
 
-def test_digits_only_get_fewer(axis: dict[str, dict[str, ReachRow]]) -> None:
-    """Errors and floors are the largest so far: neither falls with the periods."""
-    for by_rung in axis.values():
-        for row in by_rung.values():
-            assert list(row.errors) == sorted(row.errors)
-            assert list(row.floors) == sorted(row.floors)
-            assert len(row.errors) == len(row.periods)
-
-
 def test_a_wider_rung_leaves_more(axis: dict[str, dict[str, ReachRow]]) -> None:
     """Floors are as the roundoffs, but for the steps that each rung takes; and so are the errors."""
     f64, f80 = axis["1e-2"]["f64"], axis["1e-2"]["f80"]
@@ -174,16 +164,6 @@ def test_another_orbit_is_not_followed(name: str, value: str, why: str) -> None:
     assert why in row.why
 
 
-def test_a_coarse_solver_reaches_less(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The digits are of what was solved: at a tolerance of 1e-6 there are no more than some six."""
-    one = short("euler-periods", {"f64": 1})
-    fine = measured(one, "1")["f64"]
-    monkeypatch.setattr(reach, "Taylor", lambda: at_tolerance("1e-6"))
-    coarse = measured(one, "1")["f64"]
-    assert fine.errors[0] <= GATE_FACTOR * fine.floors[0]
-    assert coarse.errors[0] > 1e4 * fine.errors[0]
-
-
 def test_nan_is_lost_for_ever() -> None:
     """The largest of numbers with a NaN among them is NaN, from there on; JSON has null for it."""
     errors = reach.up_to(np.array([1e-9] * 5 + [nan] + [1e-9] * 6))
@@ -191,10 +171,3 @@ def test_nan_is_lost_for_ever() -> None:
     assert all(error != error for error in errors[1:])
     row = reach.stored(ReachRow("a", "1", "f64", (1, 3, 10), errors, errors, 9, ""))
     assert row.errors == row.floors == (1e-9, None, None)
-
-
-def test_the_precision_of_mpmath_is_left_as_it_was() -> None:
-    """A measurement works at its own precision."""
-    before = mp.prec
-    measured(short("euler-periods", {"f32": 1}), "1")
-    assert mp.prec == before

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import pytest
-from builders.studies.hard import searched_family, verdict, worst_of
+from builders.studies.hard import searched_family, verdict
 from hypothesis import HealthCheck, example, given, settings, target
 from hypothesis import strategies as st
 
@@ -128,14 +128,6 @@ def test_the_worst_runs_with_the_extremes() -> None:
     """The folder holds one scene for each family and nothing else, and `run extremes` runs them."""
     assert sorted(STORED) == sorted(f"extremes/worst/{name}" for name in SEARCHED)
     assert set(STORED) <= set(library.named(library.EXTREMES))
-
-
-def test_scene_file_says_why_it_is_there() -> None:
-    """The text of the worst begins with its reason, and is the family's text besides."""
-    text = worst_of("euler-thing", 3.25).scene_text
-    assert text.startswith("# Why: of things")
-    assert "3.25 in omega" in text
-    assert text.endswith('title = "0.25"\n')
 
 
 def test_a_wrong_budget_is_refused(capsys: pytest.CaptureFixture[str]) -> None:

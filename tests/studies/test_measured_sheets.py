@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import csv
-import shutil
 from functools import cache
 from pathlib import Path
 
 import pytest
 from builders import reports
+from builders.studies.hard import study as hard_study
 from builders.studies.prices import study as prices_study
 
 from taylor_verify.records.provenance import Provenance
@@ -17,15 +17,17 @@ from taylor_verify_reports.claims.document import ClaimResiduals, ClaimRow, Clai
 from taylor_verify_reports.studies import registry, report
 from taylor_verify_reports.studies.claims import page as claims
 from taylor_verify_reports.studies.growth import page as growth
+from taylor_verify_reports.studies.hard.document import HARD
 from taylor_verify_reports.studies.prices import page as prices
 from taylor_verify_reports.studies.prices.document import PRICES
 
 
 @cache
 def measured_report() -> Path:
-    """A report with a document of every measurement, all of them short."""
+    """A report with the documents of some measurements, all of them short."""
     place = reports.folder()
-    shutil.copytree(reports.small(), place, dirs_exist_ok=True)
+    reports.write_growth(place)
+    HARD.write(place, hard_study())
     PRICES.write(place, prices_study())
     return place
 
@@ -60,7 +62,7 @@ def test_growth_has_a_row_for_every_exponent() -> None:
         assert cells["gate"] == (row.gate.verdict.value if row.gate else "")
 
 
-def test_prices_have_a_row_for_every_variant_and_rung() -> None:
+def test_prices_have_a_row_for_every_variant() -> None:
     """A row has the interval of its ratio."""
     study = PRICES.load(measured_report())
     lines = read(prices.sheet(study))

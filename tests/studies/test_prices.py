@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from random import Random
@@ -17,8 +16,7 @@ from taylor_verify.models.general import in_general_form
 from taylor_verify.models.problem import Problem
 from taylor_verify.scenes.precision import rung
 from taylor_verify.solvers.taylor.pace import Pace
-from taylor_verify.words.cells import NOTHING
-from taylor_verify_reports.studies.prices import page as page
+from taylor_verify.words.cells import figure
 from taylor_verify_reports.studies.prices.document import PRICES, PricesStudy
 from taylor_verify_reports.studies.prices.study import STUDY
 from taylor_verify_reports.studies.prices.variants import variants
@@ -89,7 +87,7 @@ def test_rows_count_what_is_built(measured: PricesStudy) -> None:
 
 
 def test_page_is_made_of_what_was_stored(tmp_path: Path, measured: PricesStudy) -> None:
-    """The page has every variant, is the same when made again, and needs a measurement."""
+    """The page has every variant with its price, is the same when made again, and needs a measurement."""
     assert STUDY.pages(tmp_path) == {}
     stored, made, flat = publish_document(tmp_path, STUDY, PRICES, measured)
     text = made.read_text(encoding="utf-8")
@@ -100,18 +98,7 @@ def test_page_is_made_of_what_was_stored(tmp_path: Path, measured: PricesStudy) 
         (line,) = [one for one in text.splitlines() if one.startswith(f"| {row.variant} ")]
         cells = [cell.strip() for cell in line.split("|")]
         assert cells[2:4] == [str(row.states), str(row.operations)]
+        assert cells[4].startswith(figure(row.step_ratio[0]))
     stored.write_text('{"rows": 3}', encoding="utf-8")
     with pytest.raises(ValueError, match=r"expected a list, got 3 @ rows @ .*prices\.json"):
         STUDY.pages(tmp_path)
-
-
-def test_each_rung_has_its_column(measured: PricesStudy) -> None:
-    """A variant has its ratio under each rung on which it was measured, and a dash under the others."""
-    bare, other, *_ = measured.rows
-    wide = replace(bare, rung="f128", order=40)
-    rows = (bare, replace(other, step_ratio=(2.0, 1.5, 2.5)), wide)
-    text = page.page(replace(measured, rows=rows))
-    (line,) = [one for one in text.splitlines() if one.startswith(f"| {other.variant} ")]
-    cells = [cell.strip() for cell in line.split("|")]
-    assert cells[4:6] == ["2.00 [1.50, 2.50]", NOTHING]
-    assert "The order of a step is 20 on f64, 40 on f128." in text

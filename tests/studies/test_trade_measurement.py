@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import gc
 import json
-import random
 from dataclasses import dataclass, fields, replace
+from functools import partial
 from math import comb, isclose
 from pathlib import Path
 from statistics import median
@@ -13,21 +14,27 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-import taylor_verify
+from taylor_verify.batch.runs import run_all
 from taylor_verify.cli import main
 from taylor_verify.models.problem import Problem
-from taylor_verify.records import store
 from taylor_verify.records.standing import Standing
+from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines.peer import Peer
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
-from taylor_verify.tradeoff.cold import in_a_new_process
 from taylor_verify.tradeoff.document import TradePoint
-from taylor_verify.tradeoff.order_statistics import CONFIDENCE, coverage, estimate, place
 from taylor_verify.tradeoff.setting import setting as real_setting
+from taylor_verify.tradeoff.timing import (
+    CONFIDENCE,
+    clock_resolution,
+    coverage,
+    estimate,
+    in_rounds,
+    place,
+)
 from taylor_verify_reports.studies.tradeoff import measurement, rounds
 from taylor_verify_reports.studies.tradeoff.measurement import (
     PROCESSES,
@@ -35,7 +42,9 @@ from taylor_verify_reports.studies.tradeoff.measurement import (
     published_settings,
     scene_named,
 )
-from taylor_verify_reports.studies.tradeoff.rounds import YARDSTICK, clock_resolution, measured
+from taylor_verify_reports.studies.tradeoff.rounds import YARDSTICK, measured
+
+F64 = rung("f64")
 
 # The median and its interval.
 
@@ -69,22 +78,23 @@ def test_the_published_number_of_processes_is_the_smallest_that_suffices() -> No
     assert estimate(range(PROCESSES - 1)).low is None
 
 
-def test_the_interval_holds_the_median_as_often_as_it_says() -> None:
-    """A thousand sets of six values with a long tail have intervals that cover the median as stated."""
-    draw = random.Random(7)
-    sets = 4000
-    covered = 0
-    for _ in range(sets):
-        estimated = estimate(2.0 ** draw.gauss(0, 3) for _ in range(PROCESSES))
-        assert estimated.low is not None
-        assert estimated.high is not None
-        covered += estimated.low <= 1 <= estimated.high
-    expected = coverage(PROCESSES, 1)
-    # Four standard deviations of a binomial count.
-    assert abs(covered / sets - expected) <= 4 * (expected * (1 - expected) / sets) ** 0.5
-
-
 # The rounds of a process.
+
+
+def test_each_round_has_every_turn_in_an_order_of_its_own() -> None:
+    """Answers stand by turn and round, the order is random, and garbage is not collected meanwhile."""
+    called: list[int] = []
+
+    def turn(number: int) -> tuple[int, bool]:
+        called.append(number)
+        return len(called), gc.isenabled()
+
+    answers = in_rounds([partial(turn, k) for k in range(8)], 3, seed=2)
+    rounds = [called[k : k + 8] for k in range(0, 24, 8)]
+    assert all(sorted(each) == [*range(8)] for each in rounds)
+    assert len(set(map(tuple, rounds))) == 3
+    assert answers[5] == [(8 * k + each.index(5) + 1, False) for k, each in enumerate(rounds)]
+    assert gc.isenabled()
 
 
 class Machine:
@@ -128,20 +138,14 @@ def machine(monkeypatch: pytest.MonkeyPatch) -> Machine:
 
     def made_up(name: str, on: object) -> object:
         if name == YARDSTICK[0]:
-            return replace(real_setting(*_taylor()), solver=Paced(made, name, 0.02))
+            return replace(real_setting("taylor", F64), solver=Paced(made, name, 0.02))
         word, _, seconds = name.partition(":")
         outcome = Outcome.NON_FINITE if word == "broken" else Outcome.FINISHED
         solver = Paced(made, name, float(seconds), outcome)
-        return replace(real_setting(*_taylor()), solver=solver)
+        return replace(real_setting("taylor", F64), solver=solver)
 
     monkeypatch.setattr(rounds, "setting", made_up)
     return made
-
-
-def _taylor() -> tuple[str, object]:
-    from taylor_verify.scenes.precision import rung
-
-    return "taylor", rung("f64")
 
 
 @pytest.fixture(scope="module")
@@ -162,19 +166,6 @@ def test_a_ratio_is_formed_within_its_round(machine: Machine, scene: Scene) -> N
     for one in ratios.values():
         assert 2 / 1.01**14 <= one.ratio <= 2 * 1.01**14
         assert one.inner == pytest.approx(one.seconds / 2)
-
-
-def test_each_round_has_an_order_of_its_own_and_every_setting(
-    machine: Machine, scene: Scene
-) -> None:
-    """The order of each round is random, and every round has the yardstick."""
-    asked = names(*(f"a{k}:0.04" for k in range(8)))
-    measured(scene, asked, seed=3, rounds=4, resolution=1e-9, clock=machine.clock)
-    each = [machine.solved[k : k + 9] for k in range(0, len(machine.solved), 9)]
-    assert len(each) == 5
-    assert all(sorted(one) == sorted(each[0]) for one in each)
-    assert len({tuple(one) for one in each[1:]}) > 1
-    assert all(YARDSTICK[0] in one for one in each)
 
 
 def test_a_short_solve_is_repeated_until_the_clock_resolves_it(
@@ -257,12 +248,12 @@ def test_a_scene_beyond_its_end_has_the_solvers_of_the_columns_alone() -> None:
 def test_numbers_and_times_are_apart(monkeypatch: pytest.MonkeyPatch, scene: Scene) -> None:
     """No time stands among the numbers, and every setting that is sound has one among the times."""
     few = [
-        replace(real_setting(name, _taylor()[1]), withheld=reason)  # type: ignore[arg-type]
+        replace(real_setting(name, F64), withheld=reason)
         for name, reason in (("taylor", ""), ("taylor?tol=1e-6", ""), ("scipy:DOP853", "too slow"))
     ]
     monkeypatch.setattr(measurement, "published_settings", lambda scene, outside: few)
     monkeypatch.setattr(measurement, "plain_doubles", lambda: iter(()))
-    monkeypatch.setattr(measurement, "in_a_new_process", lambda work, *given: work(*given))
+    monkeypatch.setattr(measurement, "run_all", lambda work, asked, workers: [work(*asked)])
     finished: list[str] = []
     numbers, times = measurement.measurement(["euler/generic"], 2, 1, finished=finished.append)
     (one,) = numbers.scenes
@@ -281,14 +272,14 @@ def test_numbers_and_times_are_apart(monkeypatch: pytest.MonkeyPatch, scene: Sce
 
 def test_the_yardstick_is_what_everybody_gets() -> None:
     """The yardstick is the default driver of `run`."""
-    assert real_setting(*_taylor()).solver == Taylor()  # type: ignore[arg-type]
+    assert real_setting("taylor", F64).solver == Taylor()
 
 
 def test_a_process_of_its_own_measures_the_same_settings(scene: Scene) -> None:
     """Only names and numbers are sent between processes."""
     short = replace(scene, clock=replace(scene.clock, instants=scene.clock.instants[:3]))
     asked = [(short, names("taylor", "taylor?tol=1e-6"))]
-    ratios = in_a_new_process(measurement.one_process, asked, 1, 1)
+    (ratios,) = run_all(measurement.one_process, [(asked, 1, 1)], workers=1)
     assert set(ratios) == {short.name}
     assert set(ratios[short.name]) == set(names("taylor", "taylor?tol=1e-6"))
     assert all(one.seconds > 0 for one in ratios[short.name].values())
@@ -297,11 +288,11 @@ def test_a_process_of_its_own_measures_the_same_settings(scene: Scene) -> None:
 def test_the_verb_writes_data_and_page(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """`publish tradeoff` measures and writes; plain `publish` makes the page again from the data."""
-    few = (real_setting("taylor", _taylor()[1]),)  # type: ignore[arg-type]
+    """`publish tradeoff` measures, and writes both documents, the page, its sheet and its pictures."""
+    few = (real_setting("taylor", F64),)
     whole = measurement.measurement
     monkeypatch.setattr(measurement, "published_settings", lambda scene, outside: few)
-    monkeypatch.setattr(measurement, "in_a_new_process", lambda work, *given: work(*given))
+    monkeypatch.setattr(measurement, "run_all", lambda work, asked, workers: [work(*asked)])
     monkeypatch.setattr(
         measurement,
         "measurement",
@@ -317,10 +308,3 @@ def test_the_verb_writes_data_and_page(
         "tradeoff.md",
         "tradeoff.csv",
     }
-    page = tmp_path / "tables" / "tradeoff.md"
-    before = page.read_text(encoding="utf-8")
-    page.unlink()
-    store.write(tmp_path, taylor_verify.run("euler/rest").verdicts, [])
-    assert main(["publish", "--from", str(tmp_path)]) == 0
-    assert page.read_text(encoding="utf-8") == before
-    assert "tables/tradeoff.md" in (tmp_path / "README.md").read_text(encoding="utf-8")

@@ -5,34 +5,27 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from builders.scenes import asked_at
+from builders.scenes import asked_at, scene_file
 
 import taylor_verify
 from taylor_verify.cli import main
-from taylor_verify.models.problem import Problem, pose
 from taylor_verify.records.standing import Standing
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.registry import solver_named, solver_names
-from taylor_verify.solvers.solver import Callback, Solver
+from taylor_verify.solvers.registry import solver_names
 from taylor_verify.solvers.taylor.driver import Taylor
-from taylor_verify.solvers.taylor.names import at_tolerance
-from taylor_verify.solvers.trajectory import Trajectory
-from taylor_verify.tradeoff.cold import cold
-from taylor_verify.tradeoff.recommendation import recommend
 from taylor_verify.tradeoff.setting import (
     NOTHING,
     STEP,
     TOLERANCE,
-    Setting,
     chosen,
     outside,
     setting,
@@ -48,15 +41,6 @@ def short(name: str) -> Scene:
 
 
 # Names.
-
-
-def test_a_tolerance_of_taylor_has_a_name() -> None:
-    """`taylor?tol=NUMBER` is the driver at that tolerance, exactly as written."""
-    solver = solver_named("taylor?tol=1e-9")
-    assert isinstance(solver, Taylor)
-    assert solver.tolerance == Fraction(1, 10**9)
-    assert solver == at_tolerance("1e-9")
-    assert solver_named("taylor") == Taylor()
 
 
 def test_checking_a_tolerance_loads_no_heyoka() -> None:
@@ -177,114 +161,16 @@ def test_an_unsuited_solver_is_unavailable_and_not_run(scene: str, name: str, re
     assert reason in p.because
 
 
-def test_a_solver_of_ones_own_suits_everything() -> None:
-    """Nobody knows beforehand what a stranger's code is made for."""
-    problem = pose(short("kirchhoff/screw"), F64)
-    assert Callback(lambda problem: []).unsuited(problem) == ""
-    assert solver_named("process:./mine").unsuited(problem) == ""
-
-
-# Recommendations.
-
-
-def test_a_recommendation_can_be_typed() -> None:
-    """The name of the recommended solver, given to `run`, meets the target again."""
-    scene = short("euler/generic")
-    asked = [one for one in settings(scene, ["f64"]) if isinstance(one.solver, Taylor)]
-    recommendation = recommend(scene, 1e-5, asked)
-    assert solver_named(recommendation.solver.name) == recommendation.solver
-    (_, omega, *_) = taylor_verify.run(
-        scene, recommendation.solver.name, recommendation.rung
-    ).verdicts
-    assert omega.max <= 1e-5
-    assert recommendation.solver.name in recommendation.document()["command"]
-
-
-# The first solve of all.
-
-
-@dataclass(frozen=True)
-class Unsendable(Solver):
-    """Holds what cannot be sent to another process."""
-
-    name: str = "unsendable"
-    setting: str = ""
-
-    def solve(self, problem: Problem) -> Trajectory:
-        return Taylor().solve(problem)
-
-    def __reduce__(self) -> str:
-        raise TypeError("not sent")
-
-
-def test_a_cold_solve_is_told_part_by_part() -> None:
-    """Importing, compiling and solving are parts of the whole, and taylor has something to compile."""
-    labels: list[str] = []
-    asked = [setting("taylor", F64), Setting(Unsendable(), F64, None, NOTHING, "")]
-    times = cold(short("euler/generic"), asked, labels.append)
-    # What cannot be sent has no cold figure, and is no error.
-    assert list(times) == asked[:1]
-    assert labels == [one.label for one in asked]
-    (one,) = times.values()
-    whole = one.pop("whole")
-    assert set(one) == {"process", "importing", "compiling", "solving", "rest"}
-    assert sum(one.values()) == pytest.approx(whole)
-    assert min(one["importing"], one["compiling"], one["solving"]) > 0
-
-
-def test_the_library_of_a_solver_is_imported_before_it_is_timed() -> None:
-    """A first solve has heyoka loaded when the solver begins: to import is not to compile."""
-    script = (
-        "import pickle, sys\n"
-        "from taylor_verify.scenes.precision import rung\n"
-        "from taylor_verify.scenes.reading.reader import load\n"
-        "from taylor_verify.solvers.taylor import driver\n"
-        "from taylor_verify.tradeoff.cold import first_solve\n"
-        "def compiled(*_, **__): sys.exit('heyoka' not in sys.modules)\n"
-        "driver.compiled = compiled\n"
-        "assert 'heyoka' not in sys.modules\n"
-        "first_solve(pickle.dumps((load('euler/rest'), driver.Taylor(), rung('f64'))))\n"
-    )
-    subprocess.run([sys.executable, "-c", script], check=True)
-
-
 # The command.
 
 
-@pytest.fixture
-def scene_file(tmp_path: Path) -> str:
-    path = tmp_path / "short.toml"
-    path.write_text(
-        'title = "A moment"\nmodel = "euler"\n[body]\ninertia = [1, 2, 3]\n'
-        "[initial]\nomega = [1, 0.4, 0.3]\n[time]\nend = 1\nsamples = 3\n",
-        encoding="utf-8",
-    )
-    return str(path)
-
-
 def test_the_verb_measures_what_it_is_told(
-    scene_file: str, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The verb measures the settings of --solver and taylor's; --cold adds the parts of a first solve."""
-    call = ["tradeoff", scene_file, "--rung", "f32", "--repeats", "1", "--cold", "--json"]
+    """The verb measures the settings of --solver, and taylor's beside them."""
+    call = ["tradeoff", str(scene_file(tmp_path)), "--rung", "f32", "--repeats", "1", "--json"]
     assert main([*call, "--solver", "geometric:splitting?step=0.1", "--solver", "taylor"]) == 0
     (trade,) = json.loads(capsys.readouterr().out)["scenes"]
     families = [row["family"] for row in trade["points"]]
     assert set(families) == {"taylor f32", "geometric splitting"}
-    for row in trade["points"]:
-        assert (row["cold"] is not None) == (row["standing"] == "sound")
-        assert row["requested"] is not None
-
-
-def test_a_wrong_solver_is_refused_before_any_work(
-    scene_file: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Exit status 2, and the nearest name there is."""
-    assert main(["tradeoff", scene_file, "--solver", "taylor?tol=none"]) == 2
-    assert "@ --solver" in capsys.readouterr().err
-
-
-def test_outside_asks_for_the_trade(capsys: pytest.CaptureFixture[str]) -> None:
-    """`publish --outside` alone would do nothing of what it says."""
-    assert main(["publish", "--outside"]) == 2
-    assert "`publish tradeoff`" in capsys.readouterr().err
+    assert all(row["requested"] is not None for row in trade["points"])

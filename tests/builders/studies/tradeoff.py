@@ -6,13 +6,13 @@ import re
 from math import log10
 from typing import Any
 
+from taylor_verify.records.provenance import Machine
 from taylor_verify.records.standing import Standing
-from taylor_verify.tradeoff.document import (
+from taylor_verify.tradeoff.document import TradePoint
+from taylor_verify_reports.studies.tradeoff.document import (
     PlainDouble,
-    TimingMachine,
     TimingMethod,
     TradeNumbers,
-    TradePoint,
     TradeScene,
     TradeTiming,
     TradeTimings,
@@ -102,7 +102,7 @@ NUMBERS_MADE = TradeNumbers(
 )
 
 TIMES_MADE = TradeTimings(
-    machine=TimingMachine("A chip", "3.11.7", "taylor-verify publish"),
+    machine=Machine(python="3.11.7", processor="A chip", command="taylor-verify publish"),
     method=TimingMethod(
         processes=6,
         rounds=3,

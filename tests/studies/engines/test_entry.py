@@ -78,17 +78,6 @@ def test_the_scenes_of_the_list_are_those_of_the_folder() -> None:
             assert all((t / Fraction(run.value)).denominator == 1 for t in elapsed)
 
 
-def test_the_list_asks_for_what_a_comparison_needs() -> None:
-    """The list has six versions of MuJoCo, four of Rapier, four steps an engine, three plain solvers."""
-    entries = entry_list()
-    rows = {row.name: row for row in reversed(entries.entry)}
-    assert len(rows["mujoco"].versions) >= 6
-    assert len(rows["rapier"].versions) >= 4
-    assert all(len(row.values) in (0, *range(4, 9)) for row in entries.entry)
-    assert {row.name for row in entries.entry if row.plain} >= {"taylor", "scipy", "geometric"}
-    assert len(entries.advised) >= 2
-
-
 def test_a_fault_of_the_list_is_named(tmp_path: Path) -> None:
     """The error names the place and the file."""
     file = tmp_path / "list.toml"

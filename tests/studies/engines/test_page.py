@@ -26,7 +26,7 @@ from taylor_verify_reports.studies.engines.document import EngineRow, Standing
 from taylor_verify_reports.studies.engines.engine_page import pages
 from taylor_verify_reports.studies.engines.entry import Entry, EntryList
 from taylor_verify_reports.studies.engines.pictures import energy, sweeps, work
-from taylor_verify_reports.studies.engines.ranking import digits, settings
+from taylor_verify_reports.studies.engines.ranking import settings
 from taylor_verify_reports.studies.engines.study import STUDY
 
 
@@ -196,12 +196,6 @@ def test_a_table_as_shipped_stands_beside_what_is_set(tmp_path: Path) -> None:
     assert re.search(
         r"\| Spinner \| lie-rk4 +\| `oblique` \| +0\.1 \| +0\.250 \| .* 1\.00e-3 \|", text
     )
-
-
-def test_digits_are_those_of_the_largest_error() -> None:
-    """An error as large as the motion, and NaN, have no right digits."""
-    assert digits(1e-3) == pytest.approx(3)
-    assert digits(2.0) == digits(float("inf")) == 0
 
 
 # The pictures.

@@ -155,8 +155,6 @@ scenes* SCENE  scene files, names of shipped scenes, patterns or folders of ship
   --solver "process:./mine" --solver "geometric:splitting?step=0.01"
 --outside  also measure the integrators of other libraries, each in an environment of its own, which is
   downloaded the first time
---cold  also start each setting in a new process with nothing compiled, and show the times of importing,
-  compiling and solving
 --repeats N [5]  how often each setting is timed; default: 5
 --seed N [1]  the seed of the order and of the starts; default: 1
 --out DIR  write the numbers and the pictures to DIR (needs matplotlib)

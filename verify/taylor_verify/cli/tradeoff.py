@@ -30,7 +30,6 @@ from taylor_verify.records.replacement import replace_files
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines.engine import prepare
 from taylor_verify.solvers.engines.launcher import NotMade
-from taylor_verify.tradeoff.cold import cold
 from taylor_verify.tradeoff.document import label
 from taylor_verify.tradeoff.recommendation import OutOfReach, check_target, recommended
 from taylor_verify.tradeoff.setting import (
@@ -41,8 +40,8 @@ from taylor_verify.tradeoff.setting import (
     settings,
     toleranced,
 )
-from taylor_verify.tradeoff.timing import cold_caches
-from taylor_verify.tradeoff.trade_off import TradeOff, sound_points, trade_off
+from taylor_verify.tradeoff.solves import cold_caches
+from taylor_verify.tradeoff.trade_off import trade_off
 
 _NOT_RUN = "not run"
 _HEADINGS = {
@@ -74,8 +73,6 @@ def answer(options: argparse.Namespace) -> Answer:
             with working(f"tradeoff {scene.name}"):
                 trade = trade_off(scene, asked(scene), options.repeats, options.seed)
                 document = trade.document()
-                if options.cold:
-                    _add_cold(document, trade)
                 if target is not None:
                     document["recommendation"] = None
                     try:
@@ -123,14 +120,6 @@ def _make_environments() -> None:
             prepare(name, say)
 
 
-def _add_cold(document: dict[str, Any], trade: TradeOff) -> None:
-    """Put into each sound point the cost of its first solve in a process of its own."""
-    asked = [p.timed.setting for p in sound_points(trade.points)]
-    taken = {setting.label: parts for setting, parts in cold(trade.scene, asked).items()}
-    for row, p in zip(document["points"], trade.points, strict=True):
-        row["cold"] = taken.get(p.label)
-
-
 def _target(text: str | None) -> float | None:
     if text is None:
         return None
@@ -176,10 +165,6 @@ def _print_trade(page: Page, trade: Mapping[str, Any]) -> None:
             f"Attainable, one rounding of the state a sample and nothing else: {', '.join(floors)}."
         )
         page.line(words)
-    if any("cold" in row for row in trade["points"]):
-        page.line()
-        page.line(bold("In a process of its own, nothing compiled"))
-        page.console.print(_cold_table(trade["points"]))
     for heading, key in _HEADINGS.items():
         if trade.get(key):
             page.line()
@@ -225,17 +210,6 @@ def _points_table(trade: Mapping[str, Any]) -> Table:
             *(_short(row[key]) for key in ("seconds", "spread", "first_seconds")),
             _short(row["compile_seconds"]),
         )
-    return table
-
-
-def _cold_table(points: Sequence[Mapping[str, Any]]) -> Table:
-    """Return the seconds of the first solve, part by part, and of a solve after it."""
-    parts = ("process", "importing", "compiling", "solving", "rest", "whole")
-    table = _table(("setting",), (*parts, "later solves"))
-    for row in points:
-        if row.get("cold"):
-            cells = [*(row["cold"][part] for part in parts), row["seconds"]]
-            table.add_row(Text(_label(row)), *(_short(value) for value in cells))
     return table
 
 

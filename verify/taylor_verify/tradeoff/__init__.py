@@ -50,7 +50,7 @@ def tradeoff(
         If ``repeats`` is below 1.
     """
     from taylor_verify.scenes.reading.reader import as_scene
-    from taylor_verify.tradeoff.timing import REPEATS, SEED, cold_caches
+    from taylor_verify.tradeoff.solves import REPEATS, SEED, cold_caches
     from taylor_verify.tradeoff.trade_off import trade_off
 
     repeats, seed = REPEATS if repeats is None else repeats, SEED if seed is None else seed
@@ -96,6 +96,6 @@ def recommend(
         For an error that is no positive number.
     """
     from taylor_verify.tradeoff import recommendation
-    from taylor_verify.tradeoff.timing import SEED
+    from taylor_verify.tradeoff.solves import SEED
 
     return recommendation.recommend(scene, error, asked, SEED if seed is None else seed)

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from functools import lru_cache
 from math import ceil, inf, log2
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -24,6 +24,8 @@ from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.scene import Scene
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # Digits of a truth that only shows how large the motion is.
 _DIGITS: Final = 15
@@ -39,13 +41,23 @@ def least_error(scene: Scene, rung: Rung) -> float | None:
     """Return the largest attainable error of all tracked quantities and samples; None if unknown."""
     try:
         given = pose(scene, rung).given
-        truth = solution(given).motion(given.clock.elapsed, _DIGITS)
-        base = floor(given, scene, rung.unit_roundoff, 0)
+        return float(np.max(floors(given, scene, rung, 0)))
     except (NotRepresentable, Unsettled):
         return None
+
+
+def floors(given: Scene, scene: Scene, rung: Rung, steps: int) -> Floats:
+    """Return the largest attainable error of all tracked quantities at each sample of ``given``.
+
+    ``given`` is ``scene`` as the rung rounds it. Raises Unsettled if the conditioning of the orbit cannot
+    be computed.
+    """
+    truth = solution(given).motion(given.clock.elapsed, _DIGITS)
+    base = floor(given, scene, rung.unit_roundoff, steps)
     # The truth is compared with itself, because only the names and the scales of the errors are needed.
     states = state_errors(given, truth, truth)
-    return float(max(np.max(base.of_state(errors)) for errors in states))
+    worst: Floats = np.max([base.of_state(errors) for errors in states], axis=0).astype(float)
+    return worst
 
 
 def left_out(scene: Scene, rungs: Iterable[Rung], error: float) -> dict[Rung, str]:

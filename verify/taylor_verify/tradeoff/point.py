@@ -11,7 +11,7 @@ from taylor_verify.records.standing import Standing
 from taylor_verify.solvers.trajectory import Outcome
 from taylor_verify.tradeoff.accuracy import Accuracy
 from taylor_verify.tradeoff.document import TradePoint
-from taylor_verify.tradeoff.timing import Timed
+from taylor_verify.tradeoff.solves import Timed
 
 
 @dataclass(frozen=True)

@@ -20,8 +20,8 @@ from taylor_verify.tradeoff.attainability import left_out, narrowest
 from taylor_verify.tradeoff.document import label
 from taylor_verify.tradeoff.point import Point
 from taylor_verify.tradeoff.setting import Setting, settings
+from taylor_verify.tradeoff.solves import SEED
 from taylor_verify.tradeoff.starts import nearby
-from taylor_verify.tradeoff.timing import SEED
 from taylor_verify.tradeoff.trade_off import TradeOff, sound_points, trade_off
 
 # A margin of one binary digit for starts outside the ensemble.

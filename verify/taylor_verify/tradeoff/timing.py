@@ -1,145 +1,134 @@
-"""Times of each setting in rounds of random order, with the first solve timed separately.
+"""Times in rounds: everything that is timed has its turn in each round, in a random order.
 
-A time is the solver's own propagation, as its trajectory states it. The first solve of a setting compiles,
-imports and fills caches. Later solves are repeated in rounds of random order, so that disturbances of the
-machine do not always hit the same setting.
+A disturbance of the machine does not always hit the same turn, and a ratio is formed within its round, when
+the machine was equally warm, busy and fast. Short calls are repeated until the clock resolves them.
+
+A few values are summed up by their median, with an interval without assumptions on their distribution. Each
+of n independent values from one distribution is below its median with probability 1/2. Therefore the median
+lies between the k-th smallest and the k-th largest value with probability
+
+    1 - 2 sum_{i<k} C(n, i) / 2^n
+
+or more, for any distribution (H. A. David and H. N. Nagaraja, Order Statistics, 3rd ed. (2003), 7.1).
+The interval has the largest k with the required confidence.
 """
 
 from __future__ import annotations
 
-import os
+import gc
 import random
-import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
-from time import perf_counter
-from typing import Final
+from math import ceil, comb, inf
+from statistics import median
+from time import perf_counter, process_time
+from typing import Final, NamedTuple, TypeVar
 
-from taylor_verify.models.problem import Problem
-from taylor_verify.solvers.trajectory import Outcome, Trajectory
-from taylor_verify.tradeoff.setting import Setting
-
-REPEATS: Final = 5
-SEED: Final = 1
-# If a setting takes more seconds, finer ones of its family are not run. Every setting is repeated once, and
-# then only while all its solves have taken fewer seconds together.
-PATIENCE: Final = 2.0
-_HEYOKA_CACHE: Final = "HEYOKA_CACHE_DIR"
-
-# The explanation that stands with all times.
-WHAT_IS_TIMED: Final = (
-    "the solver's own propagation; taylor runs compiled equations and looks for its longest step in "
-    "Python, scipy calls straight-line equations in "
-    "Python, geometric and odefun are Python throughout, a program of one's own is timed as it states "
-    "itself, and those of other libraries state a later propagation than their first, on the "
-    "processor's clock where their process stays"
-)
-
+Answer = TypeVar("Answer")
+# A function that returns seconds.
 Clock = Callable[[], float]
 
+# The least duration of a measurement: an interrupt does not matter then, nor what the clock costs.
+LEAST_SECONDS: Final = 1e-2
+_FEWEST_ROUNDS: Final = 2
+_MOST_CALLS: Final = 1000
 
-@dataclass(frozen=True)
-class Timed:
-    """The first answer of a setting, and the times of its later solves in seconds.
+CONFIDENCE: Final = 0.95
+FORMULA: Final = "1 - 2 sum_{i<k} C(n, i)/2^n"
 
-    ``first`` is the whole time of the first solve. ``seconds`` is empty for a run that failed. ``inner`` is
-    the part of the best time that another library's compiled integrator took, if known.
+
+# Rounds.
+
+
+def in_rounds(
+    turns: Sequence[Callable[[], Answer]], rounds: int, seed: int, seconds: float = inf
+) -> list[list[Answer]]:
+    """Call every turn once in each round, in a random order, and return the answers of each turn by round.
+
+    After the first round, which may set something up, and a second one no round begins that is so many
+    ``seconds`` later than the first.
     """
-
-    setting: Setting
-    trajectory: Trajectory
-    first: float
-    seconds: tuple[float, ...] = ()
-    inner: float | None = None
-
-    @property
-    def best(self) -> float | None:
-        """The shortest time; None for a run that failed."""
-        return min(self.seconds, default=None)
-
-    @property
-    def spread(self) -> float | None:
-        """The slowest time over the fastest."""
-        return max(self.seconds) / self.best if self.best else None
-
-
-def timed(
-    problems: Mapping[Setting, Problem | str],
-    repeats: int,
-    seed: int,
-    clock: Clock = perf_counter,
-    patience: float = PATIENCE,
-) -> list[Timed]:
-    """Solve every setting once, and those that finished ``repeats`` times more; return all in their order.
-
-    A text in place of a problem is the reason why a setting cannot run. Without repeats there is only the
-    first time, which is enough to measure errors. A setting is not run, and its answer says so, if a
-    coarser setting of its family took more than ``patience`` seconds.
-    """
-    firsts = _first_solves(problems, clock, patience)
-    finished = [first for first in firsts if first.trajectory.outcome is Outcome.FINISHED]
-    # Only the seconds of each solve are stored, because whole answers would fill the memory.
-    again: dict[Setting, list[tuple[float, float | None]]] = {
-        first.setting: [] for first in finished
-    }
-    spent = {first.setting: first.trajectory.seconds for first in finished}
-    posed = {key: problem for key, problem in problems.items() if not isinstance(problem, str)}
-    order = random.Random(seed)
-    for _ in range(repeats):
-        settings = [s for s, made in again.items() if not made or spent[s] <= patience]
-        order.shuffle(settings)
-        for setting in settings:
-            solved = setting.solver.solve(posed[setting])
-            again[setting].append((solved.seconds, solved.inner_seconds))
-            spent[setting] += solved.seconds
-    return [
-        _with_times(first, again[first.setting]) if first.setting in again else first
-        for first in firsts
-    ]
-
-
-def _with_times(first: Timed, again: Sequence[tuple[float, float | None]]) -> Timed:
-    """Return the answer with the times of its later solves, or of its only one."""
-    solves = again or [(first.trajectory.seconds, first.trajectory.inner_seconds)]
-    _, inner = min(solves, key=lambda solve: solve[0])
-    return replace(first, seconds=tuple(seconds for seconds, _ in solves), inner=inner)
-
-
-def _first_solves(
-    problems: Mapping[Setting, Problem | str], clock: Clock, patience: float
-) -> list[Timed]:
-    """Return the first answer of every setting, or the reason why it was not run."""
-    solves: list[Timed] = []
-    # Families whose finer settings are not run.
-    slow: set[str] = set()
-    for setting, problem in problems.items():
-        if isinstance(problem, str) or setting.family in slow:
-            coarser = f"a coarser setting took more than {patience:g} s"
-            because = problem if isinstance(problem, str) else coarser
-            nothing = Trajectory(Outcome.NOT_STARTED, detail=because)
-            solves.append(Timed(setting, nothing, first=0.0))
-            continue
-        began = clock()
-        trajectory = setting.solver.solve(problem)
-        solves.append(Timed(setting, trajectory, first=clock() - began))
-        if not trajectory.seconds <= patience:
-            slow.add(setting.family)
-    return solves
+    answers: list[list[Answer]] = [[] for _ in turns]
+    order, draw = list(range(len(turns))), random.Random(seed)
+    end = inf
+    with _without_garbage_collection():
+        for number in range(rounds):
+            if number >= _FEWEST_ROUNDS and perf_counter() > end:
+                break
+            draw.shuffle(order)
+            for i in order:
+                answers[i].append(turns[i]())
+            if number == 0:
+                end = perf_counter() + seconds
+    return answers
 
 
 @contextmanager
-def cold_caches() -> Iterator[None]:
-    """Give heyoka an empty cache, so that systems are compiled anew, and remove it afterwards.
+def _without_garbage_collection() -> Iterator[None]:
+    """Collect garbage once, and then not until the end, so that it disturbs no turn."""
+    was_enabled = gc.isenabled()
+    gc.collect()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_enabled:
+            gc.enable()
 
-    Code that this process has compiled before stays in memory; a cold start needs a process of its own.
+
+def calls_to_time(seconds: float, least: float = LEAST_SECONDS) -> int:
+    """Return the number of calls of so many ``seconds`` that last ``least`` seconds together."""
+    return min(_MOST_CALLS, max(1, ceil(least / seconds))) if seconds > 0 else _MOST_CALLS
+
+
+def seconds_of(call: Callable[[], object], count: int, clock: Clock = process_time) -> float:
+    """Return the mean seconds of so many calls."""
+    began = clock()
+    for _ in range(count):
+        call()
+    return (clock() - began) / count
+
+
+def clock_resolution(clock: Clock = perf_counter) -> float:
+    """Return the smallest observed step of the clock, in seconds."""
+
+    def step() -> float:
+        began = clock()
+        while (now := clock()) == began:
+            pass
+        return now - began
+
+    return min(step() for _ in range(100))
+
+
+# The median of a few values.
+
+
+class Estimate(NamedTuple):
+    """The median of some values; ``low`` and ``high`` enclose the median of their distribution.
+
+    Both are None if the values are too few for the confidence.
     """
-    before = os.environ.get(_HEYOKA_CACHE)
-    with tempfile.TemporaryDirectory() as empty:
-        os.environ[_HEYOKA_CACHE] = empty
-        try:
-            yield
-        finally:
-            del os.environ[_HEYOKA_CACHE]
-            if before is not None:
-                os.environ[_HEYOKA_CACHE] = before
+
+    median: float
+    low: float | None
+    high: float | None
+
+
+def estimate(values: Iterable[float]) -> Estimate:
+    """Return the median of the values, at least one, with its interval at CONFIDENCE."""
+    ranked = sorted(values)
+    rank = place(len(ranked), CONFIDENCE)
+    low, high = (ranked[rank - 1], ranked[-rank]) if rank else (None, None)
+    return Estimate(median(ranked), low, high)
+
+
+def coverage(count: int, rank: int) -> float:
+    """Return the probability that the median is between the rank-th smallest and largest value."""
+    return 1 - 2 * sum(comb(count, i) for i in range(rank)) * 0.5**count
+
+
+def place(count: int, confidence: float) -> int:
+    """Return the largest rank whose interval has the confidence; 0 if not even rank 1 has it."""
+    ranks = range(1, (count + 1) // 2 + 1)
+    return max((rank for rank in ranks if coverage(count, rank) >= confidence), default=0)

@@ -17,14 +17,8 @@ from taylor_verify.tradeoff.attainability import least_error
 from taylor_verify.tradeoff.pareto import pareto
 from taylor_verify.tradeoff.point import Point, digits, point
 from taylor_verify.tradeoff.setting import Setting, settings
-from taylor_verify.tradeoff.timing import (
-    PATIENCE,
-    REPEATS,
-    SEED,
-    WHAT_IS_TIMED,
-    Clock,
-    timed,
-)
+from taylor_verify.tradeoff.solves import PATIENCE, REPEATS, SEED, WHAT_IS_TIMED, timed
+from taylor_verify.tradeoff.timing import Clock
 
 
 @dataclass(frozen=True)
@@ -86,7 +80,7 @@ def trade_off(
     """Measure the errors and the best times of the settings ``asked``, or of all.
 
     There are ``repeats`` rounds, whose order ``seed`` draws. ``clock`` returns seconds. A setting that has
-    taken ``patience`` seconds is timed no further (see `timing.timed`). A setting that cannot run becomes a
+    taken ``patience`` seconds is timed no further (see `solves.timed`). A setting that cannot run becomes a
     point with the reason, and without an error.
     """
     asked = settings(scene) if asked is None else asked

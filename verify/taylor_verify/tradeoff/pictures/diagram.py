@@ -1,6 +1,6 @@
 """Figures of a trade-off: a panel for each group of families, and a strip for failures.
 
-In a work-precision diagram x is the work (seconds, evaluations, steps), y the error, both logarithmic:
+In a work-precision diagram x is the work (seconds, evaluations), y the error, both logarithmic:
 further down and to the left is better. Lines join only neighbouring sound settings of one family.
 """
 
@@ -22,7 +22,6 @@ from taylor_verify.plotting.sheet import (
     foot_of,
     frames_of,
     free_place,
-    sheet,
 )
 from taylor_verify.plotting.style import SMALL
 from taylor_verify.records.standing import Standing
@@ -35,7 +34,6 @@ if TYPE_CHECKING:
 # Margins for names, as parts of the panel: left and right, below and above.
 _MARGINS_X: Final = (0.06, 0.16)
 _MARGINS_Y: Final = (0.09, 0.09)
-_DIAGONAL: Final[Mapping[str, Any]] = {"color": QUIET, "linewidth": 0.8}
 
 
 def work_precision(
@@ -83,29 +81,6 @@ def work_precision(
         top = _draw_strip(figure, frame, panel, strip, x_limits) if strip else axes
         top.set_title(panel.heading, pad=4)
     draw_legend(figure, entries, note, free_place(frames))
-    return figure
-
-
-def digits_achieved(panels: Sequence[Panel]) -> Figure:
-    """Return the figure of digits requested against digits achieved, equal on the diagonal."""
-    from matplotlib.ticker import MaxNLocator
-
-    from taylor_verify.plotting.labels import write_names
-
-    figure, places = sheet(len(panels), [(dict(_DIAGONAL), "achieved as asked; above it, more")])
-    for panel, axes in zip(panels, places, strict=True):
-        most_x, most_y = max(s.x for s in panel.sound), max(s.y for s in panel.sound)
-        axes.set(xlim=(0, most_x * 1.22), ylim=(-0.03 * most_y, max(most_y * 1.12, 4)))
-        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
-        axes.set(xlabel="digits asked for, \N{MINUS SIGN}log₁₀ tolerance", ylabel="digits achieved")
-        axes.grid(visible=True)
-        axes.set_title(panel.heading, pad=4)
-        most = min(axes.get_xlim()[1], axes.get_ylim()[1])
-        diagonal = [(0.0, 0.0), (most, most)]
-        axes.plot(*zip(*diagonal, strict=True), gid="diagonal", zorder=1, **_DIAGONAL)
-        for series in panel.drawn:
-            _draw_series(axes, series, bars=False)
-        write_names(axes, _names_of(panel), [diagonal])
     return figure
 
 

@@ -95,15 +95,15 @@ class Series:
         return [spot for spot in self.spots if spot.is_at_the_border]
 
 
-def series_of(document: Mapping[str, Any], x: str, y: str = "error") -> list[Series]:
+def series_of(document: Mapping[str, Any], x: str) -> list[Series]:
     """Return the families of a trade-off that were run, in the order of `style.place`.
 
-    ``x`` and ``y`` are the keys of the rows for the axes.
+    ``x`` is the key of the rows for the horizontal axis; the error is along the other one.
     """
     spots: dict[tuple[str, str], list[Spot]] = {}
     for row in document["points"]:
         spread = row["spread"] if x == "seconds" else None
-        spot = Spot(row, _amount(row, x), _amount(row, y), spread or 1.0)
+        spot = Spot(row, _amount(row, x), _amount(row, "error"), spread or 1.0)
         spots.setdefault((row["family"], row["rung"]), []).append(spot)
     every = [Series(family, rung, tuple(own)) for (family, rung), own in spots.items()]
     ran = [line for line in every if any(s.row["standing"] != Standing.NOT_RUN for s in line.spots)]

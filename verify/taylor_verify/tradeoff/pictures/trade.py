@@ -1,4 +1,4 @@
-"""Pictures of a trade-off: error against time, evaluations and steps; digits requested and achieved."""
+"""Pictures of a trade-off: error against time, and against evaluations of the equations."""
 
 from __future__ import annotations
 
@@ -7,13 +7,12 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from math import isfinite
 from pathlib import Path
-from statistics import median
 from typing import Any, Final
 
 from taylor_verify.plotting.picture import Picture, save
 from taylor_verify.plotting.wording import plain, stem_of
 from taylor_verify.records.standing import Standing
-from taylor_verify.tradeoff.pictures.diagram import digits_achieved, work_precision
+from taylor_verify.tradeoff.pictures.diagram import work_precision
 from taylor_verify.tradeoff.pictures.series import (
     AT_THE_BORDER,
     Series,
@@ -23,9 +22,9 @@ from taylor_verify.tradeoff.pictures.series import (
     series_of,
 )
 
-# Kinds of work: the key of a row, and the word in titles and names of files. Evaluations and steps are the
-# same on every machine.
-WORKS: Final = {"seconds": "time", "evaluations": "evaluations", "steps": "steps"}
+# Kinds of work: the key of a row, and the word in titles and names of files. Evaluations are the same on
+# every machine.
+WORKS: Final = {"seconds": "time", "evaluations": "evaluations"}
 _NOTE: Final = "An evaluation of taylor is one order of a step's series."
 
 
@@ -42,7 +41,7 @@ def pictures(document: Mapping[str, Any]) -> list[Picture]:
     """Return every picture that has points. Raises ValueError for a document without a sound point."""
     if not any(row["standing"] == "sound" for row in document["points"]):
         raise ValueError(f"expected a sound point, got none @ {document['scene']}.points")
-    drawn = (*(_work_precision(document, key) for key in WORKS), _digits_achieved(document))
+    drawn = (_work_precision(document, key) for key in WORKS)
     return [picture for picture in drawn if picture is not None]
 
 
@@ -60,7 +59,7 @@ def _work_precision(document: Mapping[str, Any], key: str) -> Picture | None:
     figure = partial(
         work_precision,
         panels_of(series),
-        x_name=axes.get(key, key),
+        x_name=axes[key],
         y_name=f"largest error ({unit})",
         floors=floors_of(document),
         bars=is_time,
@@ -72,28 +71,6 @@ def _work_precision(document: Mapping[str, Any], key: str) -> Picture | None:
         f"{_ends(front, work)}{_at_the_border(series)}"
     )
     return Picture(stem_of(document, work), f"Error against {work}: {scene}", alt, figure)
-
-
-def _digits_achieved(document: Mapping[str, Any]) -> Picture | None:
-    """Return the picture of digits achieved against digits requested; None if no setting has both."""
-    asking = [row for row in document["points"] if row["asked"] == "tolerance"]
-    every = series_of({**document, "points": asking}, "requested_digits", "achieved_digits")
-    series = [line for line in every if line.sound]
-    if not series:
-        return None
-    gained = [(line.family, median(spot.y - spot.x for spot in line.sound)) for line in series]
-    typical = ", ".join(
-        f"{family} {abs(more):.1f} {'more' if more >= 0 else 'fewer'}" for family, more in gained
-    )
-    alt = (
-        f"Decimal digits achieved against digits asked for on {document['scene']}, with the "
-        f"diagonal on which both agree, for {_names(series)}. Achieved, in the median, compared "
-        f"with what was asked for: {typical}."
-    )
-    title = f"Digits asked for and achieved: {document['scene']}"
-    return Picture(
-        stem_of(document, "digits"), title, alt, partial(digits_achieved, panels_of(series))
-    )
 
 
 def _names(series: Sequence[Series]) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
@@ -48,30 +48,19 @@ class Answer:
         """Return the answer as JSON, in which every float has all its bits."""
         states = None if self.states is None else self.states.tolist()
         kind = "" if self.states is None else self.states.dtype.str
-        stored = _Stored(complete(self.row), self.seconds, kind, states)
-        return laid_out(complete(stored)).encode()
+        return laid_out(complete(_Stored(self.row, self.seconds, kind, states))).encode()
 
     @classmethod
     def from_bytes(cls, content: bytes) -> Answer:
         """Return the answer from its JSON. Raises ValueError for any other content."""
-        stored = parsed(content, _Read)
+        stored = parsed(content, _Stored)
         states = None if stored.states is None else np.array(stored.states, dtype=stored.kind)
         return cls(stored.row, stored.seconds, states)
 
 
 @dataclass(frozen=True)
 class _Stored:
-    """The written form of an answer; ``kind`` is NumPy's name of the float type, empty without states."""
-
-    row: Mapping[str, Any]
-    seconds: float
-    kind: str
-    states: list[list[float]] | None
-
-
-@dataclass(frozen=True)
-class _Read:
-    """The form of an answer that is read."""
+    """The stored form of an answer; ``kind`` is NumPy's name of the float type, empty without states."""
 
     row: EngineRow
     seconds: float

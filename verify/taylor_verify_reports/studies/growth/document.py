@@ -17,7 +17,12 @@ EXACT: Final = "exact"
 
 @dataclass(frozen=True)
 class GrowthGate:
-    """The gate on the growth of a conserved quantity, or of the phase; see `fit.Gate`."""
+    """The verdict on the growth of a conserved quantity, or of the phase.
+
+    The gate fails if errors grow faster than ``law`` allows. ``chance`` is the probability of at least this
+    growth under the law. The gate fails if it is less than ``false_alarm``. This is therefore the
+    probability that errors of exactly that law fail.
+    """
 
     verdict: Status
     law: str

@@ -25,7 +25,7 @@ import numpy as np
 
 from taylor_verify.records.status import Status
 from taylor_verify.records.student import student
-from taylor_verify_reports.studies.growth.document import EXACT
+from taylor_verify_reports.studies.growth.document import EXACT, GrowthGate
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -85,24 +85,6 @@ class Exponent:
 
 
 @dataclass(frozen=True)
-class Gate:
-    """The verdict on the growth of errors: it fails if they grow faster than ``law`` allows.
-
-    ``chance`` is the probability of at least this growth under the law. The gate fails if it is less than
-    ``false_alarm``. This is therefore the probability that errors of exactly that law fail. ``statistic``
-    is chi-square with ``freedom`` degrees of freedom under the law.
-    """
-
-    verdict: Status
-    law: Law
-    chance: float
-    statistic: float
-    freedom: int
-    because: str
-    false_alarm: float = FALSE_ALARM
-
-
-@dataclass(frozen=True)
 class Growth:
     """Growth of a quantity of an ensemble: root mean squares over the lanes, exponents and gate.
 
@@ -114,7 +96,7 @@ class Growth:
     rms: tuple[float, ...]
     exponent: Exponent
     late: Exponent
-    gate: Gate | None
+    gate: GrowthGate | None
 
 
 def growth(times: Floats, errors: Floats, law: Law, roundoff: float, signed: bool = True) -> Growth:
@@ -201,7 +183,7 @@ def word(value: float, reach: float, law: Law) -> str:
 
 def gate(
     times: Floats, errors: Floats, law: Law, roundoff: float, false_alarm: float = FALSE_ALARM
-) -> Gate:
+) -> GrowthGate:
     """Judge whether the errors of the last two instants are larger than the law and the earlier ones allow.
 
     The law's covariance turns the errors of a lane into independent numbers z_ik of one variance (for a
@@ -227,15 +209,7 @@ def gate(
         )
     # Written so that a NaN fails.
     verdict = Status.PASS if false_alarm <= chance else Status.FAIL
-    return Gate(
-        verdict=verdict,
-        law=law,
-        chance=chance,
-        statistic=statistic,
-        freedom=2 * lanes,
-        because=because,
-        false_alarm=false_alarm,
-    )
+    return GrowthGate(verdict, law.value, chance, false_alarm, because)
 
 
 def early_and_late(

@@ -38,7 +38,8 @@ _SLACK: Final = 1e-6
 class Question:
     """A scene and ``lanes`` - 1 starts near its own, drawn from ``seed``, followed for ``periods`` periods.
 
-    ``solver`` is a name of heyoka's integrator, with its tolerance if it has one. Raises ValueError for a
+    ``solver`` is a name of heyoka's integrator, with its tolerance if it has one; ``why`` is the reason to
+    measure the ensemble. Raises ValueError for a
     body with loads or damping, for too few or too many periods, for fewer than two lanes, and for another
     solver.
     """
@@ -49,6 +50,7 @@ class Question:
     lanes: int = 16
     solver: str = TAYLOR
     seed: int = 1
+    why: str = ""
 
     def __post_init__(self) -> None:
         if not self.scene.body.is_free:
@@ -75,6 +77,11 @@ class Question:
         if not self.lanes >= _LEAST_LANES:
             raise ValueError(f"expected at least {_LEAST_LANES} lanes, got {self.lanes} @ lanes")
         tolerance(self.solver)
+
+    @property
+    def label(self) -> str:
+        """The name of the ensemble in messages."""
+        return f"{self.scene.name} {self.solver} {self.rung.name}"
 
     @property
     def tolerance(self) -> Fraction | None:

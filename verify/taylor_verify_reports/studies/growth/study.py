@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
-from time import monotonic
 from typing import Final
 
 from taylor_verify_reports.studies.growth import page
 from taylor_verify_reports.studies.growth.page import GROWTH, LONG
 from taylor_verify_reports.studies.study import Measured, NotMeasured, Option, Progress, Study
-
-_SECONDS_BETWEEN_REPORTS: Final = 10.0
 
 
 def _measure(
@@ -20,9 +16,12 @@ def _measure(
     """Follow the published ensembles, or the long one alone."""
     from taylor_verify_reports.studies.growth import published
 
-    entries = published.LONG if long else published.PUBLISHED
+    def ended(label: str, done: int, total: int) -> None:
+        progress.say(f"{label}: piece {done} of {total}")
+
+    questions = published.long() if long else published.published()
     try:
-        study = published.followed(entries, Pieces(progress.say), periods)
+        study = published.followed(questions, ended, periods)
     except ValueError as error:
         raise NotMeasured(str(error)) from error
     return Measured((LONG if long else GROWTH).write(folder, study))
@@ -35,23 +34,6 @@ def _periods(text: str) -> float:
         return float(exact_number(text))
     except (OverflowError, ValueError) as error:
         raise ValueError(f"expected a number of periods, got {text!r}") from error
-
-
-class Pieces:
-    """Progress report: a line when an ensemble ends, and every few seconds while it is followed."""
-
-    def __init__(self, say: Callable[[str], None]) -> None:
-        self._say, self._label, self._reported = say, "", 0.0
-
-    def __call__(self, label: str, done: int, total: int) -> None:
-        """Report that ``done`` of ``total`` pieces of the ensemble ``label`` have ended."""
-        if done == total:
-            self._say(f"{label}: done")
-        elif label != self._label or monotonic() - self._reported >= _SECONDS_BETWEEN_REPORTS:
-            self._say(f"{label}: piece {done} of {total}")
-        else:
-            return
-        self._label, self._reported = label, monotonic()
 
 
 STUDY: Final = Study(

@@ -8,11 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import partial
-from itertools import zip_longest
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.plotting.picture import Picture
 from taylor_verify.records.json_text import complete, plain
 from taylor_verify.records.runs import Run, gravest, runs
 from taylor_verify.records.status import Status
@@ -22,7 +20,7 @@ from taylor_verify.words.cells import NOTHING, figure, judged, peak, reason, wor
 from taylor_verify.words.markdown import bold, bullets, code, prose
 from taylor_verify.words.page import counts, roundoffs, traced, whole
 from taylor_verify_reports.studies import figures
-from taylor_verify_reports.studies.columns import Columns, csv_sheet, lay_out
+from taylor_verify_reports.studies.columns import Columns, lay_out
 from taylor_verify_reports.studies.hard.document import (
     ACHIEVED,
     ATTAINABLE,
@@ -34,7 +32,7 @@ from taylor_verify_reports.studies.hard.document import (
     last_value,
     most_periods,
 )
-from taylor_verify_reports.studies.hard.picture import Line, lines, picture
+from taylor_verify_reports.studies.hard.picture import Line, lines, pictures
 
 _FOLDER: Final = "extremes/"
 # Mark after the last value that was tried, beyond which the reach may extend.
@@ -103,7 +101,7 @@ def page(study: HardStudy, folder: Path) -> str:
         "## To remake this",
         "`taylor-verify publish hard` runs all scenes on float64, follows the families on every rung, and "
         f"writes [hard.json](../{HARD.name}), this page and its pictures. [hard.csv](hard.csv) has every "
-        "quantity of every scene, [hard-reach.csv](hard-reach.csv) every number of periods. `taylor-verify "
+        "quantity of every scene, hard.json also every number of periods. `taylor-verify "
         "run extremes` prints the verdicts and fails at a mismatch; with `--rung` it runs the scenes on "
         "others. The expectations are in `cases/extremes/EXPECTED.toml`.",
         traced({"versions": study.versions, **plain(study.machine)}),
@@ -249,14 +247,6 @@ def cell(value: str | int | None, last: str | int) -> str:
     return f"{value}{_LAST}" if value == last else str(value)
 
 
-def pictures(study: HardStudy) -> list[Picture]:
-    """Return the picture of the reach; none if no family of distances was run."""
-    try:
-        return [picture(study)]
-    except ValueError:
-        return []
-
-
 def _reached(study: HardStudy, folder: Path) -> list[str]:
     if not study.reach:
         return []
@@ -293,7 +283,7 @@ def _exceptions(rows: Sequence[ReachRow]) -> Iterator[str]:
             yield f"{row.family} {row.value}, {row.rung}: {prose(row.why)}. It counts as lost."
 
 
-# The sheets.
+# The sheet.
 
 
 def sheet(study: HardStudy) -> str:
@@ -310,26 +300,3 @@ def sheet(study: HardStudy) -> str:
 
     # The reasons of the bounds are long texts, and hard.json has them.
     return sheets.gates(study.verdicts, expected, without=("because", "scene_sha256"))
-
-
-def reach_sheet(study: HardStudy) -> str:
-    """Return a CSV row for every number of periods, or one with the reason if nothing was run."""
-    return csv_sheet(line for row in study.reach for line in _periods(row))
-
-
-def _periods(row: ReachRow) -> Iterator[dict[str, Any]]:
-    """Yield the rows of a run. A missing error means that the motion was lost."""
-    periods = row.periods if row.errors else (None,)
-    for count, error, floor in zip_longest(periods, row.errors, row.floors):
-        lost = "yes" if error is None else "no"
-        yield {
-            "family": row.family,
-            "value": row.value,
-            "rung": row.rung,
-            "periods": count,
-            "error": error,
-            "attainable": floor,
-            "lost": lost if row.errors else None,
-            "steps": row.steps,
-            "why": row.why,
-        }

@@ -56,19 +56,18 @@ def lines(study: HardStudy) -> list[Line]:
     ]
 
 
-def picture(study: HardStudy) -> Picture:
-    """Return the picture of all families with a symbol. Raises ValueError if none of them was run."""
+def pictures(study: HardStudy) -> list[Picture]:
+    """Return the picture of all families with a symbol; none if none of them was run."""
     drawn = [line for line in lines(study) if line.family.symbol and line.points(ACHIEVED)]
     if not drawn:
-        raise ValueError("expected runs of a family, got none @ reach")
+        return []
     sentences = [
         f"{line.family.title}, {line.rung}: six digits up to {last_value(line.rows, 1, 6) or 'no value'}"
         for line in drawn
     ]
     alt = f"Digits left after one period against the distance d. {'; '.join(sentences)}."
-    return Picture(
-        "hard-reach", "Digits left near an unstable motion", alt, partial(_figure, drawn)
-    )
+    title = "Digits left near an unstable motion"
+    return [Picture("hard-reach", title, alt, partial(_figure, drawn))]
 
 
 def digits_left(error: float | None) -> float:

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from math import inf, isfinite
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from mpmath import mp
@@ -23,14 +23,13 @@ from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.errors.state import state_errors
 from taylor_verify.judge.floor.arithmetic import truth_digits, working_bits
-from taylor_verify.judge.floor.attainable import floor
 from taylor_verify.models.problem import NotRepresentable, Problem, pose
-from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
+from taylor_verify.tradeoff.attainability import Floats, floors
 from taylor_verify_reports.studies.hard.document import LOST, ReachRow
 from taylor_verify_reports.studies.hard.members import (
     FOLLOWED,
@@ -40,12 +39,9 @@ from taylor_verify_reports.studies.hard.members import (
     period_of,
 )
 
-# Digits of a truth that only shows how large the motion is.
-_DIGITS_OF_SCALES: Final = 15
 # If rounding changes the period by a larger part, the rung cannot represent the orbit.
 _SAME_PERIOD: Final = Fraction(1, 10)
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
 # A family by its place in FOLLOWED, and a value: cheap to send to a process.
 Member = tuple[int, str]
 
@@ -177,22 +173,17 @@ def _with_floors(rows: Sequence[ReachRow], scene: Scene) -> list[ReachRow]:
     if not followed:
         return list(rows)
     asked = at_quarters(scene, followed)
-    truth = solution(asked).motion(asked.clock.elapsed, _DIGITS_OF_SCALES)
-    return [_with_floor(row, asked, truth) if row.errors else row for row in rows]
+    return [_with_floor(row, asked) if row.errors else row for row in rows]
 
 
-def _with_floor(row: ReachRow, asked: Scene, truth: Motion) -> ReachRow:
+def _with_floor(row: ReachRow, asked: Scene) -> ReachRow:
     elapsed, count = asked.clock.elapsed, len(row.errors)
     # Another rung may have been followed further: the steps are then extrapolated in proportion.
     steps = round(row.steps * elapsed[-1] / elapsed[count * QUARTERS - 1])
-    base = floor(asked, asked, rung_named(row.rung).unit_roundoff, steps)
-    # The truth is compared with itself, because only the names and the scales of the errors are needed.
-    states = state_errors(asked, truth, truth)
-    worst = np.max([base.of_state(errors) for errors in states], axis=0)
-    floors = up_to(worst.astype(float))[: len(row.periods)]
-    lost = () if floors[-1] < LOST else (inf,) * (len(row.periods) - len(floors))
+    attainable = up_to(floors(asked, asked, rung_named(row.rung), steps))[: len(row.periods)]
+    lost = () if attainable[-1] < LOST else (inf,) * (len(row.periods) - len(attainable))
     beyond = (inf,) * (len(row.periods) - count)
-    return replace(row, errors=row.errors + beyond, floors=floors + lost)
+    return replace(row, errors=row.errors + beyond, floors=attainable + lost)
 
 
 def up_to(values: Floats) -> tuple[float, ...]:

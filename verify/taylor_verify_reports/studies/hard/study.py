@@ -11,6 +11,7 @@ from typing import Final
 from taylor_verify.records.replacement import replace_files
 from taylor_verify_reports.studies.hard import page
 from taylor_verify_reports.studies.hard.document import HARD
+from taylor_verify_reports.studies.hard.picture import pictures
 from taylor_verify_reports.studies.study import Measured, Option, Progress, Study
 
 # Runs of a published search in each family, and enough for the first population and one more generation.
@@ -70,8 +71,7 @@ STUDY: Final = Study(
     find=HARD.find,
     page=page.page,
     sheet=page.sheet,
-    beside={"tables/hard-reach.csv": page.reach_sheet},
-    draw=page.pictures,
+    draw=pictures,
     options=(
         Option(
             "runs",

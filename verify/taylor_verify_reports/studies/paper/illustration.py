@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.words.markdown import code
 from taylor_verify_reports.studies.engines import page as engines_page
-from taylor_verify_reports.studies.hard import page as hard_page
+from taylor_verify_reports.studies.hard import picture as hard_picture
 from taylor_verify_reports.studies.hard.document import HARD
 from taylor_verify_reports.studies.paper.caption import ENGINES, TRADEOFF, Caption
 from taylor_verify_reports.studies.paper.sources import Sources
@@ -50,7 +50,7 @@ def _reach(sources: Sources) -> Illustration:
         "Digits that are left beside an unstable motion after one period, over the distance $d$ from it, "
         "in each number format: achieved, and dashed the floor."
     )
-    picture = _first(hard_page.pictures(sources.hard), "hard")
+    picture = _first(hard_picture.pictures(sources.hard), "hard")
     return Illustration(
         "reach", picture, Caption(words, (HARD.name,), sources.hard.machine.processor)
     )

@@ -14,13 +14,12 @@ Interval = tuple[float, float | None, float | None]
 
 @dataclass(frozen=True)
 class PriceRow:
-    """A variant on a rung: the size of its equations, and the time of a step.
+    """A variant: the size of its equations, and the time of a step in float64.
 
     ``against`` names the variant whose step is the unit of ``step_ratio``. ``states``, ``sums``,
     ``products`` and ``quotients`` are numbers in one evaluation, ``order`` is that of a step.
     """
 
-    rung: str
     variant: str
     against: str
     what: str
@@ -39,16 +38,16 @@ class PriceRow:
 
 @dataclass(frozen=True)
 class PriceMethod:
-    """The rounds by rung, and the least duration of a measurement."""
+    """The rounds, and the least duration of a measurement."""
 
-    rounds: dict[str, int]
+    rounds: int
     seed: int
     least_seconds: float
 
 
 @dataclass(frozen=True)
 class PricesStudy:
-    """All variants on all rungs."""
+    """All variants."""
 
     rows: tuple[PriceRow, ...]
     method: PriceMethod

@@ -11,9 +11,9 @@ from taylor_verify_reports.studies.study import Measured, Progress, Study
 
 
 def _measure(folder: Path, progress: Progress) -> Measured:
-    from taylor_verify_reports.studies.prices.measure import RUNGS, study
+    from taylor_verify_reports.studies.prices.measure import study
 
-    return Measured(PRICES.write(folder, study(progress.counting(len(RUNGS)))))
+    return Measured(PRICES.write(folder, study(progress.say)))
 
 
 STUDY: Final = Study(

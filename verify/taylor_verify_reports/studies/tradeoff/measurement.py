@@ -19,7 +19,8 @@ from importlib.metadata import PackageNotFoundError, version
 from math import inf
 from typing import Final
 
-from taylor_verify.judge.provenance import command, packages, processor, versions
+from taylor_verify.batch.runs import run_all
+from taylor_verify.judge.provenance import machine, packages
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import rung as rung_named
@@ -29,16 +30,6 @@ from taylor_verify.solvers.engines.engine import prepare
 from taylor_verify.solvers.engines.launcher import NotMade
 from taylor_verify.solvers.engines.session import end_sessions
 from taylor_verify.solvers.registry import TAYLOR
-from taylor_verify.tradeoff.cold import in_a_new_process
-from taylor_verify.tradeoff.document import (
-    UNTIL,
-    TimingMachine,
-    TradeNumbers,
-    TradeScene,
-    TradeTiming,
-    TradeTimings,
-)
-from taylor_verify.tradeoff.order_statistics import estimate
 from taylor_verify.tradeoff.setting import (
     ELLIPJ,
     Name,
@@ -49,12 +40,19 @@ from taylor_verify.tradeoff.setting import (
     setting,
     taylor,
 )
-from taylor_verify.tradeoff.timing import SEED, cold_caches
+from taylor_verify.tradeoff.solves import SEED, cold_caches
+from taylor_verify.tradeoff.timing import estimate
 from taylor_verify.tradeoff.trade_off import (
     TradeOff,
-    request_sentences,
     sound_points,
     trade_off,
+)
+from taylor_verify_reports.studies.tradeoff.document import (
+    UNTIL,
+    TradeNumbers,
+    TradeScene,
+    TradeTiming,
+    TradeTimings,
 )
 from taylor_verify_reports.studies.tradeoff.plain_doubles import plain_doubles
 from taylor_verify_reports.studies.tradeoff.rounds import (
@@ -131,7 +129,8 @@ def measurement(
     ]
     by_process = []
     for number in range(processes):
-        by_process.append(in_a_new_process(one_process, asked, seed + number, rounds))
+        # With one piece of work a pool has one process, which is new and ends with it.
+        by_process += run_all(one_process, [(asked, seed + number, rounds)], workers=1)
         finished(f"times, process {number + 1} of {processes}")
     doubles = tuple(plain_doubles())
     finished("the closed form in doubles")
@@ -143,7 +142,7 @@ def measurement(
         points=tuple(p.on(trade.scene.name) for trade in trades for p in trade.points),
     )
     times = TradeTimings(
-        machine=TimingMachine(processor(), versions()["python"], command()),
+        machine=machine(),
         method=method(processes, rounds, seed),
         timings=tuple(_timings(asked, by_process)),
     )
@@ -199,11 +198,13 @@ def _for_short_scenes(scene: Scene) -> Iterator[Setting]:
             yield setting(_ODEFUN, f64)
 
 
-def one_process(asked: Sequence[Asked], seed: int, rounds: int) -> dict[str, dict[Name, Measured]]:
-    """Return the measurements of this process by scene; the order of the scenes is random too.
+def one_process(work: tuple[Sequence[Asked], int, int]) -> dict[str, dict[Name, Measured]]:
+    """Return the measurements of this process by scene; ``work`` has the scenes, a seed and the rounds.
 
-    It is called in a new process, with an empty cache, so that everything is compiled anew.
+    The order of the scenes is random too. It is called in a new process, with an empty cache, so that
+    everything is compiled anew.
     """
+    asked, seed, rounds = work
     scenes = list(asked)
     random.Random(seed).shuffle(scenes)
     with cold_caches():
@@ -258,5 +259,4 @@ def _scene(trade: TradeOff) -> TradeScene:
         track=tuple(sorted(trade.scene.track)),
         sha256=trade.scene.digest,
         attainable=trade.attainable,
-        requests=tuple(request_sentences(trade.points)),
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from math import isclose, log10
 from pathlib import Path
 from typing import Final
@@ -10,16 +10,14 @@ from typing import Final
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.standing import Standing
-from taylor_verify.tradeoff.document import PlainDouble, TradePoint
-from taylor_verify.tradeoff.pareto import pareto
+from taylor_verify.tradeoff.document import TradePoint
 from taylor_verify.tradeoff.pictures import trade as of_one_scene
 from taylor_verify.words.cells import NOTHING, figure
 from taylor_verify.words.markdown import bold, bullets, code, prose, table
 from taylor_verify.words.page import whole
 from taylor_verify.words.sheet import sheet as csv_sheet
-from taylor_verify_reports.pictures.ratio import Ratio
 from taylor_verify_reports.studies import figures
-from taylor_verify_reports.studies.tradeoff import time_by_rung
+from taylor_verify_reports.studies.tradeoff.document import PlainDouble
 from taylor_verify_reports.studies.tradeoff.peers import DIGITS, TAYLOR, peer_sections
 from taylor_verify_reports.studies.tradeoff.stored import TimedPoint, Trade, Trades, cheapest
 from taylor_verify_reports.studies.tradeoff.timing_method import (
@@ -85,16 +83,13 @@ def page(trades: Trades, folder: Path) -> str:
         "left. *attainable* are the digits that would be left by rounding the state once for each "
         "sample.",
         _by_rung(trades),
-        figures.shown(folder, _of_rungs(trades.short)),
         "## Asked for and achieved",
         "A tolerance bounds the solver's estimate of the error of one step, and not the error of the "
         "answer. The table has the digits that were left at each tolerance:",
         _by_request(trades),
         "## In pictures",
+        "The thin line is the *front*: the settings that no other beats in both time and error.",
         *(figures.shown(folder, _of_trade(trade)) for trade in trades.short),
-        "## The front",
-        "The settings in float64 that no other beats in both time and error, the fastest first.",
-        *(_front(trade) for trade in trades.short),
         "## Geometric integrators",
         "Fixed steps, in the scene's unit of time. They conserve their quantities to the last bits: "
         "all of them the momentum in space, the midpoint and Moser and Veselov's the energy too. With "
@@ -118,27 +113,13 @@ def page(trades: Trades, folder: Path) -> str:
 
 
 def pictures(trades: Trades) -> list[Picture]:
-    """Return the pictures of every short scene, and the picture of all rungs."""
-    return [
-        *(picture for trade in trades.short for picture in _of_trade(trade)),
-        *_of_rungs(trades.short),
-    ]
+    """Return the pictures of every short scene."""
+    return [picture for trade in trades.short for picture in _of_trade(trade)]
 
 
 def _of_trade(trade: Trade) -> list[Picture]:
     """Return the pictures of one scene; none if no setting is sound."""
     return of_one_scene.pictures(trade.document()) if trade.sound else []
-
-
-def _of_rungs(trades: Sequence[Trade]) -> list[Picture]:
-    """Return the picture of taylor's time at each rung's own tolerance, a line for each scene."""
-    rows = [
-        Ratio(trade.scene, row.point.rung, row.timing.ratio, row.timing.low, row.timing.high)
-        for trade in trades
-        for row in trade.sound
-        if row.point.solver == "taylor"
-    ]
-    return [time_by_rung.picture("published", rows)] if rows else []
 
 
 # The cost of digits.
@@ -168,9 +149,9 @@ def _yardstick(trade: Trade, name: str) -> str:
     return f"*{prose(name)} = 1*: {_digits(row.point)}{part}"
 
 
-def _digits(point: TradePoint, exact: str = "exact") -> str:
-    """Return the digits that were left, or the word ``exact`` for all."""
-    return exact if point.achieved_digits is None else f"{point.achieved_digits:.1f} digits"
+def _digits(point: TradePoint) -> str:
+    """Return the digits that were left, or the word for all."""
+    return "exact" if point.achieved_digits is None else f"{point.achieved_digits:.1f} digits"
 
 
 def _cheapest(rows: Iterable[TimedPoint], digits: int) -> str:
@@ -236,26 +217,7 @@ def _achieved(points: Iterable[TradePoint], asked: float) -> str:
     return NOTHING
 
 
-# The front, the geometric integrators, the failures.
-
-
-def front(rows: Iterable[TimedPoint]) -> list[TimedPoint]:
-    """Return the settings that no other beats in both ratio and error, the fastest first."""
-    return pareto(rows, lambda row: (row.timing.ratio, row.error))
-
-
-def _front(trade: Trade) -> str:
-    doubles = [row for row in trade.sound if row.point.rung == "f64"]
-    integrators = [row for row in doubles if row.point.family != _CLOSED_FORM]
-    parts = [f"{code(trade.scene)}:", bullets(map(_front_line, front(doubles)))]
-    if len(integrators) != len(doubles):
-        parts += ["And of the integrators alone:", bullets(map(_front_line, front(integrators)))]
-    return "\n\n".join(parts)
-
-
-def _front_line(row: TimedPoint) -> str:
-    name = code(row.point.label.removesuffix(f" {row.point.rung}"))
-    return f"{_digits(row.point, 'every digit')}: {name}, {_ratio(row)} times the yardstick"
+# The geometric integrators, the failures.
 
 
 def _geometric(trades: Trades) -> str:

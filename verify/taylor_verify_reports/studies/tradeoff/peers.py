@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from functools import partial
+from collections.abc import Sequence
 from typing import Final
 
-from taylor_verify.tradeoff.document import UNTIL
 from taylor_verify.words.cells import NOTHING, figure
 from taylor_verify.words.markdown import bold, bullets, code, prose, table
+from taylor_verify_reports.studies.tradeoff.document import UNTIL
 from taylor_verify_reports.studies.tradeoff.stored import TimedPoint, Trade, Trades, cheapest
-
-SetUp = Callable[[str], float | None]
 
 DIGITS: Final = (6, 9, 12)
 OUTSIDE: Final = "outside "
@@ -28,9 +25,7 @@ _WHAT: Final = (
     "same samples, and are compared with the same exact motion. A cell is the processor's time of the "
     "cheapest tolerance, of all powers of ten from 1e-5 to 1e-15, that leaves this number of digits, "
     "over that of the yardstick. *ahead* is the fastest, with its lead: over the next peer "
-    "if the fastest is taylor, else over taylor. They are *level* if the intervals of the two overlap. A "
-    "peer that is ahead compiles for longer, for one body. It is behind until that is *repaid*, after so "
-    "many solves of this body in one process."
+    "if the fastest is taylor, else over taylor. They are *level* if the intervals of the two overlap."
 )
 # Headings of the columns by family; a family that is missing here has its own name as heading.
 TITLES: Final = {
@@ -105,11 +100,10 @@ def _times(trades: Trades) -> str:
             reached = sorted(
                 (row for row in best.values() if row), key=lambda row: row.timing.ratio
             )
-            repaid = _repaid(reached, partial(_longest, trades, trade.scene))
             times = [ours, _inner(best[TAYLOR]), *others]
-            rows.append([name, str(digits), _ahead(reached), repaid, *times])
+            rows.append([name, str(digits), _ahead(reached), *times])
     times = ["taylor:", "of which heyoka:", *(f"{_title(f)}:" for f in families[1:])]
-    return table(["scene", "digits:", "ahead", "repaid after:", *times], rows)
+    return table(["scene", "digits:", "ahead", *times], rows)
 
 
 def _cell(row: TimedPoint | None, is_there: bool) -> str:
@@ -143,21 +137,6 @@ def _ahead(reached: Sequence[TimedPoint]) -> str:
 def _next(reached: Sequence[TimedPoint]) -> TimedPoint | None:
     """Return the fastest of the other side than the first of all, taylor or a peer."""
     return next((row for row in reached if _is_ours(row) is not _is_ours(reached[0])), None)
-
-
-def _repaid(reached: Sequence[TimedPoint], set_up: SetUp) -> str:
-    """Return the number of solves in which a peer that is ahead makes up for its longer set-up.
-
-    ``set_up`` returns the seconds that a family needs once.
-    """
-    ours = _next(reached)
-    if ours is None or _is_ours(reached[0]) or _overlap(reached[0], ours):
-        return NOTHING
-    longer, shorter = (set_up(row.point.family) for row in (reached[0], ours))
-    gained = ours.timing.seconds - reached[0].timing.seconds
-    if longer is None or shorter is None or not longer > shorter or not gained > 0:
-        return NOTHING
-    return f"{figure((longer - shorter) / gained)} solves"
 
 
 def _overlap(first: TimedPoint, other: TimedPoint) -> bool:

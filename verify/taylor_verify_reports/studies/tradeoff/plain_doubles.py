@@ -17,9 +17,9 @@ from taylor_verify.scenes.motion import Clock, Spin
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.tradeoff.document import PlainDouble
 from taylor_verify.tradeoff.setting import ELLIPJ, setting
 from taylor_verify.tradeoff.trade_off import trade_off
+from taylor_verify_reports.studies.tradeoff.document import PlainDouble
 
 # The solver with steps that is run on short scenes for comparison.
 _BESIDE: Final = "taylor"

@@ -8,38 +8,40 @@ its own. It takes its turns with all others, and times itself in the same way.
 
 from __future__ import annotations
 
-import gc
-import random
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from math import ceil
 from statistics import median
-from time import perf_counter, thread_time
-from typing import Final, NamedTuple, TypeVar
+from time import thread_time
+from typing import Final, NamedTuple
 
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines.peer import Peer
 from taylor_verify.solvers.solver import Solver
-from taylor_verify.solvers.trajectory import Outcome
-from taylor_verify.tradeoff.document import TimingMethod
-from taylor_verify.tradeoff.order_statistics import CONFIDENCE, FORMULA, coverage, place
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.tradeoff.setting import Name, setting
-from taylor_verify.tradeoff.timing import WHAT_IS_TIMED
-
-Answer = TypeVar("Answer")
+from taylor_verify.tradeoff.solves import WHAT_IS_TIMED
+from taylor_verify.tradeoff.timing import (
+    CONFIDENCE,
+    FORMULA,
+    LEAST_SECONDS,
+    Clock,
+    calls_to_time,
+    clock_resolution,
+    coverage,
+    in_rounds,
+    place,
+)
+from taylor_verify_reports.studies.tradeoff.document import TimingMethod
 
 YARDSTICK: Final = ("taylor", "f64")
 ROUNDS: Final = 3
 # The least duration of a measurement, in units of the clock's resolution: the clock errs by 1 % at most.
 _TIMES_RESOLUTION: Final = 100
-# The least duration in seconds: an interrupt does not matter then, nor what the turn before left in caches.
-_LEAST_SECONDS: Final = 1e-2
-# A setting that takes more seconds, with the start of its program, is solved only once in each process.
+# A setting that takes more seconds is solved only once in each process.
 _SLOWEST_IN_ROUNDS: Final = 0.2
-_MOST_SOLVES: Final = 1000
 
 
 @dataclass(frozen=True)
@@ -57,18 +59,11 @@ class Measured:
     setup: float
 
 
-class _Taken(NamedTuple):
-    """A measurement, in seconds per solve.
-
-    ``seconds`` is processor time, ``inner`` the part of it in a compiled integrator, if known, and
-    ``waited`` the time on the clock without compiling. ``setup`` is the time of compiling before the first
-    propagation.
-    """
+class _Turn(NamedTuple):
+    """Processor seconds of a solve; ``inner`` is the part in a compiled integrator, if known."""
 
     seconds: float
     inner: float | None
-    waited: float
-    setup: float = 0.0
 
 
 def measured(
@@ -77,122 +72,70 @@ def measured(
     seed: int,
     rounds: int = ROUNDS,
     resolution: float | None = None,
-    clock: Callable[[], float] = thread_time,
+    clock: Clock = thread_time,
 ) -> dict[Name, Measured]:
     """Measure settings on a scene by their names; settings that do not finish are left out.
 
     The yardstick is always measured too. ``resolution`` is that of a clock in seconds, by default measured
     now. ``clock`` returns the processor's seconds.
     """
-    least = max(_LEAST_SECONDS, _TIMES_RESOLUTION * (resolution or clock_resolution()))
-    first: dict[Name, _Taken] = {}
-    turns: dict[Name, Callable[[], _Taken | None]] = {}
+    least = max(LEAST_SECONDS, _TIMES_RESOLUTION * (resolution or clock_resolution()))
+    firsts: dict[Name, Trajectory] = {}
+    turns: dict[Name, Callable[[], _Turn | None]] = {}
     for name in dict.fromkeys([YARDSTICK, *names]):
         rung = rung_named(name[1])
-        solver = setting(name[0], rung).solver
-        solve = partial(_solved, solver, pose(scene, rung), clock)
-        if (taken := solve(1, is_first=True)) is None:
+        solver, problem = setting(name[0], rung).solver, pose(scene, rung)
+        first = solver.solve(problem)
+        if first.outcome is not Outcome.FINISHED:
             continue
-        first[name] = taken
-        count = _count(taken, least)
-        if count or name == YARDSTICK:
-            turns[name] = partial(solve, max(1, count))
-    if YARDSTICK not in first:
+        firsts[name] = first
+        if first.seconds <= _SLOWEST_IN_ROUNDS or name == YARDSTICK:
+            turns[name] = partial(
+                _turn, solver, problem, calls_to_time(first.seconds, least), clock
+            )
+    if YARDSTICK not in firsts:
         return {}
     later = dict(zip(turns, in_rounds([*turns.values()], rounds, seed), strict=True))
     unit = later[YARDSTICK]
     return {
-        name: _summed(first[name], later.get(name, []), unit) for name in names if name in first
+        name: _summed(firsts[name], later.get(name, []), unit) for name in names if name in firsts
     }
 
 
-def in_rounds(turns: Sequence[Callable[[], Answer]], rounds: int, seed: int) -> list[list[Answer]]:
-    """Call every turn once in each round, in a random order, and return the answers of each turn by round.
-
-    Python's garbage collector runs once before the first round and is off until the last one, so that it
-    disturbs no turn.
-    """
-    answers: list[list[Answer]] = [[] for _ in turns]
-    order, draw = list(range(len(turns))), random.Random(seed)
-    enabled = gc.isenabled()
-    gc.collect()
-    gc.disable()
-    try:
-        for _ in range(rounds):
-            draw.shuffle(order)
-            for i in order:
-                answers[i].append(turns[i]())
-    finally:
-        if enabled:
-            gc.enable()
-    return answers
-
-
-def _summed(
-    first: _Taken, later: Sequence[_Taken | None], unit: Sequence[_Taken | None]
-) -> Measured:
-    """Return the medians over the rounds; a setting that was solved once has that one time."""
-    rounds = [(a, b.seconds) for a, b in zip(later, unit, strict=False) if a and b]
-    rounds = rounds or [(first, median(b.seconds for b in unit if b))]
-    inner = [taken.inner for taken, _ in rounds if taken.inner is not None]
-    return Measured(
-        seconds=median(taken.seconds for taken, _ in rounds),
-        ratio=median(taken.seconds / seconds for taken, seconds in rounds),
-        inner=median(inner) if len(inner) == len(rounds) else None,
-        setup=first.setup,
-    )
-
-
-def _solved(
-    solver: Solver, problem: Problem, clock: Callable[[], float], count: int, is_first: bool = False
-) -> _Taken | None:
-    """Time ``count`` solves by the processor's clock; None if a solve did not finish."""
-    if isinstance(solver, Peer) and not is_first:
-        seconds = solver.seconds(problem, count)
-        return None if seconds is None else _Taken(seconds, inner=None, waited=seconds)
-    began, processor_began = perf_counter(), clock()
-    made = []
+def _turn(solver: Solver, problem: Problem, count: int, clock: Clock) -> _Turn | None:
+    """Time ``count`` solves; None for a peer that no longer answers."""
+    if isinstance(solver, Peer):
+        answered = solver.seconds(problem, count)
+        return None if answered is None else _Turn(answered, None)
+    solves = []
+    began = clock()
     for _ in range(count):
         # Only the times are stored, because whole trajectories would fill the memory.
         trajectory = solver.solve(problem)
-        if trajectory.outcome is not Outcome.FINISHED:
-            return None
-        made.append((trajectory.seconds, trajectory.compile_seconds, trajectory.inner_seconds))
-    spent, waited = clock() - processor_began, perf_counter() - began
-    stated, compiling, inner = (list(values) for values in zip(*made, strict=True))
-    if isinstance(solver, Peer):
-        return _Taken(seconds=stated[0], inner=None, waited=stated[0], setup=compiling[0])
-    # The first solve may compile, and states the time of its propagation separately.
-    seconds = min(spent, sum(stated)) if is_first else spent
+        solves.append((trajectory.seconds, trajectory.inner_seconds))
+    seconds = (clock() - began) / count
     # The part in a compiled integrator is known as time on the clock, and is scaled to processor time.
-    known = [part for part in inner if part is not None]
-    share = sum(known) / sum(stated) if len(known) == count and sum(stated) else None
-    inside = None if share is None else share * seconds / count
-    return _Taken(
-        seconds=seconds / count,
-        inner=inside,
-        waited=(waited - sum(compiling)) / count,
-        setup=compiling[0],
+    stated, inner = (
+        sum(each for each, _ in solves),
+        [part for _, part in solves if part is not None],
     )
+    return _Turn(seconds, sum(inner) / stated * seconds if inner and stated else None)
 
 
-def _count(taken: _Taken, least: float) -> int:
-    """Return the number of solves that last long enough together; 0 for a setting that is too slow."""
-    if not taken.waited <= _SLOWEST_IN_ROUNDS:
-        return 0
-    return min(_MOST_SOLVES, max(1, ceil(least / taken.seconds))) if taken.seconds else _MOST_SOLVES
-
-
-def clock_resolution(clock: Callable[[], float] = perf_counter) -> float:
-    """Return the smallest observed step of the clock, in seconds."""
-
-    def step() -> float:
-        began = clock()
-        while (now := clock()) == began:
-            pass
-        return now - began
-
-    return min(step() for _ in range(100))
+def _summed(
+    first: Trajectory, later: Sequence[_Turn | None], unit: Sequence[_Turn | None]
+) -> Measured:
+    """Return the medians over the rounds; a setting that was solved once has that one time."""
+    rounds = [(a, b.seconds) for a, b in zip(later, unit, strict=False) if a and b]
+    only = _Turn(first.seconds, first.inner_seconds)
+    rounds = rounds or [(only, median(b.seconds for b in unit if b))]
+    inner = [turn.inner for turn, _ in rounds if turn.inner is not None]
+    return Measured(
+        seconds=median(turn.seconds for turn, _ in rounds),
+        ratio=median(turn.seconds / seconds for turn, seconds in rounds),
+        inner=median(inner) if len(inner) == len(rounds) else None,
+        setup=first.compile_seconds,
+    )
 
 
 def method(processes: int, rounds: int, seed: int) -> TimingMethod:
@@ -201,7 +144,7 @@ def method(processes: int, rounds: int, seed: int) -> TimingMethod:
         processes=processes,
         rounds=rounds,
         seed=seed,
-        least_seconds=_LEAST_SECONDS,
+        least_seconds=LEAST_SECONDS,
         times_resolution=_TIMES_RESOLUTION,
         clock_resolution=clock_resolution(),
         confidence=CONFIDENCE,

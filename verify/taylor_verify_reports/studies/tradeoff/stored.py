@@ -13,14 +13,14 @@ from typing import Any, Final
 
 from taylor_verify.records.json_text import complete
 from taylor_verify.records.standing import Standing
-from taylor_verify.tradeoff.document import (
+from taylor_verify.tradeoff.document import TradePoint
+from taylor_verify_reports.studies.stored import Stored
+from taylor_verify_reports.studies.tradeoff.document import (
     TradeNumbers,
-    TradePoint,
     TradeScene,
     TradeTiming,
     TradeTimings,
 )
-from taylor_verify_reports.studies.stored import Stored
 
 NUMBERS: Final = Stored(TradeNumbers, "tradeoff")
 TIMINGS: Final = Stored(TradeTimings, "tradeoff", stem="tradeoff-timings")

@@ -1,0 +1,151 @@
+"""Solves of each setting: the first one, which compiles and fills caches, then later ones in rounds.
+
+A time is the solver's own propagation, as its trajectory states it.
+"""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from functools import partial
+from time import perf_counter
+from typing import Final
+
+from taylor_verify.models.problem import Problem
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
+from taylor_verify.tradeoff.setting import Setting
+from taylor_verify.tradeoff.timing import Clock, in_rounds
+
+REPEATS: Final = 5
+SEED: Final = 1
+# If a setting takes more seconds, finer ones of its family are not run. Every setting is repeated once, and
+# then only while all its solves have taken fewer seconds together.
+PATIENCE: Final = 2.0
+_HEYOKA_CACHE: Final = "HEYOKA_CACHE_DIR"
+
+# The explanation that stands with all times.
+WHAT_IS_TIMED: Final = (
+    "the solver's own propagation; taylor runs compiled equations and looks for its longest step in "
+    "Python, scipy calls straight-line equations in "
+    "Python, geometric and odefun are Python throughout, a program of one's own is timed as it states "
+    "itself, and those of other libraries state a later propagation than their first, on the "
+    "processor's clock where their process stays"
+)
+
+
+@dataclass(frozen=True)
+class Timed:
+    """The first answer of a setting, and the times of its later solves in seconds.
+
+    ``first`` is the whole time of the first solve. ``seconds`` is empty for a run that failed. ``inner`` is
+    the part of the best time that another library's compiled integrator took, if known.
+    """
+
+    setting: Setting
+    trajectory: Trajectory
+    first: float
+    seconds: tuple[float, ...] = ()
+    inner: float | None = None
+
+    @property
+    def best(self) -> float | None:
+        """The shortest time; None for a run that failed."""
+        return min(self.seconds, default=None)
+
+    @property
+    def spread(self) -> float | None:
+        """The slowest time over the fastest."""
+        return max(self.seconds) / self.best if self.best else None
+
+
+def timed(
+    problems: Mapping[Setting, Problem | str],
+    repeats: int,
+    seed: int,
+    clock: Clock = perf_counter,
+    patience: float = PATIENCE,
+) -> list[Timed]:
+    """Solve every setting once, and those that finished ``repeats`` times more; return all in their order.
+
+    A text in place of a problem is the reason why a setting cannot run. Without repeats there is only the
+    first time, which is enough to measure errors. A setting is not run, and its answer says so, if a
+    coarser setting of its family took more than ``patience`` seconds.
+    """
+    firsts = _first_solves(problems, clock, patience)
+    repeated = [
+        _Repeated(first, problem)
+        for first, problem in zip(firsts, problems.values(), strict=True)
+        if first.trajectory.outcome is Outcome.FINISHED and not isinstance(problem, str)
+    ]
+    in_rounds([partial(solves.once_more, patience) for solves in repeated], repeats, seed)
+    timed_again = {solves.first.setting: solves.timed() for solves in repeated}
+    return [timed_again.get(first.setting, first) for first in firsts]
+
+
+class _Repeated:
+    """The later solves of a setting: seconds of each, and its part in a compiled integrator.
+
+    Whole answers are not kept, because they would fill the memory.
+    """
+
+    def __init__(self, first: Timed, problem: Problem) -> None:
+        self.first, self._problem = first, problem
+        self._again: list[tuple[float, float | None]] = []
+        self._spent = first.trajectory.seconds
+
+    def once_more(self, patience: float) -> None:
+        """Solve once; after the first repeat only while all solves took less than ``patience`` seconds."""
+        if self._again and self._spent > patience:
+            return
+        solved = self.first.setting.solver.solve(self._problem)
+        self._again.append((solved.seconds, solved.inner_seconds))
+        self._spent += solved.seconds
+
+    def timed(self) -> Timed:
+        """Return the first answer with the times of the later solves, or of the only one."""
+        only = self.first.trajectory
+        solves = self._again or [(only.seconds, only.inner_seconds)]
+        _, inner = min(solves, key=lambda solve: solve[0])
+        return replace(self.first, seconds=tuple(seconds for seconds, _ in solves), inner=inner)
+
+
+def _first_solves(
+    problems: Mapping[Setting, Problem | str], clock: Clock, patience: float
+) -> list[Timed]:
+    """Return the first answer of every setting, or the reason why it was not run."""
+    solves: list[Timed] = []
+    # Families whose finer settings are not run.
+    slow: set[str] = set()
+    for setting, problem in problems.items():
+        if isinstance(problem, str) or setting.family in slow:
+            coarser = f"a coarser setting took more than {patience:g} s"
+            because = problem if isinstance(problem, str) else coarser
+            nothing = Trajectory(Outcome.NOT_STARTED, detail=because)
+            solves.append(Timed(setting, nothing, first=0.0))
+            continue
+        began = clock()
+        trajectory = setting.solver.solve(problem)
+        solves.append(Timed(setting, trajectory, first=clock() - began))
+        if not trajectory.seconds <= patience:
+            slow.add(setting.family)
+    return solves
+
+
+@contextmanager
+def cold_caches() -> Iterator[None]:
+    """Give heyoka an empty cache, so that systems are compiled anew, and remove it afterwards.
+
+    Code that this process has compiled before stays in memory; a cold start needs a process of its own.
+    """
+    before = os.environ.get(_HEYOKA_CACHE)
+    with tempfile.TemporaryDirectory() as empty:
+        os.environ[_HEYOKA_CACHE] = empty
+        try:
+            yield
+        finally:
+            del os.environ[_HEYOKA_CACHE]
+            if before is not None:
+                os.environ[_HEYOKA_CACHE] = before
