@@ -327,11 +327,11 @@ class Doubtful(Settled):
 
 def test_truth_that_does_not_settle_is_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where two precisions never agree there is no verdict but undecided, and it is not green."""
-    from taylor_verify.judge import judgement
+    from taylor_verify.judge import gated
 
     with pytest.raises(Unsettled):
         Doubtful().motion([Fraction(1)], 20)
-    monkeypatch.setattr(judgement, "solution", lambda scene: Doubtful())
+    monkeypatch.setattr(gated, "solution", lambda scene: Doubtful())
     verdicts = run("euler/generic", "taylor", "f64").verdicts
     assert [v.verdict for v in verdicts] == [Status.UNDECIDED]
     assert exit_status(verdicts) == 3

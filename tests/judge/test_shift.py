@@ -378,7 +378,7 @@ def test_a_vacuous_gate_says_what_is_gated_in_its_place() -> None:
         clock=Clock(Fraction(0), tuple(map(Fraction, range(0, 201, 5)))),
     )
     problem = pose(edge, rung("f64"))
-    omega, *conserved = judgement(problem, Taylor(), Taylor().solve(problem)).verdicts
+    _, omega, *conserved = judgement(problem, Taylor(), Taylor().solve(problem)).verdicts
     assert omega.verdict is Status.VACUOUS
     assert "only the conserved quantities are gated there" in omega.because
     assert all(v.verdict is not Status.VACUOUS for v in conserved)
