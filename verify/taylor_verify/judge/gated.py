@@ -160,7 +160,7 @@ def gates_of(
 
 @dataclass(frozen=True)
 class _Gates:
-    """What was measured, and the roundoff ``floor`` of the counted ``steps``."""
+    """The gates of what was ``measured``; ``floor`` is the roundoff floor of the counted ``steps``."""
 
     run: Run
     floor: Floor

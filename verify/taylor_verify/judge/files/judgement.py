@@ -14,11 +14,12 @@ from typing import Any, Final
 
 import numpy as np
 
+from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.causes.answers import NOT_LOOKED_FOR, causes_of_file
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.conventions.fits import EXPLAINS, Conventions, Finding
-from taylor_verify.judge.conventions.search import conventions, is_far
+from taylor_verify.judge.conventions.search import MOST_SPANS, conventions
 from taylor_verify.judge.conventions.worlds import World
 from taylor_verify.judge.costs import Costs
 from taylor_verify.judge.files.coverage import (
@@ -52,7 +53,7 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import Recorded, TrajectoryFile
 
 # For a file the Taylor route goes at most this many times the scene's span.
-_MOST_SPANS: Final = 100
+_FURTHEST: Final = 100
 
 
 @dataclass(frozen=True, repr=False)
@@ -116,7 +117,7 @@ def judge_file(
     known = Conventions((), World(scene), {})
     answer = FileRows.of(compared, rung, known)
     try:
-        judged = None if is_far(scene, compared.times) else _judged(answer, tolerances)
+        judged = None if _is_far(answer) else _judged(answer, tolerances)
         if judged is None or not _fits(judged):
             known = conventions(compared, scene, rung)
             if accept_conventions:
@@ -192,20 +193,27 @@ def _gravity(verdict: Verdict) -> tuple[int, float]:
 
 def _judged_within_reach(answer: FileRows, known: Conventions, tolerances: Tolerances) -> Judgement:
     """Judge the rows, unless their times are too far away for a scene without a closed form."""
-    scene, words = answer.scene, known.world.words
-    if known.world.scale != 1 and is_far(scene, answer.times):
+    if known.world.scale != 1 and _is_far(answer):
         why = (
-            f"{words}; as it stands the file asks for times far beyond the scene, "
+            f"{known.world.words}; as it stands the file asks for times far beyond the scene, "
             "which has no closed form, and they are not computed: the rows near the start are wrong already"
         )
         return _alone(answer, Status.FAIL, why, Cause.TOO_FAR)
-    if is_far(scene, answer.times, _MOST_SPANS):
+    if _is_far(answer, _FURTHEST):
         why = (
-            f"the file goes more than {_MOST_SPANS} times as far as the scene, which has no closed "
+            f"the file goes more than {_FURTHEST} times as far as the scene, which has no closed "
             "form: its exact motion is not computed up to there"
         )
         return _alone(answer, Status.UNDECIDED, why, Cause.TOO_FAR)
     return _judged(answer, tolerances)
+
+
+def _is_far(answer: FileRows, spans: int = MOST_SPANS) -> bool:
+    """Return True if the Taylor route would have to go more than ``spans`` spans to reach these rows."""
+    clock, times = answer.scene.clock, answer.times
+    span = max(abs(t) for t in clock.elapsed)
+    reach = max(abs(t - clock.start) for t in (times[0], times[-1]))
+    return reach > spans * span and solution(answer.scene).route == "taylor"
 
 
 def _alone(answer: FileRows, status: Status, why: str, cause: Cause) -> Judgement:
