@@ -61,7 +61,7 @@ class Gate:
         # The length of a quaternion does not depend on the input.
         moved = inputs.at_samples.get(self.errors.quantity, np.zeros(len(self.attainable)))
         both = np.hypot(self.attainable, moved)
-        largest, errors = np.max(self.errors.doubles), np.array(four_digits(self.errors.doubles))
+        largest, errors = np.max(self.errors.values), np.array(four_digits(self.errors.values))
         worst = index_of_largest(errors)
         if self.tolerance is not None:
             # A tolerance leaves no room for rounding.
@@ -93,7 +93,7 @@ class Gate:
     @cached_property
     def verdict(self) -> Verdict:
         """The verdict on the quantity."""
-        finding, times, errors = self.finding, self.run.times, self.errors.doubles
+        finding, times, errors = self.finding, self.run.times, self.errors.values
         reason, late = finding.reason, dict[str, Any]()
         if self.shift is not None:
             late = self.shift.numbers()
@@ -125,9 +125,9 @@ class Gate:
         return GateRecord(
             quantity=self.errors.quantity,
             unit=self.errors.unit,
-            errors=four_digits(self.errors.doubles),
+            errors=four_digits(self.errors.values),
             attainable=four_digits(self.attainable),
-            truth_radius=_bound(float(np.max(self.errors.widths))),
+            truth_radius=_bound(float(np.max(self.errors.truth_radius))),
             shifts=four_digits(self.shift.at_samples if self.shift and is_shown else ()),
         )
 

@@ -36,7 +36,7 @@ def initial_verdict(gates: Sequence[Gate], carried: Carried) -> list[Verdict]:
     if not starts:
         return []
     gate, k, finding = starts[int(np.argmax([_nearness(*row) for row in starts]))]
-    error, start = float(gate.errors.doubles[k]), gate.run.start
+    error, start = float(gate.errors.values[k]), gate.run.start
     remark = _remark(gate.errors.quantity, error, finding, start)
     verdict = gate.run.verdict(
         INITIAL,
@@ -63,7 +63,7 @@ def _finding(gate: Gate, k: int, carried: Carried) -> Finding:
     row = slice(k, k + 1)
     width = inf if gate.finding.status is Status.UNDECIDED else 0.0
     errors = replace(
-        gate.errors, values=gate.errors.doubles[row], truth_radius=np.full(1, width), is_state=True
+        gate.errors, values=gate.errors.values[row], truth_radius=np.full(1, width), is_state=True
     )
     terms = Reason(floor=RoundoffFloor(carried, shown(float(gate.attainable[k]))))
     return judge(errors, gate.attainable[row], terms, gate.tolerance)
@@ -72,7 +72,7 @@ def _finding(gate: Gate, k: int, carried: Carried) -> Finding:
 def _nearness(gate: Gate, k: int, finding: Finding) -> float:
     """Return the error of the start of a state, in tenths of its bound."""
     tolerance = finding.tolerance
-    error = float(gate.errors.doubles[k])
+    error = float(gate.errors.values[k])
     return finding.ratio if tolerance is None else GATE_FACTOR * error / tolerance
 
 

@@ -238,5 +238,5 @@ class Comparison:
         if last.is_whole_of(self.scene):
             return last
         count = len(self.scene.clock.instants)
-        worst = {index_of_largest(error.doubles) for error in errors}
+        worst = {index_of_largest(error.values) for error in errors}
         return self._block(sorted(worst.union(evenly(count, MOST_SHIFTED))), Costs())

@@ -179,7 +179,7 @@ def _judged(answer: FileRows, tolerances: Tolerances) -> Judgement:
 def _verdict_of(sides: Sequence[Gate], file: TrajectoryFile) -> Verdict:
     """Return the worse verdict on a quantity over both directions of time, or that nearer to its bound."""
     verdict = min((gate.verdict for gate in sides), key=_gravity)
-    is_finite = all(np.isfinite(gate.errors.doubles).all() for gate in sides)
+    is_finite = all(np.isfinite(gate.errors.values).all() for gate in sides)
     flaw = "" if is_finite else first_flaw(file, verdict.quantity)
     if not flaw:
         return verdict

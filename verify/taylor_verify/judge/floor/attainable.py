@@ -122,7 +122,7 @@ class Floor:
 
     def terms(self, attainable: Floats, errors: Errors, carried: Carried) -> RoundoffFloor:
         """Return the terms of the floor at the sample of the largest error."""
-        worst = int(np.argmax(errors.doubles))
+        worst = int(np.argmax(errors.values))
         reached = self._path_times <= self.times[worst]
         steps = max(1, round(float(np.sum(self.steps_at[reached]))))
         value = float(attainable[worst])
@@ -144,7 +144,7 @@ class Floor:
         elapsed = self.times / (np.max(self.times) or 1.0)
         steps = 1 + float(np.sum(self.steps_at)) * elapsed
         attainable = self.unit_roundoff * steps
-        worst = int(np.argmax(errors.doubles))
+        worst = int(np.argmax(errors.values))
         value, count = float(attainable[worst]), round(steps[worst])
         ends = (float(np.min(excess)), float(np.max(excess)))
         extent = " to ".join(dict.fromkeys(_length(end, value) for end in ends))
