@@ -55,28 +55,18 @@ LACKING = [
 def test_what_a_file_lacks_is_undecided(
     rows: Sequence[int], names: Sequence[str], lack: str, tmp_path: Path
 ) -> None:
-    """A single row says all that was not judged, and names both ways out."""
-    verdict = complete(file_of(tmp_path, rows, names))
+    """A single row says all that was not judged, and names both ways out; --partial makes it vacuous."""
+    file = file_of(tmp_path, rows, names)
+    verdict, part = complete(file), complete(file, partial=True)
     assert verdict is not None
+    assert part is not None
+    assert part.verdict is Status.VACUOUS
+    assert lack in part.because
     assert verdict.verdict is Status.UNDECIDED
     assert verdict.because.startswith("not judged: ")
     assert lack in verdict.because
     assert "--partial" in verdict.because
     assert f"`taylor-verify question {SCENE} --csv`" in verdict.because
-
-
-@pytest.mark.parametrize(("rows", "names", "lack"), LACKING)
-def test_a_part_that_was_asked_for_is_vacuous(
-    rows: Sequence[int], names: Sequence[str], lack: str, tmp_path: Path
-) -> None:
-    """The row under --partial has the same words, and changes no exit status."""
-    file = file_of(tmp_path, rows, names)
-    verdict = complete(file, partial=True)
-    assert verdict is not None
-    assert verdict.verdict is Status.VACUOUS
-    assert lack in verdict.because
-    assert main(["check", file, "--scene", SCENE, "--partial", "--json"]) == 0
-    assert main(["check", file, "--scene", SCENE, "--json"]) == 3
 
 
 @pytest.mark.parametrize(

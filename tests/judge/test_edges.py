@@ -9,24 +9,21 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.verdicts import ATTAINABLE, row
+from builders.verdicts import row
 from mpmath import mpf
 
-from taylor_verify.judge.conventions.fits import EXPLAINS
 from taylor_verify.judge.conventions.readings import readings, rotations
-from taylor_verify.judge.conventions.search import _Search, conventions
+from taylor_verify.judge.conventions.search import conventions
 from taylor_verify.judge.conventions.worlds import worlds
 from taylor_verify.judge.errors import courses, state
 from taylor_verify.judge.errors.balances import ClockWork
 from taylor_verify.judge.errors.compared import Compared, Shifted
-from taylor_verify.judge.errors.shift import LEAVES, Shift, strays_from
+from taylor_verify.judge.errors.shift import LEAVES, strays_from
 from taylor_verify.judge.files.coverage import Extent, span_notes
 from taylor_verify.judge.files.stored import storing
 from taylor_verify.judge.floor.carrying import Carrying, carrying
 from taylor_verify.judge.judgement import Judgement
-from taylor_verify.judge.series import files, order
 from taylor_verify.judge.velocities import momenta, velocities
-from taylor_verify.records.reason import Kind
 from taylor_verify.scenes.motion import Clock, Motion
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
@@ -36,13 +33,6 @@ def test_the_table_of_a_judgement_has_its_text_above() -> None:
     """A notebook shows the text of a judgement without its brackets, whole."""
     judged = Judgement((row(),), None)
     assert f">{repr(judged)[1:-1]}<" in judged._repr_html_()
-
-
-@pytest.mark.parametrize(("kind", "remains"), [(Kind.NONE, None), (Kind.CONSTANT, 0.25)])
-def test_what_remains_is_told_of_a_shift_alone(kind: Kind, remains: float | None) -> None:
-    """Where no shift explains an error, nothing remains of it."""
-    shift = Shift(1.0, 0.5, kind, 0.25, 0.0, (0.0, 1.0), (1.0, 1.0), (1.0, 1.0))
-    assert shift.numbers()["remains"] == remains
 
 
 def test_the_growth_of_an_error_is_known_until_the_end() -> None:
@@ -79,17 +69,6 @@ def test_a_file_without_numbers_has_no_conventions() -> None:
     """Where no row is finite, nothing is searched."""
     file: Any = SimpleNamespace(finite=np.zeros(3, dtype=bool))
     assert conventions(file, load("euler/generic"), rung("f64")).findings == ()
-
-
-@pytest.mark.parametrize(("order", "count"), [(3.9, 0), (1.0, 1)])
-def test_a_lower_order_is_lower_by_a_half(order: float, count: int) -> None:
-    """Orders that nearly agree are those of one method."""
-    orders: Any = [
-        SimpleNamespace(quantity=name, order=value)
-        for name, value in (("omega", 4.0), ("attitude", order))
-    ]
-    notes = list(files._notes([], [], [], [], orders))
-    assert sum("a method of its own" in note for note in notes) == count
 
 
 def test_the_reach_of_an_answer_is_a_distance() -> None:
@@ -154,27 +133,6 @@ def test_a_printed_number_is_known_to_half_its_last_digit() -> None:
     assert stored.u == pytest.approx(5e-6, abs=0)
 
 
-def sampled(step: float, **changed: Any) -> Any:
-    """A file of a series, with one row of which nothing else is asked."""
-    judged = SimpleNamespace(file=SimpleNamespace(name="mine.csv", digits=None))
-    verdict = row(**changed)
-    return SimpleNamespace(roundings=4.0, step=step, judged=judged, row=lambda quantity: verdict)
-
-
-def test_more_steps_than_rows_raise_the_floor() -> None:
-    """A row is judged as one step; an integrator that makes sixteen has four times its floor."""
-    sample = sampled(0.25)
-    (point,) = order._points([sample], [sample.row("omega")])
-    assert point.attainable == 4 * ATTAINABLE
-
-
-def test_an_order_needs_no_floor() -> None:
-    """Where no floor is known, all errors count."""
-    steps = (0.1, 0.05, 0.025, 0.0125)
-    samples = [sampled(step, max=step**4, attainable=None) for step in steps]
-    assert order._order("omega", samples).order == pytest.approx(4)
-
-
 def test_the_width_of_a_truth_is_relative_to_its_vector() -> None:
     """A vector of length 5 that is known to 1e-10 is known to 5e-10."""
     truth = Motion({"omega": np.array([[mpf(3), mpf(4), mpf(0)]])}, np.array([mpf(1e-10)]))
@@ -193,16 +151,6 @@ def test_a_drift_of_the_clock_is_its_integral(turns: float, square: float) -> No
     work = ClockWork(1.0, mpf(1), np.array([turns]), P)
     (drift,) = work.drift(Fraction(1, 2**53), 400, np.ones(1), mpf(1))
     assert drift * 2**53 == pytest.approx((square * 400 / 3) ** 0.5, rel=1e-3)
-
-
-@pytest.mark.parametrize(("part", "is_explained"), [(0.9, True), (1.1, False)])
-def test_an_error_near_roundoff_needs_no_convention(part: float, is_explained: bool) -> None:
-    """Another convention has to leave a hundredth, which it could not below a hundred times the noise."""
-    nothing: Any = None
-    search = _Search(nothing, nothing, rung("f64"), ())
-    search.__dict__["plain"] = SimpleNamespace(worst=part * search.noise / EXPLAINS)
-    assert EXPLAINS == 1 / 100
-    assert search.is_explained == is_explained
 
 
 @pytest.mark.parametrize("number", [float, mpf])

@@ -80,6 +80,15 @@ def judged(scene: Scene, exact: Solution, answer: Motion) -> dict[str, Shift | N
     return {e.quantity: shift for e, shift in zip(errors, shifts, strict=True)}
 
 
+def pushed(scene: Scene, motion: Motion, size: float) -> Motion:
+    """A motion whose omega is moved by so much, at right angles to its velocity."""
+    across = np.cross(rates(scene, motion).velocity["omega"], [1.0, 2.0, 3.0])
+    across *= size / np.linalg.norm(across, axis=1, keepdims=True)
+    with mp.workdps(DIGITS):
+        omega = motion["omega"] + np.array([[mpf(v) for v in row] for row in across.tolist()])
+    return Motion({"omega": omega}, motion.radius)
+
+
 # The rates that a shift is read from.
 
 
@@ -207,18 +216,9 @@ def test_a_third_of_an_error_along_the_orbit_is_no_clock() -> None:
     """An error of which a shift leaves a third is a wrong equation, and not a clock that runs fast."""
     scene, exact = asked("euler/generic", 41)
     late = shifted(exact, scene, lambda t: exact_value(t) / 10**6)
-    velocity = rates(scene, late).velocity["omega"]
-    across = np.cross(velocity, [1.0, 2.0, 3.0])
-    error = max(
-        np.linalg.norm(
-            (late["omega"] - exact.motion(scene.clock.elapsed, DIGITS)["omega"]).astype(float),
-            axis=1,
-        )
-    )
-    across *= error / 3 / np.linalg.norm(across, axis=1, keepdims=True)
-    with mp.workdps(DIGITS):
-        wrong = late["omega"] + np.array([[mpf(v) for v in row] for row in across.tolist()])
-    shift = judged(scene, exact, Motion({"omega": wrong}, late.radius))["omega"]
+    error = late["omega"] - exact.motion(scene.clock.elapsed, DIGITS)["omega"]
+    third = max(np.linalg.norm(error.astype(float), axis=1)) / 3
+    shift = judged(scene, exact, pushed(scene, late, third))["omega"]
     assert shift is not None
     assert shift.kind is Kind.NONE
 
@@ -268,11 +268,7 @@ def test_an_error_across_the_motion_is_no_shift() -> None:
     scene, exact = asked("euler/generic")
     truth = exact.motion(scene.clock.elapsed, DIGITS)
     velocity = rates(scene, truth).velocity["omega"]
-    across = np.cross(velocity, [1.0, 2.0, 3.0])
-    across *= 1e-8 / np.linalg.norm(across, axis=1, keepdims=True)
-    with mp.workdps(DIGITS):
-        pushed = truth["omega"] + np.array([[mpf(v) for v in row] for row in across.tolist()])
-    shift = judged(scene, exact, Motion({"omega": pushed}, truth.radius))["omega"]
+    shift = judged(scene, exact, pushed(scene, truth, 1e-8))["omega"]
     assert shift is not None
     assert shift.kind is Kind.NONE
     assert shift.terms().sentence() == "no shift of time explains it"
@@ -285,13 +281,8 @@ def test_what_a_shift_leaves_is_told_beside_it() -> None:
     """An answer that is late and wrong by 3e-9 across the motion: both numbers come out."""
     scene, exact = asked("euler/generic")
     late = shifted(exact, scene, lambda t: Fraction(1, 2000))
-    velocity = rates(scene, late).velocity["omega"]
-    across = np.cross(velocity, [1.0, 2.0, 3.0])
     size = max(np.linalg.norm(late["omega"].astype(float), axis=1))
-    across *= 3e-9 * size / np.linalg.norm(across, axis=1, keepdims=True)
-    with mp.workdps(DIGITS):
-        both = late["omega"] + np.array([[mpf(v) for v in row] for row in across.tolist()])
-    shift = judged(scene, exact, Motion({"omega": both}, late.radius))["omega"]
+    shift = judged(scene, exact, pushed(scene, late, 3e-9 * size))["omega"]
     assert shift is not None
     assert shift.terms().sentence() == "late by 0.0005, constant; 3e-09 remains"
     # The scale of an error is that of the truth, at its own instants.
@@ -378,7 +369,7 @@ def test_a_vacuous_gate_says_what_is_gated_in_its_place() -> None:
         clock=Clock(Fraction(0), tuple(map(Fraction, range(0, 201, 5)))),
     )
     problem = pose(edge, rung("f64"))
-    omega, *conserved = judgement(problem, Taylor(), Taylor().solve(problem)).verdicts
+    _, omega, *conserved = judgement(problem, Taylor(), Taylor().solve(problem)).verdicts
     assert omega.verdict is Status.VACUOUS
     assert "only the conserved quantities are gated there" in omega.because
     assert all(v.verdict is not Status.VACUOUS for v in conserved)

@@ -16,7 +16,6 @@ import pytest
 from builders.trajectories import exact_columns, write_csv
 from builders.turns import by_turns
 from builders.verdicts import by_quantity
-from mpmath import mpf
 
 import taylor_verify
 from taylor_verify.batch.expectations import compare_with_expectations
@@ -143,10 +142,7 @@ FLOOR = Reason(floor=RoundoffFloor(Carried.ORBIT, 1e-15, 53, 100, 1.0))
 def gate(
     errors: Any, width: float = 0.0, attainable: float = 1e-15, tolerance: float = 1e-8
 ) -> Any:
-    values = np.array([mpf(e) for e in errors], dtype=object)
-    widths = np.array([mpf(width)] * len(errors), dtype=object)
-    column = Errors("omega", "max|omega|", values, widths, {}, is_state=True)
-    return judge(column, np.full(len(errors), attainable), FLOOR, tolerance)
+    return judge(*plain(errors, width, attainable), tolerance)
 
 
 def test_a_nan_meets_no_tolerance() -> None:
@@ -165,11 +161,10 @@ def test_a_truth_wider_than_a_sixteenth_of_the_tolerance_is_undecided() -> None:
     assert gate([0.0], width=1e-10).status is Status.PASS
 
 
-def plain(errors: Any, width: float) -> Any:
-    values = np.array([mpf(e) for e in errors], dtype=object)
-    widths = np.array([mpf(width)] * len(errors), dtype=object)
+def plain(errors: Any, width: float, attainable: float = 1e-15) -> Any:
+    values, widths = np.array(errors, dtype=float), np.full(len(errors), width)
     column = Errors("omega", "max|omega|", values, widths, {}, is_state=True)
-    return column, np.full(len(errors), 1e-15), FLOOR
+    return column, np.full(len(errors), attainable), FLOOR
 
 
 @pytest.mark.parametrize(("error", "status"), [(1e-9, Status.PASS), (1e-7, Status.FAIL)])

@@ -62,7 +62,6 @@ def run(
     from taylor_verify.judge.causes.answers import with_causes
     from taylor_verify.judge.costs import SOLVING, Costs, total
     from taylor_verify.judge.files.stored import with_note_of_answer
-    from taylor_verify.judge.initial import with_initial
     from taylor_verify.judge.judgement import judgement, unjudged
     from taylor_verify.judge.tolerances import tolerances
     from taylor_verify.records.reason import Cause
@@ -87,7 +86,6 @@ def run(
         trajectory = _answer(solver, problem)
     seconds = perf_counter() - began
     judged = judgement(problem, solver, trajectory, seconds, asked)
-    judged = with_initial(judged, float(problem.given.clock.start))
     if causes:
         judged = with_causes(judged, problem, trajectory)
     judged = with_note_of_answer(judged, rung, trajectory)

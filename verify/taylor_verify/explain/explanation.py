@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from math import isfinite
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from mpmath import mp
 
@@ -16,10 +16,9 @@ from taylor_verify.exact.elements import Element, Elements, elements
 from taylor_verify.exact.kirchhoff.screws import Screw, screws_beside
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
-from taylor_verify.judge.files.partial import partial_judgement
 from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.judge.floor.carrying import Carrying, carrying
-from taylor_verify.judge.initial import with_initial
+from taylor_verify.judge.judgement import Judgement, judgement
 from taylor_verify.models.form import Form
 from taylor_verify.models.general import in_general_form, whole_form
 from taylor_verify.models.problem import NotRepresentable, pose
@@ -33,9 +32,6 @@ from taylor_verify.scenes.reading.reader import as_scene
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import Recorded
 from taylor_verify.solvers.trajectory import Outcome
-
-if TYPE_CHECKING:
-    from taylor_verify.judge.judgement import Judgement
 
 _DIGITS = 15
 # Digits beyond those of a rung, so that the exact number is rounded once.
@@ -52,9 +48,9 @@ def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]
     scene = as_scene(scene)
     body = scene.body
     shape = ellipsoid.sentences(body) if isinstance(body, ImmersedBody) else []
-    judgement, lacking = _judged(scene, rung_named(rung))
-    record = judgement.record.document() if judgement.record is not None else {}
-    first = judgement.verdicts[0]
+    judged, lacking = _judged(scene, rung_named(rung))
+    record = judged.record.document() if judged.record is not None else {}
+    first = judged.verdicts[0]
     effort = ("steps", "evaluations", "seconds")
     orbit = _orbit(scene)
     period = float(orbit["orbit"]["period"]) if "period" in orbit["orbit"] else None
@@ -78,20 +74,20 @@ def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]
         },
         **orbit,
         "screws": [_screw(screw) for screw in screws_beside(scene)],
-        "condition": _condition(scene, rung_named(rung), period) if judgement.record else None,
+        "condition": _condition(scene, rung_named(rung), period) if judged.record else None,
         "outcome": first.outcome,
-        "gates": [_gate(verdict) for verdict in judgement.verdicts],
+        "gates": [_gate(verdict) for verdict in judged.verdicts],
     }
 
 
 def _judged(scene: Scene, rung: Rung) -> tuple[Judgement, list[str]]:
     """Return the judgement of heyoka's answer, or, without heyoka, of the exact motion and a warning."""
-    judgement = run(scene, "taylor", rung)
-    first = judgement.verdicts[0]
+    judged = run(scene, "taylor", rung)
+    first = judged.verdicts[0]
     lacks_heyoka = first.outcome == Outcome.NO_PACKAGE.value
     exact = _judged_exact_motion(scene, rung) if lacks_heyoka else None
     if exact is None:
-        return judgement, []
+        return judged, []
     instead = f"those of the exact motion rounded to {rung.name}, a step for each sample"
     return exact, [f"{first.because}; the gates are {instead}"]
 
@@ -104,10 +100,10 @@ def _judged_exact_motion(scene: Scene, rung: Rung) -> Judgement | None:
         exact = solution(problem.given).motion(problem.given.clock.elapsed, digits)
         with mp.workprec(rung.bits):
             rounded = {name: +values for name, values in exact.quantities.items()}
-        judgement = partial_judgement(problem, Recorded(rounded, name="exact"))
+        answer = Recorded(rounded, name="exact")
+        return judgement(problem, answer, answer.solve(problem))
     except (NotRepresentable, Unsettled):
         return None
-    return with_initial(judgement, float(problem.given.clock.start))
 
 
 def _rounded(scene: Scene, rung: Rung) -> list[str]:

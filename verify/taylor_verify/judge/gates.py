@@ -53,8 +53,8 @@ def judge(
     """
     roundings = GATE_FACTOR * attainable
     bounds = bounds_of(attainable, tolerance)
-    worst = index_of_largest(errors.doubles)
-    ratios = _ratios(errors.doubles, attainable)
+    worst = index_of_largest(errors.values)
+    ratios = _ratios(errors.values, attainable)
     ratio_at = index_of_largest(ratios[: _asked(roundings) or None])
     status, by_rounding = _status(errors, bounds), _status(errors, roundings)
     reason = replace(terms, factor=float(GATE_FACTOR))
@@ -91,14 +91,14 @@ def bounds_of(attainable: Floats, tolerance: float | None) -> Floats:
 
 
 def _status(errors: Errors, bounds: Floats) -> Status:
-    if np.isnan(errors.doubles).any():
+    if np.isnan(errors.values).any():
         return Status.FAIL
-    within = errors.doubles <= bounds
+    within = errors.values <= bounds
     asked = _asked(bounds)
     if asked < len(bounds):
         # The samples before the floor reached the motion's size can still fail.
         return Status.VACUOUS if within[:asked].all() else Status.FAIL
-    if not (errors.widths * _TRUTH_SHARE <= bounds).all():
+    if not (errors.truth_radius * _TRUTH_SHARE <= bounds).all():
         return Status.UNDECIDED
     return Status.PASS if within.all() else Status.FAIL
 

@@ -9,38 +9,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, Final
+from math import inf
 
 import numpy as np
 
-from taylor_verify.judge.gates import Finding
-from taylor_verify.judge.judgement import Judgement
-from taylor_verify.judge.regraded import Graded
+from taylor_verify.judge.gated import Gate
+from taylor_verify.judge.gates import Finding, judge
 from taylor_verify.records.error_kind import ErrorKind
 from taylor_verify.records.quantities import GATE_FACTOR, INITIAL, STATES
 from taylor_verify.records.reason import Carried, Cause, Reason, RoundoffFloor, shown
+from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 
-# A single sample has no course in time.
-_NO_COURSE: Final[dict[str, Any]] = dict.fromkeys(
-    ("time_shift", "residual", "shift", "trend", "remains", "change", "exponent", "since")
-)
 
-
-def with_initial(judgement: Judgement, start: float) -> Judgement:
-    """Return the judgement with the verdict on the start as its first row, if a sample is at the start."""
-    record = judgement.record
-    if record is None:
-        return judgement
-    times, pairs = np.array(record.times), zip(judgement.verdicts, record.gates, strict=True)
-    gates = [Graded.of(verdict, gate, times) for verdict, gate in pairs]
-    initial = initial_verdict(gates, start, Carried.START)
-    return replace(judgement, verdicts=(*initial, *judgement.verdicts))
-
-
-def initial_verdict(
-    gates: Sequence[Graded], start: float, carried: Carried = Carried.ROW
-) -> list[Verdict]:
+def initial_verdict(gates: Sequence[Gate], carried: Carried) -> list[Verdict]:
     """Return the verdict on the row at the start, in a list; empty if there is no such row.
 
     ``carried`` distinguishes the start of a run from the start of a file, which is rounded once more.
@@ -48,22 +30,22 @@ def initial_verdict(
     starts = [
         (gate, int(k), _finding(gate, int(k), carried))
         for gate in gates
-        if gate.verdict.quantity in STATES
-        for k in np.flatnonzero(gate.times == start)[:1]
+        if gate.errors.quantity in STATES
+        for k in np.flatnonzero(gate.run.times == gate.run.start)[:1]
     ]
     if not starts:
         return []
     gate, k, finding = starts[int(np.argmax([_nearness(*row) for row in starts]))]
-    error = float(gate.errors[k])
-    remark = _remark(gate.verdict.quantity, error, finding, start)
-    verdict = replace(
-        gate.verdict,
-        quantity=INITIAL,
-        verdict=finding.status,
+    error, start = float(gate.errors.values[k]), gate.run.start
+    remark = _remark(gate.errors.quantity, error, finding, start)
+    verdict = gate.run.verdict(
+        INITIAL,
+        finding.status,
         max=error,
         mean=error,
         final=error,
         at=start,
+        unit=gate.errors.unit,
         bound=finding.bound,
         tolerance=finding.tolerance,
         reason=finding.reason.with_remark(Cause.START, remark),
@@ -72,20 +54,26 @@ def initial_verdict(
         ratio_at=start,
         until=start,
         error_kind=ErrorKind.ROUNDOFF if finding.is_rounding else None,
-        **_NO_COURSE,
     )
     return [verdict]
 
 
-def _finding(gate: Graded, k: int, carried: Carried) -> Finding:
-    floor = RoundoffFloor(carried, shown(float(gate.attainable[k])))
-    return gate.judged(Reason(floor=floor), slice(k, k + 1))
+def _finding(gate: Gate, k: int, carried: Carried) -> Finding:
+    """Return the finding of a gate at one sample. The truth is as wide there as for the whole gate."""
+    row = slice(k, k + 1)
+    width = inf if gate.finding.status is Status.UNDECIDED else 0.0
+    errors = replace(
+        gate.errors, values=gate.errors.values[row], truth_radius=np.full(1, width), is_state=True
+    )
+    terms = Reason(floor=RoundoffFloor(carried, shown(float(gate.attainable[k]))))
+    return judge(errors, gate.attainable[row], terms, gate.tolerance)
 
 
-def _nearness(gate: Graded, k: int, finding: Finding) -> float:
+def _nearness(gate: Gate, k: int, finding: Finding) -> float:
     """Return the error of the start of a state, in tenths of its bound."""
     tolerance = finding.tolerance
-    return finding.ratio if tolerance is None else GATE_FACTOR * float(gate.errors[k]) / tolerance
+    error = float(gate.errors.values[k])
+    return finding.ratio if tolerance is None else GATE_FACTOR * error / tolerance
 
 
 def _remark(quantity: str, error: float, finding: Finding, start: float) -> str:

@@ -6,29 +6,21 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-import numpy as np
-from mpmath import mp
-
-from taylor_verify.exact.route import solution
-from taylor_verify.exact.solution import Solution, Unsettled
-from taylor_verify.judge.costs import CONDITION, CONSERVED, Costs
-from taylor_verify.judge.diagnosis import diagnosed
-from taylor_verify.judge.errors.balances import clock_work
-from taylor_verify.judge.errors.measured import Comparison
-from taylor_verify.judge.floor.arithmetic import truth_digits, working_bits
-from taylor_verify.judge.floor.attainable import floor
-from taylor_verify.judge.floor.steps import Steps, count_steps
-from taylor_verify.judge.rows import Gates, Run, run_record, verdict_on
+from taylor_verify.exact.solution import Unsettled
+from taylor_verify.judge.costs import Costs
+from taylor_verify.judge.floor.steps import count_steps
+from taylor_verify.judge.gated import gates_of
+from taylor_verify.judge.initial import initial_verdict
+from taylor_verify.judge.rows import Run, run_record, verdict_on
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.answers import LikelyCause
 from taylor_verify.records.quantities import MAIN
-from taylor_verify.records.reason import Cause, stated
+from taylor_verify.records.reason import Carried, Cause, stated
 from taylor_verify.records.record import Record
 from taylor_verify.records.showing import counts, dataframe, html_table
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status
-from taylor_verify.scenes.mpfr import in_mpfr
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.solver import Solver
@@ -116,10 +108,10 @@ def judgement(
     """Judge a trajectory by comparison with the exact solution of the same rounded data.
 
     ``seconds`` is the time that the answer took by the caller's clock; it limits the steps that a solver
-    may claim. ``tolerances`` replace the bounds. An unfinished trajectory and a missing truth are verdicts;
-    they raise nothing.
+    may claim. ``tolerances`` replace the bounds. The first verdict is on the start, if a sample is there.
+    An unfinished trajectory and a missing truth are verdicts; they raise nothing.
     """
-    run = Run(problem, solver, trajectory, tolerances)
+    run, costs = Run(problem, solver, trajectory, tolerances), Costs()
     main, outcome = MAIN[problem.scene.model], trajectory.outcome
     if outcome.is_unavailable:
         status, reason = Status.UNAVAILABLE, stated(Cause.UNFINISHED, str(trajectory.detail))
@@ -128,41 +120,15 @@ def judgement(
         text = f"a run that did not finish is not scored: it {outcome.value}{detail}"
         status, reason = Status.FAIL, stated(Cause.UNFINISHED, text)
     else:
-        exact = solution(problem.given)
         try:
-            return _compared(run, exact, count_steps(problem, solver, trajectory.steps, seconds))
+            steps = count_steps(problem, solver, trajectory.steps, seconds)
+            gates = gates_of(run, steps, costs)
+            verdicts = (*initial_verdict(gates, Carried.START), *(gate.verdict for gate in gates))
+            record = run_record(run, [gate.record for gate in gates])
+            return Judgement(verdicts, record, costs=costs.seconds)
         except Unsettled as doubt:
             status, reason = Status.UNDECIDED, stated(Cause.NO_TRUTH, str(doubt))
     return Judgement((run.verdict(main, status, reason=reason),), None)
-
-
-def _compared(run: Run, exact: Solution, steps: Steps) -> Judgement:
-    scene, given, rung = run.problem.scene, run.problem.given, run.problem.rung
-    bits, by_velocities = working_bits(rung.bits), run.solver.carries_velocities
-    digits, costs = truth_digits(rung.bits), Costs()
-    with mp.workprec(bits), costs.of(CONDITION):
-        base = floor(given, scene, rung.unit_roundoff, steps.counted, by_velocities)
-    compared = Comparison(given, exact, run.trajectory.quantities, digits, bits)
-    measured, gates = compared.measured(base.nodes, costs), Gates(run, base, steps)
-    with mp.workprec(bits):
-        gated = [
-            gates.state(errors, shift, measured.is_shifted_whole)
-            for errors, shift in zip(measured.states, measured.shifts, strict=True)
-        ]
-        with costs.of(CONSERVED):
-            work, at_nodes = clock_work(scene), in_mpfr(measured.at_nodes)
-            for invariant, errors in measured.drifts:
-                (scale,) = errors.parts.values()
-                attainable = base.of_gradients(invariant, at_nodes, scale)
-                gated.append(gates.conserved(errors, attainable, work.get(invariant.name)))
-            gated += gates.unit_quaternion(measured.excess)
-    record = run_record(run, exact, digits, (gate for _, gate in gated))
-    times, start = np.array(record.times), float(given.clock.start)
-    verdicts = (
-        diagnosed(verdict, times, start, np.array(gate.errors), np.array(gate.attainable))
-        for verdict, gate in gated
-    )
-    return Judgement(tuple(verdicts), record, costs=costs.seconds)
 
 
 def unjudged(

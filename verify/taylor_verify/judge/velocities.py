@@ -5,8 +5,8 @@ U   velocity of the body's origin, body axes        Omega   angular velocity, bo
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Final, NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from mpmath import mp
@@ -26,28 +26,20 @@ class VelocityForms(NamedTuple):
     mass_matrix: Matrix
 
 
-def _immersed(body: ImmersedBody) -> VelocityForms:
-    """Return the forms U = A x + B y and Omega = B^T x + C y."""
+def has_velocities(body: Body) -> bool:
+    """Return True if this body has velocities besides its momenta."""
+    return isinstance(body, ImmersedBody)
+
+
+def velocity_forms(body: Body) -> VelocityForms:
+    """Return the forms U = A x + B y and Omega = B^T x + C y of a body that has velocities."""
+    assert isinstance(body, ImmersedBody)
     A, B, C = body.linear, body.coupling, body.angular
     forms = {
         "linear_velocity": {"linear_impulse": A, "angular_impulse": B},
         "omega": {"linear_impulse": transpose(B), "angular_impulse": C},
     }
     return VelocityForms(forms, body.mass_matrix)
-
-
-# Forms by class of body; the state of any other body is omega itself.
-_FORMS: Final[Mapping[type[Body], Callable[[Any], VelocityForms]]] = {ImmersedBody: _immersed}
-
-
-def has_velocities(body: Body) -> bool:
-    """Return True if this body has velocities besides its momenta."""
-    return type(body) in _FORMS
-
-
-def velocity_forms(body: Body) -> VelocityForms:
-    """Return the velocity forms of a body that has velocities."""
-    return _FORMS[type(body)](body)
 
 
 def velocity(group: str, body: Body, quantities: Quantities) -> Any:

@@ -46,7 +46,7 @@ class JustWithin(Solver):
 
 def _bound(problem: Problem, sound: Trajectory) -> float:
     """Return the bound at the middle sample, from the verdict on an answer that is plainly wrong there."""
-    (omega, *_) = judgement(problem, Taylor(), _moved(problem, sound, _CONSPICUOUS)).verdicts
+    (_, omega, *_) = judgement(problem, Taylor(), _moved(problem, sound, _CONSPICUOUS)).verdicts
     assert omega.bound is not None
     return omega.bound
 

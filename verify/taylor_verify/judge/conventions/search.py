@@ -63,7 +63,7 @@ _FEW_ROWS: Final = 12
 _MOST_ROWS: Final = 24
 _DIGITS: Final = 20
 # For a hypothesis the Taylor route goes at most this many spans of the scene.
-_MOST_SPANS: Final = 10
+MOST_SPANS: Final = 10
 
 
 @np.errstate(over="ignore", invalid="ignore")  # an answer may diverge
@@ -178,7 +178,7 @@ class _Search:
     def _truth(self, world: World) -> tuple[list[int], dict[str, Floats]]:
         """Return the rows within reach in a world, and the exact motion there."""
         given, exact = self.solution(world)
-        reach = _MOST_SPANS * max(abs(t) for t in self.scene.clock.elapsed)
+        reach = MOST_SPANS * max(abs(t) for t in self.scene.clock.elapsed)
         elapsed = given.clock.elapsed
         near = [k for k, t in enumerate(elapsed) if exact.route != "taylor" or abs(t) <= reach]
         try:
@@ -218,14 +218,7 @@ class _Search:
             return False
         span = max(abs(t) for t in self.scene.clock.elapsed)
         reach = max((abs(t) for t in given.clock.elapsed), default=Fraction(0))
-        return reach <= _MOST_SPANS * span or (world.scale == 1 and exact.route != "taylor")
-
-
-def is_far(scene: Scene, times: Sequence[Fraction], spans: int = _MOST_SPANS) -> bool:
-    """Return True if the Taylor route would have to go more than ``spans`` spans to reach these times."""
-    span = max(abs(t) for t in scene.clock.elapsed)
-    reach = max(abs(t - scene.clock.start) for t in (times[0], times[-1]))
-    return reach > spans * span and solution(scene).route == "taylor"
+        return reach <= MOST_SPANS * span or (world.scale == 1 and exact.route != "taylor")
 
 
 # The errors of the groups.

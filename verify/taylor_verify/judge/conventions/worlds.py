@@ -60,6 +60,9 @@ class World:
         return self.scale != 1 or self.shift != 0
 
     def times(self, instants: Iterable[Fraction]) -> tuple[Fraction, ...]:
+        """Return the times of the scene at these times of the file."""
+        if not self.moves_time:
+            return tuple(instants)
         return tuple(self.scale * t - self.shift for t in instants)
 
 

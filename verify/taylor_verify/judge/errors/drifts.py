@@ -63,9 +63,11 @@ def drifts(
 class Drifts:
     """The drifts of an answer whose rows come in blocks, at one ambient precision of mpmath."""
 
-    def __init__(self, scene: Scene, start: Motion, digits: int) -> None:
+    def __init__(
+        self, scene: Scene, start: Motion, digits: int, of: Sequence[Invariant] | None = None
+    ) -> None:
         self._scene, self._digits = scene, digits
-        self._invariants = invariants(scene)
+        self._invariants = invariants(scene) if of is None else of
         self._series = {invariant.name: Series() for invariant in self._invariants}
         self._begin = in_mpfr(start)
         # The end of the last block, and the sums of all increments.

@@ -1,5 +1,8 @@
 """The errors of an answer, measured in blocks of rows.
 
+An answer from elsewhere may lack quantities. The exact motion takes their place, and no error that depends
+on one of them is returned.
+
 Only one block of the exact motion and of the answer is in memory at a time. The errors of all rows are
 stored as doubles. Shifts of time are searched on some thousands of rows, with the rows of the largest
 errors among them.
@@ -17,7 +20,7 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.exact.invariants import Invariant
+from taylor_verify.exact.invariants import Invariant, invariants
 from taylor_verify.exact.solution import Solution
 from taylor_verify.judge.costs import CONSERVED, ERRORS, TRUTH, Costs
 from taylor_verify.judge.errors.drifts import Drifts
@@ -32,8 +35,10 @@ from taylor_verify.judge.errors.state import (
     norms,
     state_distances,
 )
+from taylor_verify.judge.errors.velocity import VelocityErrors, velocity_shift
 from taylor_verify.judge.floor.arithmetic import MORE_DIGITS
 from taylor_verify.judge.gates import index_of_largest
+from taylor_verify.records.quantities import GROUPS, VELOCITIES
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.scenes.motion import Clock, Motion
 from taylor_verify.scenes.scene import Scene
@@ -46,8 +51,20 @@ _PROGRESS: Final = logging.getLogger("taylor_verify.progress")
 BLOCK: Final = 4096
 # Larger blocks for the Taylor route, which begins at the start again for every block.
 BLOCK_OF_SERIES: Final = 32768
+# The names of a state's quantities in a sensitivity, where they differ.
+_BLOCKS: Final = {"omega": "momentum"}
 # Shifts of time are searched on at most this many evenly chosen rows, and on the worst rows.
 MOST_SHIFTED: Final = 4096
+
+
+@dataclass(frozen=True)
+class Velocity:
+    """Errors of a velocity that is no state, its ``sizes`` over the largest, and the shift of time."""
+
+    group: str
+    errors: Errors
+    sizes: Floats
+    shift: Shift | None
 
 
 @dataclass(frozen=True)
@@ -60,6 +77,7 @@ class Measured:
 
     states: list[Errors]
     drifts: list[tuple[Invariant, Errors]]
+    velocities: list[Velocity]
     excess: Floats | None
     at_nodes: Motion
     shifts: list[Shift | None]
@@ -68,22 +86,21 @@ class Measured:
 
 @dataclass(frozen=True)
 class Block:
-    """Some rows: their indices, a scene at their instants, the exact motion and the answer."""
+    """Some rows: their indices, a scene at their instants, the exact motion and the answer.
+
+    ``own`` are the numbers of the answer, and ``velocities`` those of its columns that are no states.
+    """
 
     places: Sequence[int]
     scene: Scene
     truth: Motion
     own: Quantities
+    velocities: Quantities
     answer: Motion
 
     def is_whole_of(self, scene: Scene) -> bool:
         """Return True if the block has all rows of the scene."""
         return len(self.places) == len(scene.clock.instants)
-
-    def add_to(self, states: States, arc: Arc) -> None:
-        """Add the distances of these rows to ``states``; ``arc`` is the path up to here."""
-        for distances in state_distances(self.scene, self.truth, self.answer, arc):
-            states.add(distances)
 
 
 @dataclass(frozen=True)
@@ -100,42 +117,99 @@ class Comparison:
     bits: int
 
     def measured(self, nodes: Sequence[int], costs: Costs) -> Measured:
-        """Measure states, drifts and shifts. Raises Unsettled if the exact motion cannot be computed."""
+        """Measure all quantities. Raises Unsettled if the exact motion cannot be computed."""
         states, excess, arc = States(), list[Floats](), Arc()
         with costs.of(TRUTH):
             start = self.exact.motion([Fraction(0)], self.digits + MORE_DIGITS)
-        drifts = Drifts(self.scene, start, self.digits)
+        conserved = self._determined(start)
+        drifts = Drifts(self._balanced, self._balanced_part(start), self.digits, conserved)
+        velocities = [VelocityErrors(group) for group in self._velocities]
         wanted, at_nodes, last = set(nodes), list[Motion](), None
         for block in self.blocks(costs):
             with mp.workprec(self.bits):
                 with costs.of(ERRORS):
-                    block.add_to(states, arc)
+                    for distances in state_distances(block.scene, block.truth, block.answer, arc):
+                        states.add(distances)
+                    for one in velocities:
+                        one.add(block.scene.body, block.truth, block.velocities[one.group])
                 with costs.of(CONSERVED):
-                    drifts.add(block.scene.clock.elapsed, block.truth, block.answer, block.own)
+                    if conserved:
+                        truth, answer = map(self._balanced_part, (block.truth, block.answer))
+                        own = block.own if answer is block.answer else answer.quantities
+                        drifts.add(block.scene.clock.elapsed, truth, answer, own)
                     if "quaternion" in block.own:
                         excess.append(in_doubles(norms(block.own["quaternion"]) - 1))
             first = block.places[0]
             at_nodes.append(block.truth.at([k - first for k in block.places if k in wanted]))
             last = block
         assert last is not None
-        errors, digits = states.errors(), self.digits
+        errors = [each for each in states.errors() if self._has_quantity(each.quantity)]
         with costs.of(ERRORS):
             block = self._shifted(errors, last)
             with mp.workprec(self.bits):
                 shifts = time_shifts(
-                    block.scene, self.exact, block.truth, block.answer, digits, errors
+                    block.scene, self.exact, block.truth, block.answer, self.digits, errors
                 )
-        lengths = np.concatenate(excess) if excess else None
-        truth, is_whole = reduce(joined, at_nodes), block.is_whole_of(self.scene)
-        return Measured(errors, drifts.errors(), lengths, truth, shifts, is_whole)
+                shifted = [self._shift_of(one, block) for one in velocities]
+        return Measured(
+            errors,
+            drifts.errors(),
+            shifted,
+            np.concatenate(excess) if excess else None,
+            reduce(joined, at_nodes),
+            shifts,
+            block.is_whole_of(self.scene),
+        )
 
-    def states(self) -> list[Errors]:
-        """Measure the states only. Raises Unsettled if the exact motion cannot be computed."""
-        states, arc = States(), Arc()
-        for block in self.blocks(Costs()):
-            with mp.workprec(self.bits):
-                block.add_to(states, arc)
-        return states.errors()
+    # What the answer has.
+
+    @property
+    def _has(self) -> set[str]:
+        return {"attitude" if name == "quaternion" else name for name in self.quantities}
+
+    def _has_quantity(self, quantity: str) -> bool:
+        return any(GROUPS[name].quantity == quantity for name in self._has)
+
+    @property
+    def _balanced(self) -> Scene:
+        """The scene of the conserved quantities.
+
+        The balances of a loaded body start an arc of the exact motion from every row, with a frame that is
+        a rotation to the last digit: a quaternion is one, and a matrix of rounded numbers is none.
+        """
+        has_frame = "quaternion" in self.quantities or "attitude" not in self.scene.track
+        is_whole = has_frame or self.scene.body.is_conservative
+        return self.scene if is_whole else replace(self.scene, track=frozenset())
+
+    def _balanced_part(self, motion: Motion) -> Motion:
+        """Return what the scene of the conserved quantities tracks of a motion."""
+        if self._balanced is self.scene:
+            return motion
+        names = self.scene.initial.MOVING
+        return replace(motion, quantities={name: motion[name] for name in names})
+
+    def _determined(self, start: Motion) -> list[Invariant]:
+        """Return the conserved quantities that depend on nothing that the answer lacks."""
+        has = {_BLOCKS.get(name, name) for name in self._has}
+        return [
+            invariant
+            for invariant in invariants(self._balanced)
+            if has.issuperset(invariant.sensitivity(start))
+        ]
+
+    @property
+    def _velocities(self) -> list[str]:
+        """The groups of velocities that are no states of the body."""
+        names = (name for name in VELOCITIES if name not in self.scene.initial.MOVING)
+        return [name for name in names if name in self.quantities]
+
+    def _shift_of(self, velocity: VelocityErrors, block: Block) -> Velocity:
+        errors, sizes = velocity.joined()
+        own = block.velocities[velocity.group]
+        shift = velocity_shift(block.scene, self.exact, own, self.digits, errors)
+        return Velocity(velocity.group, errors, sizes, shift)
+
+    # The rows in blocks.
 
     def blocks(self, costs: Costs) -> Iterator[Block]:
         """Yield all rows in blocks of some thousands, and log the progress."""
@@ -155,12 +229,14 @@ class Comparison:
         with costs.of(TRUTH):
             truth = self.exact.motion(scene.clock.elapsed, self.digits)
         own = rows_at(self.quantities, places)
-        return Block(places, scene, truth, own, motion_of(own, self.bits))
+        velocities = {name: own.pop(name) for name in self._velocities}
+        own |= {name: rows for name, rows in truth.quantities.items() if name not in self._has}
+        return Block(places, scene, truth, own, velocities, motion_of(own, self.bits))
 
     def _shifted(self, errors: Sequence[Errors], last: Block) -> Block:
         """Return the rows on which shifts are searched."""
         if last.is_whole_of(self.scene):
             return last
         count = len(self.scene.clock.instants)
-        worst = {index_of_largest(error.doubles) for error in errors}
+        worst = {index_of_largest(error.values) for error in errors}
         return self._block(sorted(worst.union(evenly(count, MOST_SHIFTED))), Costs())

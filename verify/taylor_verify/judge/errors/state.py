@@ -9,9 +9,8 @@ errors of a single block are not changed.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
 from math import ulp
 from typing import Any, Final
 
@@ -32,7 +31,7 @@ _LEAST: Final = ulp(0.0)
 
 @dataclass(frozen=True)
 class Errors:
-    """Errors of one quantity at every sample, as mpf or float64, in ``unit``.
+    """Errors of one quantity at every sample (n,), in ``unit``.
 
     ``parts`` maps each compared quantity of the motion to the scale of its error. ``truth_radius`` is the
     error bound of the truth, in the same unit. ``is_state`` is True for states and False for conserved
@@ -41,21 +40,11 @@ class Errors:
 
     quantity: str
     unit: str
-    values: Column
-    truth_radius: Column
+    values: Floats
+    truth_radius: Floats
     parts: dict[str, Any]
     is_state: bool = False
     change: float | None = None
-
-    @cached_property
-    def doubles(self) -> Floats:
-        """Values in float64."""
-        return in_doubles(self.values)
-
-    @cached_property
-    def widths(self) -> Floats:
-        """Radii of the truth in float64."""
-        return in_doubles(self.truth_radius)
 
 
 def in_doubles(values: Column) -> Floats:
@@ -79,17 +68,13 @@ class Distances:
     widths: Mapping[str, Column]
     sizes: Mapping[str, Any]
 
-    def errors(self) -> Errors:
-        """Return the errors relative to the scales of these samples; the larger part counts."""
-        scales = {part: or_one(size) for part, size in self.sizes.items()}
-        values = _larger([rows / scales[part] for part, rows in self.distances.items()])
-        radius = _larger([rows / scales[part] for part, rows in self.widths.items()])
-        return Errors(self.quantity, self.unit, values, radius, scales, is_state=True)
-
 
 def state_errors(scene: Scene, truth: Motion, answer: Motion) -> list[Errors]:
     """Return the errors of all tracked quantities, at the ambient precision of mpmath."""
-    return [distances.errors() for distances in state_distances(scene, truth, answer)]
+    states = States()
+    for distances in state_distances(scene, truth, answer):
+        states.add(distances)
+    return states.errors()
 
 
 def state_distances(
@@ -118,13 +103,6 @@ def _vectors(quantity: Quantity, truth: Motion, answer: Motion, size: Any) -> Di
         {part: truth.radius_of(part) * np.array([*map(or_one, sizes[part])]) for part in parts},
         {part: largest(sizes[part]) if size is None else size for part in parts},
     )
-
-
-def _larger(by_part: Sequence[Column]) -> Column:
-    """Return the largest of all parts at each sample."""
-    if len(by_part) == 1:
-        return by_part[0]
-    return np.array([largest(row) for row in zip(*by_part, strict=True)], dtype=object)
 
 
 def _angles(quantity: Quantity, truth: Motion, answer: Motion) -> Distances:

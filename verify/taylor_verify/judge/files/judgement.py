@@ -1,22 +1,27 @@
-"""The judgement of a trajectory file: first its conventions, then every quantity in it.
+"""The judgement of a trajectory file, and the search for its conventions if it does not fit.
 
-The file is read by the scene's conventions, or by the conventions that the search returned if the caller
-accepts them. Rows before the scene's start and rows after it are two runs that begin at the start.
+The file is judged as it stands. Only if a row does not fit, its conventions are searched; if the caller
+accepts them, the file is read by them and judged again. Rows before the scene's start and rows after it
+are two runs that begin at the start.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from math import inf
 from typing import Any, Final
 
 import numpy as np
 
+from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.causes.answers import NOT_LOOKED_FOR, causes_of_file
 from taylor_verify.judge.causes.equations import Equations
-from taylor_verify.judge.conventions.fits import Conventions, Finding
-from taylor_verify.judge.conventions.search import conventions, is_far
+from taylor_verify.judge.conventions.fits import EXPLAINS, Conventions, Finding
+from taylor_verify.judge.conventions.search import MOST_SPANS, conventions
 from taylor_verify.judge.conventions.worlds import World
+from taylor_verify.judge.costs import Costs
 from taylor_verify.judge.files.coverage import (
     Extent,
     comparable,
@@ -26,27 +31,29 @@ from taylor_verify.judge.files.coverage import (
     not_judged,
     span_notes,
 )
-from taylor_verify.judge.files.partial import partial_judgement
 from taylor_verify.judge.files.rows import FileRows, first_flaw
 from taylor_verify.judge.files.stored import storing, with_file_kinds
 from taylor_verify.judge.floor.inputs import input_rounding
+from taylor_verify.judge.floor.steps import Steps
+from taylor_verify.judge.gated import Gate, gates_of
 from taylor_verify.judge.initial import initial_verdict
 from taylor_verify.judge.judgement import Judgement, unjudged
-from taylor_verify.judge.regraded import Graded, graded, merged, verdict_of
+from taylor_verify.judge.rows import Run, run_record
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.models.problem import NotRepresentable, adopt
 from taylor_verify.records.answers import Convention, FileRead, LikelyCause
 from taylor_verify.records.json_text import complete
-from taylor_verify.records.quantities import COLUMNS, GROUPS, with_needs
-from taylor_verify.records.reason import Cause
-from taylor_verify.records.status import Status
-from taylor_verify.records.verdict import summary
+from taylor_verify.records.quantities import COLUMNS, GROUPS, STATES, with_needs
+from taylor_verify.records.reason import Carried, Cause
+from taylor_verify.records.record import Record
+from taylor_verify.records.status import GRAVITY, Status
+from taylor_verify.records.verdict import Verdict, summary
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import Recorded, TrajectoryFile
 
 # For a file the Taylor route goes at most this many times the scene's span.
-_MOST_SPANS: Final = 100
+_FURTHEST: Final = 100
 
 
 @dataclass(frozen=True, repr=False)
@@ -112,13 +119,16 @@ def judge_file(
     compared = replace(file, groups={name: file.groups[name] for name in groups})
     tracked = with_needs({GROUPS[name].quantity for name in groups})
     scene = replace(scene, track=scene.track & tracked)
-    file_conventions = Conventions((), World(scene), {})
+    known = Conventions((), World(scene), {})
+    answer = FileRows.of(compared, rung, known)
     try:
-        file_conventions = conventions(compared, scene, rung)
-        answer = FileRows.of(
-            compared, scene, rung, file_conventions if accept_conventions else None
-        )
-        judged = _judged(answer, compared, rung, file_conventions, tolerances)
+        judged = None if _is_far(answer) else _judged(answer, tolerances)
+        if judged is None or not _fits(judged):
+            known = conventions(compared, scene, rung)
+            if accept_conventions:
+                answer = FileRows.of(compared, rung, known)
+            if judged is None or (accept_conventions and known.findings):
+                judged = _judged_within_reach(answer, known, tolerances)
         extent = Extent.of(answer.scene, answer.times, rung)
         notes += tuple(span_notes(answer.scene, answer.times, extent))
         lack = list(not_judged(extent, missing_groups(groups, asked)))
@@ -126,64 +136,92 @@ def judge_file(
             row = complete_verdict(scene, file.name, rung, lack, partial)
             judged = replace(judged, verdicts=(*judged.verdicts, row))
     except NotRepresentable as reason:
-        judged = _alone(scene, file, rung, Status.REFUSED, str(reason), Cause.NOT_POSED)
+        judged = _alone(answer, Status.REFUSED, str(reason), Cause.NOT_POSED)
     except Unsettled as doubt:
-        judged = _alone(scene, file, rung, Status.UNDECIDED, str(doubt), Cause.NO_TRUTH)
+        judged = _alone(answer, Status.UNDECIDED, str(doubt), Cause.NO_TRUTH)
     causes: tuple[LikelyCause, ...] = ()
     if any(verdict.verdict is Status.FAIL for verdict in judged.verdicts):
-        causes = causes_of_file(compared, rung, file_conventions, judged)
+        causes = causes_of_file(compared, rung, known, judged)
         notes += () if Equations.are_known(scene.body) else (NOT_LOOKED_FOR,)
         stored = storing(file, rung)
         notes += () if stored is None else (stored.note,)
-    left = () if accept_conventions else file_conventions.findings
+    left = () if accept_conventions else known.findings
     verdicts = with_file_kinds(judged.verdicts, file, rung, left)
-    of_file = (file, file_conventions.findings, accept_conventions)
+    of_file = (file, known.findings, accept_conventions)
     return FileJudgement(verdicts, judged.record, *of_file, causes=causes, notes=notes)
 
 
-def _judged(
-    answer: FileRows,
-    file: TrajectoryFile,
-    rung: Rung,
-    file_conventions: Conventions,
-    tolerances: Tolerances,
-) -> Judgement:
-    """Judge the rows before and after the start, and return both judgements in one."""
-    scene = answer.scene
-    if file_conventions.world.scale != 1 and is_far(scene, answer.times):
+def _fits(judged: Judgement) -> bool:
+    """Return True if all states pass as the file stands, so that no convention is needed to explain them.
+
+    A tolerance that is nearly as large as the motion could let a wrong convention pass.
+    """
+    states = [verdict for verdict in judged.verdicts if verdict.quantity in STATES]
+    return all(
+        verdict.verdict is Status.PASS and (verdict.tolerance or 0.0) <= EXPLAINS
+        for verdict in states
+    )
+
+
+def _judged(answer: FileRows, tolerances: Tolerances) -> Judgement:
+    """Judge the rows before and after the start; of each quantity the worse verdict counts."""
+    records, gates = list[Record](), dict[str, list[Gate]]()
+    for side in answer.sides():
+        problem = adopt(side.scene, side.rung, side.instants)
+        solver = Recorded(side, setting=side.file.name, carries_velocities=side.has_velocities)
+        run = Run(problem, solver, solver.solve(problem), tolerances)
+        inputs = input_rounding(problem.given, side.rung, problem.scene)
+        of_side = gates_of(run, Steps(0), Costs(), inputs)
+        records.append(run_record(run, [gate.record for gate in of_side]))
+        for gate in of_side:
+            gates.setdefault(gate.errors.quantity, []).append(gate)
+    every = [gate for sides in gates.values() for gate in sides]
+    verdicts = [_verdict_of(sides, answer.file) for sides in gates.values()]
+    record = max(records, key=lambda each: len(each.times))
+    return Judgement((*initial_verdict(every, Carried.ROW), *verdicts), record)
+
+
+def _verdict_of(sides: Sequence[Gate], file: TrajectoryFile) -> Verdict:
+    """Return the worse verdict on a quantity over both directions of time, or that nearer to its bound."""
+    verdict = min((gate.verdict for gate in sides), key=_gravity)
+    is_finite = all(np.isfinite(gate.errors.values).all() for gate in sides)
+    flaw = "" if is_finite else first_flaw(file, verdict.quantity)
+    if not flaw:
+        return verdict
+    return replace(verdict, reason=verdict.reason.with_remark(Cause.NOT_FINITE, flaw))
+
+
+def _gravity(verdict: Verdict) -> tuple[int, float]:
+    ratio = verdict.ratio if verdict.tolerance is None else verdict.max
+    return GRAVITY.index(verdict.verdict), -inf if ratio is None or ratio != ratio else -ratio
+
+
+def _judged_within_reach(answer: FileRows, known: Conventions, tolerances: Tolerances) -> Judgement:
+    """Judge the rows, unless their times are too far away for a scene without a closed form."""
+    if known.world.scale != 1 and _is_far(answer):
         why = (
-            f"{file_conventions.world.words}; as it stands the file asks for times far beyond the scene, "
+            f"{known.world.words}; as it stands the file asks for times far beyond the scene, "
             "which has no closed form, and they are not computed: the rows near the start are wrong already"
         )
-        return _alone(scene, file, rung, Status.FAIL, why, Cause.TOO_FAR)
-    if is_far(scene, answer.times, _MOST_SPANS):
+        return _alone(answer, Status.FAIL, why, Cause.TOO_FAR)
+    if _is_far(answer, _FURTHEST):
         why = (
-            f"the file goes more than {_MOST_SPANS} times as far as the scene, which has no closed "
+            f"the file goes more than {_FURTHEST} times as far as the scene, which has no closed "
             "form: its exact motion is not computed up to there"
         )
-        return _alone(scene, file, rung, Status.UNDECIDED, why, Cause.TOO_FAR)
-    gates: dict[str, list[Graded]] = {}
-    records, start = [], float(scene.clock.start)
-    for side in answer.sides():
-        problem = adopt(side.scene, rung, side.instants)
-        solver = Recorded(side, setting=file.name, carries_velocities=side.has_velocities)
-        judged = partial_judgement(problem, solver, tolerances)
-        if judged.record is None:
-            return judged
-        records.append(judged.record)
-        inputs = input_rounding(problem.given, rung, problem.scene)
-        for gate in graded(judged.verdicts, judged.record, inputs, float(rung.unit_roundoff)):
-            gates.setdefault(gate.verdict.quantity, []).append(gate)
-    verdicts = []
-    for quantity, both in gates.items():
-        is_sound = all(np.all(np.isfinite(side.errors)) for side in both)
-        verdicts.append(verdict_of(both, "" if is_sound else first_flaw(file, quantity), start))
-    every = [gate for both in gates.values() for gate in both]
-    return Judgement((*initial_verdict(every, start), *verdicts), merged(records, every))
+        return _alone(answer, Status.UNDECIDED, why, Cause.TOO_FAR)
+    return _judged(answer, tolerances)
 
 
-def _alone(
-    scene: Scene, file: TrajectoryFile, rung: Rung, status: Status, why: str, cause: Cause
-) -> Judgement:
+def _is_far(answer: FileRows, spans: int = MOST_SPANS) -> bool:
+    """Return True if the Taylor route would have to go more than ``spans`` spans to reach these rows."""
+    clock, times = answer.scene.clock, answer.times
+    span = max(abs(t) for t in clock.elapsed)
+    reach = max(abs(t - clock.start) for t in (times[0], times[-1]))
+    return reach > spans * span and solution(answer.scene).route == "taylor"
+
+
+def _alone(answer: FileRows, status: Status, why: str, cause: Cause) -> Judgement:
     """Return one row for a file that was not compared."""
-    return unjudged(scene, Recorded({}, setting=file.name), rung, status, why, cause)
+    solver = Recorded({}, setting=answer.file.name)
+    return unjudged(answer.scene, solver, answer.rung, status, why, cause)

@@ -45,14 +45,11 @@ class FileRows(ByRows):
     places: range
 
     @classmethod
-    def of(
-        cls, file: TrajectoryFile, scene: Scene, rung: Rung, accepted: Conventions | None
-    ) -> FileRows:
-        places = range(len(file.times))
-        if accepted is None:
-            return cls(scene, file.times, file, rung, {}, places)
-        world = accepted.world
-        return cls(world.scene, world.times(file.times), file, rung, accepted.readings, places)
+    def of(cls, file: TrajectoryFile, rung: Rung, conventions: Conventions) -> FileRows:
+        """Return the rows of a file, read by these conventions."""
+        world, places = conventions.world, range(len(file.times))
+        times = world.times(file.times)
+        return cls(world.scene, times, file, rung, conventions.readings, places)
 
     @property
     def count(self) -> int:  # type: ignore[override]

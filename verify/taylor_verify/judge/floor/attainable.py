@@ -17,7 +17,7 @@ such a run counts as 2k - 1 steps, so that k steps count as k^2 (judge.floor.rep
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
 from math import log2
@@ -32,6 +32,7 @@ from taylor_verify.exact.invariants import Invariant
 from taylor_verify.judge.errors.state import Errors
 from taylor_verify.judge.floor.magnitude import roundings
 from taylor_verify.judge.floor.repeats import with_repeats
+from taylor_verify.judge.velocities import velocity_forms
 from taylor_verify.records.quantities import UNIT_QUATERNION
 from taylor_verify.records.reason import Carried, Reason, RoundoffFloor, shown
 from taylor_verify.scenes.instants import chosen, evenly
@@ -78,6 +79,20 @@ class Floor:
         attainable: Floats = self.unit_roundoff * np.max(parts, axis=0)
         return larger_neighbour(attainable, self._path_times, self.times)
 
+    def of_velocity(self, group: str, errors: Errors, sizes: Floats) -> Floats:
+        """Return the error of a velocity that the rounding of x and y, and of the velocity itself, leaves.
+
+        ``sizes`` are those of the velocity over its largest, and ``group`` has its columns.
+        """
+        (scale,) = errors.parts.values()
+        squares = (self.unit_roundoff * sizes) ** 2
+        for part, matrix in velocity_forms(self.orbit.scene.body).forms[group].items():
+            norm = np.linalg.norm(np.array(matrix, dtype=float), 2)
+            alone = replace(errors, parts={part: scale})
+            squares = squares + (norm * self.of_state(alone)) ** 2
+        attainable: Floats = np.sqrt(squares)
+        return attainable
+
     @property
     def nodes(self) -> list[int]:
         """Samples at which the gradients of conserved quantities are evaluated."""
@@ -107,7 +122,7 @@ class Floor:
 
     def terms(self, attainable: Floats, errors: Errors, carried: Carried) -> RoundoffFloor:
         """Return the terms of the floor at the sample of the largest error."""
-        worst = int(np.argmax(errors.doubles))
+        worst = int(np.argmax(errors.values))
         reached = self._path_times <= self.times[worst]
         steps = max(1, round(float(np.sum(self.steps_at[reached]))))
         value = float(attainable[worst])
@@ -129,7 +144,7 @@ class Floor:
         elapsed = self.times / (np.max(self.times) or 1.0)
         steps = 1 + float(np.sum(self.steps_at)) * elapsed
         attainable = self.unit_roundoff * steps
-        worst = int(np.argmax(errors.doubles))
+        worst = int(np.argmax(errors.values))
         value, count = float(attainable[worst]), round(steps[worst])
         ends = (float(np.min(excess)), float(np.max(excess)))
         extent = " to ".join(dict.fromkeys(_length(end, value) for end in ends))

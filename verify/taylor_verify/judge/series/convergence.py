@@ -11,6 +11,7 @@ from typing import Any, final
 from taylor_verify.judge.judgement import judgement
 from taylor_verify.models.problem import NotRepresentable, Problem, pose
 from taylor_verify.records.observed_order import SAME, Convergence, convergence
+from taylor_verify.records.quantities import INITIAL
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.precision import Rung
@@ -69,7 +70,9 @@ def sweep(
     by_step = [{verdict.quantity: verdict for verdict in verdicts} for verdicts in judged]
     verdicts = tuple(verdict for solver in judged for verdict in solver)
     quantities = {}
-    for name in dict.fromkeys(v.quantity for v in verdicts if v.at is not None):
+    for name in dict.fromkeys(
+        v.quantity for v in verdicts if v.at is not None and v.quantity != INITIAL
+    ):
         rows = [solver.get(name) for solver in by_step]
         # If the truth is wider than a gate allows, the error is unknown too.
         errors = [r.max if r and r.verdict is not Status.UNDECIDED else None for r in rows]

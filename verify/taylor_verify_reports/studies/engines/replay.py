@@ -11,7 +11,6 @@ import numpy as np
 from mpmath import mp
 
 from taylor_verify.judge.causes.answers import with_causes
-from taylor_verify.judge.initial import with_initial
 from taylor_verify.judge.judgement import Judgement, judgement
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.answers import LikelyCause
@@ -85,8 +84,7 @@ def judged(scene: str, rung: str, solver: str, states: States, steps: int) -> Ju
     problem = solver_named(solver).problem(load(scene), rung_named(rung))
     stored = Stored(solver, states, steps)
     trajectory = stored.solve(problem)
-    result = with_initial(judgement(problem, stored, trajectory), float(problem.given.clock.start))
-    return with_causes(result, problem, trajectory)
+    return with_causes(judgement(problem, stored, trajectory), problem, trajectory)
 
 
 def errors_of(result: Judgement) -> Errors:

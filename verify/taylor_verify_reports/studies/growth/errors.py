@@ -111,7 +111,7 @@ def _state_and_phase(
     reached = Clock(clock.start, clock.instants[: len(elapsed)])
     given = replace(problem.given, clock=reached, track=frozenset())
     (state,) = state_errors(given, exact.motion(elapsed, digits), answer)
-    measured = [Measured(state.quantity, Law.INTEGRATED, state.values.astype(float), signed=False)]
+    measured = [Measured(state.quantity, Law.INTEGRATED, state.values, signed=False)]
     shifts = _shifts(problem.given, exact, answer, elapsed, digits)
     if shifts is not None:
         phases = 2 * pi * certain_shifts(elapsed, shifts, period) / period

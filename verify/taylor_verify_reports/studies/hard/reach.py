@@ -155,7 +155,7 @@ def _errors(problem: Problem, trajectory: Trajectory) -> Floats:
     truth = solution(given).motion(instants, truth_digits(problem.rung.bits))
     with mp.workprec(bits):
         states = state_errors(given, truth, trajectory.motion(bits))
-        bounds = [(errors.values + errors.truth_radius).astype(float) for errors in states]
+        bounds = [errors.values + errors.truth_radius for errors in states]
     worst: Floats = np.max(bounds, axis=0)
     return worst
 

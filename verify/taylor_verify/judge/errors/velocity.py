@@ -1,4 +1,4 @@
-"""The shift of time that explains the error of U = A x + B y or Omega = B^T x + C y.
+"""The error of U = A x + B y or Omega = B^T x + C y, and the shift of time that explains it.
 
 U and Omega are not states. For states judge.errors.shift gives more; here the shift is one constant c with
 answer(t) ~ Omega(t - c), by least squares over the samples that share it. The velocity of Omega is a
@@ -15,12 +15,23 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution
-from taylor_verify.judge.errors.shift import LEAVES, strays_from
-from taylor_verify.judge.errors.state import largest, norms
+from taylor_verify.judge.errors.shift import LEAVES, Shift, strays_from
+from taylor_verify.judge.errors.state import (
+    Distances,
+    Errors,
+    Floats,
+    Series,
+    States,
+    largest,
+    norms,
+    or_one,
+)
 from taylor_verify.judge.velocities import velocity
+from taylor_verify.records.quantities import GROUPS, QUANTITIES
 from taylor_verify.records.reason import Kind
+from taylor_verify.scenes.bodies import Body
+from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.precision import exact_value, power_of_two
 from taylor_verify.scenes.scene import Scene
 
@@ -34,16 +45,27 @@ _EVALUATIONS: Final = 8
 _NEGLIGIBLE: Final = 1e-3
 
 
-@dataclass(frozen=True)
-class AngularShift:
-    """A constant ``time_shift`` and the largest error ``residual`` after it, in the unit of Omega.
+class VelocityErrors:
+    """Errors of a velocity whose rows come in blocks; ``group`` is the name of its columns."""
 
-    Samples that do not share the shift are left out of both numbers.
-    """
+    def __init__(self, group: str) -> None:
+        self.group = group
+        self._states, self._sizes = States(), Series()
 
-    time_shift: Fraction
-    residual: float
-    kind: Kind
+    def add(self, body: Body, truth: Motion, answer: Any) -> None:
+        """Add the next rows of the exact motion and of the ``answer`` (n, 3)."""
+        rows = velocity(self.group, body, truth.quantities)
+        about, sizes = QUANTITIES[GROUPS[self.group].quantity], norms(rows)
+        most = largest(sizes)
+        distances = {self.group: norms(answer - rows)}
+        widths = {self.group: truth.radius * or_one(most)}
+        block = Distances(about.name, about.unit, distances, widths, {self.group: most})
+        self._sizes.add(sizes, self._states.add(block)[self.group])
+
+    def joined(self) -> tuple[Errors, Floats]:
+        """Return the errors of all rows, and the size of the velocity there over its largest."""
+        (errors,) = self._states.errors()
+        return errors, self._sizes.joined()[0]
 
 
 @dataclass(frozen=True)
@@ -80,21 +102,25 @@ class _Fit:
         return strays_from(np.full(len(shifts), np.median(shifts)), shifts, speed, across)
 
 
-def angular_shift(
-    given: Scene, answer: Array, digits: int, group: str = "omega"
-) -> AngularShift | None:
+def velocity_shift(
+    given: Scene, exact: Solution, answer: Array, digits: int, errors: Errors
+) -> Shift | None:
     """Return the constant shift, at the ambient precision; None if the answer is not finite.
 
-    ``answer`` is Omega, or the velocity of another ``group`` of columns, at the instants of ``given``.
+    ``answer`` (n, 3) is the velocity at the instants of ``given``, and ``errors`` are its errors.
     """
     if not all(mp.isfinite(value) for value in answer.flat):
         return None
-    compared = _Compared(given, solution(given), answer, digits, group)
-    whole, best = compared.shift(range(len(answer)))
-    if whole.kind is Kind.NONE and (strays := best.strays()):
-        shared, _ = compared.shift([k for k in range(len(answer)) if k not in strays])
-        return whole if shared.kind is Kind.NONE else shared
-    return whole
+    ((group, scale),) = errors.parts.items()
+    compared = _Compared(given, exact, answer, digits, group)
+    fit, kind = compared.shift(range(len(answer)))
+    if kind is Kind.NONE and (strays := fit.strays()):
+        shared = compared.shift([k for k in range(len(answer)) if k not in strays])
+        fit, kind = (fit, kind) if shared[1] is Kind.NONE else shared
+    shift, remains = float(fit.shift), float(fit.largest) / float(scale)
+    return Shift(
+        shift, remains, kind, remains, 0.0, tuple(map(float, given.clock.instants)), (), ()
+    )
 
 
 @dataclass(frozen=True)
@@ -105,8 +131,8 @@ class _Compared:
     digits: int
     group: str
 
-    def shift(self, rows: Sequence[int]) -> tuple[AngularShift, _Fit]:
-        """Return the shift of some samples and their least-squares fit."""
+    def shift(self, rows: Sequence[int]) -> tuple[_Fit, Kind]:
+        """Return the least-squares fit of some samples, and whether its shift explains their error."""
         fit = first = self.fit(Fraction(0), rows)
         for _ in range(_EVALUATIONS):
             step = fit.step()
@@ -119,8 +145,7 @@ class _Compared:
         # An answer without motion shows no time.
         reach = largest(norms(first.answer - first.answer[:1]))
         explains = fit.shift != 0 and fit.largest <= LEAVES * min(first.largest, reach)
-        kind = Kind.CONSTANT if explains else Kind.NONE
-        return AngularShift(fit.shift, float(fit.largest), kind), fit
+        return fit, Kind.CONSTANT if explains else Kind.NONE
 
     def fit(self, shift: Fraction, samples: Sequence[int]) -> _Fit:
         """Return the fit that compares the answer at some samples with the exact motion at t - shift."""
