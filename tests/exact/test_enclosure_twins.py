@@ -14,11 +14,14 @@ from builders.scenes import one_instant, vector
 from flint import arb, arb_mat, ctx, fmpq, fmpq_mat
 
 from taylor_verify.exact.balls import ball, balls
-from taylor_verify.exact.enclosure import box, system, tube
+from taylor_verify.exact.enclosure import box, flow, tape
+from taylor_verify.exact.enclosure.bounds import Bounds
 from taylor_verify.exact.enclosure.box import Box
-from taylor_verify.exact.enclosure.course import Course, _Step
+from taylor_verify.exact.enclosure.course import Course
+from taylor_verify.exact.enclosure.step import Step, Stepper
 from taylor_verify.exact.enclosure.system import System, column, posed
-from taylor_verify.exact.equations import Equations, exact, nothing
+from taylor_verify.exact.enclosure.tape import Graph, Tape
+from taylor_verify.exact.equations import exact
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Spin
@@ -26,18 +29,17 @@ from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.tensors import diagonal
 
 ZERO = Fraction(0)
-# z' = z^2 from 1: z = z0/(1 - z0 t), whose derivative by z0 is 1/(1 - z0 t)^2.
-SQUARE = System(
-    Equations(
-        exact([ZERO]),
-        nothing(1),
-        exact([[[Fraction(2)]]]),
-        exact([[ZERO]] * 3),
-        exact([[ZERO]])[:0],
-    ),
-    blocks=(1,),
-    start=(Fraction(1),),
-)
+
+
+def squared() -> System:
+    """z' = z^2 from 1: z = z0/(1 - z0 t), whose derivative by z0 is 1/(1 - z0 t)^2."""
+    graph = Graph()
+    (z,) = graph.states(1)
+    tape = Tape.of(graph, 1, [graph.product(z, z)])
+    return System(tape, (1,), (Fraction(1),), exact([[ZERO]] * 3), exact([[ZERO]])[:0])
+
+
+SQUARE = squared()
 STEP, WIDE, SMALL = Fraction(1, 10), Fraction(1, 2), Fraction(1, 10**6)
 ORDER = 40
 BITS = 80
@@ -47,12 +49,11 @@ def square(start: Fraction, time: Fraction) -> Fraction:
     return start / (1 - start * time)
 
 
-def step_of(order: int = ORDER, apart: Fraction = WIDE) -> _Step:
+def step_of(order: int = ORDER, apart: Fraction = WIDE) -> Step:
     """One step of z' = z^2, to order ``order``, from all within ``apart`` of 1."""
-    with ctx.workprec(BITS), mock.patch.object(Course, "order", order):
+    with ctx.workprec(BITS), mock.patch.object(Stepper, "order", order):
         start = [arb(1, ball(apart))]
-        run = Course.of(SQUARE, start, None, BITS, 10_000)
-        return run._step(Box.about(start), STEP, STEP)
+        return Stepper.of(SQUARE, False, False).step(Box.about(start), ZERO, STEP, STEP)
 
 
 def polynomial(step: Fraction, s: Fraction, order: int) -> Fraction:
@@ -76,14 +77,15 @@ def test_the_tail_of_the_polynomial_counts(monkeypatch: pytest.MonkeyPatch) -> N
     """Without the products of high orders the truncation is nothing, and the motion is elsewhere."""
     assert is_in_the_tube(4, ZERO)
     zero = column([arb(0)])
-    monkeypatch.setattr(tube, "truncation", lambda *_: zero)
+    monkeypatch.setattr(Bounds, "defect", lambda _: zero)
     assert not is_in_the_tube(4, ZERO)
 
 
 def test_the_width_of_the_tube_counts_in_its_own_bound(monkeypatch: pytest.MonkeyPatch) -> None:
     """Rates of change on the polynomial alone are too small for motions beside it."""
     assert is_in_the_tube(ORDER, WIDE)
-    monkeypatch.setattr(tube, "reached", lambda polynomial, around: polynomial)
+    honest = Bounds.rates_of_change
+    monkeypatch.setattr(Bounds, "rates_of_change", lambda self, _: honest(self, [arb(0)]))
     assert not is_in_the_tube(ORDER, WIDE)
 
 
@@ -100,7 +102,7 @@ def test_what_the_variational_polynomial_misses_counts(monkeypatch: pytest.Monke
     """The derivative at the middle of a box is none for its ends: the motion from one end leaves."""
     ends = 1 - WIDE, 1 + WIDE
     assert all(map(is_in_the_box, ends))
-    monkeypatch.setattr(box, "flow_defect", lambda *_: column([arb(0)]))
+    monkeypatch.setattr(flow, "flow_defect", lambda *_: column([arb(0)]))
     assert not all(map(is_in_the_box, ends))
 
 
@@ -118,7 +120,7 @@ def test_the_derivative_of_the_flow_holds_that_of_every_start(
             return [step.flow.at(arb(1))[0, 0].overlaps(value) for value in true]
 
     assert holds() == [True, True, True]
-    monkeypatch.setattr(box, "flow_defect", lambda *_: column([arb(0)]))
+    monkeypatch.setattr(flow, "flow_defect", lambda *_: column([arb(0)]))
     assert holds()[::2] == [False, False]
 
 
@@ -222,7 +224,7 @@ def test_the_rounding_of_the_data_counts(bits: int, monkeypatch: pytest.MonkeyPa
     """A third is no binary number: with its nearest one in its place the motion is another one."""
     third = Fraction(1, 3)
     assert is_at_its_speed(bits, ZERO, third)
-    monkeypatch.setattr(system, "balls", lambda numbers: [b.mid() for b in balls(numbers)])
+    monkeypatch.setattr(tape, "ball", lambda number: ball(number).mid())
     assert not is_at_its_speed(bits, ZERO, third)
 
 

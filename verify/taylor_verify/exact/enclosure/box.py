@@ -8,28 +8,19 @@ until there are too many axes: then the shortest ones are replaced by a frame th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from flint import arb, arb_mat, ctx
 
-from taylor_verify.exact.enclosure.coefficients import Series, value
-from taylor_verify.exact.enclosure.system import Balls, column, magnitudes
-from taylor_verify.exact.enclosure.tube import (
-    BOUND_BITS,
-    Tube,
-    accumulated,
-    is_within,
-    partial_tails,
-    rates_of_change,
-)
+from taylor_verify.exact.enclosure.coefficients import Rows, value
+from taylor_verify.exact.enclosure.system import column, magnitudes, mapped
+from taylor_verify.exact.enclosure.tube import BOUND_BITS, Tube
 
-# The derivative of the flow is wanted to the leading digits alone. Orders that move the box by less than
-# this part of what the orders before them did are bounded, and not computed; some are in any case.
-_LITTLE: Final = arb(2) ** -24
-_LEAST_ORDER: Final = 8
+if TYPE_CHECKING:
+    from taylor_verify.exact.enclosure.flow import Flow
 
 # Axes for each component: as many as there may be, and the longest ones, which stay as they are when there
 # are more.
@@ -64,72 +55,7 @@ class Box:
             return magnitudes(magnitudes(self.axes) * self.radius)
 
 
-@dataclass(frozen=True)
-class Flow:
-    """The derivative of the flow over one step: V(s) = sum of the terms s^k, and ``defect`` about it.
-
-    ``spread`` bounds how far each term moves a state of the box from its point.
-    """
-
-    terms: list[arb_mat]
-    spread: list[arb_mat]
-    defect: arb_mat
-
-    def at(self, s: arb) -> arb_mat:
-        """V(s), as balls with the defect."""
-        total, power = self.terms[0], arb(1)
-        for term in self.terms[1:]:
-            power = power * s
-            total = total + term * power
-        return widened(total, self.defect)
-
-
-def flow(
-    system: Balls, bounds: Balls, box: Box, state: Series, sizes: Series, h: arb, tube: Tube
-) -> Flow:
-    """The derivative of the state by the one at the beginning, for every path within the tube.
-
-    V' = h DF(z(s)) V, V(0) = 1. What the polynomial V leaves of this equation is at most
-
-        sum_j |h| Lin(tail_(m - j)) |V_j| + |h| Lin(width of the tube) sum_j |V_j|.
-    """
-    n = len(state[0])
-    second = system.second * h
-    jacobians: list[arb_mat] = []
-    terms, spread = [identity(n)], [box.apart]
-    moved = box.apart
-    for k, z in enumerate(state[:-1]):
-        jacobians.append(arb_mat(n, n, (second * column(z)).entries()))
-        total = jacobians[k] * terms[0]
-        for j in range(1, k + 1):
-            total = total + jacobians[k - j] * terms[j]
-        terms.append(total * (1 / arb(k + 1)))
-        spread.append(magnitudes(magnitudes(terms[-1]) * box.apart))
-        # Up to a term that hardly moves the box.
-        if k >= _LEAST_ORDER and is_within(spread[-1], moved * _LITTLE):
-            break
-        moved = moved + spread[-1]
-    return Flow(terms, spread, flow_defect(bounds, terms, sizes, h, tube))
-
-
-def flow_defect(
-    bounds: Balls, terms: Sequence[arb_mat], sizes: Series, h: arb, tube: Tube
-) -> arb_mat:
-    """A bound of how far V may be from its polynomial: what that leaves out, accumulated in the tube."""
-    order = len(terms) - 1
-    beyond = [sum(entries, arb(0)) for entries in zip(*sizes[order:], strict=True)]
-    tails = partial_tails([*sizes[:order], beyond])
-    magnitude = [magnitudes(term) for term in terms]
-    everything = magnitude[0]
-    left = rates_of_change(bounds, column(tails[order])) * magnitude[0]
-    for j in range(1, order + 1):
-        everything = everything + magnitude[j]
-        left = left + rates_of_change(bounds, column(tails[order - j])) * magnitude[j]
-    left = (left + rates_of_change(bounds, tube.width) * everything) * abs(h).upper()
-    return accumulated(tube.growth, magnitudes(left), order=1)
-
-
-def carried(box: Box, state: Series, tube: Tube, flow: Flow | None, spans: list[range]) -> Box:
+def carried(box: Box, state: Rows, tube: Tube, flow: Flow | None, spans: list[range]) -> Box:
     """The box at the end of the step."""
     end = [sum(coefficients, arb(0)) for coefficients in zip(*state, strict=True)]
     point = [z.mid() for z in end]
@@ -139,8 +65,8 @@ def carried(box: Box, state: Series, tube: Tube, flow: Flow | None, spans: list[
         axes, radius = arb_mat(len(point), 0), arb_mat(0, 1)
         if flow is not None:
             moved = flow.at(arb(1)) * box.axes
-            axes, radius = _mapped(arb.mid, moved), box.radius
-            fresh = fresh + _mapped(lambda entry: arb(entry.rad()), moved) * radius
+            axes, radius = mapped(arb.mid, moved), box.radius
+            fresh = fresh + mapped(lambda entry: arb(entry.rad()), moved) * radius
         fresh = magnitudes(fresh)
         axes, radius = _beside((axes, radius), _along(fresh.entries()))
         if axes.ncols() > _MOST_AXES * len(point):
@@ -148,7 +74,7 @@ def carried(box: Box, state: Series, tube: Tube, flow: Flow | None, spans: list[
         return Box(point, axes, radius)
 
 
-def within(box: Box, state: Series, tube: Tube, flow: Flow | None, s: arb) -> list[arb]:
+def within(box: Box, state: Rows, tube: Tube, flow: Flow | None, s: arb) -> list[arb]:
     """The state at s as balls, at the ambient precision."""
     at_point = value(state, s)
     with ctx.workprec(BOUND_BITS):
@@ -157,17 +83,6 @@ def within(box: Box, state: Series, tube: Tube, flow: Flow | None, s: arb) -> li
             spread = magnitudes(flow.at(s) * box.axes) * box.radius + spread
         radii = magnitudes(spread).entries()
     return [z + arb(0, r) for z, r in zip(at_point, radii, strict=True)]
-
-
-def _mapped(change: Callable[[arb], arb], matrix: arb_mat) -> arb_mat:
-    entries = [change(entry) for entry in matrix.entries()]
-    return arb_mat(matrix.nrows(), matrix.ncols(), entries)
-
-
-def widened(matrix: arb_mat, radii: arb_mat) -> arb_mat:
-    """The matrix with balls of these radii about its entries."""
-    entries = [e + arb(0, r) for e, r in zip(matrix.entries(), radii.entries(), strict=True)]
-    return arb_mat(matrix.nrows(), matrix.ncols(), entries)
 
 
 def identity(n: int) -> arb_mat:

@@ -7,44 +7,22 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from decimal import MAX_EMAX, MIN_EMIN, Decimal, localcontext
 from fractions import Fraction
-from math import ceil, log2
+from math import ceil
 from statistics import median
 from typing import Final
 
 from flint import arb, ctx
 
 from taylor_verify.exact.balls import ball
-from taylor_verify.exact.enclosure.box import Box, Flow, carried, exponent, flow, within
-from taylor_verify.exact.enclosure.coefficients import (
-    Series,
-    frame_series,
-    scaled,
-    state_series,
-    value,
-)
-from taylor_verify.exact.enclosure.placing import Leg, Place, leg
-from taylor_verify.exact.enclosure.system import Balls, System, column, magnitudes
-from taylor_verify.exact.enclosure.tube import (
-    BOUND_BITS,
-    StepTooLong,
-    Tube,
-    rates_of_change,
-    tube,
-)
+from taylor_verify.exact.enclosure.box import Box, carried, within
+from taylor_verify.exact.enclosure.placing import Place
+from taylor_verify.exact.enclosure.step import Step, Stepper, size_of
+from taylor_verify.exact.enclosure.system import System
+from taylor_verify.exact.enclosure.tube import BOUND_BITS, StepTooLong
 from taylor_verify.exact.solution import Unsettled
-from taylor_verify.scenes.precision import floor_log2, power_of_two
+from taylor_verify.scenes.precision import power_of_two
 from taylor_verify.scenes.reading.faults import shown
 
-# If the convolutions dominate the cost, the cheapest steps are the radius of convergence over e^2, with
-# bits ln 2/2 orders. Work that is done once per order or once per step makes higher orders cheaper.
-_ORDERS_PER_BIT: Final = 0.42
-_STEP_BITS: Final = 8
-# Near a steady motion the series converges everywhere, and the bounds do not close.
-_MOST_GROWTH: Final = 5.0
-_LEAST_CUT: Final = 0.25
-_HALVINGS: Final = 30
-# A step that nearly reaches the end is extended to the end.
-_NEARLY: Final = Fraction(63, 64)
 MOST_STEPS: Final = 1_000_000
 # A box this large, as a power of two of its vector, is lost: further steps would shrink without end.
 _LOST: Final = -10
@@ -90,48 +68,35 @@ class Row:
 
 
 @dataclass(frozen=True)
-class _Step:
-    """A step of length h from a box, and everything that is known about the motion within it."""
-
-    length: Fraction
-    state: Series
-    tube: Tube
-    flow: Flow | None
-    leg: Leg | None
-
-
-@dataclass(frozen=True)
 class Course:
     """Steps from a start, away from it, at one precision; to be used at that precision.
 
     ``start`` are balls about the state; ``place`` is the frame there, or None where it is not tracked.
     More than ``most_bits`` bits, or ``most_steps`` steps, are never asked for. ``begin`` is what a clock
-    shows at the start, for messages alone.
+    shows at the start, for messages alone; ``origin`` is the start's time since that of the scene.
     """
 
-    system: System
-    balls: Balls
-    bounds: Balls
+    stepper: Stepper
     start: Sequence[arb]
     place: Place | None
     bits: int
     most_bits: int
     most_steps: int = MOST_STEPS
     begin: Fraction = Fraction(0)
+    origin: Fraction = Fraction(0)
 
     @classmethod
     def of(
         cls, system: System, start: Sequence[arb], place: Place | None, bits: int, most_bits: int
     ) -> Course:
         """The course of a system, at the ambient precision of ``bits`` bits."""
-        coefficients = Balls.of(system)
-        with ctx.workprec(BOUND_BITS):
-            bounds = coefficients.magnitudes()
-        return cls(system, coefficients, bounds, start, place, bits, most_bits)
+        has_centre = place is not None and place.centre is not None
+        stepper = Stepper.of(system, place is not None, has_centre)
+        return cls(stepper, start, place, bits, most_bits)
 
     @property
-    def order(self) -> int:
-        return ceil(_ORDERS_PER_BIT * self.bits) + 2
+    def system(self) -> System:
+        return self.stepper.system
 
     def first_row(self) -> Row:
         """The start itself."""
@@ -141,8 +106,8 @@ class Course:
     def _largest(self, box: Box, place: Place | None) -> tuple[float, ...]:
         """log2 of the size of each block, and of the centre."""
         centre = [] if place is None or place.centre is None else place.centre
-        sizes = [_size(box.point, span) for span in self.system.spans]
-        return (*sizes, _size(centre, range(len(centre))))
+        sizes = [size_of(box.point, span) for span in self.system.spans]
+        return (*sizes, size_of(centre, range(len(centre))))
 
     def rows(self, times: Sequence[Fraction]) -> Iterator[tuple[Fraction, Row]]:
         """The state at these times, which go away from zero on one side.
@@ -156,7 +121,7 @@ class Course:
         largest = self._largest(box, place)
         while pending:
             try:
-                step = self._step(box, length, last - now)
+                step = self.stepper.step(box, self.origin + now, length, last - now)
             except StepTooLong:
                 raise Coarse(2 * self.bits, stuck=pending[-1]) from None
             largest = tuple(map(max, zip(largest, self._terms(step), strict=True)))
@@ -178,109 +143,11 @@ class Course:
             if pending:
                 self._watch(box, largest, lengths, now, pending)
 
-    def _terms(self, step: _Step) -> tuple[float, ...]:
+    def _terms(self, step: Step) -> tuple[float, ...]:
         """log2 of what the terms of the rates make of each block in a step, none cancelled."""
         with ctx.workprec(BOUND_BITS):
-            point = magnitudes(column(step.state[0]))
-            terms = self.bounds.hessian * column((point * point.transpose()).entries())
-            added = (terms * ball(step.length)).entries()
-        return (*(_size(added, span) for span in self.system.spans), float("-inf"))
-
-    # One step.
-
-    def _step(self, box: Box, guess: Fraction, left: Fraction) -> _Step:
-        system, bounds = self.balls, self.bounds
-        first = self._first(box, guess, left)
-        state, frame = self._series(box, ball(first))
-        length = self._fitted(box, state, frame, first, left)
-        state, frame = (scaled(series, ball(length / first)) for series in (state, frame))
-        for _ in range(_HALVINGS):
-            h = ball(length)
-            with ctx.workprec(BOUND_BITS):
-                sizes = [[z.abs_upper() for z in row] for row in state]
-                try:
-                    step_tube = tube(bounds, sizes, h.abs_upper(), box.apart)
-                    moving = None
-                    if not box.is_point:
-                        moving = flow(system, bounds, box, state, sizes, h, step_tube)
-                except StepTooLong:
-                    step_tube = None
-            if step_tube is not None:
-                frame_leg = None
-                if frame:
-                    frame_leg = leg(system, bounds, state, frame, h, step_tube, moving, box)
-                return _Step(length, state, step_tube, moving, frame_leg)
-            length = length / 2
-            state, frame = (scaled(series, arb(1) / 2) for series in (state, frame))
-        raise StepTooLong
-
-    def _series(self, box: Box, h: arb) -> tuple[Series, Series]:
-        """The coefficients of the state and of the frame, which has none where it is not tracked."""
-        state = state_series(self.balls, box.point, h, self.order)
-        if self.place is None:
-            return state, []
-        return state, frame_series(self.balls, state, h, self.place.centre is not None)
-
-    def _first(self, box: Box, guess: Fraction, left: Fraction) -> Fraction:
-        """A length at which the coefficients are no giants: no guess can make a result wrong."""
-        with ctx.workprec(BOUND_BITS):
-            growth = self._growth(box.point)
-        length = guess if abs(guess) < abs(left) else left
-        if growth == float("-inf"):
-            return length
-        limit = power_of_two(ceil(-growth))
-        return length if abs(length) <= limit else limit * (1 if left > 0 else -1)
-
-    def _growth(self, point: Sequence[arb]) -> float:
-        """log2 of the spectral radius of |dF/dz| there, within a factor of n^(1/8); -inf of none.
-
-        The trace of an eighth power does not depend on the units of the components.
-        """
-        power = rates_of_change(self.bounds, magnitudes(column(point)))
-        for _ in range(3):
-            power = power * power
-        trace = power.trace()
-        return float("-inf") if trace.is_zero() else exponent(trace) / 8
-
-    def _fitted(
-        self, box: Box, state: Series, frame: Series, length: Fraction, left: Fraction
-    ) -> Fraction:
-        """The length at which the last coefficients fall below the last bit."""
-        both = [z + turn for z, turn in zip(state, frame, strict=True)] if frame else state
-        factor = min(self._root_test(both), _log2(left) - _log2(length))
-        is_constant = all(entry.is_zero() for row in state[1:] for entry in row)
-        if not (box.is_point and is_constant):
-            with ctx.workprec(BOUND_BITS):
-                factor = self._bounded(state, length, factor)
-        fitted = _cut(length, factor)
-        return left if abs(fitted) >= abs(left) * _NEARLY else fitted
-
-    def _bounded(self, state: Series, length: Fraction, factor: float) -> float:
-        """The factor, or less where the linearised motion would outgrow the bounds within the step."""
-        sizes = [list(map(arb.abs_upper, row)) for row in state]
-        while True:
-            most = value(sizes, _power(factor))
-            excess = self._growth(most) + _log2(length) + factor - log2(_MOST_GROWTH)
-            if excess <= 0:
-                return factor
-            # The reach may itself grow with the length.
-            factor -= max(excess / 2, _LEAST_CUT)
-
-    def _root_test(self, series: Series) -> float:
-        """log2 of the factor by which the length may grow; infinite where the series has ended.
-
-        Rows of the state, and of the turn beside it where the frame is tracked.
-        """
-        factor, n = float("inf"), self.system.size
-        for span in (*self.system.spans, range(n, min(n + 4, len(series[0])))):
-            # The size of the block, or of its first change.
-            sizes = (_size(row, span) for row in series[:3])
-            size = next((size for size in sizes if size > float("-inf")), float("-inf"))
-            for k in range(max(1, self.order - 2), self.order + 1):
-                last = _size(series[k], span)
-                if last > float("-inf"):
-                    factor = min(factor, (size - self.bits - last) / k)
-        return factor
+            added = [size * ball(step.length) for size in step.terms]
+        return (*(size_of(added, span) for span in self.system.spans), float("-inf"))
 
     # When to stop.
 
@@ -298,7 +165,7 @@ class Course:
         """
         apart = box.apart.entries()
         for k, span in enumerate(self.system.spans):
-            if _size(apart, span) > largest[k] + _LOST:
+            if size_of(apart, span) > largest[k] + _LOST:
                 raise Coarse(self._needed(now, pending))
         if len(lengths) % _SEVERAL == 0:
             usual = median(lengths[-8 * _SEVERAL :])
@@ -332,32 +199,7 @@ class Course:
         return shown(self.begin + time)
 
 
-def _log2(length: Fraction) -> float:
-    """log2 of a magnitude that no float needs to hold."""
-    return log2(abs(length.numerator)) - log2(length.denominator)
-
-
-def _power(exponent: float) -> arb:
-    """An exact number near 2^exponent, of any size."""
-    whole = int(exponent // 1)
-    return arb(2.0 ** (exponent - whole)) * arb(2) ** whole
-
-
 def _brief(value: Fraction) -> str:
     """Two digits of a number of any size."""
     with localcontext(Emax=MAX_EMAX, Emin=MIN_EMIN):
         return f"{Decimal(value.numerator) / Decimal(value.denominator):.2g}"
-
-
-def _cut(length: Fraction, log2_factor: float) -> Fraction:
-    """The length times 2^log2_factor, cut to so few bits that sums of lengths stay short."""
-    whole = int(log2_factor // 1)
-    wide = length * power_of_two(whole) * Fraction(2.0 ** (log2_factor - whole))
-    unit = power_of_two(floor_log2(abs(wide)) - _STEP_BITS + 1)
-    return int(wide / unit) * unit
-
-
-def _size(entries: Sequence[arb], span: range) -> float:
-    """log2 of the largest entry, rounded upwards; -inf of zeros."""
-    sizes = [exponent(entries[i]) for i in span if not entries[i].abs_upper().is_zero()]
-    return float(max(sizes, default=float("-inf")))
